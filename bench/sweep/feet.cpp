@@ -2,7 +2,7 @@
 // shoes. Two of the football stand's cameras, 7.4 m up: 3072 × 1728, and 1280 × 720 for people of 20 to 40 px. The truth is the
 // point on the ground between the soles. Judged is everybody who stands alone and whole in the picture: how many rows too low the
 // place lies (mean, median), by height, and how far off it is on the ground, by distance. Beside it: the lowest pixel's ray, as one
-// places people in an afternoon.
+// places people in an afternoon; and how many rows too far the boxes' lower and upper edges reach beyond the figure.
 //   feet [FRAMES (24)] [SEEDS (1)] [sweep]
 #include <algorithm>
 #include <array>
@@ -36,7 +36,8 @@ constexpr double kAlone = 0.999;                               // visible share
 /// The truth of one person in one picture, and where it is placed.
 struct Standing {
   Vector<2> truth_ground, truth_pixel;
-  double height = 0;    // px, of the whole figure
+  Box whole;            // px, of the whole figure
+  double height = 0;    // px
   double distance = 0;  // m from the camera, on the ground
 };
 
@@ -124,6 +125,7 @@ class Film {
       const auto person = static_cast<std::size_t>(seen.person);
       one.truth_ground = between_soles(match_.figures[person], stances[person]);
       one.truth_pixel = *view_.pixel(one.truth_ground);
+      one.whole = seen.whole;
       one.height = seen.whole.height;
       one.distance = (one.truth_ground - camera_.centre().head<2>()).norm();
       if (one.height >= scene_.least && one.height < scene_.most) people_.push_back(one);
@@ -134,6 +136,16 @@ class Film {
   void judge_lowest(Method& method) const {
     for (const Detection& one : found_.detections) {
       if (const auto place = view_.place(one.box.foot()); place && !one.group) judge(one.box, place->ground, method);
+    }
+  }
+
+  /// Rows by which edges of boxes reach too far.
+  void judge_edges(Method& below, Method& above) const {
+    for (const Detection& one : found_.detections) {
+      const Standing* person = one.group ? nullptr : nearest_to(one.box);
+      if (person == nullptr) continue;
+      below.off.push_back({one.box.bottom() - person->whole.bottom(), person->height, 0, person->distance});
+      above.off.push_back({person->whole.top - one.box.top, person->height, 0, person->distance});
     }
   }
 
@@ -156,7 +168,7 @@ class Film {
   }
 
   /// A detection is the person's whose feet are nearest to its foot.
-  void judge(const Box& box, const Vector<2>& ground, Method& method) const {
+  const Standing* nearest_to(const Box& box) const {
     const Standing* nearest = nullptr;
     double least = 0;
     for (const Standing& one : people_) {
@@ -165,6 +177,11 @@ class Film {
       if (nearest != nullptr && apart.norm() >= least) continue;
       nearest = &one, least = apart.norm();
     }
+    return nearest;
+  }
+
+  void judge(const Box& box, const Vector<2>& ground, Method& method) const {
+    const Standing* nearest = nearest_to(box);
     const auto pixel = view_.pixel(ground);
     if (nearest == nullptr || !pixel) return;
     method.off.push_back(
@@ -230,7 +247,7 @@ std::vector<Variant> variants(bool sweep) {
 }
 
 void run(const simulate::people::CameraLook& look, int frames, int seeds, bool sweep) {
-  Method lowest{"lowest pixel", {}};
+  Method lowest{"lowest pixel", {}}, below{"lower edge", {}}, above{"upper edge", {}};
   std::vector<Variant> all = variants(sweep);
   const std::array kScenes{Scene{look, {3072, 1728}, 40, 200}, Scene{look, {1280, 720}, 20, 40}};
   for (const Scene& scene : kScenes) {
@@ -239,6 +256,7 @@ void run(const simulate::people::CameraLook& look, int frames, int seeds, bool s
       for (int i = 0; i < frames; ++i) {
         film.step();
         film.judge_lowest(lowest);
+        film.judge_edges(below, above);
         for (Variant& one : all) film.judge(one.placing, one.method);
       }
     }
@@ -247,7 +265,7 @@ void run(const simulate::people::CameraLook& look, int frames, int seeds, bool s
              frames, seeds, look.blur, look.halo, look.halo_px, look.chroma_bleed, look.chroma_shift, look.quantizer, kContact,
              kNoise);
   fmt::print("{:<24} |  20-40 px: n, mean, median of rows too low | 40-80 | 80-120 | 120-200 | at 20 m: n, m | 40 m | 65 m\n", "");
-  print(lowest);
+  for (const Method* one : {&below, &above, &lowest}) print(*one);
   for (const Variant& one : all) print(one.method);
 }
 

@@ -59,7 +59,7 @@ std::array<std::uint8_t, 3> bytes_of(const draw::Colour& colour) {
 PeopleOnGroundOptions suited(PeopleOnGroundOptions options) {
   if (options.tracker.associate != track::ground::GroundAssociation::bramble) return options;
   options.detector = detect::blobs::BlobDetectorOptions{};
-  options.learn = {.agreement = false, .walk = false, .association = false};
+  options.learn = {.agreement = false, .walk = false, .teams = false, .association = false};
   return options;
 }
 

@@ -19,12 +19,13 @@ constexpr double prior_speed = 0.6;     // sizes/s; what is known before two obs
 constexpr double worth_of_joining = 9;  // how many log-likelihoods a newcomer at just this place and time is behind
 constexpr double gate = 16;             // chi-square, place and size: 4 degrees of freedom
 // docs/tuning.md has the sweep of those that follow.
-constexpr double kOutOfMeeting = 0.5;    // gain, at least, of one who went into a meeting and may be the one who comes out
-constexpr double kAsTracked = 1;         // gain of whom the tracker said
-constexpr double kLongestMeeting = 20;   // s
-constexpr double kStep = 1, kPace = 1;   // heights, heights/s: who comes out no farther from where it went in may be the same
-constexpr double kAtBorder = 0.1;        // heights from the picture's border
-constexpr double kHasLeft = 3;           // gain that each end at the border costs: who was there has left, or has just come
+constexpr double kOutOfMeeting = 0.5;   // gain, at least, of one who went into a meeting and may be the one who comes out
+constexpr double kAsTracked = 1;        // gain of whom the tracker said
+constexpr double kStands = 0.1;         // the same at least, where no other piece claims either: the light changes clothes; unswept
+constexpr double kLongestMeeting = 20;  // s
+constexpr double kStep = 1, kPace = 1;  // heights, heights/s: who comes out no farther from where it went in may be the same
+constexpr double kAtBorder = 0.1;       // heights from the picture's border
+constexpr double kHasLeft = 3;          // gain that each end at the border costs: who was there has left, or has just come
 constexpr double kUnseenAtBorder = 0.6;  // s from which on that counts
 
 bool is_sure(const TrackRow& row) {
@@ -207,7 +208,8 @@ double TrackletLinker::worth_of(const End& tail, const End& head, Passage passag
     worth += kAsTracked;
   else if (gap > kUnseenAtBorder)
     worth -= kHasLeft * (static_cast<int>(tail.at_border) + static_cast<int>(head.at_border));
-  return worth > 0 ? worth + clothes_.log_ratio(tail.clothes, head.clothes) : worth;
+  if (worth > 0) worth += clothes_.log_ratio(tail.clothes, head.clothes);
+  return passage == Passage::as_tracked ? std::max(worth, kStands) : worth;
 }
 
 /// Logarithm of how much likelier it is that one target made both ends than that one left and another came, by place, motion and

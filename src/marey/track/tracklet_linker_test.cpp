@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -79,6 +80,62 @@ TEST(Linker, WhoPassEachOtherKeepTheirNumbers) {
     EXPECT_EQ(number_at(rows, 5, 125), number_at(rows, 65, 425)) << dressed;
     EXPECT_EQ(number_at(rows, 5, 435), number_at(rows, 65, 135)) << dressed;
   }
+}
+
+/// Somebody walks out of the sun into shade; just there nobody sees them for half a second, or another passes. Others stand far
+/// away, in clothes of many colours.
+int cut_in_two_although_alone(int cases, unsigned first_seed) {
+  int cut = 0;
+  for (int i = 0; i < cases; ++i) {
+    std::mt19937 random(first_seed + static_cast<unsigned>(i));
+    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    const double speed = uniform(1, 6), darker = uniform(10, 45);
+    const int shade = static_cast<int>(uniform(25, 45)), beside = shade + static_cast<int>(uniform(-3, 3));
+    std::vector<Appearance> wear;
+    for (int k = 0; k < 7; ++k) {
+      wear.push_back({.lightness = static_cast<float>(uniform(55, 90)),
+                      .a = static_cast<float>(uniform(-30, 30)),
+                      .b = static_cast<float>(uniform(-30, 30)),
+                      .deviation = 2});
+    }
+    TrackletLog log;
+    for (int k = 0; k < 80; ++k) {
+      std::vector<Track<2>> tracks;
+      std::vector<Clothes> clothes;
+      const auto show = [&](int id, double x, double y, Appearance colour) {
+        Track<2> track;
+        track.id = TrackId{id};
+        track.position = {x + uniform(-1, 1), y + uniform(-1, 1)};
+        track.box = Box::from_centre(track.position, 32, 80);
+        track.score = 0.9;
+        track.observation = static_cast<int>(clothes.size());
+        for (float* part : {&colour.lightness, &colour.a, &colour.b}) *part += static_cast<float>(uniform(-2, 2));
+        clothes.push_back({colour, colour});
+        tracks.push_back(track);
+      };
+      Appearance colour = wear[0];
+      if (k >= shade) colour.lightness -= static_cast<float>(darker), colour.b -= 8;
+      show(1, 100 + speed * k, 200, colour);
+      if (i % 2 == 0 && k >= beside && k < beside + 6) {
+        tracks.back().state = Track<2>::State::predicted;
+        tracks.back().observation.reset();
+        clothes.pop_back();
+      }
+      for (int other = 1; other < 6; ++other) show(1 + other, 100 + 150.0 * other, 600, wear[static_cast<std::size_t>(other)]);
+      if (i % 2 == 1) show(7, 100 + speed * beside + 5.0 * (beside - k), 206, wear[6]);
+      log.add(k, timestamp_from_seconds(k / kFrameRate), tracks, clothes);
+    }
+    std::set<int> numbers;
+    for (const TrackRow& row : join(log)) {
+      if (row.first_id == 1) numbers.insert(row.id);
+    }
+    if (numbers.size() > 1) ++cut;
+  }
+  return cut;
+}
+
+TEST(Linker, WhoGoesOnAloneIsOneWhateverTheLightMakesOfTheClothes) {
+  EXPECT_EQ(cut_in_two_although_alone(100, 3300), 0) << "seeds 3300 to 3399";
 }
 
 TEST(Linker, WhoLeavesIsNotWhoComesInThere) {

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <variant>
 
+#include <opencv2/core.hpp>
+
 #include "marey/core/foreground.h"
 #include "marey/core/frame.h"
 #include "marey/core/geometry.h"
@@ -28,6 +30,11 @@ class Background {
 
   /// The empty scene as it is believed to be now; empty where the model does not tell.
   virtual Picture scene() const { return {}; }
+  /// The same within `part`, whose corner is on even pixels.
+  virtual Picture scene(const cv::Rect& part) const {
+    const Picture whole = scene();
+    return whole.empty() ? whole : whole.part(part);
+  }
 
   /// What the picture shows where `mask` (CV_8UC1, its upper left pixel at `corner` of the picture) is not 0 is the scene:
   /// something that was taken for a part of it has gone. A model that does not tell its scene need not know.

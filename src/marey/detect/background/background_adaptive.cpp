@@ -106,10 +106,13 @@ class AdaptiveBackground final : public Background {
     return {mask_, covered_};
   }
 
-  Picture scene() const override {
+  Picture scene() const override { return scene({{}, size_}); }
+
+  Picture scene(const cv::Rect& part) const override {
     if (size_.empty()) return {};
-    if (!colour_) return Picture(luma_.picture());
-    return {luma_.picture(), cb_.picture(), cr_.picture(), black_ > 0 ? Picture::Range::limited : Picture::Range::full};
+    if (!colour_) return Picture(luma_.picture(part));
+    const cv::Rect half(part.tl() / 2, cv::Size((part.width + 1) / 2, (part.height + 1) / 2));
+    return {luma_.picture(part), cb_.picture(half), cr_.picture(half), black_ > 0 ? Picture::Range::limited : Picture::Range::full};
   }
 
   void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {

@@ -80,9 +80,9 @@ void ScenePlane::correct(std::span<const cv::Mat> samples, const cv::Mat& fixed,
   renew_bands(0, mean_.rows);
 }
 
-cv::Mat ScenePlane::picture() const {
+cv::Mat ScenePlane::picture(const cv::Rect& part) const {
   cv::Mat levels;
-  mean_.convertTo(levels, CV_8U, 1 / 128.0);
+  mean_(part).convertTo(levels, CV_8U, 1 / 128.0);
   return levels;
 }
 

@@ -63,7 +63,9 @@ class ScenePlane {
     return static_cast<std::uint8_t>((mean_.at<std::int16_t>(row, column) + 64) >> 7);
   }
   /// The means' levels, CV_8UC1.
-  cv::Mat picture() const;
+  cv::Mat picture() const { return picture({{}, mean_.size()}); }
+  /// The same within `part`.
+  cv::Mat picture(const cv::Rect& part) const;
   const std::int16_t* mean(int row) const { return mean_.ptr<std::int16_t>(row); }
   const std::uint8_t* low(int row) const { return low_.ptr<std::uint8_t>(row); }
   const std::uint8_t* high(int row) const { return high_.ptr<std::uint8_t>(row); }

@@ -154,6 +154,7 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   Detections result;
   result.foreground = background_->apply(frame, held);
   groups_ = 0;
+  picture_ = frame.picture;
   const cv::Size image = frame.picture.size();
   const std::vector<Region> regions = find_regions(result.foreground.mask, {.min_area = options_.min_area});
   for (const Cluster& cluster : clusters_of(without_noise(regions), expected)) {
@@ -166,6 +167,7 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   }
   learn(regions, expected, image);
   if (sizes_.wants_fit()) sizes_.fit();
+  picture_ = {};
   return result;
 }
 
@@ -291,13 +293,25 @@ Box PeopleDetector::completed(const Cluster& cluster, std::span<const Expected> 
   return box;
 }
 
-Detection PeopleDetector::whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground) const {
+/// A silhouette runs on the halo of sharpening and on the shadow under the shoes; where the background model tells what is behind
+/// it, its ends are put where the body ends.
+Box PeopleDetector::without_halo(const Box& box, std::span<const PixelRun> runs) {
+  if (picture_.luma().depth() != CV_8U) return box;
+  const cv::Rect part = part_for_ends(box, picture_.size());
+  const Picture scene = background_->scene(part);
+  if (scene.empty()) return box;
+  const BodyEnds ends = find_ends(runs, box, {picture_.part(part), scene, part.tl()});
+  excess_.learn(box, ends);
+  return excess_.without(box, ends);
+}
+
+Detection PeopleDetector::whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground) {
   const auto foot = cluster.body.foot();
   const auto size = size_at(foot.x(), foot.y());
   const double filled = std::min(1.0, cluster.area / (0.6 * cluster.body.area()));
   if (!size) return detection_of(completed(cluster, expected, foreground.mask.size()), cluster.runs, 0.5 * filled, foreground);
   const double off = (cluster.body.height / size->height - 1) / 0.3;
-  Box box = cluster.body;
+  Box box = without_halo(cluster.body, cluster.runs);
   box.width = (box.width + size->width) / 2;
   box.left += (cluster.body.width - box.width) / 2;
   Detection detection = detection_of(box, cluster.runs, filled * (1 - 0.3 * off * off), foreground);

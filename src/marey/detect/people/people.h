@@ -9,6 +9,7 @@
 #include "marey/assign/disjoint_sets.h"
 #include "marey/detect/background/background.h"
 #include "marey/detect/detector.h"
+#include "marey/detect/people/people_ends.h"
 #include "marey/detect/people/people_fit.h"
 #include "marey/detect/people/people_hidden.h"
 #include "marey/detect/people/people_size.h"
@@ -83,7 +84,8 @@ class PeopleDetector final : public Detector {
   void learn(const std::vector<Region>& regions, std::span<const Expected> expected, cv::Size image);
   bool looks_whole(const Cluster& cluster, cv::Size image, double widest) const;
   static Box completed(const Cluster& cluster, std::span<const Expected> expected, cv::Size image);
-  Detection whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground) const;
+  Box without_halo(const Box& box, std::span<const PixelRun> runs);
+  Detection whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground);
   void explain(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground,
                std::vector<Detection>& found);
 
@@ -91,6 +93,8 @@ class PeopleDetector final : public Detector {
   PeopleOptions options_;
   PersonSizeModel sizes_;
   HiddenPlaces hidden_;
+  SilhouetteExcess excess_;
+  Picture picture_;  ///< the frame's
   Counts counts_;
   int groups_ = 0;  ///< numbers given to shared regions in this frame
 };

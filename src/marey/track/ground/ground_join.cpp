@@ -20,9 +20,11 @@ namespace {
 
 constexpr double end_span = 3;  // s of a tracklet that its end is judged by
 
-constexpr double tracker_knows = 2;  // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
-constexpr double clothes_vary = 5;   // as perceived, one person's colour from one stretch to another: sun, shade, another camera
-constexpr double thinned = 0.6;      // deviation as perceived, of one in L*a*b*
+constexpr double tracker_knows = 2;    // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
+constexpr double stands = 0.1;         // gain, at least, of going on as the tracker said: less than any other claim; unswept
+constexpr double plainly_others = -4;  // of colours: the tracker went over to somebody else; unswept
+constexpr double clothes_vary = 5;     // as perceived, one person's colour from one stretch to another: sun, shade, another camera
+constexpr double thinned = 0.6;        // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
 constexpr std::size_t kMostKinds = 300;
 
@@ -140,7 +142,7 @@ class Chainer {
       heads_[i].appearance = tails_[i].appearance = appearance_of(tracklets_[i].samples);
       if (heads_[i].appearance) seen.push_back({*heads_[i].appearance, seconds(tails_[i].time - heads_[i].time)});
     }
-    pairs_ = gated_pairs(tails_, heads_, GroundColours(seen), options_, kLeastOdds);
+    pairs_ = gated_pairs(tails_, heads_, GroundColours(seen, options_.teams), options_, kLeastOdds);
     for (assign::GatedPair& pair : pairs_) pair.gain -= openness_gain(pair);
   }
 
@@ -195,7 +197,7 @@ class Chainer {
     }
     GroundChainOptions options = options_;
     options.longest_gap = longest;
-    merge(chains, follow(tails, heads, GroundColours(seen), options));
+    merge(chains, follow(tails, heads, GroundColours(seen, options_.teams), options));
   }
 
   static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
@@ -218,7 +220,8 @@ class Chainer {
 
 }  // namespace
 
-GroundColours::GroundColours(std::span<const Seen> seen) : kinds_(seen.begin(), seen.end()) {
+GroundColours::GroundColours(std::span<const Seen> seen, const std::optional<GroundTeams>& teams)
+    : kinds_(seen.begin(), seen.end()), teams_(teams) {
   std::stable_sort(kinds_.begin(), kinds_.end(), [](const Seen& a, const Seen& b) { return a.seconds > b.seconds; });
   if (kinds_.size() > kMostKinds) kinds_.resize(kMostKinds);
 }
@@ -232,7 +235,8 @@ double GroundColours::same(const std::optional<Appearance>& a, const std::option
     all += kind.seconds + 0.1;
   }
   const double newcomer = std::log(std::max(common / all, 1e-12));  // of some colour that was not seen yet
-  return std::clamp(colour_log_normal(*a, *b) - newcomer, surest_apart, surest_same);
+  const double team = teams_ ? teams_->same_for_long(*a, *b) : 0;
+  return std::clamp(colour_log_normal(*a, *b) - newcomer + team, surest_apart, surest_same);
 }
 
 double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
@@ -256,8 +260,11 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
   const Matrix<2> anyhow = head.state.P[3] + speed_variance(options.motion) * Matrix<2>::Identity();
   const double found_again = std::log((1 - tail.leaving) / tail.leaving) - 2 * std::log1p(gap);
   const double came = std::log(head.coming) + log_normal<2>(head.state.velocity(), anyhow);
-  const double thought = tail.goes_on && head.piece == tail.piece + 1 ? tracker_knows : 0;
-  return log_continuity(tail, head, colours, options.motion) + found_again - came + thought;
+  const bool as_tracked = tail.goes_on && head.piece == tail.piece + 1;
+  const double gain = log_continuity(tail, head, colours, options.motion) + found_again - came + (as_tracked ? tracker_knows : 0);
+  // What the tracker said stands where nobody else wants either piece, unless they are plainly two people's.
+  if (as_tracked && colours.same(tail.appearance, head.appearance) > plainly_others) return std::max(gain, stands);
+  return gain;
 }
 
 std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,

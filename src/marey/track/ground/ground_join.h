@@ -22,6 +22,7 @@
 
 #include "marey/core/time.h"
 #include "marey/track/ground/ground_smooth.h"
+#include "marey/track/ground/ground_teams.h"
 #include "marey/track/ground/ground_tracklet.h"
 
 namespace marey::track::ground {
@@ -33,6 +34,7 @@ struct GroundChainOptions {
   double longest_gap = 20;  ///< s
   double max_speed = 12;    ///< m/s
   GroundMotion motion;
+  std::optional<GroundTeams> teams = {};
 };
 
 /// What an end of a tracklet, or its beginning, tells of joining it.
@@ -54,13 +56,14 @@ class GroundColours {
     Appearance wears;
     double seconds = 0;
   };
-  explicit GroundColours(std::span<const Seen> seen);
+  explicit GroundColours(std::span<const Seen> seen, const std::optional<GroundTeams>& teams = {});
 
   /// Logarithm of how much likelier it is that both are one person's than two people's; 0 where one is unknown.
   double same(const std::optional<Appearance>& a, const std::optional<Appearance>& b) const;
 
  private:
   std::vector<Seen> kinds_;
+  std::optional<GroundTeams> teams_;
 };
 
 /// What an end may be off by beyond what its covariance says: standard deviations per axis.

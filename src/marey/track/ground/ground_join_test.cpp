@@ -1,5 +1,6 @@
 #include "marey/track/ground/ground_join.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -74,6 +75,40 @@ TEST(GroundJoin, ClothesTellWhoIsWhoWhereWaysDoNot) {
                                                    walk(3, 4, 8, {4, 0.2}, {1, 0}, third), walk(4, 4, 8, {4, 0.8}, {1, 0}, fourth)};
     EXPECT_EQ(chains_of(tracklets), exchanged ? (Chains{{0, 3}, {1, 2}}) : (Chains{{0, 2}, {1, 3}}));
   }
+}
+
+/// Somebody who was followed through, cut where another's track ends nearby: they slow down, turn or come into shade there, so that
+/// motion and clothes fit badly, and nobody else is there who might be either piece.
+int left_cut_although_alone(int cases, unsigned first_seed) {
+  int cut = 0;
+  for (int i = 0; i < cases; ++i) {
+    std::mt19937 random(first_seed + static_cast<unsigned>(i));
+    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    const double heading = uniform(0, 6.28), after = heading + uniform(0.8, 2.4);
+    const Vector<2> before_it = uniform(4, 7) * Vector<2>(std::cos(heading), std::sin(heading));
+    const Vector<2> after_it = uniform(4, 7) * Vector<2>(std::cos(after), std::sin(after));
+    const Appearance light{.lightness = 80, .a = static_cast<float>(uniform(-3, 3)), .b = 0, .deviation = 3};
+    Appearance shade = light;
+    shade.lightness -= static_cast<float>(uniform(0, 20));
+    std::vector<GroundTracklet> tracklets = {walk(1, 0, 5, {0, 0}, before_it, light),
+                                             walk(1, 5.1, 10, 5.05 * before_it, after_it, shade)};
+    tracklets.front().goes_on = true;
+    for (int other = 0; other < 6; ++other)
+      tracklets.push_back(walk(2 + other, 0, 99, {200.0 + 20 * other, 200}, {0, 0}, other % 2 == 0 ? white : blue));
+    const Chains chains = chains_of(tracklets);
+    if (std::find(chains.begin(), chains.end(), std::vector<int>{0, 1}) == chains.end()) ++cut;
+  }
+  return cut;
+}
+
+TEST(GroundJoin, WhatTheTrackerSaidStandsWhereNobodyElseWantsIt) {
+  EXPECT_EQ(left_cut_although_alone(100, 5100), 0) << "seeds 5100 to 5199";
+  std::vector<GroundTracklet> exchanged = {walk(1, 0, 5, {0, 0}, {3, 0}, white), walk(1, 5.1, 10, {15.3, 0}, {-2, 6}, blue)};
+  exchanged.front().goes_on = true;
+  for (int other = 0; other < 6; ++other)
+    exchanged.push_back(walk(2 + other, 0, 99, {200.0 + 20 * other, 200}, {0, 0}, other % 2 == 0 ? white : blue));
+  const Chains chains = chains_of(exchanged);
+  EXPECT_NE(std::find(chains.begin(), chains.end(), std::vector<int>{0}), chains.end()) << "white does not become blue";
 }
 
 TEST(GroundJoin, AtTheBorderOfSightPeopleLeaveAndOthersCome) {

@@ -141,6 +141,7 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   SwapRepairOptions swaps;
   swaps.max_speed = options.max_speed;
   swaps.motion = options.motion;
+  swaps.teams = options.teams;
   repair_swaps(whole, times_, swaps);
   std::vector<GroundTracklet> tracklets = cut_at_appearance_changes(std::move(whole), times_);
   tracklets = cut_where_impossible(std::move(tracklets), times_);
@@ -150,7 +151,8 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   GroundMotion unseen = options.motion;
   unseen.acceleration *= kUnseenPush;
   const std::vector<GroundChain> chains =
-      chain(tracklets, times_, in_sight, {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = unseen});
+      chain(tracklets, times_, in_sight,
+            {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = unseen, .teams = options.teams});
   return people_from_chains(std::move(tracklets), chains, {frames_, times_, camera_begins_}, options);
 }
 

@@ -24,6 +24,7 @@ struct GroundJoinOptions {
   double rarest = 0.4;         ///< who is seen in a smaller share of the instants between first and last likewise
   double max_speed = 12;       ///< m/s; nobody runs faster
   GroundMotion motion;         ///< how people move
+  std::optional<GroundTeams> teams = {};  ///< what two teams wear, where that is known
 };
 
 /// What was seen of people on the ground, instant by instant, kept for a second pass that may look ahead: 48 bytes a person and

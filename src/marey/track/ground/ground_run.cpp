@@ -26,6 +26,19 @@ GroundTrackerOptions ahead(GroundTrackerOptions options) {
   return options;
 }
 
+/// What the two teams wear, by what was seen of people who share their region with nobody.
+std::optional<GroundTeams> teams_in(const std::deque<GroundInstant>& instants) {
+  std::vector<Appearance> colours;
+  for (const GroundInstant& instant : instants) {
+    for (const std::vector<Observation<2>>& of : instant.seen) {
+      for (const Observation<2>& one : of) {
+        if (one.appearance && !one.shared) colours.push_back(*one.appearance);
+      }
+    }
+  }
+  return GroundTeams::learn(colours);
+}
+
 }  // namespace
 
 GroundRun::GroundRun(const GroundTrackerOptions& tracker, const GroundJoinOptions& join, const GroundLearnOptions& learn,
@@ -67,6 +80,8 @@ void GroundRun::learn() {
     correct(instant);
     kept_.push_back(std::move(instant));
   }
+  if (learn_.teams) options_.teams = teams_in(kept_);
+  join_.teams = options_.teams;
   if (learn_.walk) learn_motion();
   if (learn_.association && is_plain()) options_.associate = GroundAssociation::gnn;
   learned_ = true;

@@ -25,6 +25,7 @@ namespace marey::track::ground {
 struct GroundLearnOptions {
   bool agreement = true;  ///< of cameras
   bool walk = true;       ///< how people move: else the tracker's filter and the join's motion stay as they are
+  bool teams = true;      ///< what two teams wear, where people wear two shirts
   /// Whether people are told apart by gnn where that is enough: cameras agree, and instants follow each other closely. Else the
   /// association that was asked for is taken.
   bool association = false;

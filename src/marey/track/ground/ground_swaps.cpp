@@ -13,7 +13,11 @@ constexpr std::size_t kMostKindsTried = 60;  // of colours; more only costs time
 class Exchanger {
  public:
   Exchanger(std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times, const SwapRepairOptions& options)
-      : tracklets_(tracklets), times_(times), options_(options), colours_(kinds(tracklets, times)), holder_(tracklets.size()) {
+      : tracklets_(tracklets),
+        times_(times),
+        options_(options),
+        colours_(kinds(tracklets, times, options.teams)),
+        holder_(tracklets.size()) {
     std::iota(holder_.begin(), holder_.end(), 0);
   }
 
@@ -29,7 +33,8 @@ class Exchanger {
   }
 
  private:
-  static GroundColours kinds(const std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times) {
+  static GroundColours kinds(const std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times,
+                             const std::optional<GroundTeams>& teams) {
     std::vector<GroundColours::Seen> seen;
     for (const GroundTracklet& tracklet : tracklets) {
       const auto wears = appearance_of(tracklet.samples);
@@ -39,7 +44,7 @@ class Exchanger {
     std::stable_sort(seen.begin(), seen.end(),
                      [](const GroundColours::Seen& a, const GroundColours::Seen& b) { return a.seconds > b.seconds; });
     if (seen.size() > kMostKindsTried) seen.resize(kMostKindsTried);
-    return GroundColours(seen);
+    return GroundColours(seen, teams);
   }
 
   std::span<const GroundSample> samples_of(int tracklet) const { return tracklets_[tracklet].samples; }

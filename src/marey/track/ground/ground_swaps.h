@@ -17,6 +17,7 @@
 namespace marey::track::ground {
 
 struct SwapRepairOptions : MeetingOptions {
+  std::optional<GroundTeams> teams = {};
   double surely = 6;  ///< logarithm of how much likelier exchanging must be
 };
 

@@ -37,6 +37,7 @@ void note(GroundTarget& target, const Observation<2>& seen) {
     target.appearance = seen.appearance;
     return;
   }
+  if (seen.shared) return;  // may be in part another's
   Appearance& learned = *target.appearance;
   learned.lightness += kAppearanceRate * (seen.appearance->lightness - learned.lightness);
   learned.a += kAppearanceRate * (seen.appearance->a - learned.a);
@@ -88,7 +89,10 @@ std::optional<double> GroundRules::log_ratio(const Target& target, const Observa
   const double distance = residual.dot(S.inverse() * residual);
   if (!(distance <= gate_) || !within_reach(target, residual, S, now)) return std::nullopt;
   double ratio = std::log(options_.detected / options_.clutter / (2 * std::numbers::pi)) - (distance + std::log(determinant)) / 2;
-  if (target.appearance && seen.appearance) ratio += appearance_ratio(*target.appearance, *seen.appearance);
+  if (target.appearance && seen.appearance) {
+    ratio += appearance_ratio(*target.appearance, *seen.appearance);
+    if (options_.teams) ratio += options_.teams->same(*target.appearance, *seen.appearance);
+  }
   ratio -= kLowScoreCost * (1 - std::clamp(seen.score, 0.0, 1.0));
   return target.confirmed() ? ratio : ratio - options_.evidence.newcomer_cost;
 }

@@ -20,6 +20,7 @@
 #include "marey/core/ground_views.h"
 #include "marey/filter/filters.h"
 #include "marey/track/bramble/bramble_options.h"
+#include "marey/track/ground/ground_teams.h"
 #include "marey/track/tracker.h"
 
 namespace marey::track::ground {
@@ -41,13 +42,14 @@ struct GroundTrackerOptions {
   GroundAssociation associate = GroundAssociation::gnn;
   filter::FilterOptions filter = filter::KalmanOptions{.acceleration_noise = 2, .initial_speed = 3, .gate_sigmas = 3.5};
   EvidenceOptions evidence = {};
-  double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
-  double max_speed = 12;            ///< m/s; no person runs faster
-  double detected = 0.9;            ///< probability that a target in view of a camera is seen in one of its frames
-  double clutter = 1e-4;            ///< false observations per m² and view
-  double births = 1e-4;             ///< people who appear per m² and second; at the edge of what cameras see, more
-  double disagreement = 0.3;        ///< by how much cameras may disagree about a place, for good: standard deviation per axis
-  double patience = 3;              ///< a target that should be seen and is not is given up after this
+  double gate_probability = 0.999;        ///< that a target's own observation falls in its gate, in (0, 1)
+  double max_speed = 12;                  ///< m/s; no person runs faster
+  double detected = 0.9;                  ///< probability that a target in view of a camera is seen in one of its frames
+  double clutter = 1e-4;                  ///< false observations per m² and view
+  double births = 1e-4;                   ///< people who appear per m² and second; at the edge of what cameras see, more
+  double disagreement = 0.3;              ///< by how much cameras may disagree about a place, for good: standard deviation per axis
+  std::optional<GroundTeams> teams = {};  ///< what the two teams wear, where that is known: evidence at every assignment
+  double patience = 3;                    ///< a target that should be seen and is not is given up after this
   // For mht.
   int hypotheses = 50;                   ///< kept for each cluster, at most
   double window = 1.0;                   ///< N-scan: what is older than this is decided
