@@ -37,6 +37,7 @@
 #include "marey/detect/background/background_samples.h"
 #include "marey/detect/background/background_second.h"
 #include "marey/detect/background/background_shadow.h"
+#include "marey/detect/background/background_sway.h"
 #include "marey/detect/runs.h"
 #include "marey/detect/silhouette.h"
 
@@ -88,12 +89,23 @@ class AdaptiveBackground final : public Background {
   }
 
   Foreground apply(const Frame& frame, std::span<const Box> held) override {
-    const FramePlanes planes = planes_of(frame.picture);
+    FramePlanes planes = planes_of(frame.picture);
     black_ = black_of(frame.picture);
     if (planes.luma.empty()) return {};
     if (planes.luma.size() != size_ || planes.cb.empty() == colour_) begin(planes);
     keep_time(frame.time);
+    shift_ = sway_.measure(planes.luma, luma_);
+    if (shift_ == cv::Point()) return apply(planes, held);
+    planes = brought_back(planes, shift_, luma_, cb_, cr_);
+    std::vector<Box> there(held.begin(), held.end());
+    for (Box& box : there) box.left -= shift_.x, box.top -= shift_.y;
+    const Foreground seen = apply(planes, there);
+    carry_over(seen.mask, shift_, carried_mask_);
+    carry_over(seen.covered, shift_, carried_covered_);
+    return {carried_mask_, carried_covered_};
+  }
 
+  Foreground apply(const FramePlanes& planes, std::span<const Box> held) {
     mark(planes);
     if (follow_light(planes)) mark(planes);
     regions_.choose(marked_, size_.height);
@@ -113,11 +125,14 @@ class AdaptiveBackground final : public Background {
   }
 
   void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
-    const FramePlanes planes = planes_of(picture);
+    FramePlanes planes = planes_of(picture);
     if (planes.luma.size() != size_) return;
+    if (shift_ != cv::Point()) planes = brought_back(planes, shift_, luma_, cb_, cr_);
+    corner -= shift_;
     for (int y = 0; y < mask.rows; ++y) {
       for (int x = 0; x < mask.cols; ++x) {
-        if (mask.at<std::uint8_t>(y, x) != 0) believe(planes, y + corner.y, x + corner.x);
+        const cv::Point at = corner + cv::Point(x, y);
+        if (mask.at<std::uint8_t>(y, x) != 0 && cv::Rect({0, 0}, size_).contains(at)) believe(planes, at.y, at.x);
       }
     }
   }
@@ -154,6 +169,7 @@ class AdaptiveBackground final : public Background {
     second_.begin(size, learned_ahead);
     samples_ = {};
     shadows_.begin(size);
+    sway_.begin();
     drawn_.clear();
     const std::size_t padded = static_cast<std::size_t>(size.width) + 4;
     for (auto& row : marks_) row.assign(padded, 0);
@@ -377,6 +393,9 @@ class AdaptiveBackground final : public Background {
   SceneSamples samples_;
   LightMeter meter_;
   ShadowFinder shadows_;
+  SwayMeter sway_;
+  cv::Point shift_;
+  cv::Mat carried_mask_, carried_covered_;
 
   std::optional<Timestamp> last_time_;
   double step_s_ = 0, mean_step_s_ = 0, age_s_ = 0, lost_s_ = 0;
