@@ -31,6 +31,7 @@
 #include "marey/detect/background/background_fringe.h"
 #include "marey/detect/background/background_kernels.h"
 #include "marey/detect/background/background_light.h"
+#include "marey/detect/background/background_patches.h"
 #include "marey/detect/background/background_plane.h"
 #include "marey/detect/background/background_regions.h"
 #include "marey/detect/background/background_returning.h"
@@ -108,6 +109,7 @@ class AdaptiveBackground final : public Background {
   Foreground apply(const FramePlanes& planes, std::span<const Box> held) {
     mark(planes);
     if (follow_light(planes)) mark(planes);
+    if (follow_patches(planes)) mark(planes);
     regions_.choose(marked_, size_.height);
     regions_.compare_borders(planes.luma, luma_);
     draw_mask(planes);
@@ -245,6 +247,21 @@ class AdaptiveBackground final : public Background {
       cb_.shift(median_difference(planes.cb, cb_));
       cr_.shift(median_difference(planes.cr, cr_));
     }
+    return true;
+  }
+
+  /// The same for parts of the picture, each by itself.
+  bool follow_patches(const FramePlanes& planes) {
+    if (!patched_ && frames_ % 4 != 0) return false;
+    const std::optional<cv::Mat> gains = patches_.measure(planes.luma, luma_, black_);
+    patched_ = gains.has_value();
+    if (!patched_) return false;
+    luma_.relight(*gains, black_);
+    if (colour_) {
+      cb_.relight(*gains, 128);
+      cr_.relight(*gains, 128);
+    }
+    samples_.forget();
     return true;
   }
 
@@ -392,6 +409,8 @@ class AdaptiveBackground final : public Background {
   SecondScene second_;
   SceneSamples samples_;
   LightMeter meter_;
+  LightPatches patches_;
+  bool patched_ = false;  ///< the light of a part changed in the last frame
   ShadowFinder shadows_;
   SwayMeter sway_;
   cv::Point shift_;
