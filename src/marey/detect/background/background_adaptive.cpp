@@ -261,7 +261,6 @@ class AdaptiveBackground final : public Background {
       cb_.relight(*gains, 128);
       cr_.relight(*gains, 128);
     }
-    samples_.forget();
     return true;
   }
 

@@ -13,9 +13,9 @@ namespace {
 constexpr int kCellsAcross = 20;
 constexpr int kLeastCell = 12;         // px
 constexpr int kSamplesAcross = 8;      // of a cell
-constexpr double kLeastTexture = 40;   // squared levels: the variance of the scene's part in a cell that tells something
-constexpr double kSeenThrough = 0.85;  // squared correlation
-constexpr double kUnevenLight = 0.05;  // of the level: how far a cell's pixels may lie off their common gain
+constexpr double kLeastTexture = 20;   // squared levels: the variance of the scene's part in a cell that tells something
+constexpr double kSeenThrough = 0.6;  // squared correlation
+constexpr double kUnevenLight = 0.1;  // of the level: how far a cell's pixels may lie off their common gain
 constexpr double kPatchNoise = 12;     // squared levels
 constexpr float kOtherLight = 0.04F;
 constexpr float kMostLight = 2.0F;
