@@ -212,6 +212,7 @@ class AdaptiveBackground final : public Background {
   void mark(const FramePlanes& planes) {
     marked_.runs.clear();
     marked_.strong.clear();
+    marked_.solid.clear();
     marked_.pixels = 0;
     std::fill(marks_[2].begin(), marks_[2].end(), std::uint8_t{0});
     mark_row(planes, 0);
@@ -227,7 +228,13 @@ class AdaptiveBackground final : public Background {
       append_runs(vote_.data(), y, size_.width, marked_.runs);
       for (std::size_t i = marked_.strong.size(); i < marked_.runs.size(); ++i) {
         const PixelRun& run = marked_.runs[i];
-        marked_.strong.push_back(static_cast<int>(std::count(vote_.begin() + run.begin, vote_.begin() + run.end, std::uint8_t{3})));
+        int strong = 0, solid = 0;
+        for (int x = run.begin; x < run.end; ++x) {
+          strong += (vote_[x] >> 1) & 1;
+          solid += vote_[x] >> 2;
+        }
+        marked_.strong.push_back(strong);
+        marked_.solid.push_back(solid);
         marked_.pixels += run.end - run.begin;
       }
     }
