@@ -100,7 +100,7 @@ ShadowFinder::Label ShadowFinder::label_of(std::size_t index, const FramePlanes&
   const double shared = (cell.both - static_cast<double>(cell.frame) * cell.scene / n) / n;
   if (texture * ratio * ratio > kTexture) {
     const bool seen_through = shared > 0 && shared * shared > kCorrelation * texture * seen_texture;
-    if (!seen_through) return Label::thing;
+    if (!seen_through) return cell.count < kCell * kCell && is_usual(ratio) ? Label::unsure : Label::thing;
     evidence_[std::min(static_cast<int>(ratio * kBins), kBins - 1)] += 1;
     return Label::shadow;
   }
