@@ -28,13 +28,17 @@ void LightPatches::sample(const cv::Mat& luma, const ScenePlane& scene, int blac
   grid_ = {std::max(1, luma.cols / cell), std::max(1, luma.rows / cell)};
   cells_.assign(static_cast<std::size_t>(grid_.area()), {});
   const int step = std::max(1, cell / kSamplesAcross);
+  columns_.clear();
+  for (int x = step / 2; x < luma.cols; x += step) columns_.push_back(x * grid_.width / luma.cols);
   for (int y = step / 2; y < luma.rows; y += step) {
     const auto* pixels = luma.ptr<std::uint8_t>(y);
     const std::int16_t* means = scene.mean(y);
     Cell* row = &cells_[static_cast<std::size_t>(y) * grid_.height / luma.rows * grid_.width];
-    for (int x = step / 2; x < luma.cols; x += step) {
-      Cell& one = row[static_cast<std::size_t>(x) * grid_.width / luma.cols];
-      const double is = pixels[x] - black, was = means[x] / 128.0 - black;
+    int x = step / 2;
+    for (const int column : columns_) {
+      Cell& one = row[column];
+      const int is = pixels[x] - black, was = ((means[x] + 64) >> 7) - black;
+      x += step;
       ++one.count;
       one.frame += is, one.scene += was;
       one.frame2 += is * is, one.scene2 += was * was, one.both += is * was;
@@ -45,12 +49,13 @@ void LightPatches::sample(const cv::Mat& luma, const ScenePlane& scene, int blac
 LightPatches::Answer LightPatches::judge(const Cell& cell, float& gain) {
   gain = 1;
   if (cell.count < kSamplesAcross * kSamplesAcross / 2 || cell.scene2 <= 0) return Answer::unknown;
-  const double n = cell.count, ratio = cell.both / cell.scene2;
-  const double texture = (cell.scene2 - cell.scene * cell.scene / n) / n;
-  const double seen = (cell.frame2 - cell.frame * cell.frame / n) / n;
-  const double shared = (cell.both - cell.frame * cell.scene / n) / n;
+  const double n = cell.count, frame = cell.frame, scene = cell.scene;
+  const double ratio = static_cast<double>(cell.both) / cell.scene2;
+  const double texture = (cell.scene2 - scene * scene / n) / n;
+  const double seen = (cell.frame2 - frame * frame / n) / n;
+  const double shared = (cell.both - frame * scene / n) / n;
   const double left_over = (cell.frame2 - ratio * cell.both) / n;
-  const double uneven = kUnevenLight * cell.frame / n;
+  const double uneven = kUnevenLight * frame / n;
   if (texture < kLeastTexture || shared <= 0 || shared * shared < kSeenThrough * texture * seen) return Answer::unknown;
   if (left_over > kPatchNoise + uneven * uneven || ratio > kMostLight || ratio < 1 / kMostLight) return Answer::unknown;
   if (std::abs(ratio - 1) < kOtherLight) return Answer::as_before;

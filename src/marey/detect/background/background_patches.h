@@ -19,7 +19,7 @@ class LightPatches {
  private:
   struct Cell {
     int count = 0;
-    double frame = 0, scene = 0, frame2 = 0, scene2 = 0, both = 0;
+    int frame = 0, scene = 0, frame2 = 0, scene2 = 0, both = 0;  ///< sums of levels over black, their squares and products
   };
   enum class Answer { unknown, as_before, other };
   static Answer judge(const Cell& cell, float& gain);
@@ -29,6 +29,7 @@ class LightPatches {
   std::vector<Cell> cells_;
   std::vector<Answer> answers_;
   std::vector<float> gains_;
+  std::vector<int> columns_;  ///< the column of cells that each pixel of a row belongs to
 };
 
 }  // namespace marey::detect::background

@@ -157,12 +157,13 @@ RestlessFilm::RestlessFilm(std::uint64_t seed, const RestlessFilmOptions& option
   if (options.unrest.leaves_px > 0) draw_leaves(seen_.size, seed, leaves_, cover_);
 }
 
-/// The ground with its leaves at this time, s. Branches go with the gusts, twigs shiver on them.
-Planes RestlessFilm::ground(double time) const {
+/// The ground with its leaves in this frame. Branches go with the gusts, twigs shiver on them.
+Planes RestlessFilm::ground(int index) const {
+  const double time = index / options_.rate_hz;
   Planes planes{still_.luma.clone(), still_.cb.clone(), still_.cr.clone()};
   if (cover_.empty()) return planes;
   cv::Mat from_x(cover_.size(), CV_32FC1), from_y(cover_.size(), CV_32FC1);
-  const double reach = options_.unrest.leaves_px;
+  const double reach = index < options_.unrest.calm * options_.frames ? 0 : options_.unrest.leaves_px;
   const double gust = 0.55 + 0.45 * value_noise({time / 1.7, 3.5}, seed_ + 5);
   for (int y = 0; y < cover_.rows; ++y) {
     for (int x = 0; x < cover_.cols; ++x) {
@@ -228,7 +229,7 @@ Vector<2> RestlessFilm::shift(double time) const {
 
 RestlessFrame RestlessFilm::render(int index) const {
   const double time = index / options_.rate_hz;
-  const Planes now = ground(time);
+  const Planes now = ground(index);
   RenderOptions render;
   render.noise = 0;
   const PeopleRenderer renderer(Picture(now.luma, now.cb, now.cr, Picture::Range::limited), seen_, motion_.posts, render);

@@ -17,6 +17,7 @@ namespace marey::simulate::people {
 /// What in a scene changes besides the people. Nothing by itself.
 struct Unrest {
   double leaves_px = 0;      ///< trees before the house front: how far gusts move their leaves, px
+  double calm = 0;           ///< share of the film before the leaves move
   double jitter_px = 0;      ///< the camera shakes: root mean square of either axis, px, besides jolts
   double exposure_step = 0;  ///< every two seconds the exposure changes by up to this share, within a fifth of a second
   double lamp = 0;           ///< after two fifths of the film a lamp adds this share of the light at its brightest place
@@ -54,7 +55,7 @@ class RestlessFilm {
   RestlessFrame render(int index) const;
 
  private:
-  Planes ground(double time) const;
+  Planes ground(int index) const;
   cv::Mat light(int index) const;
   void rain(cv::Mat& luma, int index) const;
   Vector<2> shift(double time) const;
