@@ -11,12 +11,12 @@ namespace marey::detect::background {
 namespace {
 
 constexpr int kCellsAcross = 20;
-constexpr int kLeastCell = 12;         // px
-constexpr int kSamplesAcross = 8;      // of a cell
-constexpr double kLeastTexture = 20;   // squared levels: the variance of the scene's part in a cell that tells something
+constexpr int kLeastCell = 12;        // px
+constexpr int kSamplesAcross = 8;     // of a cell
+constexpr double kLeastTexture = 20;  // squared levels: the variance of the scene's part in a cell that tells something
 constexpr double kSeenThrough = 0.6;  // squared correlation
 constexpr double kUnevenLight = 0.1;  // of the level: how far a cell's pixels may lie off their common gain
-constexpr double kPatchNoise = 12;     // squared levels
+constexpr double kPatchNoise = 12;    // squared levels
 constexpr float kOtherLight = 0.04F;
 constexpr float kMostLight = 2.0F;
 constexpr int kAgreeing = 2;  // neighbours that a cell which cannot tell goes by, at least
@@ -88,8 +88,10 @@ std::optional<cv::Mat> LightPatches::measure(const cv::Mat& luma, const ScenePla
         }
       }
       float& gain = gains.at<float>(y, x);
-      if (answers_[own] != Answer::unknown) gain = gains_[own];
-      else if (count >= kAgreeing) gain = sum / static_cast<float>(count);
+      if (answers_[own] != Answer::unknown)
+        gain = gains_[own];
+      else if (count >= kAgreeing)
+        gain = sum / static_cast<float>(count);
     }
   }
   return gains;

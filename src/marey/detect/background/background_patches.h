@@ -9,11 +9,12 @@
 
 namespace marey::detect::background {
 
-/// Finds parts of a picture that lie in another light than the scene: the shadows of clouds, a lamp's cone, the sun through a window.
+/// Finds parts of a picture that lie in another light than the scene: the shadows of clouds, a lamp's cone, the sun through a
+/// window.
 class LightPatches {
  public:
-  /// The gain of the light of `luma` over `scene`, CV_32FC1, for the cells of a grid that covers the picture evenly; nothing where it
-  /// is 1 everywhere. Levels count from `black`.
+  /// The gain of the light of `luma` over `scene`, CV_32FC1, for the cells of a grid that covers the picture evenly; nothing where
+  /// it is 1 everywhere. Levels count from `black`.
   std::optional<cv::Mat> measure(const cv::Mat& luma, const ScenePlane& scene, int black);
 
  private:

@@ -14,12 +14,12 @@ namespace {
 
 constexpr int kMostEdges = 400;
 constexpr int kFewestEdges = 24;
-constexpr int kLeastStep = 24;      // levels
-constexpr int kReach = 2;           // px from side to side of an edge
-constexpr int kFarthest = 24;       // px, of a shift
-constexpr int kChooseEvery = 64;    // frames
-constexpr int kCoarse = 3;          // px: the grid of neighbourhoods
-constexpr int kSearched = 18;       // px: how far they reach
+constexpr int kLeastStep = 24;       // levels
+constexpr int kReach = 2;            // px from side to side of an edge
+constexpr int kFarthest = 24;        // px, of a shift
+constexpr int kChooseEvery = 64;     // frames
+constexpr int kCoarse = 3;           // px: the grid of neighbourhoods
+constexpr int kSearched = 18;        // px: how far they reach
 constexpr double kWorthwhile = 0.9;  // of the sum without any shift
 constexpr double kStill = 0.15;      // of the sum if no edge were found at all: nothing to explain
 constexpr double kLost = 0.5;        // of the sum if no edge were found at all

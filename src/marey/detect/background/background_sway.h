@@ -10,8 +10,8 @@
 
 namespace marey::detect::background {
 
-/// By how many whole pixels a camera that shakes shows the scene beside where it was learned. What is left, half a pixel, the scene's
-/// bands allow for.
+/// By how many whole pixels a camera that shakes shows the scene beside where it was learned. What is left, half a pixel, the
+/// scene's bands allow for.
 class SwayMeter {
  public:
   /// Another scene begins.
@@ -35,7 +35,8 @@ class SwayMeter {
   int until_chosen_ = 0;  ///< frames
 };
 
-/// `planes` as the scene has its places, for a picture that is `shift` beside it. What lies outside the picture is the scene itself.
+/// `planes` as the scene has its places, for a picture that is `shift` beside it. What lies outside the picture is the scene
+/// itself.
 FramePlanes brought_back(const FramePlanes& planes, cv::Point shift, const ScenePlane& luma, const ScenePlane& cb,
                          const ScenePlane& cr);
 

@@ -1,6 +1,6 @@
 // Everything happens in the order of the world: leaves move over the ground, people are drawn before them, cloud, lamp and exposure
-// multiply what is seen, rain falls before it, the camera moves, blurs, codes and adds its noise. The picture is drawn with a margin
-// that covers the camera's movement.
+// multiply what is seen, rain falls before it, the camera moves, blurs, codes and adds its noise. The picture is drawn with a
+// margin that covers the camera's movement.
 #include "marey/simulate/people/restless_film.h"
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 namespace marey::simulate::people {
 namespace {
 
-constexpr double kStatureShown = 1.78;  // m
-constexpr double kFocalWidths = 3;      // focal length in widths of the picture
-constexpr double kBranch = 34, kTwig = 7;  // px: how far apart leaves go their own ways
-constexpr double kCloudWide = 130;         // px
-constexpr double kCloudSpeed = 55;         // px/s
+constexpr double kStatureShown = 1.78;                      // m
+constexpr double kFocalWidths = 3;                          // focal length in widths of the picture
+constexpr double kBranch = 34, kTwig = 7;                   // px: how far apart leaves go their own ways
+constexpr double kCloudWide = 130;                          // px
+constexpr double kCloudSpeed = 55;                          // px/s
 constexpr double kExposureEvery = 2, kExposureTakes = 0.2;  // s
 
 int margin_of(const Unrest& unrest) {
@@ -212,7 +212,8 @@ void RestlessFilm::rain(cv::Mat& luma, int index) const {
   cv::Mat streaks = cv::Mat::zeros(luma.size(), CV_8UC1);
   for (int i = 0; i < options_.unrest.rain; ++i) {
     const double x = random.uniform(0, luma.cols), y = random.uniform(-10, luma.rows), length = random.uniform(6, 22);
-    cv::line(streaks, cv::Point2d(x, y), cv::Point2d(x - 0.12 * length, y + length), cv::Scalar(random.uniform(50, 150)), 1, cv::LINE_AA);
+    cv::line(streaks, cv::Point2d(x, y), cv::Point2d(x - 0.12 * length, y + length), cv::Scalar(random.uniform(50, 150)), 1,
+             cv::LINE_AA);
   }
   for (int y = 0; y < luma.rows; ++y) {
     for (int x = 0; x < luma.cols; ++x) {

@@ -53,7 +53,8 @@ void draw_pavement(cv::Mat& bgr, int top, Random& random) {
   }
   cv::rectangle(bgr, {0, kerb, bgr.cols, 3 * kFiner}, cv::Scalar(60, 62, 64), cv::FILLED);
   const int line = kerb + (bgr.rows - kerb) / 2;
-  for (int x = 0; x < bgr.cols; x += kFiner * 60) cv::rectangle(bgr, {x, line, kFiner * 36, 4 * kFiner}, cv::Scalar(215, 215, 210), -1);
+  for (int x = 0; x < bgr.cols; x += kFiner * 60)
+    cv::rectangle(bgr, {x, line, kFiner * 36, 4 * kFiner}, cv::Scalar(215, 215, 210), -1);
 }
 
 }  // namespace
