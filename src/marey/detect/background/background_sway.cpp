@@ -21,7 +21,7 @@ constexpr int kChooseEvery = 64;     // frames
 constexpr int kCoarse = 3;           // px: the grid of neighbourhoods
 constexpr int kSearched = 18;        // px: how far they reach
 constexpr double kWorthwhile = 0.9;  // of the sum without any shift
-constexpr double kStill = 0.15;      // of the sum if no edge were found at all: nothing to explain
+constexpr double kStill = 0.06;      // of the sum if no edge were found at all: nothing to explain
 constexpr double kLost = 0.5;        // of the sum if no edge were found at all
 
 }  // namespace
