@@ -206,7 +206,10 @@ class AdaptiveBackground final : public Background {
     if (!change || !change->explained) return false;
     luma_.scale(change->gains, black_);
     samples_.forget();
+    sway_.renew();
     if (colour_) {
+      cb_.relight(change->gains, 128);
+      cr_.relight(change->gains, 128);
       cb_.shift(median_difference(planes.cb, cb_));
       cr_.shift(median_difference(planes.cr, cr_));
     }

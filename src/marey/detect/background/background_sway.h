@@ -17,6 +17,9 @@ class SwayMeter {
   /// Another scene begins.
   void begin();
 
+  /// The scene's light has changed: its edges are chosen anew.
+  void renew() { until_chosen_ = 0; }
+
   /// The picture shows at (x + dx, y + dy) what the scene has at (x, y). (0, 0) where that explains the picture as well.
   cv::Point measure(const cv::Mat& luma, const ScenePlane& scene);
 
