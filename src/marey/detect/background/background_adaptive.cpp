@@ -167,6 +167,7 @@ class AdaptiveBackground final : public Background {
   void make_room(cv::Size size, bool colour, bool learned_ahead) {
     size_ = size;
     colour_ = colour;
+    learned_ahead_ = learned_ahead;
     mask_ = cv::Mat::zeros(size, CV_8UC1);
     covered_ = cv::Mat::zeros(size, CV_8UC1);
     second_.begin(size, learned_ahead);
@@ -218,6 +219,7 @@ class AdaptiveBackground final : public Background {
 
   /// The same for parts of the picture, each by itself.
   bool follow_patches(const FramePlanes& planes) {
+    if (learned_ahead_) return false;  // a scene that is known: who comes near would be taken for its light
     const bool looks = patched_ || frames_ % kPatchTurns == 0;
     if (!looks || marked_.pixels < kPatchMarks * size_.area()) return patched_ = false;
     const std::optional<cv::Mat> gains = patches_.measure(planes.luma, luma_, black_);
@@ -348,7 +350,7 @@ class AdaptiveBackground final : public Background {
   AdaptiveOptions options_;
   int black_ = 0;
   cv::Size size_;
-  bool colour_ = false;
+  bool colour_ = false, learned_ahead_ = false;
 
   ScenePlane luma_{scaled(kLumaFloor), scaled(kGate)};
   ScenePlane cb_{scaled(kChromaFloor), scaled(kGate)};
