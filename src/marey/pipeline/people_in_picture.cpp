@@ -364,7 +364,10 @@ class PeopleInPicture final : public Stage {
     }
     if (!detector_) return {.detections = {}, .foreground = {}, .searched = false};
     detect::Detections seen = detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
-    if (masks_) masks_->add(given.frame.index, seen.foreground.mask, given.frame.picture.size());
+    if (masks_) {
+      const Foreground& all = seen.foreground;
+      masks_->add(given.frame.index, all.covered.empty() ? all.mask : all.covered, given.frame.picture.size());
+    }
     return seen;
   }
 

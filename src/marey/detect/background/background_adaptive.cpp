@@ -6,7 +6,9 @@
 // pixel for long before, is taken out. Means follow background pixels by a recursive average, spreads by sigma-delta steps towards
 // a quantile.
 //
-// - A change of light rescales the means at once (background_light.cpp).
+// - A camera that shakes is followed by whole pixels: the frame is brought back to the scene's places, and its mask carried over
+//   (background_sway.cpp).
+// - A change of light rescales the means at once, all together or part by part (background_light.cpp, background_patches.cpp).
 // - A thing that stands still is counted, pixel by pixel, in a second mean; only after `absorb_after_s`, or at the start after
 //   half the time that the model knows, or twice the time that the scene was seen there (where nothing was seen ahead), do the two
 //   change places (background_second.cpp). Pixels in `held` boxes are not counted and not learned.
@@ -22,22 +24,23 @@
 #include "marey/detect/background/background_adaptive.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "marey/core/picture.h"
 #include "marey/detect/background/background_fringe.h"
-#include "marey/detect/background/background_kernels.h"
+#include "marey/detect/background/background_frozen.h"
 #include "marey/detect/background/background_light.h"
+#include "marey/detect/background/background_marks.h"
+#include "marey/detect/background/background_patches.h"
 #include "marey/detect/background/background_plane.h"
 #include "marey/detect/background/background_regions.h"
 #include "marey/detect/background/background_returning.h"
 #include "marey/detect/background/background_samples.h"
 #include "marey/detect/background/background_second.h"
 #include "marey/detect/background/background_shadow.h"
-#include "marey/detect/runs.h"
+#include "marey/detect/background/background_sway.h"
 #include "marey/detect/silhouette.h"
 
 namespace marey::detect::background {
@@ -46,10 +49,10 @@ namespace {
 constexpr int kLumaFloor = 8;    // levels: the narrowest band's half width
 constexpr int kChromaFloor = 6;  // levels
 constexpr int kGate = 56;        // 3.5 spreads of 1.15 σ: 4 σ
-constexpr int kQuorum = 4;       // of 9
 constexpr int kTurns = 8;        // frames until each row was taught once
 constexpr int kRowsATurn = 16;
-constexpr int kFringe = 3;  // px round a region that are not learned: its blurred rim
+constexpr int kPatchTurns = 4;         // frames between two looks for parts in another light, while there are none
+constexpr double kPatchMarks = 0.005;  // of the picture: with fewer pixels outside the bands there are none
 constexpr double kStartAnew_s = 2;
 constexpr double kTooMuch = 0.6;  // of the picture
 
@@ -88,14 +91,26 @@ class AdaptiveBackground final : public Background {
   }
 
   Foreground apply(const Frame& frame, std::span<const Box> held) override {
-    const FramePlanes planes = planes_of(frame.picture);
+    FramePlanes planes = planes_of(frame.picture);
     black_ = black_of(frame.picture);
     if (planes.luma.empty()) return {};
     if (planes.luma.size() != size_ || planes.cb.empty() == colour_) begin(planes);
     keep_time(frame.time);
+    shift_ = sway_.measure(planes.luma, luma_);
+    if (shift_ == cv::Point()) return apply(planes, held);
+    planes = brought_back(planes, shift_, luma_, cb_, cr_);
+    std::vector<Box> there(held.begin(), held.end());
+    for (Box& box : there) box.left -= shift_.x, box.top -= shift_.y;
+    const Foreground seen = apply(planes, there);
+    carry_over(seen.mask, shift_, carried_mask_);
+    carry_over(seen.covered, shift_, carried_covered_);
+    return {carried_mask_, carried_covered_};
+  }
 
+  Foreground apply(const FramePlanes& planes, std::span<const Box> held) {
     mark(planes);
     if (follow_light(planes)) mark(planes);
+    if (follow_patches(planes)) mark(planes);
     regions_.choose(marked_, size_.height);
     regions_.compare_borders(planes.luma, luma_);
     draw_mask(planes);
@@ -116,11 +131,14 @@ class AdaptiveBackground final : public Background {
   }
 
   void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
-    const FramePlanes planes = planes_of(picture);
+    FramePlanes planes = planes_of(picture);
     if (planes.luma.size() != size_) return;
+    if (shift_ != cv::Point()) planes = brought_back(planes, shift_, luma_, cb_, cr_);
+    corner -= shift_;
     for (int y = 0; y < mask.rows; ++y) {
       for (int x = 0; x < mask.cols; ++x) {
-        if (mask.at<std::uint8_t>(y, x) != 0) believe(planes, y + corner.y, x + corner.x);
+        const cv::Point at = corner + cv::Point(x, y);
+        if (mask.at<std::uint8_t>(y, x) != 0 && cv::Rect({0, 0}, size_).contains(at)) believe(planes, at.y, at.x);
       }
     }
   }
@@ -152,16 +170,16 @@ class AdaptiveBackground final : public Background {
   void make_room(cv::Size size, bool colour, bool learned_ahead) {
     size_ = size;
     colour_ = colour;
+    learned_ahead_ = learned_ahead;
     mask_ = cv::Mat::zeros(size, CV_8UC1);
     covered_ = cv::Mat::zeros(size, CV_8UC1);
     second_.begin(size, learned_ahead);
     samples_ = {};
     shadows_.begin(size);
+    sway_.begin();
     drawn_.clear();
     const std::size_t padded = static_cast<std::size_t>(size.width) + 4;
-    for (auto& row : marks_) row.assign(padded, 0);
-    chroma_mark_.assign(padded, 0);
-    vote_.assign(padded, 0);
+    marks_.begin(size);
     frozen_.assign(padded, 0);
     held_row_.assign(padded, 0);
     half_frozen_.assign(padded, 0);
@@ -180,43 +198,7 @@ class AdaptiveBackground final : public Background {
 
   // ---- compare -----------------------------------------------------------------------------------------------------------
 
-  void mark_row(const FramePlanes& planes, int y) {
-    std::uint8_t* mark = marks_[y % 3].data() + 1;
-    kernels_.classify(planes.luma.ptr<std::uint8_t>(y), luma_.low(y), luma_.high(y), size_.width, mark);
-    if (!colour_) return;
-    const int half = y / 2;
-    if (y % 2 == 0) {
-      const std::uint8_t* const pixels[2] = {planes.cb.ptr<std::uint8_t>(half), planes.cr.ptr<std::uint8_t>(half)};
-      const std::uint8_t* const low[2] = {cb_.low(half), cr_.low(half)};
-      const std::uint8_t* const high[2] = {cb_.high(half), cr_.high(half)};
-      kernels_.classify_chroma(pixels, low, high, planes.cb.cols, chroma_mark_.data());
-    }
-    kernels_.unite(chroma_mark_.data(), size_.width, mark);
-  }
-
-  void mark(const FramePlanes& planes) {
-    marked_.runs.clear();
-    marked_.strong.clear();
-    marked_.pixels = 0;
-    std::fill(marks_[2].begin(), marks_[2].end(), std::uint8_t{0});
-    mark_row(planes, 0);
-    for (int y = 0; y < size_.height; ++y) {
-      if (y + 1 < size_.height) {
-        mark_row(planes, y + 1);
-      } else {
-        std::fill(marks_[(y + 1) % 3].begin(), marks_[(y + 1) % 3].end(), std::uint8_t{0});
-      }
-      const std::uint8_t* const rows[3] = {marks_[(y + 2) % 3].data() + 1, marks_[y % 3].data() + 1,
-                                           marks_[(y + 1) % 3].data() + 1};
-      kernels_.vote(rows, kQuorum, size_.width, vote_.data());
-      append_runs(vote_.data(), y, size_.width, marked_.runs);
-      for (std::size_t i = marked_.strong.size(); i < marked_.runs.size(); ++i) {
-        const PixelRun& run = marked_.runs[i];
-        marked_.strong.push_back(static_cast<int>(std::count(vote_.begin() + run.begin, vote_.begin() + run.end, std::uint8_t{3})));
-        marked_.pixels += run.end - run.begin;
-      }
-    }
-  }
+  void mark(const FramePlanes& planes) { marks_.find(planes, {luma_, cb_, cr_, black_}, marked_); }
 
   /// Rescales the scene where the light has changed. True where it did.
   bool follow_light(const FramePlanes& planes) {
@@ -228,9 +210,28 @@ class AdaptiveBackground final : public Background {
     if (!change || !change->explained) return false;
     luma_.scale(change->gains, black_);
     samples_.forget();
+    sway_.renew();
     if (colour_) {
+      cb_.relight(change->gains, 128);
+      cr_.relight(change->gains, 128);
       cb_.shift(median_difference(planes.cb, cb_));
       cr_.shift(median_difference(planes.cr, cr_));
+    }
+    return true;
+  }
+
+  /// The same for parts of the picture, each by itself.
+  bool follow_patches(const FramePlanes& planes) {
+    if (learned_ahead_) return false;  // a scene that is known: who comes near would be taken for its light
+    const bool looks = patched_ || frames_ % kPatchTurns == 0;
+    if (!looks || marked_.pixels < kPatchMarks * size_.area()) return patched_ = false;
+    const std::optional<cv::Mat> gains = patches_.measure(planes.luma, luma_, black_);
+    patched_ = gains.has_value();
+    if (!patched_) return false;
+    luma_.relight(*gains, black_);
+    if (colour_) {
+      cb_.relight(*gains, 128);
+      cr_.relight(*gains, 128);
     }
     return true;
   }
@@ -283,11 +284,11 @@ class AdaptiveBackground final : public Background {
     for (int first = turn * kRowsATurn; first < size_.height; first += kTurns * kRowsATurn) {
       const int last = std::min(first + kRowsATurn, size_.height);
       for (int y = first; y < last; ++y) count_still(planes, held, y, ticks);
-      luma_.learn(planes.luma, first, last, shift, [&](int y) { return freeze(held, y, y, frozen_); });
+      luma_.learn(planes.luma, first, last, shift, [&](int y) { return freeze(held, y, y); });
       if (!colour_) continue;
       const int half_last = std::min(last / 2 + (last == size_.height ? last % 2 : 0), planes.cb.rows);
       const auto half_frozen = [&](int y) {
-        const std::uint8_t* full = freeze(held, 2 * y, std::min(2 * y + 1, size_.height - 1), frozen_);
+        const std::uint8_t* full = freeze(held, 2 * y, std::min(2 * y + 1, size_.height - 1));
         for (int x = 0; x < planes.cb.cols; ++x) half_frozen_[x] = full[2 * x] | full[2 * x + 1];
         return half_frozen_.data();
       };
@@ -307,7 +308,7 @@ class AdaptiveBackground final : public Background {
     }
     for (int y = 0; y < size_.height && !held.empty(); ++y) {
       std::fill(held_row_.begin(), held_row_.end(), std::uint8_t{0});
-      mark_held(held, y, y, held_row_);
+      mark_held(held, y, y, size_.width, held_row_);
       for (int x = 0; x < size_.width; ++x) fixed.at<std::uint8_t>(y, x) |= held_row_[x];
     }
     luma_.correct(samples_.luma(), fixed, doubted);
@@ -326,27 +327,9 @@ class AdaptiveBackground final : public Background {
     samples_.thin();
   }
 
-  /// Marks the pixels of rows [top, bottom] that must not be learned: regions with their rims, and held boxes.
-  const std::uint8_t* freeze(std::span<const Box> held, int top, int bottom, std::vector<std::uint8_t>& row) const {
-    std::fill(row.begin(), row.end(), std::uint8_t{0});
-    const int above = std::max(0, top - kFringe);
-    const int below = std::min(size_.height, bottom + kFringe + 1);
-    for (std::size_t i = regions_.begin_of(above); i < regions_.begin_of(below); ++i) {
-      const int begin = std::max(0, regions_.runs()[i].begin - kFringe);
-      const int end = std::min(size_.width, regions_.runs()[i].end + kFringe);
-      std::fill(row.begin() + begin, row.begin() + end, std::uint8_t{1});
-    }
-    mark_held(held, top, bottom, row);
-    return row.data();
-  }
-
-  void mark_held(std::span<const Box> held, int top, int bottom, std::vector<std::uint8_t>& row) const {
-    for (const Box& box : held) {
-      if (box.top > bottom || box.bottom() <= top) continue;
-      const int begin = static_cast<int>(std::clamp(std::floor(box.left), 0.0, static_cast<double>(size_.width)));
-      const int end = static_cast<int>(std::clamp(std::ceil(box.right()), 0.0, static_cast<double>(size_.width)));
-      if (begin < end) std::fill(row.begin() + begin, row.begin() + end, std::uint8_t{1});
-    }
+  const std::uint8_t* freeze(std::span<const Box> held, int top, int bottom) {
+    mark_frozen(regions_, held, top, bottom, size_, frozen_);
+    return frozen_.data();
   }
 
   /// What has stood still for long enough becomes scene; its chroma is taken from the frame.
@@ -354,7 +337,7 @@ class AdaptiveBackground final : public Background {
     second_.forget(y, ticks, regions_);
     if (regions_.begin_of(y) == regions_.begin_of(y + 1)) return;
     std::fill(held_row_.begin(), held_row_.end(), std::uint8_t{0});
-    mark_held(held, y, y, held_row_);
+    mark_held(held, y, y, size_.width, held_row_);
     const auto* pixels = planes.luma.ptr<std::uint8_t>(y);
     second_.count(y, pixels, held_row_.data(), regions_, ticks, age_s_, luma_, taken_);
     for (const int x : taken_) believe(planes, y, x);
@@ -368,10 +351,9 @@ class AdaptiveBackground final : public Background {
   }
 
   AdaptiveOptions options_;
-  const BackgroundKernels& kernels_ = background_kernels();
   int black_ = 0;
   cv::Size size_;
-  bool colour_ = false;
+  bool colour_ = false, learned_ahead_ = false;
 
   ScenePlane luma_{scaled(kLumaFloor), scaled(kGate)};
   ScenePlane cb_{scaled(kChromaFloor), scaled(kGate)};
@@ -379,7 +361,12 @@ class AdaptiveBackground final : public Background {
   SecondScene second_;
   SceneSamples samples_;
   LightMeter meter_;
+  LightPatches patches_;
+  bool patched_ = false;  ///< the light of a part changed in the last frame
   ShadowFinder shadows_;
+  SwayMeter sway_;
+  cv::Point shift_;
+  cv::Mat carried_mask_, carried_covered_;
 
   std::optional<Timestamp> last_time_;
   double step_s_ = 0, mean_step_s_ = 0, age_s_ = 0, lost_s_ = 0;
@@ -387,8 +374,8 @@ class AdaptiveBackground final : public Background {
   std::int64_t frames_ = 0;
 
   // Room for one frame's work.
-  std::array<std::vector<std::uint8_t>, 3> marks_;
-  std::vector<std::uint8_t> chroma_mark_, vote_, frozen_, half_frozen_, held_row_;
+  BandMarks marks_;
+  std::vector<std::uint8_t> frozen_, half_frozen_, held_row_;
   MarkedRuns marked_;
   ForegroundRegions regions_;
   std::vector<PixelRun> drawn_;  ///< into the mask, for the frame before

@@ -72,7 +72,8 @@ void vote(const Byte* const rows[3], int quorum, int width, Byte* __restrict out
     const Byte right = static_cast<Byte>((a[x + 1] & 1) + (b[x + 1] & 1) + (c[x + 1] & 1));
     const Byte votes = static_cast<Byte>(left + middle + right);
     const Byte strong = static_cast<Byte>((b[x] >> 3) & 2);
-    out[x] = votes >= needed ? static_cast<Byte>(1 | strong) : Byte{0};
+    const Byte solid = votes == 9 ? 4 : 0;
+    out[x] = votes >= needed ? static_cast<Byte>(1 | strong | solid) : Byte{0};
   }
 }
 

@@ -19,7 +19,7 @@ struct BackgroundKernels {
   void (*unite)(const std::uint8_t* source, int width, std::uint8_t* target);
 
   /// Of three rows of marks, each with a zero before its first and after its last: vote[x] is 0 where fewer than `quorum` of the
-  /// 3 × 3 round x are marked; else 1, or 3 where the mark of x is strong.
+  /// 3 × 3 round x are marked; else 1, with 2 added where the mark of x is strong, and 4 where all of the round are marked.
   void (*vote)(const std::uint8_t* const rows[3], int quorum, int width, std::uint8_t* vote);
 
   /// Moves mean towards pixels by 2^-shift of the distance (at most kBoundedStep levels of it), and spread towards the distance

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <opencv2/imgproc.hpp>
+
 namespace marey::detect::background {
 namespace {
 
@@ -115,6 +117,25 @@ void ScenePlane::scale(const cv::Mat& gains, int origin) {
     for (int x = 0; x < mean_.cols; ++x) {
       means[x] = clamp_level(zero + (static_cast<float>(means[x]) - zero) * gain[x / kBlock]);
     }
+  }
+  renew_bands(0, mean_.rows);
+}
+
+void ScenePlane::relight(const cv::Mat& gains, int origin) {
+  const float zero = static_cast<float>(origin) * 128.0F;
+  cv::Mat row, wide;
+  for (int y = 0; y < mean_.rows; ++y) {
+    const float at =
+        std::clamp((static_cast<float>(y) + 0.5F) * static_cast<float>(gains.rows) / static_cast<float>(mean_.rows) - 0.5F, 0.0F,
+                   static_cast<float>(gains.rows - 1));
+    const int upper = static_cast<int>(at), lower = std::min(upper + 1, gains.rows - 1);
+    cv::addWeighted(gains.row(upper), 1 - (at - static_cast<float>(upper)), gains.row(lower), at - static_cast<float>(upper), 0,
+                    row);
+    if (std::all_of(row.begin<float>(), row.end<float>(), [](float gain) { return gain == 1; })) continue;
+    cv::resize(row, wide, {mean_.cols, 1}, 0, 0, cv::INTER_LINEAR);
+    std::int16_t* means = mean_.ptr<std::int16_t>(y);
+    const float* gain = wide.ptr<float>();
+    for (int x = 0; x < mean_.cols; ++x) means[x] = clamp_level(zero + (static_cast<float>(means[x]) - zero) * gain[x]);
   }
   renew_bands(0, mean_.rows);
 }

@@ -55,6 +55,8 @@ class ScenePlane {
 
   /// Multiplies every mean's distance from `origin` by a gain: `gains` (CV_32F) has one for each block of kBlock × kBlock pixels.
   void scale(const cv::Mat& gains, int origin);
+  /// The same with the gains of a grid's cells, which cover the plane evenly, mixed between their centres.
+  void relight(const cv::Mat& gains, int origin);
   /// Adds to every mean.
   void shift(double levels);
 

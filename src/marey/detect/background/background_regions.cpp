@@ -7,6 +7,7 @@ namespace {
 
 constexpr int kStrongPixels = 4;   // that make a region count
 constexpr int kFewestPixels = 10;  // of a region
+constexpr int kSlender = 100;      // px: a smaller region must be solid somewhere; a drop of rain is not
 
 }  // namespace
 
@@ -16,10 +17,12 @@ void ForegroundRegions::choose(const MarkedRuns& marked, int rows) {
   join_neighbours(marked.runs, 1, sets_);
   areas_.assign(count, 0);
   strongs_.assign(count, 0);
+  solids_.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const int root = sets_.find(static_cast<int>(i));
     areas_[root] += marked.runs[i].end - marked.runs[i].begin;
     strongs_[root] += marked.strong[i];
+    solids_[root] += marked.solid[i];
   }
   runs_.clear();
   region_.clear();
@@ -28,6 +31,7 @@ void ForegroundRegions::choose(const MarkedRuns& marked, int rows) {
   for (std::size_t i = 0; i < count; ++i) {
     const int root = sets_.find(static_cast<int>(i));
     if (areas_[root] < kFewestPixels || strongs_[root] < kStrongPixels) continue;
+    if (areas_[root] < kSlender && solids_[root] == 0) continue;
     if (numbers_[root] < 0) {
       numbers_[root] = static_cast<int>(borders_.size());
       borders_.push_back({});

@@ -16,6 +16,7 @@ namespace marey::detect::background {
 struct MarkedRuns {
   std::vector<PixelRun> runs;
   std::vector<int> strong;  ///< of each run: its pixels far outside the bands
+  std::vector<int> solid;   ///< of each run: its pixels whose 3 × 3 round lies outside the bands
   double pixels = 0;
 };
 
@@ -45,7 +46,7 @@ class ForegroundRegions {
   };
 
   assign::DisjointSets sets_;
-  std::vector<int> areas_, strongs_, numbers_;
+  std::vector<int> areas_, strongs_, solids_, numbers_;
   std::vector<PixelRun> runs_;
   std::vector<int> region_;             ///< of each run
   std::vector<Border> borders_;         ///< of each region

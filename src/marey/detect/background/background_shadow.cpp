@@ -100,12 +100,14 @@ ShadowFinder::Label ShadowFinder::label_of(std::size_t index, const FramePlanes&
   const double shared = (cell.both - static_cast<double>(cell.frame) * cell.scene / n) / n;
   if (texture * ratio * ratio > kTexture) {
     const bool seen_through = shared > 0 && shared * shared > kCorrelation * texture * seen_texture;
-    if (!seen_through) return Label::thing;
+    if (!seen_through) return cell.count < kCell * kCell && is_usual(ratio) ? Label::unsure : Label::thing;
     evidence_[std::min(static_cast<int>(ratio * kBins), kBins - 1)] += 1;
     return Label::shadow;
   }
   const double slope = 0.06 * cell.frame / n;
-  return left_over < kNoise + slope * slope + texture * ratio * ratio && is_usual(ratio) ? Label::shadow : Label::thing;
+  if (!is_usual(ratio)) return Label::thing;
+  if (left_over < kNoise + slope * slope + texture * ratio * ratio) return Label::shadow;
+  return cell.count < kCell * kCell ? Label::unsure : Label::thing;  // at a shadow's blurred rim
 }
 
 /// A cell at a region's rim has too few pixels to be judged and goes with the most of its eight neighbours; so does one thing

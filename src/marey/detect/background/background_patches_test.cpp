@@ -1,0 +1,80 @@
+#include "marey/detect/background/background_patches.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace marey::detect::background {
+namespace {
+
+constexpr int kBlack = 16;
+
+/// Slabs of random levels.
+cv::Mat slabs(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  cv::Mat coarse(48, 64, CV_8UC1), fine;
+  for (int i = 0; i < static_cast<int>(coarse.total()); ++i) coarse.data[i] = static_cast<std::uint8_t>(80 + random() % 50);
+  cv::resize(coarse, fine, {320, 240}, 0, 0, cv::INTER_NEAREST);
+  return fine;
+}
+
+/// `picture` with `gain` times the light over black within `where`.
+cv::Mat lit(cv::Mat picture, const cv::Rect& where, double gain) {
+  picture = picture.clone();
+  cv::Mat part = picture(where);
+  part.convertTo(part, CV_8U, gain, kBlack * (1 - gain));
+  return picture;
+}
+
+TEST(LightPatches, FindAShadowAndItsEnd) {
+  const cv::Mat ground = slabs(1);
+  ScenePlane scene(8, 56);
+  scene.begin(ground);
+  LightPatches patches;
+  EXPECT_FALSE(patches.measure(ground, scene, kBlack));
+  const cv::Rect shade(128, 64, 112, 96);
+  for (const double gain : {0.65, 1.4}) {
+    const cv::Mat now = lit(ground, shade, gain);
+    const auto gains = patches.measure(now, scene, kBlack);
+    ASSERT_TRUE(gains) << gain;
+    const auto at = [&](int x, int y) { return gains->at<float>(y * gains->rows / 240, x * gains->cols / 320); };
+    EXPECT_NEAR(at(180, 110), gain, 0.02);
+    EXPECT_EQ(at(40, 40), 1);
+    EXPECT_EQ(at(290, 200), 1);
+    ScenePlane relit(8, 56);
+    relit.begin(ground);
+    relit.relight(*gains, kBlack);
+    const cv::Rect inner(152, 88, 64, 48);
+    EXPECT_LT(cv::norm(relit.picture()(inner), now(inner), cv::NORM_INF), 3) << gain;
+    EXPECT_EQ(cv::countNonZero(relit.picture()({0, 0, 90, 240}) != ground({0, 0, 90, 240})), 0) << gain;
+  }
+}
+
+TEST(LightPatches, AThingBeforeTheSceneIsNoLight) {
+  const cv::Mat ground = slabs(2), other = slabs(3);
+  ScenePlane scene(8, 56);
+  scene.begin(ground);
+  LightPatches patches;
+  for (const double level : {30.0, 60.0, 160.0}) {
+    cv::Mat coat = ground.clone();
+    coat({100, 60, 64, 120}).setTo(level);
+    EXPECT_FALSE(patches.measure(coat, scene, kBlack)) << "a plain coat of level " << level;
+  }
+  cv::Mat pattern = ground.clone();
+  other({100, 60, 64, 120}).copyTo(pattern({100, 60, 64, 120}));
+  EXPECT_FALSE(patches.measure(pattern, scene, kBlack)) << "a patterned coat";
+}
+
+TEST(LightPatches, TakePicturesOfAnySize) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(2, 40), cv::Size(40, 2), cv::Size(33, 17)}) {
+    ScenePlane scene(8, 56);
+    scene.begin(cv::Mat(size, CV_8UC1, cv::Scalar(100)));
+    LightPatches patches;
+    EXPECT_FALSE(patches.measure(cv::Mat(size, CV_8UC1, cv::Scalar(70)), scene, kBlack)) << size;
+  }
+}
+
+}  // namespace
+}  // namespace marey::detect::background
