@@ -9,17 +9,17 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/track_sample.h"
 #include "marey/detect/appearance.h"
 #include "marey/draw/mask_folder.h"
+#include "marey/pipeline/camera_span.h"
 #include "marey/pipeline/keypoint_stage.h"
 #include "marey/pipeline/nobody_found.h"
 #include "marey/pipeline/picture_doubts.h"
+#include "marey/pipeline/picture_rows.h"
 #include "marey/pipeline/standing_people.h"
 #include "marey/track/fill_gaps.h"
 #include "marey/track/live_tracks.h"
 #include "marey/track/outline_log.h"
-#include "marey/track/rows_by_frame.h"
 #include "marey/track/tracklet_log.h"
 #include "marey/track/view_border.h"
 
@@ -81,72 +81,6 @@ std::vector<Timestamp> times_of(std::span<const Recording::Moment> moments) {
   for (const Recording::Moment& moment : moments) times.push_back(moment.time);
   return times;
 }
-
-void leave_out_unseen(Instant& instant) {
-  std::erase_if(instant.samples, [](const Sample& sample) { return !sample.measured(); });
-}
-
-/// What the second pass made of the recording, frame by frame.
-class JoinedRows final : public InstantSource {
- public:
-  JoinedRows(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments, track::OutlineLog* outlines, bool seen_only)
-      : rows_(std::move(rows)), moments_(std::move(moments)), by_number_(rows_, {}, outlines), seen_only_(seen_only) {}
-
-  std::optional<Instant> next() override {
-    if (next_ == moments_.size()) return std::nullopt;
-    Instant instant;
-    instant.index = moments_[next_].index;
-    instant.time = moments_[next_].time;
-    for (const Track<2>& track : by_number_.at(static_cast<std::int64_t>(next_++))) instant.samples.push_back(sample_of(track));
-    for (Sample& sample : instant.samples) sample.covariance.reset();  // rows do not keep it
-    if (seen_only_) leave_out_unseen(instant);
-    return instant;
-  }
-
- private:
-  std::vector<track::TrackRow> rows_;
-  std::vector<Recording::Moment> moments_;  // frames may be missing between them: rows count these
-  track::RowsByFrame by_number_;
-  bool seen_only_;
-  std::size_t next_ = 0;
-};
-
-/// What a live run still waited with when the recording ended.
-class LiveRest final : public InstantSource {
- public:
-  LiveRest(track::LiveTracks& live, bool seen_only) : live_(live), seen_only_(seen_only) {}
-
-  std::optional<Instant> next() override {
-    std::optional<Instant> instant = live_.next(true);
-    if (instant && seen_only_) leave_out_unseen(*instant);
-    return instant;
-  }
-
- private:
-  track::LiveTracks& live_;
-  bool seen_only_;
-};
-
-/// How far the camera moved the picture, beside how tall people are in it.
-class CameraSpan {
- public:
-  void see(const geometry::Similarity2& view_from_scene, std::span<const Track<2>> tracks) {
-    for (const Track<2>& track : tracks) {
-      if (!track.box) continue;
-      farthest_ = std::max(farthest_, (track.position - view_from_scene.inverse() * track.position).norm());
-      heights_ += track.box->height;
-      ++people_;
-    }
-  }
-  bool moved() const { return people_ > 0 && farthest_ > kMoved * heights_ / people_; }
-  double farthest() const { return farthest_; }  // px
-
- private:
-  static constexpr double kMoved = 1;  // heights of the people; what a camera that stands still is taken to drift by is less
-
-  double farthest_ = 0, heights_ = 0;
-  double people_ = 0;
-};
 
 class PeopleInPicture final : public Stage {
  public:
@@ -223,13 +157,13 @@ class PeopleInPicture final : public Stage {
     if (masks_) masks_->finish();
     if (live_) {
       if (live_->empty()) return nullptr;
-      return std::make_unique<LiveRest>(*live_, options_.seen_only);
+      return rest_of(*live_, options_.seen_only);
     }
     if (const auto noise = tracker_->learned_noise()) options_.join = track::adapted(options_.join, *noise);
     if (!options_.join.view) options_.join.view = border_.view();
     std::vector<track::TrackRow> rows = track::join(recording_, options_.join);
     if (searched_.size() < moments_.size()) rows = track::fill_between_searches(rows, searched_, times_of(moments_));
-    return std::make_unique<JoinedRows>(std::move(rows), std::move(moments_), outlines_.get(), options_.seen_only);
+    return instants_of(std::move(rows), std::move(moments_), outlines_.get(), options_.seen_only);
   }
 
   void report(Summary& summary) const override {

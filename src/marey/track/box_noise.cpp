@@ -127,4 +127,18 @@ BoxNoiseLevels BoxNoise::levels_of_a_frame() const {
   return levels;
 }
 
+LastingShares lasting_shares(const BoxNoise& noise) {
+  const BoxNoiseLevels frame = noise.levels_of_a_frame(), all = noise.levels();
+  const auto share = [](double of_a_frame, double in_all) {
+    return std::max(0.0, 1 - of_a_frame * of_a_frame / (in_all * in_all));
+  };
+  return {share(frame.place, all.place), share(frame.size, all.size)};
+}
+
+Box written_box(const Box& filtered, const Box& seen, const LastingShares& shares) {
+  const Vector<2> centre = filtered.centre() + shares.place * (seen.centre() - filtered.centre());
+  const auto side = [&](double before, double as_seen) { return before * std::pow(as_seen / before, shares.size); };
+  return Box::from_centre(centre, side(filtered.width, seen.width), side(filtered.height, seen.height));
+}
+
 }  // namespace marey::track

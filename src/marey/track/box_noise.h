@@ -84,4 +84,14 @@ class BoxNoise {
   Differences frame_, two_frames_, near_, far_;
 };
 
+/// How much of a box's errors is there in the next frame too: the person's pose, or a habit of the detector. In [0, 1].
+struct LastingShares {
+  double place = 0, size = 0;
+};
+LastingShares lasting_shares(const BoxNoise& noise);
+
+/// The box to write of a target that filters have at `filtered` and that was `seen`: as much nearer to what was seen as errors
+/// last.
+Box written_box(const Box& filtered, const Box& seen, const LastingShares& shares);
+
 }  // namespace marey::track

@@ -15,11 +15,11 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/point_grid.h"
 #include "marey/track/box_noise.h"
-#include "marey/track/camera_motion.h"
 #include "marey/track/clutter.h"
 #include "marey/track/crowd.h"
 #include "marey/track/immediate_tracker.h"
 #include "marey/track/reidentification.h"
+#include "marey/track/scene_view.h"
 #include "marey/track/target.h"
 
 namespace marey::track {
@@ -31,15 +31,17 @@ class FilterTracker final : public ImmediateTracker<2> {
   using ImmediateTracker<2>::step;
   std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations<2>> views) override;
   std::span<const Track<2>> expected(Timestamp now) override;
-  geometry::Similarity2 view_from_scene() const override { return camera_.view_from_scene(); }
+  geometry::Similarity2 view_from_scene() const override { return scene_.view_from_scene(); }
   std::optional<BoxNoise> learned_noise() const override;
 
  private:
   using Seen = std::span<const Observation<2>>;
 
+  static constexpr double kUnbelieved = 2.5;  // a box that is not believed places its target this much less surely
+  static constexpr double kNextFrame = 1.5;   // steps: a target may be missing from one frame
+
   void predict_to(Timestamp now);
   Seen in_scene(Seen seen);
-  void follow_camera(Seen seen);
   void learn_noise(Seen seen);
   Vector<2> place_of(const Observation<2>& observation, const Target& target) const;
   Matrix<2> noise_of(const Observation<2>& observation, const Target& target) const;
@@ -60,7 +62,6 @@ class FilterTracker final : public ImmediateTracker<2> {
 
   void correct(Seen seen);
   void correct(Target& target, const Observation<2>& observation, bool merged) const;
-  std::optional<Box> shown_box(const Target& target, const Box& seen) const;
   void count_misses();
   void retire_lost();
   void start_unmatched(Seen seen);
@@ -74,19 +75,18 @@ class FilterTracker final : public ImmediateTracker<2> {
   BoxSizeOptions size_options_;
   double gate_;
   double dt_ = 0;  // s since the frame before
-  CameraMotion camera_;
+  SceneView scene_;
   Clutter clutter_;
   BoxNoiseLevels first_;
   BoxNoise noise_;
-  double noise_scale_ = 1;                         // of the acceleration, beside the options
-  double believed_place_ = 0, believed_size_ = 0;  // shares of a box's difference from the filters that are written
+  double noise_scale_ = 1;  // of the acceleration, beside the options
+  LastingShares lasting_;
   int next_id_ = 1;
   std::vector<Target> targets_;  // in the order of their ids
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> candidates_, free_targets_;
   std::vector<Vector<2>> points_;
-  std::vector<Sighting> expected_, sightings_;
-  std::vector<Observation<2>> scene_seen_;
+  std::vector<Sighting> expected_;
   std::vector<assign::GatedPair> pairs_;
   std::vector<char> taken_, merged_;  // of each observation
   assign::PointGrid<2> grid_;         // of observations

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "marey/core/ids.h"
+#include "marey/core/observation.h"
 #include "marey/core/time.h"
 #include "marey/filter/any_filter.h"
 #include "marey/track/box_noise.h"
@@ -11,6 +12,15 @@
 #include "marey/track/unoccluded_motion.h"
 
 namespace marey::track {
+
+inline bool has_extent(const Observation<2>& observation) {
+  return observation.box && !observation.box->empty();
+}
+
+/// Of its box where there is one.
+inline Vector<2> centre_of(const Observation<2>& observation) {
+  return observation.box ? observation.box->centre() : observation.value;
+}
 
 /// One target in the image: its motion, its size, and the evidence that it is there.
 struct Target {

@@ -1,0 +1,25 @@
+// What is left to write of people in one camera's pictures when the recording has ended.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "marey/core/recording.h"
+#include "marey/pipeline/run.h"
+#include "marey/track/live_tracks.h"
+#include "marey/track/outline_log.h"
+#include "marey/track/tracklet_log.h"
+
+namespace marey::pipeline {
+
+void leave_out_unseen(Instant& instant);
+
+/// What the second pass made of the recording, frame by frame: `rows` count `moments`. With outlines where there are some (null for
+/// none; they must outlive the result); without those whom nobody saw in a frame where `seen_only`.
+std::unique_ptr<InstantSource> instants_of(std::vector<track::TrackRow> rows, std::vector<Recording::Moment> moments,
+                                           track::OutlineLog* outlines, bool seen_only);
+
+/// What a live run still waited with when the recording ended. `live` must outlive the result.
+std::unique_ptr<InstantSource> rest_of(track::LiveTracks& live, bool seen_only);
+
+}  // namespace marey::pipeline
