@@ -70,7 +70,8 @@ void BoxNoise::Differences::MeanSquare::add(double square, double first) {
 }
 
 double BoxNoise::Differences::MeanSquare::with(double first) const {
-  return (count * value + kFirstCount * first) / (count + kFirstCount);
+  const double first_count = kFirstCount * (1 - count / kMostCounted);  // nothing where the memory is full of the recording itself
+  return (count * value + first_count * first) / (count + first_count);
 }
 
 void BoxNoise::Differences::add(const BoxTrail& trail, std::size_t frames, double dt, const BoxNoiseLevels& first) {

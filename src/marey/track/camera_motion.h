@@ -59,7 +59,7 @@ class CameraMotion {
   Increment rate_;
   double size_ = 1;             // of the people, px: the mean
   double shift_unrest_ = 4e-4;  // variance of a step's shift about what is predicted, per axis, in squared sizes
-  double turn_unrest_ = 2e-5;   // the same for zoom and roll
+  double turn_unrest_ = 1e-6;   // the same for zoom and roll
 };
 
 }  // namespace marey::track
