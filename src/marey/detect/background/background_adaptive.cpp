@@ -212,8 +212,6 @@ class AdaptiveBackground final : public Background {
     samples_.forget();
     sway_.renew();
     if (colour_) {
-      cb_.relight(change->gains, 128);
-      cr_.relight(change->gains, 128);
       cb_.shift(median_difference(planes.cb, cb_));
       cr_.shift(median_difference(planes.cr, cr_));
     }
