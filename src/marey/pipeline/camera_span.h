@@ -1,32 +1,38 @@
 #pragma once
 
-#include <algorithm>
+#include <map>
 #include <span>
 
+#include "marey/core/ids.h"
+#include "marey/core/time.h"
 #include "marey/core/track.h"
-#include "marey/geometry/similarity2.h"
 
 namespace marey::pipeline {
 
-/// How far the camera moved the picture, beside how tall people are in it.
+/// Whether a camera moves, judged by tracks in its image alone: all people go the same way at once, time and again. Where the
+/// camera keeps up with people who go one way, nothing shows; where people stream past a camera that stands, it looks as if it
+/// moved.
 class CameraSpan {
  public:
-  void see(const geometry::Similarity2& view_from_scene, std::span<const Track<2>> tracks) {
-    for (const Track<2>& track : tracks) {
-      if (!track.box) continue;
-      farthest_ = std::max(farthest_, (track.position - view_from_scene.inverse() * track.position).norm());
-      heights_ += track.box->height;
-      ++people_;
-    }
-  }
-  bool moved() const { return people_ > 0 && farthest_ > kMoved * heights_ / people_; }
-  double farthest() const { return farthest_; }  // px
+  /// The tracks of one frame; those that are confirmed and observed count.
+  void see(Timestamp now, std::span<const Track<2>> tracks);
+
+  bool moved() const;
+  /// By how much the image moved from one second to the next at most, px.
+  double farthest() const { return farthest_; }
 
  private:
-  static constexpr double kMoved = 1;  // heights of the people; what a camera that stands still is taken to drift by is less
+  struct Place {
+    Vector<2> place = Vector<2>::Zero();
+    double height = 1;
+  };
+  void compare(const std::map<TrackId, Place>& now);
 
-  double farthest_ = 0, heights_ = 0;
-  double people_ = 0;
+  std::map<TrackId, Place> before_;
+  Timestamp taken_{};
+  double farthest_ = 0;
+  double coherence_ = 0;  // sum over `seconds_`
+  int seconds_ = 0;
 };
 
 }  // namespace marey::pipeline

@@ -120,6 +120,7 @@ class PeopleInPicture final : public Stage {
     if (detector_) doubts_.add(given.frame, seen);
     if (!seen.searched) return pass_over(given.frame);
     const auto tracks = follow(given.frame, seen);
+    if (given.detections) camera_span_.see(given.frame.time, tracks);
     const bool stood = standing_ && standing_->see(given.frame, tracks, *detector_);
     if (live_) {
       count(tracks, seen.detections.size());
@@ -218,14 +219,13 @@ class PeopleInPicture final : public Stage {
   /// The camera's motion as boxes alone show it; of pictures other warnings tell.
   void report_camera(Summary& summary) const {
     if (detector_ || !camera_span_.moved()) return;
-    summary.warnings.push_back(
-        fmt::format("the camera moves (by up to {:.0f} px): people are followed all the same, but speeds and paths "
-                    "are in pixels of pictures that move",
-                    camera_span_.farthest()));
+    summary.warnings.push_back(fmt::format(
+        "the camera moves, or everybody goes one way (by up to {:.0f} px in a second): people are followed all the same, "
+        "but where the camera moves, speeds and paths are in pixels of pictures that move",
+        camera_span_.farthest()));
   }
 
   void count(std::span<const Track<2>> tracks, std::size_t detections) {
-    camera_span_.see(tracker_->view_from_scene(), tracks);
     for (const Track<2>& track : tracks) (track.confirmed ? believed_ : begun_).insert(track.id);
     detections_ += static_cast<std::int64_t>(detections);
   }
