@@ -11,6 +11,7 @@ namespace marey::track {
 namespace {
 using geometry::Similarity2;
 
+// Of these kRateLasts alone was tried at another value (docs/tuning.md); the others are unswept.
 constexpr std::size_t kMostPeople = 40;
 constexpr std::size_t kFewestPeople = 3;
 constexpr double kFarthestShift = 0.7;  // sizes; a camera does not turn more between two frames than it was expected to

@@ -28,6 +28,7 @@ class ViewBorder {
   }
 
  private:
+  // Unswept.
   static constexpr double kOneLine = 1.5;  // px within which ends lie in one line
   static constexpr double kPlace = 64;     // px along the border that count as one place
   static constexpr int kPlaces = 3;        // in which boxes must end
