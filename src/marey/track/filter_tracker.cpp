@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -13,9 +14,10 @@
 namespace marey::track {
 namespace {
 
-constexpr double kMissesASecond = 5;  // of evidence: neighbouring frames miss a target for the same reason
-constexpr double kExpectedBack = 3;   // the same where a target that vanished is expected back
-constexpr double kHiddenMiss = 0.1;   // evidence that a miss of a hidden target costs
+constexpr double kLearnedStep = 0.03;  // s: at higher rates noise is learned from some of the frames, or trails would be too short
+constexpr double kMissesASecond = 5;   // of evidence: neighbouring frames miss a target for the same reason
+constexpr double kExpectedBack = 3;    // the same where a target that vanished is expected back
+constexpr double kHiddenMiss = 0.1;    // evidence that a miss of a hidden target costs
 
 /// What counts until more is known of the boxes.
 BoxNoiseLevels first_levels(const TrackerOptions& options) {
@@ -102,10 +104,13 @@ FilterTracker::Seen FilterTracker::in_scene(Seen seen) {
 /// How boxes err and how people move, from those seen in this frame.
 void FilterTracker::learn_noise(Seen seen) {
   if (!options_.learn_noise) return;
+  unlearned_ += dt_;
+  if (unlearned_ < kLearnedStep) return;
+  const double step = std::exchange(unlearned_, 0);
   for (Target& target : targets_) {
     const Observation<2>* one = target.observation ? &seen[*target.observation] : nullptr;
     target.trail.add(one != nullptr && has_extent(*one) ? *one->box : Box{});
-    noise_.see(target.trail, dt_);
+    noise_.see(target.trail, step);
   }
   const BoxNoiseLevels levels = noise_.levels();
   options_.place_noise = levels.place;

@@ -81,6 +81,7 @@ class FilterTracker final : public ImmediateTracker<2> {
   BoxNoise noise_;
   double noise_scale_ = 1;  // of the acceleration, beside the options
   LastingShares lasting_;
+  double unlearned_ = 0;  // s since noise was last learned
   int next_id_ = 1;
   std::vector<Target> targets_;  // in the order of their ids
   // What a frame needs, kept so that it is allocated once.
