@@ -16,7 +16,38 @@ export async function browse(page_folder, phone) {
   /** Asked again and again, for a slow machine draws late. */
   async function eventually(what, holds) {
     for (const end = Date.now() + 60000; Date.now() < end; await sleep(60)) if (await holds()) return;
-    assert.fail(what);
+    assert.fail(`${what}; the page shows ${await shown()}`);
+  }
+  /** Whether it holds within a while, for what is tried again. */
+  async function soon(holds, seconds = 5) {
+    for (const end = Date.now() + 1000 * seconds; Date.now() < end; await sleep(60)) if (await holds()) return true;
+    return false;
+  }
+  /** The last sentence and the list, for whoever reads that a test failed. */
+  const shown = () => page.evaluate(() => {
+    const row = (each) => [each.className, each.querySelector(".name").textContent, each.querySelector(".percent").textContent].join(" ");
+    return JSON.stringify({ said: document.querySelector("#said")?.textContent, rows: [...document.querySelectorAll(".row")].map(row) });
+  });
+  /**
+   * The id of the track that was seen most among those that are there and are not called `other`: it will be seen on, unless the machine
+   * stalls for so long that every track ends. So whoever does something with it must try again with another one.
+   */
+  const steadiest = (other = "") => page.evaluate((name) => {
+    const rows = [...document.querySelectorAll(".row:not(.gone)")].filter((row) => row.querySelector(".name").textContent !== name);
+    const seen = (row) => parseFloat(row.querySelector(".percent").textContent) || 0;
+    return rows.sort((a, b) => seen(b) - seen(a))[0]?.dataset.id;
+  }, other);
+  /** Selects a track of a live run that is not yet called `name`, and types that name; whether that was possible. */
+  async function give_name(name) {
+    await page.keyboard.press("Escape");
+    const id = await steadiest(name);
+    if (id === undefined) return false;
+    await page.evaluate((track) => document.querySelector(`.row[data-id="${track}"] .name`)?.click(), id);
+    await page.keyboard.press("n");
+    if (!(await soon(() => page.locator("#name_field").isVisible(), 1))) return false;
+    await page.fill("#name_field", name);
+    await page.keyboard.press("Enter");
+    return true;
   }
   /** The same of something in the page, whose policy forbids what Playwright's own waiting does. */
   const until = (what, condition, argument) => eventually(what, () => page.evaluate(condition, argument));
@@ -69,5 +100,5 @@ export async function browse(page_folder, phone) {
     await browser.close();
     console.log(`${scenario}: done`);
   }
-  return { page, sleep, text, eventually, until, look, check_layout, done };
+  return { page, sleep, text, eventually, soon, until, give_name, look, check_layout, done };
 }
