@@ -6,6 +6,8 @@
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
 #include "marey/filter/usual_motion.h"
+#include "marey/format/rig/rig_turns.h"
+#include "marey/pipeline/ground_defaults.h"
 #include "marey/pipeline/live.h"
 #include "marey/pipeline/live_feeds.h"
 #include "marey/pipeline/markers_in_picture.h"
@@ -120,13 +122,18 @@ nb::tuple track_ground(nb::dict given) {
   how.margin = options.get("margin", how.margin);
   if (const auto teams = options.find<std::string>("teams")) how.teams.names = analyse::parse_teams(*teams);
   how.tracker.filter = filter_of(options, how.tracker.filter, filter::filter_for_people_on_ground);
-  const auto has_source = [](const RigCamera& camera) { return !camera.source.empty(); };
-  const bool pictures = std::any_of(rig.cameras.begin(), rig.cameras.end(), has_source);
-  how.tracker.associate =
-      track::ground::ground_association_named(options.get<std::string>("associate", pictures && !how.live ? "mht" : "gnn"));
-  const auto size = options.find<std::array<double, 2>>("pitch");
-  if (size || (rig.calibration && rig.calibration->method == "pitch"))
-    how.pitch = size ? geometry::PitchSize{(*size)[0], (*size)[1]} : geometry::PitchSize{};
+  how.steady = options.get("steady", false);
+  if (options.get("ball", false)) how.ball.emplace();
+  if (how.ball && how.live)
+    throw Error("{}", "ball=True needs the whole recording before it reports the ball; remove ball or live");
+  if (const auto path = options.get<std::string>("rig", {}); !path.empty()) how.turning = format::rig::read_turning(path);
+  if (const auto size = options.find<std::array<double, 2>>("pitch")) how.pitch = geometry::PitchSize{(*size)[0], (*size)[1]};
+  for (const auto& corner : options.get<std::vector<std::array<double, 2>>>("area", {}))
+    how.area.emplace_back(corner[0], corner[1]);
+  pipeline::GroundChoices choices{.filter = options.has("filter") || options.has("own_filter")};
+  if (const auto name = options.find<std::string>("associate"))
+    choices.association = track::ground::ground_association_named(*name);
+  how = pipeline::resolved(std::move(how), rig, choices);
   const Outputs outputs(options, format::Content::ground, rig.cameras);
   return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
     Result result;
@@ -175,7 +182,8 @@ nb::tuple live(nb::dict given) {
   how.markers.markers = how.space.markers;
   how.space.predict_s = 0.1;
   how.people.detector = how.on_ground.detector = people_detector(options);
-  how.on_ground.tracker.associate = track::ground::GroundAssociation::gnn;  // nobody waits for a decision
+  how.on_ground.live = true;
+  how.on_ground = pipeline::resolved(std::move(how.on_ground), rig, {});
   how.patience_s = options.get("patience", how.patience_s);
   how.take = options.get<std::string>("take", {});
   if (const auto labels = options.find<std::string>("labels")) how.space.set = format::motion::read_marker_set(*labels);

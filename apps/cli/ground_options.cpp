@@ -1,31 +1,20 @@
 #include "ground_options.h"
 
-#include <algorithm>
+#include <utility>
+
+#include "marey/pipeline/ground_defaults.h"
 
 #include "pitch_size.h"
 
 namespace marey::cli {
 namespace {
 
-/// Hypotheses are decided later, and live output cannot wait for that.
-track::ground::GroundAssociation default_association(bool live) {
-  return live ? track::ground::GroundAssociation::gnn : track::ground::GroundAssociation::mht;
-}
-
-/// Next to decoding and processing images hypotheses cost little; detections arrive too fast for them.
-bool has_pictures(const Rig& rig) {
-  return std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return !camera.source.empty(); });
-}
-
-/// A rig that was calibrated over a pitch has one; any other has none unless an option gives it.
-void set_area(const GroundAreaFlags& flags, const Rig& rig, pipeline::PeopleOnGroundOptions& options) {
+void set_area(const GroundAreaFlags& flags, pipeline::PeopleOnGroundOptions& options) {
   if (!flags.area.empty()) {
     options.area = parse_area(flags.area);
   } else if (!flags.size.empty()) {
     options.pitch = parse_pitch_or_rectangle(flags.size);
     if (!options.pitch) options.area = parse_area(flags.size);
-  } else if (rig.calibration && rig.calibration->method == "pitch") {
-    options.pitch.emplace();
   }
 }
 
@@ -57,14 +46,14 @@ void add_ground_area_options(Command& command, const Option& ground, GroundAreaF
       .check(track::ground::ground_association_named);
 }
 
-void apply(const GroundAreaFlags& flags, const Rig& rig, const std::string& rig_name, bool live,
+void apply(const GroundAreaFlags& flags, const Rig& rig, const std::string& rig_name, bool live, bool filter_chosen,
            pipeline::PeopleOnGroundOptions& options) {
   options.live = live;
+  pipeline::GroundChoices choices{.filter = filter_chosen};
+  if (!flags.association.empty()) choices.association = track::ground::ground_association_named(flags.association);
+  set_area(flags, options);
+  options = pipeline::resolved(std::move(options), rig, choices);
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
-  options.tracker.associate =
-      flags.association.empty() ? default_association(live) : track::ground::ground_association_named(flags.association);
-  options.learn.association = flags.association.empty() && !has_pictures(rig);
-  set_area(flags, rig, options);
   if (flags.margin && !options.pitch && options.area.empty())
     throw WrongUsage("--margin is counted from the edge of a pitch or an area, and {} tells of none; give its --size or --area",
                      rig_name);

@@ -22,9 +22,10 @@ struct GroundAreaFlags {
 /// Adds --size, --area, --margin, --teams and --associate, each of which needs the option `ground`.
 void add_ground_area_options(Command& command, const Option& ground, GroundAreaFlags& flags);
 
-/// Sets pitch, area, margin, teams, association and `live` of `options`. `rig_name` is for messages. Throws WrongUsage for --margin
+/// Sets pitch, area, margin, teams, association and `live` of `options`, and what depends on them (pipeline::resolved).
+/// `filter_chosen`: `tracker.filter` is what --filter asked for. `rig_name` is for messages. Throws WrongUsage for --margin
 /// without an area.
-void apply(const GroundAreaFlags& flags, const Rig& rig, const std::string& rig_name, bool live,
+void apply(const GroundAreaFlags& flags, const Rig& rig, const std::string& rig_name, bool live, bool filter_chosen,
            pipeline::PeopleOnGroundOptions& options);
 
 }  // namespace marey::cli

@@ -132,7 +132,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   check_every(command.people, command.ground);
   options.people = people_options(command.people, {}, true);
   options.on_ground.detector = detector_options(command.people);
-  apply(command.where, rig, command.sources.front(), true, options.on_ground);
+  apply(command.where, rig, command.sources.front(), true, false, options.on_ground);
   options.policy.late_s = command.late_s;
   options.patience_s = command.patience_s;
   options.take = command.out;

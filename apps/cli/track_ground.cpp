@@ -48,9 +48,8 @@ pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const G
   options.detector = detector_options(people);
   options.rate_hz = command.rate_hz;
   options.steady = people.steady;
-  options.learn.walk = command.filter.empty();
   if (!command.filter.empty()) options.tracker.filter = filter::filter_for_people_on_ground(command.filter);
-  apply(flags.where, rig, command.rig, command.live, options);
+  apply(flags.where, rig, command.rig, command.live, !command.filter.empty(), options);
   if (flags.ball && command.live)
     throw WrongUsage("{}", "--ball looks at the whole recording before it tells where the ball was; leave out --live or --ball");
   if (flags.ball) options.ball.emplace();

@@ -168,8 +168,11 @@ def track_ground(
     sources: Mapping[str, Path] | None = None,
     rate: float | None = None,
     pitch: tuple[float, float] | None = None,
+    area: Sequence[tuple[float, float]] | None = None,
     margin: float | None = None,
     teams: str | None = None,
+    ball: bool = False,
+    steady: bool = False,
     associate: str | None = None,
     filter: str | MakeFilter | None = None,
     background: str | None = None,
@@ -179,8 +182,9 @@ def track_ground(
 ) -> Recording:
     """Follows everybody on the ground that a rig's cameras look at, under one identity: `marey track --ground`.
 
-    rig: a rig file, or a Rig. sources: {camera: file} in place of the rig's own. pitch: length and width in m, (105, 68); only people on it, and
-    `margin` m round it, count. teams: "white,blue" or "City=white,United=blue". associate: "gnn", "jpda", "mht" or "bramble". The rest as in `track`.
+    rig: a rig file, or a Rig (PTZ cameras need the file). sources: {camera: file} in place of the rig's own. pitch: length and width in m,
+    (105, 68), or area: corners [(x, y), ...] in m; only people on it, and `margin` m round it, count. ball: track the ball too. steady: stabilise
+    cameras that shake. teams: "white,blue" or "City=white,United=blue". associate: "gnn", "jpda", "mht" or "bramble". The rest as in `track`.
 
     Returns a Recording in m on the ground, in the coordinates of the rig's user. Raises marey.Error where a camera is not calibrated or cannot be
     read, KeyboardInterrupt.
@@ -194,9 +198,13 @@ def track_ground(
             "background": background,
             "live": live,
             "rate": rate,
+            "ball": ball,
+            "steady": steady,
         }
     )
     options = _rig(rig) | _sinks(sinks) | given | {"sources": _sources(sources), "progress": progress}
+    if area is not None:
+        options["area"] = [[float(x), float(y)] for x, y in area]
     if pitch is not None:
         options["pitch"] = [float(pitch[0]), float(pitch[1])]
     return _finish(_core.track_ground(options))

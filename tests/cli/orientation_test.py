@@ -93,7 +93,7 @@ class Orientation(unittest.TestCase):
             at = 3 * (int(y * scale) * 1280 + int(x * scale))
             return min(math.dist(pixels[at : at + 3], grass) for grass in ((52, 110, 58), (57, 118, 63))) > 60
 
-        people = [(float(row["x"]) + ROUND, float(row["y"])) for row in rows_of("match.csv") if int(row["frame"]) == frame and row["state"] == "observed"]
+        people = [(float(row["x"]) + ROUND, float(row["y"])) for row in rows_of("match.csv") if int(row["frame"]) == frame and row["state"] == "measured"]
         self.assertGreater(len(people), 15)
         downwards = sum(drawn(x, y + ROUND) for x, y in people)
         upwards = sum(drawn(x, WIDTH - y + ROUND) for x, y in people)

@@ -177,6 +177,20 @@ class Jobs(SimulatedFilm):
             warnings.simplefilter("ignore", marey.Warning)
             people = marey.track_ground(rig, sinks=[self.folder / "python_ground.csv"])
         self.assertEqual((self.folder / "python_ground.csv").read_bytes(), (self.folder / "ground.csv").read_bytes())
+        for options, keywords in (
+            (["--filter", "kalman"], {"filter": "kalman"}),
+            (["--associate", "jpda"], {"associate": "jpda"}),
+            (["--live"], {"live": True}),
+            (["--size", "100x60", "--margin", "1"], {"pitch": (100, 60), "margin": 1}),
+            (["--area", "10,5 90,5 50,60"], {"area": [(10, 5), (90, 5), (50, 60)]}),
+            (["--area", "10,5 90,5 50,60", "--live", "--filter", "imm"], {"area": [(10, 5), (90, 5), (50, 60)], "live": True, "filter": "imm"}),
+            (["--filter", "kalman", "--associate", "gnn"], {"filter": "kalman", "associate": "gnn"}),
+        ):
+            with self.subTest(options=options), warnings.catch_warnings():
+                warnings.simplefilter("ignore", marey.Warning)
+                command("track", rig, "--ground", *options, "-o", "ground.csv", "-q", cwd=self.folder)
+                marey.track_ground(rig, sinks=[self.folder / "python_ground.csv"], **keywords)
+                self.assertEqual((self.folder / "python_ground.csv").read_bytes(), (self.folder / "ground.csv").read_bytes())
         self.assertEqual(people.dimensions, 2)
         scores = marey.evaluate(self.folder / "match" / "truth.csv", people, distance=2)
         self.assertGreater(scores.recall, 0.8)

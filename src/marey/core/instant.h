@@ -15,17 +15,10 @@
 #include "marey/core/ids.h"
 #include "marey/core/keypoints.h"
 #include "marey/core/outline.h"
+#include "marey/core/provenance.h"
 #include "marey/core/time.h"
 
 namespace marey {
-
-/// How a sample came to be where it is.
-enum class Provenance : std::uint8_t {
-  measured,   ///< from what cameras saw at this instant
-  filled,     ///< within a gap, from what was seen before and after it
-  predicted,  ///< by the tracker's model of motion, from what was seen before it
-  solved,     ///< from a body or a skeleton that was fitted to what was seen
-};
 
 /// What one camera saw at one instant: a blob's centre.
 struct SeenPoint {

@@ -17,7 +17,7 @@ Sample sample_of(const Track<D>& track) {
   Matrix<3> covariance = Matrix<3>::Zero();
   covariance.template topLeftCorner<D, D>() = track.covariance;
   sample.covariance = covariance;
-  sample.provenance = track.state == Track<D>::State::observed ? Provenance::measured : Provenance::predicted;
+  sample.provenance = track.provenance;
   sample.cameras = track.cameras;
   sample.score = track.score;
   sample.box = track.box;

@@ -21,8 +21,7 @@ void CameraSpan::see(Timestamp now, std::span<const Track<2>> tracks) {
   if (!before_.empty() && seconds(now - taken_) < kApart) return;
   std::map<TrackId, Place> places;
   for (const Track<2>& track : tracks) {
-    if (track.confirmed && track.box && track.state == Track<2>::State::observed)
-      places[track.id] = {track.position, track.box->height};
+    if (track.confirmed && track.box && track.measured()) places[track.id] = {track.position, track.box->height};
   }
   compare(places);
   before_ = std::move(places);

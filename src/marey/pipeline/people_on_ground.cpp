@@ -294,7 +294,7 @@ class GroundStage final : public PeopleOnGround {
       sample.track = track.id;
       sample.position.head<2>() = area_.ground(track.position);
       sample.velocity.emplace(Vector<3>::Zero()).head<2>() = area_.ground_velocity(track.velocity);
-      sample.provenance = track.state == Track<2>::State::observed ? Provenance::measured : Provenance::predicted;
+      sample.provenance = track.provenance;
       sample.cameras = track.cameras;
     }
     if (live_teams_) instant.named = live_teams_->step(instant, appearances(seen));

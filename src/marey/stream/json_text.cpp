@@ -23,20 +23,6 @@ std::string_view frame_word(const FrameOfReference& frame) {
   return "space";
 }
 
-std::string_view state_word(Provenance provenance) {
-  switch (provenance) {
-    case Provenance::measured:
-      return "measured";
-    case Provenance::filled:
-      return "filled";
-    case Provenance::predicted:
-      return "predicted";
-    case Provenance::solved:
-      break;
-  }
-  return "solved";
-}
-
 void append_point(std::string& text, const RecordingHeader& header, const Cast& cast, const Sample& sample) {
   auto out = std::back_inserter(text);
   fmt::format_to(out, R"({{"id":{})", number(sample.track));
@@ -49,7 +35,7 @@ void append_point(std::string& text, const RecordingHeader& header, const Cast& 
     fmt::format_to(out, R"(,"box":[{:.2f},{:.2f},{:.2f},{:.2f}])", sample.box->left, sample.box->top, sample.box->width,
                    sample.box->height);
   }
-  fmt::format_to(out, R"(,"state":"{}"}})", state_word(sample.provenance));
+  fmt::format_to(out, R"(,"state":"{}"}})", to_string(sample.provenance));
 }
 
 void append_body(std::string& text, const Body& body, const BodyPose& pose) {

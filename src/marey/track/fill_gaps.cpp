@@ -27,7 +27,7 @@ TrackRow straight_row(const TrackRow& a, const TrackRow& b, std::int32_t frame, 
   row.width = on_line(a.width, b.width, share);
   row.height = on_line(a.height, b.height, share);
   row.score = on_line(a.score, b.score, share);
-  row.state = Track<2>::State::predicted;
+  row.provenance = Provenance::filled;
   row.has_centre = false;
   return row;
 }
@@ -103,8 +103,11 @@ std::vector<TrackRow> fill_between_searches(std::span<const TrackRow> rows, std:
       const std::int32_t begin = searched[static_cast<std::size_t>(row.frame) - 1];
       const auto time = [&](std::int32_t at) { return times[static_cast<std::size_t>(at)]; };
       const double span = seconds(time(frame) - time(begin));
-      for (std::int32_t between = begin + 1; between < frame; ++between)
+      const bool extrapolated = before->second.provenance == Provenance::predicted || row.provenance == Provenance::predicted;
+      for (std::int32_t between = begin + 1; between < frame; ++between) {
         filled.push_back(straight_row(before->second, row, between, seconds(time(between) - time(begin)) / span));
+        if (extrapolated) filled.back().provenance = Provenance::predicted;
+      }
     }
     last[row.id] = row;
     filled.push_back(row);

@@ -10,7 +10,7 @@
 
 namespace marey::track {
 
-/// Rows between two observed ones, as predicted.
+/// Rows between two measured ones, whose provenance is `filled`.
 ///   straight  every value on the straight way between both ends: people
 ///   cubic     places on the cubic through the places and velocities of both ends, the rest as it was guessed: points
 enum class GapWay { straight, cubic };
@@ -25,8 +25,8 @@ void fill_gaps(TrackletLog::Tracklet& rows, const TrackletLog& log, double longe
 std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest = 3, double longest = 1);
 
 /// Rows of a recording of which only some frames were searched, from rows that count those: `searched[row.frame]` is the frame's
-/// index among all, whose times are `times`. Predicted rows on the straight way are put between the rows of a target in two
-/// searched frames that follow each other. Both in the order of frames, then ids.
+/// index among all, whose times are `times`. Rows on the straight line are put between the rows of a target in two
+/// searched frames that follow each other: filled, or predicted if one of both is. Both in the order of frames, then ids.
 std::vector<TrackRow> fill_between_searches(std::span<const TrackRow> rows, std::span<const std::int32_t> searched,
                                             std::span<const Timestamp> times);
 

@@ -24,7 +24,7 @@ TrackletLog record_of(int frames, Seen&& seen) {
     track.box = Box::from_centre(track.position, 9, 9);
     if (!seen(i)) {
       track.position.setZero();  // a bad guess
-      track.state = Track<2>::State::predicted;
+      track.provenance = Provenance::predicted;
     }
     log.add(i, frame_time(i), std::span(&track, 1));
   }
@@ -39,7 +39,7 @@ TEST(FillGaps, AGapIsFilledFromBothEnds) {
     const double t = row.frame / 30.0;
     EXPECT_NEAR(row.x, 100 + 60 * t, 1e-3);
     EXPECT_NEAR(row.y, 50 + 90 * t * t, 1e-3) << "a cubic holds a parabola";
-    EXPECT_EQ(row.observed(), row.frame < 10 || row.frame >= 20);
+    EXPECT_EQ(row.provenance, row.frame < 10 || row.frame >= 20 ? Provenance::measured : Provenance::filled);
     EXPECT_NEAR(row.left, row.x - 4, 1e-3);
   }
 }

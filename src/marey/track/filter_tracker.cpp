@@ -65,7 +65,7 @@ std::span<const Track<2>> FilterTracker::expected(Timestamp now) {
     ahead.filter.predict(dt);
     ahead.shown.reset();
     tracks_.push_back(track_of(ahead));
-    tracks_.back().state = Track<2>::State::predicted;
+    tracks_.back().provenance = Provenance::predicted;
     tracks_.back().observation.reset();
   }
   return tracks_;
@@ -234,7 +234,7 @@ Track<2> FilterTracker::track_of(const Target& target) const {
   track.position = view_from_scene * target.filter.position();
   track.velocity = turn * target.filter.velocity();
   track.covariance = turn * target.filter.covariance() * turn.transpose();
-  track.state = target.observation ? Track<2>::State::observed : Track<2>::State::predicted;
+  track.provenance = target.observation ? Provenance::measured : Provenance::predicted;
   track.observation = target.observation;
   track.confirmed = target.confirmed();
   if (target.size) track.box = view_from_scene * target.shown.value_or(target.size->around(target.filter.position()));

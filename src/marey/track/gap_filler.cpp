@@ -17,7 +17,7 @@ void GapFiller::add(Instant frame, std::span<const Track<3>> tracks) {
   ++added_;
   for (const Track<3>& track : tracks) {
     if (!track.confirmed) continue;
-    if (track.state == Track<3>::State::observed) {
+    if (track.measured()) {
       if (const auto gap = gaps_.find(track.id); gap != gaps_.end()) {
         close(gap->second, {now, track.position, track.velocity, track.covariance}, track.id);
         gaps_.erase(gap);

@@ -18,7 +18,7 @@ TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
     track.id = TrackId{1};
     track.position = seen ? place : Vector<3>(place + (t - 0.4) * velocity);
     track.velocity = velocity;
-    track.state = seen ? Track<3>::State::observed : Track<3>::State::predicted;
+    track.provenance = seen ? Provenance::measured : Provenance::predicted;
     Instant frame;
     frame.index = i;
     frame.time = timestamp_from_seconds(t);
@@ -45,7 +45,7 @@ TEST(GapFiller, OfALongGapTheBeginningIsPredicted) {
     const bool seen = i < 5 || i > 14;
     Track<3> track;
     track.id = TrackId{1};
-    track.state = seen ? Track<3>::State::observed : Track<3>::State::predicted;
+    track.provenance = seen ? Provenance::measured : Provenance::predicted;
     Instant frame;
     frame.index = i;
     frame.time = timestamp_from_seconds(0.1 * i);

@@ -52,7 +52,7 @@ std::span<const Track<2>> IndependentTracker::report(std::span<const Target> tar
     tracks_[i].velocity = targets[i].filter.velocity();
     tracks_[i].covariance = targets[i].filter.covariance();
     tracks_[i].observation = targets[i].observation;
-    tracks_[i].state = targets[i].observation ? Track<2>::State::observed : Track<2>::State::predicted;
+    tracks_[i].provenance = targets[i].observation ? Provenance::measured : Provenance::predicted;
   }
   match_by_observation();
   return tracks_;

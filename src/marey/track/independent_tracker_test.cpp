@@ -37,7 +37,7 @@ TEST(IndependentTracker, WithNothingInTheCircleItCoasts) {
   tracker.step(frame(1), at({{110, 100}}));
   const Vector<2> expected = tracker.expected(frame(2))[0].position;
   const auto tracks = tracker.step(frame(2), at({{300, 100}}));
-  EXPECT_EQ(tracks[0].state, Track<2>::State::predicted);
+  EXPECT_EQ(tracks[0].provenance, Provenance::predicted);
   EXPECT_EQ(tracks[0].position, expected);
   EXPECT_NEAR(expected.x(), 118, 1e-6) << "the velocity is 0.8 of 10 px a frame";
 }

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double join_rate = 10;  // Hz
 
-Track<2> walker(int id, double x, double y, Track<2>::State state = Track<2>::State::observed, bool confirmed = true) {
+Track<2> walker(int id, double x, double y, Provenance provenance = Provenance::measured, bool confirmed = true) {
   Track<2> track;
   track.id = TrackId{id};
   track.position = {x, y};
   track.box = Box::from_centre(track.position, 32, 80);
-  track.state = state;
+  track.provenance = provenance;
   track.confirmed = confirmed;
   track.score = 0.9;
   return track;
@@ -85,7 +85,7 @@ TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
 TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
   TrackletLog log = record_tracks(30, [](int k) {
     std::vector<Track<2>> tracks{walker(1, 100 + 5 * k, 200)};
-    if (k < 20) tracks.push_back(walker(2, 400, 300, Track<2>::State::observed, false));
+    if (k < 20) tracks.push_back(walker(2, 400, 300, Provenance::measured, false));
     if (k == 10 || k == 11) tracks.push_back(walker(3, 600, 100));
     return tracks;
   });
@@ -95,15 +95,13 @@ TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
 }
 
 TEST(Join, FirstFramesBeforeConfirmationAreReported) {
-  TrackletLog log =
-      record_tracks(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Track<2>::State::observed, k >= 3)}; });
+  TrackletLog log = record_tracks(20, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, Provenance::measured, k >= 3)}; });
   EXPECT_EQ(join(log).front().frame, 0);
 }
 
 TEST(Join, TailsWithoutAnObservationAreCut) {
-  TrackletLog log = record_tracks(30, [](int k) {
-    return std::vector{walker(1, 100 + 5 * k, 200, k < 18 ? Track<2>::State::observed : Track<2>::State::predicted)};
-  });
+  TrackletLog log = record_tracks(
+      30, [](int k) { return std::vector{walker(1, 100 + 5 * k, 200, k < 18 ? Provenance::measured : Provenance::predicted)}; });
   EXPECT_EQ(join(log).back().frame, 17);
 }
 

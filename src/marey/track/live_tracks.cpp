@@ -62,7 +62,7 @@ void LiveTracks::add(std::int64_t index, Timestamp time, std::span<const Track<2
   for (const Track<2>& track : tracks) {
     Seen& seen = seen_[track.id];
     seen.confirmed = seen.confirmed || track.confirmed;
-    if (track.state != Track<2>::State::observed) continue;
+    if (!track.measured()) continue;
     if (track.confirmed && seen.time && before && *seen.time < *before) survival_.found_again(seconds(time - *seen.time));
     seen.time = time;
   }
@@ -109,7 +109,7 @@ void LiveTracks::forget_lost(const Moment& told) {
 std::optional<Sample> LiveTracks::told(const Moment& moment, const Track<2>& track) {
   Seen& seen = seen_.at(track.id);
   if (!seen.confirmed) return std::nullopt;
-  if (track.state == Track<2>::State::observed) {
+  if (track.measured()) {
     seen.told = sample_of(track);
     seen.told_time = moment.time;
     return seen.told;
@@ -127,7 +127,7 @@ std::optional<Sample> LiveTracks::filled(const Moment& moment, const Track<2>& t
   if (!seen.told || !seen.time || *seen.time <= moment.time) return std::nullopt;
   for (const Moment& later : moments_) {
     const Track<2>* again = find_track(later.tracks, track.id);
-    if (again == nullptr || again->state != Track<2>::State::observed) continue;
+    if (again == nullptr || !again->measured()) continue;
     const double share = seconds(moment.time - seen.told_time) / seconds(later.time - seen.told_time);
     Sample sample = sample_of(track);
     sample.provenance = Provenance::filled;

@@ -12,7 +12,7 @@ Track<2> at(int id, double x, bool observed, bool confirmed = true) {
   track.id = TrackId{id};
   track.position = {x, 50};
   track.covariance = Matrix<2>::Identity();
-  track.state = observed ? Track<2>::State::observed : Track<2>::State::predicted;
+  track.provenance = observed ? Provenance::measured : Provenance::predicted;
   track.confirmed = confirmed;
   track.box = Box::from_centre(track.position, 40, 100);
   return track;

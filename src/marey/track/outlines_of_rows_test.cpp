@@ -19,7 +19,7 @@ Track<2> track_at(int id, double x) {
   return track;
 }
 
-TrackRow row_at(int frame, int id, int first_id, double x, double height, Track<2>::State state) {
+TrackRow row_at(int frame, int id, int first_id, double x, double height, Provenance provenance) {
   TrackRow row;
   row.frame = frame;
   row.id = id;
@@ -28,11 +28,11 @@ TrackRow row_at(int frame, int id, int first_id, double x, double height, Track<
   row.y = 8;
   row.width = 8;
   row.height = static_cast<float>(height);
-  row.state = state;
+  row.provenance = provenance;
   return row;
 }
 
-constexpr auto kSeen = Track<2>::State::observed, kFilled = Track<2>::State::predicted;
+constexpr auto kSeen = Provenance::measured, kFilled = Provenance::filled;
 
 std::shared_ptr<const Outline> attached(OutlinesOfRows& outlines, const TrackRow& row) {
   std::vector<Track<2>> tracks(1);

@@ -23,7 +23,7 @@ bool keeps_its_id(const TrackerOptions& options, int hidden, double aside, doubl
       seen.push_back({.value = box.centre(), .box = box});
     }
     for (const Track<2>& track : tracker->step(timestamp_from_seconds(i / kRate), seen)) {
-      if (!track.confirmed || track.state != Track<2>::State::observed) continue;
+      if (!track.confirmed || !track.measured()) continue;
       (i < 50 ? before : after) = track.id;
     }
   }

@@ -9,7 +9,7 @@ Track<3> row(int id, bool observed, bool confirmed) {
   Track<3> track;
   track.id = TrackId{id};
   track.confirmed = confirmed;
-  track.state = observed ? Track<3>::State::observed : Track<3>::State::predicted;
+  track.provenance = observed ? Provenance::measured : Provenance::predicted;
   if (observed) track.observation = 10 + id;
   return track;
 }

@@ -96,7 +96,7 @@ class RosterTracker final : public Tracker<D> {
     for (const Target& target : targets_) {
       filter::AnyFilter<D> ahead = target.filter;
       ahead.predict(dt);
-      tracks_.push_back(track_of(target, ahead, Track<D>::State::predicted));
+      tracks_.push_back(track_of(target, ahead, Provenance::predicted));
     }
     return tracks_;
   }
@@ -341,13 +341,12 @@ class RosterTracker final : public Tracker<D> {
     tracks_.clear();
     matches_.clear();
     for (const Target& target : targets_) {
-      tracks_.push_back(
-          track_of(target, target.filter, target.observation ? Track<D>::State::observed : Track<D>::State::predicted));
+      tracks_.push_back(track_of(target, target.filter, target.observation ? Provenance::measured : Provenance::predicted));
       if (target.observation) matches_.push_back({target.id, 0, *target.observation});
     }
   }
 
-  Track<D> track_of(const Target& target, const filter::AnyFilter<D>& filter, typename Track<D>::State state) const {
+  Track<D> track_of(const Target& target, const filter::AnyFilter<D>& filter, Provenance provenance) const {
     Track<D> track;
     track.id = target.id;
     track.label = target.label;
@@ -355,8 +354,8 @@ class RosterTracker final : public Tracker<D> {
     track.velocity = filter.velocity();
     track.covariance = filter.covariance();
     track.covariance.diagonal().array() += target.predicted_variance;
-    track.state = state;
-    if (state == Track<D>::State::observed) track.observation = target.observation;
+    track.provenance = provenance;
+    if (provenance == Provenance::measured) track.observation = target.observation;
     track.confirmed = target.on_roster() && is_placed(target);
     if constexpr (D == 2) track.box = Box::from_centre(track.position, target.width, target.width);
     return track;

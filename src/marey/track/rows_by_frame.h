@@ -40,7 +40,7 @@ class RowsByFrame {
     track.velocity = {row.vx, row.vy};
     if (row.has_box()) track.box = Box{row.left, row.top, row.width, row.height};
     track.score = row.score;
-    track.state = row.state;
+    track.provenance = row.provenance;
     return track;
   }
 

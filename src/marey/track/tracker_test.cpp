@@ -130,7 +130,7 @@ TEST(Tracker, AShortOcclusionIsBridgedByPrediction) {
         ASSERT_EQ(tracks.size(), 1U) << "frame " << k;
         names.insert(number(tracks[0].id));
         const bool hidden = k >= 20 && k < 27;
-        EXPECT_EQ(tracks[0].state, hidden ? Track<2>::State::predicted : Track<2>::State::observed);
+        EXPECT_EQ(tracks[0].provenance, hidden ? Provenance::predicted : Provenance::measured);
         EXPECT_NEAR(tracks[0].position.x(), 100 + 5.0 * k, 12);
       });
   EXPECT_EQ(names.size(), 1U);
@@ -173,7 +173,7 @@ TEST(Tracker, WeakObservationsContinueButDoNotBegin) {
       [&](int, std::span<const Track<2>> tracks) {
         for (const Track<2>& track : tracks) names.insert(number(track.id));
         ASSERT_EQ(tracks.size(), 1U);
-        EXPECT_EQ(tracks[0].state, Track<2>::State::observed);
+        EXPECT_EQ(tracks[0].provenance, Provenance::measured);
       });
   EXPECT_EQ(names.size(), 1U);
 }

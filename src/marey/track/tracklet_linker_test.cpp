@@ -117,7 +117,7 @@ int cut_in_two_although_alone(int cases, unsigned first_seed) {
       if (k >= shade) colour.lightness -= static_cast<float>(darker), colour.b -= 8;
       show(1, 100 + speed * k, 200, colour);
       if (i % 2 == 0 && k >= beside && k < beside + 6) {
-        tracks.back().state = Track<2>::State::predicted;
+        tracks.back().provenance = Provenance::predicted;
         tracks.back().observation.reset();
         clothes.pop_back();
       }

@@ -27,7 +27,7 @@ TrackRow row_of(std::int32_t frame, const Track<2>& track) {
     row.has_centre = true;
   }
   row.score = static_cast<float>(track.score);
-  row.state = track.state;
+  row.provenance = track.provenance;
   return row;
 }
 

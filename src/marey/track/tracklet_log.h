@@ -21,12 +21,12 @@ struct TrackRow {
   float left = 0, top = 0, width = 0, height = 0;  ///< box; width and height are 0 where the target has no extent
   float centre_x = 0, centre_y = 0;                ///< of the outline, where `has_centre`
   float score = 1;
-  Track<2>::State state = Track<2>::State::observed;
+  Provenance provenance = Provenance::measured;
   PackedClothes clothes;    ///< of what was seen of it
   bool doubtful = false;    ///< others were so near that it may be one of them: set by the second pass (identity_doubt.h)
   bool has_centre = false;  ///< an outline was found; after smoothing, also where one was found shortly before and after
 
-  bool observed() const { return state == Track<2>::State::observed; }
+  bool observed() const { return provenance == Provenance::measured; }
   bool has_box() const { return width > 0 && height > 0; }
 };
 

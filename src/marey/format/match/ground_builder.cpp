@@ -17,7 +17,7 @@ Sample sample_of(const GroundBuilder::Row& row) {
   Sample sample;
   sample.position = {row.place.x(), row.place.y(), row.height};
   if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), row.climb);
-  sample.provenance = row.observed ? Provenance::measured : Provenance::predicted;
+  sample.provenance = row.provenance;
   sample.cameras = row.cameras;
   if (row.covariance) sample.covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() = *row.covariance;
   sample.box = row.box;

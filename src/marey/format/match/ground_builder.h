@@ -23,8 +23,8 @@ class GroundBuilder {
   /// Where someone was in one row of the file.
   struct Row {
     std::int32_t frame = 0;
-    bool observed = true;  ///< else it is where the person was expected
-    double time = 0;       ///< s
+    Provenance provenance = Provenance::measured;
+    double time = 0;  ///< s
     Vector<2> place = Vector<2>::Zero();
     std::optional<Vector<2>> velocity = {};
     std::optional<Matrix<2>> covariance = {};  ///< of `place`, m²

@@ -157,10 +157,12 @@ class GroundFileReader {
     if (field(kZ)) row.height = number(kZ, -kFarthestOnGround, kFarthestOnGround);
     if (field(kVz)) row.climb = number(kVz, -kFarthestOnGround, kFarthestOnGround);
     moves_ |= row.velocity && *row.velocity != Vector<2>::Zero();
-    const std::string how = text(kState);
-    if (!how.empty() && how != "observed" && how != "predicted")
-      throw Error("{}:{}: state is {}; it must be observed or predicted", name_, line_, shown(how));
-    row.observed = how != "predicted";
+    if (const std::string state = text(kState); !state.empty()) {
+      const auto provenance = provenance_of(state);
+      if (!provenance)
+        throw Error("{}:{}: state is {}; it must be {}", name_, line_, shown(state), fmt::join(kProvenanceNames, ", "));
+      row.provenance = *provenance;
+    }
     row.cameras = cameras_of(text(kCameras));
     if (has_boxes_ && field(kLeft)) {
       row.box = Box{number(kLeft, -kFarthest, kFarthest), number(kTop, -kFarthest, kFarthest), number(kWidth, 0, kFarthest),
@@ -305,7 +307,7 @@ void GroundWriter::write(const Instant& instant) {
     const Vector<3> velocity = sample.velocity.value_or(Vector<3>::Zero());
     fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}", instant.index, time,
                    number(sample.track), fields.label, fields.team, sample.position.x(), sample.position.y(), velocity.x(),
-                   velocity.y(), sample.measured() ? "observed" : "predicted", quoted_field(seen_by_));
+                   velocity.y(), to_string(sample.provenance), quoted_field(seen_by_));
     for (const Extra extra : extras_) write_extra(extra, sample, fields.ball);
     text_ += '\n';
   }

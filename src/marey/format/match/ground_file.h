@@ -13,11 +13,11 @@
 namespace marey::format::match {
 
 /// People on the ground as CSV: frame,time,id,label,team,x,y,vx,vy,state,cameras. Frames count from 0; s, m, m/s; one row a person
-/// and instant, by frame and id; state is observed or predicted; cameras are the names of those that saw the person, a space
-/// between. Where no velocity is known all are written as 0. With a ball, whose label is "ball", two columns more, z,vz, have its
-/// height in m and how fast it rises; where it is known how well places are, three more, xx,xy,yy, have their covariance in m².
-/// A writer must be told of either within the first megabyte. Where y grows downwards (core/other_ground.h), a column y_down has 1
-/// in each row.
+/// and instant, by frame and id; state is measured, filled, predicted or solved (core/provenance.h; older files have `observed` for
+/// measured); cameras are the names of those that saw the person, a space between. Where no velocity is known all are written as 0.
+/// With a ball, whose label is "ball", two columns more, z,vz, have its height in m and how fast it rises; where it is known how
+/// well places are, three more, xx,xy,yy, have their covariance in m². A writer must be told of either within the first megabyte.
+/// Where y grows downwards (core/other_ground.h), a column y_down has 1 in each row.
 ///
 /// Reading asks for id, x, y and frame or time only, found by the header in any order, so that other tools' files may be brought.
 /// Without time it is frame / rate_hz; without frame they are numbered by the median time between instants. Velocities that are

@@ -25,7 +25,6 @@ namespace {
 enum Column { frame, time, id, label, x, y, z, state, cameras, residual_px, residual_mm, column_count };
 constexpr std::array<std::string_view, column_count> kColumns{"frame", "time",  "id",      "label",       "x",          "y",
                                                               "z",     "state", "cameras", "residual_px", "residual_mm"};
-constexpr std::array<std::string_view, 4> kStates{"measured", "filled", "predicted", "solved"};
 constexpr double kLargest = 1e9;
 
 class TidyReader : public FileReader {
@@ -144,9 +143,9 @@ class TidyReader : public FileReader {
     if (const auto mm = number_if_any(residual_mm)) result.residual_m = *mm / 1000;
     const std::string_view told = field(state);
     if (!told.empty()) {
-      const auto known = std::find(kStates.begin(), kStates.end(), told);
-      if (known == kStates.end()) fail(fmt::format("state is {}; it must be measured, filled, predicted or solved", shown(told)));
-      result.provenance = static_cast<Provenance>(known - kStates.begin());
+      const auto provenance = provenance_of(told);
+      if (!provenance) fail(fmt::format("state is {}; it must be {}", shown(told), fmt::join(kProvenanceNames, ", ")));
+      result.provenance = *provenance;
     }
     result.cameras = camera_mask();
     return result;
@@ -241,8 +240,8 @@ class TidyWriter : public PointSink {
     auto out = std::back_inserter(lines_);
     for (const Sample& point : frame.samples) {
       fmt::format_to(out, "{},{:.6f},{},{},{:.10g},{:.10g},{:.10g},{},{},", frame.index, seconds(frame.time), number(point.track),
-                     labels_[point.track], point.position.x(), point.position.y(), point.position.z(),
-                     kStates[static_cast<std::size_t>(point.provenance)], numbers(point.cameras));
+                     labels_[point.track], point.position.x(), point.position.y(), point.position.z(), to_string(point.provenance),
+                     numbers(point.cameras));
       if (point.residual_px) fmt::format_to(out, "{:.6g}", *point.residual_px);
       lines_ += ',';
       if (point.residual_m) fmt::format_to(out, "{:.6g}", *point.residual_m * 1000);

@@ -25,10 +25,6 @@
 namespace marey::format::tracks {
 namespace {
 
-std::string_view state_of(const Sample& sample) {
-  return sample.measured() ? "observed" : "predicted";
-}
-
 void append_mot(std::string& lines, const Instant& instant, const Sample& sample) {
   if (!sample.box) return;
   const Box& box = *sample.box;
@@ -51,7 +47,7 @@ void append_csv(std::string& lines, const Instant& instant, const Sample& sample
   } else {
     lines += ",,,,";
   }
-  fmt::format_to(out, "{}\n", state_of(sample));
+  fmt::format_to(out, "{}\n", to_string(sample.provenance));
 }
 
 /// A row for each body point that is known.
@@ -81,7 +77,7 @@ void append_json(std::string& lines, const Instant& instant, const Sample& sampl
     fmt::format_to(out, R"("left":{:.2f},"top":{:.2f},"width":{:.2f},"height":{:.2f},)", sample.box->left, sample.box->top,
                    sample.box->width, sample.box->height);
   }
-  fmt::format_to(out, R"("state":"{}")", state_of(sample));
+  fmt::format_to(out, R"("state":"{}")", to_string(sample.provenance));
   if (sample.outline) {
     lines += R"(,"outline":)";
     tracks::append_json(lines, *sample.outline);
@@ -185,7 +181,7 @@ class JsonLines {
   void add(const nlohmann::json& line) {
     const auto number = [&](const char* name) { return line.at(name).get<double>(); };
     match::GroundBuilder::Row row{.frame = line.at("frame").get<std::int32_t>(),
-                                  .observed = line.value("state", "observed") != "predicted",
+                                  .provenance = provenance(line.value("state", "measured")),
                                   .time = number("time"),
                                   .place = {number("x"), number("y")}};
     if (line.contains("vx")) row.velocity = Vector<2>(number("vx"), number("vy"));
@@ -195,6 +191,11 @@ class JsonLines {
     outlines_ |= line.contains("outline");
     keypoints_ |= line.contains("keypoints");
     builder_.add(builder_.person(id, line.value("label", ""), {}), row);
+  }
+
+  Provenance provenance(const std::string& name) const {
+    if (const auto found = provenance_of(name)) return *found;
+    throw Error("{}: a state is {}; it must be {}", path_, shown(name), fmt::join(kProvenanceNames, ", "));
   }
 
   const std::string& path_;

@@ -152,7 +152,7 @@ TEST(TrackFile, EveryJsonLineIsAnObject) {
   EXPECT_EQ(objects[0]["frame"], 6);
   EXPECT_EQ(objects[0]["time"], 0.24);
   EXPECT_EQ(objects[0]["height"], 21);
-  EXPECT_EQ(objects[0]["state"], "observed");
+  EXPECT_EQ(objects[0]["state"], "measured");
   EXPECT_FALSE(objects[0].contains("label"));
   EXPECT_EQ(objects[1]["label"], "the \"tall\", one");
   EXPECT_FALSE(objects[1].contains("left"));

@@ -271,7 +271,7 @@ class BrambleTracker final : public Tracker<2> {
       for (std::size_t c = 0; c < seen_.size(); ++c) {
         if (seen_[c].evidence != nullptr && sees(c, t, shapes)) tracks_[t].cameras |= mask_of(CameraId{static_cast<int>(c)});
       }
-      tracks_[t].state = tracks_[t].cameras != 0 ? Track<2>::State::observed : Track<2>::State::predicted;
+      tracks_[t].provenance = tracks_[t].cameras != 0 ? Provenance::measured : Provenance::predicted;
       add_observations(tracks_[t]);
     }
     told_.clear();

@@ -147,7 +147,7 @@ Track<2> GroundRules::report(const Target& target) const {
   track.position = target.filter.position();
   track.velocity = target.filter.velocity();
   track.covariance = target.filter.covariance();
-  track.state = target.cameras != 0 ? Track<2>::State::observed : Track<2>::State::predicted;
+  track.provenance = target.cameras != 0 ? Provenance::measured : Provenance::predicted;
   track.confirmed = target.confirmed();
   track.score = target.score;
   track.cameras = target.cameras;

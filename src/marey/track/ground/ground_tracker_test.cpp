@@ -180,7 +180,7 @@ TEST_P(EveryAssociation, WhoCannotBeSeenIsGivenUpAfterAWhileOnly) {
       [&](int frame, std::span<const Track<2>> tracks) {
         if (frame >= 50 && frame < 80) {
           ASSERT_EQ(confirmed(tracks), 1) << "frame " << frame;
-          EXPECT_EQ(tracks.front().state, Track<2>::State::predicted);
+          EXPECT_EQ(tracks.front().provenance, Provenance::predicted);
           EXPECT_GT(tracks.front().covariance.trace(), before);
         }
         if (!tracks.empty()) before = tracks.front().covariance.trace();
