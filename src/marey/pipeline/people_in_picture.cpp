@@ -54,7 +54,8 @@ std::vector<track::Clothes> clothes_of(const Frame& frame, const detect::Detecti
   if (!frame.picture.is_colour() || seen.foreground.mask.empty()) return clothes;
   for (std::size_t i = 0; i < seen.detections.size(); ++i) {
     clothes.push_back({detect::upper_body(frame.picture, seen.foreground, seen.detections, i),
-                       detect::lower_body(frame.picture, seen.foreground, seen.detections, i)});
+                       detect::lower_body(frame.picture, seen.foreground, seen.detections, i),
+                       detect::shanks(frame.picture, seen.foreground, seen.detections, i)});
   }
   return clothes;
 }
