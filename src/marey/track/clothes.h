@@ -25,7 +25,8 @@ struct Clothes {
 class PackedClothes {
  public:
   PackedClothes() = default;
-  explicit PackedClothes(const Clothes& clothes) : upper_(packed(clothes.upper)), lower_(packed(clothes.lower)), shanks_(packed(clothes.shanks)) {}
+  explicit PackedClothes(const Clothes& clothes)
+      : upper_(packed(clothes.upper)), lower_(packed(clothes.lower)), shanks_(packed(clothes.shanks)) {}
   Clothes unpacked() const { return {unpacked(upper_), unpacked(lower_), unpacked(shanks_)}; }
 
  private:

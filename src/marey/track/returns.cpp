@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -17,26 +18,30 @@ namespace {
 
 using Tracklet = TrackletLog::Tracklet;
 
-constexpr double kClothesFor = 5;   // s of a tracklet that tell what it wears at an end
-constexpr int kFewestMoments = 8;   // of a tracklet whose clothes are learned from
-constexpr double kMotionFor = 0.8;  // s that tell where an end goes
-constexpr double kNearBorder = 0.2, kSoonThere = 0.7;  // heights, s: who is that near or there so soon leaves, or has come
-constexpr double kPlaceUnsure = 0.3;                   // heights along the border, however short the time away
+constexpr double kClothesFor = 5;                      // s of a tracklet that tell what it wears at an end
+constexpr int kFewestMoments = 8;                      // of a tracklet whose clothes are learned from
+constexpr double kMotionFor = 0.8;                     // s that tell where an end goes
+constexpr double kNearBorder = 0.2, kSoonThere = 1;    // heights, s: who is that near or there so soon leaves, or has come
+constexpr double kPlaceUnsure = 0.25;                  // heights along the border, however short the time away
 constexpr double kFastest = 5;                         // heights/s
 constexpr double kMostGrown = 0.5;                     // of the logarithm of the height
 constexpr double kBandwidth = 1, kAnywhereCounts = 3;  // heights; as many people as come in anywhere, beside those who were seen to
-constexpr int kTurnsOfLearning = 6;
-constexpr double kFirstShare = 0.3;  // of those who leave, who come back: to begin with, and as sure as two people
-constexpr double kLeastGain = -7;
-constexpr double kAtOnce = 1;  // s at both bounds of the recording, where tracks begin and end of themselves
+constexpr int kTurnsOfLearning = 25;
+constexpr double kFading = 0.5;          // of `usually_away`: from then on, so long until e times fewer come back
+constexpr double kFirstShare = 0.3;      // of those who leave, who come back: to begin with, and as sure as two people
+constexpr double kFirstNewcomers = 0.1;  // 1/s, likewise
+constexpr std::array<double, 4> kSpreads{0.4, 0.65, 1,
+                                         1.6};  // factors on how far from where they went out people come in: tried all
+constexpr double kSpreadUnsure = 0.7;           // deviation of the logarithm of that, before anything is known
+constexpr double kAtOnce = 1;                   // s at both bounds of the recording, where tracks begin and end of themselves
 
 enum class Side { left, right, top, bottom };
 
 /// Where and when a tracklet crosses the picture's border.
 struct Crossing {
-  double time = 0;        // s
-  double place = 0;       // px along the border, from its top left, clockwise
-  double size = 1;        // px
+  double time = 0;   // s
+  double place = 0;  // px along the border, from its top left, clockwise
+  double size = 1;   // px
   bool of_border = false;
   bool of_recording = false;  // at its bounds
   bool upright = false;       // at the left or right
@@ -83,10 +88,18 @@ class Crossings {
     const double x = std::clamp(edge.left + edge.width / 2.0 - view_.left, 0.0, view_.width);
     const double y = std::clamp(double(edge.top) + edge.height - view_.top, 0.0, view_.height);
     switch (side) {
-      case Side::top: crossing.place = x; break;
-      case Side::right: crossing.place = view_.width + y; break;
-      case Side::bottom: crossing.place = view_.width + view_.height + (view_.width - x); break;
-      case Side::left: crossing.place = 2 * view_.width + view_.height + (view_.height - y); break;
+      case Side::top:
+        crossing.place = x;
+        break;
+      case Side::right:
+        crossing.place = view_.width + y;
+        break;
+      case Side::bottom:
+        crossing.place = view_.width + view_.height + (view_.width - x);
+        break;
+      case Side::left:
+        crossing.place = 2 * view_.width + view_.height + (view_.height - y);
+        break;
     }
     return crossing;
   }
@@ -160,10 +173,13 @@ class Returns {
     const int count = static_cast<int>(heads_.size());
     std::vector<assign::GatedPair> weighed;
     std::vector<double> beliefs;
-    for (int turn = 0; turn < kTurnsOfLearning; ++turn) {
-      weighed = with_rates();
-      beliefs = assign::association_beliefs(count, count, weighed);
-      learn_rates(beliefs);
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double spread : kSpreads) {
+      const Explanation one = explain(spread);
+      if (one.likelihood <= most) continue;
+      most = one.likelihood;
+      weighed = one.pairs;
+      beliefs = one.beliefs;
     }
     const std::vector<int> next = assign::sparse_assignment(count, count, weighed);
     for (std::size_t k = 0; k < weighed.size(); ++k) {
@@ -178,6 +194,38 @@ class Returns {
   const Crossing& head(const assign::GatedPair& pair) const { return heads_[static_cast<std::size_t>(pair.column)]; }
   const Crossing& tail(const assign::GatedPair& pair) const { return tails_[static_cast<std::size_t>(pair.row)]; }
 
+  /// All pairs, with their gains and probabilities, if people come in again so near where they went out.
+  struct Explanation {
+    std::vector<assign::GatedPair> pairs;
+    std::vector<double> beliefs;
+    double likelihood = 0;  // logarithm
+  };
+
+  Explanation explain(double spread) {
+    const int count = static_cast<int>(heads_.size());
+    Explanation result;
+    share_ = kFirstShare;
+    newcomers_ = kFirstNewcomers;
+    for (int turn = 0; turn < kTurnsOfLearning; ++turn) {
+      result.pairs = weighed_pairs(spread);
+      result.beliefs = assign::association_beliefs(count, count, result.pairs);
+      if (turn + 1 < kTurnsOfLearning) learn_rates(result.beliefs);
+    }
+    result.likelihood = log_likelihood(result.pairs) - 0.5 * std::pow(std::log(spread) / kSpreadUnsure, 2);
+    return result;
+  }
+
+  /// Of all comings and leavings, each beginning for itself.
+  double log_likelihood(std::span<const assign::GatedPair> pairs) const {
+    std::vector<double> odds(heads_.size(), 1);
+    for (const assign::GatedPair& pair : pairs) odds[static_cast<std::size_t>(pair.column)] += std::exp(std::min(30.0, pair.gain));
+    double sum = 0;
+    for (const double one : odds) sum += std::log(one);
+    for (const Crossing& in : heads_) sum += in.of_border && !in.of_recording ? std::log(newcomers_) : 0;
+    for (const Crossing& out : tails_) sum += out.of_border && !out.of_recording ? std::log1p(-share_ * come_back_by_end(out)) : 0;
+    return sum - newcomers_ * (end_ - begin_);
+  }
+
   /// Pairs that may be, with what clothes, place and time say but for how often people come and come back.
   void find_pairs(const Wardrobe& wardrobe) {
     for_each_successor(tails_, heads_, options_.longest_away, [&](int row, int column) {
@@ -188,12 +236,12 @@ class Returns {
       if (way > (1 + kFastest * away) * size || std::abs(std::log(in.size / out.size)) > kMostGrown) return;
       const std::optional<double> clothes = wardrobe.log_ratio(row, column);
       if (!clothes) return;
-      pairs_.push_back({row, column, *clothes + log_place(out, in, size) + log_time(away)});
+      pairs_.push_back({row, column, *clothes + log_time(away)});
     });
   }
 
-  double log_place(const Crossing& out, const Crossing& in, double size) const {
-    const double pace = in.upright ? options_.along : options_.across;
+  double log_place(const Crossing& out, const Crossing& in, double spread) const {
+    const double size = std::sqrt(out.size * in.size) * spread, pace = in.upright ? options_.along : options_.across;
     const double deviation = size * (kPlaceUnsure + pace * (in.time - out.time));
     const double way = distance_along(out.place, in.place, view_) / deviation;
     const double near = std::exp(-0.5 * way * way) / (std::sqrt(2 * std::numbers::pi) * deviation);
@@ -212,18 +260,25 @@ class Returns {
     return sum / count;
   }
 
-  /// 1/s
-  double log_time(double away) const { return -away / options_.usually_away - std::log(options_.usually_away); }
+  /// 1/s: as likely at any time up to `usually_away`, from then on less and less.
+  double log_time(double away) const {
+    const double fading = kFading * options_.usually_away;
+    return -std::max(0.0, away - options_.usually_away) / fading - std::log(options_.usually_away + fading);
+  }
 
-  std::vector<assign::GatedPair> with_rates() const {
+  std::vector<assign::GatedPair> weighed_pairs(double spread) const {
     std::vector<assign::GatedPair> weighed = pairs_;
-    for (assign::GatedPair& pair : weighed) pair.gain += std::log(share_ / newcomers_) - std::log1p(-share_ * come_back_by_end(tail(pair)));
+    for (assign::GatedPair& pair : weighed)
+      pair.gain += log_place(tail(pair), head(pair), spread) + std::log(share_ / newcomers_) -
+                   std::log1p(-share_ * come_back_by_end(tail(pair)));
     return weighed;
   }
 
   /// Of those who come back at all, who do before the recording ends.
   double come_back_by_end(const Crossing& out) const {
-    return 1 - std::exp(-std::min(options_.longest_away, end_ - out.time) / options_.usually_away);
+    const double usually = options_.usually_away, fading = kFading * usually,
+                 left = std::min(options_.longest_away, end_ - out.time);
+    return (std::min(left, usually) + fading * (1 - std::exp(-std::max(0.0, left - usually) / fading))) / (usually + fading);
   }
 
   void learn_rates(std::span<const double> beliefs) {
@@ -237,11 +292,11 @@ class Returns {
 
   ReturnOptions options_;
   Box view_;
-  double begin_ = 0, end_ = 0;              // s, of the recording
-  std::vector<Crossing> heads_, tails_;     // of the tracklets
-  std::vector<assign::GatedPair> pairs_;    // tails and heads
-  double share_ = kFirstShare;              // of those who leave, who come back
-  double newcomers_ = 0.1;                  // 1/s
+  double begin_ = 0, end_ = 0;            // s, of the recording
+  std::vector<Crossing> heads_, tails_;   // of the tracklets
+  std::vector<assign::GatedPair> pairs_;  // tails and heads
+  double share_ = kFirstShare;            // of those who leave, who come back
+  double newcomers_ = kFirstNewcomers;    // 1/s
 };
 
 }  // namespace

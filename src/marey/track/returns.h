@@ -2,7 +2,8 @@
 //
 // A tracklet that ends where somebody walks out of the picture, and one that begins where somebody walks in, may be one person's
 // though minutes of motion say nothing of it any more. What tells are the clothes (wardrobe.h), the place at the border, and the
-// time: people are away for seconds rather than minutes, and come in again near where they went out, the nearer the sooner. Against
+// time: people are away for seconds rather than minutes, and come in again near where they went out, the nearer the sooner (how
+// near is learned too). Against
 // that stands that somebody else comes: how often, and where along the border, is learned from the recording, and so is how many of
 // those who leave come back at all, by turns with who that is. One assignment decides; of its pairs those are joined whose
 // probability over all assignments is high. What the decision rests on, it did not make: clothes of those who were there at the
@@ -22,11 +23,11 @@ namespace marey::track {
 struct ReturnOptions {
   double longest_away = 15;        ///< s
   double shortest_away = 0.4;      ///< s
-  double usually_away = 6;         ///< s: mean of those who come back
-  double least_probability = 0.7;  ///< of a pair, to be joined; above 1: nobody is
-  double along = 0.15;             ///< heights along the border for each second away, at its sides; a person walks away from us there
-  double across = 0.4;             ///< the same at its top and bottom
-  double anywhere = 0.1;           ///< share of those who come back anywhere along the border
+  double usually_away = 8;         ///< s: who comes back does so at any time up to this, more seldom later
+  double least_probability = 0.9;  ///< of a pair, to be joined; above 1: nobody is
+  double along = 0.06;    ///< heights along the border for each second away, at its sides; a person walks away from us there
+  double across = 0.4;    ///< the same at its top and bottom
+  double anywhere = 0.1;  ///< share of those who come back anywhere along the border
 };
 
 /// Two tracklets that are one person's.

@@ -10,9 +10,9 @@ namespace {
 constexpr std::array<std::optional<Appearance> Clothes::*, 3> kPartsOfClothes{&Clothes::upper, &Clothes::lower, &Clothes::shanks};
 
 constexpr std::array<double, 3> kWithinFirst{36, 6, 6}, kAllFirst{350, 50, 50};  // variances before anything is learned,
-constexpr double kFirstWeight = 6;                                              // and how many tracklets they count for
-constexpr double kWidened = 1.7;        // variances: parts and components are not independent
-constexpr double kUnseenKinds = 1;      // people who wear what nobody wore yet, beside those who were seen
+constexpr double kFirstWeight = 6;                                               // and how many tracklets they count for
+constexpr double kWidened = 1.7;    // variances: parts and components are not independent
+constexpr double kUnseenKinds = 1;  // people who wear what nobody wore yet, beside those who were seen
 constexpr double kSurestSame = 6, kSurestOther = -12;
 
 std::array<double, 3> values_of(const Appearance& colour) {
@@ -48,7 +48,8 @@ Clothes parts_of_both(const Clothes& a, const Clothes& b) {
 }
 
 int count_of(const Clothes& parts) {
-  return static_cast<int>(std::count_if(kPartsOfClothes.begin(), kPartsOfClothes.end(), [&](auto part) { return (parts.*part).has_value(); }));
+  return static_cast<int>(
+      std::count_if(kPartsOfClothes.begin(), kPartsOfClothes.end(), [&](auto part) { return (parts.*part).has_value(); }));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace marey::track {
 struct Worn {
   Clothes first, last;
   Clothes whole;
-  double begin = 0, end = 0;        ///< s
+  double begin = 0, end = 0;                     ///< s
   std::optional<Clothes> early = {}, late = {};  ///< its thirds, where it was seen for long enough to learn from
 };
 

@@ -22,7 +22,7 @@ constexpr std::array<NamedPeopleSituation, 9> kSituations{{{"apart", PeopleSitua
                                                            {"overlap", PeopleSituation::overlap},
                                                            {"crowd", PeopleSituation::crowd},
                                                            {"standing", PeopleSituation::standing},
-{"returns", PeopleSituation::returns}}};
+                                                           {"returns", PeopleSituation::returns}}};
 
 constexpr double kStature = 1.78;  // m
 constexpr double kLens = 3.0;      // focal length in widths of the picture: as from a stand

@@ -14,8 +14,8 @@ namespace marey::simulate::people {
 namespace {
 
 constexpr double kShortestAway = 1.5, kLongestAway = 9;  // s, outside with the whole body
-constexpr double kStaysAway = 1.0 / 6;                  // of those who leave
-constexpr double kLeaves = 0.75;                        // of those who have reached a goal in the picture
+constexpr double kStaysAway = 1.0 / 6;                   // of those who leave
+constexpr double kLeaves = 0.75;                         // of those who have reached a goal in the picture
 constexpr double kWayOut = 0.45;                         // of the way that time and pace allow, at most
 
 class ReturningPeople {
@@ -97,8 +97,9 @@ class ReturningPeople {
       if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.5, 3);
       walker.wished_speed = pace();
       const bool leaves = random_.chance(kLeaves);
-      walker.goal = leaves ? ground(random_.chance(0.5) ? -3 * options_.height_px : camera_.size.width + 3 * options_.height_px, row())
-                           : inside();
+      walker.goal = leaves
+                        ? ground(random_.chance(0.5) ? -3 * options_.height_px : camera_.size.width + 3 * options_.height_px, row())
+                        : inside();
       if (leaves) person.errand = Errand::leaving;
     } else if (there && person.errand == Errand::away) {
       walker.rests_until = now + 1;
@@ -107,8 +108,8 @@ class ReturningPeople {
 
   /// s that this one will take to be in the picture.
   double way_back(const Person& person) const {
-    const Vector<2> middle = ground(std::clamp(column_of(person.walker.stance.place), 0.0, 1.0 * camera_.size.width),
-                                    0.6 * camera_.size.height);
+    const Vector<2> middle =
+        ground(std::clamp(column_of(person.walker.stance.place), 0.0, 1.0 * camera_.size.width), 0.6 * camera_.size.height);
     const double metres = std::abs(middle.x() - person.walker.stance.place.x());
     return metres / std::max(0.5, person.walker.wished_speed);
   }

@@ -13,9 +13,9 @@ namespace marey::simulate::people {
 inline constexpr double kGain = 3.0;  // m/s²
 inline constexpr double kTurn = 3.5;  // rad/s
 // As abruptly as people can: they stop from a run within two steps, turn round in a quarter of a second, squat in a fifth.
-inline constexpr double kAbruptGain = 12;    // m/s²
-inline constexpr double kAbruptTurn = 12;    // rad/s
-inline constexpr double kAbruptShape = 5;    // share of the whole change, 1/s
+inline constexpr double kAbruptGain = 12;  // m/s²
+inline constexpr double kAbruptTurn = 12;  // rad/s
+inline constexpr double kAbruptShape = 5;  // share of the whole change, 1/s
 
 inline double wrapped(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
