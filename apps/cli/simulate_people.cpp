@@ -107,6 +107,7 @@ void add_simulate_people(Command& simulate) {
   command.input_file("--ground", options->ground,
                      "picture of the empty scene, or a video whose first frame shows it (default: a lawn)");
   command.number("--hidden", film.hidden_s, "s", closed(0.1, 10), "post: the longest time that a person is hidden");
+  command.flag("--own-clothes", film.own_clothes, "everybody in clothes of their own (default: two teams in two shirts)", true);
   command.flag("--no-shadows", film.shadows, "the sun casts none", false);
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });

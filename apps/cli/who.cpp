@@ -25,8 +25,8 @@ std::string edits_of(std::int64_t count) {
 }
 
 Json json_of(const pipeline::Doubt& doubt) {
-  return {{"time", doubt.time_s}, {"kind", doubt.kind},   {"question", doubt.question},      {"a", doubt.a},
-          {"b", doubt.b},         {"frame", doubt.frame}, {"probability", doubt.probability}};
+  return {{"time", doubt.time_s}, {"kind", doubt.kind},   {"question", doubt.question},       {"a", doubt.a},
+          {"b", doubt.b},         {"frame", doubt.frame}, {"probability", doubt.probability}, {"changes_s", doubt.changes_s}};
 }
 
 void report_json(const WhoCommand& command, const pipeline::WhoSummary& summary) {

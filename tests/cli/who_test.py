@@ -195,6 +195,31 @@ class Who(unittest.TestCase):
         said = marey("who", self.take, "--answers", self.folder / "answers.csv", "--roster", self.folder / "squads.csv").stdout
         self.assertIn("1 answered (1 applied before)", said)
 
+    def test_a_doubt_is_listed_only_where_its_answer_changes_the_result(self):
+        """Two meet twice: in mid recording, and once more in the last instants, where an exchange would change next to nothing."""
+        self.record(lambda who, t: who, seconds=int(MET + 1))
+        self.name([f"2,{who},{name}" for who, name in enumerate(NAMES, 1)])
+        told = json.loads(self.who("--least", "0", "--json", "-q").stdout)["doubts"]
+        self.assertTrue(all(one["changes_s"] >= 0.5 for one in told), told)
+        self.assertFalse([one for one in told if one["time"] > MET + 0.8], "nobody is left to bear another name")
+        gains = [one["probability"] * one["changes_s"] for one in told]
+        self.assertEqual(gains, sorted(gains, reverse=True))
+        before = self.labels()
+        for one in told:  # as many places as it says bear another name
+            if one["kind"] != "exchange":
+                continue
+            rows = self.doubts()
+            which = next(i for i, row in enumerate(rows) if row["question"] == one["question"])
+            self.answer(["yes" if i == which else "" for i in range(len(rows))])
+            now = self.labels()
+            self.assertAlmostEqual(sum(now[key] != before[key] for key in before) / RATE, one["changes_s"])
+            marey("edit", self.take, "--undo", "-q")
+
+    def labels(self):
+        marey("convert", self.take, self.folder / "now.csv", "-q")
+        with open(self.folder / "now.csv", newline="") as file:
+            return {(row["frame"], row["x"], row["y"]): row["label"] for row in csv.DictReader(file)}
+
     def test_lists_that_do_not_fit_are_refused_in_one_sentence(self):
         squads = self.folder / "squads.csv"
         squads.write_text(ROSTER + "3,Gray,Reds\n")

@@ -11,14 +11,15 @@
 namespace marey::detect {
 namespace {
 
-/// Rows of the box, shares of its height from the top.
+/// Rows and columns of the box, shares of its height from the top and of its width from the left.
 struct Rows {
   double first = 0, last = 1;
+  double first_column = 0.25, last_column = 0.75;
 };
 
 constexpr Rows kChest{0.2, 0.5};
 constexpr Rows kThighs{0.52, 0.8};
-constexpr double first_column = 0.25, last_column = 0.75;  // of the box, from the left
+constexpr Rows kShanks{0.8, 0.94, 0, 1};
 constexpr int most_samples = 100;
 constexpr int fewest_samples = 6;
 constexpr float alike = 3;                 // neighbouring samples share light, cloth and compression: so many count as one
@@ -35,8 +36,8 @@ struct Grid {
 Grid grid_of(const Box& box, const Rows& rows, cv::Size chroma) {
   Grid grid;
   const auto cell = [](double pixel) { return static_cast<int>(std::floor(pixel / 2)); };
-  grid.left = std::max(0, cell(box.left + first_column * box.width));
-  grid.right = std::min(chroma.width, cell(box.left + last_column * box.width) + 1);
+  grid.left = std::max(0, cell(box.left + rows.first_column * box.width));
+  grid.right = std::min(chroma.width, cell(box.left + rows.last_column * box.width) + 1);
   grid.top = std::max(0, cell(box.top + rows.first * box.height));
   grid.bottom = std::min(chroma.height, cell(box.top + rows.last * box.height) + 1);
   const double cells = static_cast<double>(std::max(0, grid.right - grid.left)) * std::max(0, grid.bottom - grid.top);
@@ -154,6 +155,13 @@ std::optional<Appearance> lower_body(const Picture& picture, const Foreground& f
   const cv::Mat& mask = foreground.mask;
   if (!mask.empty() && detections[which].box.bottom() > mask.rows - 1) return std::nullopt;
   return colour_in(kThighs, picture, foreground, detections, which);
+}
+
+std::optional<Appearance> shanks(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
+                                 std::size_t which) {
+  const cv::Mat& mask = foreground.mask;
+  if (!mask.empty() && detections[which].box.bottom() > mask.rows - 1) return std::nullopt;
+  return colour_in(kShanks, picture, foreground, detections, which);
 }
 
 }  // namespace marey::detect

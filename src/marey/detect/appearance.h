@@ -29,4 +29,9 @@ std::optional<Appearance> upper_body(const Picture& picture, const Foreground& f
 std::optional<Appearance> lower_body(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which);
 
+/// The same from below the knees to above the shoes: socks or trousers. Legs are apart in mid stride: looked at over the whole
+/// width.
+std::optional<Appearance> shanks(const Picture& picture, const Foreground& foreground, std::span<const Detection> detections,
+                                 std::size_t which);
+
 }  // namespace marey::detect

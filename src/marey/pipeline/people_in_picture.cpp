@@ -54,7 +54,8 @@ std::vector<track::Clothes> clothes_of(const Frame& frame, const detect::Detecti
   if (!frame.picture.is_colour() || seen.foreground.mask.empty()) return clothes;
   for (std::size_t i = 0; i < seen.detections.size(); ++i) {
     clothes.push_back({detect::upper_body(frame.picture, seen.foreground, seen.detections, i),
-                       detect::lower_body(frame.picture, seen.foreground, seen.detections, i)});
+                       detect::lower_body(frame.picture, seen.foreground, seen.detections, i),
+                       detect::shanks(frame.picture, seen.foreground, seen.detections, i)});
   }
   return clothes;
 }
@@ -162,7 +163,7 @@ class PeopleInPicture final : public Stage {
     }
     if (const auto noise = tracker_->learned_noise()) options_.join = track::adapted(options_.join, *noise);
     if (!options_.join.view) options_.join.view = border_.view();
-    std::vector<track::TrackRow> rows = track::join(recording_, options_.join);
+    std::vector<track::TrackRow> rows = track::join(recording_, options_.join, &joined_);
     if (searched_.size() < moments_.size()) rows = track::fill_between_searches(rows, searched_, times_of(moments_));
     return instants_of(std::move(rows), std::move(moments_), outlines_.get(), options_.seen_only);
   }
@@ -173,6 +174,7 @@ class PeopleInPicture final : public Stage {
     for (const TrackId id : begun_) too_brief += !believed_.contains(id);
     summary.left_out["too_brief"] = too_brief;
     report_standing(summary);
+    report_returned(summary);
     report_counts(summary);
     report_camera(summary);
     if (auto why = why_nobody(summary)) {
@@ -214,6 +216,17 @@ class PeopleInPicture final : public Stage {
                       "looked at again",
                       added_ == 1 ? "one person" : fmt::format("{} people", added_), added_ == 1 ? "that one is" : "they are"));
     }
+  }
+
+  void report_returned(Summary& summary) const {
+    if (joined_.returned.empty()) return;
+    double least = 1;
+    for (const track::Returned& one : joined_.returned) least = std::min(least, one.probability);
+    const auto count = std::ssize(joined_.returned);
+    summary.notes.push_back(
+        fmt::format("{} who left the picture came back with the same number, by clothes, place and time: {} sure by {:.2f}{}",
+                    count == 1 ? "one" : fmt::format("{} times somebody", count), count == 1 ? "that is" : "each is", least,
+                    count == 1 ? "" : " at least"));
   }
 
   /// The camera's motion as boxes alone show it; of pictures other warnings tell.
@@ -341,6 +354,7 @@ class PeopleInPicture final : public Stage {
   std::unique_ptr<track::OutlineLog> outlines_;
   std::optional<draw::MaskFolder> masks_;
   track::TrackletLog recording_;
+  track::JoinReport joined_;
   CameraSpan camera_span_;
   track::ViewBorder border_;  // of the image, as far as boxes tell
   std::vector<Recording::Moment> moments_;

@@ -33,7 +33,7 @@ struct PeopleInPictureOptions {
 };
 
 /// Detections are the feed's where it brings some (another program's, or those of a detector it was given), else of background
-/// subtraction, which learns the empty scene from the feed first unless `live`. Memory grows with the rows, 72 bytes each, and with
+/// subtraction, which learns the empty scene from the feed first unless `live`. Memory grows with the rows, 76 bytes each, and with
 /// nothing else; not even with those where `live`. Throws Error where outlines or keypoints are asked for of a feed without
 /// pictures, and keypoints of one that cannot be read twice and is not `live`.
 std::unique_ptr<Stage> people_in_picture(const Feed& feed, const PeopleInPictureOptions& options);

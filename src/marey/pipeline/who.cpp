@@ -7,6 +7,7 @@
 #include "marey/core/whole_file.h"
 #include "marey/edit/edited.h"
 #include "marey/format/take/take_file.h"
+#include "marey/pipeline/who_effects.h"
 
 namespace marey::pipeline {
 namespace {
@@ -127,6 +128,8 @@ WhoSummary name_people(const std::string& path, const WhoOptions& options, const
   const std::vector<DoneEdit> done = edit_take(path, named.edits, hooks, take.history.state);
   summary.edits = std::ssize(done);
   for (Doubt& doubt : summary.doubts) doubt.edit = done.empty() ? take.history.state.head : done.back().edit.id;
+  const EditedTake now = edited_take(path);
+  summary.doubts = doubts_that_matter(std::move(summary.doubts), now.recording, now.history, squads, now.born);
   if (list) {
     list->write(doubts_csv(summary.doubts));
     list->finish();

@@ -86,7 +86,7 @@ std::optional<Appearance> PackedClothes::unpacked(const Colour& colour) {
 }
 
 Clothes mean_clothes(std::span<const Clothes> seen) {
-  return {mean_colour(seen, &Clothes::upper), mean_colour(seen, &Clothes::lower)};
+  return {mean_colour(seen, &Clothes::upper), mean_colour(seen, &Clothes::lower), mean_colour(seen, &Clothes::shanks)};
 }
 
 ClothesLikelihood::ClothesLikelihood(std::span<const std::vector<Clothes>> tracklets) {

@@ -18,14 +18,16 @@ namespace marey::track {
 /// As far as it was seen.
 struct Clothes {
   std::optional<Appearance> upper, lower;
+  std::optional<Appearance> shanks = {};  ///< below the knees: socks, trousers
 };
 
-/// The same in eight bytes: colours to one unit of L*a*b*, deviations to an eighth.
+/// The same in twelve bytes: colours to one unit of L*a*b*, deviations to an eighth.
 class PackedClothes {
  public:
   PackedClothes() = default;
-  explicit PackedClothes(const Clothes& clothes) : upper_(packed(clothes.upper)), lower_(packed(clothes.lower)) {}
-  Clothes unpacked() const { return {unpacked(upper_), unpacked(lower_)}; }
+  explicit PackedClothes(const Clothes& clothes)
+      : upper_(packed(clothes.upper)), lower_(packed(clothes.lower)), shanks_(packed(clothes.shanks)) {}
+  Clothes unpacked() const { return {unpacked(upper_), unpacked(lower_), unpacked(shanks_)}; }
 
  private:
   struct Colour {
@@ -36,7 +38,7 @@ class PackedClothes {
   static Colour packed(const std::optional<Appearance>& colour);
   static std::optional<Appearance> unpacked(const Colour& colour);
 
-  Colour upper_, lower_;
+  Colour upper_, lower_, shanks_;
 };
 
 /// The mean of what was seen one moment after another, sure ones before unsure ones.

@@ -1,7 +1,8 @@
 // The second pass. Tracklets that end and begin at short notice are joined first. What that gives is cut wherever identity is in
 // doubt (identity_doubt.h), and all pieces of the recording are linked anew in one assignment, by motion, size and clothes
 // together (tracklet_linker.h). Where no clothes were seen, motion alone decides no better than the tracker did: nothing is cut.
-// What is left is judged as a whole: false alarms go, gaps are filled, paths smoothed. Cost: near linear in tracklets, by the
+// What is left is judged as a whole: false alarms go, gaps are filled, paths smoothed; at last, who left the picture and came back
+// gets the number from before (returns.h). Cost: near linear in tracklets, by the
 // number that begin while a gap may last; the rows are passed over a few times.
 #include "marey/track/join.h"
 
@@ -112,7 +113,7 @@ JoinOptions adapted(JoinOptions options, const BoxNoise& noise) {
   return options;
 }
 
-std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options) {
+std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options, JoinReport* report) {
   std::vector<Tracklet> tracklets = log.take_tracklets();
   for (Tracklet& tracklet : tracklets) trim(tracklet);
   std::erase_if(tracklets, [](const Tracklet& tracklet) { return tracklet.empty(); });
@@ -126,6 +127,11 @@ std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options) {
     fill_gaps(tracklet, log, options.longest_filled, GapWay::straight);
     smooth(tracklet, log, options.smoothing);
     for (TrackRow& row : tracklet) row = log.in_view(row);
+  }
+  if (options.view) {
+    const std::vector<Returned> returned = find_returned(tracklets, log, *options.view, options.returns);
+    join_returned(tracklets, returned);
+    if (report) report->returned = returned;
   }
   return by_frame(tracklets);
 }

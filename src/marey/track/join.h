@@ -5,6 +5,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/track/box_noise.h"
+#include "marey/track/returns.h"
 #include "marey/track/smooth.h"
 #include "marey/track/tracklet_log.h"
 
@@ -24,6 +25,12 @@ struct JoinOptions {
   /// The picture, px. Who ends at its border has left, and who begins there has come: they are joined on strong evidence alone.
   std::optional<Box> view = {};
   Smoothing smoothing = {};
+  ReturnOptions returns = {};  ///< who left the picture and came back; asked for only where `view` is known
+};
+
+/// What the second pass decided that is said of a recording.
+struct JoinReport {
+  std::vector<Returned> returned;  ///< who left the picture and came back; indices of no use any more
 };
 
 /// The same for boxes whose noise was learned: paths are smoothed as far as their boxes need it, and people who accelerate harder
@@ -33,6 +40,6 @@ JoinOptions adapted(JoinOptions options, const BoxNoise& noise);
 /// The second pass over a whole recording, which may look ahead. Tracklets that are one target's are joined, gaps filled with
 /// predicted rows, ends without an observation cut, false alarms dropped, paths smoothed, ids given anew from 1 in the order of
 /// first appearance. Rows in the order of frames, then ids. The recording's tracklets are used up.
-std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options = {});
+std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options = {}, JoinReport* report = nullptr);
 
 }  // namespace marey::track

@@ -11,7 +11,7 @@
 
 namespace marey::track {
 
-/// One target in one frame, as small as a match of 90 minutes needs it: 72 bytes. px and px/s.
+/// One target in one frame, as small as a match of 90 minutes needs it: 76 bytes. px and px/s.
 struct TrackRow {
   std::int32_t frame = 0;  ///< 0-based
   std::int32_t id = 0;

@@ -6,6 +6,7 @@
 #include "marey/simulate/people/figure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -137,6 +138,21 @@ Figure draw_figure(Random& random, int team) {
   wear(FigurePart::socks, team == 0 ? Rgb{190, 28, 34} : Rgb{225, 225, 232});
   wear(FigurePart::shoes, random.chance(0.5) ? Rgb{25, 25, 28} : Rgb{225, 190, 40});
   return figure;
+}
+
+void dress_everybody(std::span<Figure> figures, std::uint64_t seed) {
+  Random random(seed ^ 0xc107e5);
+  constexpr std::array<FigurePart, 4> kWorn{FigurePart::shirt, FigurePart::shorts, FigurePart::socks, FigurePart::shoes};
+  for (Figure& figure : figures) {
+    for (const FigurePart part : kWorn) {
+      const double light = random.uniform(20, 235), hue = random.uniform(0, 2 * std::numbers::pi);
+      const double colour = random.chance(0.4) ? random.uniform(0, 15) : random.uniform(15, 100);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double of_hue = std::cos(hue - 2 * std::numbers::pi * static_cast<double>(c) / 3);
+        figure.colours[static_cast<std::size_t>(part)][c] = std::clamp(light + colour * of_hue, 12.0, 245.0);
+      }
+    }
+  }
 }
 
 double stride_length(double speed, double stature) {

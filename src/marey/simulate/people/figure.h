@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "marey/core/geometry.h"
@@ -26,6 +28,9 @@ struct Figure {
 
 /// A person of everyday size in the kit of a team (0 or 1), skin and hair drawn from `random`.
 Figure draw_figure(Random& random, int team);
+
+/// Everybody in clothes of their own, as they are bought: shirt, shorts, socks and shoes of any colours, most of them subdued.
+void dress_everybody(std::span<Figure> figures, std::uint64_t seed);
 
 /// How a person stands at one instant. The ground is z = 0, z points up.
 struct Stance {

@@ -14,14 +14,15 @@
 namespace marey::simulate::people {
 namespace {
 
-constexpr std::array<NamedPeopleSituation, 8> kSituations{{{"apart", PeopleSituation::apart},
+constexpr std::array<NamedPeopleSituation, 9> kSituations{{{"apart", PeopleSituation::apart},
                                                            {"crossing", PeopleSituation::crossing},
                                                            {"post", PeopleSituation::post},
                                                            {"abrupt", PeopleSituation::abrupt},
                                                            {"border", PeopleSituation::border},
                                                            {"overlap", PeopleSituation::overlap},
                                                            {"crowd", PeopleSituation::crowd},
-                                                           {"standing", PeopleSituation::standing}}};
+                                                           {"standing", PeopleSituation::standing},
+                                                           {"returns", PeopleSituation::returns}}};
 
 constexpr double kStature = 1.78;  // m
 constexpr double kLens = 3.0;      // focal length in widths of the picture: as from a stand
@@ -144,6 +145,7 @@ PeopleFilm::PeopleFilm(PeopleSituation situation, std::uint64_t seed, const Peop
   Random random(seed);
   PeopleMotion motion = move_people(situation, camera_, options_, random);
   figures_ = std::move(motion.figures);
+  if (options_.own_clothes) dress_everybody(figures_, seed);
   for (const auto& frame : motion.frames) people_.push_back(posed(frame, figures_));
   const std::vector<double> light = lights(options_.light, *options_.frames, random);
   for (std::size_t i = 0; i < people_.size(); ++i) {

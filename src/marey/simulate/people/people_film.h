@@ -28,6 +28,7 @@ enum class PeopleSituation {
   overlap,   ///< two players, one in part behind the other for two seconds, by 15 to 75 %; half of them turn back
   crowd,     ///< each goes anywhere: every kind of occlusion, entering and leaving
   standing,  ///< half of them stand from the beginning and walk off in the film's second half; the others go anywhere
+  returns,   ///< each goes anywhere, and out at the sides for 2 to 10 s; one in six stays away, and somebody else comes instead
 };
 
 struct NamedPeopleSituation {
@@ -51,6 +52,7 @@ struct PeopleFilmOptions {
   LightChange light = LightChange::steady;
   bool shadows = true;
   CameraLook look;           ///< what lens, sharpening and codec make of the picture
+  bool own_clothes = false;  ///< everybody in clothes of their own; else in those of two teams
   bool same_shirts = false;  ///< overlap: both of one team; else of either
   double hidden_s = 2;       ///< post: the longest time that a person is hidden; the shortest is a fifth of it
   int overlap_frames = 20;   ///< crossing: about how long the two overlap

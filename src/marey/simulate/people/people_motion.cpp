@@ -8,51 +8,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "marey/simulate/people/people_returns.h"
+#include "marey/simulate/people/walker.h"
+
 namespace marey::simulate::people {
 namespace {
 
-constexpr double kGain = 3.0;  // m/s²
-constexpr double kTurn = 3.5;  // rad/s
-// As abruptly as people can: they stop from a run within two steps, turn round in a quarter of a second, squat in a fifth.
-constexpr double kAbruptGain = 12;    // m/s²
-constexpr double kAbruptTurn = 12;    // rad/s
-constexpr double kAbruptShape = 5;    // share of the whole change, 1/s
 constexpr double kWide = 0.36;        // of a person from the side in mid stride, in heights
 constexpr double kLaneHeights = 1.9;  // a lane, in heights of the people in it
-
-double wrapped(double angle) {
-  return std::remainder(angle, 2 * std::numbers::pi);
-}
-
-/// A person bound for a goal.
-struct Walker {
-  int id = 0;
-  Stance stance;
-  double wished_speed = 0, wished_crouch = 0, wished_reach = 0;
-  Vector<2> goal = Vector<2>::Zero();
-  double rests_until = 0;  // s
-
-  /// Moves on by dt; true where the goal is reached.
-  bool walk(double now, double dt, double stature, bool abrupt) {
-    const Vector<2> to_goal = goal - stance.place;
-    const double wished_heading = std::atan2(to_goal.y(), to_goal.x());
-    const double turn = wrapped(wished_heading - stance.heading);
-    const double wish = now < rests_until ? 0 : wished_speed * std::max(0.25, std::cos(std::min(std::abs(turn), 1.4)));
-    const double gain = abrupt ? kAbruptGain : kGain;
-    const double most = (abrupt ? kAbruptTurn : kTurn) * dt;
-    stance.speed += std::clamp(wish - stance.speed, -gain * dt, gain * dt);
-    if (now >= rests_until) stance.heading += std::clamp(turn, -most, most);
-    stance.crouch += std::clamp(wished_crouch - stance.crouch, -kAbruptShape * dt, kAbruptShape * dt);
-    stance.reach += std::clamp(wished_reach - stance.reach, -kAbruptShape * dt, kAbruptShape * dt);
-    step(dt, stature);
-    return to_goal.norm() < std::max(0.4, 0.35 * stance.speed);
-  }
-
-  void step(double dt, double stature) {
-    stance.place += stance.speed * dt * Vector<2>(std::cos(stance.heading), std::sin(stance.heading));
-    stance.phase = wrapped(stance.phase + 2 * std::numbers::pi * stance.speed * dt / stride_length(stance.speed, stature));
-  }
-};
 
 class Director {
  public:
@@ -386,6 +349,8 @@ PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, c
     case PeopleSituation::standing:
       director.standing();
       break;
+    case PeopleSituation::returns:
+      return move_returning(camera, options, random);
   }
   return director.take();
 }

@@ -1,0 +1,290 @@
+// Who left the picture and came back: simulated people, twelve at a time, go out at the sides of the picture for 2 to 10 s, one in
+// six for good, and somebody else comes instead. Everybody wears clothes of their own, or the kits of two teams. Of all who come
+// back after 2 to 10 s: the share that has the number from before, and that has a number that was somebody else's; of newcomers,
+// likewise the latter. A visit counts from half a second on, of a person whose number agrees with the truth by half of the box.
+//   returns [--frames 1500] [--seeds 2] [--first-seed 1] [--plain] [--sweep]
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "marey/core/geometry.h"
+#include "marey/detect/appearance.h"
+#include "marey/detect/detectors.h"
+#include "marey/geometry/box.h"
+#include "marey/simulate/people/people_film.h"
+#include "marey/track/join.h"
+#include "marey/track/tracker.h"
+#include "marey/track/tracklet_log.h"
+
+namespace marey {
+namespace {
+
+using simulate::people::PeopleFilm;
+using simulate::people::PeopleFilmOptions;
+using simulate::people::PeopleSituation;
+
+constexpr double kSeen = 0.5;                 // of a person within the picture, from which on it is there
+constexpr double kShortestVisit = 0.5;        // s
+constexpr double kSoonest = 2, kLatest = 10;  // s away
+constexpr int kSlip = 5;                      // frames
+constexpr double kOverlap = 0.5;              // intersection over union
+
+struct TrueRow {
+  int id = 0;
+  Box box;
+};
+
+/// A film as the second pass gets it: what the tracker said, and the truth.
+struct Filmed {
+  track::TrackletLog log;
+  std::vector<std::vector<TrueRow>> truth;
+  cv::Size size;
+  double rate_hz = 25;
+};
+
+std::vector<track::Clothes> clothes_of(const Frame& frame, const detect::Detections& seen) {
+  std::vector<track::Clothes> clothes;
+  for (std::size_t i = 0; i < seen.detections.size(); ++i) {
+    clothes.push_back({detect::upper_body(frame.picture, seen.foreground, seen.detections, i),
+                       detect::lower_body(frame.picture, seen.foreground, seen.detections, i),
+                       detect::shanks(frame.picture, seen.foreground, seen.detections, i)});
+  }
+  return clothes;
+}
+
+Filmed film(const PeopleFilmOptions& options, PeopleSituation situation, std::uint64_t seed) {
+  const PeopleFilm scene(situation, seed, options);
+  Filmed result;
+  result.size = options.size;
+  result.rate_hz = options.rate_hz;
+  const auto detector = detect::make_detector(detect::people::PeopleDetectorOptions{});
+  std::vector<Frame> before;
+  for (int i = 0; i < PeopleFilm::kEarlier; ++i) {
+    Frame& frame = before.emplace_back();
+    frame.index = i;
+    frame.picture = scene.render_earlier(i);
+  }
+  detector->prime(before);
+  track::TrackerOptions tracking;
+  tracking.steady_camera = true;
+  const auto tracker = track::make_tracker(tracking);
+  for (int k = 0; k < scene.frames(); ++k) {
+    const auto rendered = scene.render(k);
+    Frame frame;
+    frame.index = k;
+    frame.time = timestamp_from_seconds(k / options.rate_hz);
+    frame.picture = rendered.picture;
+    std::vector<Expected> expected;
+    for (const Track<2>& track : tracker->expected(frame.time)) {
+      if (track.box) expected.push_back({*track.box});
+    }
+    const detect::Detections seen = detector->detect(frame, expected);
+    std::vector<Observation<2>> observations;
+    for (const Detection& one : seen.detections)
+      observations.push_back({.value = one.box.centre(),
+                              .covariance = one.covariance,
+                              .camera = {},
+                              .score = one.score,
+                              .box = one.box,
+                              .shared = one.group.has_value()});
+    result.log.add(k, frame.time, tracker->step(frame.time, observations), clothes_of(frame, seen));
+    const Box picture{0, 0, 1.0 * options.size.width, 1.0 * options.size.height};
+    auto& truth = result.truth.emplace_back();
+    for (const auto& person : rendered.people) {
+      const Box box = geometry::intersection(person.whole.box(), picture);
+      if (box.area() >= kSeen * person.whole.box().area()) truth.push_back({person.id, box});
+    }
+  }
+  return result;
+}
+
+struct Visit {
+  int first = 0, last = 0;     // frames
+  std::map<int, int> numbers;  // the sixth frame in which each number was given to it, if there is one, or minus how many there are
+  int first_number = 0, last_number = 0;
+};
+
+struct Score {
+  int returns = 0, right = 0, wrong = 0, newcomers = 0, taken = 0, numbers = 0, people = 0;
+  void add(const Score& other) {
+    returns += other.returns;
+    right += other.right;
+    wrong += other.wrong;
+    newcomers += other.newcomers;
+    taken += other.taken;
+    numbers += other.numbers;
+    people += other.people;
+  }
+};
+
+std::map<int, std::vector<Visit>> visits_of(const Filmed& film, std::span<const track::TrackRow> rows) {
+  std::map<int, std::vector<Visit>> visits;
+  std::size_t next = 0;
+  for (int frame = 0; frame < static_cast<int>(film.truth.size()); ++frame) {
+    std::vector<const track::TrackRow*> now;
+    for (; next < rows.size() && rows[next].frame <= frame; ++next) {
+      if (rows[next].frame == frame) now.push_back(&rows[next]);
+    }
+    for (const TrueRow& truth : film.truth[static_cast<std::size_t>(frame)]) {
+      std::vector<Visit>& of = visits[truth.id];
+      if (of.empty() || frame - of.back().last > 0.4 * film.rate_hz) of.push_back({frame, frame, {}, 0, 0});
+      Visit& visit = of.back();
+      visit.last = frame;
+      double best = kOverlap;
+      int number = 0;
+      for (const track::TrackRow* row : now) {
+        const double overlap = geometry::iou({row->left, row->top, row->width, row->height}, truth.box);
+        if (overlap > best) best = overlap, number = row->id;
+      }
+      if (number == 0) continue;
+      int& given = visit.numbers[number];
+      if (given <= 0 && --given < -kSlip) given = frame;
+      if (visit.first_number == 0) visit.first_number = number;
+      visit.last_number = number;
+    }
+  }
+  for (auto& [id, of] : visits)
+    std::erase_if(of, [&](const Visit& visit) { return visit.last - visit.first < kShortestVisit * film.rate_hz; });
+  return visits;
+}
+
+/// Whether a number was given to somebody else, for longer than a slip, before a frame.
+bool was_anothers(const std::map<int, std::vector<Visit>>& visits, int id, int number, int frame) {
+  for (const auto& [other, of] : visits) {
+    if (other == id) continue;
+    for (const Visit& visit : of) {
+      const auto found = visit.numbers.find(number);
+      if (found != visit.numbers.end() && found->second > 0 && found->second < frame) return true;
+    }
+  }
+  return false;
+}
+
+Score judge(const Filmed& film, std::span<const track::TrackRow> rows) {
+  Score score;
+  const auto visits = visits_of(film, rows);
+  std::set<int> numbers;
+  for (const track::TrackRow& row : rows) numbers.insert(row.id);
+  score.numbers = static_cast<int>(numbers.size());
+  score.people = static_cast<int>(visits.size());
+  for (const auto& [id, of] : visits) {
+    if (!of.empty() && of.front().first > 2 * film.rate_hz && of.front().first_number != 0) {
+      ++score.newcomers;
+      score.taken += was_anothers(visits, id, of.front().first_number, of.front().first);
+    }
+    for (std::size_t i = 1; i < of.size(); ++i) {
+      const double away = (of[i].first - of[i - 1].last) / film.rate_hz;
+      if (away < kSoonest || away > kLatest) continue;
+      ++score.returns;
+      const int before = of[i - 1].last_number, after = of[i].first_number;
+      if (after == 0 || before == 0) continue;
+      if (before == after) {
+        ++score.right;
+      } else if (was_anothers(visits, id, after, of[i].first)) {
+        ++score.wrong;
+      }
+    }
+  }
+  return score;
+}
+
+/// Why who came back did not get the number from before, one line each.
+void explain(const Filmed& film, std::span<const track::TrackRow> rows) {
+  std::map<int, std::pair<int, int>> spans;
+  for (const track::TrackRow& row : rows) {
+    const auto [span, is_new] = spans.try_emplace(row.id, row.frame, row.frame);
+    span->second.second = row.frame;
+  }
+  for (const auto& [id, of] : visits_of(film, rows)) {
+    for (std::size_t i = 1; i < of.size(); ++i) {
+      const double away = (of[i].first - of[i - 1].last) / film.rate_hz;
+      const int before = of[i - 1].last_number, after = of[i].first_number;
+      if (away < kSoonest || away > kLatest || (before == after && before != 0)) continue;
+      fmt::print(stderr, "person {} away {:.1f} s from frame {}: #{} ({} to {}), then #{} ({} to {})\n", id, away, of[i - 1].last,
+                 before, spans[before].first, spans[before].second, after, spans[after].first, spans[after].second);
+    }
+  }
+}
+
+struct Kind {
+  std::string name;
+  PeopleSituation situation = PeopleSituation::returns;
+  bool own_clothes = true;
+};
+
+void print(const std::string& name, const Score& score) {
+  const auto share = [](int part, int all) { return all > 0 ? 100.0 * part / all : 0.0; };
+  fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {} | {:.1f} % | {} | {} |\n", name, score.returns,
+             share(score.right, score.returns), share(score.wrong, score.returns), score.newcomers,
+             share(score.taken, score.newcomers), score.people, score.numbers);
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace marey
+
+int main(int argc, char** argv) {
+  using namespace marey;
+  CLI::App app;
+  int frames = 1500, seeds = 2, first_seed = 1;
+  bool plain = false, explained = false;
+  double rate = 12.5, pace = 1.3;
+  std::string only;
+  app.add_option("--frames", frames);
+  app.add_option("--seeds", seeds);
+  app.add_option("--first-seed", first_seed);
+  app.add_option("--rate", rate);
+  app.add_option("--pace", pace);
+  app.add_option("--only", only, "scenes whose name holds this");
+  app.add_flag("--explain", explained);
+  app.add_flag("--plain", plain, "sharp pictures, as no camera gives them");
+  track::ReturnOptions tried;
+  std::vector<double> least{2, 0.5, 0.7, 0.8, 0.9};
+  app.add_option("--least", least, "probabilities from which on two are joined; 2: nobody");
+  app.add_option("--longest", tried.longest_away);
+  app.add_option("--usually", tried.usually_away);
+  app.add_option("--along", tried.along);
+  app.add_option("--across", tried.across);
+  app.add_option("--anywhere", tried.anywhere);
+  CLI11_PARSE(app, argc, argv);
+  fmt::print("| scene | returns | same number | another's | newcomers | another's | people | numbers |\n");
+  fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const Kind& kind :
+       {Kind{"clothes of their own", PeopleSituation::returns, true}, Kind{"two teams", PeopleSituation::returns, false},
+        Kind{"nobody returns, two teams", PeopleSituation::crowd, false},
+        Kind{"nobody returns, clothes of their own", PeopleSituation::crowd, true}}) {
+    if (kind.name.find(only) == std::string::npos) continue;
+    std::vector<Score> sums(least.size());
+    for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
+      PeopleFilmOptions options;
+      options.frames = frames;
+      options.people = 12;
+      options.rate_hz = rate;
+      options.pace = pace;
+      options.own_clothes = kind.own_clothes;
+      if (!plain) options.look = {0.6, 0.2, 1.5, 1.5, 0.5, 8};
+      const Filmed filmed = film(options, kind.situation, static_cast<std::uint64_t>(seed));
+      for (std::size_t k = 0; k < least.size(); ++k) {
+        track::JoinOptions join;
+        join.view = Box{0, 0, 1.0 * filmed.size.width, 1.0 * filmed.size.height};
+        join.returns = tried;
+        join.returns.least_probability = least[k];
+        track::TrackletLog log = filmed.log;
+        const std::vector<track::TrackRow> rows = track::join(log, join);
+        sums[k].add(judge(filmed, rows));
+        if (explained) explain(filmed, rows);
+      }
+    }
+    for (std::size_t k = 0; k < least.size(); ++k) print(fmt::format("{}, from {} on", kind.name, least[k]), sums[k]);
+  }
+}

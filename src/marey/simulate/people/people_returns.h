@@ -1,0 +1,11 @@
+#pragma once
+
+#include "marey/simulate/people/people_motion.h"
+
+namespace marey::simulate::people {
+
+/// PeopleSituation::returns. Who leaves at a side walks about outside, at paces of their own, and comes back where that has led
+/// them.
+PeopleMotion move_returning(const LevelCamera& camera, const PeopleFilmOptions& options, Random& random);
+
+}  // namespace marey::simulate::people
