@@ -101,6 +101,14 @@ Level level_of(std::vector<int> levels) {
   return {static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(std::clamp(8 * *upper, int{kLeastSpread}, 255))};
 }
 
+/// 1 where a level is within `same` of the scene's, whose means are in 1/128 levels; else 0.
+void mark_like(const std::uint8_t* levels, const std::int16_t* means, int same, std::vector<std::uint8_t>& like) {
+  for (std::size_t x = 0; x < like.size(); ++x) {
+    const int apart = levels[x] - ((means[x] + 64) >> 7);
+    like[x] = static_cast<std::uint8_t>(apart <= same && apart >= -same);
+  }
+}
+
 /// A scene's three planes while they are corrected.
 class Correction {
  public:
@@ -116,22 +124,12 @@ class Correction {
 
   cv::Size size() const { return samples_.front().luma.size(); }
 
-  /// By what was seen at this pixel alone.
-  void look_at(int y, int x) {
-    const auto count = static_cast<std::size_t>(std::count_if(samples_.begin(), samples_.end(), [&](const FramePlanes& sample) {
-      return std::abs(sample.luma.at<std::uint8_t>(y, x) - scene_.luma->level(y, x)) <= kSameLuma;
-    }));
-    if (count == samples_.size() && scene_.cb == nullptr) return;
-    read(y, x);
-    const Seen now = scene_at(y, x);
-    const auto agreeing =
-        static_cast<std::size_t>(std::count_if(seen_.begin(), seen_.end(), [&](const Seen& one) { return one.is_like(now); }));
-    if (2 * agreeing > samples_.size()) return;
-    const std::vector<Group> groups = groups_of(seen_);
-    const auto [group, comes_back] = scene_among(groups, samples_.size(), agreeing);
-    if (group == nullptr) return;
-    set(y, x, group->members);
-    if (comes_back) keep(y, x, group->members);
+  /// By what was seen at each pixel of a row alone.
+  void look_at_row(int y) {
+    count_agreeing(y);
+    for (int x = 0; x < size().width; ++x) {
+      if (2 * static_cast<std::size_t>(agreeing_[static_cast<std::size_t>(x)]) <= samples_.size()) look_at(y, x);
+    }
   }
 
   /// When the place beside a pixel was seen empty, the pixel was too: from pixels where something came back to those round them.
@@ -179,6 +177,33 @@ class Correction {
     cv::Mat levels, spreads, where;
   };
 
+  /// How many samples show the scene as it is, at each pixel of a row.
+  void count_agreeing(int y) {
+    const auto width = static_cast<std::size_t>(size().width);
+    agreeing_.assign(width, 0);
+    like_.resize(width);
+    half_like_.resize((width + 1) / 2);
+    other_like_.resize(half_like_.size());
+    for (const FramePlanes& sample : samples_) {
+      mark_like(sample.luma.ptr<std::uint8_t>(y), scene_.luma->mean(y), kSameLuma, like_);
+      if (scene_.cb != nullptr) {
+        mark_like(sample.cb.ptr<std::uint8_t>(y / 2), scene_.cb->mean(y / 2), kSameChroma, half_like_);
+        mark_like(sample.cr.ptr<std::uint8_t>(y / 2), scene_.cr->mean(y / 2), kSameChroma, other_like_);
+        for (std::size_t x = 0; x < width; ++x) like_[x] &= half_like_[x / 2] & other_like_[x / 2];
+      }
+      for (std::size_t x = 0; x < width; ++x) agreeing_[x] = static_cast<std::uint8_t>(agreeing_[x] + like_[x]);
+    }
+  }
+
+  void look_at(int y, int x) {
+    read(y, x);
+    const std::vector<Group> groups = groups_of(seen_);
+    const auto [group, comes_back] = scene_among(groups, samples_.size(), agreeing_[static_cast<std::size_t>(x)]);
+    if (group == nullptr) return;
+    set(y, x, group->members);
+    if (comes_back) keep(y, x, group->members);
+  }
+
   void read(int y, int x) {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       seen_[i].luma = samples_[i].luma.at<std::uint8_t>(y, x);
@@ -213,7 +238,8 @@ class Correction {
   std::span<const FramePlanes> samples_;
   ScenePlanes scene_;
   Plane luma_, cb_, cr_;
-  std::vector<Seen> seen_;       // at the pixel in question
+  std::vector<Seen> seen_;                                              // at the pixel in question
+  std::vector<std::uint8_t> agreeing_, like_, half_like_, other_like_;  // of a row
   cv::Mat when_;                 // CV_32SC1: a bit for each sample in which what comes back was seen
   std::vector<cv::Point> sure_;  // pixels of which the others may learn
 };
@@ -224,9 +250,7 @@ void believe_what_returns(std::span<const FramePlanes> samples, const ScenePlane
   if (samples.size() < kFewest) return;
   if (samples.size() > kMostSamples) samples = samples.first(kMostSamples);
   Correction correction(samples, scene);
-  for (int y = 0; y < correction.size().height; ++y) {
-    for (int x = 0; x < correction.size().width; ++x) correction.look_at(y, x);
-  }
+  for (int y = 0; y < correction.size().height; ++y) correction.look_at_row(y);
   correction.spread();
   correction.apply();
 }
