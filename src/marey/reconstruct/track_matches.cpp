@@ -11,8 +11,8 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kMostCandidates = 3;  // blobs for a prediction in one picture
-constexpr std::size_t kTask = 1000; // pairs of cameras and predictions: projections, or rays to intersect, that are worth a task
+constexpr int kMostCandidates = 3;   // blobs for a prediction in one picture
+constexpr std::size_t kTask = 1000;  // pairs of cameras and predictions: projections, or rays to intersect, that are worth a task
 
 /// Cameras or predictions that make a task, where each has so many of the other.
 std::size_t grain_of(std::size_t others) {

@@ -101,8 +101,10 @@ double sharpness(const std::vector<cv::Mat>& planes, const cv::Mat& band) {
 }
 
 /// Without specks, and with what is nearer together than twice `gap` joined. All of it is within the picture's rectangle returned,
-/// which is empty where what there is cannot be of a body's height.
+/// which is empty where nothing comes near the body, or what there is cannot be of its height.
 cv::Rect tidy(cv::Mat& mask, int gap, const Box& body) {
+  const Box near{body.left - gap, body.top - gap, body.width + 2.0 * gap, body.height + 2.0 * gap};
+  if (const cv::Rect there = pixels_of(near, mask.size()); there.empty() || cv::countNonZero(mask(there)) == 0) return {};
   cv::morphologyEx(mask, mask, cv::MORPH_OPEN, round_element(1));
   cv::Rect within = cv::boundingRect(mask);
   if (within.empty() || within.height + 2 * gap < kLeastHeight * body.height) return {};

@@ -29,6 +29,15 @@ void add_difference(const std::uint8_t* now, const std::uint8_t* scene, int widt
   for (int x = 0; x < width; ++x) sums[x] = static_cast<std::int16_t>(sums[x] + now[x] - scene[x]);
 }
 
+/// Sets what is below `lowest` or above `highest` to 255.
+void mark_beyond(const std::int16_t* __restrict sums, int width, int lowest, int highest, std::uint8_t* __restrict marked) {
+  const auto first = static_cast<std::uint16_t>(lowest), range = static_cast<std::uint16_t>(highest - lowest);
+  for (int x = 0; x < width; ++x) {
+    const auto above = static_cast<std::uint16_t>(static_cast<std::uint16_t>(sums[x]) - first);
+    marked[x] = static_cast<std::uint8_t>(marked[x] | (above > range ? 255 : 0));
+  }
+}
+
 /// How often each sum occurs.
 class SumCounts {
  public:
@@ -106,12 +115,8 @@ void DifferenceSums::mark(double shade, double least, cv::Mat& mask) const {
   int lowest = static_cast<int>(std::lround(9 * shade)), highest = lowest;  // of those that are near
   while (lowest > -kMostSum && !is_far(lowest - 1)) --lowest;
   while (highest < kMostSum && !is_far(highest + 1)) ++highest;
-  const auto low = static_cast<std::int16_t>(lowest), high = static_cast<std::int16_t>(highest);
-  for (int y = 0; y < sums_.rows; ++y) {
-    const auto* sums = sums_.ptr<std::int16_t>(y);
-    auto* marked = mask.ptr<std::uint8_t>(y);
-    for (int x = 0; x < sums_.cols; ++x) marked[x] |= sums[x] < low || sums[x] > high ? 255 : 0;
-  }
+  for (int y = 0; y < sums_.rows; ++y)
+    mark_beyond(sums_.ptr<std::int16_t>(y), sums_.cols, lowest, highest, mask.ptr<std::uint8_t>(y));
 }
 
 }  // namespace marey::detect::background
