@@ -17,6 +17,7 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/match_files.h"
 #include "marey/pipeline/track_ground.h"
+#include "marey/source/open_source.h"
 
 namespace {
 
@@ -38,6 +39,11 @@ void opencv_decode(const std::string& video, bool with_mog2) {
   }
 }
 
+void marey_decode(const std::string& video) {
+  const auto source = marey::source::open_source(video);
+  while (source->next()) continue;
+}
+
 void compare(const std::string& folder, cv::Size size) {
   marey::pipeline::MatchFilesOptions match;
   match.cameras.cameras = 1, match.cameras.size = size;
@@ -48,13 +54,14 @@ void compare(const std::string& folder, cv::Size size) {
   output.tracks = folder + "/out.csv";
   marey::pipeline::PeopleOnGroundOptions options;
   options.pitch.emplace();
-  double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole;
+  double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole, own_decode = whole;
   double frames = 0;
   for (int round = 0; round < kRounds; ++round) {
     whole = std::min(whole,
                      seconds_of([&] { frames = static_cast<double>(marey::pipeline::track_ground(rig, output, options).frames); }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(rig.cameras[0].source, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(rig.cameras[0].source, false); }));
+    own_decode = std::min(own_decode, seconds_of([&] { marey_decode(rig.cameras[0].source); }));
   }
   const auto print = [&](const char* what, double time) {
     std::printf("%-44s %8.3f ms/frame %8.0f frames/s   whole run is %5.2f times as fast\n", what, 1000 * time / frames,
@@ -64,6 +71,7 @@ void compare(const std::string& folder, cv::Size size) {
   print("marey track --ground, to written places", whole);
   print("cv::VideoCapture and MOG2 alone", mog2);
   print("cv::VideoCapture alone", decode);
+  print("Marey's decoding alone", own_decode);
   std::fflush(stdout);
 }
 

@@ -177,8 +177,9 @@ GroundCamera::GroundCamera(const Feed& feed, std::shared_ptr<const GroundViews> 
   if (detector_ != nullptr && !turning_) standing_ = std::make_shared<StandingPeople>(Picture());
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
-  if (view_) view_->look_at_beginning(samples);
-  if (ball_) ball_->prime(samples);
+  Beside beside;
+  if (view_) beside.run([this, samples] { view_->look_at_beginning(samples); });
+  if (ball_) beside.run([this, samples] { ball_->prime(samples); });
   for (Frame& frame : samples) {
     frame.picture = looked_at(frame.picture);
     if (options.without) frame.picture = options.without->without_them(frame.picture);
@@ -203,12 +204,14 @@ std::optional<Box> GroundCamera::box_at(const Vector<2>& ground, Timestamp time)
 
 track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given, std::span<const Track<2>> expected) {
   ++frames_;
-  if (view_) view_->add(given.frame);
   Frame frame = given.frame;
   if (!frame.picture.empty()) frame.picture = looked_at(frame.picture);
+  Beside beside;
+  if (view_) beside.run([&] { view_->add(given.frame); });
+  if (standing_) beside.run([&] { standing_->look(frame); });
   detect::Detections found;
   if (detector_) {
-    found = detect(frame, expected);
+    found = detect(frame, expected, beside);
   } else {
     found.detections = *given.detections;
   }
@@ -219,7 +222,7 @@ track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given
 }
 
 /// Who is expected is where the detector need not learn the background.
-detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected) {
+detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected, Beside& beside) {
   expected_.clear();
   in_picture_.clear();
   const cv::Size size = frame.picture.size();
@@ -234,6 +237,7 @@ detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Trac
     in_picture_.back().box = here;
   }
   detect::Detections found = detector_->detect(frame, expected_);
+  beside.wait();
   if (standing_) standing_->see(frame, in_picture_, *detector_);
   return found;
 }

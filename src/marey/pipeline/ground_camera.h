@@ -12,6 +12,7 @@
 #include "marey/detect/ball/ball_detector.h"
 #include "marey/detect/detectors.h"
 #include "marey/detect/people/people_size.h"
+#include "marey/pipeline/beside.h"
 #include "marey/pipeline/feed.h"
 #include "marey/pipeline/run.h"
 #include "marey/pipeline/standing_people.h"
@@ -67,7 +68,7 @@ class GroundCamera {
  private:
   cv::Point corner() const { return part_ ? part_->tl() : cv::Point(); }
   Picture looked_at(const Picture& picture) const { return part_ ? picture.part(*part_) : picture; }
-  detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected);
+  detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected, Beside& beside);
   void learn_sizes(const std::vector<Detection>& detections, const cv::Size& size);
   void place(const Frame& frame, detect::Detections& found);
   void look_for_ball(const Frame& frame, const std::vector<Detection>& people);

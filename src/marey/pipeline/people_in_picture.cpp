@@ -11,6 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
 #include "marey/draw/mask_folder.h"
+#include "marey/pipeline/beside.h"
 #include "marey/pipeline/camera_span.h"
 #include "marey/pipeline/keypoint_stage.h"
 #include "marey/pipeline/nobody_found.h"
@@ -117,10 +118,16 @@ class PeopleInPicture final : public Stage {
 
   std::span<const Instant> step(const FrameSet& frames) override {
     const CameraFrame& given = *frames.cameras.front();
+    Beside beside;
+    look_beside(given.frame, beside);
     const detect::Detections seen = detect(given);
-    if (detector_) doubts_.add(given.frame, seen);
-    if (!seen.searched) return pass_over(given.frame);
+    if (detector_) doubts_.add(seen);
+    if (!seen.searched) {
+      beside.wait();
+      return pass_over(given.frame);
+    }
     const auto tracks = follow(given.frame, seen);
+    beside.wait();
     if (given.detections) camera_span_.see(given.frame.time, tracks);
     const bool stood = standing_ && standing_->see(given.frame, tracks, *detector_);
     if (live_) {
@@ -190,6 +197,12 @@ class PeopleInPicture final : public Stage {
     std::vector<Observation<2>> seen;
     std::vector<track::Clothes> clothes;
   };
+
+  /// What can be told of a frame without knowing who is in it.
+  void look_beside(const Frame& frame, Beside& beside) {
+    if (detector_) beside.run([this, &frame] { doubts_.watch(frame); });
+    if (standing_) beside.run([this, &frame] { standing_->look(frame); });
+  }
 
   /// A frame in which nobody was searched for: the second pass interpolates, a live run predicts.
   std::span<const Instant> pass_over(const Frame& frame) {
@@ -299,9 +312,11 @@ class PeopleInPicture final : public Stage {
 
   void prime(const Feed& feed) {
     const std::vector<Frame> samples = feed.sample_beginning();
+    Beside beside;
+    beside.run([&] { doubts_.look_at_beginning(samples); });
     detector_->prime(samples);
     if (!samples.empty()) open_again_ = feed.opener();
-    doubts_.look_at_beginning(samples);
+    beside.wait();
   }
 
   detect::Detections detect(const CameraFrame& given) {

@@ -20,8 +20,7 @@ constexpr double kHardlyKept = 0.1;          // share of the foreground: a walke
 
 }  // namespace
 
-void PictureDoubts::add(const Frame& frame, const detect::Detections& seen) {
-  view_.add(frame);
+void PictureDoubts::add(const detect::Detections& seen) {
   ++frames_;
   std::map<int, int> shared;
   for (const Detection& one : seen.detections) {

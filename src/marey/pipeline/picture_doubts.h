@@ -24,8 +24,10 @@ class PictureDoubts {
 
   /// Pictures of the beginning, before the first frame, where they can be had.
   void look_at_beginning(std::span<const Frame> samples) { view_.look_at_beginning(samples); }
-  /// Each frame in order, with what was seen in it.
-  void add(const Frame& frame, const detect::Detections& seen);
+  /// Each frame in order. May be at work while `add` is.
+  void watch(const Frame& frame) { view_.add(frame); }
+  /// What was seen in each frame, in order.
+  void add(const detect::Detections& seen);
 
   /// What the frames since the last call showed of the camera, one sentence each.
   std::vector<std::string> news() { return view_.news(); }

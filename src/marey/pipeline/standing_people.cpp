@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for_each.h>
 
 #include "marey/detect/background/background_uncovered.h"
 
@@ -87,10 +88,28 @@ bool StandingPeople::is_known(const Starter& starter) const {
   });
 }
 
+bool StandingPeople::is_due(const Starter& starter, const Frame& frame) {
+  const cv::Rect picture({}, frame.picture.size());
+  return starter.left && seconds(frame.time - starter.at) <= kLookedAt && seconds(frame.time - starter.looked) >= kLookAgain &&
+         (starter.place & picture) == starter.place;
+}
+
+void StandingPeople::look(const Frame& frame) {
+  if (frame.picture.empty()) return;
+  tbb::parallel_for_each(starters_.begin(), starters_.end(), [&](Starter& starter) {
+    starter.seen.reset();
+    if (!is_due(starter, frame)) return;
+    starter.seen = frame.index;
+    starter.now = uncovered(starter.scene, frame.picture.part(starter.place), starter.body);
+  });
+}
+
 /// Whether something has left where somebody began to move, and that for long enough.
 bool StandingPeople::has_gone(Starter& starter, const Frame& frame) const {
   starter.looked = frame.time;
-  const auto gone = uncovered(starter.scene, frame.picture.part(starter.place), starter.body);
+  const auto gone = std::exchange(starter.seen, std::nullopt) == frame.index
+                        ? std::exchange(starter.now, std::nullopt)
+                        : uncovered(starter.scene, frame.picture.part(starter.place), starter.body);
   if (!gone) {
     starter.gone.release();
     return false;

@@ -3,6 +3,7 @@
 // be looked at again from its beginning with a scene in which they are not.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,10 @@ class StandingPeople {
  public:
   /// `beginning`: the scene as it was learned ahead; empty where nothing was.
   explicit StandingPeople(Picture beginning) : beginning_(std::move(beginning)) {}
+
+  /// What `see` will want to know of a frame, as far as it can be told before the detector has looked at it: both may be at work at
+  /// once. Calls may be left out; what comes of `see` is the same.
+  void look(const Frame& frame);
 
   /// What the tracker made of a frame in which `detector` looked for people. Who is found now to have come out of the scene is left
   /// out of it from now on. True where somebody was who had been in it since the beginning.
@@ -43,7 +48,9 @@ class StandingPeople {
     Picture scene;                     ///< as it was then, at `place`
     std::optional<TrackId> left = {};  ///< who was then seen elsewhere, and may be the same
     Timestamp looked{};
-    cv::Mat gone;  ///< what had left when it was last looked at, and
+    std::optional<std::int64_t> seen;  ///< the frame in which `look` has been there, and
+    std::optional<cv::Mat> now;        ///< that is what had left
+    cv::Mat gone;                      ///< what had left when it was last looked at, and
     Timestamp gone_at{};
   };
   /// Somebody who came out of the scene.
@@ -58,6 +65,7 @@ class StandingPeople {
 
   void note_starters(const Frame& frame, std::span<const Track<2>> tracks, const detect::Detector& detector);
   void note_next(TrackId id, const Box& body, Timestamp now);
+  static bool is_due(const Starter& starter, const Frame& frame);
   bool has_gone(Starter& starter, const Frame& frame) const;
   bool is_known(const Starter& starter) const;
 

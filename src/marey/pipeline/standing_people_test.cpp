@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "marey/geometry/box.h"
 #include "marey/pipeline/people_in_picture.h"
@@ -123,6 +124,71 @@ TEST(StandingPeople, AreSaidToHaveComeOutOfTheBackgroundWhereNothingIsReadTwice)
   EXPECT_GE(std::count_if(summary.notes.begin(), summary.notes.end(),
                           [](const std::string& note) { return note.find("came out of the background") != note.npos; }),
             3);
+}
+
+TEST(StandingPeople, TracksAreTheSameForAnyNumberOfThreads) {
+  const auto film = film_standing(2, small_film());
+  for (const bool live : {false, true}) {
+    std::map<TrackId, Way> with_one;
+    for (const std::size_t threads : {1, 2, 4}) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      std::map<TrackId, Way> tracks;
+      track(film, live, tracks);
+      if (threads == 1) with_one = tracks;
+      EXPECT_GE(tracks.size(), 4U);
+      EXPECT_TRUE(with_one == tracks) << threads << " threads" << (live ? ", live" : "");
+    }
+  }
+}
+
+/// A detector that sees nothing and holds a picture for the scene.
+class HeldScene final : public detect::Detector {
+ public:
+  explicit HeldScene(Picture scene) : scene_(std::move(scene)) {}
+  detect::Detections detect(const Frame& /*frame*/, std::span<const Expected> /*expected*/) override { return {}; }
+  Picture scene() const override { return scene_; }
+  void believe(const Picture& /*picture*/, const cv::Mat& mask, cv::Point corner) override {
+    believed.emplace_back(corner.x, corner.y, cv::countNonZero(mask));
+  }
+  std::vector<cv::Point3i> believed;
+
+ private:
+  Picture scene_;
+};
+
+TEST(StandingPeople, LookingBeforeTheDetectorIsDoneChangesNothing) {
+  const auto film = film_standing(3, small_film());
+  const Picture scene = film->render(0).picture;
+  // Before every frame, before none, and before some that `see` is then not asked about.
+  std::vector<std::vector<cv::Point3i>> believed;
+  std::vector<std::vector<std::string>> said;
+  for (const int every : {1, 0, 3}) {
+    StandingPeople standing(scene);
+    HeldScene detector(scene);
+    for (int index = 0; index < film->frames(); ++index) {
+      const auto shown = film->render(index);
+      Frame frame;
+      frame.index = index;
+      frame.time = timestamp_from_seconds(index / 10.0);
+      frame.picture = shown.picture;
+      std::vector<Track<2>> tracks;
+      for (const auto& person : shown.people) {
+        Track<2>& one = tracks.emplace_back();
+        one.id = TrackId{person.id};
+        one.confirmed = true;
+        one.box = person.whole.box();
+      }
+      if (every > 0 && index % every == 0) standing.look(frame);
+      if (index % 7 != 6) standing.see(frame, tracks, detector);
+    }
+    believed.push_back(detector.believed);
+    said.push_back(standing.said());
+  }
+  EXPECT_GE(said[0].size(), 2U);
+  EXPECT_EQ(said[0], said[1]);
+  EXPECT_EQ(said[0], said[2]);
+  EXPECT_EQ(believed[0], believed[1]);
+  EXPECT_EQ(believed[0], believed[2]);
 }
 
 }  // namespace

@@ -3,11 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/parallel_for.h>
+
 namespace marey::reconstruct {
 namespace {
 
 constexpr double kSmallestCell = 8;  // px
 constexpr int kMostCells = 4096;     // a camera
+constexpr std::size_t kGrain = 512;  // blobs: lens inversions that are worth a task
+
+double sigma_of(const Observation<2>& one, double noise_px) {
+  return std::max(std::sqrt(std::max(0.0, one.covariance.trace() / 2) + noise_px * noise_px), 1e-6);
+}
 
 }  // namespace
 
@@ -37,6 +44,13 @@ void FrameRays::build(std::span<const Observation<2>> seen, double noise_px) {
   for (int i = 0; i < std::ssize(seen); ++i) {
     if (const auto camera = camera_of(seen[i])) by_camera_[starts_[*camera]++] = i;
   }
+  found_.assign(seen.size(), std::nullopt);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seen.size(), kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      if (const auto camera = camera_of(seen[i]))
+        found_[i] = sight_line(cameras_[*camera], *camera, seen[i].value, sigma_of(seen[i], noise_px));
+    }
+  });
   // Each start has moved to the next one's.
   for (int c = 0, begin = 0; c < cameras(); begin = starts_[c++]) {
     order_.assign(by_camera_.begin() + begin, by_camera_.begin() + starts_[c]);
@@ -49,8 +63,7 @@ void FrameRays::build(std::span<const Observation<2>> seen, double noise_px) {
     for (int k = 0; k < std::ssize(order_); ++k) {
       while (cell < grid.starts.size() && grid.starts[cell] <= k) grid.starts[cell++] += grid.begin - left_out;
       const Observation<2>& one = seen[order_[k]];
-      const double sigma = std::sqrt(std::max(0.0, one.covariance.trace() / 2) + noise_px * noise_px);
-      const auto line = sight_line(cameras_[c], c, one.value, std::max(sigma, 1e-6));
+      const auto& line = found_[static_cast<std::size_t>(order_[k])];
       if (!line) {
         ++left_out;
         continue;

@@ -69,6 +69,7 @@ class FrameRays {
   std::vector<Camera> cameras_;
   std::vector<std::optional<int>> number_of_;  // by CameraId, the camera's place in `cameras_`
   std::vector<Grid> grids_;
+  std::vector<std::optional<SightLine>> found_;  // by what was seen
   std::vector<SightLine> lines_;
   std::vector<Vector<2>> pixels_;
   std::vector<int> observations_;

@@ -20,16 +20,29 @@ class TrackMatches {
              std::vector<std::optional<NoPoint>>& missed);
 
  private:
-  void match_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected);
+  /// Room for one camera's assignment.
+  struct InCamera {
+    std::vector<int> contenders;  // by ray
+    std::vector<assign::GatedPair> pairs;
+    assign::GatedAssigner assigner;
+  };
+
+  /// The rays that one prediction was given, and where they meet.
+  struct Intersected {
+    RayList list;
+    Triangulation point;
+  };
+
+  void match_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected, InCamera& work);
+  void intersect(const FrameRays& frame, std::size_t index, const Track<3>& expected, Intersected& result) const;
   std::optional<NoPoint> place(const FrameRays& frame, int index, const Track<3>& expected, RayGroups& groups);
-  bool complete(const FrameRays& frame, const SpacePoint& point, const RayGroups& groups);
+  bool complete(const FrameRays& frame, const RayList& list, const SpacePoint& point, const RayGroups& groups);
 
   double sigmas_;
   const Triangulator& triangulator_;
-  std::vector<int> matched_;     // by prediction and camera: the ray, or −1
-  std::vector<int> contenders_;  // by ray
-  std::vector<assign::GatedPair> pairs_;
-  assign::GatedAssigner assigner_;
+  std::vector<int> matched_;  // by prediction and camera: the ray, or −1
+  std::vector<InCamera> in_camera_;
+  std::vector<Intersected> first_;  // by prediction
   RayList list_, better_;
 };
 

@@ -101,6 +101,35 @@ Level level_of(std::vector<int> levels) {
   return {static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(std::clamp(8 * *upper, int{kLeastSpread}, 255))};
 }
 
+/// 1 where a level is within `same` of the scene's; else 0.
+void mark_like(const std::uint8_t* __restrict levels, const std::uint8_t* __restrict scene, std::size_t count, std::uint8_t same,
+               std::uint8_t* __restrict like) {
+  for (std::size_t x = 0; x < count; ++x) {
+    const std::uint8_t more = levels[x] > scene[x] ? levels[x] : scene[x], less = levels[x] > scene[x] ? scene[x] : levels[x];
+    like[x] = static_cast<std::uint8_t>(static_cast<std::uint8_t>(more - less) <= same ? 1 : 0);
+  }
+}
+
+/// Adds those of a row that are like the scene in luma, and where there is chroma, of half the size, in that too.
+void add_like(const std::uint8_t* __restrict luma, const std::uint8_t* __restrict chroma, std::size_t count,
+              std::uint8_t* __restrict sums) {
+  if (chroma == nullptr) {
+    for (std::size_t x = 0; x < count; ++x) sums[x] = static_cast<std::uint8_t>(sums[x] + luma[x]);
+    return;
+  }
+  for (std::size_t x = 0; x < count / 2; ++x) {
+    sums[2 * x] = static_cast<std::uint8_t>(sums[2 * x] + (luma[2 * x] & chroma[x]));
+    sums[2 * x + 1] = static_cast<std::uint8_t>(sums[2 * x + 1] + (luma[2 * x + 1] & chroma[x]));
+  }
+  if (count % 2 != 0) sums[count - 1] = static_cast<std::uint8_t>(sums[count - 1] + (luma[count - 1] & chroma[count / 2]));
+}
+
+/// A row of the scene's levels.
+void read_levels(const ScenePlane& plane, int row, std::vector<std::uint8_t>& levels) {
+  levels.resize(static_cast<std::size_t>(plane.size().width));
+  for (std::size_t x = 0; x < levels.size(); ++x) levels[x] = plane.level(row, static_cast<int>(x));
+}
+
 /// A scene's three planes while they are corrected.
 class Correction {
  public:
@@ -116,22 +145,12 @@ class Correction {
 
   cv::Size size() const { return samples_.front().luma.size(); }
 
-  /// By what was seen at this pixel alone.
-  void look_at(int y, int x) {
-    const auto count = static_cast<std::size_t>(std::count_if(samples_.begin(), samples_.end(), [&](const FramePlanes& sample) {
-      return std::abs(sample.luma.at<std::uint8_t>(y, x) - scene_.luma->level(y, x)) <= kSameLuma;
-    }));
-    if (count == samples_.size() && scene_.cb == nullptr) return;
-    read(y, x);
-    const Seen now = scene_at(y, x);
-    const auto agreeing =
-        static_cast<std::size_t>(std::count_if(seen_.begin(), seen_.end(), [&](const Seen& one) { return one.is_like(now); }));
-    if (2 * agreeing > samples_.size()) return;
-    const std::vector<Group> groups = groups_of(seen_);
-    const auto [group, comes_back] = scene_among(groups, samples_.size(), agreeing);
-    if (group == nullptr) return;
-    set(y, x, group->members);
-    if (comes_back) keep(y, x, group->members);
+  /// By what was seen at each pixel of a row alone.
+  void look_at_row(int y) {
+    count_agreeing(y);
+    for (int x = 0; x < size().width; ++x) {
+      if (2 * static_cast<std::size_t>(agreeing_[static_cast<std::size_t>(x)]) <= samples_.size()) look_at(y, x);
+    }
   }
 
   /// When the place beside a pixel was seen empty, the pixel was too: from pixels where something came back to those round them.
@@ -179,6 +198,39 @@ class Correction {
     cv::Mat levels, spreads, where;
   };
 
+  /// How many samples show the scene as it is, at each pixel of a row.
+  void count_agreeing(int y) {
+    const auto width = static_cast<std::size_t>(size().width);
+    const bool colour = scene_.cb != nullptr;
+    agreeing_.assign(width, 0);
+    like_.resize(width);
+    read_levels(*scene_.luma, y, luma_row_);
+    if (colour) {
+      read_levels(*scene_.cb, y / 2, cb_row_);
+      read_levels(*scene_.cr, y / 2, cr_row_);
+      cb_like_.resize(cb_row_.size());
+      cr_like_.resize(cr_row_.size());
+    }
+    for (const FramePlanes& sample : samples_) {
+      mark_like(sample.luma.ptr<std::uint8_t>(y), luma_row_.data(), width, kSameLuma, like_.data());
+      if (colour) {
+        mark_like(sample.cb.ptr<std::uint8_t>(y / 2), cb_row_.data(), cb_row_.size(), kSameChroma, cb_like_.data());
+        mark_like(sample.cr.ptr<std::uint8_t>(y / 2), cr_row_.data(), cr_row_.size(), kSameChroma, cr_like_.data());
+        for (std::size_t x = 0; x < cb_like_.size(); ++x) cb_like_[x] &= cr_like_[x];
+      }
+      add_like(like_.data(), colour ? cb_like_.data() : nullptr, width, agreeing_.data());
+    }
+  }
+
+  void look_at(int y, int x) {
+    read(y, x);
+    const std::vector<Group> groups = groups_of(seen_);
+    const auto [group, comes_back] = scene_among(groups, samples_.size(), agreeing_[static_cast<std::size_t>(x)]);
+    if (group == nullptr) return;
+    set(y, x, group->members);
+    if (comes_back) keep(y, x, group->members);
+  }
+
   void read(int y, int x) {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       seen_[i].luma = samples_[i].luma.at<std::uint8_t>(y, x);
@@ -213,7 +265,9 @@ class Correction {
   std::span<const FramePlanes> samples_;
   ScenePlanes scene_;
   Plane luma_, cb_, cr_;
-  std::vector<Seen> seen_;       // at the pixel in question
+  std::vector<Seen> seen_;  // at the pixel in question
+  // Of a row: how many samples agree with the scene, its levels, and where one sample does.
+  std::vector<std::uint8_t> agreeing_, luma_row_, cb_row_, cr_row_, like_, cb_like_, cr_like_;
   cv::Mat when_;                 // CV_32SC1: a bit for each sample in which what comes back was seen
   std::vector<cv::Point> sure_;  // pixels of which the others may learn
 };
@@ -224,9 +278,7 @@ void believe_what_returns(std::span<const FramePlanes> samples, const ScenePlane
   if (samples.size() < kFewest) return;
   if (samples.size() > kMostSamples) samples = samples.first(kMostSamples);
   Correction correction(samples, scene);
-  for (int y = 0; y < correction.size().height; ++y) {
-    for (int x = 0; x < correction.size().width; ++x) correction.look_at(y, x);
-  }
+  for (int y = 0; y < correction.size().height; ++y) correction.look_at_row(y);
   correction.spread();
   correction.apply();
 }

@@ -7,6 +7,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/detect/background/difference_sums.h"
+
 namespace marey::detect::background {
 namespace {
 
@@ -37,17 +39,21 @@ std::vector<float> values_of(const cv::Mat& plane, const cv::Mat& mask) {
   return values;
 }
 
-/// Luma and, for colour, chroma at full size, 32 bit, in levels of 8 bit.
+/// Luma, in levels of 8 bit, and for colour chroma at full size. Luma of 16 bit becomes CV_32F; all else is CV_8U.
 std::vector<cv::Mat> levels_of(const Picture& picture) {
-  std::vector<cv::Mat> planes(1);
-  picture.luma().convertTo(planes[0], CV_32F, picture.luma().depth() == CV_16U ? 1.0 / 257.0 : 1.0);
+  std::vector<cv::Mat> planes{picture.luma()};
+  if (picture.luma().depth() == CV_16U) picture.luma().convertTo(planes[0], CV_32F, 1.0 / 257.0);
   if (!picture.is_colour()) return planes;
   for (const cv::Mat* chroma : {&picture.cb(), &picture.cr()}) {
-    cv::Mat full;
-    cv::resize(*chroma, full, picture.size(), 0, 0, cv::INTER_LINEAR);
-    full.convertTo(planes.emplace_back(), CV_32F);
+    cv::resize(*chroma, planes.emplace_back(), picture.size(), 0, 0, cv::INTER_LINEAR);
   }
   return planes;
+}
+
+cv::Mat as_float(const cv::Mat& plane) {
+  cv::Mat result;
+  plane.convertTo(result, CV_32F);
+  return result;
 }
 
 cv::Rect pixels_of(const Box& box, cv::Size size) {
@@ -60,48 +66,76 @@ cv::Mat round_element(int radius) {
   return cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * radius + 1, 2 * radius + 1});
 }
 
-/// Where the two differ by more than the noise about the body does, once both are in one light.
-cv::Mat differing(const std::vector<cv::Mat>& scene, const std::vector<cv::Mat>& now, const cv::Mat& beside) {
-  cv::Mat mask = cv::Mat::zeros(scene.front().size(), CV_8UC1);
-  for (std::size_t i = 0; i < scene.size(); ++i) {
-    cv::Mat difference = now[i] - scene[i];
-    cv::blur(difference, difference, {3, 3});
-    std::vector<float> values = values_of(difference, beside);
-    const double shade = middle_value(values);
-    for (float& value : values) value = static_cast<float>(std::abs(value - shade));
-    const double least = std::max(i == 0 ? kUnlikeLuma : kUnlikeChroma, kNoiseSigmas * kOfGaussian * middle_value(values));
-    mask |= cv::abs(difference - shade) > least;
+/// Marks where a plane differs by more than `unlike` levels and more than its noise outside `body` does, once both are in one
+/// light.
+void mark_differing(const cv::Mat& scene, const cv::Mat& now, const cv::Rect& body, double unlike, cv::Mat& mask) {
+  if (scene.depth() == CV_8U && now.depth() == CV_8U) {
+    const DifferenceSums sums(scene, now);
+    const DifferenceSums::Noise noise = sums.noise_outside(body);
+    sums.mark(noise.shade, std::max(unlike, kNoiseSigmas * kOfGaussian * noise.deviation), mask);
+    return;
   }
-  return mask;
+  cv::Mat beside(scene.size(), CV_8UC1, cv::Scalar(255));
+  beside(body) = 0;
+  cv::Mat difference = as_float(now) - as_float(scene);
+  cv::blur(difference, difference, {3, 3});
+  std::vector<float> values = values_of(difference, beside);
+  const double shade = middle_value(values);
+  for (float& value : values) value = static_cast<float>(std::abs(value - shade));
+  mask |= cv::abs(difference - shade) > std::max(unlike, kNoiseSigmas * kOfGaussian * middle_value(values));
 }
 
 /// How sharp the pictures are along a band, levels: of each pixel its sharpest plane.
 double sharpness(const std::vector<cv::Mat>& planes, const cv::Mat& band) {
-  cv::Mat sharpest = cv::Mat::zeros(band.size(), CV_32F);
+  const cv::Rect within = cv::boundingRect(band);
+  // A gradient needs the smooth levels beside it, and these need the levels beside them.
+  const cv::Rect needed = cv::Rect(within.x - 2, within.y - 2, within.width + 4, within.height + 4) & cv::Rect({}, band.size());
+  cv::Mat sharpest = cv::Mat::zeros(within.size(), CV_32F);
   for (const cv::Mat& plane : planes) {
     cv::Mat smooth, gradient;
-    cv::blur(plane, smooth, {3, 3});
+    cv::blur(as_float(plane(needed)), smooth, {3, 3});
     cv::morphologyEx(smooth, gradient, cv::MORPH_GRADIENT, round_element(1));
-    sharpest = cv::max(sharpest, gradient);
+    sharpest = cv::max(sharpest, gradient({within.tl() - needed.tl(), within.size()}));
   }
-  return cv::mean(sharpest, band)[0];
+  return cv::mean(sharpest, band(within))[0];
 }
 
-/// Of the connected regions the one that has most pixels in the body's box; nothing where it is no body.
-std::optional<cv::Mat> region_at(const cv::Mat& mask, const Box& body) {
+/// Without specks, and with what is nearer together than twice `gap` joined. All of it is within the picture's rectangle returned,
+/// which is empty where nothing comes near the body, or what there is cannot be of its height.
+cv::Rect tidy(cv::Mat& mask, int gap, const Box& body) {
+  const Box near{body.left - gap, body.top - gap, body.width + 2.0 * gap, body.height + 2.0 * gap};
+  if (const cv::Rect there = pixels_of(near, mask.size()); there.empty() || cv::countNonZero(mask(there)) == 0) return {};
+  cv::morphologyEx(mask, mask, cv::MORPH_OPEN, round_element(1));
+  cv::Rect within = cv::boundingRect(mask);
+  if (within.empty() || within.height + 2 * gap < kLeastHeight * body.height) return {};
+  // Wide enough that nothing touches the sides; its corner is even, for there labels go by pairs of rows and columns.
+  const int round = 2 * gap + 2;
+  within = cv::Rect(cv::Point((within.x - round) & ~1, (within.y - round) & ~1), within.br() + cv::Point(round, round)) &
+           cv::Rect({}, mask.size());
+  cv::Mat part = mask(within);
+  cv::morphologyEx(part, part, cv::MORPH_CLOSE, round_element(gap));
+  return within;
+}
+
+/// Of the connected regions, all `within` that rectangle, the one that has most pixels in the body's box; nothing where it is no
+/// body.
+std::optional<cv::Mat> region_at(const cv::Mat& mask, const cv::Rect& within, const Box& body) {
+  if (within.empty() || cv::countNonZero(mask(within)) < kLeastArea * body.area()) return std::nullopt;
   cv::Mat labels, stats, centres;
-  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centres, 8);
-  std::vector<int> within(static_cast<std::size_t>(count), 0);
-  const cv::Rect box = pixels_of(body, mask.size());
+  const int count = cv::connectedComponentsWithStats(mask(within), labels, stats, centres, 8);
+  std::vector<int> inside(static_cast<std::size_t>(count), 0);
+  const cv::Rect box = (pixels_of(body, mask.size()) & within) - within.tl();
   for (int y = box.y; y < box.br().y; ++y) {
-    for (int x = box.x; x < box.br().x; ++x) ++within[static_cast<std::size_t>(labels.at<int>(y, x))];
+    for (int x = box.x; x < box.br().x; ++x) ++inside[static_cast<std::size_t>(labels.at<int>(y, x))];
   }
-  within[0] = 0;
-  const int best = static_cast<int>(std::max_element(within.begin(), within.end()) - within.begin());
-  if (within[static_cast<std::size_t>(best)] == 0) return std::nullopt;
+  inside[0] = 0;
+  const int best = static_cast<int>(std::max_element(inside.begin(), inside.end()) - inside.begin());
+  if (inside[static_cast<std::size_t>(best)] == 0) return std::nullopt;
   const int area = stats.at<int>(best, cv::CC_STAT_AREA), height = stats.at<int>(best, cv::CC_STAT_HEIGHT);
   if (area < kLeastArea * body.area() || area > kMostArea * body.area() || height < kLeastHeight * body.height) return std::nullopt;
-  return cv::Mat(labels == best);
+  cv::Mat region = cv::Mat::zeros(mask.size(), CV_8UC1);
+  cv::compare(labels, best, region(within), cv::CMP_EQ);
+  return region;
 }
 
 void lay(const cv::Mat& patch, const cv::Mat& mask, cv::Mat plane) {
@@ -119,13 +153,11 @@ void lay(const cv::Mat& patch, const cv::Mat& mask, cv::Mat plane) {
 std::optional<cv::Mat> uncovered(const Picture& scene, const Picture& now, const Box& body) {
   if (scene.size() != now.size() || scene.is_colour() != now.is_colour() || scene.empty()) return std::nullopt;
   const std::vector<cv::Mat> before = levels_of(scene), after = levels_of(now);
-  cv::Mat beside(scene.size(), CV_8UC1, cv::Scalar(255));
-  beside(pixels_of(body, scene.size())) = 0;
-  cv::Mat mask = differing(before, after, beside);
+  cv::Mat mask = cv::Mat::zeros(scene.size(), CV_8UC1);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    mark_differing(before[i], after[i], pixels_of(body, scene.size()), i == 0 ? kUnlikeLuma : kUnlikeChroma, mask);
   const int gap = std::max(1, static_cast<int>(std::lround(kGap * body.height / 2)));
-  cv::morphologyEx(mask, mask, cv::MORPH_OPEN, round_element(1));
-  cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, round_element(gap));
-  auto region = region_at(mask, body);
+  auto region = region_at(mask, tidy(mask, gap, body), body);
   if (!region) return std::nullopt;
   cv::Mat outer, inner;
   cv::dilate(*region, outer, round_element(1));
@@ -138,7 +170,7 @@ std::optional<cv::Mat> uncovered(const Picture& scene, const Picture& now, const
 
 bool same_within(const Picture& a, const Picture& b, const cv::Mat& mask) {
   if (a.size() != b.size() || a.empty()) return false;
-  cv::Mat difference = levels_of(a).front() - levels_of(b).front();
+  cv::Mat difference = as_float(levels_of(a).front()) - as_float(levels_of(b).front());
   std::vector<float> beside = values_of(difference, mask == 0);
   difference -= cv::Scalar(middle_value(beside));
   return cv::mean(cv::abs(difference), mask)[0] < kSameLevels;

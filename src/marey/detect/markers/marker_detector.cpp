@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "marey/detect/markers/marker_fit.h"
 #include "marey/detect/markers/marker_likeness.h"
@@ -21,7 +22,9 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr int kMostSplitPixels = 20000;   // a frame: about 200 small pairs
+constexpr int kMostSplitPixels = 20000;  // a frame: about 200 small pairs
+constexpr std::size_t kBlobsATask = 64;  // a quarter of a millisecond of fitting: a frame of few markers is one task
+constexpr std::size_t kSplitsATask = 8;
 constexpr double kShapeMisfit = 0.06;     // of the contrast: what a lone round marker leaves at most
 constexpr double kOfRoundness = 0.6;      // a blob this much less round is not even split: it bounds a window by its blob's area
 constexpr double kLessSay = 0.1;          // of a disc's, about how large markers are
@@ -40,6 +43,22 @@ double half_width_of(const MarkerBlob& blob) {
 
 Box box_of(const cv::Rect& box) {
   return {static_cast<double>(box.x), static_cast<double>(box.y), static_cast<double>(box.width), static_cast<double>(box.height)};
+}
+
+/// One thread's room for a blob at a time.
+struct MarkerWorkspace {
+  std::vector<MarkerNeighbour> near;
+  MarkerWindow window;
+};
+
+/// Calls `each(i, workspace)` for i in [0, count), in tasks of `grain`.
+template <typename Each>
+void for_blobs(std::size_t count, std::size_t grain, Each&& each) {
+  if (count == 0) return;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+    MarkerWorkspace workspace;
+    for (std::size_t i = range.begin(); i < range.end(); ++i) each(i, workspace);
+  });
 }
 
 std::size_t expected_in(const cv::Rect& box, std::span<const Expected> expected) {
@@ -69,15 +88,22 @@ class MarkerDetector::Impl {
     bool has_halo = false;
     bool is_lamp = false;  ///< it has one, and is larger than the markers
     bool is_disc = false;  ///< it is one, as sharp as the others
+    int pixels = 0;        ///< of its window
+  };
+  /// What a blob is that is no lone disc.
+  struct Explained {
+    std::vector<MarkerShape> shapes;
+    std::int64_t MarkerCounts::* counted = nullptr;  ///< where what it is adds one
   };
 
   void choose(std::span<const MarkerBlob> blobs);
   void keep_most(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
   MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob, std::size_t index) const;
-  Lone fit_lone(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index);
+  Lone fit_lone(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, MarkerWorkspace& workspace) const;
   void fit_all(const cv::Mat& luma, std::span<const MarkerBlob> blobs);
-  std::vector<MarkerShape> explain(const cv::Mat& luma, std::span<const MarkerBlob> blobs, const Lone& lone,
-                                   std::span<const Expected> expected);
+  void explain_all(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
+  Explained explain(const cv::Mat& luma, std::span<const MarkerBlob> blobs, const Lone& lone, std::span<const Expected> expected,
+                    bool may_split, MarkerWorkspace& workspace) const;
   Detection report(const MarkerShape& shape, const MarkerBlob& blob);
 
   MarkerOptions options_;
@@ -85,10 +111,11 @@ class MarkerDetector::Impl {
   MarkerLikeness likeness_;
   std::vector<std::size_t> chosen_;
   MarkerNeighbours neighbours_;
-  MarkerWindow window_;
   std::vector<Lone> lone_;
+  std::vector<std::size_t> unclear_;  // of the lone ones, those that are to be explained, and
+  std::vector<char> may_split_;       // of each whether there is time to split it
+  std::vector<Explained> explained_;  // likewise
   std::vector<MarkerLikeness::Witness> seen_;
-  int split_pixels_left_ = 0;
   bool moving_ = false;  // most markers of the frame are no discs
 };
 
@@ -104,15 +131,18 @@ Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expe
   keep_most(blobs, expected);
   neighbours_.file(blobs, chosen_, luma.size());
   fit_all(luma, blobs);
-  split_pixels_left_ = kMostSplitPixels;
+  explain_all(luma, blobs, expected);
   result.detections.reserve(chosen_.size());
+  std::size_t next = 0;
   for (const Lone& lone : lone_) {
     const MarkerBlob& blob = blobs[lone.blob];
     if (lone.is_disc) {
       result.detections.push_back(report(lone.shape, blob));
       continue;
     }
-    for (const MarkerShape& shape : explain(luma, blobs, lone, expected)) result.detections.push_back(report(shape, blob));
+    const Explained& explained = explained_[next++];
+    if (explained.counted != nullptr) ++(counts_.*explained.counted);
+    for (const MarkerShape& shape : explained.shapes) result.detections.push_back(report(shape, blob));
   }
   counts_.markers += std::ssize(result.detections);
   return result;
@@ -168,12 +198,14 @@ MarkerSurroundings MarkerDetector::Impl::surroundings(const cv::Mat& luma, const
   return around;
 }
 
-MarkerDetector::Impl::Lone MarkerDetector::Impl::fit_lone(const cv::Mat& luma, std::span<const MarkerBlob> blobs,
-                                                          std::size_t index) {
+MarkerDetector::Impl::Lone MarkerDetector::Impl::fit_lone(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index,
+                                                          MarkerWorkspace& workspace) const {
   const MarkerBlob& blob = blobs[index];
+  auto& [near, window] = workspace;
   const MarkerSurroundings around = surroundings(luma, blob, index);
-  collect_window(luma, blob, around, neighbours_.of(blobs, index), window_);
-  Lone lone{.blob = index, .shape = fit_disc(window_, blob, around)};
+  neighbours_.find(blobs, index, near);
+  collect_window(luma, blob, around, near, window);
+  Lone lone{.blob = index, .shape = fit_disc(window, blob, around), .pixels = window.count};
   MarkerShape& shape = lone.shape;
   if (options_.colour &&
       (!shape.fitted || shape.contrast < kLeastLumaContrast * around.noise)) {  // luma does not show it: chroma does
@@ -181,17 +213,19 @@ MarkerDetector::Impl::Lone MarkerDetector::Impl::fit_lone(const cv::Mat& luma, s
     shape.centre = {blob.mean_x, blob.mean_y};
     shape.covariance = Matrix<2>::Identity() * (kColourDeviation * kColourDeviation);
   }
-  const double grain = 3 * around.noise / window_.scale;
+  const double grain = 3 * around.noise / window.scale;
   lone.has_halo = search_.has_halo(index);
   lone.is_disc = shape.fitted && shape.misfit <= std::max(kShapeMisfit, grain) && roundness_of(blob) >= options_.min_roundness;
   return lone;
 }
 
 void MarkerDetector::Impl::fit_all(const cv::Mat& luma, std::span<const MarkerBlob> blobs) {
-  lone_.clear();
+  lone_.resize(chosen_.size());
+  for_blobs(chosen_.size(), kBlobsATask,
+            [&](std::size_t i, MarkerWorkspace& workspace) { lone_[i] = fit_lone(luma, blobs, chosen_[i], workspace); });
   seen_.clear();
-  for (const std::size_t index : chosen_) {
-    const Lone& lone = lone_.emplace_back(fit_lone(luma, blobs, index));
+  for (const Lone& lone : lone_) {
+    const std::size_t index = lone.blob;
     if (lone.has_halo) continue;
     const double say = say_of(lone.shape.contrast, static_cast<double>(blobs[index].area));
     if (lone.is_disc) {
@@ -211,40 +245,50 @@ void MarkerDetector::Impl::fit_all(const cv::Mat& luma, std::span<const MarkerBl
   }
 }
 
+/// Which are split is settled ahead, in their order: a frame has time for so many pixels.
+void MarkerDetector::Impl::explain_all(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::span<const Expected> expected) {
+  unclear_.clear();
+  may_split_.clear();
+  int left = kMostSplitPixels;
+  for (std::size_t i = 0; i < lone_.size(); ++i) {
+    const Lone& lone = lone_[i];
+    if (lone.is_disc) continue;
+    const MarkerBlob& blob = blobs[lone.blob];
+    const bool known = lone.is_lamp || likeness_.too_large(static_cast<double>(blob.area));
+    const bool splits = !known && blob.area >= 8 && lone.pixels <= left;
+    if (splits) left -= lone.pixels;
+    unclear_.push_back(i);
+    may_split_.push_back(splits ? 1 : 0);
+  }
+  explained_.resize(unclear_.size());
+  for_blobs(unclear_.size(), kSplitsATask, [&](std::size_t i, MarkerWorkspace& workspace) {
+    explained_[i] = explain(luma, blobs, lone_[unclear_[i]], expected, may_split_[i] != 0, workspace);
+  });
+}
+
 /// What a blob is that is no disc: several, or one all the same, or none.
-std::vector<MarkerShape> MarkerDetector::Impl::explain(const cv::Mat& luma, std::span<const MarkerBlob> blobs, const Lone& lone,
-                                                       std::span<const Expected> expected) {
+MarkerDetector::Impl::Explained MarkerDetector::Impl::explain(const cv::Mat& luma, std::span<const MarkerBlob> blobs,
+                                                              const Lone& lone, std::span<const Expected> expected, bool may_split,
+                                                              MarkerWorkspace& workspace) const {
   const MarkerBlob& blob = blobs[lone.blob];
   const auto area = static_cast<double>(blob.area);
-  if (lone.is_lamp || likeness_.too_large(area)) {
-    ++counts_.unlike;
-    return {};
-  }
+  if (lone.is_lamp || likeness_.too_large(area)) return {{}, &MarkerCounts::unlike};
   bool told = false;
-  const MarkerSurroundings around = surroundings(luma, blob, lone.blob);
-  if (blob.area >= 8) collect_window(luma, blob, around, neighbours_.of(blobs, lone.blob), window_);
-  if (blob.area >= 8 && window_.count <= split_pixels_left_) {
-    split_pixels_left_ -= window_.count;
-    MarkerSplit split = split_markers(window_, blob, around, expected_in(blob.box, expected), moving_);
+  if (may_split) {
+    auto& [near, window] = workspace;
+    const MarkerSurroundings around = surroundings(luma, blob, lone.blob);
+    neighbours_.find(blobs, lone.blob, near);
+    collect_window(luma, blob, around, near, window);
+    MarkerSplit split = split_markers(window, blob, around, expected_in(blob.box, expected), moving_);
     const std::size_t count = split.discs.size();
     const bool alike =
         std::all_of(split.discs.begin(), split.discs.end(), [&](const MarkerShape& d) { return likeness_.fits(d.radius, count); });
-    if (!split.discs.empty() && alike) {
-      ++counts_.split;
-      return std::move(split.discs);
-    }
+    if (!split.discs.empty() && alike) return {std::move(split.discs), &MarkerCounts::split};
     told = split.swept && likeness_.fits(split.swept->radius);
   }
-  if (roundness_of(blob) < options_.min_roundness) {
-    ++counts_.not_round;
-    return {};
-  }
-  if (!told && likeness_.odd(area)) {
-    ++counts_.unlike;
-    return {};
-  }
-  if (!lone.shape.fitted) ++counts_.not_fitted;
-  return {lone.shape};
+  if (roundness_of(blob) < options_.min_roundness) return {{}, &MarkerCounts::not_round};
+  if (!told && likeness_.odd(area)) return {{}, &MarkerCounts::unlike};
+  return {{lone.shape}, lone.shape.fitted ? nullptr : &MarkerCounts::not_fitted};
 }
 
 Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlob& blob) {

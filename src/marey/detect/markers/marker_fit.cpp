@@ -198,6 +198,14 @@ void measure(const cv::Mat& image, const MarkerBlob& blob, const MarkerSurroundi
       factor * (sum_yy + n * mean.y() * mean.y()) + cut * cut;
 }
 
+/// Whether a neighbour's light comes as far as a row.
+bool reaches_row(double y, std::span<const MarkerNeighbour> neighbours) {
+  return std::any_of(neighbours.begin(), neighbours.end(), [&](const MarkerNeighbour& other) {
+    const double dy = y - other.centre.y(), reach = other.radius + kMargin;
+    return dy * dy < reach * reach;
+  });
+}
+
 bool belongs_elsewhere(double x, double y, double own_radius, std::span<const MarkerNeighbour> neighbours) {
   return std::any_of(neighbours.begin(), neighbours.end(), [&](const MarkerNeighbour& other) {
     const double dx = x - other.centre.x(), dy = y - other.centre.y();
@@ -222,8 +230,9 @@ void gather(const cv::Mat& image, const MarkerBlob& blob, const MarkerSurroundin
     const auto* row = image.ptr<Pixel>(cy + dy) + cx;
     const int half = static_cast<int>(std::sqrt(window.reach * window.reach - dy * dy));
     const int first = std::max(-half, -cx), last = std::min(half, image.cols - 1 - cx);
+    const bool shared = reaches_row(dy, neighbours);
     for (int dx = first; dx <= last; ++dx) {
-      if (!neighbours.empty() && belongs_elsewhere(dx, dy, own_radius, neighbours)) continue;
+      if (shared && belongs_elsewhere(dx, dy, own_radius, neighbours)) continue;
       window.x[n] = static_cast<float>(dx);
       window.y[n] = static_cast<float>(dy);
       window.value[n] = (row[dx] - level) * scale;
@@ -239,14 +248,17 @@ void gather(const cv::Mat& image, const MarkerBlob& blob, const MarkerSurroundin
 }  // namespace
 
 void collect_window(const cv::Mat& image, const MarkerBlob& blob, const MarkerSurroundings& around,
-                    std::span<const MarkerNeighbour> neighbours, MarkerWindow& window) {
+                    std::vector<MarkerNeighbour>& neighbours, MarkerWindow& window) {
   const bool bytes = image.depth() == CV_8U;
   bytes ? measure<std::uint8_t>(image, blob, around, window) : measure<std::uint16_t>(image, blob, around, window);
   const double extent = std::max(blob.box.width, blob.box.height) / 2.0;
   window.reach = extent + kMargin;
-  std::vector<MarkerNeighbour> near(neighbours.begin(), neighbours.end());
-  for (MarkerNeighbour& neighbour : near) neighbour.centre -= window.origin;
-  bytes ? gather<std::uint8_t>(image, blob, around, near, window) : gather<std::uint16_t>(image, blob, around, near, window);
+  for (MarkerNeighbour& neighbour : neighbours) neighbour.centre -= window.origin;
+  std::erase_if(neighbours, [&](const MarkerNeighbour& other) {  // whose light ends before the window begins
+    return other.centre.norm() > other.radius + kMargin + window.reach + 1e-6;
+  });
+  bytes ? gather<std::uint8_t>(image, blob, around, neighbours, window)
+        : gather<std::uint16_t>(image, blob, around, neighbours, window);
 }
 
 }  // namespace marey::detect::markers

@@ -55,9 +55,9 @@ struct MarkerWindow {
   MarkerSamples samples() const { return {x.data(), y.data(), value.data(), weight.data(), static_cast<int>(x.size())}; }
 };
 
-/// Collects the pixels round a blob out to 2.5 px beyond it, less those nearer to a neighbour.
+/// Collects the pixels round a blob out to 2.5 px beyond it, less those nearer to a neighbour. `neighbours` is used up.
 void collect_window(const cv::Mat& image, const MarkerBlob& blob, const MarkerSurroundings& around,
-                    std::span<const MarkerNeighbour> neighbours, MarkerWindow& window);
+                    std::vector<MarkerNeighbour>& neighbours, MarkerWindow& window);
 
 /// Fits a disc to the window; falls back on the weighted centroid where that fails.
 MarkerShape fit_disc(const MarkerWindow& window, const MarkerBlob& blob, const MarkerSurroundings& around,

@@ -22,8 +22,8 @@ void MarkerNeighbours::file(std::span<const MarkerBlob> blobs, std::span<const s
   }
 }
 
-std::span<const MarkerNeighbour> MarkerNeighbours::of(std::span<const MarkerBlob> blobs, std::size_t index) {
-  near_.clear();
+void MarkerNeighbours::find(std::span<const MarkerBlob> blobs, std::size_t index, std::vector<MarkerNeighbour>& near) const {
+  near.clear();
   const MarkerBlob& own = blobs[index];
   const int extent = std::max(own.box.width, own.box.height) / 2 + 3;
   const cv::Rect reach(own.box.x - extent, own.box.y - extent, own.box.width + 2 * extent, own.box.height + 2 * extent);
@@ -32,11 +32,10 @@ std::span<const MarkerNeighbour> MarkerNeighbours::of(std::span<const MarkerBlob
     for (int column = cell(reach.x, cell_count_.width); column <= cell(reach.br().x, cell_count_.width); ++column) {
       for (const std::uint32_t i : cells_[static_cast<std::size_t>(row) * cell_count_.width + column]) {
         if (i == index || (blobs[i].box & reach).empty()) continue;
-        near_.push_back({{blobs[i].mean_x, blobs[i].mean_y}, std::sqrt(static_cast<double>(blobs[i].area) / std::numbers::pi)});
+        near.push_back({{blobs[i].mean_x, blobs[i].mean_y}, std::sqrt(static_cast<double>(blobs[i].area) / std::numbers::pi)});
       }
     }
   }
-  return near_;
 }
 
 }  // namespace marey::detect::markers

@@ -16,13 +16,12 @@ class MarkerNeighbours {
   /// Files blobs[i] for each i of `chosen`. They lie within a picture of `size`.
   void file(std::span<const MarkerBlob> blobs, std::span<const std::size_t> chosen, cv::Size size);
 
-  /// Other filed blobs whose light may reach into the window of blobs[index]. Valid until the next call.
-  std::span<const MarkerNeighbour> of(std::span<const MarkerBlob> blobs, std::size_t index);
+  /// Other filed blobs whose light may reach into the window of blobs[index], in `near`.
+  void find(std::span<const MarkerBlob> blobs, std::size_t index, std::vector<MarkerNeighbour>& near) const;
 
  private:
   std::vector<std::vector<std::uint32_t>> cells_;
   cv::Size cell_count_;
-  std::vector<MarkerNeighbour> near_;
 };
 
 }  // namespace marey::detect::markers
