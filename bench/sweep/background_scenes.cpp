@@ -110,8 +110,8 @@ void judge(const Options& options, const Scene& scene, int seed, std::vector<Sco
     const cv::Mat mask = live->apply(frames[i], {}).covered, bgr = frames[i].picture.bgr();
     scores[marey_live].add(mask, truths[i]);
     if (!options.pictures.empty() && i % 10 == 0) keep(options, scene, seed, static_cast<int>(i), bgr, truths[i], mask);
-    if (!options.peers) continue;
     scores[marey_primed].add(primed->apply(frames[i], {}).covered, truths[i]);
+    if (!options.peers) continue;
     cv::Mat smooth;
     const cv::Mat a = peer_mask(*first, bgr), b = peer_mask(*second, bgr);
     scores[mog2].add(a, truths[i]);

@@ -8,6 +8,7 @@
 //
 // - A camera that shakes is followed by whole pixels: the frame is brought back to the scene's places, and its mask carried over
 //   (background_sway.cpp).
+// - Pictures that it learns ahead from are brought into one light and to one place first (background_even.cpp).
 // - A change of light rescales the means at once, all together or part by part (background_light.cpp, background_patches.cpp).
 // - A thing that stands still is counted, pixel by pixel, in a second mean; only after `absorb_after_s`, or at the start after
 //   half the time that the model knows, or twice the time that the scene was seen there (where nothing was seen ahead), do the two
@@ -29,6 +30,7 @@
 #include <vector>
 
 #include "marey/core/picture.h"
+#include "marey/detect/background/background_even.h"
 #include "marey/detect/background/background_fringe.h"
 #include "marey/detect/background/background_frozen.h"
 #include "marey/detect/background/background_light.h"
@@ -65,28 +67,17 @@ class AdaptiveBackground final : public Background {
   explicit AdaptiveBackground(const AdaptiveOptions& options) : options_(options), second_(options.absorb_after_s) {}
 
   void prime(std::span<const Frame> samples) override {
-    std::vector<cv::Mat> luma, cb, cr;
     std::vector<FramePlanes> kept;
     for (const Frame& sample : samples) {
-      if (sample.picture.empty() || (!luma.empty() && sample.picture.size() != luma.front().size())) continue;
+      if (sample.picture.empty() || (!kept.empty() && sample.picture.size() != kept.front().luma.size())) continue;
       const FramePlanes planes = planes_of(sample.picture);
-      if (!luma.empty() && planes.cb.empty() != cb.empty()) continue;
+      if (!kept.empty() && planes.cb.empty() != kept.front().cb.empty()) continue;
       kept.push_back(planes);
-      luma.push_back(planes.luma);
-      if (!planes.cb.empty()) {
-        cb.push_back(planes.cb);
-        cr.push_back(planes.cr);
-      }
       black_ = black_of(sample.picture);
     }
-    if (luma.empty()) return;
-    luma_.begin(luma);
-    if (!cb.empty()) {
-      cb_.begin(cb);
-      cr_.begin(cr);
-    }
-    believe_what_returns(kept, {&luma_, cb.empty() ? nullptr : &cb_, cb.empty() ? nullptr : &cr_});
-    make_room(luma.front().size(), !cb.empty(), true);
+    if (kept.empty()) return;
+    if (auto evened = evened_out(kept, black_)) kept = *std::move(evened);
+    begin(kept);
     age_s_ = std::max(0.0, seconds(samples.back().time - samples.front().time));
   }
 
@@ -156,6 +147,23 @@ class AdaptiveBackground final : public Background {
     return planes;
   }
 
+  void begin(const std::vector<FramePlanes>& samples) {
+    std::vector<cv::Mat> luma, cb, cr;
+    for (const FramePlanes& planes : samples) {
+      luma.push_back(planes.luma);
+      cb.push_back(planes.cb);
+      cr.push_back(planes.cr);
+    }
+    const bool colour = !cb.front().empty();
+    luma_.begin(luma);
+    if (colour) {
+      cb_.begin(cb);
+      cr_.begin(cr);
+    }
+    believe_what_returns(samples, {&luma_, colour ? &cb_ : nullptr, colour ? &cr_ : nullptr});
+    make_room(luma.front().size(), colour, true);
+  }
+
   void begin(const FramePlanes& planes) {
     luma_.begin(planes.luma);
     if (!planes.cb.empty()) {
@@ -170,7 +178,6 @@ class AdaptiveBackground final : public Background {
   void make_room(cv::Size size, bool colour, bool learned_ahead) {
     size_ = size;
     colour_ = colour;
-    learned_ahead_ = learned_ahead;
     mask_ = cv::Mat::zeros(size, CV_8UC1);
     covered_ = cv::Mat::zeros(size, CV_8UC1);
     second_.begin(size, learned_ahead);
@@ -220,7 +227,6 @@ class AdaptiveBackground final : public Background {
 
   /// The same for parts of the picture, each by itself.
   bool follow_patches(const FramePlanes& planes) {
-    if (learned_ahead_) return false;  // a scene that is known: who comes near would be taken for its light
     const bool looks = patched_ || frames_ % kPatchTurns == 0;
     if (!looks || marked_.pixels < kPatchMarks * size_.area()) return patched_ = false;
     const std::optional<cv::Mat> gains = patches_.measure(planes.luma, luma_, black_);
@@ -351,7 +357,7 @@ class AdaptiveBackground final : public Background {
   AdaptiveOptions options_;
   int black_ = 0;
   cv::Size size_;
-  bool colour_ = false, learned_ahead_ = false;
+  bool colour_ = false;
 
   ScenePlane luma_{scaled(kLumaFloor), scaled(kGate)};
   ScenePlane cb_{scaled(kChromaFloor), scaled(kGate)};

@@ -20,12 +20,21 @@ class LightPatches {
  private:
   struct Cell {
     int count = 0;
-    int frame = 0, scene = 0, frame2 = 0, scene2 = 0, both = 0;  ///< sums of levels over black, their squares and products
+    int frame = 0, scene = 0, frame2 = 0, scene2 = 0, both = 0;      ///< sums of levels over black, their squares and products
+    int steps = 0, step_frame2 = 0, step_scene2 = 0, step_both = 0;  ///< the same of the steps between neighbours
+
+    void add_step(int is, int was) {
+      ++steps;
+      step_frame2 += is * is, step_scene2 += was * was, step_both += is * was;
+    }
   };
   enum class Answer { unknown, as_before, other };
   static Answer judge(const Cell& cell, float& gain);
+  static bool has_same_steps(const Cell& cell, double gain);
+  bool drop_few();
   void sample(const cv::Mat& luma, const ScenePlane& scene, int black);
 
+  cv::Mat lately_;  ///< CV_8UC1: for how many looks to come a cell counts as one whose light has changed
   cv::Size grid_;
   std::vector<Cell> cells_;
   std::vector<Answer> answers_;

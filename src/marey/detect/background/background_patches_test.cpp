@@ -1,5 +1,6 @@
 #include "marey/detect/background/background_patches.h"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -65,6 +66,39 @@ TEST(LightPatches, AThingBeforeTheSceneIsNoLight) {
   cv::Mat pattern = ground.clone();
   other({100, 60, 64, 120}).copyTo(pattern({100, 60, 64, 120}));
   EXPECT_FALSE(patches.measure(pattern, scene, kBlack)) << "a patterned coat";
+}
+
+TEST(LightPatches, ASlopeThatACoatSharesWithTheWallIsNoLight) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0, 1.5);
+  cv::Mat wall(240, 320, CV_8UC1), coat(240, 320, CV_8UC1);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      const double slope = 25 * std::sin(0.07 * x) * std::cos(0.05 * y);
+      wall.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(140 + slope + noise(random));
+      coat.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(90 + 0.6 * slope + noise(random));
+    }
+  }
+  ScenePlane scene(8, 56);
+  scene.begin(wall);
+  cv::Mat now = wall.clone();
+  const cv::Rect where(80, 40, 160, 200);
+  coat(where).copyTo(now(where));
+  EXPECT_FALSE(LightPatches().measure(now, scene, kBlack));
+}
+
+TEST(LightPatches, OneCellIsNoLightUnlessThereWasSomeBesideIt) {
+  const cv::Mat ground = slabs(5);
+  ScenePlane scene(8, 56);
+  scene.begin(ground);
+  const cv::Rect one(160, 96, 16, 16), many(64, 64, 96, 96);
+  EXPECT_FALSE(LightPatches().measure(lit(ground, one, 0.6), scene, kBlack));
+  LightPatches patches;
+  ASSERT_TRUE(patches.measure(lit(ground, many, 0.6), scene, kBlack));
+  EXPECT_TRUE(patches.measure(lit(ground, one, 0.6), scene, kBlack));
+  EXPECT_FALSE(patches.measure(lit(ground, one + cv::Point(96, 64), 0.6), scene, kBlack));
+  for (int look = 0; look < 40; ++look) patches.measure(ground, scene, kBlack);
+  EXPECT_FALSE(patches.measure(lit(ground, one, 0.6), scene, kBlack)) << "long ago";
 }
 
 TEST(LightPatches, TakePicturesOfAnySize) {
