@@ -1,4 +1,4 @@
-"""That script/check-names and script/check-layers catch what they are for: each fault is planted in a small house of its own.
+"""That script/check-names, script/check-layers and script/check-words catch what they are for: each fault is planted in a small house of its own.
 
 Usage: checks_test.py PROJECT [unittest options].
 """
@@ -87,6 +87,32 @@ class Checks(unittest.TestCase):
         self.plant("experiments/a.cpp", '#include "marey/track/gone.h"\n')
         self.plant("src/marey/attic/a.h", "")
         self.check("check-layers", 1, '"marey/track/gone.h" is not there', "attic is not a room")
+
+    def count_words(self, *rules):
+        self.plant("script/words.txt", "\n".join(["allow  prose  look-up", *rules]) + "\n")
+        subprocess.run(["git", "init", "-q", "."], cwd=self.root, check=True)
+        subprocess.run(["git", "add", "-A"], cwd=self.root, check=True)
+
+    def test_words_are_counted_in_every_scope(self):
+        self.plant("src/marey/track/told.h", "// who looks\nnamespace marey::track {\nint kLongestGap();\nstruct ToldTrack {};\n}\n")
+        self.plant("src/marey/track/told_test.cpp", 'TEST(Told, WhatIsNone) { f("a picture", "picture"); }\n')
+        self.plant("docs/a.md", "A picture, a look-up.\n```\npicture\n```\n`picture`\n")
+        self.count_words("id 1 _told_  ->  x", "const 1 ^kLongest  ->  x", "path 2 ^told  ->  x", "prose 2 \\bpictures?\\b  ->  x", "prose 1 \\blook  ->  x",
+                         "test 1 ^What  ->  x")
+        self.check("check-words", 0, "1 id, 1 const, 2 path, 2 prose, 1 test")
+
+    def test_a_count_that_rises_fails_and_names_the_rule(self):
+        self.plant("docs/a.md", "A picture.\nAnother picture.\n")
+        self.count_words("prose 1 \\bpicture\\b  ->  image")
+        done = subprocess.run([PROJECT / "script/check-words", self.root], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("rule 1: 2 hits, 1 before", done.stderr)
+        subprocess.run([PROJECT / "script/check-words", "--update", self.root], capture_output=True, check=True, timeout=60)
+        self.assertEqual((self.root / "script/words.txt").read_text().splitlines()[1], "prose 2 \\bpicture\\b  ->  image")
+
+    def test_words_outside_a_working_tree_are_not_counted(self):
+        self.plant("script/words.txt", "prose 1 picture  ->  image\n")
+        self.check("check-words", 77, "needs a git working tree")
 
 
 if __name__ == "__main__":
