@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSmallestCell = 8;  // px
 constexpr int kMostCells = 4096;     // a camera
-constexpr std::size_t kGrain = 512;  // blobs: lens inversions that are worth a task
+constexpr std::size_t kGrain = 512;  // blobs: lens inversions that are worth a task (unswept)
 
 double sigma_of(const Observation<2>& one, double noise_px) {
   return std::max(std::sqrt(std::max(0.0, one.covariance.trace() / 2) + noise_px * noise_px), 1e-6);
