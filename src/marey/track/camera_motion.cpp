@@ -51,8 +51,11 @@ struct CameraMotion::Pair {
 
 void CameraMotion::predict(double dt) {
   dt_ = dt;
-  if (dt <= 0) return;
-  view_from_scene_ = Similarity2::about(middle_, std::exp(dt * rate_.zoom), dt * rate_.roll, dt * rate_.shift) * view_from_scene_;
+  if (dt > 0) view_from_scene_ = view_from_scene(dt);
+}
+
+Similarity2 CameraMotion::view_from_scene(double dt) const {
+  return Similarity2::about(middle_, std::exp(dt * rate_.zoom), dt * rate_.roll, dt * rate_.shift) * view_from_scene_;
 }
 
 /// Whom each expected person would be under this shift: the best of those seen, where there is one.

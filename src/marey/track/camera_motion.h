@@ -34,6 +34,8 @@ class CameraMotion {
 
   /// From the picture of the first frame, continued to all sides, to that of now.
   const geometry::Similarity2& view_from_scene() const { return view_from_scene_; }
+  /// The same `dt` s later, if the camera goes on as it did.
+  geometry::Similarity2 view_from_scene(double dt) const;
 
  private:
   /// In a step, or in a second.

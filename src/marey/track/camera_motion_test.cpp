@@ -60,6 +60,21 @@ TEST(CameraMotion, FollowsAPanThatBeginsSlowly) {
   }
 }
 
+TEST(CameraMotion, ExpectsAPanToGoOn) {
+  Stand stand(10, 1);
+  CameraMotion camera;
+  geometry::Similarity2 truth;
+  for (int frame = 0; frame < 100; ++frame) {
+    truth.shift.x() += 5;
+    stand.show(camera, truth);
+  }
+  const Vector<2> middle(640, 400), now = camera.view_from_scene() * middle;
+  EXPECT_EQ(camera.view_from_scene(0) * middle, now);
+  const Vector<2> ahead = camera.view_from_scene(5 * kStep) * middle - now;
+  EXPECT_NEAR(ahead.x(), 25, 6) << "px, in five frames";
+  EXPECT_NEAR(ahead.y(), 0, 6);
+}
+
 /// A few people who run apart look like a zoom: it is believed with caution, and what is left the people's own filters follow.
 TEST(CameraMotion, BelievesZoomWithCaution) {
   for (unsigned seed = 1; seed <= 20; ++seed) {

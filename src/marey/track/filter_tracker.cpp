@@ -58,13 +58,14 @@ std::span<const Track<2>> FilterTracker::step(Timestamp now, std::span<const Cam
 
 std::span<const Track<2>> FilterTracker::expected(Timestamp now) {
   const double dt = std::max(0.0, seconds_to(now));
+  const geometry::Similarity2 view_from_scene = scene_.view_from_scene(dt);
   tracks_.clear();
   for (const Target& target : targets_) {
     if (!target.confirmed()) continue;
     Target ahead = target;
     ahead.filter.predict(dt);
     ahead.shown.reset();
-    tracks_.push_back(track_of(ahead));
+    tracks_.push_back(track_of(ahead, view_from_scene));
     tracks_.back().provenance = Provenance::predicted;
     tracks_.back().observation.reset();
   }
@@ -226,8 +227,7 @@ void FilterTracker::start(const Observation<2>& observation, int index) {
   if (has_box) target.size.emplace(*observation.box, size_options_);
 }
 
-Track<2> FilterTracker::track_of(const Target& target) const {
-  const geometry::Similarity2& view_from_scene = scene_.view_from_scene();
+Track<2> FilterTracker::track_of(const Target& target, const geometry::Similarity2& view_from_scene) {
   const Matrix<2>& turn = view_from_scene.turn;
   Track<2> track;
   track.id = target.id;
@@ -245,7 +245,7 @@ Track<2> FilterTracker::track_of(const Target& target) const {
 
 std::span<const Track<2>> FilterTracker::report() {
   tracks_.clear();
-  for (const Target& target : targets_) tracks_.push_back(track_of(target));
+  for (const Target& target : targets_) tracks_.push_back(track_of(target, scene_.view_from_scene()));
   match_by_observation();
   return tracks_;
 }

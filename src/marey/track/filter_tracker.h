@@ -68,7 +68,7 @@ class FilterTracker final : public ImmediateTracker<2> {
   void start(const Observation<2>& observation, int index);
   bool is_duplicate(int index, Seen seen) const;
 
-  Track<2> track_of(const Target& target) const;
+  static Track<2> track_of(const Target& target, const geometry::Similarity2& view_from_scene);
   std::span<const Track<2>> report();
 
   TrackerOptions options_;

@@ -23,6 +23,8 @@ class SceneView {
   std::span<const Sighting> sightings() const { return sightings_; }
 
   const geometry::Similarity2& view_from_scene() const { return camera_.view_from_scene(); }
+  /// As it will be `dt` s later.
+  geometry::Similarity2 view_from_scene(double dt) const { return camera_.view_from_scene(dt); }
 
  private:
   CameraMotion camera_;

@@ -91,7 +91,7 @@ TEST(LightPatches, OneCellIsNoLightUnlessThereWasSomeBesideIt) {
   const cv::Mat ground = slabs(5);
   ScenePlane scene(8, 56);
   scene.begin(ground);
-  const cv::Rect one(160, 96, 16, 16), many(64, 64, 96, 96);
+  const cv::Rect one(160, 96, 18, 18), many(64, 64, 98, 98);
   EXPECT_FALSE(LightPatches().measure(lit(ground, one, 0.6), scene, kBlack));
   LightPatches patches;
   ASSERT_TRUE(patches.measure(lit(ground, many, 0.6), scene, kBlack));
