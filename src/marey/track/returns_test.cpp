@@ -15,9 +15,9 @@
 namespace marey::track {
 namespace {
 
-constexpr double kRate = 10;  // Hz
-constexpr double kWidth = 800, kHeight = 600, kTall = 80;
-const Box kPicture{0, 0, kWidth, kHeight};
+constexpr double kReturnsRate = 10;  // Hz
+constexpr double kPictureWidth = 800, kPictureHeight = 600, kTallness = 80;
+const Box kPicture{0, 0, kPictureWidth, kPictureHeight};
 
 /// People who walk through the picture at a height of their own, leave it at a side, and come back there after 2 to 10 s; some do
 /// not, and somebody else comes in their stead.
@@ -25,7 +25,7 @@ class ComingAndGoing {
  public:
   ComingAndGoing(unsigned seed, bool own_clothes, bool return_at_all = true, int frames = 600)
       : random_(seed), own_clothes_(own_clothes), return_at_all_(return_at_all) {
-    for (int k = 0; k < 12; ++k) people_.push_back(somebody(uniform(50, kWidth - 50)));
+    for (int k = 0; k < 12; ++k) people_.push_back(somebody(uniform(50, kPictureWidth - 50)));
     for (int frame = 0; frame < frames; ++frame) step(frame);
   }
 
@@ -53,7 +53,7 @@ class ComingAndGoing {
     one.id = ++last_person_;
     one.track = ++last_track_;
     one.x = x;
-    one.y = uniform(100, kHeight - 60);
+    one.y = uniform(100, kPictureHeight - 60);
     one.vx = (uniform(0, 1) < 0.5 ? 1 : -1) * uniform(40, 160);
     const bool red = one.id % 2 == 0;
     for (std::size_t part = 0; part < 3; ++part) {
@@ -76,18 +76,18 @@ class ComingAndGoing {
     for (Person& one : people_) {
       if (one.away && frame >= one.comes_back) come_back(one);
       if (one.away) continue;
-      one.x += one.vx / kRate;
-      one.y = std::clamp(one.y + uniform(-3, 3), 90.0, kHeight - 50);
-      if (one.x < 0 || one.x > kWidth) {
+      one.x += one.vx / kReturnsRate;
+      one.y = std::clamp(one.y + uniform(-3, 3), 90.0, kPictureHeight - 50);
+      if (one.x < 0 || one.x > kPictureWidth) {
         one.away = true;
-        one.comes_back = frame + static_cast<int>(kRate * uniform(2, 10));
+        one.comes_back = frame + static_cast<int>(kReturnsRate * uniform(2, 10));
         continue;
       }
       Track<2> track;
       track.id = TrackId{one.track};
       track.position = {one.x, one.y};
-      const double left = std::max(0.0, one.x - 16), right = std::min(kWidth, one.x + 16);
-      track.box = Box{left, one.y - kTall / 2, std::max(4.0, right - left), kTall};
+      const double left = std::max(0.0, one.x - 16), right = std::min(kPictureWidth, one.x + 16);
+      track.box = Box{left, one.y - kTallness / 2, std::max(4.0, right - left), kTallness};
       track.score = 0.9;
       track.observation = static_cast<int>(clothes.size());
       std::array<Appearance, 3> seen = one.wears;
@@ -96,21 +96,21 @@ class ComingAndGoing {
       tracks.push_back(track);
     }
     std::sort(tracks.begin(), tracks.end(), [](const Track<2>& a, const Track<2>& b) { return a.id < b.id; });
-    log.add(frame, timestamp_from_seconds(frame / kRate), tracks, clothes);
+    log.add(frame, timestamp_from_seconds(frame / kReturnsRate), tracks, clothes);
   }
 
   void come_back(Person& one) {
-    const double side = one.x < kWidth / 2 ? 1 : kWidth - 1;
+    const double side = one.x < kPictureWidth / 2 ? 1 : kPictureWidth - 1;
     if (!return_at_all_ || uniform(0, 1) < 1.0 / 6) {
-      one = somebody(uniform(0, 1) < 0.5 ? 1 : kWidth - 1);
-      one.vx = one.x < kWidth / 2 ? std::abs(one.vx) : -std::abs(one.vx);
+      one = somebody(uniform(0, 1) < 0.5 ? 1 : kPictureWidth - 1);
+      one.vx = one.x < kPictureWidth / 2 ? std::abs(one.vx) : -std::abs(one.vx);
       return;
     }
     one.away = false;
     one.track = ++last_track_;
     one.x = side;
-    one.y = std::clamp(one.y + std::normal_distribution<double>(0, 40)(random_), 100.0, kHeight - 60);
-    one.vx = (side < kWidth / 2 ? 1 : -1) * uniform(40, 160);
+    one.y = std::clamp(one.y + std::normal_distribution<double>(0, 40)(random_), 100.0, kPictureHeight - 60);
+    one.vx = (side < kPictureWidth / 2 ? 1 : -1) * uniform(40, 160);
     begin(one);
   }
 
@@ -148,11 +148,11 @@ TEST(Returns, WhoComesBackInClothesOfTheirOwnIsKnown) {
   EXPECT_LE(outcome.joined_wrongly, 0.03 * outcome.returns);
 }
 
-TEST(Returns, OfTwoTeamsManyAreToldByPlaceAndTime) {
+TEST(Returns, OfTwoTeamsSomeAreToldByPlaceAndTime) {
   const Outcome outcome = outcome_of(false, true, 600, 10);
   ASSERT_GT(outcome.returns, 100);
-  EXPECT_GT(outcome.right, 0.2 * outcome.returns) << "seeds 600 to 609";
-  EXPECT_LE(outcome.joined_wrongly, 0.05 * outcome.returns);
+  EXPECT_GT(outcome.right, 0.1 * outcome.returns) << "seeds 600 to 609";
+  EXPECT_LE(outcome.joined_wrongly, 0.03 * outcome.returns);
 }
 
 TEST(Returns, WhereNobodyReturnsHardlyAnybodyIsJoined) {
@@ -197,7 +197,7 @@ TEST(Returns, TheSecondPassGivesOneNumberAndFillsNothingBetween) {
   for (auto& [id, at] : frames) {
     for (std::size_t i = 1; i < at.size(); ++i) {
       EXPECT_GT(at[i], at[i - 1]) << "nobody is in two places at once";
-      gap = gap || at[i] - at[i - 1] > 2 * kRate;
+      gap = gap || at[i] - at[i - 1] > 2 * kReturnsRate;
     }
   }
   EXPECT_TRUE(gap);
