@@ -10,6 +10,7 @@ namespace {
 constexpr double kNearSpan = 0.2, kFarSpan = 0.48;  // s
 constexpr double kFirstCount = 300;                 // differences that the first levels count for
 constexpr double kMostCounted = 4000;               // differences that are remembered
+constexpr double kLeastSquare = 1e-8;               // of a difference
 constexpr double kOutlier = 9;                      // times the mean
 // Levels beyond these are no people's.
 constexpr double kLeastPlace = 0.003, kMostPlace = 0.15;
@@ -70,8 +71,19 @@ void BoxNoise::Differences::MeanSquare::add(double square, double first) {
 }
 
 double BoxNoise::Differences::MeanSquare::with(double first) const {
-  const double first_count = kFirstCount * (1 - count / kMostCounted);  // nothing where the memory is full of the recording itself
-  return (count * value + first_count * first) / (count + first_count);
+  const double share = share_of_own();
+  return share * value + (1 - share) * first;
+}
+
+/// 1 where the memory is full of the recording itself.
+double BoxNoise::Differences::MeanSquare::share_of_own() const {
+  return count / (count + kFirstCount * (1 - count / kMostCounted));
+}
+
+/// The geometric mean of both.
+double BoxNoise::Differences::MeanSquare::soon_with(double first) const {
+  const double share = share_of_own();
+  return std::pow(std::max(value, kLeastSquare), share) * std::pow(first, 1 - share);
 }
 
 void BoxNoise::Differences::add(const BoxTrail& trail, std::size_t frames, double dt, const BoxNoiseLevels& first) {
@@ -84,12 +96,14 @@ void BoxNoise::Differences::add(const BoxTrail& trail, std::size_t frames, doubl
   place_.add(bend.squaredNorm() / 2, place_difference(first, span));
 }
 
-double BoxNoise::Differences::place(const BoxNoiseLevels& first, double span) const {
-  return place_.with(place_difference(first, span));
+double BoxNoise::Differences::place(const BoxNoiseLevels& first, double span, Trust trust) const {
+  const double before = place_difference(first, span);
+  return trust == Trust::soon ? place_.soon_with(before) : place_.with(before);
 }
 
-double BoxNoise::Differences::size(const BoxNoiseLevels& first, double span) const {
-  return size_.with(size_difference(first, span));
+double BoxNoise::Differences::size(const BoxNoiseLevels& first, double span, Trust trust) const {
+  const double before = size_difference(first, span);
+  return trust == Trust::soon ? size_.soon_with(before) : size_.with(before);
 }
 
 void BoxNoise::see(const BoxTrail& trail, double dt) {
@@ -102,10 +116,10 @@ void BoxNoise::see(const BoxTrail& trail, double dt) {
 }
 
 /// Two distances, two unknowns, for places and for sizes.
-BoxNoiseLevels BoxNoise::solved(const Differences& shorter, double near, const Differences& longer, double far) const {
-  const double place_near = shorter.place(first_, near), place_far = longer.place(first_, far);
+BoxNoiseLevels BoxNoise::solved(const Differences& shorter, double near, const Differences& longer, double far, Trust trust) const {
+  const double place_near = shorter.place(first_, near, trust), place_far = longer.place(first_, far, trust);
   const double q = std::max(0.0, (place_far - place_near) * 1.5 / (cube(far) - cube(near)));
-  const double size_near = shorter.size(first_, near), size_far = longer.size(first_, far);
+  const double size_near = shorter.size(first_, near, trust), size_far = longer.size(first_, far, trust);
   const double d = std::max(0.0, (size_far - size_near) / (far - near));
   return {.place = root_within((place_near - 2.0 / 3 * q * cube(near)) / 6, kLeastPlace, kMostPlace),
           .acceleration = root_within(q, kLeastAcceleration, kMostAcceleration),
@@ -113,23 +127,23 @@ BoxNoiseLevels BoxNoise::solved(const Differences& shorter, double near, const D
           .drift = root_within(d, kLeastDrift, kMostDrift)};
 }
 
-BoxNoiseLevels BoxNoise::levels() const {
+BoxNoiseLevels BoxNoise::levels(Trust trust) const {
   if (dt_ <= 0) return first_;
-  return solved(near_, static_cast<double>(near_frames(dt_)) * dt_, far_, static_cast<double>(far_frames(dt_)) * dt_);
+  return solved(near_, static_cast<double>(near_frames(dt_)) * dt_, far_, static_cast<double>(far_frames(dt_)) * dt_, trust);
 }
 
 /// At rates so low that a frame is as long as the shorter distance, nothing is known to last.
-BoxNoiseLevels BoxNoise::levels_of_a_frame() const {
-  if (dt_ <= 0 || near_frames(dt_) == 1) return levels();
-  BoxNoiseLevels levels = solved(frame_, dt_, near_, static_cast<double>(near_frames(dt_)) * dt_);
-  const BoxNoiseLevels shortest = solved(frame_, dt_, two_frames_, 2 * dt_);  // over which poses change smoothly
+BoxNoiseLevels BoxNoise::levels_of_a_frame(Trust trust) const {
+  if (dt_ <= 0 || near_frames(dt_) == 1) return levels(trust);
+  BoxNoiseLevels levels = solved(frame_, dt_, near_, static_cast<double>(near_frames(dt_)) * dt_, trust);
+  const BoxNoiseLevels shortest = solved(frame_, dt_, two_frames_, 2 * dt_, trust);  // over which poses change smoothly
   levels.place = std::min(levels.place, shortest.place);
   levels.size = std::min(levels.size, shortest.size);
   return levels;
 }
 
 LastingShares lasting_shares(const BoxNoise& noise) {
-  const BoxNoiseLevels frame = noise.levels_of_a_frame(), all = noise.levels();
+  const BoxNoiseLevels frame = noise.levels_of_a_frame(BoxNoise::Trust::soon), all = noise.levels(BoxNoise::Trust::soon);
   const auto share = [](double of_a_frame, double in_all) {
     return std::max(0.0, 1 - of_a_frame * of_a_frame / (in_all * in_all));
   };

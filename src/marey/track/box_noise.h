@@ -46,6 +46,8 @@ class BoxTrail {
   std::size_t next_ = 0;
 };
 
+struct LastingShares;
+
 class BoxNoise {
  public:
   /// `first` counts until more is known.
@@ -55,29 +57,39 @@ class BoxNoise {
   void see(const BoxTrail& trail, double dt);
 
   /// What a box errs by beside the body, a detector's lasting errors and poses included.
-  BoxNoiseLevels levels() const;
+  BoxNoiseLevels levels() const { return levels(Trust::slow); }
   /// What of it is new in every frame.
-  BoxNoiseLevels levels_of_a_frame() const;
+  BoxNoiseLevels levels_of_a_frame() const { return levels_of_a_frame(Trust::slow); }
   /// Time from frame to frame of what was taken in, s; 0 before.
   double frame_time() const { return dt_; }
 
  private:
+  friend LastingShares lasting_shares(const BoxNoise& noise);
+
+  /// How soon what was seen counts more than the first levels: for following, where too little noise loses people, slowly; for
+  /// what is written soon, and in proportion, for it may be a hundredth of the first level.
+  enum class Trust { slow, soon };
+
   /// Squares of differences over a number of frames, of places and of sizes.
   class Differences {
    public:
     void add(const BoxTrail& trail, std::size_t frames, double dt, const BoxNoiseLevels& first);
-    double place(const BoxNoiseLevels& first, double span) const;
-    double size(const BoxNoiseLevels& first, double span) const;
+    double place(const BoxNoiseLevels& first, double span, Trust trust) const;
+    double size(const BoxNoiseLevels& first, double span, Trust trust) const;
 
    private:
     struct MeanSquare {
       double value = 0, count = 0;
       void add(double square, double first);
       double with(double first) const;
+      double share_of_own() const;
+      double soon_with(double first) const;
     };
     MeanSquare place_, size_;
   };
-  BoxNoiseLevels solved(const Differences& shorter, double near, const Differences& longer, double far) const;
+  BoxNoiseLevels solved(const Differences& shorter, double near, const Differences& longer, double far, Trust trust) const;
+  BoxNoiseLevels levels(Trust trust) const;
+  BoxNoiseLevels levels_of_a_frame(Trust trust) const;
 
   BoxNoiseLevels first_;
   double dt_ = 0;

@@ -48,6 +48,7 @@ TrackRow cubic_row(const TrackRow& from, const TrackRow& to, const TrackRow& gue
   row.y = on_cubic(from.y, from.vy, to.y, to.vy, span, u);
   row.vx = static_cast<float>((to.x - from.x) / span);
   row.vy = static_cast<float>((to.y - from.y) / span);
+  row.provenance = Provenance::filled;
   row.left = row.x - (row.width - 1) / 2;
   row.top = row.y - (row.height - 1) / 2;
   return row;

@@ -33,7 +33,10 @@ constexpr double kFirstNewcomers = 0.1;  // 1/s, likewise
 constexpr std::array<double, 4> kSpreads{0.4, 0.65, 1,
                                          1.6};  // factors on how far from where they went out people come in: tried all
 constexpr double kSpreadUnsure = 0.7;           // deviation of the logarithm of that, before anything is known
-constexpr double kAtOnce = 1;                   // s at both bounds of the recording, where tracks begin and end of themselves
+// With few comings, how often and where people come is hardly known, and the clothes must do by themselves. Unswept.
+constexpr int kFewestComings = 8;
+constexpr double kClothesAlone = 5;  // logarithm of the likelihood ratio
+constexpr double kAtOnce = 1;        // s at both bounds of the recording, where tracks begin and end of themselves
 
 enum class Side { left, right, top, bottom };
 
@@ -185,6 +188,7 @@ class Returns {
     for (std::size_t k = 0; k < weighed.size(); ++k) {
       const assign::GatedPair& pair = weighed[k];
       if (next[static_cast<std::size_t>(pair.row)] != pair.column || beliefs[k] < options_.least_probability) continue;
+      if (comings() < kFewestComings && clothes_[k] < kClothesAlone) continue;
       found.push_back({pair.row, pair.column, head(pair).time - tail(pair).time, beliefs[k]});
     }
     return found;
@@ -237,6 +241,7 @@ class Returns {
       const std::optional<double> clothes = wardrobe.log_ratio(row, column);
       if (!clothes) return;
       pairs_.push_back({row, column, *clothes + log_time(away)});
+      clothes_.push_back(*clothes);
     });
   }
 
@@ -281,11 +286,15 @@ class Returns {
     return (std::min(left, usually) + fading * (1 - std::exp(-std::max(0.0, left - usually) / fading))) / (usually + fading);
   }
 
+  std::ptrdiff_t comings() const {
+    return std::count_if(heads_.begin(), heads_.end(), [](const Crossing& in) { return in.of_border && !in.of_recording; });
+  }
+
   void learn_rates(std::span<const double> beliefs) {
-    double returned = 0, could = 2, came = 0;
+    const auto came = static_cast<double>(comings());
+    double returned = 0, could = 2;
     for (const double belief : beliefs) returned += belief;
     for (const Crossing& out : tails_) could += out.of_border && !out.of_recording ? come_back_by_end(out) : 0;
-    for (const Crossing& in : heads_) came += in.of_border && !in.of_recording ? 1 : 0;
     share_ = std::clamp((returned + 2 * kFirstShare) / could, 0.02, 0.95);
     newcomers_ = std::max(0.5, came - returned) / std::max(1.0, end_ - begin_);
   }
@@ -295,6 +304,7 @@ class Returns {
   double begin_ = 0, end_ = 0;            // s, of the recording
   std::vector<Crossing> heads_, tails_;   // of the tracklets
   std::vector<assign::GatedPair> pairs_;  // tails and heads
+  std::vector<double> clothes_;           // of each pair, the logarithm of what clothes say
   double share_ = kFirstShare;            // of those who leave, who come back
   double newcomers_ = kFirstNewcomers;    // 1/s
 };

@@ -132,7 +132,7 @@ TEST(TrackFile, MotCountsFramesAndPixelsFromOneAndHoldsBoxesAlone) {
 TEST(TrackFile, CsvHasAHeaderAndLeavesEmptyWhatIsMissing) {
   EXPECT_EQ(written(TrackText::csv),
             "frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n"
-            "6,0.240000,3,,12.500,30.000,-1.25,0.00,9.00,20.00,8.00,21.00,observed\n"
+            "6,0.240000,3,,12.500,30.000,-1.25,0.00,9.00,20.00,8.00,21.00,measured\n"
             "6,0.240000,4,\"the \"\"tall\"\", one\",1.000,2.000,,,,,,,predicted\n");
 }
 
