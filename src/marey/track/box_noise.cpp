@@ -10,7 +10,7 @@ namespace {
 constexpr double kNearSpan = 0.2, kFarSpan = 0.48;  // s
 constexpr double kFirstCount = 300;                 // differences that the first levels count for
 constexpr double kMostCounted = 4000;               // differences that are remembered
-constexpr double kLeastSquare = 1e-8;               // of a difference
+constexpr double kMinSquare = 1e-8;                 // of a difference
 constexpr double kOutlier = 9;                      // times the mean
 // Levels beyond these are no people's.
 constexpr double kLeastPlace = 0.003, kMostPlace = 0.15;
@@ -71,19 +71,19 @@ void BoxNoise::Differences::MeanSquare::add(double square, double first) {
 }
 
 double BoxNoise::Differences::MeanSquare::with(double first) const {
-  const double share = share_of_own();
-  return share * value + (1 - share) * first;
+  const double weight = recording_weight();
+  return weight * value + (1 - weight) * first;
 }
 
 /// 1 where the memory is full of the recording itself.
-double BoxNoise::Differences::MeanSquare::share_of_own() const {
+double BoxNoise::Differences::MeanSquare::recording_weight() const {
   return count / (count + kFirstCount * (1 - count / kMostCounted));
 }
 
 /// The geometric mean of both.
 double BoxNoise::Differences::MeanSquare::soon_with(double first) const {
-  const double share = share_of_own();
-  return std::pow(std::max(value, kLeastSquare), share) * std::pow(first, 1 - share);
+  const double weight = recording_weight();
+  return std::pow(std::max(value, kMinSquare), weight) * std::pow(first, 1 - weight);
 }
 
 void BoxNoise::Differences::add(const BoxTrail& trail, std::size_t frames, double dt, const BoxNoiseLevels& first) {

@@ -66,8 +66,8 @@ class BoxNoise {
  private:
   friend LastingShares lasting_shares(const BoxNoise& noise);
 
-  /// How soon what was seen counts more than the first levels: for following, where too little noise loses people, slowly; for
-  /// what is written soon, and in proportion, for it may be a hundredth of the first level.
+  /// How soon the recording's own differences outweigh the first levels: slowly for tracking, where too little noise loses people;
+  /// soon and in proportion for written boxes, whose noise may be a hundredth of the first level.
   enum class Trust { slow, soon };
 
   /// Squares of differences over a number of frames, of places and of sizes.
@@ -82,7 +82,7 @@ class BoxNoise {
       double value = 0, count = 0;
       void add(double square, double first);
       double with(double first) const;
-      double share_of_own() const;
+      double recording_weight() const;
       double soon_with(double first) const;
     };
     MeanSquare place_, size_;

@@ -33,8 +33,8 @@ constexpr double kFirstNewcomers = 0.1;  // 1/s, likewise
 constexpr std::array<double, 4> kSpreads{0.4, 0.65, 1,
                                          1.6};  // factors on how far from where they went out people come in: tried all
 constexpr double kSpreadUnsure = 0.7;           // deviation of the logarithm of that, before anything is known
-// With few comings, how often and where people come is hardly known, and the clothes must do by themselves. Unswept.
-constexpr int kFewestComings = 8;
+// With few entries, the rate and the density of entries are uncertain, and clothes must suffice. Unswept.
+constexpr int kMinComings = 8;
 constexpr double kClothesAlone = 5;  // logarithm of the likelihood ratio
 constexpr double kAtOnce = 1;        // s at both bounds of the recording, where tracks begin and end of themselves
 
@@ -188,7 +188,7 @@ class Returns {
     for (std::size_t k = 0; k < weighed.size(); ++k) {
       const assign::GatedPair& pair = weighed[k];
       if (next[static_cast<std::size_t>(pair.row)] != pair.column || beliefs[k] < options_.least_probability) continue;
-      if (comings() < kFewestComings && clothes_[k] < kClothesAlone) continue;
+      if (comings() < kMinComings && clothes_[k] < kClothesAlone) continue;
       found.push_back({pair.row, pair.column, head(pair).time - tail(pair).time, beliefs[k]});
     }
     return found;
@@ -304,7 +304,7 @@ class Returns {
   double begin_ = 0, end_ = 0;            // s, of the recording
   std::vector<Crossing> heads_, tails_;   // of the tracklets
   std::vector<assign::GatedPair> pairs_;  // tails and heads
-  std::vector<double> clothes_;           // of each pair, the logarithm of what clothes say
+  std::vector<double> clothes_;           // of each pair: log-likelihood ratio of the clothes
   double share_ = kFirstShare;            // of those who leave, who come back
   double newcomers_ = kFirstNewcomers;    // 1/s
 };
