@@ -21,10 +21,10 @@
 namespace marey::track {
 
 struct ReturnOptions {
-  double longest_away = 15;        ///< s
-  double shortest_away = 0.4;      ///< s
-  double usually_away = 5;         ///< s: who comes back does so at any time up to this, more seldom later
-  double least_probability = 0.9;  ///< of a pair, to be joined; above 1: nobody is
+  double longest_away = 15;         ///< s
+  double shortest_away = 0.4;       ///< s
+  double usually_away = 5;          ///< s: who comes back does so at any time up to this, more seldom later
+  double least_probability = 0.95;  ///< of a pair, to be joined; above 1: nobody is
   double along = 0.06;    ///< heights along the border for each second away, at its sides; a person walks away from us there
   double across = 0.4;    ///< the same at its top and bottom
   double anywhere = 0.1;  ///< share of those who come back anywhere along the border
