@@ -230,32 +230,70 @@ void print(const std::string& name, const Score& score) {
   std::fflush(stdout);
 }
 
+struct Sweep {
+  int frames = 1500, seeds = 2, first_seed = 1;
+  bool plain = false, explained = false;
+  double rate = 12.5, pace = 1.3;
+  track::ReturnOptions tried;
+  std::vector<double> thresholds{2, 0.5, 0.7, 0.8, 0.9, 0.95};
+};
+
+void add_options(CLI::App& app, Sweep& sweep) {
+  app.add_option("--frames", sweep.frames);
+  app.add_option("--seeds", sweep.seeds);
+  app.add_option("--first-seed", sweep.first_seed);
+  app.add_option("--rate", sweep.rate);
+  app.add_option("--pace", sweep.pace);
+  app.add_flag("--explain", sweep.explained);
+  app.add_flag("--plain", sweep.plain, "sharp images, as no camera records them");
+  app.add_option("--least", sweep.thresholds, "minimum probabilities of a pair; 2: no pairs");
+  app.add_option("--longest", sweep.tried.longest_away);
+  app.add_option("--usually", sweep.tried.usually_away);
+  app.add_option("--along", sweep.tried.along);
+  app.add_option("--across", sweep.tried.across);
+  app.add_option("--anywhere", sweep.tried.anywhere);
+}
+
+Filmed rendered(const Kind& kind, const Sweep& sweep, int seed) {
+  PeopleFilmOptions options;
+  options.frames = sweep.frames;
+  options.people = 12;
+  options.rate_hz = sweep.rate;
+  options.pace = sweep.pace;
+  options.own_clothes = kind.own_clothes;
+  if (!sweep.plain) options.look = {0.6, 0.2, 1.5, 1.5, 0.5, 8};
+  return film(options, kind.situation, static_cast<std::uint64_t>(seed));
+}
+
+/// For each minimum probability, the sum over the seeds.
+std::vector<Score> scores(const Kind& kind, const Sweep& sweep) {
+  std::vector<Score> sums(sweep.thresholds.size());
+  for (int seed = sweep.first_seed; seed < sweep.first_seed + sweep.seeds; ++seed) {
+    const Filmed filmed = rendered(kind, sweep, seed);
+    for (std::size_t k = 0; k < sweep.thresholds.size(); ++k) {
+      track::JoinOptions join;
+      join.view = Box{0, 0, 1.0 * filmed.size.width, 1.0 * filmed.size.height};
+      join.returns = sweep.tried;
+      join.returns.least_probability = sweep.thresholds[k];
+      track::TrackletLog log = filmed.log;
+      const std::vector<track::TrackRow> rows = track::join(log, join);
+      sums[k].add(judge(filmed, rows));
+      if (sweep.explained) explain(filmed, rows);
+    }
+  }
+  return sums;
+}
+
 }  // namespace
 }  // namespace marey
 
 int main(int argc, char** argv) {
   using namespace marey;
   CLI::App app;
-  int frames = 1500, seeds = 2, first_seed = 1;
-  bool plain = false, explained = false;
-  double rate = 12.5, pace = 1.3;
+  Sweep sweep;
   std::string only;
-  app.add_option("--frames", frames);
-  app.add_option("--seeds", seeds);
-  app.add_option("--first-seed", first_seed);
-  app.add_option("--rate", rate);
-  app.add_option("--pace", pace);
-  app.add_option("--only", only, "scenes whose name holds this");
-  app.add_flag("--explain", explained);
-  app.add_flag("--plain", plain, "sharp pictures, as no camera gives them");
-  track::ReturnOptions tried;
-  std::vector<double> least{2, 0.5, 0.7, 0.8, 0.9};
-  app.add_option("--least", least, "probabilities from which on two are joined; 2: nobody");
-  app.add_option("--longest", tried.longest_away);
-  app.add_option("--usually", tried.usually_away);
-  app.add_option("--along", tried.along);
-  app.add_option("--across", tried.across);
-  app.add_option("--anywhere", tried.anywhere);
+  add_options(app, sweep);
+  app.add_option("--only", only, "scenes whose name contains this");
   CLI11_PARSE(app, argc, argv);
   fmt::print("| scene | returns | same number | another's | newcomers | another's | people | numbers |\n");
   fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- |\n");
@@ -264,27 +302,7 @@ int main(int argc, char** argv) {
         Kind{"nobody returns, two teams", PeopleSituation::crowd, false},
         Kind{"nobody returns, clothes of their own", PeopleSituation::crowd, true}}) {
     if (kind.name.find(only) == std::string::npos) continue;
-    std::vector<Score> sums(least.size());
-    for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
-      PeopleFilmOptions options;
-      options.frames = frames;
-      options.people = 12;
-      options.rate_hz = rate;
-      options.pace = pace;
-      options.own_clothes = kind.own_clothes;
-      if (!plain) options.look = {0.6, 0.2, 1.5, 1.5, 0.5, 8};
-      const Filmed filmed = film(options, kind.situation, static_cast<std::uint64_t>(seed));
-      for (std::size_t k = 0; k < least.size(); ++k) {
-        track::JoinOptions join;
-        join.view = Box{0, 0, 1.0 * filmed.size.width, 1.0 * filmed.size.height};
-        join.returns = tried;
-        join.returns.least_probability = least[k];
-        track::TrackletLog log = filmed.log;
-        const std::vector<track::TrackRow> rows = track::join(log, join);
-        sums[k].add(judge(filmed, rows));
-        if (explained) explain(filmed, rows);
-      }
-    }
-    for (std::size_t k = 0; k < least.size(); ++k) print(fmt::format("{}, from {} on", kind.name, least[k]), sums[k]);
+    const std::vector<Score> sums = scores(kind, sweep);
+    for (std::size_t k = 0; k < sums.size(); ++k) print(fmt::format("{}, from {} on", kind.name, sweep.thresholds[k]), sums[k]);
   }
 }

@@ -1,14 +1,12 @@
 // Who left the picture and came back.
 //
-// A tracklet that ends where somebody walks out of the picture, and one that begins where somebody walks in, may be one person's
-// though minutes of motion say nothing of it any more. What tells are the clothes (wardrobe.h), the place at the border, and the
-// time: people are away for seconds rather than minutes, and come in again near where they went out, the nearer the sooner (how
-// near is learned too). Against
-// that stands that somebody else comes: how often, and where along the border, is learned from the recording, and so is how many of
-// those who leave come back at all, by turns with who that is. One assignment decides; of its pairs those are joined whose
-// probability over all assignments is high. What the decision rests on, it did not make: clothes of those who were there at the
-// same time are other people's for sure, and where clothes say nothing, place and time alone hardly ever suffice.
-// Nothing is said of where they were meanwhile.
+// A tracklet that ends at the border and a later one that begins there may be one person. Evidence: the appearance of the clothes
+// (wardrobe.h), the position along the border, and the time away: people return within seconds, near the point of exit. The
+// alternative is a new person; the rate and the density of new people along the border, the fraction of people who return and how
+// near they do are estimated from the recording by EM, alternating with the pairing itself, so these rates are not independent of
+// the result. Appearance is: people observed at the same time are different people. One assignment decides; pairs whose probability
+// over all assignments is high are linked. Recordings with few entries need sufficient evidence from clothes (returns.cpp).
+// The gap is not filled.
 // Cost: pairs of an end and a beginning within the longest time away.
 #pragma once
 
