@@ -13,7 +13,7 @@
 namespace marey::python {
 namespace {
 
-nb::dict dict_of(const pipeline::Summary& summary) {
+nb::dict dict_of(const pipeline::corridor::Summary& summary) {
   nb::dict dict;
   dict["frames"] = summary.frames;
   dict["seconds"] = summary.seconds;
@@ -76,7 +76,7 @@ std::vector<std::unique_ptr<Sink>> Outputs::open(Recording& recording) const {
   return sinks;
 }
 
-void Outputs::add_to(pipeline::Sinks& sinks, Recording& recording) const {
+void Outputs::add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const {
   for (std::unique_ptr<Sink>& sink : open(recording)) sinks.add(std::move(sink));
 }
 

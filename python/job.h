@@ -19,7 +19,7 @@
 #include "marey/core/recording.h"
 #include "marey/core/rig.h"
 #include "marey/format/format.h"
-#include "marey/pipeline/run.h"
+#include "marey/pipeline/corridor/run.h"
 
 #include "bindings.h"
 
@@ -116,7 +116,7 @@ auto run_job(const Listening& listening, Work work) {
 
 struct Result {
   Recording recording;
-  pipeline::Summary summary;
+  pipeline::corridor::Summary summary;
 };
 
 /// The recording, and the summary as a dict.
@@ -129,7 +129,7 @@ class Outputs {
   Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras);
 
   std::vector<std::unique_ptr<Sink>> open(Recording& recording) const;
-  void add_to(pipeline::Sinks& sinks, Recording& recording) const;
+  void add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const;
 
  private:
   void keep_inputs(const Options& options, std::span<const RigCamera> cameras) const;

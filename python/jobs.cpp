@@ -7,14 +7,14 @@
 #include "marey/core/source_name.h"
 #include "marey/filter/usual_motion.h"
 #include "marey/format/rig/rig_turns.h"
-#include "marey/pipeline/ground_defaults.h"
-#include "marey/pipeline/live.h"
-#include "marey/pipeline/live_feeds.h"
-#include "marey/pipeline/markers_in_picture.h"
-#include "marey/pipeline/people_in_picture.h"
-#include "marey/pipeline/reconstruct.h"
-#include "marey/pipeline/track_ground.h"
-#include "marey/pipeline/track_in_picture.h"
+#include "marey/pipeline/live/live.h"
+#include "marey/pipeline/live/live_feeds.h"
+#include "marey/pipeline/markers/markers_in_picture.h"
+#include "marey/pipeline/markers/reconstruct.h"
+#include "marey/pipeline/people/ground_defaults.h"
+#include "marey/pipeline/people/people_in_picture.h"
+#include "marey/pipeline/people/track_ground.h"
+#include "marey/pipeline/people/track_in_picture.h"
 
 #include "job.h"
 
@@ -36,21 +36,22 @@ struct OneCamera {
       throw Error("the rate is {} frames a second; it must be positive", *camera.rate_hz);
   }
 
-  pipeline::Feed feed() const {
-    pipeline::FeedOptions how;
+  pipeline::corridor::Feed feed() const {
+    pipeline::corridor::FeedOptions how;
     if (frames != nullptr) how.open = [frames = frames] { return open_frames(frames); };
     how.opens_again = again;
-    pipeline::Feed feed(camera, CameraId{}, how);
+    pipeline::corridor::Feed feed(camera, CameraId{}, how);
     if (detector != nullptr) feed.find(detector_of(detector));
     return feed;
   }
 };
 
-pipeline::Summary run_alone(pipeline::Feed feed, pipeline::Stage& stage, pipeline::Sinks& sinks, const Hooks& hooks) {
-  std::vector<pipeline::Feed> feeds;
+pipeline::corridor::Summary run_alone(pipeline::corridor::Feed feed, pipeline::corridor::Stage& stage,
+                                      pipeline::corridor::Sinks& sinks, const Hooks& hooks) {
+  std::vector<pipeline::corridor::Feed> feeds;
   feeds.push_back(std::move(feed));
-  pipeline::Clock clock(std::move(feeds));
-  return pipeline::run(stage, clock, sinks, hooks);
+  pipeline::corridor::Clock clock(std::move(feeds));
+  return pipeline::corridor::run(stage, clock, sinks, hooks);
 }
 
 /// `make(feed)` is the job's stage.
@@ -61,8 +62,8 @@ nb::tuple in_picture(const Options& options, Make make) {
   return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
     const StopScope scope(hooks.stop);
     Result result;
-    pipeline::Feed feed = camera.feed();
-    pipeline::Sinks sinks;
+    pipeline::corridor::Feed feed = camera.feed();
+    pipeline::corridor::Sinks sinks;
     outputs.add_to(sinks, result.recording);
     const auto stage = make(feed);
     result.summary = run_alone(std::move(feed), *stage, sinks, hooks);
@@ -88,7 +89,7 @@ detect::DetectorOptions people_detector(const Options& options) {
 
 nb::tuple track_people(nb::dict given) {
   const Options options(std::move(given));
-  pipeline::PeopleInPictureOptions how;
+  pipeline::people::PeopleInPictureOptions how;
   how.detector = people_detector(options);
   how.tracker.filter = filter_of(options, how.tracker.filter, filter::filter_for_people_in_picture);
   if (options.get("outline", false)) how.outlines.emplace();
@@ -96,12 +97,12 @@ nb::tuple track_people(nb::dict given) {
   how.delay = options.get("delay", 0.0);
   how.seen_only = options.get("seen_only", false);
   how.beside = options.get<std::string>("beside", "/tmp/marey");
-  return in_picture(options, [&](const pipeline::Feed& feed) { return pipeline::people_in_picture(feed, how); });
+  return in_picture(options, [&](const pipeline::corridor::Feed& feed) { return pipeline::people::people_in_picture(feed, how); });
 }
 
 nb::tuple track_markers(nb::dict given) {
   const Options options(std::move(given));
-  pipeline::MarkersInPictureOptions how;
+  pipeline::markers::MarkersInPictureOptions how;
   how.markers.dark = options.get("dark", false);
   how.markers.threshold = options.find<double>("threshold");
   if (const auto colour = options.find<std::string>("colour")) how.markers.colour = detect::markers::parse_marker_colour(*colour);
@@ -109,13 +110,14 @@ nb::tuple track_markers(nb::dict given) {
   how.tracker.filter = filter_of(options, how.tracker.filter);
   how.fit_noise = options.get("fit_noise", false);
   how.live = options.get("live", false);
-  return in_picture(options, [&](const pipeline::Feed& feed) { return pipeline::markers_in_picture(feed, how); });
+  return in_picture(options,
+                    [&](const pipeline::corridor::Feed& feed) { return pipeline::markers::markers_in_picture(feed, how); });
 }
 
 nb::tuple track_ground(nb::dict given) {
   const Options options(std::move(given));
   const Rig rig = rig_of(options);
-  pipeline::PeopleOnGroundOptions how;
+  pipeline::people::PeopleOnGroundOptions how;
   how.detector = people_detector(options);
   how.rate_hz = options.find<double>("rate");
   how.live = options.get("live", false);
@@ -130,16 +132,16 @@ nb::tuple track_ground(nb::dict given) {
   if (const auto size = options.find<std::array<double, 2>>("pitch")) how.pitch = geometry::PitchSize{(*size)[0], (*size)[1]};
   for (const auto& corner : options.get<std::vector<std::array<double, 2>>>("area", {}))
     how.area.emplace_back(corner[0], corner[1]);
-  pipeline::GroundChoices choices{.filter = options.has("filter") || options.has("own_filter")};
+  pipeline::people::GroundChoices choices{.filter = options.has("filter") || options.has("own_filter")};
   if (const auto name = options.find<std::string>("associate"))
     choices.association = track::ground::ground_association_named(*name);
-  how = pipeline::resolved(std::move(how), rig, choices);
+  how = pipeline::people::resolved(std::move(how), rig, choices);
   const Outputs outputs(options, format::Content::ground, rig.cameras);
   return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
     Result result;
-    pipeline::Sinks sinks;
+    pipeline::corridor::Sinks sinks;
     outputs.add_to(sinks, result.recording);
-    result.summary = pipeline::track_ground(rig, sinks, how, hooks);
+    result.summary = pipeline::people::track_ground(rig, sinks, how, hooks);
     return result;
   }));
 }
@@ -147,7 +149,7 @@ nb::tuple track_ground(nb::dict given) {
 nb::tuple reconstruct(nb::dict given) {
   const Options options(std::move(given));
   const Rig rig = rig_of(options);
-  pipeline::MarkersInSpaceOptions how;
+  pipeline::markers::MarkersInSpaceOptions how;
   how.rate_hz = options.find<double>("rate");
   how.noise_px = options.find<double>("noise");
   how.fill_s = options.get("fill", how.fill_s);
@@ -162,9 +164,9 @@ nb::tuple reconstruct(nb::dict given) {
   const Outputs outputs(options, format::Content::space, rig.cameras);
   return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
     Result result;
-    pipeline::Sinks sinks;
+    pipeline::corridor::Sinks sinks;
     outputs.add_to(sinks, result.recording);
-    result.summary = pipeline::reconstruct(rig, observations, sinks, how, hooks);
+    result.summary = pipeline::markers::reconstruct(rig, observations, sinks, how, hooks);
     return result;
   }));
 }
@@ -173,9 +175,9 @@ nb::tuple reconstruct(nb::dict given) {
 nb::tuple live(nb::dict given) {
   const Options options(std::move(given));
   const auto cameras = options.get<std::vector<std::string>>("cameras", {});
-  const Rig rig = cameras.empty() ? rig_of(options) : pipeline::rig_of_sources(cameras);
-  pipeline::LiveOptions how;
-  how.targets = options.get("people", false) ? pipeline::LiveTargets::people : pipeline::LiveTargets::markers;
+  const Rig rig = cameras.empty() ? rig_of(options) : pipeline::live::rig_of_sources(cameras);
+  pipeline::live::LiveOptions how;
+  how.targets = options.get("people", false) ? pipeline::live::LiveTargets::people : pipeline::live::LiveTargets::markers;
   how.ground = options.get("ground", false);
   how.space.markers.threshold = options.find<double>("threshold");
   how.space.markers.dark = options.get("dark", false);
@@ -183,7 +185,7 @@ nb::tuple live(nb::dict given) {
   how.space.predict_s = 0.1;
   how.people.detector = how.on_ground.detector = people_detector(options);
   how.on_ground.live = true;
-  how.on_ground = pipeline::resolved(std::move(how.on_ground), rig, {});
+  how.on_ground = pipeline::people::resolved(std::move(how.on_ground), rig, {});
   how.patience_s = options.get("patience", how.patience_s);
   how.take = options.get<std::string>("take", {});
   if (const auto labels = options.find<std::string>("labels")) how.space.set = format::motion::read_marker_set(*labels);
@@ -191,7 +193,7 @@ nb::tuple live(nb::dict given) {
   return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
     Result result;
     how.sinks = outputs.open(result.recording);
-    result.summary = pipeline::live(rig, std::move(how), hooks);
+    result.summary = pipeline::live::live(rig, std::move(how), hooks);
     return result;
   }));
 }

@@ -11,7 +11,7 @@
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/tracks/boxes.h"
-#include "marey/pipeline/judge_match.h"
+#include "marey/pipeline/take/judge_match.h"
 
 #include "bindings.h"
 
@@ -234,10 +234,10 @@ nb::dict evaluate_box_files(const std::string& truth, const std::string& tracks,
 }
 
 nb::dict evaluate_places(const Recording& truth, const Recording& tracks, double distance) {
-  pipeline::MatchJudgement judged;
+  pipeline::take::MatchJudgement judged;
   {
     const nb::gil_scoped_release free;
-    judged = pipeline::judge_match(truth, tracks, distance);
+    judged = pipeline::take::judge_match(truth, tracks, distance);
   }
   nb::dict dict = scores_of(judged.evaluation.scores);
   const auto& position = judged.evaluation.position;

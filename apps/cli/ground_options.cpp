@@ -2,14 +2,14 @@
 
 #include <utility>
 
-#include "marey/pipeline/ground_defaults.h"
+#include "marey/pipeline/people/ground_defaults.h"
 
 #include "pitch_size.h"
 
 namespace marey::cli {
 namespace {
 
-void set_area(const GroundAreaFlags& flags, pipeline::PeopleOnGroundOptions& options) {
+void set_area(const GroundAreaFlags& flags, pipeline::people::PeopleOnGroundOptions& options) {
   if (!flags.area.empty()) {
     options.area = parse_area(flags.area);
   } else if (!flags.size.empty()) {
@@ -47,12 +47,12 @@ void add_ground_area_options(Command& command, const Option& ground, GroundAreaF
 }
 
 void apply(const GroundAreaFlags& flags, const Rig& rig, const std::string& rig_name, bool live, bool filter_chosen,
-           pipeline::PeopleOnGroundOptions& options) {
+           pipeline::people::PeopleOnGroundOptions& options) {
   options.live = live;
-  pipeline::GroundChoices choices{.filter = filter_chosen};
+  pipeline::people::GroundChoices choices{.filter = filter_chosen};
   if (!flags.association.empty()) choices.association = track::ground::ground_association_named(flags.association);
   set_area(flags, options);
-  options = pipeline::resolved(std::move(options), rig, choices);
+  options = pipeline::people::resolved(std::move(options), rig, choices);
   if (!flags.teams.empty()) options.teams.names = analyse::parse_teams(flags.teams);
   if (flags.margin && !options.pitch && options.area.empty())
     throw WrongUsage("--margin is counted from the edge of a pitch or an area, and {} tells of none; give its --size or --area",

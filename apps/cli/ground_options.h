@@ -4,7 +4,7 @@
 #include <string>
 
 #include "marey/core/rig.h"
-#include "marey/pipeline/people_on_ground.h"
+#include "marey/pipeline/people/people_on_ground.h"
 
 #include "command_line.h"
 
@@ -26,6 +26,6 @@ void add_ground_area_options(Command& command, const Option& ground, GroundAreaF
 /// `filter_chosen`: `tracker.filter` is what --filter asked for. `rig_name` is for messages. Throws WrongUsage for --margin
 /// without an area.
 void apply(const GroundAreaFlags& flags, const Rig& rig, const std::string& rig_name, bool live, bool filter_chosen,
-           pipeline::PeopleOnGroundOptions& options);
+           pipeline::people::PeopleOnGroundOptions& options);
 
 }  // namespace marey::cli

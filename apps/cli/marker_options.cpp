@@ -1,6 +1,6 @@
 #include "marker_options.h"
 
-#include "marey/pipeline/track_in_picture.h"
+#include "marey/pipeline/people/track_in_picture.h"
 
 #include "blob_options.h"
 #include "command_line.h"
@@ -33,14 +33,14 @@ detect::markers::MarkerOptions detector_options(const MarkerFlags& flags) {
     options.colour = detect::markers::parse_marker_colour(flags.colour);
     options.colour->least_saturation = flags.saturation.value_or(options.colour->least_saturation);
   }
-  if (!flags.mask.empty()) options.mask = pipeline::read_mask(flags.mask);
+  if (!flags.mask.empty()) options.mask = pipeline::people::read_mask(flags.mask);
   return options;
 }
 
-pipeline::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
-  pipeline::MarkersInPictureOptions options;
+pipeline::markers::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live) {
+  pipeline::markers::MarkersInPictureOptions options;
   options.markers = detector_options(flags);
-  if (!flags.labels.empty()) options.tracker.labels = pipeline::read_labels(flags.labels);
+  if (!flags.labels.empty()) options.tracker.labels = pipeline::people::read_labels(flags.labels);
   if (!filter.empty()) options.tracker.filter = filter::filter_named(filter);
   options.fit_noise = flags.fit_noise;
   options.live = live;

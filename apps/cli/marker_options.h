@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "marey/pipeline/markers_in_picture.h"
+#include "marey/pipeline/markers/markers_in_picture.h"
 
 #include "command_line.h"
 
@@ -25,6 +25,6 @@ void add_detector_options(Command& command, MarkerFlags& flags);
 
 /// Reads the files that the flags name. Throws Error where one cannot be read.
 detect::markers::MarkerOptions detector_options(const MarkerFlags& flags);
-pipeline::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live);
+pipeline::markers::MarkersInPictureOptions marker_options(const MarkerFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

@@ -80,12 +80,12 @@ detect::DetectorOptions detector_options(const PeopleFlags& flags) {
   return network;
 }
 
-pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
+pipeline::people::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live) {
   check_every(flags, false);
-  pipeline::PeopleInPictureOptions options;
+  pipeline::people::PeopleInPictureOptions options;
   options.detector = detector_options(flags);
   if (!filter.empty()) options.tracker.filter = filter::filter_for_people_in_picture(filter);
-  if (flags.keypoints) options.keypoints = pipeline::KeypointOptions{.model = flags.model, .every = flags.every};
+  if (flags.keypoints) options.keypoints = pipeline::keypoints::KeypointOptions{.model = flags.model, .every = flags.every};
   if (flags.outline) options.outlines = outline_options(flags);
   options.live = live;
   options.steady = flags.steady;

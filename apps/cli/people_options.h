@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "marey/pipeline/people_in_picture.h"
+#include "marey/pipeline/people/people_in_picture.h"
 
 #include "command_line.h"
 
@@ -12,7 +12,7 @@ namespace marey::cli {
 /// What `marey track --targets people` and `keypoints` understand beyond what every target needs.
 struct PeopleFlags {
   bool keypoints = false;  ///< --targets keypoints
-  std::string model = pipeline::KeypointOptions{}.model;
+  std::string model = pipeline::keypoints::KeypointOptions{}.model;
   std::string background = std::string(detect::background::AdaptiveOptions::name);
   std::string detector;
   bool without_background = false;
@@ -35,6 +35,6 @@ void add_people_options(Command& command, PeopleFlags& flags);
 void add_keypoint_options(Command& command, PeopleFlags& flags);
 
 /// Throws Error where a flag's value is out of its domain.
-pipeline::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
+pipeline::people::PeopleInPictureOptions people_options(const PeopleFlags& flags, const std::string& filter, bool live);
 
 }  // namespace marey::cli

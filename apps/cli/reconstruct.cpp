@@ -1,4 +1,4 @@
-#include "marey/pipeline/reconstruct.h"
+#include "marey/pipeline/markers/reconstruct.h"
 
 #include <array>
 #include <cstdio>
@@ -28,14 +28,14 @@ namespace {
 struct ReconstructCommand {
   RigInputs inputs;
   std::string out, labels, set, skeleton;
-  pipeline::MarkersInSpaceOptions options;
+  pipeline::markers::MarkersInSpaceOptions options;
   bool of_keypoints = false;
-  pipeline::KeypointsInSpaceOptions keypoints;
+  pipeline::keypoints::KeypointsInSpaceOptions keypoints;
   bool json = false;
   bool quiet = false;
 };
 
-Json as_json(const pipeline::Summary& summary, const std::string& out) {
+Json as_json(const pipeline::corridor::Summary& summary, const std::string& out) {
   Json json = {{"frames", summary.frames},
                {"seconds", summary.seconds},
                {"rate_hz", summary.rate_hz},
@@ -58,7 +58,7 @@ Json as_json(const pipeline::Summary& summary, const std::string& out) {
   return json;
 }
 
-void print_points_summary(const pipeline::Summary& summary, const std::string& out) {
+void print_points_summary(const pipeline::corridor::Summary& summary, const std::string& out) {
   fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.tracks,
              summary.tracks == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
@@ -78,12 +78,14 @@ void print_points_summary(const pipeline::Summary& summary, const std::string& o
 void run_keypoints(const ReconstructCommand& command) {
   if (!command.inputs.observations.empty() || !command.labels.empty() || !command.set.empty() || !command.skeleton.empty())
     throw WrongUsage("{}", "--targets keypoints: --observations, --labels, --set and --skeleton are of markers; remove them");
-  pipeline::KeypointsInSpaceOptions options = command.keypoints;
+  pipeline::keypoints::KeypointsInSpaceOptions options = command.keypoints;
   options.rate_hz = command.options.rate_hz;
   run_with_progress(
       command.quiet,
-      [&](const Hooks& hooks) { return pipeline::reconstruct_keypoints(rig_of(command.inputs), command.out, options, hooks); },
-      [&](const pipeline::KeypointsSummary& summary, double) {
+      [&](const Hooks& hooks) {
+        return pipeline::keypoints::reconstruct_keypoints(rig_of(command.inputs), command.out, options, hooks);
+      },
+      [&](const pipeline::keypoints::KeypointsSummary& summary, double) {
         if (command.json) {
           print(keypoints_json(summary, command.out));
         } else if (!command.quiet) {
@@ -94,16 +96,16 @@ void run_keypoints(const ReconstructCommand& command) {
 
 void run(const ReconstructCommand& command) {
   if (command.of_keypoints) return run_keypoints(command);
-  pipeline::MarkersInSpaceOptions options = command.options;
+  pipeline::markers::MarkersInSpaceOptions options = command.options;
   if (!command.labels.empty()) options.set = format::motion::read_marker_set(command.labels);
   options.skeleton = skeleton_of(command.skeleton);
   options.learned_set = learned_set_of(command.set, options.skeleton.get());
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {
-        return pipeline::reconstruct(rig_of(command.inputs), observations_of(command.inputs), command.out, options, hooks);
+        return pipeline::markers::reconstruct(rig_of(command.inputs), observations_of(command.inputs), command.out, options, hooks);
       },
-      [&](const pipeline::Summary& summary, double) {
+      [&](const pipeline::corridor::Summary& summary, double) {
         if (command.json) {
           print(as_json(summary, command.out));
         } else if (!command.quiet) {
@@ -119,7 +121,7 @@ void add_reconstruct(Command& program) {
   Command command =
       program.subcommand("reconstruct", "Place and follow the markers, or people's keypoints, that several calibrated cameras see");
   add_rig_inputs(command, options->inputs);
-  pipeline::MarkersInSpaceOptions& how = options->options;
+  pipeline::markers::MarkersInSpaceOptions& how = options->options;
   command.output_file("-o,--output", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv")
       .required()
       .ends_in({".marey", ".c3d", ".trc", ".csv"});

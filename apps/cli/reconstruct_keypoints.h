@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "marey/pipeline/keypoints_in_space.h"
+#include "marey/pipeline/keypoints/keypoints_in_space.h"
 
 #include "command_line.h"
 #include "json_value.h"
@@ -10,10 +10,10 @@
 // What `marey reconstruct --targets keypoints` takes and tells.
 namespace marey::cli {
 
-void add_keypoint_options(Command& command, pipeline::KeypointsInSpaceOptions& options);
+void add_keypoint_options(Command& command, pipeline::keypoints::KeypointsInSpaceOptions& options);
 
-Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string& out);
+Json keypoints_json(const pipeline::keypoints::KeypointsSummary& summary, const std::string& out);
 /// On standard error.
-void print_keypoints_summary(const pipeline::KeypointsSummary& summary, const std::string& out);
+void print_keypoints_summary(const pipeline::keypoints::KeypointsSummary& summary, const std::string& out);
 
 }  // namespace marey::cli

@@ -5,7 +5,7 @@
 
 #include "marey/core/learned_markers.h"
 #include "marey/core/skeleton.h"
-#include "marey/pipeline/run.h"
+#include "marey/pipeline/corridor/run.h"
 
 #include "command_line.h"
 #include "json_value.h"
@@ -19,7 +19,7 @@ void add_set_option(Command& command, std::string& set);
 std::shared_ptr<const LearnedMarkers> learned_set_of(const std::string& path, const Skeleton* skeleton);
 
 /// How many points bear the set's names, where one was given: "set" of the JSON, a line on standard error.
-void add_set_figures(const pipeline::Summary& summary, Json& json);
-void print_set_figures(const pipeline::Summary& summary);
+void add_set_figures(const pipeline::corridor::Summary& summary, Json& json);
+void print_set_figures(const pipeline::corridor::Summary& summary);
 
 }  // namespace marey::cli

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "marey/pipeline/skeleton_in_space.h"
+#include "marey/pipeline/markers/skeleton_in_space.h"
 
 namespace marey::cli {
 
@@ -16,7 +16,7 @@ void add_skeleton_option(Command& command, std::string& skeleton) {
 std::shared_ptr<const Skeleton> skeleton_of(const std::string& path) {
   if (path.empty()) return nullptr;
   std::vector<std::string> warnings;
-  auto skeleton = pipeline::skeleton_with_markers(path, warnings);
+  auto skeleton = pipeline::markers::skeleton_with_markers(path, warnings);
   warn(warnings);
   return skeleton;
 }

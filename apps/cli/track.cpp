@@ -8,7 +8,7 @@
 #include "marey/core/overwriting.h"
 #include "marey/detect/network/network_cost.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/track_in_picture.h"
+#include "marey/pipeline/people/track_in_picture.h"
 #include "marey/source/open_source.h"
 
 #include "command_line.h"
@@ -55,8 +55,8 @@ std::string default_output(const RigCamera& input, const std::string& format) {
   return stem + "_tracks" + first_ending(*format::format_named(format, format::Content::image));
 }
 
-pipeline::TrackOutput output_of(const TrackCommand& command) {
-  pipeline::TrackOutput output{.tracks = command.out, .overlay = command.overlay, .plot = command.plot};
+pipeline::people::TrackOutput output_of(const TrackCommand& command) {
+  pipeline::people::TrackOutput output{.tracks = command.out, .overlay = command.overlay, .plot = command.plot};
   const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
   if (named || !command.format.empty()) {
     output.format = format::format_to_write(command.out, command.format, format::Content::image).name;
@@ -74,7 +74,7 @@ pipeline::TrackOutput output_of(const TrackCommand& command) {
 
 /// Runs `track(hooks)` and reports what came of it.
 template <typename Track>
-void run(const TrackCommand& command, const pipeline::TrackOutput& output, Track&& track) {
+void run(const TrackCommand& command, const pipeline::people::TrackOutput& output, Track&& track) {
   if (command.people.outline && (output.format == "mot" || output.format == "csv"))
     warn({fmt::format("{}: holds no outlines; .jsonl and .marey do", output.tracks)});
   if (command.people.keypoints && output.format == "mot")
@@ -154,21 +154,22 @@ void run(TrackCommand& command) {
     throw WrongUsage("\"{}\" is one input too many; several cameras need a rig and --ground", command.ground.sources.front());
   if (!command.overlay.empty() && !command.overlay.ends_with(".mp4") && !is_stream(command.overlay))
     throw WrongUsage("--overlay {}: is an MP4 film; end its name in .mp4", command.overlay);
-  const pipeline::TrackOutput output = output_of(command);
+  const pipeline::people::TrackOutput output = output_of(command);
   if (command.targets == Targets::markers) {
     if (!command.masks.empty()) throw WrongUsage("{}", "--masks shows what the search for people sees; markers have none");
     if (command.people.outline) throw WrongUsage("--outline follows people; markers are points: leave out one of the two");
-    const pipeline::MarkersInPictureOptions options = marker_options(command.markers, command.filter, command.live);
-    run(command, output, [&](const Hooks& hooks) { return pipeline::track_markers(command.input, output, options, hooks); });
+    const pipeline::markers::MarkersInPictureOptions options = marker_options(command.markers, command.filter, command.live);
+    run(command, output,
+        [&](const Hooks& hooks) { return pipeline::people::track_markers(command.input, output, options, hooks); });
   } else {
-    pipeline::PeopleInPictureOptions options = people_options(command.people, command.filter, command.live);
+    pipeline::people::PeopleInPictureOptions options = people_options(command.people, command.filter, command.live);
     options.delay = command.delay.value_or(0);
     options.seen_only = command.seen_only;
     options.masks = command.masks;
     if (!command.masks.empty() && command.people.without_background)
       throw WrongUsage("{}", "--masks shows what the background model sees; leave out --without-background");
     if (!command.quiet && !command.json) print_network_cost(options.detector, command.input.source);
-    run(command, output, [&](const Hooks& hooks) { return pipeline::track_people(command.input, output, options, hooks); });
+    run(command, output, [&](const Hooks& hooks) { return pipeline::people::track_people(command.input, output, options, hooks); });
   }
 }
 

@@ -8,7 +8,7 @@
 #include "marey/filter/usual_motion.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/rig_turns.h"
-#include "marey/pipeline/track_ground.h"
+#include "marey/pipeline/people/track_ground.h"
 
 #include "command_line.h"
 #include "ground_summary.h"
@@ -17,8 +17,8 @@
 namespace marey::cli {
 namespace {
 
-pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
-  pipeline::GroundOutput output{
+pipeline::people::GroundOutput output_of(const GroundCommand& command, const GroundFlags& flags) {
+  pipeline::people::GroundOutput output{
       .tracks = command.out, .boxes_of = flags.camera, .overlays = command.overlay, .pitch_view = flags.pitch_view};
   const char* usual = command.out.ends_with(".marey") ? "take" : flags.camera.empty() ? "csv" : "mot";
   const std::string format = command.format.empty() ? usual : command.format;
@@ -41,10 +41,10 @@ pipeline::GroundOutput output_of(const GroundCommand& command, const GroundFlags
   return output;
 }
 
-pipeline::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags, const PeopleFlags& people,
-                                           const Rig& rig) {
+pipeline::people::PeopleOnGroundOptions options_of(const GroundCommand& command, const GroundFlags& flags,
+                                                   const PeopleFlags& people, const Rig& rig) {
   check_every(people, true);
-  pipeline::PeopleOnGroundOptions options;
+  pipeline::people::PeopleOnGroundOptions options;
   options.detector = detector_options(people);
   options.rate_hz = command.rate_hz;
   options.steady = people.steady;
@@ -91,12 +91,12 @@ void track_on_ground(const GroundCommand& command, const GroundFlags& flags, con
   if (people.outline) throw WrongUsage("--outline follows outlines in one picture; leave it out with --ground");
   Rig rig = format::rig::read_rig(command.rig);
   set_sources(rig, flags.sources);
-  const pipeline::GroundOutput output = output_of(command, flags);
-  pipeline::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
+  const pipeline::people::GroundOutput output = output_of(command, flags);
+  pipeline::people::PeopleOnGroundOptions options = options_of(command, flags, people, rig);
   options.turning = format::rig::read_turning(command.rig);
   run_with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
-      [&](const pipeline::GroundSummary& summary, double elapsed) {
+      command.quiet, [&](const Hooks& hooks) { return pipeline::people::track_ground(rig, output, options, hooks); },
+      [&](const pipeline::people::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);
         } else if (!command.quiet) {

@@ -50,6 +50,16 @@ class Checks(unittest.TestCase):
         self.plant("src/marey/detect/join.h", "namespace marey::track {\nint join(double);\n}\n")
         self.check("check-names", 1, "marey::track::join() stands in headers of two folders")
 
+    def test_pipelines_subfolders_have_an_order(self):
+        self.plant("src/marey/pipeline/live/live.h", '#include "marey/pipeline/corridor/feed.h"\n')
+        self.plant("src/marey/pipeline/corridor/feed.h", "#pragma once\n")
+        self.check("check-layers", 0)
+        self.plant("src/marey/pipeline/corridor/feed.h", '#include "marey/pipeline/live/live.h"\n')
+        self.check("check-layers", 1, "pipeline/corridor may not include pipeline/live")
+        self.plant("src/marey/pipeline/corridor/feed.h", "#pragma once\n")
+        self.plant("src/marey/pipeline/attic/odds.h", '#include "marey/pipeline/corridor/feed.h"\n')
+        self.check("check-layers", 1, "pipeline/attic has no place in the order")
+
     def test_a_type_in_plain_marey_outside_core(self):
         self.plant("src/marey/detect/blob.h", "namespace marey {\nstruct Blob {};\n}\n")
         self.check("check-names", 1, "Blob is defined in marey; its folder is marey::detect")
