@@ -111,7 +111,7 @@ TEST(SkeletonInSpace, SaysWhatIsHiddenAndGoesOn) {
   solved.add_to(nothing);
   EXPECT_TRUE(nothing.bodies.empty()) << "nobody knows where it is";
   double worst = 0, worst_after = 0;
-  for (Instant& instant : people::instants_of(scene, 0.0005, {"left_shank", "left_foot"}, 100, 20)) {
+  for (Instant& instant : instants_of(scene, 0.0005, {"left_shank", "left_foot"}, 100, 20)) {
     solved.add_to(instant);
     ASSERT_EQ(instant.bodies.size(), 15u);
     const bool hidden = instant.index >= 100 && instant.index < 120;
@@ -138,9 +138,9 @@ TEST(SkeletonInSpace, CostsNoMoreWhereItDoesNotFit) {
   for (Segment& segment : large.segments) segment.joint.parent_from_joint.translation *= 3;
   for (SkeletonMarker& marker : large.markers) marker.position *= -3;
   SkeletonInSpace solved(std::make_shared<const Skeleton>(large), 100, live_pose_options());
-  for (Instant& instant : people::instants_of(scene, 0)) solved.add_to(instant);
+  for (Instant& instant : instants_of(scene, 0)) solved.add_to(instant);
   SkeletonInSpace eager(std::make_shared<const Skeleton>(large), 100);
-  for (Instant& instant : people::instants_of(scene, 0)) {
+  for (Instant& instant : instants_of(scene, 0)) {
     if (instant.index < 30) eager.add_to(instant);
   }
   EXPECT_GT(eager.starts(), 3) << "a file's instants wait for it";
@@ -155,7 +155,7 @@ TEST(SkeletonInSpace, SaysThatNoNameIsKnown) {
   Skeleton other = *scene.skeleton();
   for (SkeletonMarker& marker : other.markers) marker.label = "X" + marker.label;
   SkeletonInSpace solved(std::make_shared<const Skeleton>(other), 100);
-  for (Instant& instant : people::instants_of(scene, 0)) {
+  for (Instant& instant : instants_of(scene, 0)) {
     solved.add_to(instant);
     EXPECT_TRUE(instant.bodies.empty());
   }

@@ -5,7 +5,7 @@
 namespace marey::track::image {
 namespace {
 
-constexpr double kRate = 10;  // Hz
+constexpr double kLiveRate = 10;  // Hz
 
 Track<2> at(int id, double x, bool observed, bool confirmed = true) {
   Track<2> track;
@@ -19,7 +19,7 @@ Track<2> at(int id, double x, bool observed, bool confirmed = true) {
 }
 
 void add(LiveTracks& live, int frame, const std::vector<Track<2>>& tracks) {
-  live.add(frame, timestamp_from_seconds(frame / kRate), tracks);
+  live.add(frame, timestamp_from_seconds(frame / kLiveRate), tracks);
 }
 
 TEST(LiveTracks, WhoIsNotConfirmedIsHeldBack) {
@@ -99,7 +99,7 @@ TEST(LiveTracks, UnsearchedFramesKeepThePredictedTarget) {
     if (frame % 10 == 0) {
       add(live, frame, {at(1, frame, true)});
     } else {
-      live.add_unsearched(frame, timestamp_from_seconds(frame / kRate), std::vector{at(1, frame, false)});
+      live.add_unsearched(frame, timestamp_from_seconds(frame / kLiveRate), std::vector{at(1, frame, false)});
     }
     const auto instant = live.next();
     ASSERT_EQ(instant->samples.size(), 1u) << frame;
@@ -107,7 +107,7 @@ TEST(LiveTracks, UnsearchedFramesKeepThePredictedTarget) {
   }
   add(live, 31, {});  // given up
   EXPECT_TRUE(live.next()->samples.empty());
-  live.add_unsearched(32, timestamp_from_seconds(32 / kRate), {});
+  live.add_unsearched(32, timestamp_from_seconds(32 / kLiveRate), {});
   EXPECT_TRUE(live.next()->samples.empty());
 }
 

@@ -7,7 +7,7 @@
 namespace marey::track::image {
 namespace {
 
-constexpr double kRate = 25;
+constexpr double kReidentificationRate = 25;
 
 /// A person 60 px tall walks to the right at 50 px/s, unseen from frame 50 on for `hidden` frames, and comes out `aside` px farther
 /// than it would have. Returns whether it keeps its id.
@@ -22,7 +22,7 @@ bool keeps_its_id(const TrackerOptions& options, int hidden, double aside, doubl
       const Box box = Box::from_centre({100 + 2.0 * i + (came_out ? aside : 0), 200}, 24 * scale, 60 * scale);
       seen.push_back({.value = box.centre(), .box = box});
     }
-    for (const Track<2>& track : tracker->step(timestamp_from_seconds(i / kRate), seen)) {
+    for (const Track<2>& track : tracker->step(timestamp_from_seconds(i / kReidentificationRate), seen)) {
       if (!track.confirmed || !track.measured()) continue;
       (i < 50 ? before : after) = track.id;
     }

@@ -14,7 +14,7 @@ namespace {
 constexpr Appearance white_shirt{.lightness = 90, .a = 0, .b = 0, .deviation = 5};
 constexpr Appearance blue_shirt{.lightness = 35, .a = 15, .b = -50, .deviation = 5};
 
-struct image::Sighting {
+struct Sighting {
   int track = 0;
   double x = 0, y = 0;
   std::optional<Appearance> wears = {};
@@ -29,12 +29,12 @@ class Story {
  public:
   explicit Story(double rate = 25) : rate_(rate) {}
 
-  void instant(const std::vector<image::Sighting>& seen, double late = 0) {
+  void instant(const std::vector<Sighting>& seen, double late = 0) {
     const Timestamp now = timestamp_from_seconds(frame_ / rate_);
     std::map<CameraId, std::vector<Observation<2>>> observations;
     std::vector<Track<2>> tracks;
     std::vector<std::tuple<CameraId, int, TrackId>> claims;
-    for (const image::Sighting& s : seen) {
+    for (const Sighting& s : seen) {
       Track<2> track;
       track.id = TrackId{s.track};
       track.position = Vector<2>(s.x, s.y);
@@ -92,7 +92,7 @@ std::vector<Row> rows_of(const Recording& recording) {
 TEST(GroundRecorder, WhoStoodThereBeforeACameraBeganIsPredicted) {
   Story story;
   for (int k = 0; k < 50; ++k) {
-    std::vector<image::Sighting> seen = {{.track = 1, .x = 0.2 * k, .y = 0}};
+    std::vector<Sighting> seen = {{.track = 1, .x = 0.2 * k, .y = 0}};
     if (k >= 5) seen.push_back({.track = 2, .x = 30 + 0.08 * k, .y = 5, .camera = CameraId{1}});
     if (k >= 20) seen.push_back({.track = 3, .x = 60 + 0.08 * k, .y = 5, .camera = CameraId{1}});
     story.instant(seen);
@@ -158,7 +158,7 @@ TEST(GroundRecorder, LateFramesAreBroughtToTheInstant) {
 TEST(GroundRecorder, WhatIsBriefSeldomOrNeverConfirmedIsNobody) {
   Story story;
   for (int k = 0; k < 250; ++k) {
-    std::vector<image::Sighting> seen{{.track = 1, .x = 0.1 * k, .y = 3}};
+    std::vector<Sighting> seen{{.track = 1, .x = 0.1 * k, .y = 3}};
     if (k < 100) seen.push_back({.track = 2, .x = 50, .y = 50, .confirmed = false});
     if (k >= 30 && k < 40) seen.push_back({.track = 3, .x = 70, .y = 50});
     if (k > 100) seen.push_back({.track = 4, .x = 90, .y = 10, .observed = k % 20 == 0});
@@ -267,7 +267,7 @@ TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
     const Vector<2> right = runs_right(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
     const Vector<2> left = runs_left(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
     // The track of the one goes on with the other, whose track ends; the one is found again under a new id.
-    std::vector<image::Sighting> seen{{.track = 1, .x = t < 0 ? right.x() : left.x(), .y = t < 0 ? right.y() : left.y()}};
+    std::vector<Sighting> seen{{.track = 1, .x = t < 0 ? right.x() : left.x(), .y = t < 0 ? right.y() : left.y()}};
     if (t < -0.1) seen.push_back({.track = 2, .x = left.x(), .y = left.y()});
     if (t > 0.3) seen.push_back({.track = 3, .x = right.x(), .y = right.y()});
     story.instant(seen);
@@ -293,7 +293,7 @@ struct Runner {
 };
 
 /// What two cameras see of a runner: a tenth of the looks is missed.
-void look(const Runner& runner, int track, std::mt19937_64& engine, std::vector<image::Sighting>& seen) {
+void look(const Runner& runner, int track, std::mt19937_64& engine, std::vector<Sighting>& seen) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> unit(0, 1);
   for (int camera = 0; camera < 2; ++camera) {
@@ -311,7 +311,7 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   std::vector<std::vector<Runner>> truth;
   Story story;
   for (int frame = 0; frame < 1500; ++frame) {
-    std::vector<image::Sighting> seen;
+    std::vector<Sighting> seen;
     for (std::size_t k = 0; k < runners.size(); ++k) {
       runners[k].go_on(engine);
       look(runners[k], static_cast<int>(k) + 1, engine, seen);

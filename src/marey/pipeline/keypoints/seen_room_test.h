@@ -9,7 +9,7 @@
 #include "marey/reconstruct/keypoints/person_path.h"
 #include "marey/simulate/room/room_keypoints.h"
 
-namespace marey::pipeline::markers {
+namespace marey::pipeline::keypoints {
 
 namespace rk = reconstruct::keypoints;
 
@@ -83,4 +83,4 @@ struct SeenRoom {
   }
 };
 
-}  // namespace marey::pipeline::markers
+}  // namespace marey::pipeline::keypoints

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "marey/pipeline/markers/seen_room_test.h"
+#include "marey/pipeline/keypoints/seen_room_test.h"
 
-namespace marey::pipeline::people {
+namespace marey::pipeline::keypoints {
 namespace {
 
 using marey::simulate::room::KeypointErrors;
@@ -28,7 +28,7 @@ RoomOptions people_room(int actors, int cameras, std::int64_t frames, std::uint6
   return options;
 }
 
-double mean_error_of(const markers::SeenRoom& room, rk::PersonTrack& track, const rk::PersonPath& path) {
+double mean_error_of(const SeenRoom& room, rk::PersonTrack& track, const rk::PersonPath& path) {
   double sum = 0, count = 0;
   for (std::size_t k = 0; k < track.instants.size(); ++k) {
     const auto& person = track.instants[k];
@@ -45,7 +45,7 @@ double mean_error_of(const markers::SeenRoom& room, rk::PersonTrack& track, cons
 
 TEST(PeopleInViews, PlacesExactKeypointsExactly) {
   KeypointErrors none{.bias_m = 0, .noise_px = 0, .outliers = 0, .missing = 0};
-  markers::SeenRoom room(people_room(3, 4, 20, 1), none);
+  SeenRoom room(people_room(3, 4, 20, 1), none);
   room.follow();
   ASSERT_EQ(room.tracks.size(), 3U);
   for (auto& [id, track] : room.tracks) {
@@ -64,7 +64,7 @@ TEST(PeopleInViews, KeepsPeopleApartWhoStandAMetreFromEachOther) {
   for (const int actors : {2, 4, 6}) {
     for (const std::uint64_t seed : {1U, 2U}) {
       SCOPED_TRACE(testing::Message() << actors << " people, seed " << seed);
-      markers::SeenRoom room(people_room(actors, 4, 300, seed), {});
+      SeenRoom room(people_room(actors, 4, 300, seed), {});
       room.follow();
       ASSERT_EQ(static_cast<int>(room.tracks.size()), actors);
       for (const auto& [id, track] : room.tracks) {
@@ -80,7 +80,7 @@ TEST(PeopleInViews, KeepsPeopleApartWhoStandAMetreFromEachOther) {
 }
 
 TEST(PeopleInViews, TakesNobodyTwiceInACamera) {
-  markers::SeenRoom room(people_room(6, 5, 40, 3), {});
+  SeenRoom room(people_room(6, 5, 40, 3), {});
   room.follow();
   for (std::size_t t = 0; t < 40; ++t) {
     for (std::size_t c = 0; c < 5; ++c) {
@@ -97,7 +97,7 @@ TEST(PeopleInViews, TakesNobodyTwiceInACamera) {
 }
 
 TEST(PeopleInViews, PlacesNobodyWhereEachCameraSeesAnother) {
-  markers::SeenRoom room(people_room(2, 2, 40, 4), {});
+  SeenRoom room(people_room(2, 2, 40, 4), {});
   for (auto& frame : room.seen[0].frames) frame.resize(std::min<std::size_t>(frame.size(), 1));
   // The other camera's image is turned upside down: nothing there is what the first one sees.
   for (auto& frame : room.seen[1].frames) {
@@ -112,7 +112,7 @@ TEST(PeopleInViews, PlacesNobodyWhereEachCameraSeesAnother) {
 }
 
 TEST(PersonPath, IsNearerThanTheNoiseOfSingleInstants) {
-  markers::SeenRoom room(people_room(1, 4, 250, 5), {});
+  SeenRoom room(people_room(1, 4, 250, 5), {});
   room.follow();
   ASSERT_EQ(room.tracks.size(), 1U);
   rk::PersonTrack& track = room.tracks.begin()->second;
@@ -123,7 +123,7 @@ TEST(PersonPath, IsNearerThanTheNoiseOfSingleInstants) {
 TEST(PersonPath, ReadsExchangedLimbsTheOtherWayRound) {
   KeypointErrors errors;
   errors.swapped = 0.1;
-  markers::SeenRoom room(people_room(1, 4, 400, 6), errors);
+  SeenRoom room(people_room(1, 4, 400, 6), errors);
   room.follow();
   ASSERT_EQ(room.tracks.size(), 1U);
   rk::PersonTrack& track = room.tracks.begin()->second;
@@ -143,4 +143,4 @@ TEST(PersonPath, ReadsExchangedLimbsTheOtherWayRound) {
 }
 
 }  // namespace
-}  // namespace marey::pipeline::people
+}  // namespace marey::pipeline::keypoints

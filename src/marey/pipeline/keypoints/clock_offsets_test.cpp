@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "marey/pipeline/markers/seen_room_test.h"
+#include "marey/pipeline/keypoints/seen_room_test.h"
 
-namespace marey::pipeline::people {
+namespace marey::pipeline::keypoints {
 namespace {
 
-std::vector<rk::CameraFrames> clock_frames_of(const markers::SeenRoom& room) {
+std::vector<rk::CameraFrames> clock_frames_of(const SeenRoom& room) {
   std::vector<rk::CameraFrames> frames(room.cameras.size());
   for (std::size_t c = 0; c < frames.size(); ++c)
     frames[c] = {.camera = &*room.cameras[c], .people = &room.seen[c].frames, .rate_hz = room.scene.options().rate_hz};
@@ -29,7 +29,7 @@ TEST(ClockOffsets, AreFoundByMotionAndSayHowSureTheyAre) {
     options.zoom = 1.3;
     options.offset_s = 0.2;
     options.seed = seed;
-    const markers::SeenRoom room(options, {});
+    const SeenRoom room(options, {});
     const auto found = rk::find_clock_offsets(clock_frames_of(room));
     EXPECT_FALSE(found[0]) << "the first one is what the others are against";
     for (std::size_t c = 1; c < 4; ++c) {
@@ -51,9 +51,9 @@ TEST(ClockOffsets, AreNotSaidWhereNobodyMoves) {
   options.frames = 150;
   options.picture = {1080, 1920};
   options.zoom = 1.3;
-  const markers::SeenRoom room(options, {});
+  const SeenRoom room(options, {});
   for (const auto& offset : rk::find_clock_offsets(clock_frames_of(room))) EXPECT_FALSE(offset);
 }
 
 }  // namespace
-}  // namespace marey::pipeline::people
+}  // namespace marey::pipeline::keypoints
