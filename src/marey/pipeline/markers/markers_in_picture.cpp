@@ -53,6 +53,8 @@ class MarkersInPicture final : public corridor::Stage {
       : options_(options), detector_(corridor::markers_of(feed.camera(), options.markers), options.tuning) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
+    header_.time_base.kind = TimeBase::Kind::rig;
+    header_.track_kind = TrackKind::marker;
     header_.made_by.program = "marey track";
     header_.rate_hz = feed.rate_hz();
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
