@@ -9,7 +9,6 @@
 #include <span>
 #include <utility>
 
-
 namespace marey::analyse {
 namespace {
 

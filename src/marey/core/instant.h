@@ -68,7 +68,7 @@ struct TrackName {
   std::string label;
   std::string team;
   std::optional<std::array<std::uint8_t, 3>> colour = {};  ///< red, green, blue; to be drawn in, where it is not left to its number
-  TrackKind kind = TrackKind::unspecified;  ///< unspecified: the track keeps the kind that it has
+  TrackKind kind = TrackKind::unspecified;                 ///< unspecified: the track keeps the kind that it has
 
   bool operator==(const TrackName&) const = default;
 };

@@ -372,7 +372,8 @@ std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants
 }
 
 Recording with_time_base(Recording recording, const TimeBase& base) {
-  if (!recording.header.rig) throw Error("{}: its cameras are not known, so its times cannot be given by another clock", recording.header.name);
+  if (!recording.header.rig)
+    throw Error("{}: its cameras are not known, so its times cannot be given by another clock", recording.header.name);
   const Rig& rig = *recording.header.rig;
   const Duration shift = rig_time_offset(recording.header.time_base, rig) - rig_time_offset(base, rig);
   recording.shift_times(shift);

@@ -62,10 +62,10 @@ struct RecordingHeader {
   FrameOfReference frame;
   TimeBase time_base;
   TrackKind track_kind = TrackKind::unspecified;  ///< of tracks without a kind of their own
-  double rate_hz = 0;                    ///< instants a second, positive: the median step, where the file does not tell
-  std::optional<Rig> rig;                ///< the cameras with their sources; nothing where a file brings positions alone
-  std::vector<Body> bodies;              ///< by id, parents before children; none where none were solved
-  std::optional<KeypointSet> keypoints;  ///< which body points samples have, where they have some
+  double rate_hz = 0;                             ///< instants a second, positive: the median step, where the file does not tell
+  std::optional<Rig> rig;                         ///< the cameras with their sources; nothing where a file brings positions alone
+  std::vector<Body> bodies;                       ///< by id, parents before children; none where none were solved
+  std::optional<KeypointSet> keypoints;           ///< which body points samples have, where they have some
   MadeBy made_by;
   bool smoothed = false;  ///< a second pass has smoothed positions and velocities: who measures does not smooth again
 };
@@ -307,8 +307,8 @@ class InstantsOf {
 /// than two instants.
 std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants);
 
-/// The same recording with its times by another clock. Both clocks are of the header's rig. Throws Error if there is no rig, or if one
-/// of them is not specified.
+/// The same recording with its times by another clock. Both clocks are of the header's rig. Throws Error if there is no rig, or if
+/// one of them is not specified.
 Recording with_time_base(Recording recording, const TimeBase& base);
 
 /// Whether a velocity is known anywhere.

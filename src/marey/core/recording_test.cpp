@@ -99,7 +99,8 @@ TEST(Recording, KeepsTheKindOfATrackThatIsRenamed) {
   Recording recording(header_in(FrameOfReference::Kind::user_ground));
   recording.header.track_kind = TrackKind::person;
   Instant instant;
-  instant.named = {{.id = TrackId{1}, .label = "ball", .team = {}}, {.id = TrackId{2}, .label = "b", .team = {}, .kind = TrackKind::ball}};
+  instant.named = {{.id = TrackId{1}, .label = "ball", .team = {}},
+                   {.id = TrackId{2}, .label = "b", .team = {}, .kind = TrackKind::ball}};
   instant.samples = {sample_of(1, 4), sample_of(2, 5), sample_of(3, 6)};
   instant.samples[1].position.z() = 2;
   recording.add(instant);

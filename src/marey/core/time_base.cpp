@@ -9,7 +9,8 @@ namespace {
 
 const RigCamera& camera_of(const TimeBase& base, const Rig& rig) {
   const auto index = static_cast<std::size_t>(number(base.camera));
-  if (index >= rig.cameras.size()) throw Error("times follow the clock of camera {}, and the rig has {} cameras", index + 1, rig.cameras.size());
+  if (index >= rig.cameras.size())
+    throw Error("times follow the clock of camera {}, and the rig has {} cameras", index + 1, rig.cameras.size());
   return rig.cameras[index];
 }
 

@@ -27,7 +27,8 @@ struct TimeBase {
 /// "the rig's clock", "the clock of camera "left"": for sentences to the user.
 std::string to_string(const TimeBase& base, const Rig& rig);
 
-/// Added to a time of this base gives the rig's time. Throws Error for an unspecified base, and for a camera that the rig does not have.
+/// Added to a time of this base gives the rig's time. Throws Error for an unspecified base, and for a camera that the rig does not
+/// have.
 Duration rig_time_offset(const TimeBase& base, const Rig& rig);
 
 }  // namespace marey

@@ -9,7 +9,8 @@
 
 namespace marey {
 
-/// A recording's tracks have its header's kind, unless they are given one of their own. Labels are free text: they do not imply a kind.
+/// A recording's tracks have its header's kind, unless they are given one of their own. Labels are free text: they do not imply a
+/// kind.
 enum class TrackKind : std::uint8_t {
   unspecified,  ///< the source does not state it
   person,

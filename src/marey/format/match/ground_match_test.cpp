@@ -230,7 +230,8 @@ TEST(GroundExchange, TheBallGoesWhereAFormatHasAPlaceForIt) {
       EXPECT_EQ(warning.find("2 people"), std::string::npos) << "the ball is nobody: " << warning;
     const GroundMatch back = read_match(folder / one.name, {{}, match.pitch, 25});
     const auto& tracks = back.recording.tracks();
-    const auto found = std::find_if(tracks.begin(), tracks.end(), [](const TrackColumns& track) { return track.name.kind == TrackKind::ball; });
+    const auto found =
+        std::find_if(tracks.begin(), tracks.end(), [](const TrackColumns& track) { return track.name.kind == TrackKind::ball; });
     ASSERT_EQ(found != tracks.end(), one.read) << one.format;
     if (!one.read) continue;
     ASSERT_EQ(found->size(), ball.size()) << one.format;

@@ -47,10 +47,10 @@ class CursorOfSchema2 : public TakeCursor {
     summary.complete = values_.integer("complete") != 0;
     // Takes of older versions have no kinds; their ball is known by its label.
     const bool kinds = database_->number("SELECT count(*) FROM pragma_table_info('track') WHERE name = 'kind'") != 0;
-    Statement tracks(*database_,
-                     fmt::format("SELECT id, label, team, first_index, last_index, measured, filled, predicted, solved{} FROM track "
-                                 "ORDER BY id",
-                                 kinds ? ", kind" : ""));
+    Statement tracks(
+        *database_, fmt::format("SELECT id, label, team, first_index, last_index, measured, filled, predicted, solved{} FROM track "
+                                "ORDER BY id",
+                                kinds ? ", kind" : ""));
     while (tracks.step()) {
       RecordingSummary::TrackCount count;
       count.name = {checked_track(tracks.integer(0), *database_), plain_text(tracks.text(1)), plain_text(tracks.text(2))};

@@ -187,8 +187,9 @@ TEST_F(TakeColumnsTest, KindsComeBackAndOldTakesKnowTheBallByItsLabel) {
   EXPECT_EQ(read.tracks()[2].name.kind, TrackKind::person);
 
   Database(path_, Database::Mode::create)
-      .run("UPDATE track SET label = CASE id WHEN 2 THEN 'ball' ELSE '' END; ALTER TABLE track DROP COLUMN kind; "
-           "DELETE FROM take WHERE key = 'track_kind'");
+      .run(
+          "UPDATE track SET label = CASE id WHEN 2 THEN 'ball' ELSE '' END; ALTER TABLE track DROP COLUMN kind; "
+          "DELETE FROM take WHERE key = 'track_kind'");
   const Recording old = read_recording(path_);
   EXPECT_EQ(old.tracks()[0].name.kind, TrackKind::unspecified);
   EXPECT_EQ(old.tracks()[1].name.kind, TrackKind::ball);

@@ -141,7 +141,10 @@ class MarkersInPicture final : public corridor::Stage {
                                              track::Tracker<2>& tracker) {
     std::vector<Observation<2>> seen;
     if (given.detections) {
-      for (const Detection& detection : *given.detections) seen.push_back(observation_of(detection));
+      for (const Detection& detection : *given.detections) {
+        seen.push_back(observation_of(detection));
+        if (!seen.back().covariance) seen.back().covariance = kUnknownDeviation * kUnknownDeviation * Matrix<2>::Identity();
+      }
       return seen;
     }
     std::vector<Expected> expected;

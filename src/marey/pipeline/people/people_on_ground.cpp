@@ -181,7 +181,8 @@ class GroundStage final : public PeopleOnGround {
     void name_ball(Instant& instant) {
       std::erase_if(instant.named, [this](const TrackName& name) { return name.id == stage_.ball_; });
       if (next_ == 1 && stage_.ball_)
-        instant.named.push_back({*stage_.ball_, std::string(kBallLabel), {}, std::array<std::uint8_t, 3>{255, 255, 255}, TrackKind::ball});
+        instant.named.push_back(
+            {*stage_.ball_, std::string(kBallLabel), {}, std::array<std::uint8_t, 3>{255, 255, 255}, TrackKind::ball});
     }
 
     /// Who has neither label nor team still has a colour.
@@ -225,7 +226,6 @@ class GroundStage final : public PeopleOnGround {
     });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
   }
-
 
   /// What each camera that has a frame sees of the ground, side by side.
   std::span<const CameraObservations> observe(const FrameSet& frames, std::span<const Track<2>> expected) {

@@ -83,9 +83,8 @@ class NodeReader {
 
 void put_detection(std::string& to, const Detection& found) {
   const Matrix<2> covariance = found.covariance.value_or(Matrix<2>::Zero());  // in a message zeros stand for unknown
-  for (const double value :
-       {found.centre.x(), found.centre.y(), covariance(0, 0), covariance(0, 1), covariance(1, 1), found.area,
-        found.box.left, found.box.top, found.box.width, found.box.height, found.score})
+  for (const double value : {found.centre.x(), found.centre.y(), covariance(0, 0), covariance(0, 1), covariance(1, 1), found.area,
+                             found.box.left, found.box.top, found.box.width, found.box.height, found.score})
     put(to, value);
 }
 
