@@ -41,7 +41,7 @@ Recording record(const simulate::room::RoomOptions& options) {
       for (const simulate::room::RoomBlob& blob : frame.seen[static_cast<std::size_t>(c)]) {
         Observation<2> one;
         one.value = blob.pixel;
-        one.covariance.setZero();
+        one.covariance.reset();
         one.camera = CameraId{c};
         seen.push_back(one);
         owner.push_back(blob.marker.value_or(-1));

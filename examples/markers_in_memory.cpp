@@ -29,7 +29,7 @@ int main() try {
         marey::Observation<2>& one = seen.emplace_back();
         one.camera = marey::CameraId{static_cast<int>(camera)};
         one.value = blob.pixel;
-        one.covariance.setZero();
+        one.covariance.reset();  // unknown: the cameras' common noise alone
       }
     }
     std::vector<marey::Observation<3>> points;  // m

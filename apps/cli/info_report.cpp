@@ -171,6 +171,8 @@ void print_recording(const std::string& path, const format::Format& format, cons
   if (info.beside.channels > 0) print_row("analog", fmt::format("{} channels", info.beside.channels));
   if (info.beside.events > 0) print_row("events", fmt::format("{}", info.beside.events));
   print_row("positions", to_string(info.header.frame) + (y_grows_down(info.header) ? "; y grows downwards" : ""));
+  if (info.header.rig && info.header.time_base.kind != TimeBase::Kind::unspecified)
+    print_row("times", to_string(info.header.time_base, *info.header.rig));
   if (info.up) print_row("up", *info.up == format::UpAxis::y ? "y" : "z");
   for (const pipeline::take::EditLine& edit : edits)
     print_row("edit", fmt::format("{} {}{}", edit.id, edit.words, edit.counts ? "" : " (does not count)"));
@@ -223,6 +225,9 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
     result["duration_s"] = seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz;
   }
   result["frame"] = to_string(info.header.frame);
+  if (info.header.rig && info.header.time_base.kind != TimeBase::Kind::unspecified)
+    result["time_base"] = to_string(info.header.time_base, *info.header.rig);
+  if (info.header.track_kind != TrackKind::unspecified) result["track_kind"] = to_string(info.header.track_kind);
   for (const Body& body : info.header.bodies)
     result["bodies"].push_back({{"name", body.label}, {"skeleton", body.skeleton}, {"markers", body.markers.size()}});
   if (info.beside.channels > 0) result["analog_channels"] = info.beside.channels;

@@ -65,7 +65,7 @@ std::vector<Vector<2>> fused(const std::vector<Observation<2>>& all) {
       best = &cluster;
     }
     if (best == nullptr) best = &clusters.emplace_back();
-    const Matrix<2> weight = one.covariance.inverse();
+    const Matrix<2> weight = one.covariance->inverse();
     best->weight += weight;
     best->sum += weight * one.value;
     best->cameras.push_back(number(one.camera));

@@ -139,7 +139,6 @@ std::vector<Detection> blobs_of(const RoomScene& scene, int camera, double t, st
   for (const auto& blob : scene.seen_by(camera, t, draw)) {
     Detection& detection = detections.emplace_back();
     detection.centre = blob.pixel;
-    detection.covariance.setZero();
   }
   return detections;
 }

@@ -157,7 +157,6 @@ FrameSet frame_set_of(const simulate::room::RoomFrame& seen) {
     for (const simulate::room::RoomBlob& blob : seen.seen[c]) {
       Detection& detection = camera.detections->emplace_back();
       detection.centre = blob.pixel;
-      detection.covariance.setZero();
       detection.area = 0;
       detection.box = Box::from_centre(blob.pixel, 0, 0);
     }

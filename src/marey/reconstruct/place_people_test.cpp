@@ -48,7 +48,7 @@ std::optional<Observation<2>> placed(const Box& box, const GroundView& view, std
 
 double squared_distance(const Observation<2>& seen, const Vector<2>& truth) {
   const Vector<2> error = seen.value - truth;
-  return error.dot(seen.covariance.inverse() * error);
+  return error.dot(seen.covariance->inverse() * error);
 }
 
 TEST(PlacePeople, ExactBoxesLeadToExactPlaces) {

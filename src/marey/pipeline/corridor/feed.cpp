@@ -140,8 +140,7 @@ class ObservationDeal {
 Detection blob_of(const format::SeenPoint& point) {
   Detection blob;
   blob.centre = point.pixel;
-  const double sigma = point.sigma.value_or(0);
-  blob.covariance = sigma * sigma * Matrix<2>::Identity();
+  if (point.sigma) blob.covariance = *point.sigma * *point.sigma * Matrix<2>::Identity();
   if (!point.area) return blob;
   const double side = std::sqrt(*point.area);  // of what had a shape once, the area was kept
   blob.area = *point.area;

@@ -13,6 +13,7 @@ class Preview final : public Stage {
   Preview(const std::vector<Feed>& feeds, const Rig& rig, double rate_hz, const detect::DetectorOptions& detector) {
     header_.name = "preview";
     header_.frame.kind = FrameOfReference::Kind::space;
+    header_.time_base.kind = TimeBase::Kind::rig;
     header_.made_by.program = "marey live";
     header_.rate_hz = rate_hz;
     header_.rig = rig;
@@ -39,7 +40,7 @@ class Preview final : public Stage {
         SeenPoint& seen = instant_.seen.emplace_back();
         seen.camera = CameraId{static_cast<int>(i)};
         seen.pixel = detection.centre;
-        if (detection.covariance.trace() > 0) seen.sigma = std::sqrt(detection.covariance.trace() / 2);
+        seen.sigma = detection.sigma();
         if (detection.area > 0) seen.area = detection.area;
       }
     }

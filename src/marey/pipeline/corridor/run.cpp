@@ -4,7 +4,6 @@
 #include <set>
 #include <utility>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
 #include "marey/format/input_hash.h"
@@ -19,7 +18,7 @@ class Counter {
 
   void add(const Instant& instant) {
     for (const TrackName& name : instant.named) {
-      if (is_ball(name)) balls_.insert(name.id);
+      if (name.kind == TrackKind::ball) balls_.insert(name.id);
       if (name.label.empty()) {
         labelled_.erase(name.id);
       } else {

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/filter/human_motion.h"
 #include "marey/track/ground/offline/ground_cut.h"
@@ -125,7 +124,7 @@ std::string those_near_by(const Recording& recording, const TrackColumns* missin
   std::vector<std::pair<double, int>> near;
   for (const TrackColumns& track : recording.tracks()) {
     const auto row = track.row_at(instant);
-    if (!row || is_ball(track.name)) continue;
+    if (!row || track.name.kind == TrackKind::ball) continue;
     double distance = number(track.id());
     if (missing != nullptr && !missing->empty()) {
       const bool later = instant > missing->at().back();
@@ -184,7 +183,7 @@ TrackedPeople tracked_people(const Recording& recording) {
   TrackedPeople people;
   for (const Recording::Moment& moment : recording.instants()) people.times.push_back(moment.time);
   for (const TrackColumns& track : recording.tracks()) {
-    if (!is_ball(track.name)) add_tracklets(track, people.times, people.tracklets);
+    if (track.name.kind != TrackKind::ball) add_tracklets(track, people.times, people.tracklets);
   }
   if (people.tracklets.empty()) throw Error("nobody was measured in the take");
   track::ground::offline::GroundCutOptions cut;

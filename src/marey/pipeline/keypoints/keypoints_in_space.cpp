@@ -243,6 +243,8 @@ void KeypointJob::add_person(const rk::PersonTrack& track, const rk::PersonPath*
 RecordingHeader KeypointJob::header() const {
   RecordingHeader header;
   header.frame.kind = FrameOfReference::Kind::space;
+  header.time_base.kind = TimeBase::Kind::rig;
+  header.track_kind = TrackKind::keypoint;
   header.rate_hz = frames_->rate_hz();
   header.rig = rig_;
   for (RigCamera& camera : header.rig->cameras) camera.source = shown_source(camera.source);

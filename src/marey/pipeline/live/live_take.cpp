@@ -81,8 +81,7 @@ class TakeCamera final : public source::live::Connection {
       if (seen.camera != camera_) continue;
       Detection& point = points.emplace_back();
       point.centre = seen.pixel;
-      const double sigma = seen.sigma.value_or(0);
-      point.covariance = sigma * sigma * Matrix<2>::Identity();
+      if (seen.sigma) point.covariance = *seen.sigma * *seen.sigma * Matrix<2>::Identity();
       point.area = seen.area.value_or(0);
     }
     return points;

@@ -160,7 +160,6 @@ std::vector<std::deque<HandedOver::Due>> free_running(const marey::simulate::roo
       auto& detections = frame.detections.emplace();
       for (const auto& blob : scene.seen_by(c, taken, static_cast<std::uint64_t>(i))) {
         detections.emplace_back().centre = blob.pixel;
-        detections.back().covariance.setZero();
       }
       const Timestamp now = timestamp_from_seconds(10 + taken);
       const Timestamp arrival = std::max(last, now + duration_from_seconds(free ? -0.002 * std::log(random.uniform(1e-4, 1)) : 0));

@@ -53,6 +53,8 @@ class MarkersInPicture final : public corridor::Stage {
       : options_(options), detector_(corridor::markers_of(feed.camera(), options.markers), options.tuning) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
+    header_.time_base.kind = TimeBase::Kind::rig;
+    header_.track_kind = TrackKind::marker;
     header_.made_by.program = "marey track";
     header_.rate_hz = feed.rate_hz();
     header_.rig = Rig{.ground_from_world = {}, .calibration = {}, .cameras = {feed.camera()}};
@@ -139,7 +141,10 @@ class MarkersInPicture final : public corridor::Stage {
                                              track::Tracker<2>& tracker) {
     std::vector<Observation<2>> seen;
     if (given.detections) {
-      for (const Detection& detection : *given.detections) seen.push_back(observation_of(detection));
+      for (const Detection& detection : *given.detections) {
+        seen.push_back(observation_of(detection));
+        if (!seen.back().covariance) seen.back().covariance = kUnknownDeviation * kUnknownDeviation * Matrix<2>::Identity();
+      }
       return seen;
     }
     std::vector<Expected> expected;

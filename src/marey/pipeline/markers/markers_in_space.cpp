@@ -63,6 +63,8 @@ class MarkersInSpace final : public corridor::Stage {
     header_.name = "the rig";
     header_.made_by.program = "marey reconstruct";
     header_.frame.kind = FrameOfReference::Kind::space;
+    header_.time_base.kind = TimeBase::Kind::rig;
+    header_.track_kind = TrackKind::marker;
     header_.rate_hz = rate_hz;
     header_.rig = rig;
     choose_cameras(rig);
@@ -190,14 +192,16 @@ class MarkersInSpace final : public corridor::Stage {
 
   void see(const FrameSet& frames) {
     seen_.clear();
+    sigmas_.clear();
     for (std::size_t c = 0; c < frames.cameras.size(); ++c) {
       if (!frames.cameras[c] || !calibrated_[c]) continue;
       const auto first = std::ssize(seen_);
       for (const Detection& detection : *frames.cameras[c]->detections) {
-        Observation<2> blob = observation_of(detection);
-        if (blob.covariance.trace() > 2 * kVaguest * kVaguest) continue;
-        blob.camera = CameraId{static_cast<int>(c)};
-        seen_.push_back(blob);
+        const std::optional<double> sigma = detection.sigma();
+        if (sigma && *sigma > kVaguest) continue;
+        seen_.push_back(observation_of(detection));
+        seen_.back().camera = CameraId{static_cast<int>(c)};
+        sigmas_.push_back(sigma);
       }
       if (options_.live)
         bring_to(frames.time, *frames.cameras[c], CameraId{static_cast<int>(c)},
@@ -258,11 +262,12 @@ class MarkersInSpace final : public corridor::Stage {
     Undecided moment;
     moment.instant.index = frames.index;
     moment.instant.time = frames.time;
-    for (const Observation<2>& blob : seen_) {
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const Observation<2>& blob = seen_[i];
       SeenPoint& seen = moment.instant.seen.emplace_back();
       seen.camera = blob.camera;
       seen.pixel = blob.value;
-      if (blob.covariance.trace() > 0) seen.sigma = std::sqrt(blob.covariance.trace() / 2);
+      seen.sigma = sigmas_[i];
       if (blob.box && blob.box->area() > 0) seen.area = blob.box->area();
     }
     for (const reconstruct::Placed& placed : found.points) {
@@ -324,6 +329,7 @@ class MarkersInSpace final : public corridor::Stage {
   std::int64_t frames_ = 0, observations_ = 0, unexplained_ = 0, by_two_rays_ = 0, placed_ = 0;
   double squares_ = 0;
   std::vector<Observation<2>> seen_;
+  std::vector<std::optional<double>> sigmas_;  // of `seen_`, px
   std::vector<Track<3>> expected_;
   std::vector<Observation<3>> points_;
   std::vector<Instant> known_;

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "marey/core/ball_track.h"
+#include "marey/core/track_kind.h"
 #include "marey/reconstruct/person_view.h"
 
 namespace marey::pipeline::people {
@@ -80,7 +80,7 @@ std::optional<TrackId> follow_ball(std::vector<BallMoment> moments, const std::s
   const auto stop = [&] { return hooks.stop.stop_requested(); };
   const std::vector<std::optional<BallState>> way = track::ball::ball_way(moments, views, where, options.way, stop);
   const int last_id = recording.tracks().empty() ? 0 : number(recording.tracks().back().id());
-  TrackColumns track({.id = TrackId{last_id + 1}, .label = std::string(kBallLabel), .team = {}}, 3);
+  TrackColumns track({.id = TrackId{last_id + 1}, .label = std::string(kBallLabel), .team = {}, .kind = TrackKind::ball}, 3);
   std::size_t instant = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     if (!way[i]) continue;

@@ -261,7 +261,7 @@ void GroundCamera::place(const Frame& frame, detect::Detections& found) {
     if (!area_.holds(placed.seen[i].value, kBeyondArea)) continue;
     seen_.push_back(placed.seen[i]);
     if (turning_ && seen_.back().box)
-      seen_.back().covariance += aim_covariance(camera_, *turning_, frame.time, seen_.back().box->foot());
+      *seen_.back().covariance += aim_covariance(camera_, *turning_, frame.time, seen_.back().box->foot());
     seen_.back().appearance = appearances[static_cast<std::size_t>(placed.detection[i])];
   }
   outside_ += std::ssize(found.detections) - std::ssize(seen_);

@@ -114,7 +114,7 @@ void GroundPathLog::add(std::span<const track::ground::CameraObservations> views
     const Observation<2>& seen = view.seen[static_cast<std::size_t>(match.observation)];
     if (seen.shared) continue;
     auto& samples = paths_[{camera, match.track}].samples;
-    if (samples.empty() || own > samples.back().time_s) samples.push_back({own, seen.value, seen.covariance});
+    if (samples.empty() || own > samples.back().time_s) samples.push_back({own, seen.value, *seen.covariance});
   }
 }
 

@@ -40,7 +40,7 @@ std::vector<Observation<2>> observations_of(const std::vector<Detection>& detect
   result.reserve(detections.size());
   for (const Detection& detection : detections) {
     result.push_back({.value = detection.box.centre(),
-                      .covariance = detection.covariance,
+                      .covariance = detection.covariance.value_or(Matrix<2>::Identity()),
                       .camera = camera,
                       .score = detection.score,
                       .box = detection.box,
@@ -93,6 +93,8 @@ class PeopleInPicture final : public corridor::Stage {
         tracker_(track::make_tracker(tracking_)) {
     header_.name = feed.info().name;
     header_.frame.kind = FrameOfReference::Kind::image;
+    header_.time_base.kind = TimeBase::Kind::rig;
+    header_.track_kind = TrackKind::person;
     header_.made_by.program = "marey track";
     header_.rate_hz = feed.rate_hz();
     header_.smoothed = !options.live;

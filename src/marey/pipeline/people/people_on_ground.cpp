@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/draw/canvas.h"
 #include "marey/pipeline/people/camera_contradictions.h"
@@ -40,15 +39,6 @@ Rig as_fed(const Rig& rig, const std::vector<corridor::Feed>& feeds) {
   Rig fed = rig;
   for (std::size_t i = 0; i < feeds.size(); ++i) fed.cameras[i] = feeds[i].camera();
   return fed;
-}
-
-/// The same, its times by the clock of the first camera, which was started `offset` s after the rig's.
-Recording by_first_camera(Recording recording, double offset) {
-  Recording result(recording.header);
-  for (const Recording::Moment& moment : recording.instants())
-    result.add_moment({moment.index, moment.time - duration_from_seconds(offset)});
-  for (TrackColumns& track : recording.take_tracks()) result.put(std::move(track));
-  return result;
 }
 
 std::array<std::uint8_t, 3> bytes_of(const draw::Colour& colour) {
@@ -86,6 +76,8 @@ class GroundStage final : public PeopleOnGround {
     }
     header_.name = "people on the ground";
     header_.frame.kind = FrameOfReference::Kind::user_ground;
+    header_.time_base = {.kind = TimeBase::Kind::camera, .camera = CameraId{0}};
+    header_.track_kind = TrackKind::person;
     header_.made_by.program = "marey track";
     header_.rate_hz = feeds.front().rate_hz();
     header_.rig = rig_;
@@ -119,7 +111,7 @@ class GroundStage final : public PeopleOnGround {
       if (frames.cameras[i])
         logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
     }
-    moments_.push_back({frames.index, frames.time - first_offset()});
+    moments_.push_back({frames.index, frames.time - rig_time_offset(header_.time_base, rig_)});
     if (options_.ball) note_ball(frames);
     if (!options_.live) {
       run_->step(static_cast<std::int32_t>(frames.index), frames.time, seen);
@@ -189,7 +181,8 @@ class GroundStage final : public PeopleOnGround {
     void name_ball(Instant& instant) {
       std::erase_if(instant.named, [this](const TrackName& name) { return name.id == stage_.ball_; });
       if (next_ == 1 && stage_.ball_)
-        instant.named.push_back({*stage_.ball_, std::string(kBallLabel), {}, std::array<std::uint8_t, 3>{255, 255, 255}});
+        instant.named.push_back(
+            {*stage_.ball_, std::string(kBallLabel), {}, std::array<std::uint8_t, 3>{255, 255, 255}, TrackKind::ball});
     }
 
     /// Who has neither label nor team still has a colour.
@@ -233,8 +226,6 @@ class GroundStage final : public PeopleOnGround {
     });
     for (auto& camera : opened) cameras_.push_back(std::move(*camera));
   }
-
-  Duration first_offset() const { return duration_from_seconds(rig_.cameras.front().offset_s.value_or(0)); }
 
   /// What each camera that has a frame sees of the ground, side by side.
   std::span<const CameraObservations> observe(const FrameSet& frames, std::span<const Track<2>> expected) {
@@ -328,8 +319,9 @@ class GroundStage final : public PeopleOnGround {
     doubtful_joins_ =
         std::count_if(joined.joins.begin(), joined.joins.end(), [](const auto& one) { return one.probability < kSure; });
     const std::size_t all = joined.recording.tracks().size();
-    reconstruct::KeptPeople people =
-        reconstruct::people_in(area_, by_first_camera(std::move(joined.recording), rig_.cameras.front().offset_s.value_or(0)));
+    joined.recording.header.rig = rig_;
+    joined.recording.header.time_base = {.kind = TimeBase::Kind::rig};
+    reconstruct::KeptPeople people = reconstruct::people_in(area_, with_time_base(std::move(joined.recording), header_.time_base));
     recording_ = std::move(people.recording);
     recording_.header = header_;
     off_pitch_ = static_cast<std::int64_t>(all - people.now.size());
@@ -369,7 +361,7 @@ class GroundStage final : public PeopleOnGround {
 
   /// Where everybody is in each camera's picture: as it saw them, else as somebody who stands there would be seen.
   void add_boxes(Instant& instant) const {
-    const Timestamp time = instant.time + first_offset();  // by the rig's clock
+    const Timestamp time = instant.time + rig_time_offset(header_.time_base, rig_);
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
       const auto own = logs_[i].frame_at(instant.index);
       if (!own) continue;
@@ -410,7 +402,7 @@ class GroundStage final : public PeopleOnGround {
   bool wants_boxes_ = false;
   std::vector<CameraObservations> observations_, seen_;
   std::int64_t joins_ = 0, doubtful_joins_ = 0;
-  std::vector<Recording::Moment> moments_;  // by the first camera's clock; where `live`, of this step alone
+  std::vector<Recording::Moment> moments_;  // by the header's clock; where `live`, of this step alone
   Recording recording_;
   std::vector<track::ball::BallMoment> ball_moments_;
   std::optional<TrackId> ball_;

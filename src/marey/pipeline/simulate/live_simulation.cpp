@@ -252,7 +252,6 @@ class RoomCamera final : public Connection {
     for (const marey::simulate::room::RoomBlob& blob : seen) {
       Detection& detection = detections.emplace_back();
       detection.centre = blob.pixel;
-      detection.covariance.setZero();
     }
     return given;
   }

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "marey/analyse/smooth_path.h"
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/evaluate/pair_instants.h"
 
@@ -57,7 +56,7 @@ std::vector<evaluate::TargetPlace> places_of(const Recording& recording, const e
     if (!numbers[instant]) continue;
     for (const auto& [index, row] : rows.at(instant)) {
       const TrackColumns& track = recording.tracks()[index];
-      if (is_ball(track.name)) continue;  // nobody
+      if (track.name.kind == TrackKind::ball) continue;  // nobody
       places.push_back({*numbers[instant], marey::number(track.id()), track.position(row), velocities[index][row]});
     }
   }

@@ -212,7 +212,7 @@ bool FilterTracker::is_duplicate(int index, Seen seen) const {
 void FilterTracker::start(const Observation<2>& observation, int index) {
   const bool has_box = has_extent(observation);
   const double unit = has_box ? observation.box->height : 1.0;
-  Matrix<2> R = observation.covariance;
+  Matrix<2> R = *observation.covariance;
   if (has_box) R.diagonal() = R.diagonal().cwiseMax(Vector<2>::Constant(std::pow(options_.place_noise * unit, 2)));
   Target& target = targets_.emplace_back(Target{.id = TrackId{next_id_++},
                                                 .filter = {filter::scaled(options_.filter, unit), centre_of(observation), R},

@@ -27,7 +27,7 @@ Vector<2> FilterTracker::place_of(const Observation<2>& observation, const Targe
 }
 
 Matrix<2> FilterTracker::noise_of(const Observation<2>& observation, const Target& target) const {
-  Matrix<2> R = observation.covariance;
+  Matrix<2> R = *observation.covariance;
   if (!target.size || !observation.box) return R;
   if (options_.learn_noise) R.setZero();
   const bool believed = !observation.shared && target.size->believes(*observation.box, size_options_);

@@ -10,7 +10,7 @@ std::span<const Track<2>> IndependentTracker::step(Timestamp now, std::span<cons
   assert((targets_.empty() || now > *now_) && "frames come in the order of their time");
   const std::span<const Observation<2>> seen = views.front().seen;
   if (targets_.empty()) {
-    for (int i = 0; i < std::ssize(seen); ++i) targets_.push_back({{options_, seen[i].value, seen[i].covariance}, i});
+    for (int i = 0; i < std::ssize(seen); ++i) targets_.push_back({{options_, seen[i].value, *seen[i].covariance}, i});
   } else {
     for (Target& target : targets_) follow(target, seconds_to(now), seen);
   }
@@ -33,7 +33,7 @@ void IndependentTracker::follow(Target& target, double dt, std::span<const Obser
   double least = std::numeric_limits<double>::infinity();
   for (const Observation<2>& point : seen) {
     const double distance = (point.value - target.filter.position()).norm();
-    if (distance < least && target.filter.gate_distance(point.value, point.covariance) <= 1) {
+    if (distance < least && target.filter.gate_distance(point.value, *point.covariance) <= 1) {
       least = distance;
       nearest = &point;
     }

@@ -22,7 +22,7 @@ std::span<const Observation<2>> SceneView::in_scene(std::span<const Observation<
   in_scene_.assign(seen.begin(), seen.end());
   for (Observation<2>& one : in_scene_) {
     one.value = scene_from_view * one.value;
-    one.covariance = scene_from_view.turn * one.covariance * scene_from_view.turn.transpose();
+    if (one.covariance) one.covariance = scene_from_view.turn * *one.covariance * scene_from_view.turn.transpose();
     if (one.box) one.box = scene_from_view * *one.box;
   }
   return in_scene_;

@@ -95,7 +95,7 @@ class RosterLikelihood {
   }
 
   Matrix<D> noise_of(const Observation<D>& observation) const {
-    Matrix<D> R = observation.covariance;
+    Matrix<D> R = *observation.covariance;
     R.diagonal().array() += options_.place_noise * options_.place_noise;
     return R;
   }
@@ -113,7 +113,7 @@ class RosterLikelihood {
   }
 
   /// Of a point as it is seen.
-  static double variance_of(const Observation<D>& observation) { return observation.covariance.trace() / D; }
+  static double variance_of(const Observation<D>& observation) { return observation.covariance->trace() / D; }
 
   /// Whether the point is as large as the target, but for what the pixels' raster makes of it, and told as well as it usually is: a
   /// disc that something begins to cover is a bad disc before it is a small one.

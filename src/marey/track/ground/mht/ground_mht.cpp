@@ -162,7 +162,7 @@ class GroundMht final : public GroundTracker {
       if (expected < 2) continue;
       const auto found =
           std::count_if(seen.begin(), seen.end(), [&](const auto& other) { return touches(other.value, one.value); });
-      if (expected > found) one.covariance.diagonal().array() += between * between;
+      if (expected > found) one.covariance->diagonal().array() += between * between;
     }
   }
 
@@ -171,7 +171,7 @@ class GroundMht final : public GroundTracker {
     double widest = 0;
     for (const Observation<2>& one : seen) {
       points_.push_back(one.value);
-      widest = std::max(widest, one.covariance.trace());
+      widest = std::max(widest, one.covariance->trace());
     }
     grid_.build(points_, 1 + 2 * std::sqrt(widest));
     const double unknown = std::log1p(births() / rules_.options().clutter);  // an observation that nothing known explains

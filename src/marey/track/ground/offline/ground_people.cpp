@@ -37,7 +37,7 @@ class Writer {
   /// One person's rows. Its gaps that are not too long are filled.
   TrackColumns columns(const std::vector<GroundSample>& samples, TrackId person) const {
     const std::vector<GroundMoment> moments = smooth_ground(samples, times_, motion_);
-    TrackColumns track({person, {}, {}}, 2);
+    TrackColumns track({.id = person, .label = {}, .team = {}, .kind = TrackKind::person}, 2);
     track.reserve(count(samples));
     if (!samples.empty() && began_with_cameras(samples.front())) predict_back(samples.front().instant, moments.front(), track);
     for (std::size_t i = 0; i < samples.size(); ++i) {

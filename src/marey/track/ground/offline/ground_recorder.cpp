@@ -31,7 +31,7 @@ std::int8_t rounded(double value) {
 class JointObservation {
  public:
   void add(const Observation<2>& seen, const Vector<2>& brought) {
-    const Matrix<2> weight = seen.covariance.inverse();
+    const Matrix<2> weight = seen.covariance->inverse();
     weights_ += weight;
     places_ += weight * (seen.value + brought);
     cameras_ |= mask_of(seen.camera);
