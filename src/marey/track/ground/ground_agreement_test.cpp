@@ -145,7 +145,7 @@ double noise_factor(const GroundAgreement& agreement) {
   Observation<2> one;
   one.value = {50, 30};
   one.covariance = Matrix<2>::Identity();
-  return std::sqrt(agreement.corrected(one).covariance(0, 0));
+  return std::sqrt(agreement.corrected(one).covariance.value()(0, 0));
 }
 
 TEST(GroundAgreement, NoiseIsMeasuredApartFromWhatLasts) {

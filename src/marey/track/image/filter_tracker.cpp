@@ -131,7 +131,7 @@ void FilterTracker::keep_merged(Seen seen) {
 
 void FilterTracker::stay_within(Target& target, const Observation<2>& region) const {
   const double sigma = kUnbelieved * options_.place_noise * target.unit;
-  const Matrix<2> R = region.covariance + sigma * sigma * Matrix<2>::Identity();
+  const Matrix<2> R = *region.covariance + sigma * sigma * Matrix<2>::Identity();
   target.filter.correct(target.size->centre_within(*region.box, target.filter.position()), R);
   target.hidden = true;
 }

@@ -41,7 +41,7 @@ void IndependentTracker::follow(Target& target, double dt, std::span<const Obser
   target.observation.reset();
   if (nearest == nullptr) return;
   target.observation = static_cast<int>(nearest - seen.data());
-  target.filter.correct(nearest->value, nearest->covariance);
+  target.filter.correct(nearest->value, *nearest->covariance);
 }
 
 std::span<const Track<2>> IndependentTracker::report(std::span<const Target> targets) {
