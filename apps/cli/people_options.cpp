@@ -48,7 +48,7 @@ void add_people_options(Command& command, PeopleFlags& flags) {
 }
 
 void add_keypoint_options(Command& command, PeopleFlags& flags) {
-  command.group("Options for --targets keypoints, beside those for people");
+  command.group("Options for --targets keypoints");
   command
       .text("--model", flags.model,
             "the network that finds the points: lite, full or heavy, each slower and more accurate than the one before "

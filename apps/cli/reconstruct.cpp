@@ -31,6 +31,7 @@ struct ReconstructCommand {
   pipeline::markers::MarkersInSpaceOptions options;
   bool of_keypoints = false;
   pipeline::keypoints::KeypointsInSpaceOptions keypoints;
+  PeopleFlags people;  // of cameras with videos
   bool json = false;
   bool quiet = false;
 };
@@ -80,9 +81,14 @@ void run_keypoints(const ReconstructCommand& command) {
     throw WrongUsage("{}", "--targets keypoints: --observations, --labels, --set and --skeleton are of markers; remove them");
   pipeline::keypoints::KeypointsInSpaceOptions options = command.keypoints;
   options.rate_hz = command.options.rate_hz;
+  PeopleFlags people = command.people;
+  people.keypoints = true;
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {
+        options.find = [&](const RigCamera& camera) {
+          return pipeline::people::find_keypoints(camera, people_options(people, {}, false), hooks);
+        };
         return pipeline::keypoints::reconstruct_keypoints(rig_of(command.inputs), command.out, options, hooks);
       },
       [&](const pipeline::keypoints::KeypointsSummary& summary, double) {
@@ -127,8 +133,8 @@ void add_reconstruct(Command& program) {
       .ends_in({".marey", ".c3d", ".trc", ".csv"});
   constexpr std::array<std::pair<const char*, bool>, 2> kTargets{{{"markers", false}, {"keypoints", true}}};
   command.choice("--targets", options->of_keypoints, kTargets,
-                 "what is placed: markers; or people's body keypoints, which CAMERA=FILE or CAMERA=FOLDER names (OpenPose, COCO, "
-                 "AlphaPose, MMPose, DeepLabCut, SLEAP)");
+                 "what is placed: markers; or people's body keypoints, found in the cameras' videos, or read where CAMERA=FILE or "
+                 "CAMERA=FOLDER names them (OpenPose, COCO, AlphaPose, MMPose, DeepLabCut, SLEAP, takes of marey track)");
   command.input_file("--labels", options->labels,
                      "the markers' names: CSV label,x,y,z as they lie at the beginning (m), or a name a line, by growing x");
   add_set_option(command, options->set);
@@ -142,7 +148,7 @@ void add_reconstruct(Command& program) {
   command.number("--marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers nearer than this disturb each other");
   command.number("--max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "no marker moves faster");
   add_blob_options(command, how.markers);
-  add_keypoint_options(command, options->keypoints);
+  add_keypoint_options(command, options->keypoints, options->people);
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

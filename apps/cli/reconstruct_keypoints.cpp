@@ -10,8 +10,13 @@
 
 namespace marey::cli {
 
-void add_keypoint_options(Command& command, pipeline::keypoints::KeypointsInSpaceOptions& options) {
+void add_keypoint_options(Command& command, pipeline::keypoints::KeypointsInSpaceOptions& options, PeopleFlags& people) {
+  add_keypoint_options(command, people);
+  people.without_background = true;  // people who fill the image, or stand in it from the beginning, are usual here
   command.group("Keypoints");
+  command.flag("--with-background", people.without_background,
+               "videos: people are found by what changes too, which is faster; default: by a network alone", false);
+  command.whole("--every", people.every, "N", 1, 1000, "videos: run the networks on every N-th frame");
   command
       .text("--keypoint-set", options.set,
             "the keypoint set of files that do not name their points: " + keypoint_set_names() + "; default: by the points")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,13 +10,17 @@
 
 namespace marey::pipeline::keypoints {
 
+/// Finds the keypoints in a camera's images: its `source` is a video or a folder of images.
+using FindInImages = std::function<KeypointSequence(const RigCamera&)>;
+
 /// Where a camera's keypoints are: its `detections`, else its `source`.
 std::string keypoint_file_of(const RigCamera& camera);
 
 /// The keypoints of the rig's calibrated cameras; the rig is fitted to the images' sizes. `set` is that of files that do not say,
-/// `rate_hz` counts where neither the rig nor a file says. Throws Error where a file cannot be read, fewer than two calibrated
-/// cameras have keypoints, or keypoint sets differ.
+/// `rate_hz` counts if neither the rig nor a file specifies it. A take is read too; a camera whose source is neither is given to
+/// `find`, if there is one. Throws Error if a file cannot be read, fewer than two calibrated cameras have keypoints, or keypoint sets
+/// differ.
 std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const std::string& set, std::optional<double> rate_hz,
-                                                                 std::vector<std::string>& warnings);
+                                                                 const FindInImages& find, std::vector<std::string>& warnings);
 
 }  // namespace marey::pipeline::keypoints

@@ -16,7 +16,6 @@
 #include "marey/format/input_hash.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/keypoints/keypoint_cameras.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
 #include "marey/pipeline/keypoints/keypoint_tracks.h"
@@ -51,7 +50,7 @@ class KeypointJob {
         options_(options),
         summary_(summary),
         hooks_(hooks),
-        files_(read_keypoint_cameras(rig_, options.set, options.rate_hz, summary.warnings)) {
+        files_(read_keypoint_cameras(rig_, options.set, options.rate_hz, options.find, summary.warnings)) {
     for (std::size_t c = 0; c < files_.size(); ++c) cameras_.push_back(files_[c] ? rig_.cameras[c].camera() : std::nullopt);
     for (const auto& file : files_) {
       if (file && !file->sequence.frames.empty()) {

@@ -10,6 +10,7 @@
 #include "marey/core/hooks.h"
 #include "marey/core/recording.h"
 #include "marey/core/rig.h"
+#include "marey/pipeline/keypoints/keypoint_cameras.h"
 
 namespace marey::pipeline::keypoints {
 
@@ -20,6 +21,7 @@ struct KeypointsInSpaceOptions {
   bool smooth = true;             ///< paths over all instants; else each instant by itself
   bool find_offsets = true;       ///< of cameras of which the rig has none, by the motion of the points
   double farthest_offset_s = 0.5;
+  FindInImages find;        ///< for cameras with videos in place of keypoints; none: they are refused
   double fill_s = 0.2;      ///< the longest gap that is filled
   double shortest_s = 0.2;  ///< whoever is placed for less is left out
 };
@@ -54,7 +56,7 @@ struct KeypointsSummary {
 };
 
 /// The keypoints of the rig's cameras: each camera's `detections` or `source` names a file or folder of them
-/// (format/keypoints/keypoint_file.h). Labels are the points' names, of several people "P1:left_knee". Throws Error where a file
+/// (format/keypoints/keypoint_file.h), a take, or with `find` a video. Labels are the points' names, of several people "P1:left_knee". Throws Error where a file
 /// cannot be read, fewer than two calibrated cameras have keypoints, sets differ, or nobody is seen by two cameras.
 Recording keypoints_in_space(const Rig& rig, const KeypointsInSpaceOptions& options, KeypointsSummary& summary,
                              const Hooks& hooks = {});

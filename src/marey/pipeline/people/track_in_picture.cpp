@@ -12,6 +12,7 @@
 #include "marey/draw/plot_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/pipeline/corridor/steady_camera.h"
+#include "marey/pipeline/keypoints/keypoint_recording.h"
 #include "marey/source/open_source.h"
 
 namespace marey::pipeline::people {
@@ -61,6 +62,20 @@ corridor::Summary track_people(const RigCamera& camera, const TrackOutput& outpu
   corridor::Summary summary = run_alone(std::move(feed), *stage, sinks, hooks);
   if (steady) steady->report(summary);
   return summary;
+}
+
+KeypointSequence find_keypoints(const RigCamera& camera, const PeopleInPictureOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  corridor::Feed feed = open(camera);
+  KeypointSequence found;
+  found.from = camera.source;
+  const cv::Size size = feed.info().size;
+  corridor::Sinks sinks;
+  sinks.add(std::make_unique<keypoints::KeypointCollector>(found));
+  const auto stage = people_in_picture(feed, options);
+  run_alone(std::move(feed), *stage, sinks, hooks);
+  found.size = size;
+  return found;
 }
 
 corridor::Summary track_markers(const RigCamera& camera, const TrackOutput& output, const markers::MarkersInPictureOptions& options,

@@ -6,6 +6,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "marey/core/keypoint_sequence.h"
 #include "marey/core/rig.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/markers/markers_in_picture.h"
@@ -26,6 +27,10 @@ struct TrackOutput {
 /// nothing half-written stays behind.
 corridor::Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options = {},
                                const Hooks& hooks = {});
+
+/// The body keypoints of one camera's images, as track_people finds them; `options.keypoints` is set. Throws Error if the images cannot
+/// be read, or the network is not usable.
+KeypointSequence find_keypoints(const RigCamera& camera, const PeopleInPictureOptions& options, const Hooks& hooks = {});
 
 /// Follows markers through a recording under the names they have in its first frame. Throws likewise, and where labels do not fit.
 corridor::Summary track_markers(const RigCamera& camera, const TrackOutput& output,
