@@ -120,10 +120,13 @@ TEST(Recording, KeepsTheKindOfATrackThatIsRenamed) {
 
 TEST(Recording, TimesFollowAnotherClock) {
   Recording recording(header_in(FrameOfReference::Kind::space));
-  recording.add({.index = 0, .time = timestamp_from_seconds(5)});
+  Instant instant;
+  instant.time = timestamp_from_seconds(5);
+  recording.add(instant);
   const TimeBase rig{.kind = TimeBase::Kind::rig}, second{.kind = TimeBase::Kind::camera, .camera = CameraId{1}};
   EXPECT_THROW(with_time_base(recording, second), Error);  // no rig
-  recording.header.rig.emplace().cameras = {{.name = "left"}, {.name = "right", .offset_s = 2.5}};
+  recording.header.rig.emplace().cameras.resize(2);
+  recording.header.rig->cameras[1].offset_s = 2.5;
   EXPECT_THROW(with_time_base(recording, second), Error);  // its own clock is not specified
   recording.header.time_base = rig;
   const Recording moved = with_time_base(recording, second);

@@ -176,7 +176,11 @@ TEST_F(TakeColumnsTest, KindsComeBackAndOldTakesKnowTheBallByItsLabel) {
   Instant instant;
   instant.named = {{.id = TrackId{1}, .label = "ball", .team = {}, .kind = TrackKind::person},
                    {.id = TrackId{2}, .label = "round", .team = {}, .kind = TrackKind::ball}};
-  for (const int id : {1, 2, 3}) instant.samples.push_back({.track = TrackId{id}, .position = {1, 2, id == 2 ? 0.5 : 0}});
+  for (const int id : {1, 2, 3}) {
+    Sample& sample = instant.samples.emplace_back();
+    sample.track = TrackId{id};
+    sample.position = {1, 2, id == 2 ? 0.5 : 0};
+  }
   recording.add(instant);
   write_recording(path_, recording);
   const Recording read = read_recording(path_);
