@@ -10,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/motion/marker_set.h"
+#include "marey/pipeline/people/track_in_picture.h"
 
 #include "blob_options.h"
 #include "command_line.h"

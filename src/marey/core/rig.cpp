@@ -35,8 +35,18 @@ RigCamera& camera_named(Rig& rig, const std::string& name) {
   return *at;
 }
 
+namespace {
+
+/// Codecs work on blocks of 16 px: 1920 x 1080 are stored as 1920 x 1088, filled up at the right and at the bottom.
+bool is_padded(cv::Size padded, cv::Size found) {
+  const auto fills = [](int whole, int part) { return whole == part || whole == (part + 15) / 16 * 16; };
+  return fills(padded.width, found.width) && fills(padded.height, found.height);
+}
+
+}  // namespace
+
 void fit_to_size(RigCamera& camera, cv::Size found) {
-  if (!camera.size) camera.size = found;
+  if (!camera.size || is_padded(*camera.size, found)) camera.size = found;
   if (*camera.size == found) return;
   const double factor = static_cast<double>(found.width) / camera.size->width;
   const bool same_shape = std::abs(camera.size->height * factor - found.height) <= std::max(1.0, factor);

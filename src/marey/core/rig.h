@@ -67,8 +67,8 @@ std::string camera_names(const Rig& rig);
 RigCamera& camera_named(Rig& rig, const std::string& name);
 
 /// Makes a camera's calibration hold for pictures of `found` px: it is scaled, and its masks with it, where the shapes agree within
-/// a pixel. A camera without a size gets this one. Throws Error where the shapes differ: then the camera has to be calibrated at
-/// that size.
+/// a pixel. A camera without a size gets this one; so does one whose size is this one filled up to multiples of 16 px, as codecs do at
+/// the right and at the bottom. Throws Error where the shapes differ: then the camera has to be calibrated at that size.
 void fit_to_size(RigCamera& camera, cv::Size found);
 
 }  // namespace marey

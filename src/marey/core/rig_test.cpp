@@ -54,6 +54,19 @@ TEST(FitToSize, MasksCoverWhatTheyCovered) {
   EXPECT_EQ(left.masks.front(), Mask(2, 4, 12, 22));
 }
 
+TEST(FitToSize, ACodecsPaddingIsLeftOut) {
+  RigCamera camera;
+  camera.size = cv::Size(1088, 1920);
+  geometry::BrownLens lens;
+  lens.focal = {1500, 1500};
+  camera.lens = lens;
+  fit_to_size(camera, {1080, 1920});
+  EXPECT_EQ(camera.size, cv::Size(1080, 1920));
+  EXPECT_EQ(std::get<geometry::BrownLens>(*camera.lens).focal.x(), 1500);
+  camera.size = cv::Size(1088, 1920);
+  EXPECT_THROW(fit_to_size(camera, {1070, 1920}), Error);
+}
+
 TEST(FitToSize, GivesASizeWhereThereIsNone) {
   Rig rig = two_cameras();
   rig.cameras[0].size.reset();

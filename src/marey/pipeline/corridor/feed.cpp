@@ -38,7 +38,7 @@ cv::Rect within(const cv::Rect& region, cv::Size picture, const std::string& sou
 }  // namespace
 
 std::string said_of(const RigCamera& camera, const std::string& sentence) {
-  return camera.name.empty() ? sentence : fmt::format("camera \"{}\": {}", camera.name, sentence);
+  return camera.name.empty() || sentence.starts_with("camera \"") ? sentence : fmt::format("camera \"{}\": {}", camera.name, sentence);
 }
 
 /// Ends the waiting for a silent camera when whoever opened the feed is asked to stop, or lets it go.
