@@ -111,7 +111,7 @@ Filmed film(const PeopleFilmOptions& options, PeopleSituation situation, std::ui
 struct Visit {
   int first = 0, last = 0;     // frames
   std::map<int, int> numbers;  // the sixth frame in which each number was given to it, if there is one, or minus how many there are
-  int first_number = 0, last_number = 0;
+  int first_number = 0, last_number = 0;  // of those that were given for longer than a slip
 };
 
 struct Score {
@@ -149,6 +149,7 @@ std::map<int, std::vector<Visit>> visits_of(const Filmed& film, std::span<const 
       if (number == 0) continue;
       int& given = visit.numbers[number];
       if (given <= 0 && --given < -kSlip) given = frame;
+      if (given <= 0) continue;
       if (visit.first_number == 0) visit.first_number = number;
       visit.last_number = number;
     }
