@@ -1,7 +1,8 @@
 // Who left the picture and came back: simulated people, twelve at a time, go out at the sides of the picture for 2 to 10 s, one in
 // six for good, and somebody else comes instead. Everybody wears clothes of their own, or the kits of two teams. Of all who come
 // back after 2 to 10 s: the share that has the number from before, and that has a number that was somebody else's; of newcomers,
-// likewise the latter. A visit counts from half a second on, of a person whose number agrees with the truth by half of the box.
+// likewise the latter. A visit counts from half a second on, of a person whose number agrees with the truth by half of the box, and
+// a number from the sixth frame on for which it is given.
 //   returns [--frames 1500] [--seeds 2] [--first-seed 1] [--plain] [--sweep]
 #include <algorithm>
 #include <cstdint>
