@@ -1,7 +1,8 @@
 // Who left the picture and came back: simulated people, twelve at a time, go out at the sides of the picture for 2 to 10 s, one in
 // six for good, and somebody else comes instead. Everybody wears clothes of their own, or the kits of two teams. Of all who come
 // back after 2 to 10 s: the share that has the number from before, and that has a number that was somebody else's; of newcomers,
-// likewise the latter. A visit counts from half a second on, of a person whose number agrees with the truth by half of the box.
+// likewise the latter. A visit counts from half a second on, of a person whose number agrees with the truth by half of the box, and
+// a number from the sixth frame on for which it is given.
 //   returns [--frames 1500] [--seeds 2] [--first-seed 1] [--plain] [--sweep]
 #include <algorithm>
 #include <cstdint>
@@ -111,7 +112,7 @@ Filmed film(const PeopleFilmOptions& options, PeopleSituation situation, std::ui
 struct Visit {
   int first = 0, last = 0;     // frames
   std::map<int, int> numbers;  // the sixth frame in which each number was given to it, if there is one, or minus how many there are
-  int first_number = 0, last_number = 0;
+  int first_number = 0, last_number = 0;  // of those that were given for longer than a slip
 };
 
 struct Score {
@@ -149,6 +150,7 @@ std::map<int, std::vector<Visit>> visits_of(const Filmed& film, std::span<const 
       if (number == 0) continue;
       int& given = visit.numbers[number];
       if (given <= 0 && --given < -kSlip) given = frame;
+      if (given <= 0) continue;
       if (visit.first_number == 0) visit.first_number = number;
       visit.last_number = number;
     }

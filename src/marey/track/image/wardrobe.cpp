@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 namespace marey::track::image {
 namespace {
@@ -11,8 +13,10 @@ constexpr std::array<std::optional<Appearance> Clothes::*, 3> kPartsOfClothes{&C
 
 constexpr std::array<double, 3> kWithinFirst{36, 6, 6}, kAllFirst{350, 50, 50};  // variances before anything is learned,
 constexpr double kFirstWeight = 6;                                               // and how many tracklets they count for
-constexpr double kWidened = 1.7;    // variances: parts and components are not independent
-constexpr double kUnseenKinds = 1;  // people who wear what nobody wore yet, beside those who were seen
+constexpr double kWidened = 1.7;                       // variances: parts and components are not independent
+constexpr double kUnseenKinds = 1;                     // people who wear what nobody wore yet, beside those who were seen
+constexpr double kFirstAlike = 0.25, kFirstPairs = 5;  // pairs of people who look alike, of all, before any are seen
+constexpr int kTurnsOfAlike = 10;
 constexpr double kSurestSame = 6, kSurestOther = -12;
 
 std::array<double, 3> values_of(const Appearance& colour) {
@@ -47,6 +51,12 @@ Clothes parts_of_both(const Clothes& a, const Clothes& b) {
   return both;
 }
 
+/// Of `one`'s time.
+double share_together(const Worn& other, const Worn& one) {
+  const double together = std::min(one.end, other.end) - std::max(one.begin, other.begin);
+  return std::max(0.0, together) / std::max(0.1, one.end - one.begin);
+}
+
 int count_of(const Clothes& parts) {
   return static_cast<int>(
       std::count_if(kPartsOfClothes.begin(), kPartsOfClothes.end(), [&](auto part) { return (parts.*part).has_value(); }));
@@ -57,6 +67,7 @@ int count_of(const Clothes& parts) {
 Wardrobe::Wardrobe(std::span<const Worn> worn) : worn_(worn.begin(), worn.end()) {
   learn_within();
   learn_all();
+  learn_alike();
 }
 
 void Wardrobe::learn_within() {
@@ -88,6 +99,30 @@ void Wardrobe::learn_all() {
   }
 }
 
+/// Those who are there at the same time are different people, whatever they wear.
+void Wardrobe::learn_alike() {
+  std::vector<int> order(worn_.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto begins = [&](int k) { return worn_[static_cast<std::size_t>(k)].begin; };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::pair(begins(a), a) < std::pair(begins(b), b); });
+  std::vector<double> likelier;  // if they wear the same than if not, logarithms
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Worn& one = worn_[static_cast<std::size_t>(order[i])];
+    for (std::size_t k = i + 1; k < order.size() && begins(order[k]) < one.end; ++k) {
+      const Worn& other = worn_[static_cast<std::size_t>(order[k])];
+      const Clothes parts = parts_of_both(one.whole, other.whole);
+      if (count_of(parts) < 2) continue;
+      likelier.push_back(log_density(one.whole, other.whole, parts) - log_density_of_anybody(other.whole, parts));
+    }
+  }
+  alike_ = kFirstAlike / kFirstPairs;
+  for (int turn = 0; turn < kTurnsOfAlike; ++turn) {
+    double sum = kFirstAlike;
+    for (const double one : likelier) sum += 1 / (1 + (1 - alike_) / alike_ * std::exp(-std::clamp(one, -100.0, 100.0)));
+    alike_ = std::min(0.99, sum / (kFirstPairs + static_cast<double>(likelier.size())));
+  }
+}
+
 double Wardrobe::log_density(const Clothes& known, const Clothes& seen, const Clothes& parts) const {
   double sum = 0;
   for (std::size_t p = 0; p < kPartsOfClothes.size(); ++p) {
@@ -112,14 +147,16 @@ double Wardrobe::log_density_of_anybody(const Clothes& seen, const Clothes& part
   return sum;
 }
 
-/// Of those who were there when `later` was, as long as they were, and of somebody in clothes that nobody wore yet.
-double Wardrobe::log_density_of_others(int later, const Clothes& parts) const {
-  const Worn& one = worn_[static_cast<std::size_t>(later)];
-  std::vector<std::pair<double, double>> densities{{kUnseenKinds, log_density_of_anybody(one.first, parts)}};
+/// Of those who were there when either was, each as long as they were, and of somebody who was not: in clothes that nobody wore
+/// yet, or, as often as people look alike here, in the same.
+double Wardrobe::log_density_of_others(int earlier, int later, const Clothes& parts, double same) const {
+  const Worn &before = worn_[static_cast<std::size_t>(earlier)], &after = worn_[static_cast<std::size_t>(later)];
+  std::vector<std::pair<double, double>> densities{{kUnseenKinds * (1 - alike_), log_density_of_anybody(after.first, parts)},
+                                                   {kUnseenKinds * alike_, same}};
   for (std::size_t k = 0; k < worn_.size(); ++k) {
-    const double together = std::min(one.end, worn_[k].end) - std::max(one.begin, worn_[k].begin);
-    if (static_cast<int>(k) == later || together <= 0) continue;
-    densities.emplace_back(together / std::max(0.1, one.end - one.begin), log_density(worn_[k].whole, one.first, parts));
+    if (static_cast<int>(k) == earlier || static_cast<int>(k) == later) continue;
+    const double beside = std::max(share_together(worn_[k], before), share_together(worn_[k], after));
+    if (beside > 0) densities.emplace_back(beside, log_density(worn_[k].whole, after.first, parts));
   }
   double most = densities.front().second, weights = 0, sum = 0;
   for (const auto& [weight, density] : densities) most = std::max(most, density);
@@ -134,7 +171,8 @@ std::optional<double> Wardrobe::log_ratio(int earlier, int later) const {
   const Clothes &was = worn_[static_cast<std::size_t>(earlier)].last, &is = worn_[static_cast<std::size_t>(later)].first;
   const Clothes parts = parts_of_both(was, is);
   if (count_of(parts) < 2) return std::nullopt;
-  return std::clamp(log_density(was, is, parts) - log_density_of_others(later, parts), kSurestOther, kSurestSame);
+  const double same = log_density(was, is, parts);
+  return std::clamp(same - log_density_of_others(earlier, later, parts, same), kSurestOther, kSurestSame);
 }
 
 }  // namespace marey::track::image

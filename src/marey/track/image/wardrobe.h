@@ -2,9 +2,10 @@
 //
 // Shirt, thighs and shanks, each in L*a*b*. How far one person's colours lie apart from moment to moment is learned from early and
 // late parts of tracklets; what others wear, from those who are seen at the same time and therefore are somebody else, and, as far
-// as somebody wears what nobody wore yet, from the spread of all. Errors of parts and components are not independent: variances are
-// widened by as much as the logarithms of likelihoods are to count less.
-// Cost: the pairs asked for, times the tracklets that coexist.
+// as somebody wears what nobody wore yet, from the spread of all. How often two people look alike at all is learned from those who
+// are seen together, for somebody who was not. Errors of parts and components are not independent: variances are widened by as much
+// as the logarithms of likelihoods are to count less.
+// Cost: the tracklets that coexist in pairs, and the pairs asked for, times the tracklets.
 #pragma once
 
 #include <array>
@@ -38,13 +39,15 @@ class Wardrobe {
 
   double log_density(const Clothes& known, const Clothes& seen, const Clothes& parts) const;
   double log_density_of_anybody(const Clothes& seen, const Clothes& parts) const;
-  double log_density_of_others(int later, const Clothes& parts) const;
+  double log_density_of_others(int earlier, int later, const Clothes& parts, double same) const;
   void learn_within();
   void learn_all();
+  void learn_alike();
 
   std::vector<Worn> worn_;
   Variances within_{}, all_{};
   std::array<std::array<double, kComponents>, kParts> middle_{};
+  double alike_ = 0;  // share of pairs of people who look alike
 };
 
 }  // namespace marey::track::image

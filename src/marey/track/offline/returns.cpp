@@ -26,12 +26,12 @@ constexpr double kPlaceUnsure = 0.25;                  // heights along the bord
 constexpr double kFastest = 5;                         // heights/s
 constexpr double kMostGrown = 0.5;                     // of the logarithm of the height
 constexpr double kBandwidth = 1, kAnywhereCounts = 3;  // heights; as many people as come in anywhere, beside those who were seen to
-constexpr int kTurnsOfLearning = 25;
-constexpr double kFading = 0.5;          // of `usually_away`: from then on, so long until e times fewer come back
-constexpr double kFirstShare = 0.3;      // of those who leave, who come back: to begin with, and as sure as two people
-constexpr double kFirstNewcomers = 0.1;  // 1/s, likewise
+constexpr double kKnown = 0.8;  // probability of a pair by clothes alone, from which on it tells how often people return, and where
+constexpr double kFading = 0.5;      // of `usually_away`: from then on, so long until e times fewer come back
+constexpr double kFirstShare = 0.3;  // of those who leave, who come back: to begin with,
+constexpr double kFirstCounts = 2;   // and as sure as so many people
 constexpr std::array<double, 4> kSpreads{0.4, 0.65, 1,
-                                         1.6};  // factors on how far from where they went out people come in: tried all
+                                         1.6};  // factors on how far from where they went out people come in: all are tried
 constexpr double kSpreadUnsure = 0.7;           // deviation of the logarithm of that, before anything is known
 // With few entries, the rate and the density of entries are uncertain, and clothes must suffice. Unswept.
 constexpr int kMinComings = 8;
@@ -173,17 +173,10 @@ class Returns {
   std::vector<Returned> find() {
     std::vector<Returned> found;
     if (pairs_.empty()) return found;
+    learn_from(known_by_clothes());
     const int count = static_cast<int>(heads_.size());
-    std::vector<assign::GatedPair> weighed;
-    std::vector<double> beliefs;
-    double most = -std::numeric_limits<double>::infinity();
-    for (const double spread : kSpreads) {
-      const Explanation one = explain(spread);
-      if (one.likelihood <= most) continue;
-      most = one.likelihood;
-      weighed = one.pairs;
-      beliefs = one.beliefs;
-    }
+    const std::vector<assign::GatedPair> weighed = weighed_pairs();
+    const std::vector<double> beliefs = assign::association_beliefs(count, count, weighed);
     const std::vector<int> next = assign::sparse_assignment(count, count, weighed);
     for (std::size_t k = 0; k < weighed.size(); ++k) {
       const assign::GatedPair& pair = weighed[k];
@@ -198,36 +191,31 @@ class Returns {
   const Crossing& head(const assign::GatedPair& pair) const { return heads_[static_cast<std::size_t>(pair.column)]; }
   const Crossing& tail(const assign::GatedPair& pair) const { return tails_[static_cast<std::size_t>(pair.row)]; }
 
-  /// All pairs, with their gains and probabilities, if people come in again so near where they went out.
-  struct Explanation {
-    std::vector<assign::GatedPair> pairs;
-    std::vector<double> beliefs;
-    double likelihood = 0;  // logarithm
-  };
-
-  Explanation explain(double spread) {
+  /// Of the pairs, whether they are one person's by clothes and the time away alone, with first rates at which everybody who comes
+  /// in is new: evidence in which neither the border nor any learned rate has a part.
+  std::vector<bool> known_by_clothes() const {
     const int count = static_cast<int>(heads_.size());
-    Explanation result;
-    share_ = kFirstShare;
-    newcomers_ = kFirstNewcomers;
-    for (int turn = 0; turn < kTurnsOfLearning; ++turn) {
-      result.pairs = weighed_pairs(spread);
-      result.beliefs = assign::association_beliefs(count, count, result.pairs);
-      if (turn + 1 < kTurnsOfLearning) learn_rates(result.beliefs);
-    }
-    result.likelihood = log_likelihood(result.pairs) - 0.5 * std::pow(std::log(spread) / kSpreadUnsure, 2);
-    return result;
+    const double rate = static_cast<double>(comings()) / std::max(1.0, end_ - begin_);
+    std::vector<assign::GatedPair> weighed = pairs_;
+    for (assign::GatedPair& pair : weighed) pair.gain += std::log(kFirstShare / rate);
+    std::vector<bool> known;
+    for (const double belief : assign::association_beliefs(count, count, weighed)) known.push_back(belief >= kKnown);
+    return known;
   }
 
-  /// Of all comings and leavings, each beginning for itself.
-  double log_likelihood(std::span<const assign::GatedPair> pairs) const {
-    std::vector<double> odds(heads_.size(), 1);
-    for (const assign::GatedPair& pair : pairs) odds[static_cast<std::size_t>(pair.column)] += std::exp(std::min(30.0, pair.gain));
-    double sum = 0;
-    for (const double one : odds) sum += std::log(one);
-    for (const Crossing& in : heads_) sum += in.of_border && !in.of_recording ? std::log(newcomers_) : 0;
-    for (const Crossing& out : tails_) sum += out.of_border && !out.of_recording ? std::log1p(-share_ * come_back_by_end(out)) : 0;
-    return sum - newcomers_ * (end_ - begin_);
+  void learn_from(const std::vector<bool>& known) {
+    const auto came = static_cast<double>(comings()), returned = static_cast<double>(std::count(known.begin(), known.end(), true));
+    double could = kFirstCounts;
+    for (const Crossing& out : tails_) could += out.of_border && !out.of_recording ? come_back_by_end(out) : 0;
+    share_ = std::clamp((returned + kFirstCounts * kFirstShare) / could, 0.02, 0.95);
+    newcomers_ = std::max(0.5, came - returned) / std::max(1.0, end_ - begin_);
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double spread : kSpreads) {
+      double likelihood = -0.5 * std::pow(std::log(spread) / kSpreadUnsure, 2);
+      for (std::size_t k = 0; k < known.size(); ++k)
+        likelihood += known[k] ? log_place(tail(pairs_[k]), head(pairs_[k]), spread) : 0;
+      if (likelihood > most) most = likelihood, spread_ = spread;
+    }
   }
 
   /// Pairs that may be, with what clothes, place and time say but for how often people come and come back.
@@ -271,10 +259,10 @@ class Returns {
     return -std::max(0.0, away - options_.usually_away) / fading - std::log(options_.usually_away + fading);
   }
 
-  std::vector<assign::GatedPair> weighed_pairs(double spread) const {
+  std::vector<assign::GatedPair> weighed_pairs() const {
     std::vector<assign::GatedPair> weighed = pairs_;
     for (assign::GatedPair& pair : weighed)
-      pair.gain += log_place(tail(pair), head(pair), spread) + std::log(share_ / newcomers_) -
+      pair.gain += log_place(tail(pair), head(pair), spread_) + std::log(share_ / newcomers_) -
                    std::log1p(-share_ * come_back_by_end(tail(pair)));
     return weighed;
   }
@@ -290,15 +278,6 @@ class Returns {
     return std::count_if(heads_.begin(), heads_.end(), [](const Crossing& in) { return in.of_border && !in.of_recording; });
   }
 
-  void learn_rates(std::span<const double> beliefs) {
-    const auto came = static_cast<double>(comings());
-    double returned = 0, could = 2;
-    for (const double belief : beliefs) returned += belief;
-    for (const Crossing& out : tails_) could += out.of_border && !out.of_recording ? come_back_by_end(out) : 0;
-    share_ = std::clamp((returned + 2 * kFirstShare) / could, 0.02, 0.95);
-    newcomers_ = std::max(0.5, came - returned) / std::max(1.0, end_ - begin_);
-  }
-
   ReturnOptions options_;
   Box view_;
   double begin_ = 0, end_ = 0;            // s, of the recording
@@ -306,7 +285,8 @@ class Returns {
   std::vector<assign::GatedPair> pairs_;  // tails and heads
   std::vector<double> clothes_;           // of each pair: log-likelihood ratio of the clothes
   double share_ = kFirstShare;            // of those who leave, who come back
-  double newcomers_ = kFirstNewcomers;    // 1/s
+  double newcomers_ = 0;                  // 1/s
+  double spread_ = 1;
 };
 
 }  // namespace

@@ -2,10 +2,12 @@
 //
 // A tracklet that ends at the border and a later one that begins there may be one person. Evidence: the appearance of the clothes
 // (wardrobe.h), the position along the border, and the time away: people return within seconds, near the point of exit. The
-// alternative is a new person; the rate and the density of new people along the border, the fraction of people who return and how
-// near they do are estimated from the recording by EM, alternating with the pairing itself, so these rates are not independent of
-// the result. Appearance is: people observed at the same time are different people. One assignment decides; pairs whose probability
-// over all assignments is high are linked. Recordings with few entries need sufficient evidence from clothes (returns.cpp).
+// alternative is a new person. The fraction of people who return, the rate of new people and how near people return are estimated
+// from those pairs alone that clothes identify, without the border and without learned rates: nothing is accepted on evidence
+// that it produced itself. Where people are not distinguishable by clothes (two teams), everybody who enters counts as new, and
+// hardly anybody is linked. Appearance is compared with that of others: people observed at the same time are different people.
+// One assignment decides; pairs whose probability over all assignments is high are linked. Recordings with few entries need
+// sufficient evidence from clothes (returns.cpp).
 // The gap is not filled.
 // Cost: pairs of an end and a beginning within the longest time away.
 #pragma once
