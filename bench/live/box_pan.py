@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What a slow pan costs on simulated street boxes: the same people before a camera that stands and one that
-pans, boxes weakened by weak_detector.py; and what the pan shows in the coordinates of the standing camera, its path known exactly.
+"""What a slow pan costs on simulated street boxes: the same people before a static camera and one that pans,
+boxes weakened by weak_detector.py; and the boxes of the pan in the coordinates of the static camera, the rotation known exactly.
 
 Usage: box_pan.py MAREY [--seeds 24] [--degrees 7]
 
-"at most" is the IDF1 of a tracker that errs nowhere but gives everybody who comes back into the picture a new number: people leave
-and enter at borders that move. The scenes of box_peers.py have other people each.
+"at most" is the IDF1 of a tracker without errors that gives people who return to the image a new number: people leave and enter at
+borders that move. The scenes of box_peers.py have other people each.
 """
 import argparse
 import dataclasses
@@ -15,6 +15,8 @@ import statistics
 import subprocess
 import tempfile
 
+import numpy as np
+
 import box_scenes
 import live_peers
 import weak_detector
@@ -22,24 +24,45 @@ import weak_detector
 STREET = next(scene for scene in box_scenes.SCENES if scene.name == "street, still")
 
 
-def shift(still, pan):
-    """px, by frame: how much farther to the right people stand in the picture of the camera that stands."""
-    result, last = {}, 0.0
-    for frame, people in pan.items():
-        whole = [p for p in people if p in still.get(frame, {})
-                 and all(b[0] > 3 and b[0] + b[2] < box_scenes.WIDTH - 3 for b in (people[p], still[frame][p]))]
-        if whole:
-            last = statistics.median(still[frame][p][0] + still[frame][p][2] / 2 - people[p][0] - people[p][2] / 2 for p in whole)
-        result[frame] = last
-    return result
+def simulated(scene, seed):
+    """The truth, and the camera's state in each frame."""
+    pans = []
+
+    class Watched(box_scenes.Operator):
+        def step(self, time, play):
+            state = super().step(time, play)
+            pans.append(state)
+            return state
+
+    operator, box_scenes.Operator = box_scenes.Operator, Watched
+    try:
+        boxes = box_scenes.truth(scene, seed, np.random.default_rng(seed))
+    finally:
+        box_scenes.Operator = operator
+    return boxes, pans[-int(scene.seconds * scene.rate):]
 
 
-def shifted(boxes, by):
-    return {frame: {who: (b[0] + by[frame], *b[1:]) for who, b in people.items()} for frame, people in boxes.items()}
+def in_standing_view(box, state, first):
+    """The box in the image of a camera of state `first` at the same place; neither rolls."""
+    pan, tilt, _, focal, _ = state
+    there, its_tilt, _, its_focal, _ = first
+    left, top, width, height = box[:4]
+    points = []
+    for v in (top, top + height):
+        x, y = (left + width / 2 - box_scenes.WIDTH / 2) / focal, (v - box_scenes.HEIGHT / 2) / focal
+        ahead, up = math.cos(tilt) + y * math.sin(tilt), math.sin(tilt) - y * math.cos(tilt)
+        right, forward = (x * math.cos(pan - there) + ahead * math.sin(pan - there),
+                          ahead * math.cos(pan - there) - x * math.sin(pan - there))
+        depth = forward * math.cos(its_tilt) + up * math.sin(its_tilt)
+        points.append((its_focal * right / depth + box_scenes.WIDTH / 2,
+                       its_focal * (forward * math.sin(its_tilt) - up * math.cos(its_tilt)) / depth + box_scenes.HEIGHT / 2))
+    (x0, y0), (x1, y1) = points
+    wide = width * (y1 - y0) / height
+    return ((x0 + x1 - wide) / 2, y0, wide, y1 - y0, *box[4:])
 
 
-def at_most(boxes):
-    """IDF1 where each stay in the picture has a number of its own, as many true positives as the longest stays have."""
+def upper_bound(boxes):
+    """IDF1 where each stay in the image has its own number: the true positives are those of the longest stays."""
     kept = total = 0
     for who in {who for people in boxes.values() for who in people}:
         frames = sorted(frame for frame, people in boxes.items() if who in people)
@@ -60,20 +83,21 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         for seed in range(1, given.seeds + 1):
-            still = box_scenes.truth(STREET, seed)
-            pan = box_scenes.truth(dataclasses.replace(STREET, pan=given.degrees), seed)
-            by = shift(still, pan)
+            still, stands = simulated(STREET, seed)
+            pan, pans = simulated(dataclasses.replace(STREET, pan=given.degrees), seed)
             weak = weak_detector.weaken(pan, seed, rate=STREET.rate)
-            known = {frame: [(b[0] + by.get(frame, 0), *b[1:]) for b in boxes] for frame, boxes in weak.items()}
+            known = {frame: [in_standing_view(b, pans[frame - 1], stands[frame - 1]) for b in boxes] for frame, boxes in weak.items()}
+            standing = {frame: {who: in_standing_view(b, pans[frame - 1], stands[frame - 1]) for who, b in people.items()}
+                      for frame, people in pan.items()}
             for name, truth, boxes in (("stands", still, weak_detector.weaken(still, seed, rate=STREET.rate)), ("pans", pan, weak),
-                                       ("pans, path known", shifted(pan, by), known)):
+                                       ("pans, path known", standing, known)):
                 box_scenes.write_truth(work / "truth.txt", truth)
                 weak_detector.write(work / "boxes.txt", boxes)
                 for mode, more in (("live", ["--live"]), ("offline", [])):
                     subprocess.run([given.marey, "track", "--detections", work / "boxes.txt", "--rate", str(STREET.rate), "-o",
                                     work / "tracks.txt", "-q", *more], check=True, stderr=subprocess.DEVNULL)
                     figures = live_peers.judged(given.marey, work / "truth.txt", work / "tracks.txt")
-                    rows.setdefault((name, mode), []).append((*(figures[n] for n in live_peers.FIGURES), at_most(truth)))
+                    rows.setdefault((name, mode), []).append((*(figures[n] for n in live_peers.FIGURES), upper_bound(truth)))
     for (name, mode), values in rows.items():
         figures = " ".join(f"{100 * statistics.mean(column):5.1f}" for column in list(zip(*values))[:3])
         lost = [a[1] - b[1] for a, b in zip(rows["stands", mode], values)]

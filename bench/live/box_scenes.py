@@ -176,8 +176,11 @@ class Operator:
         return turned + shift + np.array([WIDTH, HEIGHT]) / 2, depth
 
 
-def truth(scene, seed):
-    """{frame: {person: (left, top, width, height)}}, frames from 1; what is mostly outside the image is left out."""
+def truth(scene, seed, box_draw=None):
+    """{frame: {person: (left, top, width, height)}}, frames from 1; what is mostly outside the image is left out.
+
+    With a generator of its own for the boxes' noise, `box_draw`, what people do does not depend on who is in the picture.
+    """
     dt = 1 / scene.rate
     draw = np.random.default_rng([seed, sum(map(ord, scene.name))])
     crowd, camera = Crowd(scene, draw, dt), Operator(scene, draw, dt)
@@ -202,7 +205,7 @@ def truth(scene, seed):
             l, t = max(left, 0), max(top, 0)
             w, h = min(left + width, WIDTH) - l, min(top + height, HEIGHT) - t
             if w > 0 and h > 0 and w * h > 0.35 * width * height and height > 12:
-                noise = draw.normal(0, 0.3, 4)
+                noise = (box_draw or draw).normal(0, 0.3, 4)
                 boxes[frame][person + 1] = (l + noise[0], t + noise[1], w + noise[2], h + noise[3])
     return boxes
 

@@ -33,7 +33,7 @@ constexpr double kSpeck = 0.1;               // of the tallest body seen: less i
 constexpr double kUnknownFlattestCut = 0.3;  // the same of what the border cuts off
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
-// Share of its box that one whole person fills: who walks fills about half. Without a scene learned ahead, more is asked for while
+// Share of its box that one whole person fills; a walker fills about half. Without a scene learned ahead, more is asked for while
 // no size is known: where people stood in the first frame, parts are left.
 constexpr double kWholeFilled = 0.6, kUnknownFilled = 0.4;
 

@@ -166,9 +166,9 @@ TEST(PeopleDetector, ReportsRegionsThemselvesWhileNoSizeIsKnown) {
   EXPECT_LE(result.detections[0].score, 0.5);
 }
 
-/// In a clip that is too short for the size of people to be known, who is seen whole begins a track at once in whatever phase of
-/// their step: before a scene that was learned ahead a body fills half of its box.
-TEST(PeopleDetector, WhoWalksIsConfidentWhileNoSizeIsKnown) {
+/// In a clip that is too short for the size of people to be known, a walker begins a track in every phase of a step: before
+/// a scene that was learned ahead a body fills half of its box.
+TEST(PeopleDetector, WalkersAreConfidentWhileNoSizeIsKnown) {
   constexpr double kConfident = 0.5;  // track::EvidenceOptions
   for (const double stride : {0.0, 0.5, 1.0}) {
     SCOPED_TRACE(stride);
@@ -182,7 +182,7 @@ TEST(PeopleDetector, WhoWalksIsConfidentWhileNoSizeIsKnown) {
     cv::Mat shirt =
         mask(cv::Rect(static_cast<int>(truth.left + 0.3 * truth.width), static_cast<int>(truth.top + 0.22 * truth.height),
                       static_cast<int>(0.4 * truth.width), static_cast<int>(0.28 * truth.height)));
-    shirt.setTo(0);  // part of it looks like the scene
+    shirt.setTo(0);  // of the colour of the scene
     ASSERT_LT(cv::countNonZero(mask), 0.58 * truth.area());
     const auto result = detector.detect(frame_of(mask), {});
     ASSERT_EQ(result.detections.size(), 1u);

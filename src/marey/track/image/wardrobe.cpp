@@ -15,7 +15,7 @@ constexpr std::array<double, 3> kWithinFirst{36, 6, 6}, kAllFirst{350, 50, 50}; 
 constexpr double kFirstWeight = 6;                                               // and how many tracklets they count for
 constexpr double kWidened = 1.7;                       // variances: parts and components are not independent
 constexpr double kUnseenKinds = 1;                     // people who wear what nobody wore yet, beside those who were seen
-constexpr double kFirstAlike = 0.25, kFirstPairs = 5;  // pairs of people who look alike, of all, before any are seen
+constexpr double kFirstAlike = 0.25, kFirstPairs = 5;  // pairs of people in equal clothes, of all, before any are seen
 constexpr int kTurnsOfAlike = 10;
 constexpr double kSurestSame = 6, kSurestOther = -12;
 
@@ -52,7 +52,7 @@ Clothes parts_of_both(const Clothes& a, const Clothes& b) {
 }
 
 /// Of `one`'s time.
-double share_together(const Worn& other, const Worn& one) {
+double fraction_together(const Worn& other, const Worn& one) {
   const double together = std::min(one.end, other.end) - std::max(one.begin, other.begin);
   return std::max(0.0, together) / std::max(0.1, one.end - one.begin);
 }
@@ -147,15 +147,15 @@ double Wardrobe::log_density_of_anybody(const Clothes& seen, const Clothes& part
   return sum;
 }
 
-/// Of those who were there when either was, each as long as they were, and of somebody who was not: in clothes that nobody wore
-/// yet, or, as often as people look alike here, in the same.
+/// Of those who were there when either was, each as long as they were, and of a person who was not: in clothes that were not
+/// seen yet, or, by the fraction of pairs in equal clothes, in the same.
 double Wardrobe::log_density_of_others(int earlier, int later, const Clothes& parts, double same) const {
   const Worn &before = worn_[static_cast<std::size_t>(earlier)], &after = worn_[static_cast<std::size_t>(later)];
   std::vector<std::pair<double, double>> densities{{kUnseenKinds * (1 - alike_), log_density_of_anybody(after.first, parts)},
                                                    {kUnseenKinds * alike_, same}};
   for (std::size_t k = 0; k < worn_.size(); ++k) {
     if (static_cast<int>(k) == earlier || static_cast<int>(k) == later) continue;
-    const double beside = std::max(share_together(worn_[k], before), share_together(worn_[k], after));
+    const double beside = std::max(fraction_together(worn_[k], before), fraction_together(worn_[k], after));
     if (beside > 0) densities.emplace_back(beside, log_density(worn_[k].whole, after.first, parts));
   }
   double most = densities.front().second, weights = 0, sum = 0;

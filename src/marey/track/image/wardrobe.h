@@ -2,8 +2,8 @@
 //
 // Shirt, thighs and shanks, each in L*a*b*. How far one person's colours lie apart from moment to moment is learned from early and
 // late parts of tracklets; what others wear, from those who are seen at the same time and therefore are somebody else, and, as far
-// as somebody wears what nobody wore yet, from the spread of all. How often two people look alike at all is learned from those who
-// are seen together, for somebody who was not. Errors of parts and components are not independent: variances are widened by as much
+// as somebody wears what nobody wore yet, from the spread of all. How often two people wear the same is learned from those who are
+// seen together, for a person who was not. Errors of parts and components are not independent: variances are widened by as much
 // as the logarithms of likelihoods are to count less.
 // Cost: the tracklets that coexist in pairs, and the pairs asked for, times the tracklets.
 #pragma once
@@ -47,7 +47,7 @@ class Wardrobe {
   std::vector<Worn> worn_;
   Variances within_{}, all_{};
   std::array<std::array<double, kComponents>, kParts> middle_{};
-  double alike_ = 0;  // share of pairs of people who look alike
+  double alike_ = 0;  // fraction of pairs of people in equal clothes
 };
 
 }  // namespace marey::track::image

@@ -26,10 +26,10 @@ constexpr double kPlaceUnsure = 0.25;                  // heights along the bord
 constexpr double kFastest = 5;                         // heights/s
 constexpr double kMostGrown = 0.5;                     // of the logarithm of the height
 constexpr double kBandwidth = 1, kAnywhereCounts = 3;  // heights; as many people as come in anywhere, beside those who were seen to
-constexpr double kKnown = 0.8;  // probability of a pair by clothes alone, from which on it tells how often people return, and where
+constexpr double kKnown = 0.8;       // probability of a pair by clothes alone, from which on rates of return are learned from it
 constexpr double kFading = 0.5;      // of `usually_away`: from then on, so long until e times fewer come back
 constexpr double kFirstShare = 0.3;  // of those who leave, who come back: to begin with,
-constexpr double kFirstCounts = 2;   // and as sure as so many people
+constexpr double kFirstCounts = 2;   // and as sure as this number of people
 constexpr std::array<double, 4> kSpreads{0.4, 0.65, 1,
                                          1.6};  // factors on how far from where they went out people come in: all are tried
 constexpr double kSpreadUnsure = 0.7;           // deviation of the logarithm of that, before anything is known
@@ -191,8 +191,8 @@ class Returns {
   const Crossing& head(const assign::GatedPair& pair) const { return heads_[static_cast<std::size_t>(pair.column)]; }
   const Crossing& tail(const assign::GatedPair& pair) const { return tails_[static_cast<std::size_t>(pair.row)]; }
 
-  /// Of the pairs, whether they are one person's by clothes and the time away alone, with first rates at which everybody who comes
-  /// in is new: evidence in which neither the border nor any learned rate has a part.
+  /// Of the pairs, whether they are one person's by clothes and the time away alone, at first rates by which all who come in are
+  /// new: evidence without the border and without learned rates.
   std::vector<bool> known_by_clothes() const {
     const int count = static_cast<int>(heads_.size());
     const double rate = static_cast<double>(comings()) / std::max(1.0, end_ - begin_);

@@ -4,8 +4,8 @@
 // (wardrobe.h), the position along the border, and the time away: people return within seconds, near the point of exit. The
 // alternative is a new person. The fraction of people who return, the rate of new people and how near people return are estimated
 // from those pairs alone that clothes identify, without the border and without learned rates: nothing is accepted on evidence
-// that it produced itself. Where people are not distinguishable by clothes (two teams), everybody who enters counts as new, and
-// hardly anybody is linked. Appearance is compared with that of others: people observed at the same time are different people.
+// that it produced itself. Where people are not distinguishable by clothes (two teams), all who enter count as new, and
+// almost none are linked. Appearance is compared with that of others: people observed at the same time are different people.
 // One assignment decides; pairs whose probability over all assignments is high are linked. Recordings with few entries need
 // sufficient evidence from clothes (returns.cpp).
 // The gap is not filled.

@@ -154,8 +154,8 @@ TEST(Returns, WhoComesBackInClothesOfTheirOwnIsKnown) {
   EXPECT_LE(outcome.joined_wrongly, 0.01 * outcome.returns);
 }
 
-/// Team-mates look alike: neither where and when somebody comes in, nor rates learned from such pairs, may join them.
-TEST(Returns, OfTwoTeamsNobodyGetsAnothersNumber) {
+/// Team-mates wear the same: neither place and time of an entry, nor rates learned from such pairs, may join them.
+TEST(Returns, TwoTeamsGetNoNumberOfAnother) {
   for (const int frames : {120, 200, 600}) {
     for (const int people : {12, 6, 3}) {
       const Outcome outcome =
