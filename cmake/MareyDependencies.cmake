@@ -16,11 +16,6 @@ if(MAREY_FFMPEG)
   pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
   pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
   pkg_check_modules(ARAVIS IMPORTED_TARGET aravis-0.8)  # machine-vision cameras: may be absent
-  pkg_check_modules(ZEROMQ IMPORTED_TARGET libzmq)  # cameras of other computers: may be absent
-  find_path(CPPZMQ_INCLUDE_DIR zmq.hpp)
-  if(NOT CPPZMQ_INCLUDE_DIR)
-    set(ZEROMQ_FOUND FALSE)
-  endif()
 endif()
 if(MAREY_TESTS)
   find_package(GTest REQUIRED)

@@ -226,6 +226,7 @@ class TcpConnection final : public Connection, public std::enable_shared_from_th
                          if (failed) return close();
                          phase_ = Phase::web;
                          session_->opened(out_);
+                         flush();  // frames that were sent between the answer and this
                          if (!over_) read_message();
                        }));
   }

@@ -323,7 +323,7 @@ TEST(Server, KeepsWholeFramesForASlowClientAndDropsTheRest) {
       EXPECT_GT(body.front(), newest);
       newest = body.front();
     }
-    EXPECT_EQ(newest, 'A' + 39) << "the newest arrives";
+    EXPECT_EQ(newest, 'A' + 39) << "the newest arrives; WebSocket: " << web;
   }
 }
 
