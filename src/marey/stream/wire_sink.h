@@ -9,8 +9,8 @@
 
 #include "marey/core/sink.h"
 #include "marey/core/stage_times.h"
-#include "marey/stream/cast.h"
 #include "marey/net/loop.h"
+#include "marey/stream/cast.h"
 #include "marey/stream/stream_clock.h"
 
 namespace marey::stream {
