@@ -13,7 +13,7 @@ namespace marey::net {
 struct ClientOptions {
   std::size_t max_message = 65'536;         ///< bytes of one that is received
   std::chrono::milliseconds connect{2000};  ///< a server that is not there yet is tried again meanwhile
-  std::chrono::milliseconds silence{0};     ///< a server that answers no ping for so long is gone; zero: it is not pinged
+  std::chrono::milliseconds silence{0};     ///< a server that answers no ping within this time is gone; zero: no pings
 };
 
 class WebSocketClient {

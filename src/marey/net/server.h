@@ -55,7 +55,7 @@ struct ServerOptions {
   int send_buffer = 1 << 17;          ///< bytes in the system: they are old when a slow client reads them
   std::chrono::seconds patience{10};  ///< for a request, and for the opening of a WebSocket
   std::chrono::seconds idle{30};      ///< for the next request, and for a client that takes its answer
-  /// A WebSocket's client that answers no ping for so long is disconnected; zero: it is not pinged.
+  /// A client of a WebSocket that answers no ping within this time is disconnected; zero: no pings.
   std::chrono::milliseconds silence{0};
 };
 
