@@ -1,5 +1,6 @@
-// A camera node over loopback: from when a frame is handed over to when the host has it, and what its time is off, beside ZeroMQ
-// alone with the same bytes. The two clocks begin at different times; how far apart they are is known here, and not to them.
+// A camera node over loopback: from when a frame is handed over to when the host has it, and what its time is off, beside a
+// WebSocket alone with the same bytes. The two clocks begin at different times; how far apart they are is known here, and not to
+// them.
 //
 // Usage: node_latency [SECONDS [HZ [MARKERS]]]
 #include <algorithm>
@@ -14,8 +15,9 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <zmq.hpp>
 
+#include "marey/net/client.h"
+#include "marey/net/server.h"
 #include "marey/source/live/live_camera.h"
 #include "marey/source/live/node.h"
 
@@ -45,7 +47,7 @@ std::string frame_of(std::int64_t sequence, Timestamp taken, int markers) {
 }
 
 void print(const char* name, const std::vector<double>& took_s) {
-  fmt::print("{:<14} {:>8} frames  p50 {:7.3f} ms  p99 {:7.3f} ms\n", name, took_s.size(), 1e3 * quantile(took_s, 0.5),
+  fmt::print("{:<15} {:>8} frames  p50 {:7.3f} ms  p99 {:7.3f} ms\n", name, took_s.size(), 1e3 * quantile(took_s, 0.5),
              1e3 * quantile(took_s, 0.99));
 }
 
@@ -100,30 +102,39 @@ void measure_node(int frames, double rate_hz, int markers) {
   done = true;
   host.join();
   print("marey node", took_s);
-  fmt::print("{:<14} {:>8} lost  its time is off by {:.3f} ms (median), {:.3f} ms (most)\n", "", camera->report().lost,
+  fmt::print("{:<15} {:>8} lost  its time is off by {:.3f} ms (median), {:.3f} ms (most)\n", "", camera->report().lost,
              1e3 * quantile(off_s, 0.5), 1e3 * quantile(off_s, 1));
 }
 
-void measure_zeromq(int frames, double rate_hz, int markers) {
-  zmq::context_t context;
-  zmq::socket_t out(context, zmq::socket_type::pub), in(context, zmq::socket_type::sub);
-  out.bind("tcp://127.0.0.1:*");
-  in.set(zmq::sockopt::subscribe, "");
-  in.connect(out.get(zmq::sockopt::last_endpoint));
+class Listener : public net::Session {
+ public:
+  net::HttpAnswer requested(const net::HttpRequest&) override { return {.upgrade = true}; }
+};
+
+void measure_websocket(int frames, double rate_hz, int markers) {
+  net::Loop loop;
+  net::Server server(loop, net::Address{.host = net::kLoopback, .port = 0}, "bench", {.protocol = net::Protocol::web},
+                     [](const net::Address&) { return std::make_unique<Listener>(); });
+  loop.start();
+  net::WebSocketClient in("127.0.0.1", server.address().port, {}, {});
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const auto begin = Steady::now();
   std::vector<double> took_s;
   std::jthread host([&] {
-    zmq::message_t message;
     for (int i = 0; i < frames; ++i) {
-      if (!in.recv(message)) break;
-      took_s.push_back(seconds_since(begin) - seconds(read_node_frame({message.data<char>(), message.size()}, "zeromq").taken));
+      const auto message = in.receive(std::chrono::seconds(10));
+      if (!message) break;
+      took_s.push_back(seconds_since(begin) - seconds(read_node_frame(*message, "websocket").taken));
     }
   });
-  send_all(frames, rate_hz,
-           [&](int i) { out.send(zmq::buffer(frame_of(i, timestamp_from_seconds(seconds_since(begin)), markers))); });
+  send_all(frames, rate_hz, [&](int i) {
+    const auto body = std::make_shared<const std::string>(frame_of(i, timestamp_from_seconds(seconds_since(begin)), markers));
+    const std::scoped_lock lock(loop.mutex());
+    server.each([&](net::Session&, net::Outbox& out) { out.frame({.body = body}); });
+  });
   host.join();
-  print("ZeroMQ alone", took_s);
+  loop.stop();
+  print("WebSocket alone", took_s);
 }
 
 }  // namespace
@@ -133,5 +144,5 @@ int main(int argc, char** argv) {
   const int markers = argc > 3 ? std::atoi(argv[3]) : 40, frames = static_cast<int>(duration_s * rate_hz);
   fmt::print("{} markers at {:g} Hz for {:g} s, {} bytes a frame\n", markers, rate_hz, duration_s, frame_of(0, {}, markers).size());
   measure_node(frames, rate_hz, markers);
-  measure_zeromq(frames, rate_hz, markers);
+  measure_websocket(frames, rate_hz, markers);
 }

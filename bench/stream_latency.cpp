@@ -37,27 +37,32 @@ Instant moment(int k) {
   return instant;
 }
 
+constexpr std::string_view kUpgrade =
+    "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+    "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n";
+
 /// What makes a client of that wire be sent frames.
 std::string hello(const std::string& wire) {
-  const std::string upgrade =
-      "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
-      "dGhlIHNhbXBsZSBub25jZQ==\r\n"
-      "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n";
   if (wire == "qtm") return std::string("\x22\0\0\0\x01\0\0\0streamframes allframes 3d\0", 34);
   if (wire == "foxglove") {  // masked with zeros
     const std::string text = R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})";
-    return upgrade + "\x81" + static_cast<char>(0x80 | text.size()) + std::string(4, '\0') + text;
+    return std::string("\x81") + static_cast<char>(0x80 | text.size()) + std::string(4, '\0') + text;
   }
   return "hello\n";
 }
 
-stream::Descriptor connected(const std::string& where, const std::string& wire) {
-  stream::Descriptor made(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+net::Descriptor connected(const std::string& where, const std::string& wire) {
+  net::Descriptor made(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<std::uint16_t>(std::atoi(where.substr(where.rfind(':') + 1).c_str())));
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (connect(made.get(), reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) std::abort();
+  if (wire == "foxglove") {
+    std::array<char, 65536> opened;
+    send(made.get(), kUpgrade.data(), kUpgrade.size(), MSG_NOSIGNAL);
+    if (recv(made.get(), opened.data(), opened.size(), 0) <= 0) std::abort();
+  }
   const std::string first = hello(wire);
   send(made.get(), first.data(), first.size(), MSG_NOSIGNAL);
   return made;
@@ -75,7 +80,7 @@ void measure(const std::string& wire, bool with_stalled, int frames) {
   header.rate_hz = 100;
   sink->begin(header);
   const auto client = connected(sink->where(), wire);
-  const auto stalled = with_stalled ? connected(sink->where(), wire) : stream::Descriptor();
+  const auto stalled = with_stalled ? connected(sink->where(), wire) : net::Descriptor();
   std::atomic<std::int64_t> given = 0;
   std::vector<double> ms;
   std::thread reader([&] {

@@ -4,6 +4,7 @@ find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc video calib3d aruco dnn
 find_package(Ceres 2.1 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(TBB REQUIRED)
+find_package(Boost 1.74 REQUIRED)  # Asio and Beast, which are headers
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(tomlplusplus 3.3 REQUIRED)
@@ -15,12 +16,6 @@ if(MAREY_FFMPEG)
   pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
   pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
   pkg_check_modules(ARAVIS IMPORTED_TARGET aravis-0.8)  # machine-vision cameras: may be absent
-  pkg_check_modules(ZEROMQ IMPORTED_TARGET libzmq)  # cameras of other computers: may be absent
-  find_path(CPPZMQ_INCLUDE_DIR zmq.hpp)
-  if(NOT CPPZMQ_INCLUDE_DIR)
-    set(ZEROMQ_FOUND FALSE)
-  endif()
-  find_package(Boost 1.74 REQUIRED)
 endif()
 if(MAREY_TESTS)
   find_package(GTest REQUIRED)

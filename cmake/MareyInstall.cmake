@@ -8,7 +8,8 @@ endif()
 # What serves tests, and what shows a library that users need not have, stays here.
 install(DIRECTORY src/marey TYPE INCLUDE FILES_MATCHING PATTERN "*.h"
         PATTERN "*_test.h" EXCLUDE PATTERN "*_testing.h" EXCLUDE PATTERN "filter_invariants.h" EXCLUDE PATTERN "rig_section.h" EXCLUDE
-        PATTERN "svg.h" EXCLUDE PATTERN "pitch_svg.h" EXCLUDE PATTERN "xml_text.h" EXCLUDE PATTERN "kernel_targets.h" EXCLUDE)
+        PATTERN "svg.h" EXCLUDE PATTERN "pitch_svg.h" EXCLUDE PATTERN "xml_text.h" EXCLUDE PATTERN "kernel_targets.h" EXCLUDE PATTERN
+        "locked_executor.h" EXCLUDE PATTERN "whole_writes.h" EXCLUDE)
 install(EXPORT marey_targets NAMESPACE marey:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/marey)
 configure_package_config_file(cmake/marey-config.cmake.in marey-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/marey)

@@ -42,8 +42,7 @@ void print_begun(const NodeCommand& command, const Rig& rig) {
   const std::string host = everywhere ? "THIS-COMPUTER" : command.options.address;
   fmt::print(stderr, "{}: marey live node:{}:{}\n", camera_names(rig), host, command.options.port);
   if (is_open_to_others(command.options.address))
-    warn({fmt::format("whoever reaches ports {} and {} of this computer sees what its cameras see", command.options.port,
-                      command.options.port + 1)});
+    warn({fmt::format("whoever reaches port {} of this computer sees what its cameras see", command.options.port)});
 }
 
 Json as_json(const pipeline::live::NodeSummary& summary, const NodeCommand& command) {
@@ -94,7 +93,7 @@ void add_node(Command& program) {
                  "what goes over the network: the markers that are found here, or the pictures");
   command.whole("--quality", options->quality, "N", 1, 100, "of the pictures, which are JPEG");
   command.text("--listen", how.address, "address of this machine at which its cameras are had; 0.0.0.0: all of them");
-  command.whole("--port", how.port, "N", 1, 65534, "of the cameras; the one above it answers questions");
+  command.whole("--port", how.port, "N", 1, 65535, "TCP port that it listens on");
   command.flag("--allow-control", how.allow_control,
                "hosts on other computers (--listen) may set exposure, gain and threshold, not this one's alone");
   command.number("--for", how.for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C)");

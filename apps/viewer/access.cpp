@@ -80,7 +80,7 @@ bool Access::is_this_machine(std::string_view host) const {
   return name == "localhost" || is_address(name) || std::find(hosts_.begin(), hosts_.end(), name) != hosts_.end();
 }
 
-Access::Verdict Access::check(const RequestHead& head) const {
+Access::Verdict Access::check(const net::HttpRequest& head) const {
   if (!is_this_machine(head.host)) return {403, "this address is no name of the machine that is asked", false};
   if (!head.origin.empty() && head.origin != "http://" + head.host) return {403, "asked by a page of another site", false};
   if (head.upgrade && head.origin.empty() && head.authorization.empty())

@@ -7,18 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace marey::viewer {
+#include "marey/net/http.h"
 
-/// The lines of a request that count here, as they came. Empty where they did not.
-struct RequestHead {
-  std::string method;
-  std::string target;  ///< "/scene?token=…"
-  std::string host;    ///< "127.0.0.1:8780"
-  std::string origin;
-  std::string cookie;
-  std::string authorization;
-  bool upgrade = false;  ///< to a WebSocket
-};
+namespace marey::viewer {
 
 /// What a target is made of. Nothing is decoded: our own paths and values need no escapes.
 std::string_view path_of(std::string_view target);
@@ -37,7 +28,7 @@ class Access {
   /// machine beside "localhost"; addresses in digits are taken always, for no name server stands behind them.
   Access(std::string token, std::string cookie, std::vector<std::string> hosts);
 
-  Verdict check(const RequestHead& head) const;
+  Verdict check(const net::HttpRequest& head) const;
   const std::string& token() const { return token_; }
   /// The line that makes the browser bring the token from now on.
   std::string set_cookie() const;

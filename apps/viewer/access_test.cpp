@@ -11,7 +11,7 @@ Access some_access() {
   return {kToken, "marey_8780", {"studio", "studio.local"}};
 }
 
-RequestHead own_page() {
+net::HttpRequest own_page() {
   return {.method = "GET",
           .target = "/scene",
           .host = "127.0.0.1:8780",
@@ -24,13 +24,13 @@ RequestHead own_page() {
 TEST(Access, OurOwnPageMayLook) {
   EXPECT_EQ(some_access().check(own_page()).status, 200);
   EXPECT_FALSE(some_access().check(own_page()).by_link);
-  RequestHead socket = own_page();
+  net::HttpRequest socket = own_page();
   socket.upgrade = true;
   EXPECT_EQ(some_access().check(socket).status, 200);
 }
 
 TEST(Access, TheAddressThatIsPrintedSetsTheCookie) {
-  RequestHead head = own_page();
+  net::HttpRequest head = own_page();
   head.origin.clear();
   head.cookie.clear();
   head.target = "/?a=b&token=" + kToken;
@@ -42,13 +42,13 @@ TEST(Access, TheAddressThatIsPrintedSetsTheCookie) {
 TEST(Access, WithoutTheTokenNobodyMay) {
   for (const std::string& cookie : {std::string(), std::string("marey_8780="), "marey_8780=" + kToken.substr(1),
                                     "marey_8781=" + kToken, "xmarey_8780=" + kToken, "marey_8780=" + kToken + "0"}) {
-    RequestHead head = own_page();
+    net::HttpRequest head = own_page();
     head.cookie = cookie;
     EXPECT_EQ(some_access().check(head).status, 401) << cookie;
   }
   for (const std::string& target :
        {std::string("/?token="), std::string("/?token"), "/?token=" + kToken.substr(2), "/" + kToken, "/?x=" + kToken}) {
-    RequestHead head = own_page();
+    net::HttpRequest head = own_page();
     head.cookie.clear();
     head.target = target;
     EXPECT_EQ(some_access().check(head).status, 401) << target;
@@ -58,14 +58,14 @@ TEST(Access, WithoutTheTokenNobodyMay) {
 TEST(Access, NamesOfOtherMachinesAreRefusedForTheyMayBeBoundAnew) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:9", "localhost", "localhost:8780", "[::1]:8780", "192.168.0.7:8780",
                            "studio:8780", "studio.local"}) {
-    RequestHead head = own_page();
+    net::HttpRequest head = own_page();
     head.host = host;
     head.origin = std::string("http://") + host;
     EXPECT_EQ(some_access().check(head).status, 200) << host;
   }
   for (const char* host : {"", "evil.example", "evil.example:8780", "127.0.0.1.evil.example", "localhost.evil.example",
                            "1.2.3:8780", "[::1", "[evil]:1", "127.0.0.1:8780@evil", "studio.evil"}) {
-    RequestHead head = own_page();
+    net::HttpRequest head = own_page();
     head.host = host;
     head.origin = std::string("http://") + host;
     EXPECT_EQ(some_access().check(head).status, 403) << host;
@@ -75,7 +75,7 @@ TEST(Access, NamesOfOtherMachinesAreRefusedForTheyMayBeBoundAnew) {
 TEST(Access, PagesOfOtherSitesAreRefusedThoughTheBrowserBringsTheCookie) {
   for (const char* origin :
        {"http://evil.example", "null", "https://127.0.0.1:8780", "http://127.0.0.1:8781", "http://127.0.0.1"}) {
-    RequestHead head = own_page();
+    net::HttpRequest head = own_page();
     head.origin = origin;
     for (const bool upgrade : {false, true}) {
       head.upgrade = upgrade;
@@ -85,7 +85,7 @@ TEST(Access, PagesOfOtherSitesAreRefusedThoughTheBrowserBringsTheCookie) {
 }
 
 TEST(Access, AProgramBringsAnAuthorization) {
-  RequestHead head = own_page();
+  net::HttpRequest head = own_page();
   head.origin.clear();
   head.upgrade = true;
   EXPECT_EQ(some_access().check(head).status, 403);  // neither a page nor a program that says who it is

@@ -1,5 +1,4 @@
-// A small web server for one page: its files and data by HTTP, messages to it by WebSocket. Nothing of the library that it is built
-// on stands in this header: that costs a compiler twenty seconds.
+// A small web server for one page, on net/server.h: its files and data by HTTP, messages to it by WebSocket.
 //
 // What is published waits for no page. Of each topic a page has one slot, with the newest message; a page that reads slowly gets
 // fewer messages, one that stops reading costs its slots and is cut off after half a minute.

@@ -9,9 +9,9 @@
 
 #include "marey/core/error.h"
 #include "marey/format/mcap/foxglove_messages.h"
+#include "marey/net/server.h"
 #include "marey/stream/foxglove_requests.h"
-#include "marey/stream/server.h"
-#include "marey/stream/websocket.h"
+#include "marey/stream/web_access.h"
 #include "marey/stream/wires.h"
 
 namespace marey::stream {
@@ -20,43 +20,20 @@ namespace {
 constexpr int kStatusTicks = 10;  // a second between two sentences
 constexpr std::size_t kMostSubscriptions = 64;
 
-class FoxgloveSession : public Session {
+class FoxgloveSession : public net::Session {
  public:
   explicit FoxgloveSession(const std::string& session) : session_(session) {}
 
-  std::size_t received(std::string_view bytes, Outbox& out) override {
-    return socket_.received(
-        bytes, out,
-        [&] {
-          say(foxglove_server_info("Marey", session_), out);
-          say(foxglove_advertisement(), out);
-        },
-        [&](std::string_view text) { take(text, out); });
+  net::HttpAnswer requested(const net::HttpRequest& request) override {
+    return answer_to_upgrade(request, {"foxglove.sdk.v1", "foxglove.websocket.v1"});
   }
 
-  void tick(Outbox& out) override {
-    if (++ticks_ % kStatusTicks != 0 || !socket_.is_open()) return;
-    const std::int64_t lost = out.frames_dropped() - told_;
-    if (lost <= 0) return;
-    told_ = out.frames_dropped();
-    say(foxglove_status(1, fmt::format("{} messages were dropped, because this client is too slow for them", lost)), out);
+  void opened(net::Outbox& out) override {
+    say(foxglove_server_info("Marey", session_), out);
+    say(foxglove_advertisement(), out);
   }
 
-  /// `message_of` makes a topic's message where anybody wants it.
-  template <typename MessageOf>
-  void frame(std::uint64_t time_ns, const MessageOf& message_of, Outbox& out) const {
-    for (const auto& [id, topic] : topic_of_) {
-      const std::shared_ptr<const std::string>& message = message_of(topic);
-      if (message->empty()) continue;
-      const std::string head = foxglove_data_head(id, time_ns);
-      out.frame(frame_head(Opcode::binary, head.size() + message->size()) + head, message);
-    }
-  }
-
- private:
-  static void say(const std::string& text, Outbox& out) { out.answer(frame_head(Opcode::text, text.size()) + text); }
-
-  void take(std::string_view text, Outbox& out) {
+  void message(std::string_view text, net::Kind, net::Outbox& out) override {
     const auto request = foxglove_request(text);
     if (!request) return;
     for (const auto& [id, channel] : request->subscribe) {
@@ -69,8 +46,28 @@ class FoxgloveSession : public Session {
     for (const std::uint32_t id : request->unsubscribe) topic_of_.erase(id);
   }
 
+  void tick(net::Outbox& out) override {
+    if (++ticks_ % kStatusTicks != 0) return;
+    const std::int64_t lost = out.frames_dropped() - told_;
+    if (lost <= 0) return;
+    told_ = out.frames_dropped();
+    say(foxglove_status(1, fmt::format("{} messages were dropped, because this client is too slow for them", lost)), out);
+  }
+
+  /// `message_of` makes a topic's message where anybody wants it.
+  template <typename MessageOf>
+  void frame(std::uint64_t time_ns, const MessageOf& message_of, net::Outbox& out) const {
+    for (const auto& [id, topic] : topic_of_) {
+      const std::shared_ptr<const std::string>& message = message_of(topic);
+      if (message->empty()) continue;
+      out.frame({.head = foxglove_data_head(id, time_ns), .body = message});
+    }
+  }
+
+ private:
+  static void say(const std::string& text, net::Outbox& out) { out.answer(text, net::Kind::text); }
+
   const std::string& session_;
-  WebSocket socket_{{"foxglove.sdk.v1", "foxglove.websocket.v1"}};
   std::map<std::uint32_t, std::size_t> topic_of_;  // of a subscription
   int ticks_ = 0;
   std::int64_t told_ = 0;
@@ -81,8 +78,8 @@ class FoxgloveWire : public WireSink {
   FoxgloveWire(const Target& target, StreamOptions options)
       : WireSink("foxglove", std::move(options)),
         session_(fmt::format("{}", wall_now_ns())),
-        server_(loop(), target.address("foxglove"), "foxglove", 64, WebSocket::kMostMessage + 64,
-                [this](const Address&) { return std::make_unique<FoxgloveSession>(session_); }) {}
+        server_(loop(), target.address("foxglove"), "foxglove", {.protocol = net::Protocol::web},
+                [this](const net::Address&) { return std::make_unique<FoxgloveSession>(session_); }) {}
   ~FoxgloveWire() override { loop().stop(); }
 
   std::string where() const override { return to_string(server_.address()); }
@@ -103,7 +100,7 @@ class FoxgloveWire : public WireSink {
       if (made[topic] == nullptr) made[topic] = std::make_shared<const std::string>(messages_.message(topic, instant, stamps));
       return made[topic];
     };
-    server_.each([&](Session& session, Outbox& out) {
+    server_.each([&](net::Session& session, net::Outbox& out) {
       static_cast<FoxgloveSession&>(session).frame(static_cast<std::uint64_t>(stamps.stamp), message_of, out);
     });
   }
@@ -114,7 +111,7 @@ class FoxgloveWire : public WireSink {
  private:
   std::string session_;
   format::mcap::FoxgloveMessages messages_;
-  Server server_;
+  net::Server server_;
 };
 
 }  // namespace

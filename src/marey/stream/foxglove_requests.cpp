@@ -5,7 +5,6 @@
 #include "marey/core/error.h"
 #include "marey/format/mcap/foxglove_messages.h"
 #include "marey/stream/bytes.h"
-#include "marey/stream/websocket.h"
 
 namespace marey::stream {
 namespace {
@@ -34,6 +33,19 @@ std::optional<T> whole_in(const json& object, const char* name) {
 }
 
 }  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kLetters[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
 
 std::optional<FoxgloveRequest> foxglove_request(std::string_view text) {
   if (is_nested_beyond(text, kMostNesting)) throw Error("a message that is nested too deep");

@@ -22,6 +22,9 @@ struct FoxgloveRequest {
 /// subscriptions.
 std::optional<FoxgloveRequest> foxglove_request(std::string_view text);
 
+/// RFC 4648, with padding: how schemas are advertised.
+std::string base64(std::string_view bytes);
+
 /// `{"op":"serverInfo",…}` and `{"op":"advertise",…}`, as texts.
 std::string foxglove_server_info(std::string_view name, std::string_view session);
 std::string foxglove_advertisement();

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "marey/net/server.h"
 #include "marey/stream/lsl_messages.h"
-#include "marey/stream/server.h"
 #include "marey/stream/track_slots.h"
 #include "marey/stream/wires.h"
 
@@ -40,11 +40,11 @@ struct LslShared {
   bool begun = false;
 };
 
-class LslSession : public Session {
+class LslSession : public net::Session {
  public:
   explicit LslSession(const LslShared& shared) : shared_(shared) {}
 
-  std::size_t received(std::string_view bytes, Outbox& out) override {
+  std::size_t received(std::string_view bytes, net::Outbox& out) override {
     if (feeding_) return bytes.size();
     const auto request = lsl_request(bytes);
     if (!request) return 0;
@@ -66,12 +66,12 @@ class LslSession : public Session {
     return request->size;
   }
 
-  void frame(const std::shared_ptr<const std::string>& sample, Outbox& out) const {
-    if (feeding_) out.frame({}, sample);
+  void frame(const std::shared_ptr<const std::string>& sample, net::Outbox& out) const {
+    if (feeding_) out.frame({.body = sample});
   }
 
  private:
-  void feed(const LslRequest& request, Outbox& out) {
+  void feed(const LslRequest& request, net::Outbox& out) {
     if (!shared_.begun || (!request.text.empty() && request.text != shared_.outlet.uid)) {
       out.answer("LSL/110 404 Not found\r\n\r\n");
       out.end();
@@ -95,10 +95,11 @@ class LslWire : public WireSink {
   LslWire(const Target& target, StreamOptions options)
       : WireSink("lsl", std::move(options)),
         at_(free_port(target.address("lsl"))),
-        server_(loop(), at_, "lsl", 32, 8192, [this](const Address&) { return std::make_unique<LslSession>(shared_); }) {
+        server_(loop(), at_, "lsl", {.max_clients = 32, .max_bytes = 8192},
+                [this](const net::Address&) { return std::make_unique<LslSession>(shared_); }) {
     at_ = server_.address();
     service_ = datagrams_at(at_, "lsl");
-    loop().watch(service_.get(), [this](Loop::Events) { answer_datagrams(service_); });
+    loop().watch(service_.get(), [this] { return answer_datagrams(service_); });
     listen_for_searches();
   }
   ~LslWire() override { loop().stop(); }
@@ -117,7 +118,7 @@ class LslWire : public WireSink {
     cast().place(instant, scene_);
     const auto channels = lsl_channels(shared_.outlet.layout, cast(), scene_, instant, slotted(instant));
     const auto sample = std::make_shared<const std::string>(lsl_sample(1e-9 * static_cast<double>(times.capture), channels));
-    server_.each([&](Session& session, Outbox& out) { static_cast<LslSession&>(session).frame(sample, out); });
+    server_.each([&](net::Session& session, net::Outbox& out) { static_cast<LslSession&>(session).frame(sample, out); });
   }
 
   void drain() override { server_.drain(kDrainMs); }
@@ -146,12 +147,12 @@ class LslWire : public WireSink {
   }
 
   /// liblsl looks for an outlet at the first port that is free from 16572 on.
-  static Address free_port(Address wanted) {
+  static net::Address free_port(net::Address wanted) {
     if (wanted.port != kFirstPort) return wanted;
     for (std::uint16_t port = kFirstPort; port < kFirstPort + 32; ++port) {
-      Address at{.host = wanted.host, .port = port};
+      net::Address at{.host = wanted.host, .port = port};
       try {
-        const Descriptor tcp = listen_at(at, "lsl"), udp = datagrams_at(at, "lsl");
+        const net::Descriptor tcp = listen_at(at, "lsl"), udp = datagrams_at(at, "lsl");
         return at;
       } catch (const Error&) {
         continue;
@@ -183,28 +184,28 @@ class LslWire : public WireSink {
 
   /// Searches go to groups that every program of this host may listen to.
   void listen_for_searches() {
-    Address any{.host = 0, .port = kSearchPort};
+    net::Address any{.host = 0, .port = kSearchPort};
     try {
       searches_ = datagrams_at(any, "lsl", true);
     } catch (const Error& error) {
       note_ = fmt::format("{}; the outlet is not found by searching", error.what());
       return;
     }
-    hosts_ = own_hosts();
+    hosts_ = net::own_hosts();
     for (const std::uint32_t group : kGroups) {
       for (const std::uint32_t host : hosts_) join_group(searches_, group, host);
     }
-    loop().watch(searches_.get(), [this](Loop::Events) { answer_datagrams(searches_); });
+    loop().watch(searches_.get(), [this] { return answer_datagrams(searches_); });
   }
 
-  bool may_know(const Address& from) const {
+  bool may_know(const net::Address& from) const {
     return !at_.is_loopback() || from.is_loopback() || std::find(hosts_.begin(), hosts_.end(), from.host) != hosts_.end();
   }
 
-  void answer_datagrams(const Descriptor& socket) {
+  bool answer_datagrams(const net::Descriptor& socket) {
     for (int i = 0; i < 64; ++i) {  // then others' turn
       const auto came = receive(socket, 2048);
-      if (!came) return;
+      if (!came) return true;
       const double now = steady_seconds();
       if (!shared_.begun || !may_know(came->from)) continue;
       if (const auto answer = lsl_time_answer(came->bytes, now, steady_seconds())) {
@@ -215,12 +216,13 @@ class LslWire : public WireSink {
           send_to(service_, {.host = came->from.host, .port = search->port}, search->id + "\r\n" + info);
       }
     }
+    return true;
   }
 
   LslShared shared_;
-  Address at_;
-  Server server_;
-  Descriptor service_, searches_;
+  net::Address at_;
+  net::Server server_;
+  net::Descriptor service_, searches_;
   std::vector<std::uint32_t> hosts_;
   Cast::Scene scene_;
   TrackSlots slots_;

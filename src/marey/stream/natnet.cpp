@@ -26,12 +26,12 @@ class NatNetWire : public WireSink {
     commands_ = datagrams_at(at_, wire());
     data_port_ = static_cast<std::uint16_t>(at_.port == 65'535 ? 1024 : at_.port + 1);
     if (multicast_) send_groups_from(commands_, at_.host, wire());
-    loop().watch(commands_.get(), [this](Loop::Events) { answer_all(); });
+    loop().watch(commands_.get(), [this] { return answer_all(); });
   }
   ~NatNetWire() override { loop().stop(); }
 
   std::string where() const override {
-    return multicast_ ? fmt::format("{}, frames to {}:{}", to_string(at_), host_text(kGroup), data_port_) : to_string(at_);
+    return multicast_ ? fmt::format("{}, frames to {}:{}", to_string(at_), net::host_text(kGroup), data_port_) : to_string(at_);
   }
 
  protected:
@@ -65,15 +65,16 @@ class NatNetWire : public WireSink {
  private:
   void count(bool sent) { ++(sent ? sent_ : dropped_); }
 
-  void answer_all() {
+  bool answer_all() {
     for (int i = 0; i < 64; ++i) {  // then others' turn
       const auto came = receive(commands_, 2048);
-      if (!came) return;
+      if (!came) break;
       if (const auto message = natnet_received(came->bytes)) answer(*message, came->from);
     }
+    return true;
   }
 
-  void answer(const NatNetReceived& message, const Address& from) {
+  void answer(const NatNetReceived& message, const net::Address& from) {
     switch (message.message) {
       case NatNetMessage::connect:
         if (!hear(from)) return;
@@ -100,7 +101,7 @@ class NatNetWire : public WireSink {
   }
 
   /// Who speaks is a client, unless there are too many.
-  bool hear(const Address& from) {
+  bool hear(const net::Address& from) {
     const auto known = clients_.find(from);
     if (known == clients_.end() && clients_.size() >= kMostClients) {
       ++refused_;
@@ -111,11 +112,11 @@ class NatNetWire : public WireSink {
     return true;
   }
 
-  Address at_;
+  net::Address at_;
   bool multicast_;
-  Descriptor commands_;
+  net::Descriptor commands_;
   std::uint16_t data_port_ = 0;
-  std::map<Address, std::int64_t> clients_;  // when they were heard last
+  std::map<net::Address, std::int64_t> clients_;  // when they were heard last
   Cast::Scene scene_;
   std::string newest_;
   std::int64_t came_ = 0, refused_ = 0, sent_ = 0, dropped_ = 0, too_large_ = 0;

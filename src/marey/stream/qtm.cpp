@@ -21,9 +21,9 @@ class QtmWire : public WireSink {
  public:
   QtmWire(const Target& target, StreamOptions options)
       : WireSink("qtm", std::move(options)),
-        server_(loop(), target.address("qtm"), "qtm", 10, kQtmMostBytes,
-                [this](const Address& client) { return std::make_unique<QtmSession>(state_, client); }) {
-    Address any{.host = server_.address().host, .port = 0};
+        server_(loop(), target.address("qtm"), "qtm", {.max_clients = 10, .max_bytes = kQtmMostBytes},
+                [this](const net::Address& client) { return std::make_unique<QtmSession>(state_, client); }) {
+    net::Address any{.host = server_.address().host, .port = 0};
     datagrams_ = datagrams_at(any, "qtm");
     state_.header = &header();
     state_.cast = &cast();
@@ -42,7 +42,7 @@ class QtmWire : public WireSink {
 
   void labels_grew() override {
     if (!begun_) return;
-    server_.each([](Session& session, Outbox& out) {
+    server_.each([](net::Session& session, net::Outbox& out) {
       if (static_cast<QtmSession&>(session).streaming()) out.answer(qtm_event_packet(QtmEvent::settings_changed));
     });
   }
@@ -55,19 +55,19 @@ class QtmWire : public WireSink {
     state_.newest->bodies = instant.bodies;
     cast().place(instant, scene_);
     packets_.clear();
-    server_.each([&](Session& session, Outbox& out) {
+    server_.each([&](net::Session& session, net::Outbox& out) {
       auto& client = static_cast<QtmSession&>(session);
       if (!client.is_due(instant)) return;
       const auto packet = packet_of(client.streaming()->components, instant);
       const auto to = client.datagrams_to();
-      if (!to) return out.frame({}, packet);
-      (packet->size() <= kLargestDatagram && send_to(datagrams_, *to, *packet) ? udp_sent_ : udp_dropped_) += 1;
+      if (!to) return out.frame({.body = packet});
+      (packet->size() <= net::kLargestDatagram && send_to(datagrams_, *to, *packet) ? udp_sent_ : udp_dropped_) += 1;
     });
     begun_ = true;
   }
 
   void say_goodbye() override {
-    server_.each([](Session& session, Outbox& out) {
+    server_.each([](net::Session& session, net::Outbox& out) {
       if (static_cast<QtmSession&>(session).streaming()) out.answer(qtm_packet(QtmPacket::no_more_data, {}));
       out.answer(qtm_event_packet(QtmEvent::shutting_down));
       out.end();
@@ -93,19 +93,20 @@ class QtmWire : public WireSink {
 
   /// Other programs may hold that port; then this server is not found by searching, and serves all the same.
   void listen_for_searches() {
-    Address at{.host = server_.address().host, .port = kDiscoveryPort};
+    net::Address at{.host = server_.address().host, .port = kDiscoveryPort};
     try {
       searches_ = datagrams_at(at, "qtm", true);
     } catch (const Error& error) {
       note_ = fmt::format("{}; clients that search for servers do not find this one", error.what());
       return;
     }
-    loop().watch(searches_.get(), [this](Loop::Events) {
+    loop().watch(searches_.get(), [this] {
       while (const auto search = receive(searches_, 64)) answer_search(*search);
+      return true;
     });
   }
 
-  void answer_search(const Datagram& search) {
+  void answer_search(const net::Datagram& search) {
     const auto size = number_at<std::uint32_t>(search.bytes, 0), type = number_at<std::uint32_t>(search.bytes, 4);
     const auto port = number_at<std::uint16_t, std::endian::big>(search.bytes, 8);
     if (size != 10u || type != static_cast<std::uint32_t>(QtmPacket::discover) || !port || *port == 0) return;
@@ -117,8 +118,8 @@ class QtmWire : public WireSink {
   }
 
   QtmState state_;
-  Server server_;
-  Descriptor datagrams_, searches_;
+  net::Server server_;
+  net::Descriptor datagrams_, searches_;
   Cast::Scene scene_;
   std::map<std::pair<std::vector<QtmComponent>, bool>, std::shared_ptr<const std::string>> packets_;  // of this moment
   std::int64_t udp_sent_ = 0, udp_dropped_ = 0;

@@ -35,11 +35,11 @@ QtmSession::~QtmSession() {
   if (state_->master == this) state_->master = nullptr;
 }
 
-void QtmSession::joined(Outbox& out) {
+void QtmSession::joined(net::Outbox& out) {
   out.answer(say("QTM RT Interface connected"));
 }
 
-std::size_t QtmSession::received(std::string_view bytes, Outbox& out) {
+std::size_t QtmSession::received(std::string_view bytes, net::Outbox& out) {
   const auto packet = qtm_received(bytes);
   if (!packet) return 0;
   if (packet->type == static_cast<std::uint32_t>(QtmPacket::command)) {
@@ -118,7 +118,7 @@ std::string QtmSession::stream(const std::vector<std::string>& words) {
   const auto request = qtm_stream_request(words);
   if (!request) return refuse("Parse error");
   // Frames go to the one who asked: who could name another host could have it flooded.
-  if (!request->udp_host.empty() && request->udp_host != host_text(client_.host))
+  if (!request->udp_host.empty() && request->udp_host != net::host_text(client_.host))
     return refuse("UDP goes to the client's own address");
   streaming_.reset();
   if (request->stop) return {};
@@ -169,9 +169,9 @@ bool QtmSession::is_due(const Instant& instant) {
   return true;
 }
 
-std::optional<Address> QtmSession::datagrams_to() const {
+std::optional<net::Address> QtmSession::datagrams_to() const {
   if (!streaming_ || !streaming_->udp_port) return std::nullopt;
-  return Address{.host = client_.host, .port = *streaming_->udp_port};
+  return net::Address{.host = client_.host, .port = *streaming_->udp_port};
 }
 
 }  // namespace marey::stream

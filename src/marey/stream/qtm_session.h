@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "marey/net/server.h"
 #include "marey/stream/qtm_packets.h"
 #include "marey/stream/qtm_parameters.h"
-#include "marey/stream/server.h"
 
 namespace marey::stream {
 
@@ -25,13 +25,13 @@ struct QtmState {
   QtmEvent last_event = QtmEvent::connected;
 };
 
-class QtmSession : public Session {
+class QtmSession : public net::Session {
  public:
-  QtmSession(QtmState& state, Address client) : state_(&state), client_(client) {}
+  QtmSession(QtmState& state, net::Address client) : state_(&state), client_(client) {}
   ~QtmSession() override;
 
-  void joined(Outbox& out) override;
-  std::size_t received(std::string_view bytes, Outbox& out) override;
+  void joined(net::Outbox& out) override;
+  std::size_t received(std::string_view bytes, net::Outbox& out) override;
   /// The packets that answer a command, mostly one.
   std::vector<std::string> answer(std::string_view command);
 
@@ -40,7 +40,7 @@ class QtmSession : public Session {
   /// Whether this moment is due to it; then it counts as given.
   bool is_due(const Instant& instant);
   /// Over UDP, where to.
-  std::optional<Address> datagrams_to() const;
+  std::optional<net::Address> datagrams_to() const;
 
  private:
   std::vector<std::string> answer_known(const std::vector<std::string>& words);
@@ -52,7 +52,7 @@ class QtmSession : public Session {
   std::string as_master(const std::vector<std::string>& words);
 
   QtmState* state_;
-  Address client_;
+  net::Address client_;
   int minor_ = 1;
   bool closing_ = false;
   std::optional<QtmStreamRequest> streaming_;

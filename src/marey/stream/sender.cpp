@@ -7,7 +7,7 @@ namespace marey::stream {
 
 DatagramWire::DatagramWire(const Target& target, StreamOptions options)
     : WireSink(target.wire, std::move(options)), to_(target.address(target.wire)) {
-  Address any{.host = to_.is_loopback() ? kLoopback : 0, .port = 0};
+  net::Address any{.host = to_.is_loopback() ? net::kLoopback : 0, .port = 0};
   socket_ = datagrams_at(any, target.wire);
 }
 

@@ -23,8 +23,8 @@ class DatagramWire : public WireSink {
   void fill(WireReport& report) const override;
 
  private:
-  Address to_;
-  Descriptor socket_;
+  net::Address to_;
+  net::Descriptor socket_;
   std::int64_t sent_ = 0, dropped_ = 0;
 };
 

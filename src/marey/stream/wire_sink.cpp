@@ -7,7 +7,7 @@
 namespace marey::stream {
 
 WireSink::WireSink(std::string wire, StreamOptions options)
-    : wire_(std::move(wire)), options_(std::move(options)), loop_(std::make_unique<Loop>()) {
+    : wire_(std::move(wire)), options_(std::move(options)), loop_(std::make_unique<net::Loop>()) {
   if (options_.clock == nullptr) options_.clock = std::make_shared<CaptureClock>();
 }
 

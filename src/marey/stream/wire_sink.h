@@ -9,8 +9,8 @@
 
 #include "marey/core/sink.h"
 #include "marey/core/stage_times.h"
+#include "marey/net/loop.h"
 #include "marey/stream/cast.h"
-#include "marey/stream/loop.h"
 #include "marey/stream/stream_clock.h"
 
 namespace marey::stream {
@@ -74,7 +74,7 @@ class WireSink : public Sink {
   virtual void drain() {}
   virtual void fill(WireReport& report) const = 0;
 
-  Loop& loop() const { return *loop_; }
+  net::Loop& loop() const { return *loop_; }
   const RecordingHeader& header() const { return header_; }
   const Cast& cast() const { return cast_; }
   const StreamOptions& options() const { return options_; }
@@ -83,7 +83,7 @@ class WireSink : public Sink {
  private:
   std::string wire_;
   StreamOptions options_;
-  std::unique_ptr<Loop> loop_;
+  std::unique_ptr<net::Loop> loop_;
   RecordingHeader header_;
   Cast cast_;
   std::int64_t frames_ = 0;

@@ -83,14 +83,14 @@ std::string wire_table() {
   return table;
 }
 
-void take_counts(WireReport& report, const Server::Counts& counts) {
+void take_counts(WireReport& report, const net::Server::Counts& counts) {
   report.clients = counts.clients;
   report.now = counts.now;
   report.sent = counts.sent;
   report.dropped = counts.dropped;
   report.refused = counts.refused;
-  report.sent_off = counts.sent_off;
-  if (counts.sent_off > 0)
+  report.sent_off = counts.disconnected;
+  if (counts.disconnected > 0)
     report.notes.push_back(fmt::format("the last client that was sent off: {}", plain_text(counts.last_complaint)));
 }
 

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/stream/server.h"
-#include "marey/stream/socket.h"
+#include "marey/net/server.h"
+#include "marey/net/socket.h"
 #include "marey/stream/wire_sink.h"
 
 namespace marey::stream {
@@ -28,7 +28,7 @@ struct Target {
   std::uint16_t port = 0;
 
   /// Throws Error, which begins with `what`, where no host has that name.
-  Address address(const std::string& what) const { return {.host = host_named(host, what), .port = port}; }
+  net::Address address(const std::string& what) const { return {.host = net::host_named(host, what), .port = port}; }
 };
 
 /// A row of the register.
@@ -58,6 +58,6 @@ std::string wire_table();
 /// How long clients are given at the end to take what is on its way to them, ms.
 inline constexpr int kDrainMs = 500;
 /// What a server counted, into a report.
-void take_counts(WireReport& report, const Server::Counts& counts);
+void take_counts(WireReport& report, const net::Server::Counts& counts);
 
 }  // namespace marey::stream

@@ -36,7 +36,7 @@ class TestClient {
     sockaddr_in to{};
     to.sin_family = AF_INET;
     to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(where.substr(where.rfind(':') + 1))));
-    to.sin_addr.s_addr = htonl(kLoopback);
+    to.sin_addr.s_addr = htonl(net::kLoopback);
     const timeval patience{.tv_sec = 2, .tv_usec = 0};
     setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     if (receive_buffer > 0) setsockopt(socket_.get(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
@@ -71,7 +71,7 @@ class TestClient {
   }
 
  private:
-  Descriptor socket_;
+  net::Descriptor socket_;
   bool connected_ = false;
 };
 

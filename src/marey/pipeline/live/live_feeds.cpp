@@ -89,7 +89,7 @@ std::vector<source::live::Kind> live_kinds() {
   for (source::live::Kind& kind : kinds) {
     if (kind.schemes.front() == "play") kind = with_takes(std::move(kind));
   }
-  if (auto nodes = node_kind()) kinds.push_back(std::move(*nodes));
+  kinds.push_back(node_kind());
   kinds.push_back(simulate::simulation_kind());
   return kinds;
 }

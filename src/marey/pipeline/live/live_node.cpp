@@ -31,13 +31,12 @@ Rig cameras_of_node(const source::live::Address& address) {
 
 }  // namespace
 
-std::optional<source::live::Kind> node_kind() {
-  if (!source::live::has_nodes()) return std::nullopt;
-  return source::live::Kind{.schemes = {"node"},
-                            .form = "node:HOST:7780/CAMERA",
-                            .meaning = "a camera of another computer, where marey node runs; all of them without /CAMERA",
-                            .open = open_node,
-                            .cameras = cameras_of_node};
+source::live::Kind node_kind() {
+  return {.schemes = {"node"},
+          .form = "node:HOST:7780/CAMERA",
+          .meaning = "a camera of another computer, where marey node runs; all of them without /CAMERA",
+          .open = open_node,
+          .cameras = cameras_of_node};
 }
 
 }  // namespace marey::pipeline::live

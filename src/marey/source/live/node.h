@@ -1,7 +1,7 @@
-// A camera node: cameras of another computer, by ZeroMQ. The node publishes each camera's frames (PUB, on a port) and answers
-// questions (REP, on the port above it): a camera's name with what it knows of it and the time by its clock, an empty question with
-// its rig, and what a camera is set to, or is to be set to (node_message.h). Frames that nobody could take in time are let go,
-// never kept. An optional part of the build.
+// A camera node: cameras of another computer, by a WebSocket for each camera of each host. The node answers questions: a camera's
+// name with what it knows of it and the time by its clock, an empty question with its rig, and what a camera is set to, or is to be
+// set to (node_message.h); and it sends each frame of the camera that a host subscribed to. Frames that nobody could take in time
+// are let go, never kept.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,12 @@ struct NodePlace {
   int port = kNodePort;
   std::string camera;
 
-  /// The sockets of both, as ZeroMQ names them.
-  std::string frames() const;
-  std::string questions() const;
   /// "node:HOST:PORT"
   std::string node() const;
 };
 
 /// Throws Error where no host is named, or the port is none.
 NodePlace node_place(const Address& address);
-
-/// Whether this build can speak to nodes and be one.
-bool has_nodes();
 
 /// A camera of a node. Its frames bear times by the run's clock: the node's clock is asked now and then.
 Connect connect_node(const NodePlace& place);
@@ -52,7 +46,7 @@ class NodeServer {
   /// Sets what is wished for; nothing where there is no such camera.
   using Set = std::function<std::optional<NodeControls>(const NodeQuestion&)>;
 
-  /// Listens at `address`, an address of this machine or "0.0.0.0", from `port` on. Throws Error where that cannot be had.
+  /// Listens at `address`, an address of this machine or "0.0.0.0". Throws Error where that, or the port, cannot be had.
   /// Without `set` nothing can be set from hosts.
   NodeServer(const std::string& address, int port, Answer answer, RigText rig, Set set = {});
   ~NodeServer();

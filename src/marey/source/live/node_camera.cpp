@@ -1,9 +1,9 @@
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <functional>
+#include <deque>
 #include <optional>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,10 +12,10 @@
 #include "marey/core/error.h"
 #include "marey/core/limits.h"
 #include "marey/core/stop.h"
+#include "marey/net/client.h"
 #include "marey/source/live/jpeg_decoder.h"
 #include "marey/source/live/node.h"
 #include "marey/source/live/node_clock.h"
-#include "marey/source/live/node_sockets.h"
 
 namespace marey::source::live {
 namespace {
@@ -26,71 +26,128 @@ constexpr std::chrono::milliseconds kAskSeldom{1000};  // between those that kee
 constexpr int kFirstQuestions = 8;
 constexpr std::chrono::seconds kSetWithin{1};
 constexpr std::chrono::milliseconds kAskWhetherSet{5};
-constexpr double kOldest = 60;  // s that a frame may be old by the node's clock; else it counts as taken when it came
-constexpr int kWaiting = 8;     // frames that are kept for a host that is late; the rest is let go
-constexpr std::int64_t kLongestFrame = 256 << 20;
-constexpr std::int64_t kLongestAnswer = 16 << 20;
+constexpr double kOldest = 60;       // s that a frame may be old by the node's clock; else it counts as taken when it came
+constexpr std::size_t kWaiting = 8;  // frames that are kept for a host that is late; older ones are let go
+constexpr int kAtOnce = 256;         // messages that are read before frames are handed on
+constexpr std::size_t kLongestFrame = std::size_t{256} << 20;
+constexpr std::size_t kLongestAnswer = std::size_t{16} << 20;
+constexpr net::ClientOptions kLine{.max_message = kLongestFrame,
+                                   .connect = std::chrono::milliseconds(2000),
+                                   .silence = std::chrono::milliseconds(1500)};  // a cable that is pulled is noticed
 
-zmq::socket_t open_questions(zmq::context_t& context, const NodePlace& place) {
-  zmq::socket_t socket(context, zmq::socket_type::req);
-  socket.set(zmq::sockopt::linger, 0);
-  socket.set(zmq::sockopt::ipv6, 1);
-  socket.set(zmq::sockopt::req_relaxed, 1);  // an answer that never comes ends nothing
-  socket.set(zmq::sockopt::req_correlate, 1);
-  socket.set(zmq::sockopt::maxmsgsize, kLongestAnswer);
-  socket.connect(place.questions());
-  return socket;
-}
+/// The WebSocket to a node: questions, answers in their order, frames among them.
+class NodeLine {
+ public:
+  /// Throws Error where the node does not answer in time; Stopped.
+  NodeLine(const NodePlace& place, const std::stop_token& stop) : place_(place), stop_(stop), client_(connected(place, stop)) {}
 
-/// The answer to one question. Throws Error where none comes in time; Stopped.
-std::string answer_to(const std::string& question, zmq::socket_t& questions, const NodePlace& place, const std::stop_token& stop) {
-  questions.send(zmq::buffer(question), zmq::send_flags::none);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kAnswersWithin);
-  while (std::chrono::steady_clock::now() < end) {
-    if (stop.stop_requested()) throw Stopped();
-    wait_for_any(std::array{std::ref(questions)}, kStopSlice);
-    if (const auto answer = last_part(questions)) return std::string(text_in(*answer));
+  void subscribe() {
+    on_line([&] { client_->send(std::string(kFramesOf) + place_.camera); });
   }
-  throw Error("{}: does not answer; does marey node run there, and may its ports {} and {} be reached?", place.node(), place.port,
-              place.port + 1);
-}
+
+  /// Its answer is waited for in `gather`.
+  void ask(const std::string& question) {
+    on_line([&] { client_->send(question); });
+    ++asked_;
+    answer_.reset();
+  }
+  /// Of the last question; once.
+  std::optional<std::string> answer() { return std::exchange(answer_, std::nullopt); }
+
+  /// The answer to one question. Throws Error where none comes in time; Stopped.
+  std::string answer_to(const std::string& question) {
+    ask(question);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kAnswersWithin);
+    while (std::chrono::steady_clock::now() < end) {
+      if (stop_.stop_requested()) throw Stopped();
+      gather(kStopSlice);
+      if (auto said = answer()) return *said;
+    }
+    refuse(place_);
+  }
+
+  /// Takes all messages that have come; waits for the first, unless frames are there or the last question is answered.
+  void gather(std::chrono::milliseconds wait) {
+    for (int i = 0; i < kAtOnce; ++i) {
+      const bool waits = i == 0 && frames_.empty() && !answer_;
+      auto message = on_line([&] { return client_->receive(waits ? std::min(wait, kStopSlice) : std::chrono::milliseconds(0)); });
+      if (!message) return;
+      if (is_node_frame(*message)) {
+        if (frames_.size() == kWaiting) frames_.pop_front();
+        frames_.push_back(std::move(*message));
+        continue;
+      }
+      if (++answered_ > asked_ || message->size() > kLongestAnswer)
+        throw Error("{}: it is no node of Marey, or one of another version", place_.node());
+      if (answered_ < asked_) continue;  // to a question that nobody waits for any more
+      answer_ = std::move(message);
+      return;  // when it came matters
+    }
+  }
+
+  /// The oldest that came and was not taken.
+  std::optional<std::string> frame() {
+    if (frames_.empty()) return std::nullopt;
+    std::string first = std::move(frames_.front());
+    frames_.pop_front();
+    return first;
+  }
+
+ private:
+  [[noreturn]] static void refuse(const NodePlace& place) {
+    throw Error("{}: does not answer; does marey node run there, and may its port {} be reached?", place.node(), place.port);
+  }
+
+  /// Says of which node an error is.
+  template <typename Do>
+  std::invoke_result_t<Do> on_line(Do what) {
+    try {
+      return what();
+    } catch (const Error& error) {
+      throw Error("{}: has gone ({})", place_.node(), error.what());
+    }
+  }
+
+  static std::unique_ptr<net::WebSocketClient> connected(const NodePlace& place, const std::stop_token& stop) {
+    try {
+      return std::make_unique<net::WebSocketClient>(place.host, place.port, kLine, stop);
+    } catch (const Error&) {
+      refuse(place);
+    }
+  }
+
+  NodePlace place_;
+  std::stop_token stop_;
+  std::unique_ptr<net::WebSocketClient> client_;
+  std::deque<std::string> frames_;
+  std::optional<std::string> answer_;
+  std::int64_t asked_ = 0, answered_ = 0;
+};
 
 class NodeCamera final : public Connection {
  public:
   NodeCamera(NodePlace place, LiveTime& time, const std::stop_token& stop)
-      : place_(std::move(place)),
-        time_(time),
-        stop_(stop),
-        context_(node_context()),
-        questions_(open_questions(*context_, place_)),
-        frames_(*context_, zmq::socket_type::sub) {
+      : place_(std::move(place)), time_(time), line_(place_, stop) {
     info_.name = fmt::format("{}/{}", place_.node(), place_.camera);
     const Timestamp asked = time_.now();
-    const NodeAnswer answer = read_node_answer(answer_to(place_.camera, questions_, place_, stop), place_.node());
+    const NodeAnswer answer = read_node_answer(line_.answer_to(place_.camera), place_.node());
     session_ = answer.session;
     learn(answer, asked);
     if (!answer.known)
       throw Error("{}: has no camera \"{}\"; it has {}", place_.node(), place_.camera,
                   answer.cameras.empty() ? "none" : fmt::format("{}", fmt::join(answer.cameras, ", ")));
-    frames_.set(zmq::sockopt::linger, 0);
-    frames_.set(zmq::sockopt::ipv6, 1);
-    frames_.set(zmq::sockopt::rcvhwm, kWaiting);
-    frames_.set(zmq::sockopt::maxmsgsize, kLongestFrame);
-    frames_.set(zmq::sockopt::heartbeat_ivl, 500);  // a cable that is pulled is noticed
-    frames_.set(zmq::sockopt::heartbeat_timeout, 1500);
-    frames_.set(zmq::sockopt::subscribe, place_.camera + '\n');
-    frames_.connect(place_.frames());
+    line_.subscribe();
   }
 
   const SourceInfo& info() const override { return info_; }
 
   Came next(Shot& shot) override {
     ask_now_and_then();
-    wait_for_any(std::array{std::ref(frames_), std::ref(questions_)}, pause());
+    line_.gather(pause());
     hear();
-    const auto message = last_part(frames_);
+    const auto message = line_.frame();
     if (!message) return Came::nothing;
-    const NodeFrame frame = read_node_frame(text_in(*message), info_.name);
+    const NodeFrame frame = read_node_frame(*message, info_.name);
     if (frame.session != session_) throw Error("{}: was started anew", place_.node());
     shot.sequence = frame.sequence;
     const Timestamp now = time_.now();
@@ -133,7 +190,7 @@ class NodeCamera final : public Connection {
   /// Nothing where the node knows nothing of controls.
   std::optional<NodeControls> ask(const NodeQuestion& question) {
     is_asked_ = false;  // the answer about the clock is not waited for
-    const auto said = read_node_controls(answer_to(text_of(question), questions_, place_, stop_), place_.node());
+    const auto said = read_node_controls(line_.answer_to(text_of(question)), place_.node());
     if (said && said->session != session_) throw Error("{}: was started anew", place_.node());
     return said;
   }
@@ -143,17 +200,17 @@ class NodeCamera final : public Connection {
     if (asked_ && now - *asked_ < pause()) return;
     asked_ = now;
     is_asked_ = true;
-    questions_.send(zmq::buffer(place_.camera), zmq::send_flags::dontwait);
+    line_.ask(place_.camera);
   }
 
   std::chrono::milliseconds pause() const { return answers_ < kFirstQuestions ? kAskOften : kAskSeldom; }
 
   void hear() {
     if (!is_asked_) return;
-    const auto message = last_part(questions_);
+    const auto message = line_.answer();
     if (!message) return;
     is_asked_ = false;
-    const NodeAnswer answer = read_node_answer(text_in(*message), place_.node());
+    const NodeAnswer answer = read_node_answer(*message, place_.node());
     if (answer.session != session_) throw Error("{}: was started anew", place_.node());
     learn(answer, *asked_);
   }
@@ -167,9 +224,7 @@ class NodeCamera final : public Connection {
 
   NodePlace place_;
   LiveTime& time_;
-  std::stop_token stop_;
-  std::shared_ptr<zmq::context_t> context_;  // outlives its sockets
-  zmq::socket_t questions_, frames_;
+  NodeLine line_;
   SourceInfo info_;
   JpegDecoder decoder_;
   NodeClock clock_;
@@ -182,28 +237,14 @@ class NodeCamera final : public Connection {
 
 }  // namespace
 
-bool has_nodes() {
-  return true;
-}
-
 Connect connect_node(const NodePlace& place) {
   return [place](LiveTime& time, const std::stop_token& stop) -> std::unique_ptr<Connection> {
-    try {
-      return std::make_unique<NodeCamera>(place, time, stop);
-    } catch (const zmq::error_t& error) {
-      throw Error("{}: cannot be reached ({})", place.node(), error.what());
-    }
+    return std::make_unique<NodeCamera>(place, time, stop);
   };
 }
 
 std::string ask_rig_of_node(const NodePlace& place) {
-  try {
-    const auto context = node_context();
-    zmq::socket_t questions = open_questions(*context, place);
-    return answer_to("", questions, place, StopScope::current());
-  } catch (const zmq::error_t& error) {
-    throw Error("{}: cannot be reached ({})", place.node(), error.what());
-  }
+  return NodeLine(place, StopScope::current()).answer_to("");
 }
 
 }  // namespace marey::source::live

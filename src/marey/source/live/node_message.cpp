@@ -135,6 +135,10 @@ std::string message_of(const NodeAnswer& answer) {
   return message;
 }
 
+bool is_node_frame(std::string_view message) {
+  return message.starts_with(kFrameMark);
+}
+
 NodeFrame read_node_frame(std::string_view message, const std::string& name) {
   NodeReader reader(message, name);
   reader.mark(kFrameMark);

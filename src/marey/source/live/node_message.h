@@ -10,7 +10,8 @@
 //              most:f64 now:f64, then why the last that was asked for was refused, a sentence to the end
 //
 // What a host asks is text: a camera's name (answer), nothing (the rig as text), NAME= (controls), NAME=exposure 2.5 (set it, then
-// controls). No camera's name has a "=", so a node that knows nothing of controls answers that it has no such camera.
+// controls), frames/NAME (from now on each frame of it; that has no answer). No camera's name has a "=" or a "/", so a node that
+// knows nothing of controls answers that it has no such camera. Answers come in the order of the questions, frames among them.
 #pragma once
 
 #include <cstdint>
@@ -70,6 +71,11 @@ struct NodeQuestion {
 std::string text_of(const NodeQuestion& question);
 /// Nothing where it asks for something else, or for a value that is none.
 std::optional<NodeQuestion> read_node_question(std::string_view text);
+
+/// What subscribes to a camera's frames, with its name behind it.
+inline constexpr std::string_view kFramesOf = "frames/";
+/// Whether a message is a frame, and no answer.
+bool is_node_frame(std::string_view message);
 
 std::string message_of(const NodeFrame& frame);
 std::string message_of(const NodeAnswer& answer);

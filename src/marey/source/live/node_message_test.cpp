@@ -133,12 +133,12 @@ TEST(NodeMessage, QuestionsAboutControlsAreReadAsTheyAreWritten) {
 
 TEST(NodePlace, IsReadFromAnAddress) {
   const auto place = [](const std::string& text) { return node_place(parse_address(text)); };
-  EXPECT_EQ(place("node:lab2:7000/left").questions(), "tcp://lab2:7001");
+  EXPECT_EQ(place("node:lab2:7000/left").node(), "node:lab2:7000");
   EXPECT_EQ(place("node:lab2:7000/left").camera, "left");
-  EXPECT_EQ(place("node://lab2").frames(), fmt::format("tcp://lab2:{}", kNodePort));
+  EXPECT_EQ(place("node://lab2").node(), fmt::format("node:lab2:{}", kNodePort));
   EXPECT_EQ(place("node:[::1]/left").host, "[::1]");
   EXPECT_EQ(place("node:[::1]:7000/left").port, 7000);
-  for (const char* wrong : {"node:", "node:lab2:0", "node:lab2:65535", "node:lab2:7x", "node:/left", "node:lab2?fast"})
+  for (const char* wrong : {"node:", "node:lab2:0", "node:lab2:65536", "node:lab2:7x", "node:/left", "node:lab2?fast"})
     EXPECT_THROW(place(wrong), Error) << wrong;
 }
 

@@ -7,14 +7,6 @@
 
 namespace marey::source::live {
 
-std::string NodePlace::frames() const {
-  return fmt::format("tcp://{}:{}", host, port);
-}
-
-std::string NodePlace::questions() const {
-  return fmt::format("tcp://{}:{}", host, port + 1);
-}
-
 std::string NodePlace::node() const {
   return fmt::format("node:{}:{}", host, port);
 }
@@ -30,8 +22,8 @@ NodePlace node_place(const Address& address) {
   if (has_port) {
     const char *begin = place.host.data() + colon + 1, *end = place.host.data() + place.host.size();
     const auto [stop, error] = std::from_chars(begin, end, place.port);
-    if (error != std::errc{} || stop != end || place.port < 1 || place.port > 65534)
-      throw Error("{}: the port is none; it is a whole number from 1 to 65534", address.text);
+    if (error != std::errc{} || stop != end || place.port < 1 || place.port > 65535)
+      throw Error("{}: the port is none; it is a whole number from 1 to 65535", address.text);
     place.host.resize(colon);
   }
   if (place.host.empty()) throw Error("{}: names no host; write node:HOST:{}/CAMERA", address.text, kNodePort);

@@ -1,19 +1,19 @@
-#include <array>
 #include <cerrno>
-#include <functional>
-#include <thread>
+#include <system_error>
 #include <utility>
 
 #include "marey/core/error.h"
-#include "marey/core/stop.h"
+#include "marey/net/server.h"
 #include "marey/source/live/node.h"
-#include "marey/source/live/node_sockets.h"
 
 namespace marey::source::live {
 namespace {
 
-constexpr int kWaitingToGo = 4;                  // frames for a host that is late; the rest is let go
-constexpr std::int64_t kLongestQuestion = 4096;  // bytes
+constexpr net::ServerOptions kHosts{.protocol = net::Protocol::web,
+                                    .max_clients = 512,  // one for each camera of each host
+                                    .max_message = 4096,
+                                    .send_buffer = 1 << 18,
+                                    .silence = std::chrono::seconds(5)};
 
 /// Who answers what.
 struct Answers {
@@ -29,63 +29,74 @@ struct Answers {
   }
 };
 
-/// Answers until it is stopped.
-void answer_questions(const std::stop_token& stop, zmq::socket_t& questions, const Answers& answers) {
-  while (!stop.stop_requested()) {
-    wait_for_any(std::array{std::ref(questions)}, kStopSlice);
-    const auto question = last_part(questions);
-    if (!question) continue;
-    const std::string said = answers.to(std::string(text_in(*question)));
-    questions.send(zmq::buffer(said), zmq::send_flags::dontwait);
+/// One WebSocket of a host.
+class HostSession : public net::Session {
+ public:
+  explicit HostSession(const Answers& answers) : answers_(answers) {}
+
+  net::HttpAnswer requested(const net::HttpRequest& request) override {
+    if (!request.upgrade) return net::refusal(400, "marey node speaks to marey live alone");
+    if (!request.origin.empty()) return net::refusal(403, "pages may not see what cameras see");
+    return {.upgrade = true};
   }
+
+  void message(std::string_view question, net::Kind, net::Outbox& out) override {
+    if (question.starts_with(kFramesOf)) {
+      camera_ = question.substr(kFramesOf.size());
+    } else {
+      out.answer(answers_.to(std::string(question)));
+    }
+  }
+
+  /// The one whose frames it gets; none before it subscribed.
+  const std::string& camera() const { return camera_; }
+
+ private:
+  const Answers& answers_;
+  std::string camera_;
+};
+
+net::Descriptor listen_for_hosts(const std::string& address, int port) {
+  const bool brackets = address.size() > 2 && address.front() == '[' && address.back() == ']';
+  int got = port;
+  std::optional<net::Descriptor> made = net::listen_at_digits(brackets ? address.substr(1, address.size() - 2) : address, got);
+  if (!made || (!*made && errno == EADDRNOTAVAIL))
+    throw Error("{}: is no address of this computer; write one as a number, 127.0.0.1, or 0.0.0.0 for all of them", address);
+  if (!*made)
+    throw Error("{}: port {} cannot be had ({}); name another with --port", address, port, std::generic_category().message(errno));
+  return std::move(*made);
 }
 
 }  // namespace
 
 struct NodeServer::Parts {
-  Parts(const NodePlace& place, Answers answers)
-      : context(node_context()), frames(*context, zmq::socket_type::pub), questions(*context, zmq::socket_type::rep) {
-    for (zmq::socket_t* socket : {&frames, &questions}) {
-      socket->set(zmq::sockopt::linger, 0);
-      socket->set(zmq::sockopt::ipv6, place.host.find(':') != std::string::npos);
-      socket->set(zmq::sockopt::maxmsgsize, kLongestQuestion);
-    }
-    frames.set(zmq::sockopt::sndhwm, kWaitingToGo);
-    frames.set(zmq::sockopt::immediate, 1);
-    frames.set(zmq::sockopt::heartbeat_ivl, 500);
-    frames.set(zmq::sockopt::heartbeat_timeout, 1500);
-    frames.bind(place.frames());
-    questions.bind(place.questions());
-    answering = std::jthread([this, answers = std::move(answers)](const std::stop_token& stop) {
-      try {
-        answer_questions(stop, questions, answers);
-      } catch (const zmq::error_t&) {  // the socket is gone: hosts find that it does not answer
-      }
-    });
+  Parts(const std::string& address, int port, Answers given)
+      : answers(std::move(given)), server(loop, listen_for_hosts(address, port), kHosts, [this](const net::Address&) {
+          return std::make_unique<HostSession>(answers);
+        }) {
+    loop.on_tick([this] { server.tick(); });
+    loop.start();
   }
+  ~Parts() { loop.stop(); }
 
-  std::shared_ptr<zmq::context_t> context;  // outlives its sockets
-  zmq::socket_t frames, questions;
-  std::jthread answering;  // ends before them
+  Answers answers;
+  net::Loop loop;
+  net::Server server;
 };
 
-NodeServer::NodeServer(const std::string& address, int port, Answer answer, RigText rig, Set set) {
-  const NodePlace place{.host = address, .port = port, .camera = {}};
-  try {
-    parts_ = std::make_unique<Parts>(place, Answers{std::move(answer), std::move(rig), std::move(set)});
-  } catch (const zmq::error_t& error) {
-    if (error.num() == ENODEV || error.num() == EADDRNOTAVAIL)
-      throw Error("{}: is no address of this computer; write one as a number, 127.0.0.1, or 0.0.0.0 for all of them", address);
-    throw Error("{}: ports {} and {} cannot be had ({}); name another with --port", address, port, port + 1, error.what());
-  }
-}
+NodeServer::NodeServer(const std::string& address, int port, Answer answer, RigText rig, Set set)
+    : parts_(std::make_unique<Parts>(address, port, Answers{std::move(answer), std::move(rig), std::move(set)})) {}
 
 NodeServer::~NodeServer() = default;
 
 void NodeServer::send(const std::string& camera, const std::string& message) {
-  const std::string topic = camera + '\n';
-  parts_->frames.send(zmq::buffer(topic), zmq::send_flags::sndmore | zmq::send_flags::dontwait);
-  parts_->frames.send(zmq::buffer(message), zmq::send_flags::dontwait);
+  const std::scoped_lock lock(parts_->loop.mutex());
+  std::shared_ptr<const std::string> body;  // made if a host is there
+  parts_->server.each([&](net::Session& session, net::Outbox& out) {
+    if (static_cast<HostSession&>(session).camera() != camera) return;
+    if (body == nullptr) body = std::make_shared<const std::string>(message);
+    out.frame({.body = body});
+  });
 }
 
 }  // namespace marey::source::live

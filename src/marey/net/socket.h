@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace marey::stream {
+namespace marey::net {
 
 /// A file descriptor that is closed when it goes.
 class Descriptor {
@@ -49,6 +49,10 @@ std::vector<std::uint32_t> own_hosts();
 /// Listening, not waiting, closed on exec; `address.port` becomes the one it got where it was 0. Throws Error, which begins with
 /// `what`, where the port is in use or may not be had.
 Descriptor listen_at(Address& address, const std::string& what);
+/// Of IPv4 or IPv6, at an address in digits. Nothing if it is none, or with the system's reason in errno if it cannot be had.
+std::optional<Descriptor> listen_at_digits(const std::string& address, int& port);
+/// The next client, whose socket does not block; none with errno set. `peer` is 0.0.0.0 for a client of IPv6.
+Descriptor accept_from(const Descriptor& listener, Address& peer);
 /// Of UDP, likewise bound. `shared`: other programs of this host may bind the port too, as discovery by multicast needs it.
 Descriptor datagrams_at(Address& address, const std::string& what, bool shared = false);
 /// Sends to groups go out of the interface of that address, are heard on this host, and pass one hop. Throws Error where the
@@ -69,4 +73,4 @@ bool send_to(const Descriptor& socket, const Address& to, std::string_view bytes
 /// What a datagram carries at most.
 inline constexpr std::size_t kLargestDatagram = 65'507;
 
-}  // namespace marey::stream
+}  // namespace marey::net

@@ -1,4 +1,4 @@
-#include "marey/stream/socket.h"
+#include "marey/net/socket.h"
 
 #include <cerrno>
 #include <cstring>
@@ -14,7 +14,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey::stream {
+namespace marey::net {
 namespace {
 
 sockaddr_in system_address(const Address& address) {
@@ -116,6 +116,37 @@ Descriptor listen_at(Address& address, const std::string& what) {
   return made;
 }
 
+std::optional<Descriptor> listen_at_digits(const std::string& address, int& port) {
+  addrinfo hints{};
+  hints.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return std::nullopt;
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> keep(found, freeaddrinfo);
+  Descriptor made(::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!made) return made;
+  set_on(made, SOL_SOCKET, SO_REUSEADDR);
+  sockaddr_storage at{};
+  socklen_t size = sizeof at;
+  if (bind(made.get(), found->ai_addr, found->ai_addrlen) != 0 || listen(made.get(), SOMAXCONN) != 0 ||
+      getsockname(made.get(), reinterpret_cast<sockaddr*>(&at), &size) != 0)
+    return Descriptor();
+  // The port stands at the same place in both kinds of address.
+  port = ntohs(reinterpret_cast<const sockaddr_in*>(&at)->sin_port);
+  return made;
+}
+
+Descriptor accept_from(const Descriptor& listener, Address& peer) {
+  sockaddr_storage from{};
+  socklen_t size = sizeof from;
+  Descriptor socket(accept4(listener.get(), reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  peer = {};
+  if (!socket || from.ss_family != AF_INET) return socket;
+  const auto* at = reinterpret_cast<const sockaddr_in*>(&from);
+  peer = {.host = ntohl(at->sin_addr.s_addr), .port = ntohs(at->sin_port)};
+  return socket;
+}
+
 Descriptor datagrams_at(Address& address, const std::string& what, bool shared) {
   Descriptor made = socket_of(SOCK_DGRAM, what);
   if (shared) set_on(made, SOL_SOCKET, SO_REUSEADDR);
@@ -159,4 +190,4 @@ bool send_to(const Descriptor& socket, const Address& to, std::string_view bytes
          static_cast<ssize_t>(bytes.size());
 }
 
-}  // namespace marey::stream
+}  // namespace marey::net
