@@ -5,141 +5,82 @@
 
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
-#include "marey/filter/usual_motion.h"
 #include "marey/format/rig/rig_turns.h"
-#include "marey/pipeline/ground_defaults.h"
+#include "marey/pipeline/jobs/register.h"
+#include "marey/pipeline/jobs/track_ground.h"
+#include "marey/pipeline/jobs/track_image.h"
 #include "marey/pipeline/live.h"
 #include "marey/pipeline/live_feeds.h"
-#include "marey/pipeline/markers_in_picture.h"
-#include "marey/pipeline/people_in_picture.h"
 #include "marey/pipeline/reconstruct.h"
-#include "marey/pipeline/track_ground.h"
-#include "marey/pipeline/track_in_picture.h"
 
 #include "job.h"
 
 namespace marey::python {
 namespace {
 
-/// One camera: a path, frames of Python's, or another program's detections.
-struct OneCamera {
-  RigCamera camera;
-  std::shared_ptr<Held> frames, detector;
-  bool again = false;
-
-  explicit OneCamera(const Options& options)
-      : frames(options.object("frames")), detector(options.object("detector")), again(options.get("frames_again", false)) {
-    camera.source = options.get<std::string>("source", {});
-    camera.detections = options.get<std::string>("detections", {});
-    camera.rate_hz = options.find<double>("rate");
-    if (camera.rate_hz && !(*camera.rate_hz > 0))
-      throw Error("the rate is {} frames a second; it must be positive", *camera.rate_hz);
-  }
-
-  pipeline::Feed feed() const {
-    pipeline::FeedOptions how;
-    if (frames != nullptr) how.open = [frames = frames] { return open_frames(frames); };
-    how.opens_again = again;
-    pipeline::Feed feed(camera, CameraId{}, how);
-    if (detector != nullptr) feed.find(detector_of(detector));
-    return feed;
-  }
-};
-
-pipeline::Summary run_alone(pipeline::Feed feed, pipeline::Stage& stage, pipeline::Sinks& sinks, const Hooks& hooks) {
-  std::vector<pipeline::Feed> feeds;
-  feeds.push_back(std::move(feed));
-  pipeline::Clock clock(std::move(feeds));
-  return pipeline::run(stage, clock, sinks, hooks);
+/// What one camera saw: a path, frames of Python's, or another program's detections; a detector of Python's, if there is one.
+void set_feed(pipeline::ImageFeed& feed, const Options& options) {
+  feed.camera.source = options.get<std::string>("source", {});
+  if (const auto frames = options.object("frames")) feed.how.open = [frames] { return open_frames(frames); };
+  feed.how.opens_again = options.get("frames_again", false);
+  if (const auto detector = options.object("detector")) feed.detector = [detector] { return detector_of(detector); };
 }
 
-/// `make(feed)` is the job's stage.
-template <typename Make>
-nb::tuple in_picture(const Options& options, Make make) {
-  const OneCamera camera(options);
-  const Outputs outputs(options, format::Content::image, {&camera.camera, 1});
-  return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
-    const StopScope scope(hooks.stop);
+std::optional<filter::FilterOptions> own_filter(const Options& options) {
+  const auto own = options.object("own_filter");
+  return own != nullptr ? std::optional<filter::FilterOptions>(filter_of(own)) : std::nullopt;
+}
+
+/// `run(feed, output, sinks, hooks)` over the feed of Python.
+template <typename Run>
+nb::tuple in_image(const Options& options, const pipeline::jobs::ImageInput& input, const Rows& rows, Run run) {
+  pipeline::ImageFeed feed{.camera = input.camera};
+  set_feed(feed, options);
+  const Outputs outputs(options, format::Content::image, {&feed.camera, 1}, &rows);
+  const pipeline::TrackOutput output{.tracks = {}, .overlay = input.overlay, .plot = input.plot};
+  return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
-    pipeline::Feed feed = camera.feed();
-    pipeline::Sinks sinks;
-    outputs.add_to(sinks, result.recording);
-    const auto stage = make(feed);
-    result.summary = run_alone(std::move(feed), *stage, sinks, hooks);
+    result.summary = run(feed, output, outputs.open(result.recording), hooks);
     return result;
   }));
 }
 
-/// The filter that was asked for: one of Python's own as it is, a named one as `named` makes it for the job; else `usual`.
-filter::FilterOptions filter_of(const Options& options, const filter::FilterOptions& usual,
-                                filter::FilterOptions (*named)(std::string_view) = filter::filter_named) {
-  if (const auto own = options.object("own_filter")) return filter_of(own);
-  const auto name = options.find<std::string>("filter");
-  if (!name) return usual;
-  return named(*name);
-}
-
-detect::DetectorOptions people_detector(const Options& options) {
-  detect::people::PeopleDetectorOptions detector;
-  if (const auto background = options.find<std::string>("background"))
-    detector.background = detect::background::parse_background(*background);
-  return detector;
-}
-
 nb::tuple track_people(nb::dict given) {
   const Options options(std::move(given));
-  pipeline::PeopleInPictureOptions how;
-  how.detector = people_detector(options);
-  how.tracker.filter = filter_of(options, how.tracker.filter, filter::filter_for_people_in_picture);
-  if (options.get("outline", false)) how.outlines.emplace();
-  how.live = options.get("live", false);
-  how.delay = options.get("delay", 0.0);
-  how.seen_only = options.get("seen_only", false);
-  how.beside = options.get<std::string>("beside", "/tmp/marey");
-  return in_picture(options, [&](const pipeline::Feed& feed) { return pipeline::people_in_picture(feed, how); });
+  pipeline::jobs::TrackPeople job{.keypoints = options.get("keypoints", false)};
+  const Rows rows(table_of(job), options);
+  job.input.own_filter = own_filter(options);
+  pipeline::PeopleInPictureOptions how = rows.resolved([&] { return resolved(job); });
+  how.beside = "/tmp/marey";
+  return in_image(options, job.input, rows, [&](const auto& feed, const auto& output, auto sinks, const Hooks& hooks) {
+    return pipeline::track_people(feed, output, std::move(sinks), how, hooks);
+  });
 }
 
 nb::tuple track_markers(nb::dict given) {
   const Options options(std::move(given));
-  pipeline::MarkersInPictureOptions how;
-  how.markers.dark = options.get("dark", false);
-  how.markers.threshold = options.find<double>("threshold");
-  if (const auto colour = options.find<std::string>("colour")) how.markers.colour = detect::markers::parse_marker_colour(*colour);
-  how.tracker.labels = options.get<std::vector<std::string>>("labels", {});
-  how.tracker.filter = filter_of(options, how.tracker.filter);
-  how.fit_noise = options.get("fit_noise", false);
-  how.live = options.get("live", false);
-  return in_picture(options, [&](const pipeline::Feed& feed) { return pipeline::markers_in_picture(feed, how); });
+  pipeline::jobs::TrackMarkers job;
+  const Rows rows(table_of(job), options);
+  job.input.own_filter = own_filter(options);
+  pipeline::MarkersInPictureOptions how = rows.resolved([&] { return resolved(job); });
+  if (const auto names = options.find<std::vector<std::string>>("label_names")) how.tracker.labels = *names;
+  return in_image(options, job.input, rows, [&](const auto& feed, const auto& output, auto sinks, const Hooks& hooks) {
+    return pipeline::track_markers(feed, output, std::move(sinks), how, hooks);
+  });
 }
 
 nb::tuple track_ground(nb::dict given) {
   const Options options(std::move(given));
   const Rig rig = rig_of(options);
-  pipeline::PeopleOnGroundOptions how;
-  how.detector = people_detector(options);
-  how.rate_hz = options.find<double>("rate");
-  how.live = options.get("live", false);
-  how.margin = options.get("margin", how.margin);
-  if (const auto teams = options.find<std::string>("teams")) how.teams.names = analyse::parse_teams(*teams);
-  how.tracker.filter = filter_of(options, how.tracker.filter, filter::filter_for_people_on_ground);
-  how.steady = options.get("steady", false);
-  if (options.get("ball", false)) how.ball.emplace();
-  if (how.ball && how.live)
-    throw Error("{}", "ball=True needs the whole recording before it reports the ball; remove ball or live");
-  if (const auto path = options.get<std::string>("rig", {}); !path.empty()) how.turning = format::rig::read_turning(path);
-  if (const auto size = options.find<std::array<double, 2>>("pitch")) how.pitch = geometry::PitchSize{(*size)[0], (*size)[1]};
-  for (const auto& corner : options.get<std::vector<std::array<double, 2>>>("area", {}))
-    how.area.emplace_back(corner[0], corner[1]);
-  pipeline::GroundChoices choices{.filter = options.has("filter") || options.has("own_filter")};
-  if (const auto name = options.find<std::string>("associate"))
-    choices.association = track::ground::ground_association_named(*name);
-  how = pipeline::resolved(std::move(how), rig, choices);
-  const Outputs outputs(options, format::Content::ground, rig.cameras);
-  return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
+  pipeline::jobs::TrackGround job{.rig_name = options.get<std::string>("rig", "the rig")};
+  const Rows rows(table_of(job), options);
+  job.own_filter = own_filter(options);
+  pipeline::PeopleOnGroundOptions how = rows.resolved([&] { return resolved(job, rig); });
+  if (const auto path = options.path("rig"); !path.empty()) how.turning = format::rig::read_turning(path);
+  const Outputs outputs(options, format::Content::ground, rig.cameras, &rows, pipeline::overlays_of(rig, job.output));
+  return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
-    pipeline::Sinks sinks;
-    outputs.add_to(sinks, result.recording);
-    result.summary = pipeline::track_ground(rig, sinks, how, hooks);
+    result.summary = pipeline::track_ground(rig, job.output, outputs.open(result.recording), how, hooks);
     return result;
   }));
 }
@@ -154,7 +95,7 @@ nb::tuple reconstruct(nb::dict given) {
   how.predict_s = options.get("predict", how.predict_s);
   how.markers.threshold = options.find<double>("threshold");
   how.markers.dark = options.get("dark", false);
-  how.tracker.filter = filter_of(options, how.tracker.filter);
+  if (const auto own = own_filter(options)) how.tracker.filter = *own;
   how.tracker.marker_width = options.get("marker_width", how.tracker.marker_width);
   how.tracker.max_speed = options.get("max_speed", how.tracker.max_speed);
   if (const auto labels = options.find<std::string>("labels")) how.set = format::motion::read_marker_set(*labels);
@@ -181,9 +122,11 @@ nb::tuple live(nb::dict given) {
   how.space.markers.dark = options.get("dark", false);
   how.markers.markers = how.space.markers;
   how.space.predict_s = 0.1;
-  how.people.detector = how.on_ground.detector = people_detector(options);
-  how.on_ground.live = true;
-  how.on_ground = pipeline::resolved(std::move(how.on_ground), rig, {});
+  pipeline::jobs::TrackGround on_ground;
+  if (const auto background = options.find<std::string>("background")) on_ground.detection.background = *background;
+  on_ground.options.live = true;
+  how.on_ground = resolved(on_ground, rig);
+  how.people.detector = how.on_ground.detector;
   how.patience_s = options.get("patience", how.patience_s);
   how.take = options.get<std::string>("take", {});
   if (const auto labels = options.find<std::string>("labels")) how.space.set = format::motion::read_marker_set(*labels);
@@ -205,6 +148,8 @@ void use_threads(int count) {
 }  // namespace
 
 void bind_jobs(nb::module_& module) {
+  module.def("job_options", &rows_of_job, nb::arg("job"));
+  module.def("job_names", &pipeline::jobs::job_names);
   module.def("track_people", &track_people, nb::arg("options"));
   module.def("track_markers", &track_markers, nb::arg("options"));
   module.def("track_ground", &track_ground, nb::arg("options"));

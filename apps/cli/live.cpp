@@ -17,16 +17,15 @@
 #include "marey/format/motion/marker_set.h"
 #include "marey/pipeline/camera_films.h"
 #include "marey/pipeline/live_feeds.h"
+#include "marey/pipeline/jobs/track_ground.h"
+#include "marey/pipeline/jobs/track_image.h"
 
-#include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
-#include "ground_options.h"
 #include "json_value.h"
 #include "live_outputs.h"
 #include "live_screen.h"
 #include "live_sources.h"
-#include "people_options.h"
 #include "realtime.h"
 #include "run_hooks.h"
 #include "set_option.h"
@@ -53,8 +52,8 @@ struct LiveCommand {
   std::optional<double> for_s;
   double preroll_s = 5, late_s = 0.05, patience_s = 3;
   detect::markers::MarkerOptions markers;
-  PeopleFlags people;
-  GroundAreaFlags where;
+  pipeline::jobs::TrackPeople people;
+  pipeline::jobs::TrackGround on_ground;
   LiveOutputOptions outputs;
   bool json = false, quiet = false;
 };
@@ -129,10 +128,8 @@ pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   if (!command.labels.empty()) options.space.set = format::motion::read_marker_set(command.labels);
   options.space.skeleton = skeleton_of(command.skeleton);
   options.space.learned_set = learned_set_of(command.set, options.space.skeleton.get());
-  check_every(command.people, command.ground);
-  options.people = people_options(command.people, {}, true);
-  options.on_ground.detector = detector_options(command.people);
-  apply(command.where, rig, command.sources.front(), true, false, options.on_ground);
+  options.people = resolved(command.people);
+  options.on_ground = resolved(command.on_ground, rig);
   options.policy.late_s = command.late_s;
   options.patience_s = command.patience_s;
   options.take = command.out;
@@ -217,7 +214,9 @@ void add_live(Command& program) {
   add_live_sources(command, options->sources);
   command.choice("--targets", options->targets, kLiveTargets, "what is followed");
   const Option ground = command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
-  add_ground_area_options(command, ground, options->where);
+  pipeline::jobs::Table ground_rows;
+  add_ground_rows(ground_rows, options->on_ground.ground);
+  command.rows(std::move(ground_rows), "", &ground);
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
   command.also_reads([options] { return played_files(*options); });
   command.also_writes([options] { return files_beside_take(*options); });
@@ -232,12 +231,16 @@ void add_live(Command& program) {
   command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
   add_set_option(command, options->set);
   add_skeleton_option(command, options->skeleton);
-  add_blob_options(command, options->markers);
+  pipeline::jobs::Table rows;
+  add_blob_rows(rows, options->markers);
+  command.rows(std::move(rows));
   add_live_outputs(command, options->outputs);
   command.reports(options->json, options->quiet);
   command.runs([options] {
     options->outputs.take = options->out;
     if (is_rig_file(options->sources.front())) options->outputs.rig = options->sources.front();
+    options->people.options.live = options->on_ground.options.live = true;
+    options->on_ground.rig_name = options->sources.front();
     if (options->ground) options->targets = LiveTargets::people;
     options->outputs.streams.unlabelled_slots =
         std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->markers.most_markers));

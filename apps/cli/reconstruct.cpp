@@ -10,8 +10,8 @@
 
 #include "marey/core/error.h"
 #include "marey/format/motion/marker_set.h"
+#include "marey/pipeline/jobs/detection_rows.h"
 
-#include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
@@ -139,7 +139,9 @@ void add_reconstruct(Command& program) {
   command.flag("--live", how.live, "every instant as it comes, as marey live tells it: no gap is filled, nothing waits");
   command.number("--marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers nearer than this disturb each other");
   command.number("--max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "no marker moves faster");
-  add_blob_options(command, how.markers);
+  pipeline::jobs::Table rows;
+  add_blob_rows(rows, how.markers);
+  command.rows(std::move(rows));
   add_keypoint_options(command, options->keypoints);
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });

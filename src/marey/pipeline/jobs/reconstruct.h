@@ -1,0 +1,31 @@
+// `marey reconstruct` as a value: markers, or people's body keypoints, in space.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/pipeline/jobs/detection_rows.h"
+#include "marey/pipeline/jobs/space_names.h"
+#include "marey/pipeline/keypoints_in_space.h"
+#include "marey/pipeline/markers_in_space.h"
+
+namespace marey::pipeline::jobs {
+
+struct ReconstructMarkers {
+  SpaceNames names = {};
+  std::optional<filter::FilterOptions> own_filter = {};  ///< of a caller's, in place of the default one
+  MarkersInSpaceOptions options = {};                    ///< rows without dependent defaults are bound to these
+};
+
+Table table_of(ReconstructMarkers& job);
+/// Reads the files of names. Throws Error if one cannot be read.
+MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vector<std::string>& warnings);
+
+struct ReconstructKeypoints {
+  KeypointsInSpaceOptions options = {};
+};
+
+Table table_of(ReconstructKeypoints& job);
+
+}  // namespace marey::pipeline::jobs
