@@ -4,6 +4,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/overwriting.h"
+#include "marey/core/recording_reader.h"
 #include "marey/core/recording_sink.h"
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
@@ -138,6 +139,14 @@ std::vector<std::unique_ptr<Sink>> Outputs::open(Recording& recording) const {
     sinks.push_back(format::create_recording(path, format::format_to_write(path, name, content_)));
   for (const auto& [held, pictures] : objects_) sinks.push_back(sink_of(held, pictures));
   return sinks;
+}
+
+void Outputs::write(const Recording& recording) const {
+  for (const auto& [path, name] : files_) write_recording(recording, path, name);
+  for (const Object& object : objects_) {
+    MemoryReader reader(recording);
+    replay(reader, *sink_of(object.held, object.pictures));
+  }
 }
 
 void Outputs::add_to(pipeline::Sinks& sinks, Recording& recording) const {

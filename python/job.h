@@ -162,6 +162,8 @@ class Outputs {
 
   std::vector<std::unique_ptr<Sink>> open(Recording& recording) const;
   void add_to(pipeline::Sinks& sinks, Recording& recording) const;
+  /// A recording that was made in memory.
+  void write(const Recording& recording) const;
 
  private:
   static void keep_inputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);

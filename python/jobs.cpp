@@ -6,6 +6,7 @@
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
 #include "marey/format/rig/rig_turns.h"
+#include "marey/pipeline/jobs/reconstruct.h"
 #include "marey/pipeline/jobs/register.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
@@ -88,24 +89,49 @@ nb::tuple track_ground(nb::dict given) {
 nb::tuple reconstruct(nb::dict given) {
   const Options options(std::move(given));
   const Rig rig = rig_of(options);
-  pipeline::MarkersInSpaceOptions how;
-  how.rate_hz = options.find<double>("rate");
-  how.noise_px = options.find<double>("noise");
-  how.fill_s = options.get("fill", how.fill_s);
-  how.predict_s = options.get("predict", how.predict_s);
-  how.markers.threshold = options.find<double>("threshold");
-  how.markers.dark = options.get("dark", false);
-  if (const auto own = own_filter(options)) how.tracker.filter = *own;
-  how.tracker.marker_width = options.get("marker_width", how.tracker.marker_width);
-  how.tracker.max_speed = options.get("max_speed", how.tracker.max_speed);
-  if (const auto labels = options.find<std::string>("labels")) how.set = format::motion::read_marker_set(*labels);
+  pipeline::jobs::ReconstructMarkers job;
+  const Rows rows(table_of(job), options);
+  job.own_filter = own_filter(options);
+  std::vector<std::string> warnings;
+  const pipeline::MarkersInSpaceOptions how = rows.resolved([&] { return resolved(job, warnings); });
   const auto observations = options.get<std::string>("observations", {});
-  const Outputs outputs(options, format::Content::space, rig.cameras);
-  return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
+  const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
+  return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
     pipeline::Sinks sinks;
     outputs.add_to(sinks, result.recording);
     result.summary = pipeline::reconstruct(rig, observations, sinks, how, hooks);
+    result.summary.warnings.insert(result.summary.warnings.begin(), warnings.begin(), warnings.end());
+    return result;
+  }));
+}
+
+pipeline::Summary summary_of(const pipeline::KeypointsSummary& found) {
+  pipeline::Summary summary;
+  summary.frames = found.frames;
+  summary.seconds = found.seconds;
+  summary.rate_hz = found.rate_hz;
+  summary.tracks = found.points * std::ssize(found.people);
+  summary.measured = found.measured;
+  summary.filled = found.filled;
+  summary.figures = {{"people", static_cast<double>(found.people.size())}, {"residual_px", found.residual_px}, {"noise", found.noise}};
+  summary.warnings = found.warnings;
+  summary.stopped = found.stopped;
+  return summary;
+}
+
+nb::tuple reconstruct_keypoints(nb::dict given) {
+  const Options options(std::move(given));
+  const Rig rig = rig_of(options);
+  pipeline::jobs::ReconstructKeypoints job;
+  const Rows rows(table_of(job), options);
+  const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
+  return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
+    Result result;
+    pipeline::KeypointsSummary found;
+    result.recording = pipeline::keypoints_in_space(rig, job.options, found, hooks);
+    outputs.write(result.recording);
+    result.summary = summary_of(found);
     return result;
   }));
 }
@@ -154,6 +180,7 @@ void bind_jobs(nb::module_& module) {
   module.def("track_markers", &track_markers, nb::arg("options"));
   module.def("track_ground", &track_ground, nb::arg("options"));
   module.def("reconstruct", &reconstruct, nb::arg("options"));
+  module.def("reconstruct_keypoints", &reconstruct_keypoints, nb::arg("options"));
   module.def("live", &live, nb::arg("options"));
   module.def("is_live", [](const std::string& source) { return !scheme_of(source).empty(); }, nb::arg("source"));
   module.def("use_threads", &use_threads, nb::arg("count"));

@@ -14,9 +14,9 @@
 
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
-#include "marey/format/motion/marker_set.h"
 #include "marey/pipeline/camera_films.h"
 #include "marey/pipeline/live_feeds.h"
+#include "marey/pipeline/jobs/space_names.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
 
@@ -28,8 +28,7 @@
 #include "live_sources.h"
 #include "realtime.h"
 #include "run_hooks.h"
-#include "set_option.h"
-#include "skeleton_option.h"
+#include "set_figures.h"
 #include "summary_figures.h"
 
 namespace marey::cli {
@@ -46,7 +45,8 @@ struct LiveCommand {
   std::vector<std::string> sources;
   LiveTargets targets = LiveTargets::markers;
   bool ground = false;
-  std::string out, labels, set, skeleton;
+  std::string out;
+  pipeline::jobs::SpaceNames names;
   Kept record = Kept::solved;
   bool armed = false, realtime = false;
   std::optional<double> for_s;
@@ -125,9 +125,9 @@ pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   options.ground = command.ground;
   options.space.markers = options.markers.markers = command.markers;
   options.space.predict_s = 0.1;
-  if (!command.labels.empty()) options.space.set = format::motion::read_marker_set(command.labels);
-  options.space.skeleton = skeleton_of(command.skeleton);
-  options.space.learned_set = learned_set_of(command.set, options.space.skeleton.get());
+  std::vector<std::string> warnings;
+  set_names(command.names, options.space, warnings);
+  warn(warnings);
   options.people = resolved(command.people);
   options.on_ground = resolved(command.on_ground, rig);
   options.policy.late_s = command.late_s;
@@ -144,7 +144,7 @@ pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
 void tell_of_slots(const LiveCommand& command) {
   const bool lsl = std::any_of(command.outputs.streams.streams.begin(), command.outputs.streams.streams.end(),
                                [](const std::string& target) { return target.starts_with("lsl"); });
-  if (!lsl || !command.labels.empty() || !command.skeleton.empty()) return;
+  if (!lsl || !command.names.labels.empty() || !command.names.skeleton.empty()) return;
   fmt::print(stderr,
              "marey: lsl: no labels are given ({}): the outlet has {} slots, each with a track's ID and coordinates, NaN where "
              "empty\n",
@@ -228,10 +228,8 @@ void add_live(Command& program) {
   command.number("--late", options->late_s, "s", closed(0.001, 1), "a moment waits so long for its cameras' frames");
   command.number("--patience", options->patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
   command.flag("--realtime", options->realtime, "go before other programs, where the system allows it");
-  command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
-  add_set_option(command, options->set);
-  add_skeleton_option(command, options->skeleton);
   pipeline::jobs::Table rows;
+  add_name_rows(rows, options->names);
   add_blob_rows(rows, options->markers);
   command.rows(std::move(rows));
   add_live_outputs(command, options->outputs);

@@ -6,23 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/core/keypoint_sets.h"
-
 namespace marey::cli {
-
-void add_keypoint_options(Command& command, pipeline::KeypointsInSpaceOptions& options) {
-  command.group("Keypoints");
-  command
-      .text("--keypoint-set", options.set,
-            "the keypoint set of files that do not name their points: " + keypoint_set_names() + "; default: by the points")
-      .check([](const std::string& name) { keypoint_set_named(name); });
-  command.whole("--people", options.people, "N", 0, 1000, "keep the N people in the most images; 0: everybody");
-  command.flag("--no-smooth", options.smooth, "each instant by itself: no paths over all instants, no gap filled", false);
-  command.flag("--no-offsets", options.find_offsets,
-               "cameras without an offset in the rig run as they are; default: their offsets are found by how people move", false);
-  command.number("--max-offset", options.farthest_offset_s, "s", closed(0.01, 10), "the largest offset that is looked for");
-  command.group("");
-}
 
 Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string& out) {
   Json people = Json::array(), cameras = Json::object();

@@ -4,13 +4,10 @@
 
 #include "marey/pipeline/keypoints_in_space.h"
 
-#include "command_line.h"
 #include "json_value.h"
 
-// What `marey reconstruct --targets keypoints` takes and tells.
+// What `marey reconstruct --targets keypoints` reports.
 namespace marey::cli {
-
-void add_keypoint_options(Command& command, pipeline::KeypointsInSpaceOptions& options);
 
 Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string& out);
 /// On standard error.

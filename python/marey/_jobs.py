@@ -16,7 +16,7 @@ from ._filters import MakeFilter, Maker
 from ._frames import Frames
 from ._instant import Instant, Names
 from ._interop import rows_of_detections
-from ._options import GroundOptions, TrackOptions
+from ._options import GroundOptions, ReconstructOptions, TrackOptions
 from ._recording import Recording
 from ._rig import Rig
 
@@ -107,14 +107,14 @@ def _rows(job: str, options: Mapping[str, Any]) -> dict[str, Any]:
     for name, value in options.items():
         if value is None or value is False:
             continue
-        if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
-            raise Error(f"{name} is not an option of this job ({job}); {f'did you mean {near[0]}?' if near else 'help() lists them'}")
         if name == "filter" and callable(value):
             maker = Maker(value)
             own = {"own_filter": maker, "own_filter_name": maker.name}
-        else:
-            rows[name.replace("_", "-")] = _text(name, value)
+            continue
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            raise Error(f"{name} is not an option of this job ({job}); {f'did you mean {near[0]}?' if near else 'help() lists them'}")
+        rows[name.replace("_", "-")] = _text(name, value)
     return {"rows": rows, **own}
 
 
@@ -249,49 +249,35 @@ def track_ground(
     return _finish(_core.track_ground(given | _rows("track ground", rows)))
 
 
+@_shows("reconstruct markers", "reconstruct keypoints")
 def reconstruct(
     rig: Path | Rig | None = None,
     *,
+    targets: str = "markers",
     observations: Path | None = None,
     sources: Mapping[str, Path] | None = None,
-    labels: Path | None = None,
-    rate: float | None = None,
-    noise: float | None = None,
-    fill: float | None = None,
-    predict: float | None = None,
-    marker_width: float | None = None,
-    max_speed: float | None = None,
     filter: MakeFilter | None = None,
-    threshold: float | None = None,
-    dark: bool = False,
     sinks: Iterable[Sink] = (),
     progress: Progress | None = None,
+    **options: Unpack[ReconstructOptions],
 ) -> Recording:
-    """Places and follows the markers that several calibrated cameras see: `marey reconstruct`.
+    """Reconstructs and tracks the markers, or people's body keypoints, that several calibrated cameras observe: `marey reconstruct`.
 
-    rig: a rig file, or a Rig; may be left out where observations name the cameras. observations: blobs that another program found, a CSV with
-    camera,frame,x,y[,marker]. labels: CSV label,x,y,z (m), or a name a line. noise: px. fill, predict: s. marker_width: m. max_speed: m/s.
-    filter: a function that begins a motion filter of your own, as in `track`.
+    rig: a rig file, or a Rig; may be left out if observations name the cameras. targets: "markers" or "keypoints"; of keypoints each camera's source
+    names a file or folder of them. observations: blobs of another program, a CSV with camera,frame,x,y[,marker]. sources: {camera: file} in place of
+    the rig's own. filter: a function that begins a motion filter of your own. sinks, progress: as in `track`.
 
-    Returns a Recording in m, z up. Raises marey.Error where an input cannot be read, KeyboardInterrupt.
+    Returns a Recording in m, z up. Raises marey.Error if an input cannot be read, KeyboardInterrupt.
     """
-    given = _given(
-        {
-            "rate": rate,
-            "noise": noise,
-            "fill": fill,
-            "predict": predict,
-            "marker_width": marker_width,
-            "max_speed": max_speed,
-            "filter": filter,
-            "threshold": threshold,
-            "dark": dark,
-        }
-    )
-    options = _rig(rig) | _sinks(sinks) | given | {"sources": _sources(sources), "progress": progress}
-    options |= {"observations": os.fspath(observations) if observations is not None else None}
-    options |= {"labels": os.fspath(labels) if labels is not None else None}
-    return _finish(_core.reconstruct(options))
+    if targets not in ("markers", "keypoints"):
+        raise Error(f'targets is "{targets}"; use one of markers, keypoints')
+    given = _rig(rig) | _sinks(sinks) | {"sources": _sources(sources), "progress": progress}
+    given |= {"observations": os.fspath(observations) if observations is not None else None}
+    if targets == "keypoints":
+        if observations is not None or filter is not None:
+            raise Error("observations and a filter are of markers; remove them")
+        return _finish(_core.reconstruct_keypoints(given | _rows("reconstruct keypoints", options)))
+    return _finish(_core.reconstruct(given | _rows("reconstruct markers", {**options, "filter": filter})))
 
 
 def threads(count: int) -> None:

@@ -101,3 +101,50 @@ class GroundOptions(TypedDict, total=False):
     r"""track the ball too: a track named "ball", with its height"""
     pitch_view: Path | None
     r"""a video of the ground from above, with the trail of each person: FILE.mp4"""
+
+
+class ReconstructOptions(TypedDict, total=False):
+    labels: Path | None
+    r"""the markers' labels: CSV label,x,y,z of their positions at the beginning (m), or one label per line, by increasing x"""
+    set: Path | None
+    r"""label the markers, frame by frame, by a set that "marey label learn" made: set.toml"""
+    skeleton: Path | None
+    r"""solve the pose of this skeleton from the labelled markers in each frame: skeleton.toml or .osim, fitted to the person (marey solve --write-skeleton)"""
+    rate: float | None
+    r"""Hz in [0.001, 1e6]: frame rate, if neither the sources nor the rig specify it"""
+    noise: float | None
+    r"""px in [0.001, 100]: standard deviation of a blob's position and of the calibration (default: learned)"""
+    fill: float | None
+    r"""s in [0, 10]: the longest gap that is filled (default: 0.5)"""
+    predict: float | None
+    r"""s in [0, 10]: write predictions for this duration of a longer gap; at most --fill (default: 0)"""
+    live: bool | None
+    r"""write every instant at once, as marey live does: no gap is filled"""
+    marker_width: float | None
+    r"""m in [0.0001, 1]: markers closer than this disturb each other (default: 0.02)"""
+    max_speed: float | None
+    r"""m/s in [0.001, 10000]: the largest speed of a marker (default: 15)"""
+    threshold: float | None
+    r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
+    dark: bool | None
+    r"""markers are darker than their surroundings"""
+    widest: float | None
+    r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
+    most_markers: int | None
+    r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
+    min_area: float | None
+    r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
+    max_area: float | None
+    r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
+    min_roundness: float | None
+    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    keypoint_set: str | None
+    r"""the keypoint set of files that do not name their points: body_25, body_25b, coco_18, coco, halpe_26, blazepose (default: by the points)"""
+    people: int | None
+    r"""N in [0, 1000]: keep the N people in the most images; 0: all (default: 0)"""
+    no_smooth: bool | None
+    r"""each instant by itself: no trajectories over all instants, no gap filled"""
+    no_offsets: bool | None
+    r"""cameras without an offset in the rig are taken as synchronous; default: offsets are found by the motion of people"""
+    max_offset: float | None
+    r"""s in [0.01, 10]: the largest offset that is searched (default: 0.5)"""

@@ -5,6 +5,7 @@
 
 #include <fmt/ranges.h>
 
+#include "marey/pipeline/jobs/reconstruct.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
 
@@ -28,6 +29,8 @@ constexpr std::array kJobs{
     NamedJob{"track keypoints", [](const UseTable& use) { use_table_of(TrackPeople{.keypoints = true}, use); }},
     NamedJob{"track markers", [](const UseTable& use) { use_table_of(TrackMarkers{}, use); }},
     NamedJob{"track ground", [](const UseTable& use) { use_table_of(TrackGround{}, use); }},
+    NamedJob{"reconstruct markers", [](const UseTable& use) { use_table_of(ReconstructMarkers{}, use); }},
+    NamedJob{"reconstruct keypoints", [](const UseTable& use) { use_table_of(ReconstructKeypoints{}, use); }},
 };
 
 }  // namespace
