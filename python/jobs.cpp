@@ -6,11 +6,11 @@
 #include "marey/core/error.h"
 #include "marey/core/source_name.h"
 #include "marey/format/rig/rig_turns.h"
+#include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"
 #include "marey/pipeline/jobs/register.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
-#include "marey/pipeline/live.h"
 #include "marey/pipeline/live_feeds.h"
 #include "marey/pipeline/reconstruct.h"
 
@@ -141,26 +141,20 @@ nb::tuple live(nb::dict given) {
   const Options options(std::move(given));
   const auto cameras = options.get<std::vector<std::string>>("cameras", {});
   const Rig rig = cameras.empty() ? rig_of(options) : pipeline::rig_of_sources(cameras);
-  pipeline::LiveOptions how;
-  how.targets = options.get("people", false) ? pipeline::LiveTargets::people : pipeline::LiveTargets::markers;
-  how.ground = options.get("ground", false);
-  how.space.markers.threshold = options.find<double>("threshold");
-  how.space.markers.dark = options.get("dark", false);
-  how.markers.markers = how.space.markers;
-  how.space.predict_s = 0.1;
-  pipeline::jobs::TrackGround on_ground;
-  if (const auto background = options.find<std::string>("background")) on_ground.detection.background = *background;
-  on_ground.options.live = true;
-  how.on_ground = resolved(on_ground, rig);
-  how.people.detector = how.on_ground.detector;
-  how.patience_s = options.get("patience", how.patience_s);
+  pipeline::jobs::Live job{.rig_name = options.get<std::string>("rig", "the rig")};
+  if (options.get("people", false)) job.targets = pipeline::LiveTargets::people;
+  const Rows rows(table_of(job), options);
+  std::vector<std::string> warnings;
+  pipeline::LiveOptions how = rows.resolved([&] { return resolved(job, rig, warnings); });
   how.take = options.get<std::string>("take", {});
-  if (const auto labels = options.find<std::string>("labels")) how.space.set = format::motion::read_marker_set(*labels);
-  const Outputs outputs(options, format::Content::space, rig.cameras);
-  return tuple_of(run_job(listening_of(options), [&](const Hooks& hooks) {
+  const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
+  Listening listening = rows.listening(options);
+  if (how.targets == pipeline::LiveTargets::people) listening.options["targets"] = "people";
+  return tuple_of(run_job(listening, [&](const Hooks& hooks) {
     Result result;
     how.sinks = outputs.open(result.recording);
     result.summary = pipeline::live(rig, std::move(how), hooks);
+    result.summary.warnings.insert(result.summary.warnings.begin(), warnings.begin(), warnings.end());
     return result;
   }));
 }

@@ -205,7 +205,7 @@ void add_jobs(Command& command, TrackCommand& options) {
   options.people_rows = &command.rows(table_of(options.people));
   options.keypoint_rows = &command.rows(table_of(options.keypoints));
   options.marker_rows = &command.rows(table_of(options.markers), "with --targets markers");
-  options.ground_rows = &command.rows(table_of(options.ground.job), "with --ground", &ground);
+  options.ground_rows = &command.rows(table_of(options.ground.job), "with --ground");
   command.records([&options] { return options.rows().given(); });
 }
 

@@ -152,8 +152,8 @@ class Command {
 
   /// The rows of a job as options of this command, "--name" with their help, unit, domain and default. Rows of several jobs that
   /// have one name are one option, which sets all of them; `when` states in which case this job runs, if its help differs
-  /// ("with --ground"). Options of this job alone need `only_with`, if there is one. The command keeps the table.
-  pipeline::jobs::Table& rows(pipeline::jobs::Table table, const std::string& when = "", const Option* only_with = nullptr);
+  /// ("with --ground"). What a row needs was declared before. The command keeps the table.
+  pipeline::jobs::Table& rows(pipeline::jobs::Table table, const std::string& when = "");
   /// What recordings hold as the options that were given, in place of the words of the command line.
   void records(std::function<std::map<std::string, std::string>()> options);
 

@@ -47,7 +47,7 @@ Option::Declared& Command::Declared::declare_row(const Row& row) {
   return option;
 }
 
-pipeline::jobs::Table& Command::rows(pipeline::jobs::Table table, const std::string& when, const Option* only_with) {
+pipeline::jobs::Table& Command::rows(pipeline::jobs::Table table, const std::string& when) {
   pipeline::jobs::Table& kept = declared_->tables.emplace_back(std::move(table));
   const auto named = [&](const std::string& name) {
     const auto is_it = [&](const auto& option) { return option->name == "--" + name; };
@@ -60,7 +60,6 @@ pipeline::jobs::Table& Command::rows(pipeline::jobs::Table table, const std::str
     Option::Declared* option = named(row.name);
     if (option == nullptr) {
       option = &declared_->declare_row(row);
-      if (only_with != nullptr) option->parsed->needs(only_with->declared_->parsed);
       if (!row.needs.empty()) option->parsed->needs(named(row.needs)->parsed);
     } else if (row.help != option->rows.front()->help) {
       option->parsed->description(fmt::format("{}; {}: {}", option->parsed->get_description(), when, meaning_of(row)));

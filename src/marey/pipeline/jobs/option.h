@@ -40,7 +40,7 @@ struct Option {
   std::string fallback;                 ///< the default as text, if it is a constant
   std::string group;                 ///< the title that it is listed under; may be empty
   std::vector<std::string> choices;  ///< all of them, if `kind` is choice
-  std::string needs;                 ///< the name of an option without which this one has no meaning
+  std::string needs;                 ///< an option without which this one has no meaning; the front end may have it
   std::vector<std::string> depends;  ///< options that the default of this one, or its effect, depends on
   std::optional<std::string> given;  ///< what it was set to, in canonical notation
 

@@ -5,6 +5,7 @@
 
 #include <fmt/ranges.h>
 
+#include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
@@ -31,6 +32,7 @@ constexpr std::array kJobs{
     NamedJob{"track ground", [](const UseTable& use) { use_table_of(TrackGround{}, use); }},
     NamedJob{"reconstruct markers", [](const UseTable& use) { use_table_of(ReconstructMarkers{}, use); }},
     NamedJob{"reconstruct keypoints", [](const UseTable& use) { use_table_of(ReconstructKeypoints{}, use); }},
+    NamedJob{"live", [](const UseTable& use) { use_table_of(Live{}, use); }},
 };
 
 }  // namespace

@@ -56,22 +56,27 @@ void add_ground_rows(Table& table, GroundPart& ground) {
       .size("size", ground.size,
             "m, of the pitch, or of any other rectangle from the origin on (default: 105x68 if the rig was "
             "calibrated on a pitch, else people count everywhere)")
-      .checked(parse_pitch_or_rectangle);
+      .checked(parse_pitch_or_rectangle)
+      .needing("ground");
   table
       .corners("area", ground.area,
                "where people count, in place of a pitch: its corners in order, \"x,y x,y x,y\" in m, or LENGTHxWIDTH")
       .checked(parse_area)
+      .needing("ground")
       .depending_on({"size"});
   table
       .number("margin", ground.margin, "m", closed(0, 1000), "around the pitch or the area in which people still count (default: 2)")
+      .needing("ground")
       .depending_on({"size", "area"});
   table.text("teams", ground.teams, "the teams' colours, \"white,blue\", or their names too, \"City=white,United=blue\"")
-      .checked(analyse::parse_teams);
+      .checked(analyse::parse_teams)
+      .needing("ground");
   table
       .choice("associate", ground.association, {"gnn", "jpda", "mht", "bramble"},
               "data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks "
               "by particles in the images, without detections")
       .checked(track::ground::ground_association_named)
+      .needing("ground")
       .depending_on({"live", "filter"});
 }
 
@@ -88,9 +93,10 @@ Table table_of(TrackGround& job) {
   add_people_rows(table, job.detection);
   table.group("Options for --ground");
   add_ground_rows(table, job.ground);
-  table.flag("ball", job.ball, "track the ball too: a track named \"ball\", with its height");
+  table.flag("ball", job.ball, "track the ball too: a track named \"ball\", with its height").needing("ground");
   table.output_file("pitch-view", job.output.pitch_view, "a video of the ground from above, with the trail of each person: FILE.mp4")
-      .ending_in({".mp4"});
+      .ending_in({".mp4"})
+      .needing("ground");
   return table;
 }
 
