@@ -13,7 +13,7 @@
 #include <opencv2/videoio.hpp>
 #include <unistd.h>
 
-#include "marey/pipeline/track_in_picture.h"
+#include "marey/pipeline/people/track_in_picture.h"
 #include "marey/source/open_source.h"
 
 namespace {
@@ -56,8 +56,9 @@ int main(int argc, char** argv) {
   marey::RigCamera camera;
   camera.source = video;
   for (int round = 0; round < kRounds; ++round) {
-    whole = std::min(
-        whole, seconds_of([&] { frames = static_cast<double>(marey::pipeline::track_people(camera, {.tracks = tracks}).frames); }));
+    whole = std::min(whole, seconds_of([&] {
+                       frames = static_cast<double>(marey::pipeline::people::track_people(camera, {.tracks = tracks}).frames);
+                     }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(video, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(video, false); }));
     own_decode = std::min(own_decode, seconds_of([&] { marey_decode(video); }));

@@ -89,7 +89,7 @@ void instant_of_a_match(benchmark::State& state) {
       for (filter::Kalman<2>& one : known) one.predict(1 / rate);
       for (const reconstruct::PlacedPeople& look : placed) {
         for (std::size_t i = 0; i < look.seen.size(); ++i)
-          known[i % known.size()].correct(look.seen[i].value, look.seen[i].covariance);
+          known[i % known.size()].correct(look.seen[i].value, *look.seen[i].covariance);
         observations += look.seen.size();
       }
       benchmark::DoNotOptimize(known.data());
@@ -151,7 +151,7 @@ void tracker_alone(benchmark::State& state) {
     spent += here;
     begin = std::chrono::steady_clock::now();
     for (filter::Kalman<2>& one : known) one.predict(1 / rate);
-    for (std::size_t i = 0; i < seen.size(); ++i) known[i].correct(seen[i].value, seen[i].covariance);
+    for (std::size_t i = 0; i < seen.size(); ++i) known[i].correct(seen[i].value, *seen[i].covariance);
     benchmark::DoNotOptimize(known.data());
     bound += seconds_since(begin);
   }

@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/match_files.h"
-#include "marey/pipeline/track_ground.h"
+#include "marey/pipeline/people/track_ground.h"
+#include "marey/pipeline/simulate/match_files.h"
 #include "marey/source/open_source.h"
 
 namespace {
@@ -45,20 +45,21 @@ void marey_decode(const std::string& video) {
 }
 
 void compare(const std::string& folder, cv::Size size) {
-  marey::pipeline::MatchFilesOptions match;
+  marey::pipeline::simulate::MatchFilesOptions match;
   match.cameras.cameras = 1, match.cameras.size = size;
   match.seconds = kSeconds, match.boxes = false, match.films = true;
-  marey::pipeline::write_match(match, folder);
+  marey::pipeline::simulate::write_match(match, folder);
   const marey::Rig rig = marey::format::rig::read_rig(folder + "/rig.toml");
-  marey::pipeline::GroundOutput output;
+  marey::pipeline::people::GroundOutput output;
   output.tracks = folder + "/out.csv";
-  marey::pipeline::PeopleOnGroundOptions options;
+  marey::pipeline::people::PeopleOnGroundOptions options;
   options.pitch.emplace();
   double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole, own_decode = whole;
   double frames = 0;
   for (int round = 0; round < kRounds; ++round) {
-    whole = std::min(whole,
-                     seconds_of([&] { frames = static_cast<double>(marey::pipeline::track_ground(rig, output, options).frames); }));
+    whole = std::min(whole, seconds_of([&] {
+                       frames = static_cast<double>(marey::pipeline::people::track_ground(rig, output, options).frames);
+                     }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(rig.cameras[0].source, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(rig.cameras[0].source, false); }));
     own_decode = std::min(own_decode, seconds_of([&] { marey_decode(rig.cameras[0].source); }));

@@ -10,7 +10,7 @@
 
 #include "marey/filter/kalman.h"
 #include "marey/simulate/random.h"
-#include "marey/track/ground/ground_recorder.h"
+#include "marey/track/ground/offline/ground_recorder.h"
 
 namespace marey {
 namespace {
@@ -25,7 +25,7 @@ class Game {
     for (int& id : ids_) id = next_id_++;
   }
 
-  void record(int instants, track::ground::GroundRecorder& recorder) {
+  void record(int instants, track::ground::offline::GroundRecorder& recorder) {
     for (int k = 0; k < instants; ++k) {
       const Timestamp now = timestamp_from_seconds(k / rate);
       tracks_.clear();
@@ -90,10 +90,10 @@ void second_pass(benchmark::State& state) {
   double least = 1e9;
   std::size_t rows = 0;
   for (auto _ : state) {
-    track::ground::GroundRecorder recorder;
+    track::ground::offline::GroundRecorder recorder;
     Game().record(instants, recorder);
     const double begin = now_s();
-    const track::ground::GroundRecorder::Joined joined = std::move(recorder).join();
+    const track::ground::offline::GroundRecorder::Joined joined = std::move(recorder).join();
     const double took = now_s() - begin;
     least = std::min(least, took);
     rows = static_cast<std::size_t>(joined.recording.samples());

@@ -21,8 +21,8 @@
 
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/skeleton_in_space.h"
-#include "marey/pipeline/solve_skeleton.h"
+#include "marey/pipeline/bodies/solve_skeleton.h"
+#include "marey/pipeline/markers/skeleton_in_space.h"
 #include "marey/solve/skeleton/sequence.h"
 
 namespace {
@@ -35,7 +35,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 
 struct Case {
   std::string name, recording, skeleton;
-  pipeline::SolveOptions options;
+  pipeline::bodies::SolveOptions options;
 };
 
 std::vector<Case> cases(const std::string& data) {
@@ -104,7 +104,7 @@ std::vector<SeenMarkers> read_frames(const Case& c, const Skeleton& skeleton, do
   how.up = c.options.up.value_or(format.name == "trc" && c.skeleton.ends_with(".osim") ? format::UpAxis::y : format::UpAxis::z);
   const auto reader = format::open_recording(c.recording, format, how);
   rate_hz = reader->header().rate_hz;
-  pipeline::SkeletonMarkers labels(skeleton, c.options.leave_out);
+  pipeline::markers::SkeletonMarkers labels(skeleton, c.options.leave_out);
   labels.name(reader->tracks());
   std::vector<SeenMarkers> frames;
   while (const auto instant = reader->next()) {
@@ -213,9 +213,9 @@ int main(int argc, char** argv) {
   fmt::print(std::cout, "recording, way, RMS mm, windows, jumps, largest, off, largest, unseen %\n");
   for (const Case& c : cases(data)) {
     if (c.name.find(only) == std::string::npos) continue;
-    pipeline::SolveOptions options = c.options;
+    pipeline::bodies::SolveOptions options = c.options;
     options.up = c.options.up;
-    const Skeleton skeleton = pipeline::solve_with_skeleton(c.recording, c.skeleton, options).skeleton;
+    const Skeleton skeleton = pipeline::bodies::solve_with_skeleton(c.recording, c.skeleton, options).skeleton;
     double rate_hz = 0;
     const std::vector<SeenMarkers> frames = read_frames(c, skeleton, rate_hz);
     for (const std::string way : {"in turn", "offline", "smooth"}) {

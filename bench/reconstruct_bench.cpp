@@ -10,11 +10,11 @@
 #include <benchmark/benchmark.h>
 #include <opencv2/calib3d.hpp>
 
-#include "marey/pipeline/reconstruct.h"
+#include "marey/pipeline/markers/reconstruct.h"
 #include "marey/reconstruct/correspond.h"
 #include "marey/simulate/random.h"
 #include "marey/simulate/room/room.h"
-#include "marey/track/roster_tracker.h"
+#include "marey/track/roster/roster_tracker.h"
 
 namespace {
 
@@ -41,7 +41,7 @@ Recording record(const simulate::room::RoomOptions& options) {
       for (const simulate::room::RoomBlob& blob : frame.seen[static_cast<std::size_t>(c)]) {
         Observation<2> one;
         one.value = blob.pixel;
-        one.covariance.setZero();
+        one.covariance.reset();
         one.camera = CameraId{c};
         seen.push_back(one);
         owner.push_back(blob.marker.value_or(-1));
@@ -147,7 +147,7 @@ void chain(benchmark::State& state) {
   simulate::room::RoomOptions options = cloud(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 0.05, 0.05, 400);
   const Recording recording = record(options);
   reconstruct::Corresponder corresponder(recording.cameras);
-  const auto tracker = track::make_roster_tracker<3>(pipeline::space_tracker_options());
+  const auto tracker = track::roster::make_roster_tracker<3>(pipeline::markers::space_tracker_options());
   std::vector<Observation<3>> points;
   std::int64_t frame = 0;
   std::size_t next = 0;
@@ -174,7 +174,7 @@ void tracking(benchmark::State& state) {
   const int markers = static_cast<int>(state.range(0));
   simulate::room::RoomOptions options = cloud(2, markers, 0, 0, 1);
   const simulate::room::RoomScene scene(options);
-  const auto tracker = track::make_roster_tracker<3>(pipeline::space_tracker_options());
+  const auto tracker = track::roster::make_roster_tracker<3>(pipeline::markers::space_tracker_options());
   std::vector<std::vector<Observation<3>>> frames;
   simulate::Random random(1);
   for (int i = 0; i < 300; ++i) {

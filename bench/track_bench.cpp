@@ -8,7 +8,7 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/linear_assignment.h"
 #include "marey/simulate/random.h"
-#include "marey/track/roster_tracker.h"
+#include "marey/track/roster/roster_tracker.h"
 #include "marey/track/tracker.h"
 
 namespace marey {
@@ -87,7 +87,7 @@ void marker_step(benchmark::State& state) {
       point.box = Box::from_centre(point.value, 8, 8);
     }
   };
-  const auto tracker = track::make_roster_tracker<2>({});
+  const auto tracker = track::roster::make_roster_tracker<2>({});
   int frame = 0;
   for (; frame < 5; ++frame) {
     look();

@@ -7,7 +7,7 @@
 #include "marey/core/error.h"
 #include "marey/reconstruct/correspond.h"
 #include "marey/simulate/room/room.h"
-#include "marey/track/roster_tracker.h"
+#include "marey/track/roster/roster_tracker.h"
 
 int main() try {
   const marey::simulate::room::RoomScene scene({.markers = 20, .frames = 240, .bump = {}});
@@ -15,10 +15,10 @@ int main() try {
   for (const marey::RigCamera& camera : scene.rig().cameras) cameras.push_back(*camera.camera());
 
   marey::reconstruct::Corresponder corresponder(cameras);
-  marey::track::RosterTrackerOptions options;
+  marey::track::roster::RosterTrackerOptions options;
   options.filter = marey::filter::KalmanOptions{.acceleration_noise = 3, .initial_speed = 1.5, .gate_sigmas = 4};
   options.max_speed = 15, options.marker_width = 0.02, options.place_noise = 1e-4;
-  const auto tracker = marey::track::make_roster_tracker<3>(options);
+  const auto tracker = marey::track::roster::make_roster_tracker<3>(options);
 
   std::size_t placed = 0, tracked = 0;
   for (std::int64_t i = 0; i < 240; ++i) {
@@ -29,7 +29,7 @@ int main() try {
         marey::Observation<2>& one = seen.emplace_back();
         one.camera = marey::CameraId{static_cast<int>(camera)};
         one.value = blob.pixel;
-        one.covariance.setZero();
+        one.covariance.reset();  // unknown: the cameras' common noise alone
       }
     }
     std::vector<marey::Observation<3>> points;  // m

@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/tracks/track_file.h"
-#include "marey/pipeline/people_in_picture.h"
+#include "marey/pipeline/people/people_in_picture.h"
 
 class BrightThings final : public marey::detect::Detector {
  public:
@@ -31,14 +31,14 @@ int main(int argc, char** argv) try {
   if (argc != 3) return std::puts("usage: own_detector VIDEO TRACKS.csv"), 2;
   marey::RigCamera camera;
   camera.source = argv[1];
-  std::vector<marey::pipeline::Feed> feeds;
+  std::vector<marey::pipeline::corridor::Feed> feeds;
   feeds.emplace_back(camera, marey::CameraId{});
   feeds.front().find(std::make_unique<BrightThings>());
-  const auto stage = marey::pipeline::people_in_picture(feeds.front(), {});
-  marey::pipeline::Sinks sinks;
+  const auto stage = marey::pipeline::people::people_in_picture(feeds.front(), {});
+  marey::pipeline::corridor::Sinks sinks;
   sinks.add(std::make_unique<marey::format::tracks::TrackFile>(argv[2], marey::format::tracks::TrackText::csv));
-  marey::pipeline::Clock clock(std::move(feeds));
-  std::printf("%lld targets\n", static_cast<long long>(marey::pipeline::run(*stage, clock, sinks).tracks));
+  marey::pipeline::corridor::Clock clock(std::move(feeds));
+  std::printf("%lld targets\n", static_cast<long long>(marey::pipeline::corridor::run(*stage, clock, sinks).tracks));
   return 0;
 } catch (const marey::Error& error) {
   return std::fprintf(stderr, "%s\n", error.what()), 1;

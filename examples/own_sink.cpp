@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/people_in_picture.h"
+#include "marey/pipeline/people/people_in_picture.h"
 
 class LeftHalf final : public marey::Sink {
  public:
@@ -34,15 +34,15 @@ int main(int argc, char** argv) try {
   marey::RigCamera camera;
   camera.detections = argv[1];
   camera.rate_hz = std::atof(argv[2]);
-  std::vector<marey::pipeline::Feed> feeds;
+  std::vector<marey::pipeline::corridor::Feed> feeds;
   feeds.emplace_back(camera, marey::CameraId{});
-  marey::pipeline::PeopleInPictureOptions options;
+  marey::pipeline::people::PeopleInPictureOptions options;
   options.live = true;  // each instant as it comes
-  const auto stage = marey::pipeline::people_in_picture(feeds.front(), options);
-  marey::pipeline::Sinks sinks;
+  const auto stage = marey::pipeline::people::people_in_picture(feeds.front(), options);
+  marey::pipeline::corridor::Sinks sinks;
   sinks.add(std::make_unique<LeftHalf>(320));
-  marey::pipeline::Clock clock(std::move(feeds));
-  marey::pipeline::run(*stage, clock, sinks);
+  marey::pipeline::corridor::Clock clock(std::move(feeds));
+  marey::pipeline::corridor::run(*stage, clock, sinks);
   return 0;
 } catch (const marey::Error& error) {
   return std::fprintf(stderr, "%s\n", error.what()), 1;

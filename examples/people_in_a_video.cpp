@@ -6,21 +6,21 @@
 
 #include "marey/core/error.h"
 #include "marey/core/recording_sink.h"
-#include "marey/pipeline/people_in_picture.h"
+#include "marey/pipeline/people/people_in_picture.h"
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::puts("usage: people_in_a_video VIDEO"), 2;
   marey::RigCamera camera;
   camera.source = argv[1];
-  std::vector<marey::pipeline::Feed> feeds;
+  std::vector<marey::pipeline::corridor::Feed> feeds;
   feeds.emplace_back(camera, marey::CameraId{});
-  const auto stage = marey::pipeline::people_in_picture(feeds.front(), {});
+  const auto stage = marey::pipeline::people::people_in_picture(feeds.front(), {});
 
   marey::Recording recording;
-  marey::pipeline::Sinks sinks;
+  marey::pipeline::corridor::Sinks sinks;
   sinks.add(std::make_unique<marey::RecordingSink>(recording));
-  marey::pipeline::Clock clock(std::move(feeds));
-  const marey::pipeline::Summary summary = marey::pipeline::run(*stage, clock, sinks);
+  marey::pipeline::corridor::Clock clock(std::move(feeds));
+  const marey::pipeline::corridor::Summary summary = marey::pipeline::corridor::run(*stage, clock, sinks);
 
   std::printf("%lld people in %.1f s\n", static_cast<long long>(summary.tracks), summary.seconds);
   for (const marey::TrackColumns& track : recording.tracks()) {

@@ -11,7 +11,7 @@
 #include "marey/evaluate/label_loss.h"
 #include "marey/simulate/markers/marker_scene.h"
 #include "marey/simulate/random.h"
-#include "marey/track/roster_tracker.h"
+#include "marey/track/roster/roster_tracker.h"
 
 #include "experiments/markdown_table.h"
 #include "experiments/plain_markers.h"
@@ -80,7 +80,7 @@ bool peer_loses(const MarkerScene& scene, const std::vector<Seen>& frames) {
 
 /// Tracks `frames`, or with no frames the pictures themselves through the detector.
 bool marey_loses(const MarkerScene& scene, const std::vector<Seen>& frames) {
-  const auto tracker = track::make_roster_tracker<2>({});
+  const auto tracker = track::roster::make_roster_tracker<2>({});
   detect::markers::MarkerDetector detector{detect::markers::MarkerOptions{}};
   Named named(scene.frames.size());
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {

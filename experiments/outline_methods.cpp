@@ -41,7 +41,7 @@ std::vector<Observation<2>> observations_of(std::span<const Detection> detection
   std::vector<Observation<2>> result;
   for (const Detection& detection : detections) {
     result.push_back({.value = detection.box.centre(),
-                      .covariance = detection.covariance,
+                      .covariance = detection.covariance.value_or(Matrix<2>::Identity()),
                       .score = detection.score,
                       .box = detection.box,
                       .shared = detection.group.has_value()});

@@ -19,11 +19,11 @@
 #include "marey/detect/markers/marker_detector.h"
 #include "marey/evaluate/label_loss.h"
 #include "marey/filter/filters.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/corridor/simulation_files.h"
 #include "marey/simulate/markers/marker_scene.h"
 #include "marey/source/video_source.h"
-#include "marey/track/independent_tracker.h"
-#include "marey/track/roster_tracker.h"
+#include "marey/track/image/independent_tracker.h"
+#include "marey/track/roster/roster_tracker.h"
 
 namespace marey::experiments {
 namespace {
@@ -53,7 +53,7 @@ struct TrackerMethod {
 };
 
 TrackerMethod alone(std::string name, const filter::FilterOptions& options) {
-  return {std::move(name), [options] { return std::make_unique<track::IndependentTracker>(options); }};
+  return {std::move(name), [options] { return std::make_unique<track::image::IndependentTracker>(options); }};
 }
 
 /// The paper's three, with its parameters; every other filter in their place; and Marey's own tracker.
@@ -66,7 +66,7 @@ std::vector<TrackerMethod> tracker_methods() {
     if (name == "alpha-beta" || name == "kalman-paper" || name == "condensation") continue;
     list.push_back(alone(std::string(name), filter.options));
   }
-  list.push_back({"Marey", [] { return track::make_roster_tracker<2>({}); }});
+  list.push_back({"Marey", [] { return track::roster::make_roster_tracker<2>({}); }});
   return list;
 }
 
@@ -97,7 +97,7 @@ struct Video {
 Video make_video(simulate::markers::MarkerSituation situation, std::uint64_t seed,
                  const simulate::markers::MarkerSceneOptions& options, const std::string& path) {
   Video video{simulate::markers::simulate_markers(situation, seed, options), {}};
-  pipeline::film_markers(video.scene, path);
+  pipeline::corridor::film_markers(video.scene, path);
   video.seen = see_markers(path);
   return video;
 }

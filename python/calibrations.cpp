@@ -1,4 +1,4 @@
-#include "marey/pipeline/calibrate_wand.h"
+#include "marey/pipeline/calibrate/calibrate_wand.h"
 
 #include "job.h"
 
@@ -17,14 +17,15 @@ nb::dict dict_of(const calibrate::FitQuality& fit) {
 nb::tuple calibrate_wand(nb::dict given) {
   const Options options(std::move(given));
   const Rig rig = rig_of(options);
-  pipeline::CalibrateWandOptions how;
+  pipeline::calibrate::CalibrateWandOptions how;
   how.observations = options.get<std::string>("observations", {});
   how.wand.distances = options.get<std::vector<double>>("distances", {});
   how.synced = options.get("synced", false);
   how.how.seed = options.get<std::uint64_t>("seed", 1);
   how.markers.threshold = options.find<double>("threshold");
   how.markers.dark = options.get("dark", false);
-  const auto found = run_job(listening_of(options), [&](const Hooks& hooks) { return pipeline::calibrate_wand(rig, how, hooks); });
+  const auto found =
+      run_job(listening_of(options), [&](const Hooks& hooks) { return pipeline::calibrate::calibrate_wand(rig, how, hooks); });
   const calibrate::RigReport& report = found.found.report;
   nb::dict dict, cameras;
   dict["all"] = dict_of(report.all);

@@ -17,7 +17,7 @@
 namespace marey::python {
 namespace {
 
-nb::dict dict_of(const pipeline::Summary& summary) {
+nb::dict dict_of(const pipeline::corridor::Summary& summary) {
   nb::dict dict;
   dict["frames"] = summary.frames;
   dict["seconds"] = summary.seconds;
@@ -86,7 +86,8 @@ std::string Rows::in_python(const std::string& sentence) {
 nb::list rows_of_job(const std::string& job) {
   nb::list rows;
   pipeline::jobs::with_table(job, [&](pipeline::jobs::Table& table) {
-    constexpr std::array kKinds{"flag", "number", "whole", "text", "choice", "size", "corners", "input_file", "output_file", "output_folder"};
+    constexpr std::array kKinds{"flag", "number",  "whole",      "text",        "choice",
+                                "size", "corners", "input_file", "output_file", "output_folder"};
     for (const pipeline::jobs::Option& option : table.options()) {
       nb::dict row;
       row["name"] = option.name;
@@ -149,7 +150,7 @@ void Outputs::write(const Recording& recording) const {
   }
 }
 
-void Outputs::add_to(pipeline::Sinks& sinks, Recording& recording) const {
+void Outputs::add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const {
   for (std::unique_ptr<Sink>& sink : open(recording)) sinks.add(std::move(sink));
 }
 

@@ -19,8 +19,8 @@
 #include "marey/core/recording.h"
 #include "marey/core/rig.h"
 #include "marey/format/format.h"
+#include "marey/pipeline/corridor/run.h"
 #include "marey/pipeline/jobs/option.h"
-#include "marey/pipeline/run.h"
 
 #include "bindings.h"
 
@@ -76,7 +76,7 @@ class Rows {
       throw Error("{}", in_python(error.what()));
     }
   }
-  /// Recordings state what was given.
+  /// With the options for the recording.
   Listening listening(const Options& options) const;
   std::vector<std::string> files(bool outputs) const { return table_.files(outputs); }
 
@@ -146,7 +146,7 @@ auto run_job(const Listening& listening, Work work) {
 
 struct Result {
   Recording recording;
-  pipeline::Summary summary;
+  pipeline::corridor::Summary summary;
 };
 
 /// The recording, and the summary as a dict.
@@ -161,7 +161,7 @@ class Outputs {
           const std::vector<std::string>& also = {});
 
   std::vector<std::unique_ptr<Sink>> open(Recording& recording) const;
-  void add_to(pipeline::Sinks& sinks, Recording& recording) const;
+  void add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const;
   /// A recording that was made in memory.
   void write(const Recording& recording) const;
 

@@ -11,8 +11,8 @@
 #include "marey/pipeline/jobs/register.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
-#include "marey/pipeline/live_feeds.h"
-#include "marey/pipeline/reconstruct.h"
+#include "marey/pipeline/live/live_feeds.h"
+#include "marey/pipeline/markers/reconstruct.h"
 
 #include "job.h"
 
@@ -20,7 +20,7 @@ namespace marey::python {
 namespace {
 
 /// What one camera saw: a path, frames of Python's, or another program's detections; a detector of Python's, if there is one.
-void set_feed(pipeline::ImageFeed& feed, const Options& options) {
+void set_feed(pipeline::people::ImageFeed& feed, const Options& options) {
   feed.camera.source = options.get<std::string>("source", {});
   if (const auto frames = options.object("frames")) feed.how.open = [frames] { return open_frames(frames); };
   feed.how.opens_again = options.get("frames_again", false);
@@ -35,10 +35,10 @@ std::optional<filter::FilterOptions> own_filter(const Options& options) {
 /// `run(feed, output, sinks, hooks)` over the feed of Python.
 template <typename Run>
 nb::tuple in_image(const Options& options, const pipeline::jobs::ImageInput& input, const Rows& rows, Run run) {
-  pipeline::ImageFeed feed{.camera = input.camera};
+  pipeline::people::ImageFeed feed{.camera = input.camera};
   set_feed(feed, options);
   const Outputs outputs(options, format::Content::image, {&feed.camera, 1}, &rows);
-  const pipeline::TrackOutput output{.tracks = {}, .overlay = input.overlay, .plot = input.plot};
+  const pipeline::people::TrackOutput output{.tracks = {}, .overlay = input.overlay, .plot = input.plot};
   return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
     result.summary = run(feed, output, outputs.open(result.recording), hooks);
@@ -51,10 +51,10 @@ nb::tuple track_people(nb::dict given) {
   pipeline::jobs::TrackPeople job{.keypoints = options.get("keypoints", false)};
   const Rows rows(table_of(job), options);
   job.input.own_filter = own_filter(options);
-  pipeline::PeopleInPictureOptions how = rows.resolved([&] { return resolved(job); });
+  pipeline::people::PeopleInPictureOptions how = rows.resolved([&] { return resolved(job); });
   how.beside = "/tmp/marey";
   return in_image(options, job.input, rows, [&](const auto& feed, const auto& output, auto sinks, const Hooks& hooks) {
-    return pipeline::track_people(feed, output, std::move(sinks), how, hooks);
+    return pipeline::people::track_people(feed, output, std::move(sinks), how, hooks);
   });
 }
 
@@ -63,10 +63,10 @@ nb::tuple track_markers(nb::dict given) {
   pipeline::jobs::TrackMarkers job;
   const Rows rows(table_of(job), options);
   job.input.own_filter = own_filter(options);
-  pipeline::MarkersInPictureOptions how = rows.resolved([&] { return resolved(job); });
+  pipeline::markers::MarkersInPictureOptions how = rows.resolved([&] { return resolved(job); });
   if (const auto names = options.find<std::vector<std::string>>("label_names")) how.tracker.labels = *names;
   return in_image(options, job.input, rows, [&](const auto& feed, const auto& output, auto sinks, const Hooks& hooks) {
-    return pipeline::track_markers(feed, output, std::move(sinks), how, hooks);
+    return pipeline::people::track_markers(feed, output, std::move(sinks), how, hooks);
   });
 }
 
@@ -76,12 +76,12 @@ nb::tuple track_ground(nb::dict given) {
   pipeline::jobs::TrackGround job{.rig_name = options.get<std::string>("rig", "the rig")};
   const Rows rows(table_of(job), options);
   job.own_filter = own_filter(options);
-  pipeline::PeopleOnGroundOptions how = rows.resolved([&] { return resolved(job, rig); });
+  pipeline::people::PeopleOnGroundOptions how = rows.resolved([&] { return resolved(job, rig); });
   if (const auto path = options.path("rig"); !path.empty()) how.turning = format::rig::read_turning(path);
-  const Outputs outputs(options, format::Content::ground, rig.cameras, &rows, pipeline::overlays_of(rig, job.output));
+  const Outputs outputs(options, format::Content::ground, rig.cameras, &rows, pipeline::people::overlays_of(rig, job.output));
   return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
-    result.summary = pipeline::track_ground(rig, job.output, outputs.open(result.recording), how, hooks);
+    result.summary = pipeline::people::track_ground(rig, job.output, outputs.open(result.recording), how, hooks);
     return result;
   }));
 }
@@ -93,28 +93,29 @@ nb::tuple reconstruct(nb::dict given) {
   const Rows rows(table_of(job), options);
   job.own_filter = own_filter(options);
   std::vector<std::string> warnings;
-  const pipeline::MarkersInSpaceOptions how = rows.resolved([&] { return resolved(job, warnings); });
+  const pipeline::markers::MarkersInSpaceOptions how = rows.resolved([&] { return resolved(job, warnings); });
   const auto observations = options.get<std::string>("observations", {});
   const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
   return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
-    pipeline::Sinks sinks;
+    pipeline::corridor::Sinks sinks;
     outputs.add_to(sinks, result.recording);
-    result.summary = pipeline::reconstruct(rig, observations, sinks, how, hooks);
+    result.summary = pipeline::markers::reconstruct(rig, observations, sinks, how, hooks);
     result.summary.warnings.insert(result.summary.warnings.begin(), warnings.begin(), warnings.end());
     return result;
   }));
 }
 
-pipeline::Summary summary_of(const pipeline::KeypointsSummary& found) {
-  pipeline::Summary summary;
+pipeline::corridor::Summary summary_of(const pipeline::keypoints::KeypointsSummary& found) {
+  pipeline::corridor::Summary summary;
   summary.frames = found.frames;
   summary.seconds = found.seconds;
   summary.rate_hz = found.rate_hz;
   summary.tracks = found.points * std::ssize(found.people);
   summary.measured = found.measured;
   summary.filled = found.filled;
-  summary.figures = {{"people", static_cast<double>(found.people.size())}, {"residual_px", found.residual_px}, {"noise", found.noise}};
+  summary.figures = {
+      {"people", static_cast<double>(found.people.size())}, {"residual_px", found.residual_px}, {"noise", found.noise}};
   summary.warnings = found.warnings;
   summary.stopped = found.stopped;
   return summary;
@@ -128,8 +129,8 @@ nb::tuple reconstruct_keypoints(nb::dict given) {
   const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
   return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
-    pipeline::KeypointsSummary found;
-    result.recording = pipeline::keypoints_in_space(rig, job.options, found, hooks);
+    pipeline::keypoints::KeypointsSummary found;
+    result.recording = pipeline::keypoints::keypoints_in_space(rig, job.options, found, hooks);
     outputs.write(result.recording);
     result.summary = summary_of(found);
     return result;
@@ -140,20 +141,20 @@ nb::tuple reconstruct_keypoints(nb::dict given) {
 nb::tuple live(nb::dict given) {
   const Options options(std::move(given));
   const auto cameras = options.get<std::vector<std::string>>("cameras", {});
-  const Rig rig = cameras.empty() ? rig_of(options) : pipeline::rig_of_sources(cameras);
+  const Rig rig = cameras.empty() ? rig_of(options) : pipeline::live::rig_of_sources(cameras);
   pipeline::jobs::Live job{.rig_name = options.get<std::string>("rig", "the rig")};
-  if (options.get("people", false)) job.targets = pipeline::LiveTargets::people;
+  if (options.get("people", false)) job.targets = pipeline::live::LiveTargets::people;
   const Rows rows(table_of(job), options);
   std::vector<std::string> warnings;
-  pipeline::LiveOptions how = rows.resolved([&] { return resolved(job, rig, warnings); });
+  pipeline::live::LiveOptions how = rows.resolved([&] { return resolved(job, rig, warnings); });
   how.take = options.get<std::string>("take", {});
   const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
   Listening listening = rows.listening(options);
-  if (how.targets == pipeline::LiveTargets::people) listening.options["targets"] = "people";
+  if (how.targets == pipeline::live::LiveTargets::people) listening.options["targets"] = "people";
   return tuple_of(run_job(listening, [&](const Hooks& hooks) {
     Result result;
     how.sinks = outputs.open(result.recording);
-    result.summary = pipeline::live(rig, std::move(how), hooks);
+    result.summary = pipeline::live::live(rig, std::move(how), hooks);
     result.summary.warnings.insert(result.summary.warnings.begin(), warnings.begin(), warnings.end());
     return result;
   }));

@@ -11,7 +11,7 @@
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/tracks/boxes.h"
-#include "marey/pipeline/judge_match.h"
+#include "marey/pipeline/take/judge_match.h"
 
 #include "bindings.h"
 
@@ -84,7 +84,7 @@ nb::object moments_of(nb::handle self) {
 nb::list tracks_of(const Recording& recording) {
   nb::list tracks;
   for (const TrackColumns& track : recording.tracks())
-    tracks.append(nb::make_tuple(number(track.id()), track.name.label, track.name.team, track.size()));
+    tracks.append(nb::make_tuple(number(track.id()), track.name.label, track.name.team, track.size(), to_string(track.name.kind)));
   return tracks;
 }
 
@@ -238,10 +238,10 @@ nb::dict evaluate_box_files(const std::string& truth, const std::string& tracks,
 }
 
 nb::dict evaluate_places(const Recording& truth, const Recording& tracks, double distance) {
-  pipeline::MatchJudgement judged;
+  pipeline::take::MatchJudgement judged;
   {
     const nb::gil_scoped_release free;
-    judged = pipeline::judge_match(truth, tracks, distance);
+    judged = pipeline::take::judge_match(truth, tracks, distance);
   }
   nb::dict dict = scores_of(judged.evaluation.scores);
   const auto& position = judged.evaluation.position;
@@ -280,6 +280,11 @@ nb::list cameras_of(const Rig& rig) {
 void bind_recording(nb::module_& module) {
   nb::class_<Recording>(module, "Recording")
       .def_prop_ro("kind", &kind_of)
+      .def_prop_ro("time_base",
+                   [](const Recording& self) -> std::optional<std::string> {
+                     if (!self.header.rig || self.header.time_base.kind == TimeBase::Kind::unspecified) return std::nullopt;
+                     return to_string(self.header.time_base, *self.header.rig);
+                   })
       .def_prop_ro("frame", [](const Recording& self) { return to_string(self.header.frame); })
       .def_prop_ro("dimensions", &Recording::dimensions)
       .def_prop_ro("name", [](const Recording& self) { return self.header.name; })

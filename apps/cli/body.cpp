@@ -8,7 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/bodies_in_space.h"
+#include "marey/pipeline/bodies/bodies_in_space.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -28,7 +28,7 @@ struct DefineCommand {
 
 struct FollowCommand {
   std::string recording, bodies, out;
-  pipeline::FollowBodiesOptions options;
+  pipeline::bodies::FollowBodiesOptions options;
   std::optional<double> noise_mm;
   double tolerance_mm = 4;
   bool json = false, quiet = false;
@@ -41,7 +41,7 @@ void print_defined(const DefineCommand& command, const solve::bodies::DefinedBod
     fmt::print(stderr, "  {:<16} varies by {:.2f} mm{}\n", marker.label, 1000 * marker.deviation,
                marker.loose ? ": loose, left out" : "");
   if (defined.symmetries.empty()) fmt::print(stderr, "no turn makes it look the same\n");
-  warn(pipeline::doubts_of(defined));
+  warn(pipeline::bodies::doubts_of(defined));
   fmt::print(stderr, "bodies: {}\n", command.out);
 }
 
@@ -56,7 +56,7 @@ Json defined_json(const DefineCommand& command, const solve::bodies::DefinedBody
   json["symmetries"] = Json::array();
   for (const auto& symmetry : defined.symmetries)
     json["symmetries"].push_back({{"turn", words_of(symmetry)}, {"worst_m", symmetry.worst}});
-  json["warnings"] = Json(pipeline::doubts_of(defined));
+  json["warnings"] = Json(pipeline::bodies::doubts_of(defined));
   return json;
 }
 
@@ -67,7 +67,7 @@ void run(DefineCommand& command) {
     const auto axes = labels_in(command.axes);
     command.options.axes = {axes[0], axes[1], axes[2]};
   }
-  const auto defined = pipeline::define_body(command.take, command.out, command.add, command.options);
+  const auto defined = pipeline::bodies::define_body(command.take, command.out, command.add, command.options);
   if (command.json) {
     print(defined_json(command, defined));
   } else if (!command.quiet) {
@@ -75,7 +75,7 @@ void run(DefineCommand& command) {
   }
 }
 
-void print_followed(const FollowCommand& command, const pipeline::FollowBodiesSummary& summary) {
+void print_followed(const FollowCommand& command, const pipeline::bodies::FollowBodiesSummary& summary) {
   for (const auto& one : summary.bodies) {
     if (one.counts.measured + one.counts.predicted == 0) {
       fmt::print(stderr, "{}: not found in any of {} frames\n", one.body.label, summary.instants);
@@ -90,7 +90,7 @@ void print_followed(const FollowCommand& command, const pipeline::FollowBodiesSu
   fmt::print(stderr, "noise of a point {:.2f} mm\n{}\n", 1000 * summary.noise_m, command.out);
 }
 
-Json followed_json(const FollowCommand& command, const pipeline::FollowBodiesSummary& summary) {
+Json followed_json(const FollowCommand& command, const pipeline::bodies::FollowBodiesSummary& summary) {
   Json json{{"frames", summary.instants}, {"noise_m", summary.noise_m}, {"recording", command.out}, {"warnings", summary.warnings}};
   json["bodies"] = Json::array();
   for (const auto& one : summary.bodies)
@@ -108,7 +108,7 @@ void run(FollowCommand& command) {
   command.options.follow.tolerance = command.tolerance_mm / 1000;
   if (command.noise_mm) command.options.follow.noise = *command.noise_mm / 1000;
   const auto summary = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::follow_bodies(command.recording, command.bodies, command.out, command.options, hooks);
+    return pipeline::bodies::follow_bodies(command.recording, command.bodies, command.out, command.options, hooks);
   });
   warn(summary.warnings);
   if (summary.stopped) {

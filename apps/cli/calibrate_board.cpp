@@ -1,4 +1,4 @@
-#include "marey/pipeline/calibrate_board.h"
+#include "marey/pipeline/calibrate/calibrate_board.h"
 
 #include <cstdio>
 #include <memory>
@@ -22,7 +22,7 @@ namespace {
 struct CalibrateBoard {
   RigAndSources inputs;
   std::string board, out;
-  pipeline::BoardRunOptions run;
+  pipeline::calibrate::BoardRunOptions run;
   bool json = false;
   bool quiet = false;
 };
@@ -32,7 +32,7 @@ Json figures_of(const Figures& found) {
   return {{"mean_px", found.mean_px}, {"rms_px", found.rms_px}, {"inliers", found.inliers}, {"observations", found.observations}};
 }
 
-Json as_json(const pipeline::BoardRun& run) {
+Json as_json(const pipeline::calibrate::BoardRun& run) {
   Json cameras;
   for (std::size_t i = 0; i < run.rig.cameras.size(); ++i) {
     const calibrate::board::BoardRigPose& found = run.found.cameras[i];
@@ -48,7 +48,7 @@ Json as_json(const pipeline::BoardRun& run) {
   return {{"all", figures_of(run.found)}, {"cameras", cameras}, {"jitter_s", run.found.jitter_s}, {"warnings", run.found.warnings}};
 }
 
-void print_table(const pipeline::BoardRun& run) {
+void print_table(const pipeline::calibrate::BoardRun& run) {
   fmt::print("{:<14} {:>8} {:>8} {:>13} {:>9} {:>26}\n", "camera", "RMS px", "mean px", "corners", "offset ms", "centre m");
   for (std::size_t i = 0; i < run.rig.cameras.size(); ++i) {
     const calibrate::board::BoardRigPose& found = run.found.cameras[i];
@@ -64,8 +64,8 @@ void print_table(const pipeline::BoardRun& run) {
 void run(const CalibrateBoard& command) {
   const calibrate::board::Board board = calibrate::board::parse_board(command.board);
   const Rig rig = rig_of(command.inputs);
-  const pipeline::BoardRun found =
-      with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_board(rig, board, command.run, hooks); });
+  const pipeline::calibrate::BoardRun found = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate::calibrate_board(rig, board, command.run, hooks); });
   format::rig::write_rig(found.rig, command.out);
   warn(found.found.warnings);
   if (command.json) {

@@ -1,4 +1,4 @@
-#include "marey/pipeline/calibrate_ground.h"
+#include "marey/pipeline/calibrate/calibrate_ground.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -25,18 +25,19 @@ struct CalibrateGround {
   RigInputs inputs;
   std::string frame = kUsualGroundFrame;
   std::string board, out;
-  pipeline::CalibrateGroundOptions options;
+  pipeline::calibrate::CalibrateGroundOptions options;
   bool json = false;
   bool quiet = false;
 };
 
 void run(const CalibrateGround& command) {
-  pipeline::CalibrateGroundOptions options = command.options;
+  pipeline::calibrate::CalibrateGroundOptions options = command.options;
   if (!command.board.empty()) options.board = calibrate::board::parse_board(command.board);
   options.frame = ground_frame_of(command.frame);
   options.observations = observations_of(command.inputs);
-  const pipeline::GroundCalibration result = with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_ground(rig_of(command.inputs), options, hooks); });
+  const pipeline::calibrate::GroundCalibration result = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::calibrate::calibrate_ground(rig_of(command.inputs), options, hooks);
+  });
   const calibrate::GroundFound& found = result.found;
   warn(result.warnings);
   format::rig::write_rig(result.rig, command.out);

@@ -1,4 +1,4 @@
-#include "marey/pipeline/calibrate_lens.h"
+#include "marey/pipeline/calibrate/calibrate_lens.h"
 
 #include <cstdio>
 #include <memory>
@@ -24,12 +24,12 @@ namespace {
 struct CalibrateLens {
   std::string input, board, out, picture;
   std::string name = "camera";
-  pipeline::LensRunOptions run;
+  pipeline::calibrate::LensRunOptions run;
   bool json = false;
   bool quiet = false;
 };
 
-Json as_json(const CalibrateLens& command, const pipeline::LensRun& run) {
+Json as_json(const CalibrateLens& command, const pipeline::calibrate::LensRun& run) {
   const calibrate::LensCalibration& found = run.calibration;
   const Json figures = {
       {"mean_px", found.mean_px}, {"rms_px", found.rms_px}, {"inliers", found.inliers}, {"observations", found.observations}};
@@ -53,7 +53,7 @@ Json as_json(const CalibrateLens& command, const pipeline::LensRun& run) {
   return {{"all", figures}, {"cameras", {{command.name, camera}}}, {"warnings", found.warnings}};
 }
 
-void print_table(const pipeline::LensRun& run) {
+void print_table(const pipeline::calibrate::LensRun& run) {
   const calibrate::LensCalibration& found = run.calibration;
   const Vector<2>& focal = geometry::focal_of(found.lens);
   const Vector<2>& principal = geometry::principal_of(found.lens);
@@ -107,8 +107,9 @@ void draw(const CalibrateLens& command, const calibrate::LensCalibration& found)
 
 void run(const CalibrateLens& command) {
   const calibrate::board::Board board = calibrate::board::parse_board(command.board);
-  const pipeline::LensRun found = with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_lens(command.input, board, command.run, hooks); });
+  const pipeline::calibrate::LensRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::calibrate::calibrate_lens(command.input, board, command.run, hooks);
+  });
   if (!command.out.empty()) format::rig::write_rig(rig_of(command, found.calibration), command.out);
   if (!command.picture.empty()) draw(command, found.calibration);
   warn(found.calibration.warnings);

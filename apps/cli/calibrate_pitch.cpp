@@ -1,4 +1,4 @@
-#include "marey/pipeline/calibrate_pitch.h"
+#include "marey/pipeline/calibrate/calibrate_pitch.h"
 
 #include <array>
 #include <cmath>
@@ -87,7 +87,7 @@ struct ClickErrors {
   double rms() const { return std::sqrt(square / std::max(1, good)); }
 };
 
-Json camera_json(const pipeline::PitchRun& run, std::size_t camera, ClickErrors& of_all) {
+Json camera_json(const pipeline::calibrate::PitchRun& run, std::size_t camera, ClickErrors& of_all) {
   const calibrate::pitch::PitchViewResult& found = run.calibration.views[camera];
   ClickErrors own;
   Json points = Json::array();
@@ -114,12 +114,12 @@ Json camera_json(const pipeline::PitchRun& run, std::size_t camera, ClickErrors&
           {"points", points}};
 }
 
-Json as_json(const pipeline::PitchRun& run) {
+Json as_json(const pipeline::calibrate::PitchRun& run) {
   Json cameras;
   ClickErrors all;
   for (std::size_t i = 0; i < run.views.size(); ++i) cameras[run.cameras[i]] = camera_json(run, i, all);
   Json offsets = Json::object();
-  for (const pipeline::RigOffsets::Camera& camera : run.offsets.cameras) {
+  for (const pipeline::people::RigOffsets::Camera& camera : run.offsets.cameras) {
     Json& entry = offsets[camera.name] = {{"verdict", calibrate::pitch::offset_verdict_name(camera.found.verdict)}};
     if (camera.found.verdict != calibrate::pitch::OffsetVerdict::found) continue;
     entry["offset_s"] = camera.offset_s;
@@ -146,7 +146,7 @@ void print_ground(const calibrate::pitch::PitchFit& fit) {
       middle, touchline, goal_line);
 }
 
-void print_report(const pipeline::PitchRun& run) {
+void print_report(const pipeline::calibrate::PitchRun& run) {
   for (std::size_t i = 0; i < run.views.size(); ++i) {
     const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     const Vector<3>& centre = found.camera.centre();
@@ -178,13 +178,13 @@ void run(const CalibratePitch& command) {
   if (command.inputs.rig.empty() || command.points.empty() || command.out.empty())
     throw WrongUsage("a rig file, --points and -o are needed, or --elements alone");
   const Rig rig = rig_of(command.inputs);
-  pipeline::PitchRunOptions options;
+  pipeline::calibrate::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
   options.pitch.known = command.ground;
   options.pictures = command.pictures;
   options.synced = command.synced;
-  const pipeline::PitchRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::calibrate_pitch(rig, parse_points(command.points), options, hooks);
+  const pipeline::calibrate::PitchRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::calibrate::calibrate_pitch(rig, parse_points(command.points), options, hooks);
   });
   format::rig::write_rig(found.rig, command.out);
   warn(found.warnings);
@@ -202,7 +202,7 @@ std::vector<std::string> pictures_of(const CalibratePitch& command) {
   if (command.pictures.empty()) return {};
   std::vector<std::string> files;
   for (const RigCamera& camera : rig_of(command.inputs).cameras) {
-    const pipeline::PitchPictures pictures(command.pictures, camera.name);
+    const pipeline::calibrate::PitchPictures pictures(command.pictures, camera.name);
     files.insert(files.end(), {pictures.overlay, pictures.accuracy});
   }
   return files;

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "marey/format/rig/rig_turns.h"
-#include "marey/pipeline/calibrate_turning.h"
+#include "marey/pipeline/calibrate/calibrate_turning.h"
 
 #include "command_line.h"
 #include "json_value.h"
@@ -22,7 +22,7 @@ namespace {
 struct CalibrateTurning {
   std::string film, clicks, out;
   std::string size = "105x68";
-  pipeline::TurningRunOptions options;
+  pipeline::calibrate::TurningRunOptions options;
   bool json = false;
   bool quiet = false;
 };
@@ -44,7 +44,7 @@ Turned turned(const TurningCamera& camera) {
   return result;
 }
 
-Json as_json(const pipeline::TurningRun& run) {
+Json as_json(const pipeline::calibrate::TurningRun& run) {
   const geometry::Tripod& tripod = run.result.camera.tripod;
   Json frames = Json::array();
   for (std::size_t i = 0; i < run.clicks.size(); ++i) {
@@ -64,7 +64,7 @@ Json as_json(const pipeline::TurningRun& run) {
           {"warnings", run.warnings}};
 }
 
-void print_report(const pipeline::TurningRun& run, const std::string& out) {
+void print_report(const pipeline::calibrate::TurningRun& run, const std::string& out) {
   const TurningCamera& camera = run.result.camera;
   const Vector<2> place = (*run.rig.ground_from_world * camera.tripod.place.head<2>().homogeneous()).hnormalized();
   std::size_t clicks = 0;
@@ -83,10 +83,11 @@ void print_report(const pipeline::TurningRun& run, const std::string& out) {
 }
 
 void run(const CalibrateTurning& command) {
-  pipeline::TurningRunOptions options = command.options;
+  pipeline::calibrate::TurningRunOptions options = command.options;
   options.follow.pitch = parse_pitch_size(command.size);
-  const pipeline::TurningRun found = with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_turning(command.film, command.clicks, options, hooks); });
+  const pipeline::calibrate::TurningRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::calibrate::calibrate_turning(command.film, command.clicks, options, hooks);
+  });
   format::rig::write_turning_rig(found.rig, {std::make_shared<const TurningCamera>(found.result.camera)}, command.out);
   warn(found.warnings);
   if (command.json) {

@@ -1,4 +1,4 @@
-#include "marey/pipeline/calibrate_wand.h"
+#include "marey/pipeline/calibrate/calibrate_wand.h"
 
 #include <array>
 #include <atomic>
@@ -11,7 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/live_blobs.h"
+#include "marey/pipeline/calibrate/live_blobs.h"
 #include "marey/pipeline/jobs/detection_rows.h"
 
 #include "command_line.h"
@@ -31,7 +31,7 @@ struct CalibrateWand {
   RigInputs inputs;
   std::string wand, distance, out;
   std::string frame = kUsualGroundFrame;
-  pipeline::CalibrateWandOptions options;
+  pipeline::calibrate::CalibrateWandOptions options;
   bool view = false, allow_control = false;
   viewer::WebPlace web;
   bool json = false;
@@ -118,7 +118,7 @@ void print_table(const calibrate::wand::WandResult& result) {
 }
 
 /// Writes the rig, and says how well it is known.
-void finish(const pipeline::WandCalibration& result, const CalibrateWand& command) {
+void finish(const pipeline::calibrate::WandCalibration& result, const CalibrateWand& command) {
   warn(result.warnings);
   format::rig::write_rig(result.found.rig, command.out);
   if (command.json) {
@@ -130,20 +130,20 @@ void finish(const pipeline::WandCalibration& result, const CalibrateWand& comman
 }
 
 /// The floor where the L-frame lies now; of a rig without scale its size too.
-pipeline::GroundCalibration ground_by_l_frame(const Rig& rig, const pipeline::CalibrateWandOptions& options,
-                                              const std::string& frame) {
+pipeline::calibrate::GroundCalibration ground_by_l_frame(const Rig& rig, const pipeline::calibrate::CalibrateWandOptions& options,
+                                                         const std::string& frame) {
   const bool scale = options.wand.distances.size() < 2 && !options.how.distance;
   return with_progress(true, [&](const Hooks& hooks) {
-    return pipeline::calibrate_ground(
+    return pipeline::calibrate::calibrate_ground(
         rig, {.board = {}, .frame = ground_frame_of(frame), .observations = {}, .markers = options.markers, .scale = scale}, hooks);
   });
 }
 
 /// Waved before live cameras, watched on the terminal and on a page.
-void calibrate_live(const Rig& rig, pipeline::CalibrateWandOptions options, const CalibrateWand& command) {
+void calibrate_live(const Rig& rig, pipeline::calibrate::CalibrateWandOptions options, const CalibrateWand& command) {
   std::atomic<bool> will_do = false;
   std::optional<WandPage> page;
-  const auto desk = std::make_shared<pipeline::CameraDesk>(rig, options.markers.threshold);
+  const auto desk = std::make_shared<pipeline::live::CameraDesk>(rig, options.markers.threshold);
   options.desk = desk.get();
   if (command.view) {
     page.emplace(WandPage::Options{.place = command.web,
@@ -155,7 +155,7 @@ void calibrate_live(const Rig& rig, pipeline::CalibrateWandOptions options, cons
   WandScreen screen(command.quiet);
   const Keys keys([&](char key) { will_do = will_do || key == 'q'; });
   screen.begun(keys.listens());
-  options.waving = [&](const pipeline::WandSeen& seen) {
+  options.waving = [&](const pipeline::calibrate::WandSeen& seen) {
     screen.show(seen);
     if (page) page->show(seen);
     return !will_do;
@@ -164,8 +164,8 @@ void calibrate_live(const Rig& rig, pipeline::CalibrateWandOptions options, cons
     if (page) page->computing();
   };
   try {
-    const pipeline::WandCalibration result =
-        with_progress(true, [&](const Hooks& hooks) { return pipeline::calibrate_wand(rig, options, hooks); });
+    const pipeline::calibrate::WandCalibration result =
+        with_progress(true, [&](const Hooks& hooks) { return pipeline::calibrate::calibrate_wand(rig, options, hooks); });
     screen.end();
     finish(result, command);
     if (page) page->done(result.found.rig, as_json(result.found), command.out);
@@ -176,14 +176,15 @@ void calibrate_live(const Rig& rig, pipeline::CalibrateWandOptions options, cons
 }
 
 void run(const CalibrateWand& command) {
-  pipeline::CalibrateWandOptions options = command.options;
+  pipeline::calibrate::CalibrateWandOptions options = command.options;
   options.observations = observations_of(command.inputs);
   options.wand = wand_of(command.wand);
   options.how.distance = distance_of(command.distance);
   const Rig rig = rig_of(command.inputs);
-  if (options.observations.empty() && pipeline::has_live_cameras(rig)) return calibrate_live(rig, options, command);
+  if (options.observations.empty() && pipeline::calibrate::has_live_cameras(rig)) return calibrate_live(rig, options, command);
   if (command.view) throw WrongUsage("--view: shows live cameras; those of this rig are not");
-  finish(with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_wand(rig, options, hooks); }), command);
+  finish(with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate::calibrate_wand(rig, options, hooks); }),
+         command);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/live_feeds.h"
+#include "marey/pipeline/live/live_feeds.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -77,7 +77,7 @@ void run(const CamerasCommand& command) {
     for (const FoundCamera& camera : found) print_camera(camera);
     if (found.empty()) {
       fmt::print(stderr, "no camera is plugged in; these can be named without being found:\n");
-      for (const auto& kind : pipeline::live_kinds()) fmt::print(stderr, "  {:<52} {}\n", kind.form, kind.meaning);
+      for (const auto& kind : pipeline::live::live_kinds()) fmt::print(stderr, "  {:<52} {}\n", kind.form, kind.meaning);
     }
   }
   if (command.rig.empty()) return;

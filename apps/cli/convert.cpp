@@ -1,4 +1,4 @@
-#include "marey/pipeline/convert.h"
+#include "marey/pipeline/take/convert.h"
 
 #include <array>
 #include <cstdio>
@@ -27,7 +27,7 @@ struct ConvertCommand {
   std::string from, to;
   std::string size = "105x68", frames;
   std::vector<std::string> periods;
-  pipeline::ConvertOptions options;
+  pipeline::take::ConvertOptions options;
   bool json = false;
   bool quiet = false;
 };
@@ -53,8 +53,8 @@ void run(ConvertCommand& command) {
   for (const std::string& period : command.periods)
     command.options.periods.push_back(parse_period(period, static_cast<int>(command.options.periods.size()) + 1));
   if (!command.frames.empty()) command.options.frames = parse_frames(command.frames);
-  const pipeline::ConvertSummary done = with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::convert(command.from, command.to, command.options, hooks); });
+  const pipeline::take::ConvertSummary done = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::take::convert(command.from, command.to, command.options, hooks); });
   warn(done.warnings);
   if (done.stopped) {
     fmt::print(stderr, "marey: stopped; {} was not finished\n", command.to);
@@ -74,7 +74,7 @@ std::vector<std::string> beside(const std::string& path) {
 }
 
 void add_reading_options(Command& command, ConvertCommand& options) {
-  pipeline::ConvertOptions& how = options.options;
+  pipeline::take::ConvertOptions& how = options.options;
   command.group("A skeleton's motion");
   command.number("--unit", how.read.skeleton_unit_m, "m", above(0, 1000),
                  "one unit of a BVH file that is read, in metres: 0.01 is cm, 0.0254 inches");
@@ -99,7 +99,7 @@ void add_reading_options(Command& command, ConvertCommand& options) {
 
 void add_convert(Command& program) {
   auto options = std::make_shared<ConvertCommand>();
-  pipeline::ConvertOptions& how = options->options;
+  pipeline::take::ConvertOptions& how = options->options;
   using format::Content;
   Command command = program.subcommand("convert", "Write a recording, or a calibration, in another format");
   command

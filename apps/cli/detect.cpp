@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/detect_markers.h"
 #include "marey/pipeline/jobs/detection_rows.h"
+#include "marey/pipeline/markers/detect_markers.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -20,7 +20,7 @@ namespace {
 
 struct DetectCommand {
   RigCamera input;
-  pipeline::BlobOutput output;
+  pipeline::markers::BlobOutput output;
   pipeline::jobs::MarkerDetection markers;
   bool json = false;
   bool quiet = false;
@@ -37,7 +37,7 @@ std::vector<std::pair<const char*, std::int64_t>> left_out(const detect::markers
   return reasons;
 }
 
-void print_blob_summary(const DetectCommand& command, const pipeline::BlobSummary& summary) {
+void print_blob_summary(const DetectCommand& command, const pipeline::markers::BlobSummary& summary) {
   const auto frames = static_cast<double>(std::max<std::int64_t>(1, summary.frames));
   fmt::print(stderr, "{} {} in {} {}, {:.1f} a picture, at most {}; {:.2f} ms a picture\n", summary.blobs,
              summary.blobs == 1 ? "marker" : "markers", summary.frames, summary.frames == 1 ? "picture" : "pictures",
@@ -49,7 +49,7 @@ void print_blob_summary(const DetectCommand& command, const pipeline::BlobSummar
   if (!command.output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", command.output.overlay);
 }
 
-void print_blob_json(const DetectCommand& command, const pipeline::BlobSummary& summary, double elapsed) {
+void print_blob_json(const DetectCommand& command, const pipeline::markers::BlobSummary& summary, double elapsed) {
   Json json = {{"frames", summary.frames},       {"markers", summary.blobs},
                {"most", summary.most},           {"seconds", summary.seconds},
                {"detect_s", summary.detect_s},   {"elapsed", elapsed},
@@ -78,8 +78,9 @@ void run_detect(DetectCommand command) {
   if (command.output.blobs == "-") command.output.blobs = "/dev/stdout";
   const detect::markers::MarkerOptions options = detector_of(command.markers);
   run_with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::detect_markers(command.input, command.output, options, hooks); },
-      [&](const pipeline::BlobSummary& summary, double elapsed) {
+      command.quiet,
+      [&](const Hooks& hooks) { return pipeline::markers::detect_markers(command.input, command.output, options, hooks); },
+      [&](const pipeline::markers::BlobSummary& summary, double elapsed) {
         if (command.json) {
           print_blob_json(command, summary, elapsed);
         } else if (!command.quiet) {

@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/edit_take.h"
-#include "marey/pipeline/edit_words.h"
+#include "marey/pipeline/take/edit_take.h"
+#include "marey/pipeline/take/edit_words.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -21,7 +21,7 @@
 namespace marey::cli {
 namespace {
 
-using pipeline::EditLine;
+using pipeline::take::EditLine;
 
 struct EditCommand {
   std::string take, script;
@@ -34,9 +34,9 @@ struct EditCommand {
 
 /// All edits: those that count marked, each in the words of its time.
 void list(const EditCommand& command) {
-  const pipeline::EditHistory history = pipeline::edit_history(command.take);
+  const pipeline::take::EditHistory history = pipeline::take::edit_history(command.take);
   Json entries = Json::array();
-  for (const EditLine& line : pipeline::lines_of(history)) {
+  for (const EditLine& line : pipeline::take::lines_of(history)) {
     Json entry = edit_json(line);
     entry["counts"] = line.counts;
     entries.push_back(std::move(entry));
@@ -52,7 +52,7 @@ void list(const EditCommand& command) {
 }
 
 void say_head(const EditCommand& command) {
-  const std::size_t count = pipeline::edit_history(command.take).counting.size();
+  const std::size_t count = pipeline::take::edit_history(command.take).counting.size();
   if (command.json) {
     print({{"take", command.take}, {"counting", static_cast<std::int64_t>(count)}});
   } else if (!command.quiet) {
@@ -64,14 +64,14 @@ void say_head(const EditCommand& command) {
 }
 
 void do_edits(const EditCommand& command) {
-  std::vector<pipeline::EditRequest> requests;
-  if (!command.script.empty()) requests = pipeline::read_edit_script(command.script);
+  std::vector<pipeline::take::EditRequest> requests;
+  if (!command.script.empty()) requests = pipeline::take::read_edit_script(command.script);
   for (const std::string& edit : command.edits) requests.push_back({.text = edit, .where = fmt::format("\"{}\"", edit)});
   if (requests.empty()) throw Error("{}: holds no edit", command.script);
   std::vector<std::string> notes;
   const auto done = with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::edit_take(command.take, requests, hooks, {}, &notes); });
-  std::vector<EditLine> lines = pipeline::lines_of(pipeline::edit_history(command.take));
+      command.quiet, [&](const Hooks& hooks) { return pipeline::take::edit_take(command.take, requests, hooks, {}, &notes); });
+  std::vector<EditLine> lines = pipeline::take::lines_of(pipeline::take::edit_history(command.take));
   std::erase_if(lines, [&](const EditLine& line) {
     return done.empty() || line.id < done.front().edit.id || line.id > done.back().edit.id;  // another program's
   });
@@ -91,9 +91,9 @@ void do_edits(const EditCommand& command) {
 }
 
 /// The edits that `other` has counting and `history` has not, in words.
-void say_without(const pipeline::EditHistory& history, const pipeline::EditHistory& other, std::string_view what) {
+void say_without(const pipeline::take::EditHistory& history, const pipeline::take::EditHistory& other, std::string_view what) {
   constexpr std::size_t kMostSaid = 12;
-  std::vector<EditLine> lines = pipeline::lines_of(other);
+  std::vector<EditLine> lines = pipeline::take::lines_of(other);
   const auto& counting = history.counting;
   std::erase_if(lines, [&](const EditLine& line) {
     return !line.counts || std::find(counting.begin(), counting.end(), line.id) != counting.end();
@@ -105,14 +105,14 @@ void say_without(const pipeline::EditHistory& history, const pipeline::EditHisto
 
 /// --undo, --redo, --to.
 void move(const EditCommand& command) {
-  const pipeline::EditHistory before = pipeline::edit_history(command.take);
+  const pipeline::take::EditHistory before = pipeline::take::edit_history(command.take);
   if (command.to) {
-    pipeline::set_head(command.take, *command.to);
+    pipeline::take::set_head(command.take, *command.to);
   } else {
-    pipeline::move_head(command.take, command.undo ? -1 : 1);
+    pipeline::take::move_head(command.take, command.undo ? -1 : 1);
   }
   if (!command.json && !command.quiet) {
-    const pipeline::EditHistory now = pipeline::edit_history(command.take);
+    const pipeline::take::EditHistory now = pipeline::take::edit_history(command.take);
     say_without(now, before, "undone");
     say_without(before, now, "done again");
   }

@@ -11,7 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/judge_match.h"
+#include "marey/pipeline/take/judge_match.h"
 
 #include "command_line.h"
 #include "json_value.h"
@@ -40,9 +40,9 @@ std::optional<double> share_false(const evaluate::ClearScores& clear) {
   return 1 - *clear.precision;
 }
 
-Json people_json(const pipeline::MatchJudgement& judgement) {
-  std::map<int, pipeline::PathLengths> ways;
-  for (const pipeline::PathLengths& way : judgement.ways) ways[way.id] = way;
+Json people_json(const pipeline::take::MatchJudgement& judgement) {
+  std::map<int, pipeline::take::PathLengths> ways;
+  for (const pipeline::take::PathLengths& way : judgement.ways) ways[way.id] = way;
   Json people = Json::array();
   for (const evaluate::TargetFate& person : judgement.evaluation.people) {
     Json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
@@ -58,7 +58,7 @@ Json people_json(const pipeline::MatchJudgement& judgement) {
   return people;
 }
 
-Json as_json(const pipeline::MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
+Json as_json(const pipeline::take::MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
   const evaluate::Evaluation& scores = judgement.evaluation.scores;
   Json json = cli::as_json(scores);
   json["distance"] = distance;
@@ -86,7 +86,7 @@ std::string words_of(const std::optional<evaluate::ErrorSpread>& spread, int dig
   return spread ? fmt::format("{0:.{3}f} / {1:.{3}f} / {2:.{3}f}", spread->rms, spread->median, spread->p95, digits) : "none";
 }
 
-void print_table(const pipeline::MatchJudgement& judgement, double distance, bool in_space) {
+void print_table(const pipeline::take::MatchJudgement& judgement, double distance, bool in_space) {
   const evaluate::Evaluation& scores = judgement.evaluation.scores;
   const evaluate::ClearScores& clear = scores.clear;
   fmt::print("{} instants; truth: {} {}, {} places; tracks: {}, {} places. {} counts as found within {} m.\n\n", scores.frames,
@@ -118,7 +118,7 @@ void print_table(const pipeline::MatchJudgement& judgement, double distance, boo
 
 /// What a user should know before believing the figures.
 std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
-                                const Recording& tracks, const pipeline::MatchJudgement& judgement) {
+                                const Recording& tracks, const pipeline::take::MatchJudgement& judgement) {
   std::vector<std::string> sentences = judgement.warnings;
   const bool truth_is_empty = truth.samples() == 0, tracks_are_empty = tracks.samples() == 0;
   if (truth_is_empty) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
@@ -151,7 +151,7 @@ void evaluate_places(const std::string& truth_name, const std::string& tracks_na
   format::ReadOptions as_tracks;
   as_tracks.rate_hz = tracks.header.rate_hz;
   const Recording truth = places_in(truth_name, as_tracks);
-  const pipeline::MatchJudgement judgement = pipeline::judge_match(truth, tracks, distance);
+  const pipeline::take::MatchJudgement judgement = pipeline::take::judge_match(truth, tracks, distance);
   const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
   warn(warnings);
   if (json) {

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "marey/format/register.h"
-#include "marey/pipeline/measure_gait.h"
+#include "marey/pipeline/bodies/measure_gait.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -20,8 +20,8 @@ namespace {
 
 struct GaitCommand {
   std::string recording;
-  pipeline::GaitOutput output;
-  pipeline::GaitOptions options;
+  pipeline::bodies::GaitOutput output;
+  pipeline::bodies::GaitOptions options;
   std::optional<double> leg_length, knee_width, ankle_width;
   bool json = false;
   bool quiet = false;
@@ -29,7 +29,7 @@ struct GaitCommand {
 
 namespace gait = analyse::gait;
 
-void print_gait(const pipeline::GaitMeasure& measure) {
+void print_gait(const pipeline::bodies::GaitMeasure& measure) {
   int strikes = 0, offs = 0;
   for (const gait::GaitEvent& event : measure.events) ++(event.strike ? strikes : offs);
   fmt::print("{} frames at {:g} Hz: {} strikes, {} offs, {} whole cycles\n", measure.frames, measure.rate_hz, strikes, offs,
@@ -43,7 +43,7 @@ void print_gait(const pipeline::GaitMeasure& measure) {
   }
 }
 
-Json gait_json(const pipeline::GaitMeasure& measure) {
+Json gait_json(const pipeline::bodies::GaitMeasure& measure) {
   Json events = Json::array(), figures = Json::object();
   for (const gait::GaitEvent& event : measure.events) {
     events.push_back({{"side", event.side == gait::Side::left ? "left" : "right"},
@@ -62,8 +62,8 @@ void run(GaitCommand& command) {
   subject.leg_length.fill(command.leg_length);
   subject.knee_width.fill(command.knee_width);
   subject.ankle_width.fill(command.ankle_width);
-  const pipeline::GaitMeasure measure = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::measure_gait(command.recording, command.output, command.options, hooks);
+  const pipeline::bodies::GaitMeasure measure = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::bodies::measure_gait(command.recording, command.output, command.options, hooks);
   });
   warn(measure.warnings);
   if (command.json) {

@@ -11,7 +11,7 @@
 namespace marey::cli {
 namespace {
 
-std::int64_t camera_frames(const pipeline::GroundSummary& summary) {
+std::int64_t camera_frames(const pipeline::people::GroundSummary& summary) {
   std::int64_t sum = 0;
   for (const auto& camera : summary.cameras) sum += camera.frames;
   return sum;
@@ -19,9 +19,9 @@ std::int64_t camera_frames(const pipeline::GroundSummary& summary) {
 
 }  // namespace
 
-void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {
+void print_json(const pipeline::people::GroundSummary& summary, const pipeline::people::GroundOutput& output, double elapsed) {
   Json cameras = Json::array();
-  for (const pipeline::Summary::Camera& camera : summary.cameras) {
+  for (const pipeline::corridor::Summary::Camera& camera : summary.cameras) {
     cameras.push_back({{"name", camera.name},
                        {"frames", camera.frames},
                        {"missed", camera.missed},
@@ -52,7 +52,7 @@ void print_json(const pipeline::GroundSummary& summary, const pipeline::GroundOu
   print(json);
 }
 
-void print_summary(const pipeline::GroundSummary& summary, const pipeline::GroundOutput& output, double elapsed) {
+void print_summary(const pipeline::people::GroundSummary& summary, const pipeline::people::GroundOutput& output, double elapsed) {
   for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
   const std::size_t count = summary.cameras.size();
   fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.tracks,
@@ -64,7 +64,7 @@ void print_summary(const pipeline::GroundSummary& summary, const pipeline::Groun
     fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
                percent_of(predicted, summary.samples));
   if (const auto off = left_out_of(summary, "off_pitch")) fmt::print(stderr, "left out: {} who were never on the pitch\n", off);
-  for (const pipeline::Summary::Camera& camera : summary.cameras) {
+  for (const pipeline::corridor::Summary::Camera& camera : summary.cameras) {
     fmt::print(stderr, "{}: {} frames, {:.1f} people in each", camera.name, camera.frames,
                static_cast<double>(camera.detections) / static_cast<double>(std::max<std::int64_t>(1, camera.frames)));
     if (camera.missed > 0) fmt::print(stderr, "; no frame for {} instants", camera.missed);

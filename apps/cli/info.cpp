@@ -45,10 +45,10 @@ void report_recording(const InfoOptions& options, const format::Format& format) 
   const auto reader = format::open_recording(options.file, format, how);
   RecordingSummary summary = reader->summary();
   std::vector<std::string> warnings = reader->warnings();
-  std::vector<pipeline::EditLine> edits;
+  std::vector<pipeline::take::EditLine> edits;
   if (!reader->info().edits.empty()) {
     try {
-      edits = pipeline::lines_of(pipeline::edit_history(options.file));
+      edits = pipeline::take::lines_of(pipeline::take::edit_history(options.file));
       if (reader->info().head) summary = edited_summary(options, format, summary);
     } catch (const Error& error) {
       warnings.push_back(fmt::format("{}; what follows is as it was recorded", error.what()));

@@ -7,7 +7,7 @@
 #include "marey/core/recording_reader.h"
 #include "marey/format/format.h"
 #include "marey/format/match/ground_match.h"
-#include "marey/pipeline/edit_words.h"
+#include "marey/pipeline/take/edit_words.h"
 
 #include "json_value.h"
 
@@ -25,9 +25,9 @@ void print_warnings(const std::vector<std::string>& warnings);
 
 /// `summary` is of what the edits that count have left; `edits` are all of them, in words.
 void print_recording(const std::string& path, const format::Format& format, const format::FileInfo& info,
-                     const RecordingSummary& summary, const std::vector<pipeline::EditLine>& edits);
+                     const RecordingSummary& summary, const std::vector<pipeline::take::EditLine>& edits);
 Json info_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary,
-               const std::vector<pipeline::EditLine>& edits);
+               const std::vector<pipeline::take::EditLine>& edits);
 
 void print_match(const std::string& path, const format::Format& format, const format::match::GroundMatch& match);
 Json info_json(const format::Format& format, const format::match::GroundMatch& match);

@@ -143,7 +143,7 @@ void print_rig(const Rig& rig) {
 }
 
 void print_recording(const std::string& path, const format::Format& format, const format::FileInfo& info,
-                     const RecordingSummary& summary, const std::vector<pipeline::EditLine>& edits) {
+                     const RecordingSummary& summary, const std::vector<pipeline::take::EditLine>& edits) {
   fmt::print("{}: {}{}\n", path, format.title,
              summary.complete ? "" : "; its recording was cut off or still goes on, what follows is what there is");
   print_row("name", info.header.name);
@@ -171,8 +171,10 @@ void print_recording(const std::string& path, const format::Format& format, cons
   if (info.beside.channels > 0) print_row("analog", fmt::format("{} channels", info.beside.channels));
   if (info.beside.events > 0) print_row("events", fmt::format("{}", info.beside.events));
   print_row("positions", to_string(info.header.frame) + (y_grows_down(info.header) ? "; y grows downwards" : ""));
+  if (info.header.rig && info.header.time_base.kind != TimeBase::Kind::unspecified)
+    print_row("times", to_string(info.header.time_base, *info.header.rig));
   if (info.up) print_row("up", *info.up == format::UpAxis::y ? "y" : "z");
-  for (const pipeline::EditLine& edit : edits)
+  for (const pipeline::take::EditLine& edit : edits)
     print_row("edit", fmt::format("{} {}{}", edit.id, edit.words, edit.counts ? "" : " (does not count)"));
   if (info.header.rig && !info.header.rig->cameras.empty()) {
     print_row("cameras", fmt::format("{}", info.header.rig->cameras.size()));
@@ -198,7 +200,7 @@ Json info_json(const Rig& rig) {
 }
 
 Json info_json(const format::Format& format, const format::FileInfo& info, const RecordingSummary& summary,
-               const std::vector<pipeline::EditLine>& edits) {
+               const std::vector<pipeline::take::EditLine>& edits) {
   Json tracks = Json::array();
   for (const auto& count : summary.tracks) {
     Json entry{{"id", number(count.name.id)},
@@ -223,6 +225,9 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
     result["duration_s"] = seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz;
   }
   result["frame"] = to_string(info.header.frame);
+  if (info.header.rig && info.header.time_base.kind != TimeBase::Kind::unspecified)
+    result["time_base"] = to_string(info.header.time_base, *info.header.rig);
+  if (info.header.track_kind != TrackKind::unspecified) result["track_kind"] = to_string(info.header.track_kind);
   for (const Body& body : info.header.bodies)
     result["bodies"].push_back({{"name", body.label}, {"skeleton", body.skeleton}, {"markers", body.markers.size()}});
   if (info.beside.channels > 0) result["analog_channels"] = info.beside.channels;
@@ -234,7 +239,8 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
   Json told = Json::array();
   for (const Edit& edit : info.edits) {
     Json entry{{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}};
-    const auto line = std::find_if(edits.begin(), edits.end(), [&](const pipeline::EditLine& each) { return each.id == edit.id; });
+    const auto line =
+        std::find_if(edits.begin(), edits.end(), [&](const pipeline::take::EditLine& each) { return each.id == edit.id; });
     if (line != edits.end()) entry["words"] = line->words, entry["counts"] = line->counts;
     told.push_back(std::move(entry));
   }

@@ -9,7 +9,7 @@
 #include "marey/analyse/gait/body_marker_sets.h"
 #include "marey/format/motion/marker_set.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/labels_in_space.h"
+#include "marey/pipeline/markers/labels_in_space.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -62,8 +62,8 @@ void run(LearnLabelsCommand& command) {
   }
   std::vector<std::string> warnings;
   const LearnedMarkers learned =
-      pipeline::learn_labels(command.recordings, command.out, command.options, patterns_in(command.leave_out), &warnings);
-  for (std::string& warning : pipeline::warnings_of(learned)) warnings.push_back(std::move(warning));
+      pipeline::markers::learn_labels(command.recordings, command.out, command.options, patterns_in(command.leave_out), &warnings);
+  for (std::string& warning : pipeline::markers::warnings_of(learned)) warnings.push_back(std::move(warning));
   warn(warnings);
   if (command.json) {
     print({{"labels", learned.labels},
@@ -78,7 +78,7 @@ void run(LearnLabelsCommand& command) {
   }
 }
 
-void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& summary) {
+void print_labelled(const LabelCommand& command, const pipeline::markers::LabelSummary& summary) {
   fmt::print(stderr, "{:.2f} % of {} points in {} frames have names\n", percent_of(summary.named, summary.points), summary.points,
              summary.instants);
   fmt::print(stderr, "  {:<16} {:>8} {:>6} {:>9} {:>9}\n", "marker", "seen", "gaps", "renamed", "outliers");
@@ -108,7 +108,7 @@ void print_labelled(const LabelCommand& command, const pipeline::LabelSummary& s
   fmt::print(stderr, "{}\n", command.out);
 }
 
-Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& summary) {
+Json labelled_json(const LabelCommand& command, const pipeline::markers::LabelSummary& summary) {
   Json json{{"frames", summary.instants}, {"points", summary.points},     {"named", summary.named},
             {"renamed", summary.renamed}, {"accepted", summary.accepted}, {"scale", summary.scale},
             {"misfit", summary.misfit},   {"recording", command.out},     {"warnings", summary.warnings}};
@@ -128,8 +128,8 @@ Json labelled_json(const LabelCommand& command, const pipeline::LabelSummary& su
 
 void run(const LabelCommand& command) {
   const auto summary = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::label_recording(command.recording, command.set, command.out, command.options, hooks,
-                                     patterns_in(command.leave_out), patterns_in(command.accept));
+    return pipeline::markers::label_recording(command.recording, command.set, command.out, command.options, hooks,
+                                              patterns_in(command.leave_out), patterns_in(command.accept));
   });
   warn(summary.warnings);
   if (command.json) {

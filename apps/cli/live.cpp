@@ -1,4 +1,4 @@
-#include "marey/pipeline/live.h"
+#include "marey/pipeline/live/live.h"
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,9 @@
 
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
-#include "marey/pipeline/camera_films.h"
-#include "marey/pipeline/live_feeds.h"
 #include "marey/pipeline/jobs/live.h"
+#include "marey/pipeline/live/camera_films.h"
+#include "marey/pipeline/live/live_feeds.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -35,7 +35,7 @@ namespace {
 enum class Kept { solved, raw };
 constexpr std::array<std::pair<const char*, Kept>, 2> kKept{{{"solved", Kept::solved}, {"raw", Kept::raw}}};
 
-using pipeline::LiveTargets;
+using pipeline::live::LiveTargets;
 constexpr std::array<std::pair<const char*, LiveTargets>, 2> kLiveTargets{
     {{"markers", LiveTargets::markers}, {"people", LiveTargets::people}}};
 
@@ -50,8 +50,8 @@ struct LiveCommand {
   bool json = false, quiet = false;
 };
 
-Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
-  const pipeline::LiveDrops& drops = summary.last.drops;
+Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& command) {
+  const pipeline::corridor::LiveDrops& drops = summary.last.drops;
   Json json = {{"job", to_string(summary.job)},
                {"seconds", summary.seconds},
                {"rate_hz", summary.rate_hz},
@@ -66,7 +66,7 @@ Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
                      {"late_frames", drops.late_frames},
                      {"overrun", drops.overrun}};
   for (std::size_t i = 0; i < summary.last.cameras.size(); ++i) {
-    const pipeline::LiveStatus::Camera& camera = summary.last.cameras[i];
+    const pipeline::corridor::LiveStatus::Camera& camera = summary.last.cameras[i];
     Json& told = json["cameras"][camera.name];
     told = {{"state", to_string(camera.state)}, {"frames", camera.frames},   {"lost", camera.lost},
             {"damaged", camera.damaged},        {"overrun", camera.overrun}, {"connections", camera.connections}};
@@ -78,15 +78,15 @@ Json as_json(const pipeline::LiveSummary& summary, const LiveCommand& command) {
   return json;
 }
 
-void print_live(const pipeline::LiveSummary& summary, const LiveCommand& command) {
+void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& command) {
   fmt::print(stderr, "{}: {} instants in {:.1f} s at {:g} Hz; {} targets\n", to_string(summary.job), summary.frames,
              summary.seconds, summary.rate_hz, summary.tracks);
-  for (const pipeline::LiveStatus::Camera& camera : summary.last.cameras) {
+  for (const pipeline::corridor::LiveStatus::Camera& camera : summary.last.cameras) {
     fmt::print(stderr, "  {:<12} {:>7} frames, {} lost, {} damaged, {} overrun{}\n", camera.name, camera.frames, camera.lost,
                camera.damaged, camera.overrun,
                camera.connections > 1 ? fmt::format("; connected {} times", camera.connections) : "");
   }
-  const pipeline::LiveDrops& drops = summary.last.drops;
+  const pipeline::corridor::LiveDrops& drops = summary.last.drops;
   fmt::print(stderr, "let go: {} moments overtaken, {} incomplete, {} empty; {} frames late\n", drops.overtaken, drops.incomplete,
              drops.empty, drops.late_frames);
   print_set_figures(summary);
@@ -108,16 +108,16 @@ std::vector<std::string> played_files(const LiveCommand& command) {
 
 std::vector<std::string> files_beside_take(const LiveCommand& command) {
   if (command.record != Kept::raw) return {};
-  return pipeline::CameraFilms::files_of(pictures_of(command.out), rig_of_live_sources(command.sources));
+  return pipeline::live::CameraFilms::files_of(pictures_of(command.out), rig_of_live_sources(command.sources));
 }
 
-pipeline::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
+pipeline::live::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
   std::vector<std::string> warnings;
-  pipeline::LiveOptions options = resolved(command.job, rig, warnings);
+  pipeline::live::LiveOptions options = resolved(command.job, rig, warnings);
   warn(warnings);
   options.take = command.out;
   if (command.record == Kept::raw) options.pictures = pictures_of(command.out);
-  options.recording = std::make_shared<pipeline::RecordSwitch>(!command.armed);
+  options.recording = std::make_shared<pipeline::corridor::RecordSwitch>(!command.armed);
   options.policy.time = source::steady_time();
   return options;
 }
@@ -130,11 +130,12 @@ void tell_of_slots(const LiveCommand& command) {
   fmt::print(stderr,
              "marey: lsl: no labels are given ({}): the outlet has {} slots, each with a track's ID and coordinates, NaN where "
              "empty\n",
-             command.job.targets == LiveTargets::markers ? "--labels" : "people have none", command.outputs.streams.unlabelled_slots);
+             command.job.targets == LiveTargets::markers ? "--labels" : "people have none",
+             command.outputs.streams.unlabelled_slots);
 }
 
 /// The part of the ground that the page shows.
-viewer::LiveGround ground_of(const pipeline::PeopleOnGroundOptions& options) {
+viewer::LiveGround ground_of(const pipeline::people::PeopleOnGroundOptions& options) {
   viewer::LiveGround ground{.pitch = options.pitch, .area = {}};
   for (const Vector<2>& corner : options.area) ground.area.emplace_back(corner.x(), corner.y(), 0);
   return ground;
@@ -151,9 +152,9 @@ void run(const LiveCommand& command) {
     if (const auto refused = ask_for_realtime()) warn({*refused});
   }
   const Rig rig = rig_of_live_sources(command.sources);
-  pipeline::LiveOptions options = options_of(command, rig);
-  options.desk = std::make_shared<pipeline::CameraDesk>(rig, command.job.markers.threshold);
-  options.naming = std::make_shared<pipeline::TrackNaming>();
+  pipeline::live::LiveOptions options = options_of(command, rig);
+  options.desk = std::make_shared<pipeline::live::CameraDesk>(rig, command.job.markers.threshold);
+  options.naming = std::make_shared<pipeline::markers::TrackNaming>();
   LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.desk, options.naming},
                       command.job.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
   options.sinks = outputs.sinks();
@@ -165,16 +166,18 @@ void run(const LiveCommand& command) {
     if (key == 'q') end.source.request_stop();
     if (key == 'r' && !command.out.empty()) recording->toggle();
   });
-  options.begun = [&](pipeline::LiveJob job, const Rig& fed) { screen.begun(job, fed, keys.listens(), !command.out.empty()); };
-  options.status = [&](const pipeline::LiveStatus& status) {
+  options.begun = [&](pipeline::live::LiveJob job, const Rig& fed) {
+    screen.begun(job, fed, keys.listens(), !command.out.empty());
+  };
+  options.status = [&](const pipeline::corridor::LiveStatus& status) {
     screen.show(status);
     outputs.report(status);
     if (command.for_s && status.seconds >= *command.for_s) end.source.request_stop();
   };
   const Hooks hooks{.progress = {}, .stop = end.source.get_token(), .options = given_options()};
-  const pipeline::LiveSummary summary = [&] {
+  const pipeline::live::LiveSummary summary = [&] {
     const StopScope scope(hooks.stop);
-    return pipeline::live(rig, std::move(options), hooks);
+    return pipeline::live::live(rig, std::move(options), hooks);
   }();
   warn(summary.warnings);
   if (command.json) {

@@ -11,7 +11,8 @@
 namespace marey::cli {
 namespace {
 
-std::function<void(bool on)> switching(const std::shared_ptr<pipeline::RecordSwitch>& recording, const std::string& take) {
+std::function<void(bool on)> switching(const std::shared_ptr<pipeline::corridor::RecordSwitch>& recording,
+                                       const std::string& take) {
   if (recording == nullptr || take.empty()) return {};
   return [recording](bool on) { recording->set(on); };
 }
@@ -57,7 +58,7 @@ std::vector<std::unique_ptr<Sink>> LiveOutputs::sinks() {
   return sinks;
 }
 
-viewer::LiveReport::Camera LiveOutputs::camera_of(const pipeline::LiveStatus::Camera& camera, std::size_t index) const {
+viewer::LiveReport::Camera LiveOutputs::camera_of(const pipeline::corridor::LiveStatus::Camera& camera, std::size_t index) const {
   viewer::LiveReport::Camera told{.state = camera.state,
                                   .rate_hz = camera.rate_hz > 0 ? std::optional(camera.rate_hz) : std::nullopt,
                                   .frames = camera.frames,
@@ -67,7 +68,7 @@ viewer::LiveReport::Camera LiveOutputs::camera_of(const pipeline::LiveStatus::Ca
   return told;
 }
 
-void LiveOutputs::report(const pipeline::LiveStatus& status) {
+void LiveOutputs::report(const pipeline::corridor::LiveStatus& status) {
   if (!viewer_) return;
   viewer::LiveReport report{.cameras = {},
                             .overtaken = status.drops.overtaken,
@@ -75,7 +76,7 @@ void LiveOutputs::report(const pipeline::LiveStatus& status) {
                             .unsaved = handles_.desk->has_changed(),
                             .notes = status.troubles};
   report.notes.insert(report.notes.end(), status.news.begin(), status.news.end());
-  for (const pipeline::LiveStatus::Camera& camera : status.cameras) {
+  for (const pipeline::corridor::LiveStatus::Camera& camera : status.cameras) {
     report.cameras.push_back(camera_of(camera, report.cameras.size()));
     if (!camera.trouble.empty()) report.notes.push_back(camera.trouble);
   }

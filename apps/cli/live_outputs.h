@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "marey/core/sink.h"
-#include "marey/pipeline/live.h"
+#include "marey/pipeline/live/live.h"
 
 #include "stream_options.h"
 #include "viewer/live_viewer.h"
@@ -23,10 +23,10 @@ struct LiveOutputOptions {
 
 /// What of a live run its page may change.
 struct LiveHandles {
-  std::shared_ptr<source::LiveTime> time;             ///< the run's
-  std::shared_ptr<pipeline::RecordSwitch> recording;  ///< null: nothing is recorded
-  std::shared_ptr<pipeline::CameraDesk> desk;
-  std::shared_ptr<pipeline::TrackNaming> naming;
+  std::shared_ptr<source::LiveTime> time;                       ///< the run's
+  std::shared_ptr<pipeline::corridor::RecordSwitch> recording;  ///< null: nothing is recorded
+  std::shared_ptr<pipeline::live::CameraDesk> desk;
+  std::shared_ptr<pipeline::markers::TrackNaming> naming;
 };
 
 void add_live_outputs(Command& command, LiveOutputOptions& options);
@@ -39,11 +39,11 @@ class LiveOutputs {
 
   std::vector<std::unique_ptr<Sink>> sinks();
   /// What the page says of cameras and losses.
-  void report(const pipeline::LiveStatus& status);
+  void report(const pipeline::corridor::LiveStatus& status);
   const stream::Streams& streams() const { return streams_; }
 
  private:
-  viewer::LiveReport::Camera camera_of(const pipeline::LiveStatus::Camera& camera, std::size_t index) const;
+  viewer::LiveReport::Camera camera_of(const pipeline::corridor::LiveStatus::Camera& camera, std::size_t index) const;
 
   std::string take_;
   LiveHandles handles_;

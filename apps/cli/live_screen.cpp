@@ -27,7 +27,7 @@ int terminal_columns() {
 }
 
 /// "12.4 s  cam1 100 Hz 40  cam2 lost | 40 targets | dropped 3 | 4.1 / 9.8 ms | REC"
-std::string line_of(const pipeline::LiveStatus& status) {
+std::string line_of(const pipeline::corridor::LiveStatus& status) {
   std::string text = fmt::format("{:.0f} s ", status.seconds);
   for (const auto& camera : status.cameras) {
     const std::int64_t gone = camera.lost + camera.overrun + camera.damaged;
@@ -36,7 +36,7 @@ std::string line_of(const pipeline::LiveStatus& status) {
                 : fmt::format(" {} {:.0f} Hz {}", camera.name, camera.rate_hz, camera.detections);
     if (gone > 0) text += fmt::format(" -{}", gone);
   }
-  const pipeline::LiveDrops& drops = status.drops;
+  const pipeline::corridor::LiveDrops& drops = status.drops;
   text += fmt::format(" | {} targets | dropped {}", status.targets, drops.overtaken + drops.incomplete + drops.late_frames);
   if (status.latency_median_s)
     text += fmt::format(" | {:.1f} / {:.1f} ms", 1000 * *status.latency_median_s, 1000 * status.latency_p99_s.value_or(0));
@@ -103,13 +103,13 @@ void StatusLine::show(const std::string& line) {
   shown_ = true;
 }
 
-void LiveScreen::begun(pipeline::LiveJob job, const Rig& rig, bool keys, bool records) {
+void LiveScreen::begun(pipeline::live::LiveJob job, const Rig& rig, bool keys, bool records) {
   out_.say(fmt::format("{} of {} {}{}", to_string(job), rig.cameras.size(), rig.cameras.size() == 1 ? "camera" : "cameras",
-                       job == pipeline::LiveJob::preview ? "; calibrate the rig to track (marey calibrate wand)" : ""));
+                       job == pipeline::live::LiveJob::preview ? "; calibrate the rig to track (marey calibrate wand)" : ""));
   if (keys) out_.say(records ? "r: record, or pause; q: end" : "q: end");
 }
 
-void LiveScreen::show(const pipeline::LiveStatus& status) {
+void LiveScreen::show(const pipeline::corridor::LiveStatus& status) {
   states_.resize(status.cameras.size(), FeedState::live);
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const auto& camera = status.cameras[i];

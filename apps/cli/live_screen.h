@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "marey/pipeline/live.h"
+#include "marey/pipeline/live/live.h"
 
 namespace marey::cli {
 
@@ -49,8 +49,8 @@ class LiveScreen {
  public:
   explicit LiveScreen(bool quiet) : out_(quiet) {}
 
-  void begun(pipeline::LiveJob job, const Rig& rig, bool keys, bool records);
-  void show(const pipeline::LiveStatus& status);
+  void begun(pipeline::live::LiveJob job, const Rig& rig, bool keys, bool records);
+  void show(const pipeline::corridor::LiveStatus& status);
 
  private:
   StatusLine out_;

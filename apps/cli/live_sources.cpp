@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/source_name.h"
-#include "marey/pipeline/live_feeds.h"
+#include "marey/pipeline/live/live_feeds.h"
 
 #include "rig_inputs.h"
 
@@ -15,7 +15,7 @@ bool is_rig_file(const std::string& source) {
 
 void add_live_sources(Command& command, std::vector<std::string>& sources) {
   std::string forms;
-  for (const auto& kind : pipeline::live_kinds()) forms += fmt::format("{}{}", forms.empty() ? "" : "; ", kind.form);
+  for (const auto& kind : pipeline::live::live_kinds()) forms += fmt::format("{}{}", forms.empty() ? "" : "; ", kind.form);
   command
       .input_files(
           "SOURCES", sources,
@@ -25,7 +25,7 @@ void add_live_sources(Command& command, std::vector<std::string>& sources) {
 }
 
 Rig rig_of_live_sources(const std::vector<std::string>& sources) {
-  if (!is_rig_file(sources.front())) return pipeline::rig_of_sources(sources);
+  if (!is_rig_file(sources.front())) return pipeline::live::rig_of_sources(sources);
   return rig_of(RigAndSources{sources.front(), {sources.begin() + 1, sources.end()}});
 }
 

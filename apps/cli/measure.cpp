@@ -8,8 +8,8 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/ground_orientation.h"
-#include "marey/pipeline/measure_match.h"
+#include "marey/pipeline/take/ground_orientation.h"
+#include "marey/pipeline/take/measure_match.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -22,10 +22,10 @@ namespace {
 
 struct MeasureCommand {
   std::string tracks;
-  pipeline::MeasureOutput output;
+  pipeline::take::MeasureOutput output;
   std::string method = "lowpass", zones = "2,4,5.5,7", size = "105x68", rig;
   bool y_down = false;
-  pipeline::MeasureMatchOptions options;
+  pipeline::take::MeasureMatchOptions options;
   bool json = false;
   bool quiet = false;
 };
@@ -138,14 +138,15 @@ std::string report_file(const MeasureCommand& command) {
 }
 
 void run(const MeasureCommand& command) {
-  pipeline::MeasureMatchOptions options = command.options;
+  pipeline::take::MeasureMatchOptions options = command.options;
   options.how.path.method = analyse::parse_path_method(command.method);
   options.how.zones = parse_zones(command.zones);
   options.how.pitch = parse_pitch_size(command.size);
   if (command.y_down) options.y_down = true;
-  if (!command.rig.empty()) options.y_down = pipeline::rig_has_y_down(command.rig);
-  const auto [measured, warnings] = with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::measure_match(command.tracks, command.output, options, hooks); });
+  if (!command.rig.empty()) options.y_down = pipeline::take::rig_has_y_down(command.rig);
+  const auto [measured, warnings] = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::take::measure_match(command.tracks, command.output, options, hooks);
+  });
   warn(warnings);
   if (command.json) {
     report_json(measured);

@@ -7,9 +7,9 @@
 
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
-#include "marey/pipeline/camera_node.h"
-#include "marey/pipeline/live_feeds.h"
 #include "marey/pipeline/jobs/detection_rows.h"
+#include "marey/pipeline/live/camera_node.h"
+#include "marey/pipeline/live/live_feeds.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -28,7 +28,7 @@ struct NodeCommand {
   std::vector<std::string> sources;
   NodeSends send = NodeSends::markers;
   int quality = 90;
-  pipeline::NodeOptions options;
+  pipeline::live::NodeOptions options;
   bool json = false, quiet = false;
 };
 
@@ -46,12 +46,12 @@ void print_begun(const NodeCommand& command, const Rig& rig) {
                       command.options.port + 1)});
 }
 
-Json as_json(const pipeline::NodeSummary& summary, const NodeCommand& command) {
+Json as_json(const pipeline::live::NodeSummary& summary, const NodeCommand& command) {
   Json json{{"address", fmt::format("{}:{}", command.options.address, command.options.port)},
             {"seconds", summary.seconds},
             {"bytes", summary.bytes},
             {"cameras", Json::object()}};
-  for (const pipeline::NodeSummary::Camera& camera : summary.cameras)
+  for (const pipeline::live::NodeSummary::Camera& camera : summary.cameras)
     json["cameras"][camera.name] = {{"state", to_string(camera.state)},
                                     {"sent", camera.sent},
                                     {"lost", camera.lost},
@@ -60,8 +60,8 @@ Json as_json(const pipeline::NodeSummary& summary, const NodeCommand& command) {
   return json;
 }
 
-void print_node(const pipeline::NodeSummary& summary) {
-  for (const pipeline::NodeSummary::Camera& camera : summary.cameras) {
+void print_node(const pipeline::live::NodeSummary& summary) {
+  for (const pipeline::live::NodeSummary::Camera& camera : summary.cameras) {
     fmt::print(stderr, "  {:<12} {:>7} frames sent, {} lost, {} damaged, {} overrun{}\n", camera.name, camera.sent, camera.lost,
                camera.damaged, camera.overrun, camera.trouble.empty() ? "" : "; " + camera.trouble);
   }
@@ -73,8 +73,9 @@ void run(NodeCommand& command) {
   command.options.allow_control = command.options.allow_control || !is_open_to_others(command.options.address);
   if (command.send == NodeSends::pictures) command.options.quality = command.quality;
   if (!command.quiet) command.options.begun = [&](const Rig& told) { print_begun(command, told); };
-  const pipeline::NodeSummary summary = with_progress(
-      command.quiet || command.json, [&](const Hooks& hooks) { return pipeline::serve_cameras(rig, command.options, hooks); });
+  const pipeline::live::NodeSummary summary = with_progress(command.quiet || command.json, [&](const Hooks& hooks) {
+    return pipeline::live::serve_cameras(rig, command.options, hooks);
+  });
   if (command.json) {
     print(as_json(summary, command));
   } else if (!command.quiet) {
@@ -86,7 +87,7 @@ void run(NodeCommand& command) {
 
 void add_node(Command& program) {
   auto options = std::make_shared<NodeCommand>();
-  pipeline::NodeOptions& how = options->options;
+  pipeline::live::NodeOptions& how = options->options;
   Command command = program.subcommand("node", "Hand this computer's cameras to another one, where marey live runs");
   add_live_sources(command, options->sources);
   command.choice("--send", options->send, kNodeSends,

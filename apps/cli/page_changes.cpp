@@ -9,15 +9,15 @@ namespace marey::cli {
 namespace {
 
 /// Camera numbers come from a page.
-std::size_t within(CameraId camera, const pipeline::CameraDesk& desk) {
+std::size_t within(CameraId camera, const pipeline::live::CameraDesk& desk) {
   const auto index = static_cast<std::size_t>(number(camera));
   if (index >= desk.size()) throw Error("there is no camera {}", index + 1);
   return index;
 }
 
 struct Changes {
-  std::shared_ptr<pipeline::CameraDesk> desk;
-  std::shared_ptr<pipeline::TrackNaming> naming;
+  std::shared_ptr<pipeline::live::CameraDesk> desk;
+  std::shared_ptr<pipeline::markers::TrackNaming> naming;
   std::string rig_file;
 
   void operator()(const viewer::TurnDial& wanted) const {
@@ -28,7 +28,7 @@ struct Changes {
   void operator()(const viewer::SetThreshold& wanted) const { desk->set_threshold(within(wanted.camera, *desk), wanted.level); }
   void operator()(const viewer::ChangeMasks& wanted) const {
     using What = viewer::ChangeMasks::What;
-    pipeline::MarkerTuning& tuning = *desk->tuning(within(wanted.camera, *desk));
+    pipeline::corridor::MarkerTuning& tuning = *desk->tuning(within(wanted.camera, *desk));
     if (wanted.what == What::add) tuning.mask(*wanted.part);
     if (wanted.what == What::remove) tuning.unmask(*wanted.part);
     if (wanted.what == What::remove_all) tuning.set_masks({});
@@ -45,8 +45,9 @@ struct Changes {
 
 }  // namespace
 
-std::function<void(const viewer::PageCommand&)> page_changes(std::shared_ptr<pipeline::CameraDesk> desk,
-                                                             std::shared_ptr<pipeline::TrackNaming> naming, std::string rig_file) {
+std::function<void(const viewer::PageCommand&)> page_changes(std::shared_ptr<pipeline::live::CameraDesk> desk,
+                                                             std::shared_ptr<pipeline::markers::TrackNaming> naming,
+                                                             std::string rig_file) {
   return [changes = Changes{std::move(desk), std::move(naming), std::move(rig_file)}](const viewer::PageCommand& command) {
     std::visit(changes, command);
   };
@@ -56,7 +57,7 @@ bool is_for_this_computer(const std::string& listen) {
   return listen.starts_with("127.") || listen == "::1" || listen == "localhost";
 }
 
-void tell_changeable(viewer::LiveReport::Camera& told, const pipeline::CameraDesk::Camera& set) {
+void tell_changeable(viewer::LiveReport::Camera& told, const pipeline::live::CameraDesk::Camera& set) {
   using source::live::Control;
   told.threshold = set.markers.threshold;
   told.masks = set.markers.masks;

@@ -5,21 +5,22 @@
 #include <memory>
 #include <string>
 
-#include "marey/pipeline/camera_desk.h"
-#include "marey/pipeline/track_naming.h"
+#include "marey/pipeline/live/camera_desk.h"
+#include "marey/pipeline/markers/track_naming.h"
 
 #include "viewer/live_viewer.h"
 
 namespace marey::cli {
 
 /// Does what a page asks for. Names are given where there is `naming`; `rig_file` is what Save writes, empty: nothing.
-std::function<void(const viewer::PageCommand&)> page_changes(std::shared_ptr<pipeline::CameraDesk> desk,
-                                                             std::shared_ptr<pipeline::TrackNaming> naming, std::string rig_file);
+std::function<void(const viewer::PageCommand&)> page_changes(std::shared_ptr<pipeline::live::CameraDesk> desk,
+                                                             std::shared_ptr<pipeline::markers::TrackNaming> naming,
+                                                             std::string rig_file);
 
 /// Whether a page at this address is for who sits at this computer alone.
 bool is_for_this_computer(const std::string& listen);
 
 /// What of a camera can be changed, as a page is told it.
-void tell_changeable(viewer::LiveReport::Camera& told, const pipeline::CameraDesk::Camera& set);
+void tell_changeable(viewer::LiveReport::Camera& told, const pipeline::live::CameraDesk::Camera& set);
 
 }  // namespace marey::cli

@@ -9,7 +9,7 @@
 #include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/soccernet_camera.h"
-#include "marey/pipeline/calibrate_elements.h"
+#include "marey/pipeline/calibrate/calibrate_elements.h"
 
 #include "command_line.h"
 #include "json_value.h"
@@ -31,7 +31,7 @@ cv::Size parse_resolution(const std::string& text) {
   return {width, height};
 }
 
-Json element_picture_json(const pipeline::ElementPicture& picture) {
+Json element_picture_json(const pipeline::calibrate::ElementPicture& picture) {
   Json entry = {{"name", picture.name},
                 {"verdict", calibrate::pitch::element_verdict_name(picture.found.verdict)},
                 {"elements", picture.labels.size()}};
@@ -53,9 +53,9 @@ Json element_picture_json(const pipeline::ElementPicture& picture) {
   return entry;
 }
 
-Json elements_json(const pipeline::ElementRun& run) {
+Json elements_json(const pipeline::calibrate::ElementRun& run) {
   Json pictures = Json::array();
-  for (const pipeline::ElementPicture& picture : run.pictures) pictures.push_back(element_picture_json(picture));
+  for (const pipeline::calibrate::ElementPicture& picture : run.pictures) pictures.push_back(element_picture_json(picture));
   return {{"pictures", pictures},
           {"found", run.rig.cameras.size()},
           {"complete", static_cast<double>(run.rig.cameras.size()) / static_cast<double>(run.pictures.size())},
@@ -63,9 +63,9 @@ Json elements_json(const pipeline::ElementRun& run) {
           {"warnings", run.warnings}};
 }
 
-void print_elements(const pipeline::ElementRun& run) {
+void print_elements(const pipeline::calibrate::ElementRun& run) {
   if (run.pictures.size() == 1) {
-    const pipeline::ElementPicture& picture = run.pictures[0];
+    const pipeline::calibrate::ElementPicture& picture = run.pictures[0];
     const auto& p = picture.found.view.p;
     const Vector<3>& place = picture.found.camera->centre();
     fmt::print(
@@ -79,9 +79,9 @@ void print_elements(const pipeline::ElementRun& run) {
              100 * run.jaccard);
 }
 
-void write_cameras(const pipeline::ElementRun& run, const std::string& folder, const geometry::PitchSize& size) {
+void write_cameras(const pipeline::calibrate::ElementRun& run, const std::string& folder, const geometry::PitchSize& size) {
   std::filesystem::create_directories(folder);
-  for (const pipeline::ElementPicture& picture : run.pictures) {
+  for (const pipeline::calibrate::ElementPicture& picture : run.pictures) {
     if (!picture.found.camera) continue;
     WholeFile file((std::filesystem::path(folder) / fmt::format("camera_{}.json", picture.name)).string());
     file.write(format::rig::soccernet_camera_text(*picture.found.camera, size));
@@ -96,11 +96,11 @@ void check_resolution(const std::string& text) {
 }
 
 void run_pitch_elements(const PitchElements& command) {
-  pipeline::ElementRunOptions options;
+  pipeline::calibrate::ElementRunOptions options;
   options.size = parse_resolution(command.resolution);
   options.camera.pitch = parse_pitch_size(command.size);
-  const pipeline::ElementRun run =
-      with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate_elements(command.files, options, hooks); });
+  const pipeline::calibrate::ElementRun run = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate::calibrate_elements(command.files, options, hooks); });
   if (!command.out.empty()) format::rig::write_rig(run.rig, command.out);
   if (!command.cameras.empty()) write_cameras(run, command.cameras, options.camera.pitch);
   warn(run.warnings);

@@ -1,4 +1,4 @@
-#include "marey/pipeline/play.h"
+#include "marey/pipeline/take/play.h"
 
 #include <array>
 #include <filesystem>
@@ -12,8 +12,8 @@
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/jobs/space_names.h"
-#include "marey/pipeline/set_in_space.h"
-#include "marey/pipeline/skeleton_in_space.h"
+#include "marey/pipeline/markers/set_in_space.h"
+#include "marey/pipeline/markers/skeleton_in_space.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -30,13 +30,13 @@ struct PlayCommand {
   pipeline::jobs::SpaceNames names;
   std::string size = "105x68";
   format::ReadOptions read;
-  pipeline::PlayOptions how;
+  pipeline::take::PlayOptions how;
   StreamArguments streams;
   bool json = false;
   bool quiet = false;
 };
 
-void report(const PlayCommand& command, const pipeline::PlaySummary& done, const stream::Streams& streams) {
+void report(const PlayCommand& command, const pipeline::take::PlaySummary& done, const stream::Streams& streams) {
   warn(done.warnings);
   if (command.json) {
     print({{"recording", command.recording},
@@ -66,19 +66,19 @@ void run(PlayCommand& command) {
   const auto skeleton = pipeline::jobs::skeleton_of(command.names.skeleton, warnings);
   warn(warnings);
   const auto set = pipeline::jobs::learned_set_of(command.names.set, skeleton.get());
-  pipeline::SetInSpaceOptions naming;
+  pipeline::markers::SetInSpaceOptions naming;
   naming.names_hold = false;
   const auto open = [&]() -> std::unique_ptr<RecordingReader> {
     std::unique_ptr<RecordingReader> reader = format::open_recording(command.recording, command.read);
-    if (set != nullptr) reader = pipeline::with_set(std::move(reader), set, naming);
-    return skeleton == nullptr ? std::move(reader) : pipeline::with_skeleton(std::move(reader), skeleton);
+    if (set != nullptr) reader = pipeline::markers::with_set(std::move(reader), set, naming);
+    return skeleton == nullptr ? std::move(reader) : pipeline::markers::with_skeleton(std::move(reader), skeleton);
   };
   command.how.name = std::filesystem::path(command.recording).filename();
   open();  // what cannot be read is told before a port is taken
   const stream::Streams streams = open_streams(command.streams, command.quiet);
   const auto sinks = streams.sinks();
-  const pipeline::PlaySummary done = with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::play(open, sinks, command.how, &streams.clock(), hooks); });
+  const pipeline::take::PlaySummary done = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::take::play(open, sinks, command.how, &streams.clock(), hooks); });
   report(command, done, streams);
 }
 
@@ -86,7 +86,7 @@ void run(PlayCommand& command) {
 
 void add_play(Command& program) {
   auto options = std::make_shared<PlayCommand>();
-  pipeline::PlayOptions& how = options->how;
+  pipeline::take::PlayOptions& how = options->how;
   Command command = program.subcommand("play", "Play a recording in real time, as if it were captured now, to whoever listens");
   command.input_file("RECORDING", options->recording, "known by its content: " + format::names_of_read(format::kRecordings))
       .required();

@@ -1,4 +1,4 @@
-#include "marey/pipeline/reconstruct.h"
+#include "marey/pipeline/markers/reconstruct.h"
 
 #include <array>
 #include <cstdio>
@@ -34,7 +34,7 @@ struct ReconstructCommand {
   bool quiet = false;
 };
 
-Json as_json(const pipeline::Summary& summary, const std::string& out) {
+Json as_json(const pipeline::corridor::Summary& summary, const std::string& out) {
   Json json = {{"frames", summary.frames},
                {"seconds", summary.seconds},
                {"rate_hz", summary.rate_hz},
@@ -57,7 +57,7 @@ Json as_json(const pipeline::Summary& summary, const std::string& out) {
   return json;
 }
 
-void print_points_summary(const pipeline::Summary& summary, const std::string& out) {
+void print_points_summary(const pipeline::corridor::Summary& summary, const std::string& out) {
   fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.tracks,
              summary.tracks == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
@@ -80,8 +80,10 @@ void run_keypoints(const ReconstructCommand& command) {
     throw WrongUsage("{}", "--targets keypoints: --observations, --labels, --set and --skeleton are of markers; remove them");
   run_with_progress(
       command.quiet,
-      [&](const Hooks& hooks) { return pipeline::reconstruct_keypoints(rig_of(command.inputs), command.out, command.keypoints.options, hooks); },
-      [&](const pipeline::KeypointsSummary& summary, double) {
+      [&](const Hooks& hooks) {
+        return pipeline::keypoints::reconstruct_keypoints(rig_of(command.inputs), command.out, command.keypoints.options, hooks);
+      },
+      [&](const pipeline::keypoints::KeypointsSummary& summary, double) {
         if (command.json) {
           print(keypoints_json(summary, command.out));
         } else if (!command.quiet) {
@@ -93,14 +95,14 @@ void run_keypoints(const ReconstructCommand& command) {
 void run(const ReconstructCommand& command) {
   if (command.of_keypoints) return run_keypoints(command);
   std::vector<std::string> warnings;
-  const pipeline::MarkersInSpaceOptions options = resolved(command.markers, warnings);
+  const pipeline::markers::MarkersInSpaceOptions options = resolved(command.markers, warnings);
   warn(warnings);
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {
-        return pipeline::reconstruct(rig_of(command.inputs), observations_of(command.inputs), command.out, options, hooks);
+        return pipeline::markers::reconstruct(rig_of(command.inputs), observations_of(command.inputs), command.out, options, hooks);
       },
-      [&](const pipeline::Summary& summary, double) {
+      [&](const pipeline::corridor::Summary& summary, double) {
         if (command.json) {
           print(as_json(summary, command.out));
         } else if (!command.quiet) {
@@ -120,12 +122,14 @@ void add_reconstruct(Command& program) {
       .required()
       .ends_in({".marey", ".c3d", ".trc", ".csv"});
   constexpr std::array<std::pair<const char*, bool>, 2> kTargets{{{"markers", false}, {"keypoints", true}}};
-  command.choice("--targets", options->of_keypoints, kTargets,
-                 "what is reconstructed: markers; or people's body keypoints, which CAMERA=FILE or CAMERA=FOLDER names (OpenPose, COCO, "
-                 "AlphaPose, MMPose, DeepLabCut, SLEAP)");
+  command.choice(
+      "--targets", options->of_keypoints, kTargets,
+      "what is reconstructed: markers; or people's body keypoints, which CAMERA=FILE or CAMERA=FOLDER names (OpenPose, COCO, "
+      "AlphaPose, MMPose, DeepLabCut, SLEAP)");
   const pipeline::jobs::Table& markers = command.rows(table_of(options->markers));
   const pipeline::jobs::Table& keypoints = command.rows(table_of(options->keypoints), "with --targets keypoints");
-  command.records([&markers, &keypoints, options = options.get()] { return (options->of_keypoints ? keypoints : markers).given(); });
+  command.records(
+      [&markers, &keypoints, options = options.get()] { return (options->of_keypoints ? keypoints : markers).given(); });
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

@@ -8,7 +8,7 @@
 
 namespace marey::cli {
 
-Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string& out) {
+Json keypoints_json(const pipeline::keypoints::KeypointsSummary& summary, const std::string& out) {
   Json people = Json::array(), cameras = Json::object();
   for (const auto& person : summary.people)
     people.push_back({{"label", person.label}, {"instants", person.instants}, {"views", person.views}});
@@ -37,7 +37,7 @@ Json keypoints_json(const pipeline::KeypointsSummary& summary, const std::string
           {"take", out}};
 }
 
-void print_keypoints_summary(const pipeline::KeypointsSummary& summary, const std::string& out) {
+void print_keypoints_summary(const pipeline::keypoints::KeypointsSummary& summary, const std::string& out) {
   fmt::print(stderr, "{} {} of {} keypoints ({}) in {} frames ({:.1f} s at {:g} Hz)\n", summary.people.size(),
              summary.people.size() == 1 ? "person" : "people", summary.points, summary.set, summary.frames, summary.seconds,
              summary.rate_hz);

@@ -8,7 +8,7 @@
 
 namespace marey::cli {
 
-void add_set_figures(const pipeline::Summary& summary, Json& json) {
+void add_set_figures(const pipeline::corridor::Summary& summary, Json& json) {
   if (!summary.figures.contains("set_points")) return;
   json["set"] = {{"points", static_cast<std::int64_t>(figure_of(summary, "set_points"))},
                  {"named", static_cast<std::int64_t>(figure_of(summary, "set_named"))},
@@ -16,7 +16,7 @@ void add_set_figures(const pipeline::Summary& summary, Json& json) {
   json["set"]["found_at_s"] = summary.figures.contains("set_found_at_s") ? Json(figure_of(summary, "set_found_at_s")) : Json();
 }
 
-void print_set_figures(const pipeline::Summary& summary) {
+void print_set_figures(const pipeline::corridor::Summary& summary) {
   if (!summary.figures.contains("set_found_at_s")) return;
   const auto points = static_cast<std::int64_t>(figure_of(summary, "set_points"));
   fmt::print(stderr, "names: found at {:.2f} s; {:.2f} % of {} points since then have one of the set\n",

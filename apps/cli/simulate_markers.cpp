@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/corridor/simulation_files.h"
 #include "marey/simulate/markers/marker_scene.h"
 
 #include "command_line.h"
@@ -45,7 +45,7 @@ void run(const SimulateMarkers& command) {
   make_folder(folder.string());
   const simulate::markers::MarkerScene scene =
       simulate::markers::simulate_markers(situation_of(command.name), command.seed, command.scene);
-  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_markers(scene, folder.string(), hooks); });
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::corridor::write_markers(scene, folder.string(), hooks); });
   const std::string video = (folder / "video.mp4").string(), truth = (folder / "truth.csv").string();
   const std::size_t frames = scene.frames.size(), markers = scene.frames.front().size();
   if (command.json) {

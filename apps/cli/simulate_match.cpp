@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/match_files.h"
+#include "marey/pipeline/simulate/match_files.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -19,7 +19,7 @@ namespace marey::cli {
 namespace {
 
 struct SimulateMatch {
-  pipeline::MatchFilesOptions files;
+  pipeline::simulate::MatchFilesOptions files;
   std::string folder;
   std::array<int, 2> size{};
   std::string pitch = "105x68";
@@ -39,14 +39,14 @@ geometry::GroundSurface parse_crown(const std::string& text) {
 }
 
 void run(const SimulateMatch& command) {
-  pipeline::MatchFilesOptions options = command.files;
+  pipeline::simulate::MatchFilesOptions options = command.files;
   options.cameras.pitch = parse_pitch_size(command.pitch);
   options.cameras.ground = parse_crown(command.crown);
   if (options.film.ball && !options.films) throw WrongUsage("{}", "--ball is drawn into films; add --render");
   if (command.size[0] > 0) options.cameras.size = {command.size[0], command.size[1]};
   if (command.filmed) options.film.look = simulate::people::CameraLook::filmed();
   make_folder(command.folder);
-  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_match(options, command.folder, hooks); });
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::simulate::write_match(options, command.folder, hooks); });
   if (command.json)
     print({{"folder", command.folder},
            {"rig", (std::filesystem::path(command.folder) / "rig.toml").string()},
@@ -83,7 +83,7 @@ void add_cameras(Command& match, SimulateMatch& options) {
 }
 
 void add_films(Command& match, SimulateMatch& options) {
-  pipeline::MatchFilesOptions& files = options.files;
+  pipeline::simulate::MatchFilesOptions& files = options.files;
   match.flag("--render", files.films, "film the match with every camera; rig.toml names the films instead of the boxes");
   match.flag("--ball", files.film.ball, "films: play with a ball; ball.csv and CAMERA_ball.csv are its truth");
   match.flag("--no-shadows", files.film.shadows, "films: no person casts a shadow", false);

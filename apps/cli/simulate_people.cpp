@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/simulation_files.h"
+#include "marey/pipeline/corridor/simulation_files.h"
 #include "marey/source/open_source.h"
 
 #include "command_line.h"
@@ -64,7 +64,7 @@ void run(const SimulatePeople& command) {
   const std::vector<std::string> warnings = told_of(command, film);
   warn(warnings);
   make_folder(command.folder);
-  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::film_people(film, command.folder, hooks); });
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::corridor::film_people(film, command.folder, hooks); });
   if (command.json)
     print({{"frames", film.frames()},
            {"people", film.figures().size()},

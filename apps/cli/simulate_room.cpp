@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/room_files.h"
+#include "marey/pipeline/simulate/room_files.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -23,7 +23,7 @@ namespace {
 
 struct SimulateRoom {
   simulate::room::RoomOptions room;
-  pipeline::RoomFilesOptions files;
+  pipeline::simulate::RoomFilesOptions files;
   std::string folder = "room";
   std::array<int, 2> size{1280, 1024};
   std::array<double, 3> volume{4, 4, 2.5};
@@ -71,7 +71,8 @@ simulate::room::RoomOptions room_of(const SimulateRoom& command) {
 void run(const SimulateRoom& command) {
   const simulate::room::RoomScene scene(room_of(command));
   make_folder(command.folder);
-  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_room(scene, command.folder, command.files, hooks); });
+  with_progress(command.quiet,
+                [&](const Hooks& hooks) { pipeline::simulate::write_room(scene, command.folder, command.files, hooks); });
   if (command.json)
     print({{"cameras", scene.rig().cameras.size()},
            {"markers", scene.labels().size()},

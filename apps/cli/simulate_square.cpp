@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/square_files.h"
+#include "marey/pipeline/simulate/square_files.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -16,7 +16,7 @@ namespace marey::cli {
 namespace {
 
 struct SimulateSquare {
-  pipeline::SquareFilesOptions files;
+  pipeline::simulate::SquareFilesOptions files;
   std::string folder;
   bool json = false;
   bool quiet = false;
@@ -24,7 +24,7 @@ struct SimulateSquare {
 
 void run(const SimulateSquare& command) {
   make_folder(command.folder);
-  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_square(command.files, command.folder, hooks); });
+  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::simulate::write_square(command.files, command.folder, hooks); });
   if (command.json)
     print({{"folder", command.folder},
            {"rig", (std::filesystem::path(command.folder) / "rig.toml").string()},

@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/pipeline/turning_files.h"
+#include "marey/pipeline/simulate/turning_files.h"
 
 #include "command_line.h"
 #include "file_checks.h"
@@ -20,7 +20,7 @@ namespace marey::cli {
 namespace {
 
 struct SimulateTurning {
-  pipeline::TurningFilesOptions files;
+  pipeline::simulate::TurningFilesOptions files;
   std::string folder;
   std::array<int, 2> size{1280, 720};
   std::optional<double> cut_at, graphics_at;
@@ -31,12 +31,13 @@ struct SimulateTurning {
 constexpr double kCutSeconds = 2, kGraphicsSeconds = 4;
 
 void run(const SimulateTurning& command) {
-  pipeline::TurningFilesOptions options = command.files;
+  pipeline::simulate::TurningFilesOptions options = command.files;
   options.match.size = {command.size[0], command.size[1]};
   if (command.cut_at) options.match.cuts = {{*command.cut_at, *command.cut_at + kCutSeconds}};
   if (command.graphics_at) options.match.graphics = {{*command.graphics_at, *command.graphics_at + kGraphicsSeconds}};
   make_folder(command.folder);
-  with_progress(command.quiet, [&](const Hooks& hooks) { pipeline::write_turning_match(options, command.folder, hooks); });
+  with_progress(command.quiet,
+                [&](const Hooks& hooks) { pipeline::simulate::write_turning_match(options, command.folder, hooks); });
   if (command.json)
     print({{"folder", command.folder},
            {"rig", (std::filesystem::path(command.folder) / "rig.toml").string()},

@@ -15,7 +15,7 @@
 #include "marey/analyse/gait/body_marker_sets.h"
 #include "marey/core/error.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/solve_skeleton.h"
+#include "marey/pipeline/bodies/solve_skeleton.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -28,12 +28,12 @@ namespace {
 struct SolveCommand {
   std::string recording, skeleton, names;
   std::vector<std::string> outputs;
-  pipeline::SolveOptions options;
+  pipeline::bodies::SolveOptions options;
   bool json = false;
   bool quiet = false;
 };
 
-using pipeline::SolveSummary;
+using pipeline::bodies::SolveSummary;
 
 constexpr std::ptrdiff_t kFreeBody = 6;  // what even one segment's markers show, if they are enough
 
@@ -89,7 +89,7 @@ void print_solved(const std::string& recording, const SolveSummary& summary, con
       fmt::print(stderr, "sizes that the recording does not determine: {}\n", joined(summary.undetermined, 8));
   }
   if (!summary.marker_set.empty()) fmt::print(stderr, "the human skeleton, by {}\n", summary.marker_set);
-  for (const pipeline::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.said);
+  for (const pipeline::bodies::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.said);
   if (summary.empty > 0) fmt::print(stderr, "{} frames have none of the markers; the pose is held there\n", summary.empty);
   if (summary.starts > 1) fmt::print(stderr, "lost and found again: {} times\n", summary.starts - 1);
   if (!summary.not_recorded.empty())
@@ -100,7 +100,7 @@ void print_solved(const std::string& recording, const SolveSummary& summary, con
 
 Json as_json(const SolveSummary& summary, const std::vector<std::string>& outputs) {
   Json markers = Json::array(), coordinates = Json::array(), joints = Json::array();
-  for (const pipeline::FoundJoint& j : summary.joints) {
+  for (const pipeline::bodies::FoundJoint& j : summary.joints) {
     const bool hinge = !j.name.ends_with("hip");
     const double unit = hinge ? 180 / std::numbers::pi : 1000;
     joints.push_back({{"name", j.name},
@@ -146,7 +146,7 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
 void run(SolveCommand& command) {
   if (!command.names.empty()) command.options.bvh.names = format::skeleton::bvh_names(command.names);
   const SolveSummary summary = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::solve_skeleton(command.recording, command.skeleton, command.outputs, command.options, hooks);
+    return pipeline::bodies::solve_skeleton(command.recording, command.skeleton, command.outputs, command.options, hooks);
   });
   warn(summary.warnings);
   if (summary.stopped) {
@@ -161,7 +161,7 @@ void run(SolveCommand& command) {
 }
 
 void require_one_skeleton(const SolveCommand& command) {
-  const pipeline::SolveOptions& how = command.options;
+  const pipeline::bodies::SolveOptions& how = command.options;
   if (!command.skeleton.empty() && !how.static_trial.empty())
     throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
   if (!how.marker_set.empty() && !command.skeleton.empty())
@@ -225,7 +225,7 @@ void add_solve(Command& program) {
              ".marey, "
              ".c3d, ...")
       .required()
-      .check(pipeline::check_skeleton_output);
+      .check(pipeline::bodies::check_skeleton_output);
   command.also_writes([options] { return options->outputs; });
   command.texts("--leave-out", options->options.leave_out, "a marker that is not used, by its label; may be given often");
   add_file_options(command, *options);

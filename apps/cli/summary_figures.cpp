@@ -6,12 +6,12 @@
 
 namespace marey::cli {
 
-double figure_of(const pipeline::Summary& summary, std::string_view name) {
+double figure_of(const pipeline::corridor::Summary& summary, std::string_view name) {
   const auto found = summary.figures.find(name);
   return found != summary.figures.end() ? found->second : 0;
 }
 
-std::int64_t left_out_of(const pipeline::Summary& summary, std::string_view reason) {
+std::int64_t left_out_of(const pipeline::corridor::Summary& summary, std::string_view reason) {
   const auto found = summary.left_out.find(reason);
   return found != summary.left_out.end() ? found->second : 0;
 }
@@ -20,28 +20,28 @@ double percent_of(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
 
-void add_skeleton_figures(const pipeline::Summary& summary, Json& json) {
+void add_skeleton_figures(const pipeline::corridor::Summary& summary, Json& json) {
   if (!summary.figures.contains("skeleton_rms_mm")) return;
   json["skeleton"] = {{"rms_mm", figure_of(summary, "skeleton_rms_mm")},
                       {"starts", static_cast<std::int64_t>(figure_of(summary, "skeleton_starts"))}};
 }
 
-void print_skeleton_figures(const pipeline::Summary& summary) {
+void print_skeleton_figures(const pipeline::corridor::Summary& summary) {
   if (!summary.figures.contains("skeleton_rms_mm")) return;
   const auto lost = static_cast<std::int64_t>(figure_of(summary, "skeleton_starts")) - 1;
   fmt::print(stderr, "skeleton: markers lie {:.1f} mm RMS from where it has them{}\n", figure_of(summary, "skeleton_rms_mm"),
              lost > 0 ? fmt::format("; lost and found again {} times", lost) : "");
 }
 
-Json stages_of(const pipeline::Summary& summary) {
+Json stages_of(const pipeline::corridor::Summary& summary) {
   Json stages;
-  for (const pipeline::Summary::StepTime& step : summary.steps)
+  for (const pipeline::corridor::Summary::StepTime& step : summary.steps)
     stages[step.name] = {{"count", step.count}, {"median_ms", 1000 * step.median}, {"p99_ms", 1000 * step.p99}};
   return stages;
 }
 
-void print_stages(const pipeline::Summary& summary) {
-  for (const pipeline::Summary::StepTime& step : summary.steps)
+void print_stages(const pipeline::corridor::Summary& summary) {
+  for (const pipeline::corridor::Summary::StepTime& step : summary.steps)
     fmt::print(stderr, "  {:<18} median {:8.3f} ms, 99 % within {:8.3f} ms\n", step.name, 1000 * step.median, 1000 * step.p99);
 }
 

@@ -62,9 +62,9 @@ std::string default_output(const TrackCommand& command, const std::string& forma
   return stem + "_tracks" + first_ending(*format::format_named(format, format::Content::image));
 }
 
-pipeline::TrackOutput output_of(const TrackCommand& command) {
+pipeline::people::TrackOutput output_of(const TrackCommand& command) {
   const pipeline::jobs::ImageInput& input = command.people.input;
-  pipeline::TrackOutput output{.tracks = command.out, .overlay = input.overlay, .plot = input.plot};
+  pipeline::people::TrackOutput output{.tracks = command.out, .overlay = input.overlay, .plot = input.plot};
   const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
   if (named || !command.format.empty()) {
     output.format = format::format_to_write(command.out, command.format, format::Content::image).name;
@@ -82,7 +82,7 @@ pipeline::TrackOutput output_of(const TrackCommand& command) {
 
 /// Runs `track(hooks)` and reports what came of it.
 template <typename Track>
-void run(const TrackCommand& command, const pipeline::TrackOutput& output, Track&& track) {
+void run(const TrackCommand& command, const pipeline::people::TrackOutput& output, Track&& track) {
   if (command.people.outline && (output.format == "mot" || output.format == "csv"))
     warn({fmt::format("{}: holds no outlines; .jsonl and .marey do", output.tracks)});
   if (command.targets == Targets::keypoints && output.format == "mot")
@@ -151,14 +151,15 @@ void print_network_cost(const detect::DetectorOptions& detector, const std::stri
 template <typename Job>
 void run_in_image(TrackCommand& command, Job& job) {
   job.input.camera.source = command.source;
-  const pipeline::TrackOutput output = output_of(command);
+  const pipeline::people::TrackOutput output = output_of(command);
   const auto options = resolved(job);
   if constexpr (std::is_same_v<Job, pipeline::jobs::TrackMarkers>) {
     run(command, output,
-        [&](const Hooks& hooks) { return pipeline::track_markers(job.input.camera, output, options, hooks); });
+        [&](const Hooks& hooks) { return pipeline::people::track_markers(job.input.camera, output, options, hooks); });
   } else {
     if (!command.quiet && !command.json) print_network_cost(options.detector, command.source);
-    run(command, output, [&](const Hooks& hooks) { return pipeline::track_people(job.input.camera, output, options, hooks); });
+    run(command, output,
+        [&](const Hooks& hooks) { return pipeline::people::track_people(job.input.camera, output, options, hooks); });
   }
 }
 
@@ -176,8 +177,7 @@ void run(TrackCommand& command) {
 void add_inputs(Command& command, TrackCommand& options) {
   command.input_file("INPUT", options.source,
                      "a video file, a folder of images, or a pattern such as 'shot_%04d.png' or '*.jpg'; with --ground a rig file");
-  command.input_files("SOURCES", options.ground.sources,
-                      "with --ground: CAMERA=FILE, in place of the rig's source or detections");
+  command.input_files("SOURCES", options.ground.sources, "with --ground: CAMERA=FILE, in place of the rig's source or detections");
   command.also_reads([&options] { return options.on_ground ? files_of_rig(options.source) : std::vector<std::string>{}; });
 }
 
@@ -198,7 +198,7 @@ void add_outputs(Command& command, TrackCommand& options) {
 
 void add_jobs(Command& command, TrackCommand& options) {
   using pipeline::jobs::table_of;
-  command.choice("--targets", options.targets, kTargets, "what is tracked");
+  command.choice("--targets", options.targets, kTargets, "the targets");
   const Option ground =
       command.flag("--ground", options.on_ground, "INPUT is a rig file: track people on the ground that its cameras face");
   command.text("--camera", options.ground.job.output.boxes_of, "with --ground and --format mot: in whose view").needs(ground);

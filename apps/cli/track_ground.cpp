@@ -15,8 +15,8 @@
 namespace marey::cli {
 namespace {
 
-pipeline::GroundOutput output_of(const GroundCommand& command) {
-  pipeline::GroundOutput output = command.job.output;
+pipeline::people::GroundOutput output_of(const GroundCommand& command) {
+  pipeline::people::GroundOutput output = command.job.output;
   output.tracks = command.out;
   const char* usual = command.out.ends_with(".marey") ? "take" : output.boxes_of.empty() ? "csv" : "mot";
   const std::string format = command.format.empty() ? usual : command.format;
@@ -46,7 +46,7 @@ std::vector<std::string> ground_files(const GroundCommand& command) {
   if (command.out.empty()) files.push_back(output_of(command).tracks);
   std::error_code error;
   if (!std::filesystem::is_regular_file(command.rig, error)) return files;
-  const std::vector<std::string> overlays = pipeline::overlays_of(format::rig::read_rig(command.rig), command.job.output);
+  const std::vector<std::string> overlays = pipeline::people::overlays_of(format::rig::read_rig(command.rig), command.job.output);
   files.insert(files.end(), overlays.begin(), overlays.end());
   return files;
 }
@@ -54,13 +54,13 @@ std::vector<std::string> ground_files(const GroundCommand& command) {
 void track_on_ground(GroundCommand command) {
   Rig rig = format::rig::read_rig(command.rig);
   set_sources(rig, command.sources);
-  const pipeline::GroundOutput output = output_of(command);
+  const pipeline::people::GroundOutput output = output_of(command);
   command.job.rig_name = command.rig;
-  pipeline::PeopleOnGroundOptions options = resolved(command.job, rig);
+  pipeline::people::PeopleOnGroundOptions options = resolved(command.job, rig);
   options.turning = format::rig::read_turning(command.rig);
   run_with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::track_ground(rig, output, options, hooks); },
-      [&](const pipeline::GroundSummary& summary, double elapsed) {
+      command.quiet, [&](const Hooks& hooks) { return pipeline::people::track_ground(rig, output, options, hooks); },
+      [&](const pipeline::people::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);
         } else if (!command.quiet) {

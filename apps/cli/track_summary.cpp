@@ -17,7 +17,7 @@ std::string_view counted(bool markers, std::int64_t count) {
   return count == 1 ? "person" : "people";
 }
 
-void print_left_out(const pipeline::Summary& summary) {
+void print_left_out(const pipeline::corridor::Summary& summary) {
   const auto print = [&](std::string_view reason, std::string_view what) {
     if (const auto count = left_out_of(summary, reason)) fmt::print(stderr, "left out: {} {}\n", count, what);
   };
@@ -29,7 +29,8 @@ void print_left_out(const pipeline::Summary& summary) {
 
 }  // namespace
 
-void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed) {
+void print_json(const pipeline::corridor::Summary& summary, const pipeline::people::TrackOutput& output, bool markers,
+                double elapsed) {
   Json json = {{"frames", summary.frames},
                {"seconds", summary.seconds},
                {markers ? "markers" : "people", summary.tracks},
@@ -53,7 +54,8 @@ void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& o
   print(json);
 }
 
-void print_summary(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed) {
+void print_summary(const pipeline::corridor::Summary& summary, const pipeline::people::TrackOutput& output, bool markers,
+                   double elapsed) {
   for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
   fmt::print(stderr, "{} {} in {} {} ({:.1f} s), {:.0f} frames/s\n", summary.tracks, counted(markers, summary.tracks),
              summary.frames, summary.frames == 1 ? "frame" : "frames", summary.seconds,

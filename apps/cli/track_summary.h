@@ -1,13 +1,15 @@
 #pragma once
 
-#include "marey/pipeline/track_in_picture.h"
+#include "marey/pipeline/people/track_in_picture.h"
 
 namespace marey::cli {
 
 /// On standard output. `elapsed` in s.
-void print_json(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed);
+void print_json(const pipeline::corridor::Summary& summary, const pipeline::people::TrackOutput& output, bool markers,
+                double elapsed);
 
 /// On standard error, so that tracks may go to standard output.
-void print_summary(const pipeline::Summary& summary, const pipeline::TrackOutput& output, bool markers, double elapsed);
+void print_summary(const pipeline::corridor::Summary& summary, const pipeline::people::TrackOutput& output, bool markers,
+                   double elapsed);
 
 }  // namespace marey::cli

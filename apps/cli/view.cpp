@@ -9,7 +9,7 @@
 
 #include "marey/core/stop.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/ground_orientation.h"
+#include "marey/pipeline/take/ground_orientation.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -37,7 +37,7 @@ void run(ViewCommand& command) {
     command.options.read.pitch = *command.options.ground.pitch;
   }
   if (command.y_down) command.options.ground.y_down = true;
-  if (!command.rig.empty()) command.options.ground.y_down = pipeline::rig_has_y_down(command.rig);
+  if (!command.rig.empty()) command.options.ground.y_down = pipeline::take::rig_has_y_down(command.rig);
   viewer::RecordingViewer shown(command.file, command.options);
   // The address alone stands on standard output, so that a script can read it.
   if (command.json) {

@@ -27,13 +27,13 @@ bool gives(FeedState state) {
   return state == FeedState::live || state == FeedState::back;
 }
 
-Json seen_by(const pipeline::WandSeen::Camera& camera) {
+Json seen_by(const pipeline::calibrate::WandSeen::Camera& camera) {
   return {{"name", camera.name},   {"state", to_string(camera.state)}, {"coverage", camera.coverage},
           {"views", camera.views}, {"covered", camera.covered},        {"parts", Json(camera.parts)}};
 }
 
 std::function<void(const viewer::PageCommand&)> changing_wands(const WandPage::Options& options,
-                                                               const std::shared_ptr<pipeline::CameraDesk>& desk) {
+                                                               const std::shared_ptr<pipeline::live::CameraDesk>& desk) {
   if (!is_for_this_computer(options.place.listen) && !options.allow_control) return {};
   return page_changes(desk, nullptr, "");
 }
@@ -44,7 +44,7 @@ void WandScreen::begun(bool keys) {
   out_->say(fmt::format("wave the wand through the whole volume{}", keys ? "; q: that will do" : ""));
 }
 
-void WandScreen::show(const pipeline::WandSeen& seen) {
+void WandScreen::show(const pipeline::calibrate::WandSeen& seen) {
   covered_.resize(seen.cameras.size());
   for (std::size_t c = 0; c < seen.cameras.size(); ++c) {
     if (!seen.cameras[c].covered || covered_[c]) continue;
@@ -54,14 +54,14 @@ void WandScreen::show(const pipeline::WandSeen& seen) {
   }
   if (seen.enough) out_->say(fmt::format("all of them have, after {:.0f} s", seen.seconds));
   std::string line = fmt::format("{:.0f} s ", seen.seconds);
-  for (const pipeline::WandSeen::Camera& camera : seen.cameras) {
+  for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) {
     line += gives(camera.state) ? fmt::format(" {} {:.0f} %", camera.name, 100 * camera.coverage)
                                 : fmt::format(" {} {}", camera.name, to_string(camera.state));
   }
   out_->show(line);
 }
 
-WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::CameraDesk> desk)
+WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraDesk> desk)
     : desk_(std::move(desk)),
       ground_(options.ground),
       viewer_({.place = options.place,
@@ -70,7 +70,7 @@ WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipel
                .enough = options.enough,
                .ground = [this] { ground_wanted_ = true; }}),
       sink_(viewer_.make_sink()) {
-  told_ = {{"wanted", WandCoverage::wanted(pipeline::knows_lenses(rig))},
+  told_ = {{"wanted", WandCoverage::wanted(pipeline::calibrate::knows_lenses(rig))},
            {"across", WandCoverage::kPartsAcross},
            {"down", WandCoverage::kPartsDown},
            {"needed", WandCoverage::kEnoughShared}};
@@ -94,9 +94,9 @@ void WandPage::tell(const char* phase) {
 }
 
 /// How the cameras are set.
-void WandPage::report(const pipeline::WandSeen& seen) {
+void WandPage::report(const pipeline::calibrate::WandSeen& seen) {
   viewer::LiveReport told;
-  for (const pipeline::WandSeen::Camera& camera : seen.cameras) {
+  for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) {
     auto& entry = told.cameras.emplace_back(viewer::LiveReport::Camera{.state = camera.state,
                                                                        .rate_hz = camera.rate_hz,
                                                                        .frames = camera.frames,
@@ -107,15 +107,15 @@ void WandPage::report(const pipeline::WandSeen& seen) {
   viewer_.report(told);
 }
 
-void WandPage::show(const pipeline::WandSeen& seen) {
+void WandPage::show(const pipeline::calibrate::WandSeen& seen) {
   sink_->write(seen.now);
   if (shown_++ % kToldEvery != 0 && !seen.enough) return;
   report(seen);
   told_["seconds"] = seen.seconds;
   told_["cameras"] = Json::array();
   told_["shared"] = Json::array();
-  for (const pipeline::WandSeen::Camera& camera : seen.cameras) told_["cameras"].push_back(seen_by(camera));
-  for (const pipeline::WandSeen::Shared& pair : seen.shared)
+  for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) told_["cameras"].push_back(seen_by(camera));
+  for (const pipeline::calibrate::WandSeen::Shared& pair : seen.shared)
     told_["shared"].push_back({{"a", pair.a}, {"b", pair.b}, {"views", pair.views}, {"enough", pair.enough}});
   tell("waving");
 }
@@ -149,7 +149,7 @@ void WandPage::set_ground(Rig& rig, const std::string& file) {
   told_["ground"]["phase"] = "looking";
   tell("done");
   try {
-    const pipeline::GroundCalibration found = ground_(rig);
+    const pipeline::calibrate::GroundCalibration found = ground_(rig);
     rig = found.rig;
     format::rig::write_rig(rig, file);
     told_["ground"] = {{"phase", "set"}, {"rms_mm", found.found.rms_mm}, {"warnings", Json(found.warnings)}};

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "marey/core/sink.h"
-#include "marey/pipeline/calibrate_ground.h"
-#include "marey/pipeline/calibrate_wand.h"
+#include "marey/pipeline/calibrate/calibrate_ground.h"
+#include "marey/pipeline/calibrate/calibrate_wand.h"
 
 #include "json_value.h"
 #include "live_screen.h"
@@ -24,7 +24,7 @@ class WandScreen {
   explicit WandScreen(bool quiet) : out_(std::in_place, quiet) {}
 
   void begun(bool keys);
-  void show(const pipeline::WandSeen& seen);
+  void show(const pipeline::calibrate::WandSeen& seen);
   /// Nothing more is said.
   void end() { out_.reset(); }
 
@@ -39,13 +39,13 @@ class WandPage {
   struct Options {
     viewer::WebPlace place;
     bool allow_control = false;  ///< who opens the page from another computer may change the cameras
-    std::function<pipeline::GroundCalibration(const Rig&)> ground;  ///< by an L-frame that lies on the floor now
+    std::function<pipeline::calibrate::GroundCalibration(const Rig&)> ground;  ///< by an L-frame that lies on the floor now
     std::function<void()> enough;  ///< called, on another thread, where the page's user finds that it will do
   };
   /// Prints its address. What is changed of the cameras on it is in `desk`.
-  WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::CameraDesk> desk);
+  WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraDesk> desk);
 
-  void show(const pipeline::WandSeen& seen);
+  void show(const pipeline::calibrate::WandSeen& seen);
   void computing();
   void failed(const std::string& why);
   /// `report` as --json prints it. Stays until the last page is closed, or the program is asked to end; meanwhile the ground is set
@@ -55,12 +55,12 @@ class WandPage {
  private:
   void tell(const char* phase);
   void show_rig(const Rig& rig);
-  void report(const pipeline::WandSeen& seen);
+  void report(const pipeline::calibrate::WandSeen& seen);
 
   void set_ground(Rig& rig, const std::string& file);
 
-  std::shared_ptr<pipeline::CameraDesk> desk_;
-  std::function<pipeline::GroundCalibration(const Rig&)> ground_;
+  std::shared_ptr<pipeline::live::CameraDesk> desk_;
+  std::function<pipeline::calibrate::GroundCalibration(const Rig&)> ground_;
   std::atomic<bool> ground_wanted_ = false;
   viewer::LiveViewer viewer_;
   std::unique_ptr<Sink> sink_;

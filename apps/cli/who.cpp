@@ -1,4 +1,4 @@
-#include "marey/pipeline/who.h"
+#include "marey/pipeline/identify/who.h"
 
 #include <memory>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 struct WhoCommand {
   std::string take, answers;
-  pipeline::WhoOptions options;
+  pipeline::identify::WhoOptions options;
   bool json = false;
   bool quiet = false;
 };
@@ -24,16 +24,16 @@ std::string edits_of(std::int64_t count) {
   return fmt::format("{} edit{}", count, count == 1 ? "" : "s");
 }
 
-Json json_of(const pipeline::Doubt& doubt) {
+Json json_of(const pipeline::identify::Doubt& doubt) {
   return {{"time", doubt.time_s}, {"kind", doubt.kind},   {"question", doubt.question},       {"a", doubt.a},
           {"b", doubt.b},         {"frame", doubt.frame}, {"probability", doubt.probability}, {"changes_s", doubt.changes_s}};
 }
 
-void report_json(const WhoCommand& command, const pipeline::WhoSummary& summary) {
+void report_json(const WhoCommand& command, const pipeline::identify::WhoSummary& summary) {
   Json people = Json::array(), doubts = Json::array();
-  for (const pipeline::WhoSummary::Person& person : summary.people)
+  for (const pipeline::identify::WhoSummary::Person& person : summary.people)
     people.push_back({{"label", person.label}, {"team", person.team}, {"track", person.track}, {"known_s", person.known_s}});
-  for (const pipeline::Doubt& doubt : summary.doubts) doubts.push_back(json_of(doubt));
+  for (const pipeline::identify::Doubt& doubt : summary.doubts) doubts.push_back(json_of(doubt));
   print({{"take", command.take},
          {"seconds", summary.recorded_s},
          {"people", people},
@@ -43,9 +43,9 @@ void report_json(const WhoCommand& command, const pipeline::WhoSummary& summary)
          {"edits", summary.edits}});
 }
 
-void report(const WhoCommand& command, const pipeline::WhoSummary& summary) {
+void report(const WhoCommand& command, const pipeline::identify::WhoSummary& summary) {
   fmt::print("{:<24} {:<16} {:>6} {:>9}\n", "name", "team", "track", "known, %");
-  for (const pipeline::WhoSummary::Person& person : summary.people)
+  for (const pipeline::identify::WhoSummary::Person& person : summary.people)
     fmt::print("{:<24} {:<16} {:>6} {:>9.1f}\n", person.label, person.team, fmt::format("#{}", person.track),
                summary.recorded_s > 0 ? std::min(100.0, 100 * person.known_s / summary.recorded_s) : 0);
   fmt::print("{} named; {} in doubt{}; {:.0f} s of others; {}: `marey edit {} --list`\n", summary.people.size(),
@@ -58,7 +58,7 @@ void report(const WhoCommand& command, const pipeline::WhoSummary& summary) {
 
 void apply(const WhoCommand& command) {
   const auto done = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::apply_answers(command.take, command.answers, command.options.roster, hooks);
+    return pipeline::identify::apply_answers(command.take, command.answers, command.options.roster, hooks);
   });
   if (command.json) {
     print({{"take", command.take},
@@ -76,8 +76,8 @@ void run(const WhoCommand& command) {
   if (!command.answers.empty()) return apply(command);
   if (command.options.roster.empty() || command.options.names.empty())
     throw WrongUsage("write --roster and --names to name people, or --answers to apply answers");
-  const auto summary =
-      with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::name_people(command.take, command.options, hooks); });
+  const auto summary = with_progress(
+      command.quiet, [&](const Hooks& hooks) { return pipeline::identify::name_people(command.take, command.options, hooks); });
   if (command.json) {
     report_json(command, summary);
   } else if (!command.quiet) {

@@ -4,12 +4,12 @@
 
 namespace marey::cli {
 
-Json edit_json(const pipeline::EditLine& line) {
+Json edit_json(const pipeline::take::EditLine& line) {
   Json entry{{"id", line.id}, {"operation", line.operation}, {"words", line.words}};
   if (line.parent) entry["parent"] = *line.parent;
   if (line.gaps.empty()) return entry;
   Json gaps = Json::array();
-  for (const pipeline::EditLine::Gap& gap : line.gaps) {
+  for (const pipeline::take::EditLine::Gap& gap : line.gaps) {
     gaps.push_back({{"track", gap.track},
                     {"first", gap.frames.first},
                     {"last", gap.frames.last},

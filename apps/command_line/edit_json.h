@@ -1,12 +1,12 @@
 #pragma once
 
-#include "marey/pipeline/edit_words.h"
+#include "marey/pipeline/take/edit_words.h"
 
 #include "json_value.h"
 
 namespace marey::cli {
 
 /// One edit for programs: its number, what it was and did, the gaps that it filled.
-Json edit_json(const pipeline::EditLine& line);
+Json edit_json(const pipeline::take::EditLine& line);
 
 }  // namespace marey::cli

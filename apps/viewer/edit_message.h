@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "marey/pipeline/edit_take.h"
+#include "marey/pipeline/take/edit_take.h"
 
 namespace marey::viewer {
 
@@ -16,7 +16,7 @@ struct EditMessage {
   enum class Kind { edit, undo, redo, go };
 
   Kind kind{};
-  pipeline::EditState on;
+  pipeline::take::EditState on;
   std::string text = {};  ///< of `edit`
   std::int64_t to = 0;    ///< of `go`; 0: as it was recorded
 };

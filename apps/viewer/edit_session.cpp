@@ -6,7 +6,7 @@
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/take/take_file.h"
-#include "marey/pipeline/edit_words.h"
+#include "marey/pipeline/take/edit_words.h"
 
 #include "edit_json.h"
 
@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::chrono::seconds kBetweenLooks{1};
 
-std::string history_text(const pipeline::EditHistory& history) {
+std::string history_text(const pipeline::take::EditHistory& history) {
   cli::Json edits = cli::Json::array();
-  for (const pipeline::EditLine& line : pipeline::lines_of(history)) {
+  for (const pipeline::take::EditLine& line : pipeline::take::lines_of(history)) {
     cli::Json entry = cli::edit_json(line);
     entry["counts"] = line.counts;
     edits.push_back(std::move(entry));
@@ -37,7 +37,7 @@ EditSession::EditSession(const std::string& take, StoredRecording& recording, An
     : take_(take_to_edit(take)),
       recording_(&recording),
       answers_(std::move(answers)),
-      shown_(pipeline::edit_history(take)),
+      shown_(pipeline::take::edit_history(take)),
       history_(bytes_of(history_text(shown_))) {}
 
 void EditSession::begin() {
@@ -104,11 +104,11 @@ void EditSession::act(PageId page, const EditMessage& message) {
   try {
     using Kind = EditMessage::Kind;
     if (message.kind == Kind::edit) {
-      pipeline::edit_take(take_, {{.text = message.text, .where = "\"" + message.text + "\""}}, {}, message.on);
+      pipeline::take::edit_take(take_, {{.text = message.text, .where = "\"" + message.text + "\""}}, {}, message.on);
     } else if (message.kind == Kind::go) {
-      pipeline::set_head(take_, message.to, message.on);
+      pipeline::take::set_head(take_, message.to, message.on);
     } else {
-      pipeline::move_head(take_, message.kind == Kind::undo ? -1 : 1, message.on);
+      pipeline::take::move_head(take_, message.kind == Kind::undo ? -1 : 1, message.on);
     }
   } catch (const Error& error) {
     answer = "refused " + plain_text(error.what());
@@ -124,9 +124,9 @@ void EditSession::act(PageId page, const EditMessage& message) {
 void EditSession::catch_up() {
   try {
     was_written();
-    pipeline::EditHistory now = pipeline::edit_history(take_);
+    pipeline::take::EditHistory now = pipeline::take::edit_history(take_);
     if (now.state == shown_.state) return;
-    recording_->put(pipeline::edited_tracks(take_, pipeline::tracks_between(shown_, now)));
+    recording_->put(pipeline::take::edited_tracks(take_, pipeline::take::tracks_between(shown_, now)));
     shown_ = std::move(now);
     Bytes text = bytes_of(history_text(shown_));
     const std::lock_guard lock(mutex_);

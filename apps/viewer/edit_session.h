@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "marey/pipeline/edit_take.h"
+#include "marey/pipeline/take/edit_take.h"
 
 #include "edit_message.h"
 #include "stored_recording.h"
@@ -57,7 +57,7 @@ class EditSession {
   std::string take_;
   StoredRecording* recording_;
   Answers answers_;
-  pipeline::EditHistory shown_;  // the session's thread's, once it runs
+  pipeline::take::EditHistory shown_;  // the session's thread's, once it runs
   std::filesystem::file_time_type written_{};
 
   mutable std::mutex mutex_;  // for what follows

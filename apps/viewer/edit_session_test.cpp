@@ -13,7 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/edit/edited.h"
 #include "marey/format/take/take_file.h"
-#include "marey/pipeline/edit_take.h"
+#include "marey/pipeline/take/edit_take.h"
 
 #include "support/files.h"
 
@@ -121,7 +121,7 @@ class EditedTake : public testing::Test {
 TEST(EditMessage, IsOneOfFourAndNothingElse) {
   const auto swap = edit_message("edit 3 5 swap \"L KNE\" RKNE 1:2");
   ASSERT_TRUE(swap);
-  EXPECT_EQ(swap->on, (pipeline::EditState{.head = 3, .newest = 5}));
+  EXPECT_EQ(swap->on, (pipeline::take::EditState{.head = 3, .newest = 5}));
   EXPECT_EQ(swap->text, "swap \"L KNE\" RKNE 1:2");
   EXPECT_EQ(edit_message("go 3 5 0")->to, 0);
   EXPECT_EQ(edit_message("undo 0 0")->kind, EditMessage::Kind::undo);
@@ -179,7 +179,7 @@ TEST_F(EditedTake, RefusesWithTheSentenceOfTheCommandLine) {
   for (const char* wrong : {"swap A nobody", "jump A", "fill A", "rename A B", "delete A 10:9999"}) {
     std::string sentence;
     try {
-      pipeline::edit_take(path_, {{.text = wrong, .where = std::string("\"") + wrong + "\""}});
+      pipeline::take::edit_take(path_, {{.text = wrong, .where = std::string("\"") + wrong + "\""}});
     } catch (const Error& error) {
       sentence = error.what();
     }
@@ -187,18 +187,18 @@ TEST_F(EditedTake, RefusesWithTheSentenceOfTheCommandLine) {
   }
   EXPECT_EQ(asked("go 0 0 7"), "refused " + path_ + ": there is no edit 7; `marey edit FILE --list` shows which there are");
   EXPECT_EQ(bytes(), before_);
-  EXPECT_EQ(pipeline::edit_history(path_).state, pipeline::EditState{});
+  EXPECT_EQ(pipeline::take::edit_history(path_).state, pipeline::take::EditState{});
 }
 
 TEST_F(EditedTake, WhatAnotherProgramEditsIsNeitherLostNorUndone) {
   show();
   EXPECT_EQ(asked("edit 0 0 rename A hip"), "done");
-  pipeline::edit_take(path_, {{.text = "rename B knee", .where = "elsewhere"}});
+  pipeline::take::edit_take(path_, {{.text = "rename B knee", .where = "elsewhere"}});
   for (const char* blind : {"edit 1 1 swap #1 #2", "undo 1 1", "go 1 1 0"}) {
     const std::string answer = asked(blind);
     EXPECT_NE(answer.find("another program has edited it meanwhile"), std::string::npos) << answer;
   }
-  EXPECT_EQ(pipeline::edit_history(path_).counting, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(pipeline::take::edit_history(path_).counting, (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(stored_.state().tracks[1].name.label, "knee") << "it is shown";
   EXPECT_EQ(asked("edit 2 2 swap hip knee"), "done");
   EXPECT_EQ(bytes(), bytes_anew());

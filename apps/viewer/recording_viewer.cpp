@@ -11,7 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/ground_orientation.h"
+#include "marey/pipeline/take/ground_orientation.h"
 
 #include "access.h"
 #include "edit_session.h"
@@ -141,7 +141,7 @@ std::vector<std::string> RecordingViewer::Core::read(const Hooks& hooks) {
     tell_all(kSceneChanged, "scene");
   }
   std::vector<std::string> warnings = reader_->warnings();
-  if (auto sentence = pipeline::orientation_unknown(path_, header_); sentence && !ground_.y_down)
+  if (auto sentence = pipeline::take::orientation_unknown(path_, header_); sentence && !ground_.y_down)
     warnings.push_back(std::move(*sentence));
   reader_.reset();  // who holds a take open may keep others from writing it
   recording_.finish(warnings);

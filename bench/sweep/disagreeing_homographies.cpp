@@ -9,7 +9,7 @@
 
 #include "marey/core/whole_file.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/match_files.h"
+#include "marey/pipeline/simulate/match_files.h"
 #include "marey/simulate/match/match_homographies.h"
 
 #include "ground_scene.h"
@@ -28,8 +28,8 @@ void use_homographies(const std::string& folder, std::uint64_t seed) {
   file.finish();
 }
 
-pipeline::PeopleOnGroundOptions with(track::ground::GroundAssociation association, bool learns) {
-  pipeline::PeopleOnGroundOptions options;
+pipeline::people::PeopleOnGroundOptions with(track::ground::GroundAssociation association, bool learns) {
+  pipeline::people::PeopleOnGroundOptions options;
   options.pitch = geometry::PitchSize{};
   options.tracker.associate = association;
   options.learn.agreement = options.learn.walk = learns;
@@ -41,11 +41,11 @@ void run(int seeds, double seconds, double rate_hz) {
   print_titles();
   for (int seed = 1; seed <= seeds; ++seed) {
     const ScratchFolder folder;
-    pipeline::MatchFilesOptions scene;
+    pipeline::simulate::MatchFilesOptions scene;
     scene.seconds = seconds;
     scene.cameras.rate_hz = rate_hz;
     scene.seed = static_cast<std::uint64_t>(seed);
-    pipeline::write_match(scene, folder.path());
+    pipeline::simulate::write_match(scene, folder.path());
     for (const bool off : {false, true}) {
       if (off) use_homographies(folder.path(), scene.seed);
       const std::string cameras = off ? "off, " : "exact, ";

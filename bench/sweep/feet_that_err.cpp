@@ -16,8 +16,8 @@
 #include "marey/core/whole_file.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/clock.h"
-#include "marey/pipeline/match_files.h"
+#include "marey/pipeline/corridor/clock.h"
+#include "marey/pipeline/simulate/match_files.h"
 #include "marey/reconstruct/place_people.h"
 #include "marey/simulate/match/match_homographies.h"
 #include "marey/track/ground/ground_agreement.h"
@@ -33,12 +33,12 @@ constexpr double kAlone = 4, kNear = 2;  // m: who is alone within the one is wh
 constexpr double kLag = 0.1;             // s
 
 struct Scene {
-  pipeline::MatchFilesOptions files;
+  pipeline::simulate::MatchFilesOptions files;
   double least = 0.25, most = 0.6;  ///< m, of each camera, root mean square: far more at the corners
 };
 
 void write_scene(const Scene& scene, const std::string& folder) {
-  pipeline::write_match(scene.files, folder);
+  pipeline::simulate::write_match(scene.files, folder);
   if (scene.most == 0) return;
   const Rig rig = format::rig::read_rig(folder + "/rig.toml");
   WholeFile file(folder + "/rig.toml");
@@ -50,7 +50,7 @@ void write_scene(const Scene& scene, const std::string& folder) {
 /// What the cameras see, placed.
 std::vector<track::ground::GroundInstant> instants_of(const std::string& folder) {
   const Rig rig = format::rig::read_rig(folder + "/rig.toml");
-  pipeline::Clock clock(pipeline::open_feeds(rig, {}));
+  pipeline::corridor::Clock clock(pipeline::corridor::open_feeds(rig, {}));
   std::vector<track::ground::GroundInstant> instants;
   while (const auto frames = clock.next()) {
     std::vector<reconstruct::PlacedPeople> placed(frames->cameras.size());
@@ -127,16 +127,16 @@ Disagreement true_disagreement(const std::vector<track::ground::GroundInstant>& 
   return {std::sqrt(std::max(0.0, lasting / count / 4)), std::sqrt(whole / count / 4)};
 }
 
-pipeline::PeopleOnGroundOptions live(const geometry::PitchSize& pitch) {
-  pipeline::PeopleOnGroundOptions options;
+pipeline::people::PeopleOnGroundOptions live(const geometry::PitchSize& pitch) {
+  pipeline::people::PeopleOnGroundOptions options;
   options.pitch = pitch;
   options.live = true;
   return options;
 }
 
 /// As the program has it for boxes.
-pipeline::PeopleOnGroundOptions offline(const geometry::PitchSize& pitch) {
-  pipeline::PeopleOnGroundOptions options;
+pipeline::people::PeopleOnGroundOptions offline(const geometry::PitchSize& pitch) {
+  pipeline::people::PeopleOnGroundOptions options;
   options.pitch = pitch;
   options.tracker.associate = track::ground::GroundAssociation::mht;
   options.learn.association = true;
@@ -167,12 +167,12 @@ void run(Scene scene, int first, int seeds, const std::string& only) {
     const ScratchFolder folder;
     scene.files.seed = static_cast<std::uint64_t>(seed);
     write_scene(scene, folder.path());
-    const auto row = [&](const std::string& name, const pipeline::PeopleOnGroundOptions& options) {
+    const auto row = [&](const std::string& name, const pipeline::people::PeopleOnGroundOptions& options) {
       if (only.empty() || only == name) print_scores(seed, name, run_ours(folder.path(), options, kFarthest));
     };
     row("live", live(scene.files.cameras.pitch));
     row("offline", offline(scene.files.cameras.pitch));
-    pipeline::PeopleOnGroundOptions plain = offline(scene.files.cameras.pitch);
+    pipeline::people::PeopleOnGroundOptions plain = offline(scene.files.cameras.pitch);
     plain.learn.agreement = false;
     row("offline, cameras not learned", plain);
     if (only.empty() || only == "learned") print_learned(folder.path());

@@ -13,9 +13,9 @@
 #include "marey/format/match/ground_file.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/tracks/detections.h"
-#include "marey/pipeline/clock.h"
-#include "marey/pipeline/judge_match.h"
-#include "marey/pipeline/track_ground.h"
+#include "marey/pipeline/corridor/clock.h"
+#include "marey/pipeline/people/track_ground.h"
+#include "marey/pipeline/take/judge_match.h"
 #include "marey/reconstruct/place_people.h"
 
 #include "experiments/markdown_table.h"
@@ -25,7 +25,7 @@ namespace {
 
 GroundScores scores_of(const std::string& folder, const Recording& tracks, double farthest) {
   const Recording truth = format::match::read_ground(folder + "/truth.csv");
-  const pipeline::MatchJudgement judged = pipeline::judge_match(truth, tracks, farthest);
+  const pipeline::take::MatchJudgement judged = pipeline::take::judge_match(truth, tracks, farthest);
   const evaluate::Evaluation& scores = judged.evaluation.scores;
   GroundScores result;
   result.mota = scores.clear.mota.value_or(0);
@@ -65,7 +65,7 @@ std::vector<Vector<2>> fused(const std::vector<Observation<2>>& all) {
       best = &cluster;
     }
     if (best == nullptr) best = &clusters.emplace_back();
-    const Matrix<2> weight = one.covariance.inverse();
+    const Matrix<2> weight = one.covariance->inverse();
     best->weight += weight;
     best->sum += weight * one.value;
     best->cameras.push_back(number(one.camera));
@@ -114,17 +114,17 @@ void follow_naively(double time, const std::vector<Vector<2>>& places, std::vect
 
 }  // namespace
 
-GroundScores run_ours(const std::string& folder, const pipeline::PeopleOnGroundOptions& options, double farthest) {
+GroundScores run_ours(const std::string& folder, const pipeline::people::PeopleOnGroundOptions& options, double farthest) {
   const Rig rig = format::rig::read_rig(folder + "/rig.toml");
-  pipeline::GroundOutput output;
+  pipeline::people::GroundOutput output;
   output.tracks = folder + "/ours.csv";
-  pipeline::track_ground(rig, output, options);
+  pipeline::people::track_ground(rig, output, options);
   return scores_of(folder, format::match::read_ground(output.tracks), farthest);
 }
 
 GroundScores run_naive(const std::string& folder, double farthest) {
   const Rig rig = format::rig::read_rig(folder + "/rig.toml");
-  pipeline::Clock clock(pipeline::open_feeds(rig, {}));
+  pipeline::corridor::Clock clock(pipeline::corridor::open_feeds(rig, {}));
   std::vector<NaiveTrack> tracks;
   std::map<int, TrackColumns> columns;
   Recording recording;

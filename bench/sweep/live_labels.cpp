@@ -1,4 +1,4 @@
-// Names within the frame (pipeline/set_in_space), with a search that is waited for, so that the results are the same on any
+// Names within the frame (pipeline/markers/set_in_space), with a search that is waited for, so that the results are the same on any
 // machine.
 //
 //   live_labels RECORDING --set SET.toml -o OUT.csv   names a recording of points in space: a row a named point, frame,label,x,y,z
@@ -26,10 +26,10 @@ using namespace marey::labelled;
 using simulate::room::RoomMotion;
 
 void name_recording(const std::string& recording, const std::string& set, const std::string& out) {
-  pipeline::SetInSpaceOptions options;
+  pipeline::markers::SetInSpaceOptions options;
   options.wait = true;
-  const auto reader = pipeline::with_set(format::open_recording(recording),
-                                         std::make_shared<const LearnedMarkers>(format::bodies::read_label_set(set)), options);
+  const auto reader = pipeline::markers::with_set(
+      format::open_recording(recording), std::make_shared<const LearnedMarkers>(format::bodies::read_label_set(set)), options);
   std::string rows = "frame,label,x,y,z\n";
   std::map<TrackId, std::string> labels;
   while (const auto instant = reader->next()) {

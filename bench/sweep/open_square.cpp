@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "marey/pipeline/square_files.h"
+#include "marey/pipeline/simulate/square_files.h"
 
 #include "ground_scene.h"
 
@@ -12,18 +12,18 @@ namespace marey::sweep {
 namespace {
 
 void run(int seeds, double rate_hz) {
-  pipeline::SquareFilesOptions scene;
+  pipeline::simulate::SquareFilesOptions scene;
   scene.rate_hz = rate_hz;
   print_titles();
   for (int seed = 1; seed <= seeds; ++seed) {
     const ScratchFolder folder;
     scene.seed = static_cast<std::uint64_t>(seed);
-    pipeline::write_square(scene, folder.path());
+    pipeline::simulate::write_square(scene, folder.path());
     print_scores(seed, "naive", run_naive(folder.path()));
-    pipeline::PeopleOnGroundOptions quick;
+    pipeline::people::PeopleOnGroundOptions quick;
     quick.tracker.associate = track::ground::GroundAssociation::gnn;
     print_scores(seed, "gnn", run_ours(folder.path(), quick));
-    pipeline::PeopleOnGroundOptions late;
+    pipeline::people::PeopleOnGroundOptions late;
     late.tracker.associate = track::ground::GroundAssociation::mht;
     late.tracker.window = 2;
     print_scores(seed, "mht", run_ours(folder.path(), late));

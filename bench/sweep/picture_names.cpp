@@ -16,7 +16,7 @@
 #include "marey/evaluate/label_loss.h"
 #include "marey/simulate/markers/marker_scene.h"
 #include "marey/simulate/random.h"
-#include "marey/track/roster_tracker.h"
+#include "marey/track/roster/roster_tracker.h"
 
 #include "experiments/markdown_table.h"
 #include "experiments/plain_markers.h"
@@ -93,7 +93,7 @@ struct Lost {
 
 void run(const Kind& kind, std::uint64_t seed, bool detect, Lost& lost) {
   const MarkerScene scene = simulate_markers(kind.situation, seed, kind.options);
-  const auto tracker = track::make_roster_tracker<2>({});
+  const auto tracker = track::roster::make_roster_tracker<2>({});
   detect::markers::MarkerDetector detector{detect::markers::MarkerOptions{}};
   experiments::PlainTracker peer;
   simulate::Random random(seed);

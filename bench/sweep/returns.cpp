@@ -22,9 +22,9 @@
 #include "marey/detect/detectors.h"
 #include "marey/geometry/box.h"
 #include "marey/simulate/people/people_film.h"
-#include "marey/track/join.h"
+#include "marey/track/offline/join.h"
+#include "marey/track/offline/tracklet_log.h"
 #include "marey/track/tracker.h"
-#include "marey/track/tracklet_log.h"
 
 namespace marey {
 namespace {
@@ -46,14 +46,14 @@ struct TrueRow {
 
 /// A film as the second pass gets it: what the tracker said, and the truth.
 struct Filmed {
-  track::TrackletLog log;
+  track::offline::TrackletLog log;
   std::vector<std::vector<TrueRow>> truth;
   cv::Size size;
   double rate_hz = 25;
 };
 
-std::vector<track::Clothes> clothes_of(const Frame& frame, const detect::Detections& seen) {
-  std::vector<track::Clothes> clothes;
+std::vector<track::image::Clothes> clothes_of(const Frame& frame, const detect::Detections& seen) {
+  std::vector<track::image::Clothes> clothes;
   for (std::size_t i = 0; i < seen.detections.size(); ++i) {
     clothes.push_back({detect::upper_body(frame.picture, seen.foreground, seen.detections, i),
                        detect::lower_body(frame.picture, seen.foreground, seen.detections, i),
@@ -127,11 +127,11 @@ struct Score {
   }
 };
 
-std::map<int, std::vector<Visit>> visits_of(const Filmed& film, std::span<const track::TrackRow> rows) {
+std::map<int, std::vector<Visit>> visits_of(const Filmed& film, std::span<const track::offline::TrackRow> rows) {
   std::map<int, std::vector<Visit>> visits;
   std::size_t next = 0;
   for (int frame = 0; frame < static_cast<int>(film.truth.size()); ++frame) {
-    std::vector<const track::TrackRow*> now;
+    std::vector<const track::offline::TrackRow*> now;
     for (; next < rows.size() && rows[next].frame <= frame; ++next) {
       if (rows[next].frame == frame) now.push_back(&rows[next]);
     }
@@ -142,7 +142,7 @@ std::map<int, std::vector<Visit>> visits_of(const Filmed& film, std::span<const 
       visit.last = frame;
       double best = kOverlap;
       int number = 0;
-      for (const track::TrackRow* row : now) {
+      for (const track::offline::TrackRow* row : now) {
         const double overlap = geometry::iou({row->left, row->top, row->width, row->height}, truth.box);
         if (overlap > best) best = overlap, number = row->id;
       }
@@ -170,11 +170,11 @@ bool was_anothers(const std::map<int, std::vector<Visit>>& visits, int id, int n
   return false;
 }
 
-Score judge(const Filmed& film, std::span<const track::TrackRow> rows) {
+Score judge(const Filmed& film, std::span<const track::offline::TrackRow> rows) {
   Score score;
   const auto visits = visits_of(film, rows);
   std::set<int> numbers;
-  for (const track::TrackRow& row : rows) numbers.insert(row.id);
+  for (const track::offline::TrackRow& row : rows) numbers.insert(row.id);
   score.numbers = static_cast<int>(numbers.size());
   score.people = static_cast<int>(visits.size());
   for (const auto& [id, of] : visits) {
@@ -199,9 +199,9 @@ Score judge(const Filmed& film, std::span<const track::TrackRow> rows) {
 }
 
 /// Why who came back did not get the number from before, one line each.
-void explain(const Filmed& film, std::span<const track::TrackRow> rows) {
+void explain(const Filmed& film, std::span<const track::offline::TrackRow> rows) {
   std::map<int, std::pair<int, int>> spans;
-  for (const track::TrackRow& row : rows) {
+  for (const track::offline::TrackRow& row : rows) {
     const auto [span, is_new] = spans.try_emplace(row.id, row.frame, row.frame);
     span->second.second = row.frame;
   }
@@ -234,7 +234,7 @@ struct Sweep {
   int frames = 1500, seeds = 2, first_seed = 1;
   bool plain = false, explained = false;
   double rate = 12.5, pace = 1.3;
-  track::ReturnOptions tried;
+  track::offline::ReturnOptions tried;
   std::vector<double> thresholds{2, 0.5, 0.7, 0.8, 0.9, 0.95};
 };
 
@@ -271,12 +271,12 @@ std::vector<Score> scores(const Kind& kind, const Sweep& sweep) {
   for (int seed = sweep.first_seed; seed < sweep.first_seed + sweep.seeds; ++seed) {
     const Filmed filmed = rendered(kind, sweep, seed);
     for (std::size_t k = 0; k < sweep.thresholds.size(); ++k) {
-      track::JoinOptions join;
+      track::offline::JoinOptions join;
       join.view = Box{0, 0, 1.0 * filmed.size.width, 1.0 * filmed.size.height};
       join.returns = sweep.tried;
       join.returns.least_probability = sweep.thresholds[k];
-      track::TrackletLog log = filmed.log;
-      const std::vector<track::TrackRow> rows = track::join(log, join);
+      track::offline::TrackletLog log = filmed.log;
+      const std::vector<track::offline::TrackRow> rows = track::offline::join(log, join);
       sums[k].add(judge(filmed, rows));
       if (sweep.explained) explain(filmed, rows);
     }

@@ -19,11 +19,11 @@
 #include <CLI/CLI.hpp>
 
 #include "marey/detect/markers/marker_detector.h"
-#include "marey/pipeline/markers_in_space.h"
+#include "marey/pipeline/markers/markers_in_space.h"
 #include "marey/simulate/random.h"
 #include "marey/simulate/room/room.h"
 #include "marey/simulate/room/room_film.h"
-#include "marey/track/roster_tracker.h"
+#include "marey/track/roster/roster_tracker.h"
 
 namespace {
 
@@ -139,7 +139,6 @@ std::vector<Detection> blobs_of(const RoomScene& scene, int camera, double t, st
   for (const auto& blob : scene.seen_by(camera, t, draw)) {
     Detection& detection = detections.emplace_back();
     detection.centre = blob.pixel;
-    detection.covariance.setZero();
   }
   return detections;
 }
@@ -191,10 +190,10 @@ class Run {
 
   void follow_in_picture(Judge& judge) {
     detect::markers::MarkerDetector detector{detect::markers::MarkerOptions{}};
-    track::RosterTrackerOptions options;
+    track::roster::RosterTrackerOptions options;
     const cv::Size size = scene_.options().picture;
     options.picture = Box{-0.5, -0.5, static_cast<double>(size.width), static_cast<double>(size.height)};
-    const auto tracker = track::make_roster_tracker<2>(options);
+    const auto tracker = track::roster::make_roster_tracker<2>(options);
     const auto camera = scene_.rig().cameras[0].camera();
     for (std::int64_t i = 0; i < frames(); ++i) {
       const Drawn& drawn = drawn_[at(i)];
@@ -229,9 +228,9 @@ class Run {
   }
 
   void follow_in_space(Judge& judge) {
-    pipeline::MarkersInSpaceOptions options;
+    pipeline::markers::MarkersInSpaceOptions options;
     options.live = true;
-    const auto stage = pipeline::markers_in_space(scene_.rig(), kind_.rate_hz, options);
+    const auto stage = pipeline::markers::markers_in_space(scene_.rig(), kind_.rate_hz, options);
     std::deque<detect::markers::MarkerDetector> detectors;
     for (int c = 0; c < cameras(); ++c) detectors.emplace_back(detect::markers::MarkerOptions{});
     for (std::int64_t i = 0; i < frames(); ++i) {

@@ -19,7 +19,7 @@
 #include <CLI/CLI.hpp>
 
 #include "marey/assign/linear_assignment.h"
-#include "marey/pipeline/markers_in_space.h"
+#include "marey/pipeline/markers/markers_in_space.h"
 #include "marey/simulate/room/room.h"
 
 namespace {
@@ -157,7 +157,6 @@ FrameSet frame_set_of(const simulate::room::RoomFrame& seen) {
     for (const simulate::room::RoomBlob& blob : seen.seen[c]) {
       Detection& detection = camera.detections->emplace_back();
       detection.centre = blob.pixel;
-      detection.covariance.setZero();
       detection.area = 0;
       detection.box = Box::from_centre(blob.pixel, 0, 0);
     }
@@ -173,9 +172,9 @@ struct Result {
 
 Result judge(const simulate::room::RoomOptions& options, bool live, bool events) {
   const simulate::room::RoomScene scene(options);
-  pipeline::MarkersInSpaceOptions space;
+  pipeline::markers::MarkersInSpaceOptions space;
   space.live = live;
-  const auto stage = pipeline::markers_in_space(scene.rig(), options.rate_hz, space);
+  const auto stage = pipeline::markers::markers_in_space(scene.rig(), options.rate_hz, space);
   const std::size_t markers = scene.labels().size();
   NameJudge ours(markers, options.rate_hz), peers(markers, options.rate_hz);
   PlainTracker peer;
@@ -210,7 +209,7 @@ Result judge(const simulate::room::RoomOptions& options, bool live, bool events)
   if (const auto rest = stage->finish({})) {
     while (const auto instant = rest->next()) look(*instant);
   }
-  pipeline::Summary summary;
+  pipeline::corridor::Summary summary;
   stage->report(summary);
   for (const std::string& warning : summary.warnings) std::printf("        %s\n", warning.c_str());
   if (events) std::printf("        noise %.3f px\n", summary.figures.at("noise_px"));

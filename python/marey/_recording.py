@@ -26,15 +26,20 @@ class Track:
     """One target over the whole recording, in columns; row i of each belongs together. Columns marked "view" are the recording's own memory: nothing
     is copied, and they cannot be written."""
 
-    def __init__(self, core: _core.Recording, index: int, about: tuple[int, str, str, int]) -> None:
+    def __init__(self, core: _core.Recording, index: int, about: tuple[int, str, str, int, str]) -> None:
         self._core, self._index = core, index
-        self.id, self.label, self.team, self._rows = about
+        self.id, self.label, self.team, self._rows, self._kind = about
 
     def __len__(self) -> int:
         return self._rows
 
     def __repr__(self) -> str:
         return f"<marey.Track {self.id}{' ' + self.label if self.label else ''}: {self._rows} rows>"
+
+    @property
+    def kind(self) -> str | None:
+        """"person", "ball", "marker", "keypoint", or None if the recording does not state it."""
+        return self._kind or None
 
     @property
     def name(self) -> str:
@@ -147,6 +152,11 @@ class Recording:
     def frame(self) -> str:
         """The frame of reference, in words."""
         return self._core.frame
+
+    @property
+    def time_base(self) -> str | None:
+        """Whose clock the times follow, in words; None if the source does not state it."""
+        return self._core.time_base
 
     @property
     def dimensions(self) -> int:

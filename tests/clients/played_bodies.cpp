@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "marey/pipeline/play.h"
+#include "marey/pipeline/take/play.h"
 #include "marey/stream/streams.h"
 
 #include "support/moving_bodies.h"
@@ -18,8 +18,8 @@ int main(int argc, char** argv) {
     const marey::stream::Streams streams(wires, {.allow_control = true, .record = [](bool) { return true; }});
     for (const auto& report : streams.reports()) std::printf("%s %s\n", report.wire.c_str(), report.where.c_str());
     std::fflush(stdout);
-    marey::pipeline::play([&] { return std::make_unique<marey::test::MovingBodies>(instants); }, streams.sinks(), {},
-                          &streams.clock());
+    marey::pipeline::take::play([&] { return std::make_unique<marey::test::MovingBodies>(instants); }, streams.sinks(), {},
+                                &streams.clock());
     for (const auto& report : streams.reports()) std::printf("%s\n", to_string(report).c_str());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

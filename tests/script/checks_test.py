@@ -50,6 +50,30 @@ class Checks(unittest.TestCase):
         self.plant("src/marey/detect/join.h", "namespace marey::track {\nint join(double);\n}\n")
         self.check("check-names", 1, "marey::track::join() stands in headers of two folders")
 
+    def test_pipelines_subfolders_have_an_order(self):
+        self.plant("src/marey/pipeline/live/live.h", '#include "marey/pipeline/corridor/feed.h"\n')
+        self.plant("src/marey/pipeline/corridor/feed.h", "#pragma once\n")
+        self.check("check-layers", 0)
+        self.plant("src/marey/pipeline/corridor/feed.h", '#include "marey/pipeline/live/live.h"\n')
+        self.check("check-layers", 1, "pipeline/corridor may not include pipeline/live")
+        self.plant("src/marey/pipeline/corridor/feed.h", "#pragma once\n")
+        self.plant("src/marey/pipeline/attic/odds.h", '#include "marey/pipeline/corridor/feed.h"\n')
+        self.check("check-layers", 1, "pipeline/attic has no place in the order")
+
+    def test_unswept_constants_may_only_become_fewer(self):
+        for folder in ("filter", "assign", "edit", "source/steady", "detect", "reconstruct", "calibrate", "solve", "analyse", "pipeline"):
+            (self.root / "src/marey" / folder).mkdir(parents=True, exist_ok=True)
+        self.plant("docs/tuning.md", "`kGate` was chosen among five.\n`kReach` is not swept.\n")
+        self.plant("script/constants.txt", "# per folder\nfixed kPi\ntrack 2\n")
+        self.plant("src/marey/track/gate.h", "constexpr double kGate = 3;\nconstexpr double kReach = 2;  // m\n"
+                   "constexpr int kAxes = 3;  // by definition\nconstexpr double kPi = 3.14, kShare = 0.5;\n")
+        self.check("check-constants", 0, "1 swept, 2 fixed, 2 unswept")
+        self.plant("src/marey/track/more.cpp", "// How far a person reaches; unswept\nconstexpr double kArm = 0.7;\n")
+        self.check("check-constants", 1, "track: 3 unswept constants, 2 allowed")
+        self.plant("src/marey/track/more.cpp", "")
+        self.plant("src/marey/track/gate.h", "constexpr double kReach = 2;\n")
+        self.check("check-constants", 1, "fewer than the 2")
+
     def test_a_type_in_plain_marey_outside_core(self):
         self.plant("src/marey/detect/blob.h", "namespace marey {\nstruct Blob {};\n}\n")
         self.check("check-names", 1, "Blob is defined in marey; its folder is marey::detect")

@@ -14,7 +14,7 @@
 
 #include "marey/core/learned_markers.h"
 #include "marey/core/recording.h"
-#include "marey/pipeline/set_in_space.h"
+#include "marey/pipeline/markers/set_in_space.h"
 #include "marey/simulate/random.h"
 #include "marey/simulate/room/room.h"
 #include "marey/solve/labels/learn_markers.h"
@@ -159,9 +159,9 @@ struct NamedShare {
 
 inline NamedShare named_in(const RoomScene& scene, const Seen& seen, const std::shared_ptr<const LearnedMarkers>& set,
                            std::vector<std::string>* warnings = nullptr) {
-  pipeline::SetInSpaceOptions options;
+  pipeline::markers::SetInSpaceOptions options;
   options.wait = true;
-  pipeline::SetInSpace named(set, kTestedRate, options);
+  pipeline::markers::SetInSpace named(set, kTestedRate, options);
   NamedShare share;
   std::map<TrackId, std::string> labels;
   for (std::size_t i = 0; i < seen.instants.size(); ++i) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/stop.h"
 
 namespace marey::analyse {
@@ -152,7 +151,7 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
   Measurement result;
   for (const TrackColumns& track : recording.tracks()) {
     stop_point();
-    if (is_ball(track.name)) continue;
+    if (track.name.kind == TrackKind::ball) continue;
     PersonMeasure person;
     person.id = number(track.id()), person.label = track.name.label, person.team = track.name.team;
     person.zone_s.assign(options.zones.size() + 1, 0);

@@ -9,8 +9,6 @@
 #include <span>
 #include <utility>
 
-#include "marey/core/ball_track.h"
-
 namespace marey::analyse {
 namespace {
 
@@ -53,7 +51,7 @@ class Possession {
     double least = options_.keep_m;
     for (const auto& [index, row] : rows) {
       const TrackColumns& track = recording_.tracks()[index];
-      if (is_ball(track.name) || track.name.team.empty() || track.name.team == "referee") continue;
+      if (track.name.kind == TrackKind::ball || track.name.team.empty() || track.name.team == "referee") continue;
       const double away = (track.place(row) - ball.place.head<2>()).norm();
       const bool has_it = open_ && open_->person == number(track.id());
       if (away >= least || (!has_it && away >= options_.take_m)) continue;
@@ -118,7 +116,7 @@ std::vector<TeamBall> by_team(const BallMeasure& ball) {
 std::optional<BallMeasure> measure_ball(const Recording& recording, const PossessionOptions& options) {
   require_ground(recording, "measuring");
   const auto found = std::find_if(recording.tracks().begin(), recording.tracks().end(),
-                                  [](const TrackColumns& track) { return is_ball(track.name) && !track.empty(); });
+                                  [](const TrackColumns& track) { return track.name.kind == TrackKind::ball && !track.empty(); });
   if (found == recording.tracks().end()) return std::nullopt;
   const TrackColumns& track = *found;
   BallMeasure result;

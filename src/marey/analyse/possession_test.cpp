@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "marey/core/ball_track.h"
-
 namespace marey::analyse {
 namespace {
 
@@ -24,7 +22,7 @@ Recording with_ball(const std::vector<Vector<3>>& ball) {
       sample.track = id;
       sample.position.head<2>() = people[p].second;
     }
-    if (i == 0) instant.named.push_back({TrackId{9}, std::string(kBallLabel), {}});
+    if (i == 0) instant.named.push_back({TrackId{9}, std::string(kBallLabel), {}, {}, TrackKind::ball});
     Sample& sample = instant.samples.emplace_back();
     sample.track = TrackId{9};
     sample.position = ball[i];

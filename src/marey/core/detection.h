@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -9,13 +10,19 @@ namespace marey {
 
 /// One thing seen in one frame.
 struct Detection {
-  Vector<2> centre = Vector<2>::Zero();          ///< px; of the area seen, not of the box
-  Matrix<2> covariance = Matrix<2>::Identity();  ///< of `centre`, px²
-  double area = 0;                               ///< px²
-  Box box;                                       ///< px
-  std::vector<Vector<2>> outline;                ///< closed polygon along pixel edges, ordered; empty where there is none
-  double score = 1;                              ///< how sure the detector is, in [0, 1]
-  std::optional<int> group;                      ///< several people share this region: its number within the frame
+  Vector<2> centre = Vector<2>::Zero();  ///< px; of the area seen, not of the box
+  std::optional<Matrix<2>> covariance;   ///< of `centre`, px²; nothing if the source does not state it
+  double area = 0;                       ///< px²
+  Box box;                               ///< px
+  std::vector<Vector<2>> outline;        ///< closed polygon along pixel edges, ordered; empty where there is none
+  double score = 1;                      ///< how sure the detector is, in [0, 1]
+  std::optional<int> group;              ///< several people share this region: its number within the frame
+
+  /// The standard deviation of a coordinate of `centre`, px: the root mean square of both.
+  std::optional<double> sigma() const {
+    if (!covariance) return std::nullopt;
+    return std::sqrt(covariance->trace() / 2);
+  }
 };
 
 /// Where a tracker expects a thing it follows to be seen in the frame to come.

@@ -17,6 +17,7 @@
 #include "marey/core/outline.h"
 #include "marey/core/provenance.h"
 #include "marey/core/time.h"
+#include "marey/core/track_kind.h"
 
 namespace marey {
 
@@ -61,12 +62,13 @@ struct BoxInView {
   bool seen = true;               ///< the camera saw it at this instant
 };
 
-/// What a track is called. Its label and its team are empty where none was given.
+/// What a track is called, and what it is. Its label and its team are empty if none was given.
 struct TrackName {
   TrackId id{};
   std::string label;
   std::string team;
   std::optional<std::array<std::uint8_t, 3>> colour = {};  ///< red, green, blue; to be drawn in, where it is not left to its number
+  TrackKind kind = TrackKind::unspecified;                 ///< unspecified: the track keeps the kind that it has
 
   bool operator==(const TrackName&) const = default;
 };

@@ -13,7 +13,7 @@ namespace marey {
 template <int D>
 struct Observation {
   Vector<D> value = Vector<D>::Zero();
-  Matrix<D> covariance = Matrix<D>::Identity();
+  std::optional<Matrix<D>> covariance = Matrix<D>::Identity();  ///< of `value`; nothing if unknown, which trackers refuse
   CameraId camera{};
   double score = 1;        ///< in [0, 1]; a weak one may continue a track, not begin one
   std::optional<Box> box;  ///< px, where the thing has an extent in the image

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 
 namespace marey {
@@ -240,7 +239,7 @@ const TrackColumns* Recording::find(TrackId id) const {
 TrackColumns& Recording::track_of(TrackId id) {
   const auto at = std::lower_bound(tracks_.begin(), tracks_.end(), id, [](const TrackColumns& t, TrackId i) { return t.id() < i; });
   if (at != tracks_.end() && at->id() == id) return *at;
-  return *tracks_.emplace(at, TrackName{.id = id, .label = {}, .team = {}}, dimensions());
+  return *tracks_.emplace(at, TrackName{.id = id, .label = {}, .team = {}, .kind = header.track_kind}, dimensions());
 }
 
 const BodyColumns* Recording::find(BodyId id) const {
@@ -283,8 +282,14 @@ void Recording::add(const Instant& instant) {
 
 void Recording::set_name(const TrackName& name) {
   TrackColumns& track = track_of(name.id);
-  if (track.empty() && track.dimensions() == 2 && header.frame.metric() && is_ball(name)) track = TrackColumns(name, 3);
+  const TrackKind kind = name.kind == TrackKind::unspecified ? track.name.kind : name.kind;
+  if (track.empty() && track.dimensions() == 2 && header.frame.metric() && kind == TrackKind::ball) track = TrackColumns(name, 3);
   track.name = name;
+  track.name.kind = kind;
+}
+
+void Recording::shift_times(Duration shift) {
+  for (Moment& moment : instants_) moment.time += shift;
 }
 
 void Recording::put(TrackColumns track) {
@@ -346,7 +351,8 @@ std::optional<Instant> InstantsOf::next() {
   instant.samples.reserve(rows.size());
   for (const auto& [index, row] : rows) {
     const TrackColumns& track = recording_.tracks()[index];
-    if (row == 0 && (!track.name.label.empty() || !track.name.team.empty())) instant.named.push_back(track.name);
+    if (row == 0 && (!track.name.label.empty() || !track.name.team.empty() || track.name.kind != recording_.header.track_kind))
+      instant.named.push_back(track.name);
     instant.samples.push_back(track.sample(row));
   }
   return instant;
@@ -363,6 +369,16 @@ std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return 1 / *middle;
+}
+
+Recording with_time_base(Recording recording, const TimeBase& base) {
+  if (!recording.header.rig)
+    throw Error("{}: its cameras are not known, so its times cannot be given by another clock", recording.header.name);
+  const Rig& rig = *recording.header.rig;
+  const Duration shift = rig_time_offset(recording.header.time_base, rig) - rig_time_offset(base, rig);
+  recording.shift_times(shift);
+  recording.header.time_base = base;
+  return recording;
 }
 
 bool has_velocities(const Recording& recording) {

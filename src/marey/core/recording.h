@@ -16,6 +16,7 @@
 
 #include "marey/core/instant.h"
 #include "marey/core/rig.h"
+#include "marey/core/time_base.h"
 
 namespace marey {
 
@@ -59,10 +60,12 @@ struct RecordingHeader {
   std::string name;         ///< free text; by default the file's
   std::string recorded_at;  ///< ISO 8601, UTC; empty where unknown
   FrameOfReference frame;
-  double rate_hz = 0;                    ///< instants a second, positive: the median step, where the file does not tell
-  std::optional<Rig> rig;                ///< the cameras with their sources; nothing where a file brings positions alone
-  std::vector<Body> bodies;              ///< by id, parents before children; none where none were solved
-  std::optional<KeypointSet> keypoints;  ///< which body points samples have, where they have some
+  TimeBase time_base;
+  TrackKind track_kind = TrackKind::unspecified;  ///< of tracks without a kind of their own
+  double rate_hz = 0;                             ///< instants a second, positive: the median step, where the file does not tell
+  std::optional<Rig> rig;                         ///< the cameras with their sources; nothing where a file brings positions alone
+  std::vector<Body> bodies;                       ///< by id, parents before children; none where none were solved
+  std::optional<KeypointSet> keypoints;           ///< which body points samples have, where they have some
   MadeBy made_by;
   bool smoothed = false;  ///< a second pass has smoothed positions and velocities: who measures does not smooth again
 };
@@ -241,7 +244,7 @@ class Recording {
 
   /// Its index is later than the last one's. Pictures are not kept.
   void add(const Instant& instant);
-  /// A track's label and team; it need not have samples yet.
+  /// A track's label, team and, if specified, kind; it need not have samples yet.
   void set_name(const TrackName& name);
   /// Puts a track in as a whole, in the place of one with its id. Its instants must be there already.
   void put(TrackColumns track);
@@ -249,6 +252,7 @@ class Recording {
   /// Takes all tracks out, so that another recording can be made of them without holding both.
   std::vector<TrackColumns> take_tracks() { return std::exchange(tracks_, {}); }
   void add_moment(const Moment& moment) { instants_.push_back(moment); }
+  void shift_times(Duration shift);
   /// Leaves out the tracks for which this says so.
   void erase_tracks_if(const std::function<bool(const TrackColumns&)>& leave_out);
 
@@ -302,6 +306,10 @@ class InstantsOf {
 /// The usual step between instants as a rate: the median, so that gaps and a slip in one number change nothing. Nothing for fewer
 /// than two instants.
 std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants);
+
+/// The same recording with its times by another clock. Both clocks are of the header's rig. Throws Error if there is no rig, or if
+/// one of them is not specified.
+Recording with_time_base(Recording recording, const TimeBase& base);
 
 /// Whether a velocity is known anywhere.
 bool has_velocities(const Recording& recording);

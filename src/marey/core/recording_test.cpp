@@ -95,6 +95,47 @@ TEST(Recording, TwoDimensionsHaveNoThirdColumn) {
   EXPECT_FALSE(track.has_velocities());
 }
 
+TEST(Recording, KeepsTheKindOfATrackThatIsRenamed) {
+  Recording recording(header_in(FrameOfReference::Kind::user_ground));
+  recording.header.track_kind = TrackKind::person;
+  Instant instant;
+  instant.named = {{.id = TrackId{1}, .label = "ball", .team = {}},
+                   {.id = TrackId{2}, .label = "b", .team = {}, .kind = TrackKind::ball}};
+  instant.samples = {sample_of(1, 4), sample_of(2, 5), sample_of(3, 6)};
+  instant.samples[1].position.z() = 2;
+  recording.add(instant);
+  recording.set_name({.id = TrackId{2}, .label = "the ball", .team = "red"});
+  ASSERT_EQ(recording.tracks().size(), 3U);
+  EXPECT_EQ(recording.tracks()[0].name.kind, TrackKind::person);  // a label is free text
+  EXPECT_EQ(recording.tracks()[0].dimensions(), 2);
+  EXPECT_EQ(recording.tracks()[1].name.kind, TrackKind::ball);
+  EXPECT_EQ(recording.tracks()[1].position(0), Vector<3>(5, 10, 2));
+  EXPECT_EQ(recording.tracks()[2].name.kind, TrackKind::person);
+  InstantsOf instants(recording);
+  const auto again = instants.next();
+  ASSERT_TRUE(again);
+  ASSERT_EQ(again->named.size(), 2U);  // the third has the header's kind and no name
+  EXPECT_EQ(again->named[1].kind, TrackKind::ball);
+}
+
+TEST(Recording, TimesFollowAnotherClock) {
+  Recording recording(header_in(FrameOfReference::Kind::space));
+  Instant instant;
+  instant.time = timestamp_from_seconds(5);
+  recording.add(instant);
+  const TimeBase rig{.kind = TimeBase::Kind::rig}, second{.kind = TimeBase::Kind::camera, .camera = CameraId{1}};
+  EXPECT_THROW(with_time_base(recording, second), Error);  // no rig
+  recording.header.rig.emplace().cameras.resize(2);
+  recording.header.rig->cameras[1].offset_s = 2.5;
+  EXPECT_THROW(with_time_base(recording, second), Error);  // its own clock is not specified
+  recording.header.time_base = rig;
+  const Recording moved = with_time_base(recording, second);
+  EXPECT_EQ(moved.header.time_base, second);
+  EXPECT_EQ(moved.seconds_at(0), 2.5);
+  EXPECT_EQ(with_time_base(moved, rig).seconds_at(0), 5);
+  EXPECT_THROW(with_time_base(recording, {.kind = TimeBase::Kind::camera, .camera = CameraId{2}}), Error);
+}
+
 TEST(Recording, BodiesComeAndGo) {
   Recording recording(header_in(FrameOfReference::Kind::space));
   for (int i = 0; i < 6; ++i) {

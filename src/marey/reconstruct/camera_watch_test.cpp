@@ -20,7 +20,7 @@ std::vector<Observation<2>> seen_by(const std::vector<Camera>& cameras, const st
       if (!pixel || c == covered || random.chance(0.1)) continue;
       Observation<2> blob;
       blob.value = *pixel + random.gaussian_2d(kNoise);
-      blob.covariance.setZero();
+      blob.covariance.reset();
       blob.camera = CameraId{c};
       seen.push_back(blob);
     }

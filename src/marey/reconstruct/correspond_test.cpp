@@ -32,7 +32,7 @@ struct SceneOptions {
 void add_blob(Scene& scene, int camera, const Vector<2>& pixel, int owner) {
   Observation<2> blob;
   blob.value = pixel;
-  blob.covariance.setZero();
+  blob.covariance.reset();
   blob.camera = CameraId{camera};
   scene.seen.push_back(blob);
   scene.owner.push_back(owner);

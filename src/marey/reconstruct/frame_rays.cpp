@@ -13,7 +13,7 @@ constexpr int kMostCells = 4096;     // a camera
 constexpr std::size_t kGrain = 512;  // blobs: lens inversions that are worth a task (unswept)
 
 double sigma_of(const Observation<2>& one, double noise_px) {
-  return std::max(std::sqrt(std::max(0.0, one.covariance.trace() / 2) + noise_px * noise_px), 1e-6);
+  return std::max(std::sqrt((one.covariance ? std::max(0.0, one.covariance->trace() / 2) : 0) + noise_px * noise_px), 1e-6);
 }
 
 }  // namespace

@@ -18,14 +18,15 @@ inline void check_time(Timestamp now, std::optional<Timestamp> before) {
   }
 }
 
-/// Throws Error where an observation holds what is no finite number.
+/// Throws Error if an observation contains a value that is not finite, or has no covariance.
 template <int D>
 void check_finite(Timestamp now, std::span<const Observation<D>> seen) {
   for (const Observation<D>& observation : seen) {
     const bool box_is_finite =
         !observation.box || (std::isfinite(observation.box->left) && std::isfinite(observation.box->top) &&
                              std::isfinite(observation.box->width) && std::isfinite(observation.box->height));
-    if (!observation.value.allFinite() || !observation.covariance.allFinite() || !std::isfinite(observation.score) ||
+    if (!observation.covariance) throw Error("an observation at {:.6f} s has no covariance; a tracker needs one", seconds(now));
+    if (!observation.value.allFinite() || !observation.covariance->allFinite() || !std::isfinite(observation.score) ||
         !box_is_finite)
       throw Error("an observation at {:.6f} s is not a finite number; leave it out", seconds(now));
   }

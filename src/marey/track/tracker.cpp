@@ -3,7 +3,7 @@
 #include <variant>
 
 #include "marey/core/error.h"
-#include "marey/track/filter_tracker.h"
+#include "marey/track/image/filter_tracker.h"
 
 namespace marey::track {
 namespace {
@@ -47,7 +47,7 @@ TrackerOptions point_tracker_options() {
 
 std::unique_ptr<Tracker<2>> make_tracker(const TrackerOptions& options) {
   check(options);
-  return std::make_unique<FilterTracker>(options);
+  return std::make_unique<image::FilterTracker>(options);
 }
 
 }  // namespace marey::track

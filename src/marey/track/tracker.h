@@ -11,8 +11,8 @@
 #include "marey/core/track.h"
 #include "marey/filter/filters.h"
 #include "marey/geometry/similarity2.h"
-#include "marey/track/box_noise.h"
 #include "marey/track/evidence.h"
+#include "marey/track/image/box_noise.h"
 
 namespace marey::track {
 
@@ -78,7 +78,7 @@ class Tracker {
   virtual geometry::Similarity2 view_from_scene() const { return {}; }
 
   /// What has been learned of how boxes err; nothing where nothing is.
-  virtual std::optional<BoxNoise> learned_noise() const { return std::nullopt; }
+  virtual std::optional<image::BoxNoise> learned_noise() const { return std::nullopt; }
 
   /// Where each confirmed target is expected at `now`, before it is observed. Valid until the next call of any kind.
   virtual std::span<const Track<D>> expected(Timestamp now) = 0;

@@ -13,11 +13,11 @@
 #include <marey/format/rig/rig_file.h>
 #include <marey/format/take/take_file.h>
 #include <marey/geometry/pitch.h>
-#include <marey/pipeline/track_in_picture.h>
+#include <marey/pipeline/people/track_in_picture.h>
 #include <marey/reconstruct/triangulate.h>
 #include <marey/simulate/random.h>
 #include <marey/source/open_source.h>
-#include <marey/track/join.h>
+#include <marey/track/offline/join.h>
 
 namespace {
 
@@ -42,7 +42,7 @@ int main(int, char** argv) {
   std::ofstream file(camera.detections);
   for (int frame = 1; frame < 50; ++frame) file << frame << ",-1," << 100 + 3 * frame << ",50,40,100,0.9\n";
   file.close();
-  if (pipeline::track_people(camera, {.tracks = tracks}).tracks != 1) return 1;
+  if (pipeline::people::track_people(camera, {.tracks = tracks}).tracks != 1) return 1;
 
   camera.name = "cam";
   format::rig::write_rig({.ground_from_world = {}, .calibration = {}, .cameras = {camera}}, tracks + ".toml");

@@ -112,7 +112,7 @@ TEST_P(MarkerAccuracy, RootMeanSquareAndBiasStayBelowTheirLimits) {
           });
       const Vector<2> error = nearest->centre - Vector<2>(spots[i].x, spots[i].y);
       squares += error.squaredNorm();
-      normalised += error.dot(nearest->covariance.inverse() * error);
+      normalised += error.dot(nearest->covariance->inverse() * error);
       (spots[i].x < std::round(spots[i].x) ? low : high) += Vector<2>(error.x(), 1);
       ++count;
     }

@@ -188,8 +188,8 @@ TEST(PeopleDetector, WhatADetectionHoldsFitsTogether) {
       EXPECT_GE(one.centre.y(), one.box.top - 0.5);
       EXPECT_LE(one.centre.x(), one.box.right() - 0.5);
       EXPECT_LE(one.centre.y(), one.box.bottom() - 0.5);
-      EXPECT_GT(one.covariance(0, 0), 0);
-      EXPECT_GT(one.covariance(1, 1), 0);
+      EXPECT_GT(one.covariance.value()(0, 0), 0);
+      EXPECT_GT(one.covariance.value()(1, 1), 0);
       EXPECT_GE(one.box.left, 0);
       EXPECT_GE(one.box.top, 0);
       EXPECT_LE(one.box.right(), kSceneImage.width);

@@ -66,7 +66,9 @@ std::int32_t GroundBuilder::person(int id, const std::string& label, const std::
     require_short(team, name_);
     if (people_.size() == Limits::in_force().tracks)
       throw Error("{}: names more than {} people (the limit tracks)", name_, Limits::in_force().tracks);
-    people_.push_back({TrackColumns({TrackId{id}, {}, {}}, label == kBallLabel && team.empty() ? 3 : 2), {}});
+    const TrackKind kind = kind_by_label(label, team);
+    people_.push_back(
+        {TrackColumns({.id = TrackId{id}, .label = {}, .team = {}, .kind = kind}, kind == TrackKind::ball ? 3 : 2), {}});
   }
   TrackName& name = people_[static_cast<std::size_t>(entry->second)].rows.name;
   if (name.label.empty()) name.label = plain_text(label);

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/recording.h"
+#include "marey/core/track_kind.h"
 
 namespace marey::format::match {
 

@@ -291,8 +291,9 @@ Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
 
 void GroundWriter::write(const Instant& instant) {
   for (const TrackName& name : instant.named) {
-    fields_[name.id] = {quoted_field(name.label), quoted_field(name.team), is_ball(name)};
-    if (is_ball(name)) add_columns(Extra::heights);
+    const bool ball = name.kind == TrackKind::ball;  // known by its label when the file is read
+    fields_[name.id] = {ball ? std::string(kBallLabel) : quoted_field(name.label), ball ? "" : quoted_field(name.team), ball};
+    if (ball) add_columns(Extra::heights);
   }
   const double time = seconds(instant.time);
   for (const Sample& sample : instant.samples) {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/other_ground.h"
 
@@ -81,7 +80,7 @@ TEST(GroundFile, HowWellPlacesAreKnownIsKept) {
     instant.samples = {sample_of(1, {10.0 + i, 20}, {3, 0}, 0, true)};
     if (i > 0) instant.samples[0].covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() << 0.04, -0.01, -0.01, 0.25;
     if (i == 2) {
-      instant.named.push_back({TrackId{2}, std::string(kBallLabel), ""});
+      instant.named.push_back({TrackId{2}, std::string(kBallLabel), "", {}, TrackKind::ball});
       instant.samples.push_back(sample_of(2, {11, 20}, {0, 0}, 0, true));
     }
     recording.add(instant);

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/other_ground.h"
 #include "marey/core/text_safety.h"
@@ -210,7 +209,7 @@ TEST(GroundExchange, PeopleWithoutTeamsAreAtHomeAndThatIsSaid) {
 TEST(GroundExchange, TheBallGoesWhereAFormatHasAPlaceForIt) {
   const TemporaryFolder folder;
   GroundMatch match = made_up(3);
-  TrackColumns ball({TrackId{99}, std::string(kBallLabel), {}}, 3);
+  TrackColumns ball({TrackId{99}, std::string(kBallLabel), {}, {}, TrackKind::ball}, 3);
   for (std::size_t i = 0; i < match.recording.instants().size(); i += 2) {
     Sample sample;
     sample.track = ball.id();
@@ -231,7 +230,8 @@ TEST(GroundExchange, TheBallGoesWhereAFormatHasAPlaceForIt) {
       EXPECT_EQ(warning.find("2 people"), std::string::npos) << "the ball is nobody: " << warning;
     const GroundMatch back = read_match(folder / one.name, {{}, match.pitch, 25});
     const auto& tracks = back.recording.tracks();
-    const auto found = std::find_if(tracks.begin(), tracks.end(), [](const TrackColumns& track) { return is_ball(track.name); });
+    const auto found =
+        std::find_if(tracks.begin(), tracks.end(), [](const TrackColumns& track) { return track.name.kind == TrackKind::ball; });
     ASSERT_EQ(found != tracks.end(), one.read) << one.format;
     if (!one.read) continue;
     ASSERT_EQ(found->size(), ball.size()) << one.format;
@@ -405,7 +405,7 @@ TEST(GroundExchange, FilesOfVendors) {
                               Expected{"statsperform_tracking_ma25.txt", "statsperform", 2025, 0, 2, {52.803, 68 - 23.617}}}) {
     ASSERT_EQ(format_of_content(folder + one.name)->name, one.format) << one.name;
     GroundMatch match = read_match(folder + one.name);
-    match.recording.erase_tracks_if([](const TrackColumns& track) { return is_ball(track.name); });
+    match.recording.erase_tracks_if([](const TrackColumns& track) { return track.name.kind == TrackKind::ball; });
     EXPECT_EQ(match.recording.samples(), one.samples) << one.name;
     if (one.people > 0) {
       EXPECT_EQ(match.recording.tracks().size(), one.people) << one.name;

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/format/text_rows.h"
 
@@ -119,7 +118,7 @@ LineUps line_ups_of(const GroundMatch& match) {
   for (const std::size_t i : line_ups.listed) {
     const TrackName& person = match.recording.tracks()[i].name;
     LineUps::Member& member = line_ups.members[i];
-    if (is_ball(person)) {
+    if (person.kind == TrackKind::ball) {
       member.side = Side::ball;
       line_ups.ball = i;
       continue;

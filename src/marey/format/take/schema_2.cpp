@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/text_safety.h"
 #include "marey/format/take/body_definition.h"
@@ -46,11 +45,16 @@ class CursorOfSchema2 : public TakeCursor {
     summary.samples = values_.integer("samples");
     summary.seen = values_.integer("seen");
     summary.complete = values_.integer("complete") != 0;
-    Statement tracks(*database_,
-                     "SELECT id, label, team, first_index, last_index, measured, filled, predicted, solved FROM track ORDER BY id");
+    // Takes of older versions have no kinds; their ball is known by its label.
+    const bool kinds = database_->number("SELECT count(*) FROM pragma_table_info('track') WHERE name = 'kind'") != 0;
+    Statement tracks(
+        *database_, fmt::format("SELECT id, label, team, first_index, last_index, measured, filled, predicted, solved{} FROM track "
+                                "ORDER BY id",
+                                kinds ? ", kind" : ""));
     while (tracks.step()) {
       RecordingSummary::TrackCount count;
       count.name = {checked_track(tracks.integer(0), *database_), plain_text(tracks.text(1)), plain_text(tracks.text(2))};
+      count.name.kind = kinds ? checked_kind(tracks.text(9)) : kind_of_label(count.name);
       check_name(count.name, summary.tracks.size(), options_.limits, *database_);
       if (tracks.is_number(3)) count.first_index = tracks.integer(3);
       if (tracks.is_number(4)) count.last_index = tracks.integer(4);
@@ -119,7 +123,7 @@ class CursorOfSchema2 : public TakeCursor {
 
   TrackColumns read_track(const TrackName& name) override {
     const ReadTransaction transaction(*database_);
-    TrackColumns track(name, header_.frame.metric() && is_ball(name) ? 3 : header_.frame.dimensions());
+    TrackColumns track(name, header_.frame.metric() && name.kind == TrackKind::ball ? 3 : header_.frame.dimensions());
     std::int64_t offset = 0;
     for (const ChunkReader::Row& row : chunks_.rows()) {
       chunks_.read_track(row, offset, track);
@@ -141,7 +145,9 @@ class CursorOfSchema2 : public TakeCursor {
       header.frame.camera = CameraId{static_cast<int>(camera)};
     }
     if (values_.has("keypoints")) header.keypoints = keypoint_set_of(values_.text("keypoints"), database_->path());
+    header.time_base = read_time_base();
     header.smoothed = values_.integer("smoothed") != 0;
+    if (values_.has("track_kind")) header.track_kind = checked_kind(values_.text("track_kind"));
     header.made_by.program = plain_text(values_.text("program"));
     Statement options(*database_, "SELECT name, value FROM option ORDER BY name");
     while (options.step()) header.made_by.options.emplace(plain_text(options.text(0)), plain_text(options.text(1)));
@@ -149,6 +155,24 @@ class CursorOfSchema2 : public TakeCursor {
     while (inputs.step()) header.made_by.inputs.push_back({plain_text(inputs.text(0)), plain_text(inputs.text(1))});
     read_bodies(header.bodies);
     return header;
+  }
+
+  /// Of the key `clock`, which older takes lack: "rig" or the number of a camera.
+  TimeBase read_time_base() {
+    if (!values_.has("clock")) return {};
+    if (values_.text("clock") == "rig") return {.kind = TimeBase::Kind::rig};
+    const std::int64_t camera = values_.integer("clock");
+    if (camera < 0 || camera > 63) throw Error("{}: is damaged (its clock is of camera {})", database_->path(), camera);
+    return {.kind = TimeBase::Kind::camera, .camera = CameraId{static_cast<int>(camera)}};
+  }
+
+  TrackKind checked_kind(std::string_view text) const {
+    if (const auto kind = track_kind_of(text)) return *kind;
+    throw Error("{}: is damaged (a track's kind is \"{}\")", database_->path(), plain_text(std::string(text.substr(0, 40))));
+  }
+
+  TrackKind kind_of_label(const TrackName& name) const {
+    return header_.frame.metric() ? kind_by_label(name.label, name.team) : TrackKind::unspecified;
   }
 
   void read_bodies(std::vector<Body>& bodies) {

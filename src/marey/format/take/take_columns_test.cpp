@@ -76,6 +76,9 @@ Recording random_recording(Kind kind, unsigned seed) {
   if (kind == Kind::image) header.frame.camera = CameraId{2};
   header.rate_hz = 25;
   header.smoothed = dice.with(0.5);
+  header.track_kind = static_cast<TrackKind>(dice.below(static_cast<int>(kTrackKindNames.size())));
+  header.time_base.kind = static_cast<TimeBase::Kind>(dice.below(3));
+  if (header.time_base.kind == TimeBase::Kind::camera) header.time_base.camera = CameraId{dice.below(64)};
   if (kind == Kind::image) header.keypoints = three_points();
   Recording recording(header);
   const int tracks = 1 + dice.below(9), dimensions = recording.dimensions();
@@ -154,11 +157,47 @@ TEST_F(TakeColumnsTest, RecordingsOfEveryKindComeBack) {
       const Recording read = read_recording(path_);
       EXPECT_EQ(read.header.frame, recording.header.frame);
       EXPECT_EQ(read.header.smoothed, recording.header.smoothed);
+      EXPECT_EQ(read.header.track_kind, recording.header.track_kind);
+      EXPECT_EQ(read.header.time_base, recording.header.time_base);
       EXPECT_EQ(read.header.keypoints, recording.header.keypoints);
       testing_take::expect_same(read, recording);
       if (HasFailure()) return;
     }
   }
+}
+
+TEST_F(TakeColumnsTest, KindsComeBackAndOldTakesKnowTheBallByItsLabel) {
+  RecordingHeader header;
+  header.name = "kinds";
+  header.frame.kind = Kind::user_ground;
+  header.rate_hz = 25;
+  header.track_kind = TrackKind::person;
+  Recording recording(header);
+  Instant instant;
+  instant.named = {{.id = TrackId{1}, .label = "ball", .team = {}, .kind = TrackKind::person},
+                   {.id = TrackId{2}, .label = "round", .team = {}, .kind = TrackKind::ball}};
+  for (const int id : {1, 2, 3}) {
+    Sample& sample = instant.samples.emplace_back();
+    sample.track = TrackId{id};
+    sample.position = {1, 2, id == 2 ? 0.5 : 0};
+  }
+  recording.add(instant);
+  write_recording(path_, recording);
+  const Recording read = read_recording(path_);
+  ASSERT_EQ(read.tracks().size(), 3U);
+  EXPECT_EQ(read.tracks()[0].name.kind, TrackKind::person);
+  EXPECT_EQ(read.tracks()[1].name.kind, TrackKind::ball);
+  EXPECT_EQ(read.tracks()[1].position(0), Vector<3>(1, 2, 0.5));
+  EXPECT_EQ(read.tracks()[2].name.kind, TrackKind::person);
+
+  Database(path_, Database::Mode::create)
+      .run(
+          "UPDATE track SET label = CASE id WHEN 2 THEN 'ball' ELSE '' END; ALTER TABLE track DROP COLUMN kind; "
+          "DELETE FROM take WHERE key = 'track_kind'");
+  const Recording old = read_recording(path_);
+  EXPECT_EQ(old.tracks()[0].name.kind, TrackKind::unspecified);
+  EXPECT_EQ(old.tracks()[1].name.kind, TrackKind::ball);
+  EXPECT_EQ(old.tracks()[1].position(0), Vector<3>(1, 2, 0.5));
 }
 
 /// The coordinates of a track by SQL alone, number by number.
@@ -341,6 +380,9 @@ TEST_F(TakeColumnsTest, HostileTablesAreRefused) {
       "UPDATE chunk SET last_index = 9223372036854775807 WHERE id = (SELECT max(id) FROM chunk)",
       "UPDATE chunk SET id = 9223372036854775807 WHERE id = 1",
       "UPDATE track SET id = -1 WHERE id = 7",
+      "UPDATE track SET kind = 'dog' WHERE id = 7",
+      "INSERT OR REPLACE INTO take VALUES ('track_kind', 'dog')",
+      "INSERT OR REPLACE INTO take VALUES ('clock', 64)",
       "UPDATE take SET value = 'elsewhere' WHERE key = 'frame'",
       "UPDATE take SET value = 0 WHERE key = 'rate_hz'",
       "UPDATE take SET value = 'nonsense = [' WHERE key = 'rig'",

@@ -27,7 +27,8 @@ constexpr const char* kTakeSchema = R"(
   CREATE TABLE option (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
   CREATE TABLE input (id INTEGER PRIMARY KEY, name TEXT NOT NULL, hash TEXT NOT NULL);
   CREATE TABLE track (id INTEGER PRIMARY KEY, label TEXT NOT NULL, team TEXT NOT NULL, first_index INTEGER, last_index INTEGER,
-                      measured INTEGER NOT NULL, filled INTEGER NOT NULL, predicted INTEGER NOT NULL, solved INTEGER NOT NULL);
+                      measured INTEGER NOT NULL, filled INTEGER NOT NULL, predicted INTEGER NOT NULL, solved INTEGER NOT NULL,
+                      kind TEXT NOT NULL DEFAULT '');
   CREATE TABLE chunk (id INTEGER PRIMARY KEY, first_index INTEGER NOT NULL, last_index INTEGER NOT NULL UNIQUE,
                       instants INTEGER NOT NULL, indices BLOB, times BLOB NOT NULL);
   CREATE TABLE samples (id INTEGER PRIMARY KEY, rows INTEGER NOT NULL, at NOT NULL, x BLOB NOT NULL, y BLOB NOT NULL, z BLOB,

@@ -12,7 +12,6 @@
 #include <limits>
 #include <map>
 
-#include "marey/core/ball_track.h"
 #include "marey/core/error.h"
 #include "marey/core/file_lock.h"
 #include "marey/core/other_ground.h"
@@ -55,7 +54,7 @@ class TakeWriter::Recorder {
         dimensions_(header.frame.dimensions()),
         metric_ground_(header.frame.metric() && dimensions_ == 2),
         set_key_(database_, "INSERT OR REPLACE INTO take VALUES (?, ?)"),
-        set_track_(database_, "INSERT OR REPLACE INTO track VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        set_track_(database_, "INSERT OR REPLACE INTO track VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         add_edit_(database_, "INSERT INTO edit VALUES (?, ?, ?, ?)"),
         chunks_(database_) {
     open_ = true;
@@ -65,7 +64,9 @@ class TakeWriter::Recorder {
     set("rate_hz", header.rate_hz);
     set("frame", name_of(header.frame.kind));
     if (header.frame.camera) set("camera", std::int64_t{number(*header.frame.camera)});
+    set_time_base(header.time_base);
     set("smoothed", std::int64_t{header.smoothed});
+    set("track_kind", to_string(header.track_kind));
     const bool cameras = header.rig && !header.rig->cameras.empty();  // a rig's text has one at least
     if (header.rig) cameras ? set("rig", rig::rig_text(*header.rig)) : set("y_down", std::int64_t{y_grows_down(header)});
     if (header.keypoints) set("keypoints", keypoint_set_text(*header.keypoints));
@@ -75,11 +76,18 @@ class TakeWriter::Recorder {
     flush();
   }
 
+  void set_time_base(const TimeBase& base) {
+    if (base.kind == TimeBase::Kind::rig) set("clock", "rig");
+    if (base.kind == TimeBase::Kind::camera) set("clock", std::int64_t{number(base.camera)});
+  }
+
   void set_name(const TrackName& name) {
     if (number(name.id) <= 0) throw Error("{}: track {} cannot be; ids are positive", path_, number(name.id));
     Counts& counts = tracks_[name.id];
+    const TrackKind kind = name.kind == TrackKind::unspecified ? counts.count.name.kind : name.kind;
     counts.count.name = name;
-    if (metric_ground_ && is_ball(name)) ball_ = name.id;
+    counts.count.name.kind = kind;
+    if (metric_ground_ && kind == TrackKind::ball) ball_ = name.id;
     counts.changed = true;
     gathered();
   }
@@ -296,6 +304,7 @@ class TakeWriter::Recorder {
       if (count.first_index) set_track_.bind(3, *count.first_index);
       if (count.last_index) set_track_.bind(4, *count.last_index);
       for (int i = 0; i < 4; ++i) set_track_.bind(5 + i, count.by_provenance[static_cast<std::size_t>(i)]);
+      set_track_.bind(9, to_string(count.name.kind));
       run(set_track_);
       counts.changed = false;
     }

@@ -44,7 +44,7 @@ Detection detection_of(const BlobLine& line) {
   blob.covariance = Matrix<2>::Identity() * (kUnknownSigma * kUnknownSigma);
   if (value[kVarX] && value[kVarY]) {
     const double across = value[kCovXY].value_or(0);
-    blob.covariance << *value[kVarX], across, across, *value[kVarY];
+    blob.covariance = (Matrix<2>() << *value[kVarX], across, across, *value[kVarY]).finished();
   }
   blob.area = value[kArea].value_or(0);
   blob.score = std::clamp(value[kScore].value_or(1), 0.0, 1.0);
@@ -72,7 +72,7 @@ void BlobWriter::write(const Frame& frame, std::span<const Detection> blobs) {
   lines_.clear();
   auto out = std::back_inserter(lines_);
   for (const Detection& blob : blobs) {
-    const auto& spread = blob.covariance;
+    const Matrix<2> spread = blob.covariance.value_or(Matrix<2>::Identity() * (kUnknownSigma * kUnknownSigma));
     if (text_ == BlobText::csv) {
       fmt::format_to(out, "{},{},{:.6f},{:.4f},{:.4f},{:.4g},{:.4g},{:.4g},{:.2f},{:.3f},{:g},{:g},{:g},{:g}\n", camera_,
                      frame.index, seconds(frame.time), blob.centre.x(), blob.centre.y(), spread(0, 0), spread(0, 1), spread(1, 1),

@@ -4,7 +4,7 @@
 
 #include "marey/detect/keypoints/model_folder.h"
 #include "marey/filter/filters.h"
-#include "marey/pipeline/track_in_picture.h"
+#include "marey/pipeline/people/track_in_picture.h"
 
 namespace marey::pipeline::jobs {
 namespace {
@@ -20,7 +20,8 @@ std::vector<std::string> names_in(const std::string& list) {
 
 void add_people_rows(Table& table, PeopleDetection& detection) {
   table
-      .choice("background", detection.background, names_in(detect::background::background_names()), "model of the static background")
+      .choice("background", detection.background, names_in(detect::background::background_names()),
+              "model of the static background")
       .checked(detect::background::parse_background);
   table.input_file("detector", detection.network,
                    "a detection network in addition to the background model: the file that describes it (docs/network.md)");
@@ -33,8 +34,9 @@ detect::DetectorOptions detector_of(const PeopleDetection& detection, bool keypo
   if (detection.network.empty() && !keypoints && (skips || detection.without_background))
     throw WrongOption("{} requires --detector", skips ? "--every" : "--without-background");
   if (detection.without_background && skips && !needs_every_frame.empty())
-    throw WrongOption("--every {} with --without-background: {} needs detections in every frame; leave out one of the three options",
-                      detection.every, needs_every_frame);
+    throw WrongOption(
+        "--every {} with --without-background: {} needs detections in every frame; leave out one of the three options",
+        detection.every, needs_every_frame);
   const detect::people::PeopleDetectorOptions people{.background = detect::background::parse_background(detection.background),
                                                      .people = {}};
   if (detection.network.empty() && !(keypoints && detection.without_background)) return people;
@@ -60,22 +62,25 @@ void add_blob_rows(Table& table, detect::markers::MarkerOptions& markers) {
               "per frame; beyond, those at predicted positions are kept, then the largest");
   table.number("min-area", markers.min_area, "px^2", closed(0, 1e8), "smallest marker, pixels that exceed the threshold");
   table.number("max-area", markers.max_area, "px^2", closed(0, 1e8), "largest marker, likewise");
-  table.number("min-roundness", markers.min_roundness, "share", closed(0, 1), "area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes");
+  table.number("min-roundness", markers.min_roundness, "share", closed(0, 1),
+               "area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes");
 }
 
 void add_marker_rows(Table& table, MarkerDetection& detection) {
   add_blob_rows(table, detection.markers);
   table
       .text("colour", detection.colour,
-            "markers of this hue, in degrees: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta; 120+-15 sets the tolerance")
+            "markers of this hue, in degrees: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta; 120+-15 sets the "
+            "tolerance")
       .checked(detect::markers::parse_marker_colour);
   table
       .number("saturation", detection.saturation, "share", closed(0.001, 0.999),
               "with --colour: minimum of (largest - smallest of red, green, blue), as a share of white (default: 0.2)")
       .depending_on({"colour"});
   table.input_file("mask", detection.mask, "an image of the video's size; what is not black in it is left out");
-  table.number("auto-mask", detection.markers.auto_mask_s, "s", closed(0, 3600),
-               "leave out what is bright and static in the first N seconds (lamps, reflections, and markers that do not move); 0: off");
+  table.number(
+      "auto-mask", detection.markers.auto_mask_s, "s", closed(0, 3600),
+      "leave out what is bright and static in the first N seconds (lamps, reflections, and markers that do not move); 0: off");
 }
 
 detect::markers::MarkerOptions detector_of(const MarkerDetection& detection) {
@@ -84,14 +89,15 @@ detect::markers::MarkerOptions detector_of(const MarkerDetection& detection) {
     markers.colour = detect::markers::parse_marker_colour(detection.colour);
     markers.colour->least_saturation = detection.saturation.value_or(markers.colour->least_saturation);
   }
-  if (!detection.mask.empty()) markers.mask = read_mask(detection.mask);
+  if (!detection.mask.empty()) markers.mask = people::read_mask(detection.mask);
   return markers;
 }
 
 void add_filter_row(Table& table, std::string& filter) {
   std::vector<std::string> names;
   for (const filter::NamedFilter& named : filter::named_filters()) names.emplace_back(named.name);
-  table.choice("filter", filter, std::move(names), "motion model that predicts each person or marker").checked(filter::filter_named);
+  table.choice("filter", filter, std::move(names), "motion model that predicts each person or marker")
+      .checked(filter::filter_named);
 }
 
 }  // namespace marey::pipeline::jobs

@@ -92,7 +92,8 @@ TEST(Jobs, DescribeEachOptionOnceWithHelpAndExistingReferences) {
       for (const Option& option : table.options()) {
         EXPECT_EQ(count[option.name], 1) << job << " " << option.name;
         EXPECT_GT(option.help.size(), 10u) << job << " " << option.name;
-        EXPECT_TRUE(option.needs.empty() || option.needs == "ground" || table.find(option.needs) != nullptr) << job << " " << option.name;
+        EXPECT_TRUE(option.needs.empty() || option.needs == "ground" || table.find(option.needs) != nullptr)
+            << job << " " << option.name;
         for (const std::string& other : option.depends)
           EXPECT_TRUE(job == "live" || table.find(other) != nullptr) << job << " " << option.name << " " << other;
       }
@@ -133,8 +134,10 @@ TEST(TrackGround, RefusesOptionsThatExcludeEachOther) {
 
 TEST(TrackPeople, RefusesOptionsThatExcludeEachOther) {
   EXPECT_NE(refusal([] { resolved(TrackPeople{.delay = 1}); }).find("--live"), std::string::npos);
-  EXPECT_NE(refusal([] { resolved(TrackPeople{.detection = {.network = "", .every = 2}}); }).find("requires --detector"), std::string::npos);
-  EXPECT_NE(refusal([] { resolved(TrackPeople{.outline = true, .control_points = 3}); }).find("--control-points 3"), std::string::npos);
+  EXPECT_NE(refusal([] { resolved(TrackPeople{.detection = {.network = "", .every = 2}}); }).find("requires --detector"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { resolved(TrackPeople{.outline = true, .control_points = 3}); }).find("--control-points 3"),
+            std::string::npos);
   EXPECT_EQ(resolved(TrackPeople{.outline = true, .control_points = 12, .order = 3}).outlines->order, 3);
 }
 

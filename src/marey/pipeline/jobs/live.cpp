@@ -1,7 +1,5 @@
 #include "marey/pipeline/jobs/live.h"
 
-#include "marey/pipeline/jobs/track_image.h"
-
 namespace marey::pipeline::jobs {
 
 Table table_of(Live& job) {
@@ -18,17 +16,15 @@ Table table_of(Live& job) {
   return table;
 }
 
-LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::string>& warnings) {
-  constexpr double kPredicted = 0.1;  // s
-  LiveOptions options;
-  options.targets = job.ground ? LiveTargets::people : job.targets;
+live::LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::string>& warnings) {
+  live::LiveOptions options;
+  options.targets = job.ground ? live::LiveTargets::people : job.targets;
   options.ground = job.ground;
   options.space.markers = options.markers.markers = job.markers;
-  options.space.predict_s = kPredicted;
+  options.space.predict_s = 0.1;  // unswept
   set_names(job.names, options.space, warnings);
-  TrackPeople people{.detection = job.detection};
-  people.options.live = true;
-  options.people = resolved(people);
+  options.people.detector = detector_of(job.detection, false, "");
+  options.people.live = true;
   TrackGround ground{.rig_name = job.rig_name, .detection = job.detection, .ground = job.part};
   ground.options.live = true;
   options.on_ground = resolved(ground, rig);

@@ -7,13 +7,13 @@
 #include "marey/pipeline/jobs/detection_rows.h"
 #include "marey/pipeline/jobs/space_names.h"
 #include "marey/pipeline/jobs/track_ground.h"
-#include "marey/pipeline/live.h"
+#include "marey/pipeline/live/live.h"
 
 namespace marey::pipeline::jobs {
 
 struct Live {
   std::string rig_name = {};  ///< for messages
-  LiveTargets targets = LiveTargets::markers;
+  live::LiveTargets targets = live::LiveTargets::markers;
   bool ground = false;  ///< people, on the ground that the cameras face
   SpaceNames names = {};
   detect::markers::MarkerOptions markers = {};
@@ -25,6 +25,6 @@ struct Live {
 Table table_of(Live& job);
 /// Sinks, the take and everything that changes during the run are the front end's. Reads the files of names. Throws WrongOption for
 /// options that exclude each other, Error if a file cannot be read.
-LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::string>& warnings);
+live::LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::string>& warnings);
 
 }  // namespace marey::pipeline::jobs

@@ -98,7 +98,8 @@ Option& Table::number(std::string name, double& value, const char* unit, const I
   return add_number(std::move(name), value, contains(interval, value) ? shown_number(value) : "", unit, interval, std::move(help));
 }
 
-Option& Table::number(std::string name, std::optional<double>& value, const char* unit, const Interval& interval, std::string help) {
+Option& Table::number(std::string name, std::optional<double>& value, const char* unit, const Interval& interval,
+                      std::string help) {
   return add_number(std::move(name), value, "", unit, interval, std::move(help));
 }
 

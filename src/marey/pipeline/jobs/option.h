@@ -37,7 +37,7 @@ struct Option {
   Kind kind = Kind::text;
   std::string help;
   std::string value;                 ///< what it takes: "s in [0, 60]", "TEXT", "FILE"; empty for a flag
-  std::string fallback;                 ///< the default as text, if it is a constant
+  std::string fallback;              ///< the default as text, if it is a constant
   std::string group;                 ///< the title that it is listed under; may be empty
   std::vector<std::string> choices;  ///< all of them, if `kind` is choice
   std::string needs;                 ///< an option without which this one has no meaning; the front end may have it
@@ -99,7 +99,8 @@ class Table {
               std::function<std::string(const std::string&)> take);
   Option& text_of(Kind kind, const char* shown, std::string name, std::string& value, std::string help);
   template <typename T>
-  Option& add_number(std::string name, T& value, std::string fallback, const char* unit, const Interval& interval, std::string help);
+  Option& add_number(std::string name, T& value, std::string fallback, const char* unit, const Interval& interval,
+                     std::string help);
   template <typename T>
   Option& add_whole(std::string name, T& value, std::string fallback, const char* unit, int low, int high, std::string help);
 

@@ -12,7 +12,7 @@ void add_rate_row(Table& table, std::optional<double>& rate_hz) {
 }  // namespace
 
 Table table_of(ReconstructMarkers& job) {
-  MarkersInSpaceOptions& how = job.options;
+  markers::MarkersInSpaceOptions& how = job.options;
   Table table;
   add_name_rows(table, job.names);
   add_rate_row(table, how.rate_hz);
@@ -21,23 +21,22 @@ Table table_of(ReconstructMarkers& job) {
   table.number("fill", how.fill_s, "s", closed(0, 10), "the longest gap that is filled");
   table.number("predict", how.predict_s, "s", closed(0, 10), "write predictions for this duration of a longer gap; at most --fill")
       .depending_on({"fill"});
-  table.flag("live", how.live, "write every instant at once, as marey live does: no gap is filled")
-      .depending_on({"predict"});
+  table.flag("live", how.live, "write every instant at once, as marey live does: no gap is filled").depending_on({"predict"});
   table.number("marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers closer than this disturb each other");
   table.number("max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "the largest speed of a marker");
   add_blob_rows(table, how.markers);
   return table;
 }
 
-MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vector<std::string>& warnings) {
-  MarkersInSpaceOptions options = job.options;
+markers::MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vector<std::string>& warnings) {
+  markers::MarkersInSpaceOptions options = job.options;
   set_names(job.names, options, warnings);
   if (job.own_filter) options.tracker.filter = *job.own_filter;
   return options;
 }
 
 Table table_of(ReconstructKeypoints& job) {
-  KeypointsInSpaceOptions& how = job.options;
+  keypoints::KeypointsInSpaceOptions& how = job.options;
   Table table;
   table.always("targets", "keypoints");
   add_rate_row(table, how.rate_hz);

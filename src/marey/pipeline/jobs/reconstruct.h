@@ -7,23 +7,23 @@
 
 #include "marey/pipeline/jobs/detection_rows.h"
 #include "marey/pipeline/jobs/space_names.h"
-#include "marey/pipeline/keypoints_in_space.h"
-#include "marey/pipeline/markers_in_space.h"
+#include "marey/pipeline/keypoints/keypoints_in_space.h"
+#include "marey/pipeline/markers/markers_in_space.h"
 
 namespace marey::pipeline::jobs {
 
 struct ReconstructMarkers {
   SpaceNames names = {};
   std::optional<filter::FilterOptions> own_filter = {};  ///< of a caller's, in place of the default one
-  MarkersInSpaceOptions options = {};                    ///< rows without dependent defaults are bound to these
+  markers::MarkersInSpaceOptions options = {};           ///< rows without dependent defaults are bound to these
 };
 
 Table table_of(ReconstructMarkers& job);
 /// Reads the files of names. Throws Error if one cannot be read.
-MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vector<std::string>& warnings);
+markers::MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vector<std::string>& warnings);
 
 struct ReconstructKeypoints {
-  KeypointsInSpaceOptions options = {};
+  keypoints::KeypointsInSpaceOptions options = {};
 };
 
 Table table_of(ReconstructKeypoints& job);

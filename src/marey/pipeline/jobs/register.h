@@ -13,8 +13,8 @@ namespace marey::pipeline::jobs {
 /// "track people", "track keypoints", "track markers", "track ground", ….
 std::vector<std::string> job_names();
 
-/// Calls `use` with the table of the job's default value; the table is valid during the call. Throws Error, with the names, if there
-/// is no such job.
+/// Calls `use` with the table of the job's default value; the table is valid during the call. Throws Error, with the names, if
+/// there is no such job.
 void with_table(std::string_view job, const std::function<void(Table&)>& use);
 
 }  // namespace marey::pipeline::jobs

@@ -4,7 +4,7 @@
 
 #include "marey/format/bodies/label_set_file.h"
 #include "marey/format/motion/marker_set.h"
-#include "marey/pipeline/skeleton_in_space.h"
+#include "marey/pipeline/markers/skeleton_in_space.h"
 
 namespace marey::pipeline::jobs {
 
@@ -37,10 +37,10 @@ std::shared_ptr<const LearnedMarkers> learned_set_of(const std::string& path, co
 }
 
 std::shared_ptr<const Skeleton> skeleton_of(const std::string& path, std::vector<std::string>& warnings) {
-  return path.empty() ? nullptr : skeleton_with_markers(path, warnings);
+  return path.empty() ? nullptr : markers::skeleton_with_markers(path, warnings);
 }
 
-void set_names(const SpaceNames& names, MarkersInSpaceOptions& options, std::vector<std::string>& warnings) {
+void set_names(const SpaceNames& names, markers::MarkersInSpaceOptions& options, std::vector<std::string>& warnings) {
   if (!names.labels.empty()) options.set = format::motion::read_marker_set(names.labels);
   options.skeleton = skeleton_of(names.skeleton, warnings);
   options.learned_set = learned_set_of(names.set, options.skeleton.get());

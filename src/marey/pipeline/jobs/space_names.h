@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "marey/pipeline/jobs/option.h"
-#include "marey/pipeline/markers_in_space.h"
+#include "marey/pipeline/markers/markers_in_space.h"
 
 namespace marey::pipeline::jobs {
 
@@ -21,7 +21,7 @@ void add_name_rows(Table& table, SpaceNames& names);
 void add_set_rows(Table& table, SpaceNames& names);
 
 /// Reads the files into `options`. Throws Error if one cannot be read, or the set and the skeleton have no marker in common.
-void set_names(const SpaceNames& names, MarkersInSpaceOptions& options, std::vector<std::string>& warnings);
+void set_names(const SpaceNames& names, markers::MarkersInSpaceOptions& options, std::vector<std::string>& warnings);
 
 /// Null without a path. Throws Error if the file is not a set, or `skeleton` has none of its markers.
 std::shared_ptr<const LearnedMarkers> learned_set_of(const std::string& path, const Skeleton* skeleton);

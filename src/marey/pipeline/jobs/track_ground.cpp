@@ -21,7 +21,7 @@ void check_ground(const TrackGround& job) {
 }
 
 /// A margin belongs to the edge of something.
-void set_part(const TrackGround& job, const Rig& rig, PeopleOnGroundOptions& options) {
+void set_part(const TrackGround& job, const Rig& rig, people::PeopleOnGroundOptions& options) {
   const GroundPart& ground = job.ground;
   if (!ground.area.empty()) {
     options.area = parse_area(ground.area);
@@ -37,7 +37,7 @@ void set_part(const TrackGround& job, const Rig& rig, PeopleOnGroundOptions& opt
   options.margin = ground.margin.value_or(options.margin);
 }
 
-void set_association(const TrackGround& job, const Rig& rig, PeopleOnGroundOptions& options) {
+void set_association(const TrackGround& job, const Rig& rig, people::PeopleOnGroundOptions& options) {
   const bool chosen = !job.ground.association.empty();
   if (chosen) {
     options.tracker.associate = track::ground::ground_association_named(job.ground.association);
@@ -65,7 +65,8 @@ void add_ground_rows(Table& table, GroundPart& ground) {
       .needing("ground")
       .depending_on({"size"});
   table
-      .number("margin", ground.margin, "m", closed(0, 1000), "around the pitch or the area in which people still count (default: 2)")
+      .number("margin", ground.margin, "m", closed(0, 1000),
+              "around the pitch or the area in which people still count (default: 2)")
       .needing("ground")
       .depending_on({"size", "area"});
   table.text("teams", ground.teams, "the teams' colours, \"white,blue\", or their names too, \"City=white,United=blue\"")
@@ -94,15 +95,16 @@ Table table_of(TrackGround& job) {
   table.group("Options for --ground");
   add_ground_rows(table, job.ground);
   table.flag("ball", job.ball, "track the ball too: a track named \"ball\", with its height").needing("ground");
-  table.output_file("pitch-view", job.output.pitch_view, "a video of the ground from above, with the trail of each person: FILE.mp4")
+  table
+      .output_file("pitch-view", job.output.pitch_view, "a video of the ground from above, with the trail of each person: FILE.mp4")
       .ending_in({".mp4"})
       .needing("ground");
   return table;
 }
 
-PeopleOnGroundOptions resolved(const TrackGround& job, const Rig& rig) {
+people::PeopleOnGroundOptions resolved(const TrackGround& job, const Rig& rig) {
   check_ground(job);
-  PeopleOnGroundOptions options = job.options;
+  people::PeopleOnGroundOptions options = job.options;
   options.detector = detector_of(job.detection, false, "--ground");
   if (!job.filter.empty()) options.tracker.filter = filter::filter_for_people_on_ground(job.filter);
   if (job.own_filter) options.tracker.filter = *job.own_filter;

@@ -96,13 +96,13 @@ Table table_of(TrackPeople& job) {
   return table;
 }
 
-PeopleInPictureOptions resolved(const TrackPeople& job) {
+people::PeopleInPictureOptions resolved(const TrackPeople& job) {
   check(job);
-  PeopleInPictureOptions options = job.options;
+  people::PeopleInPictureOptions options = job.options;
   options.detector = detector_of(job.detection, job.keypoints, job.outline ? "--outline" : "");
   if (!job.input.filter.empty()) options.tracker.filter = filter::filter_for_people_in_picture(job.input.filter);
   if (job.input.own_filter) options.tracker.filter = *job.input.own_filter;
-  if (job.keypoints) options.keypoints = KeypointOptions{.model = job.model, .every = job.detection.every};
+  if (job.keypoints) options.keypoints = keypoints::KeypointOptions{.model = job.model, .every = job.detection.every};
   if (job.outline) options.outlines = outlines_of(job);
   options.delay = job.delay.value_or(0);
   return options;
@@ -115,17 +115,18 @@ Table table_of(TrackMarkers& job) {
   add_filter_row(table, job.input.filter);
   table.flag("live", job.options.live, "write each frame's tracks at once; nothing is corrected by later frames");
   table.group("Options for --targets markers");
-  table.input_file("labels", job.labels, "a text file with one label per line, for the markers of the first frame from left to right");
+  table.input_file("labels", job.labels,
+                   "a text file with one label per line, for the markers of the first frame from left to right");
   add_marker_rows(table, job.detection);
   table.flag("fit-noise", job.options.fit_noise, "estimate process and measurement noise from the recording");
   return table;
 }
 
-MarkersInPictureOptions resolved(const TrackMarkers& job) {
+markers::MarkersInPictureOptions resolved(const TrackMarkers& job) {
   check(job.input);
-  MarkersInPictureOptions options = job.options;
+  markers::MarkersInPictureOptions options = job.options;
   options.markers = detector_of(job.detection);
-  if (!job.labels.empty()) options.tracker.labels = read_labels(job.labels);
+  if (!job.labels.empty()) options.tracker.labels = people::read_labels(job.labels);
   if (!job.input.filter.empty()) options.tracker.filter = filter::filter_named(job.input.filter);
   if (job.input.own_filter) options.tracker.filter = *job.input.own_filter;
   return options;

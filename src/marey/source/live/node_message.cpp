@@ -82,19 +82,21 @@ class NodeReader {
 };
 
 void put_detection(std::string& to, const Detection& found) {
-  for (const double value :
-       {found.centre.x(), found.centre.y(), found.covariance(0, 0), found.covariance(0, 1), found.covariance(1, 1), found.area,
-        found.box.left, found.box.top, found.box.width, found.box.height, found.score})
+  const Matrix<2> covariance = found.covariance.value_or(Matrix<2>::Zero());  // in a message zeros stand for unknown
+  for (const double value : {found.centre.x(), found.centre.y(), covariance(0, 0), covariance(0, 1), covariance(1, 1), found.area,
+                             found.box.left, found.box.top, found.box.width, found.box.height, found.score})
     put(to, value);
 }
 
 Detection next_detection(NodeReader& message) {
   Detection found;
   for (int axis = 0; axis < 2; ++axis) found.centre[axis] = message.number();
-  found.covariance(0, 0) = message.number();
-  found.covariance(0, 1) = found.covariance(1, 0) = message.number();
-  found.covariance(1, 1) = message.number();
-  if (!(found.covariance(0, 0) >= 0 && found.covariance.determinant() >= 0)) message.refuse("a covariance is none");
+  Matrix<2> covariance;
+  covariance(0, 0) = message.number();
+  covariance(0, 1) = covariance(1, 0) = message.number();
+  covariance(1, 1) = message.number();
+  if (!(covariance(0, 0) >= 0 && covariance.determinant() >= 0)) message.refuse("a covariance is none");
+  if (covariance.trace() > 0) found.covariance = covariance;
   found.area = message.number();
   for (double* side : {&found.box.left, &found.box.top, &found.box.width, &found.box.height}) *side = message.number();
   found.score = message.number();

@@ -20,7 +20,7 @@ NodeFrame two_blobs() {
   NodeFrame frame{.session = 7, .sequence = 41, .taken = at(12.5), .size = {640, 480}};
   Detection found;
   found.centre = {12.25, 99.5};
-  found.covariance << 0.01, 0.002, 0.002, 0.03;
+  found.covariance = (Matrix<2>() << 0.01, 0.002, 0.002, 0.03).finished();
   found.area = 42;
   found.box = {10, 97, 5, 6};
   found.score = 0.75;
@@ -41,6 +41,7 @@ TEST(NodeMessage, WhatIsWrittenIsRead) {
   const Detection& found = read.detections->front();
   EXPECT_EQ(found.centre, frame.detections->front().centre);
   EXPECT_EQ(found.covariance, frame.detections->front().covariance);
+  EXPECT_FALSE(read.detections->back().covariance);
   EXPECT_EQ(found.area, 42);
   EXPECT_EQ(found.box.height, 6);
   EXPECT_EQ(found.score, 0.75);

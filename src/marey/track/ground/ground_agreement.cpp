@@ -59,7 +59,7 @@ Shot shot_of(const GroundInstant& instant, int cameras) {
   Shot shot(static_cast<std::size_t>(cameras));
   for (const CameraObservations& view : instant.cameras) {
     for (const Observation<2>& one : view.seen) {
-      if (!one.shared) shot[static_cast<std::size_t>(number(view.camera))].push_back({one.value, one.covariance});
+      if (!one.shared) shot[static_cast<std::size_t>(number(view.camera))].push_back({one.value, *one.covariance});
     }
   }
   return shot;
@@ -352,7 +352,7 @@ GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, 
 Observation<2> GroundAgreement::corrected(Observation<2> seen) const {
   const auto camera = static_cast<std::size_t>(number(seen.camera));
   if (!bias_.empty()) seen.value -= bias_[camera].at(seen.value);
-  if (!noise_.empty()) seen.covariance *= noise_[camera] * noise_[camera];
+  if (!noise_.empty()) *seen.covariance *= noise_[camera] * noise_[camera];
   return seen;
 }
 

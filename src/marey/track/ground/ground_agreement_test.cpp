@@ -110,7 +110,7 @@ std::vector<GroundInstant> walked(std::uint64_t seed, const Errors& errors) {
         one.value = place[i] + own.cwiseProduct(by_axis) + random.gaussian(errors.noise);
         if (random.chance(0.1)) one.value = {random.uniform(0, 100), random.uniform(0, 60)};
         one.covariance = errors.stated * errors.stated * Matrix<2>::Identity();
-        one.covariance(0, 0) *= errors.along > 1 ? 4 : 1;
+        (*one.covariance)(0, 0) *= errors.along > 1 ? 4 : 1;
       }
     }
     std::vector<CameraObservations> views;
@@ -145,7 +145,7 @@ double noise_factor(const GroundAgreement& agreement) {
   Observation<2> one;
   one.value = {50, 30};
   one.covariance = Matrix<2>::Identity();
-  return std::sqrt(agreement.corrected(one).covariance(0, 0));
+  return std::sqrt(agreement.corrected(one).covariance.value()(0, 0));
 }
 
 TEST(GroundAgreement, NoiseIsMeasuredApartFromWhatLasts) {

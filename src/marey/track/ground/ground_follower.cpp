@@ -64,7 +64,7 @@ void GroundFollower::find_pairs(std::span<const Observation<2>> seen, double lat
   double widest = 0;
   for (const Observation<2>& one : seen) {
     points_.push_back(one.value);
-    widest = std::max(widest, one.covariance.trace());
+    widest = std::max(widest, one.covariance->trace());
   }
   grid_.build(points_, 1 + 2 * std::sqrt(widest));
   for (int i = 0; i < std::ssize(targets_); ++i) {

@@ -41,7 +41,7 @@ std::optional<GroundTeams> teams_in(const std::deque<GroundInstant>& instants) {
 
 }  // namespace
 
-GroundRun::GroundRun(const GroundTrackerOptions& tracker, const GroundJoinOptions& join, const GroundLearnOptions& learn,
+GroundRun::GroundRun(const GroundTrackerOptions& tracker, const offline::GroundJoinOptions& join, const GroundLearnOptions& learn,
                      std::shared_ptr<const GroundViews> views, OnDecided on_decided)
     : options_(tracker), join_(join), learn_(learn), views_(std::move(views)), on_decided_(std::move(on_decided)) {
   learned_ = !learn.agreement && !learn.walk;
@@ -61,7 +61,7 @@ void GroundRun::step(std::int32_t frame, Timestamp now, std::span<const CameraOb
   if (kept_observations_ >= learn_.most_observations) learn();
 }
 
-GroundRecorder::Joined GroundRun::finish(const InSight& in_sight) {
+offline::GroundRecorder::Joined GroundRun::finish(const offline::InSight& in_sight) {
   if (learning()) learn();
   record(tracker_->decide_all());
   return std::move(recorder_).join(join_, in_sight);
@@ -103,7 +103,7 @@ bool GroundRun::is_plain() const {
 /// From what a quick tracker makes of what was kept.
 void GroundRun::learn_motion() {
   const auto quick = make_ground_tracker(ahead(options_), views_);
-  GroundRecorder recorder;
+  offline::GroundRecorder recorder;
   for (const GroundInstant& instant : kept_) {
     const auto tracks = quick->step(instant.time, instant.cameras);
     recorder.add(instant.frame, instant.time, tracks, instant.cameras, quick->matches());

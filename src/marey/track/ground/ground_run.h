@@ -17,8 +17,8 @@
 #include "marey/track/ground/ground_agreement.h"
 #include "marey/track/ground/ground_contradictions.h"
 #include "marey/track/ground/ground_instant.h"
-#include "marey/track/ground/ground_recorder.h"
 #include "marey/track/ground/ground_tracker.h"
+#include "marey/track/ground/offline/ground_recorder.h"
 
 namespace marey::track::ground {
 
@@ -37,7 +37,7 @@ class GroundRun {
   /// Called once an instant, in order, with what was seen of it and whose that is.
   using OnDecided = std::function<void(const GroundInstant&, std::span<const ObservationMatch>)>;
 
-  GroundRun(const GroundTrackerOptions& tracker, const GroundJoinOptions& join, const GroundLearnOptions& learn,
+  GroundRun(const GroundTrackerOptions& tracker, const offline::GroundJoinOptions& join, const GroundLearnOptions& learn,
             std::shared_ptr<const GroundViews> views, OnDecided on_decided);
 
   /// As Tracker::expected.
@@ -45,7 +45,7 @@ class GroundRun {
   /// The next instant; frames grow.
   void step(std::int32_t frame, Timestamp now, std::span<const CameraObservations> views);
   /// Everybody, once all was seen. Nothing may follow.
-  GroundRecorder::Joined finish(const InSight& in_sight);
+  offline::GroundRecorder::Joined finish(const offline::InSight& in_sight);
   /// Cameras that could be compared, once there was enough to learn from them; none where agreement is not learned.
   const std::vector<ComparedCameras>& compared() const { return compared_; }
 
@@ -59,7 +59,7 @@ class GroundRun {
   void correct(GroundInstant& instant) const;
 
   GroundTrackerOptions options_;
-  GroundJoinOptions join_;
+  offline::GroundJoinOptions join_;
   GroundLearnOptions learn_;
   std::shared_ptr<const GroundViews> views_;
   OnDecided on_decided_;
@@ -69,7 +69,7 @@ class GroundRun {
   bool learned_ = false;
   std::size_t kept_observations_ = 0;
   std::deque<GroundInstant> kept_;  // to learn from; later those that are not decided yet
-  GroundRecorder recorder_;
+  offline::GroundRecorder recorder_;
 };
 
 }  // namespace marey::track::ground

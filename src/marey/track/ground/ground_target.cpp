@@ -54,7 +54,7 @@ GroundRules::GroundRules(const GroundTrackerOptions& options, int cameras)
 
 GroundTarget GroundRules::start(TrackId id, Timestamp time, const Observation<2>& seen) const {
   Target target{.id = id,
-                .filter = {options_.filter, seen.value, seen.covariance},
+                .filter = {options_.filter, seen.value, *seen.covariance},
                 .born = time,
                 .last_seen = time,
                 .evidence = Evidence(seen.score, options_.evidence)};
@@ -74,9 +74,9 @@ void GroundRules::predict(Target& target, double dt) const {
 }
 
 GroundPlace GroundRules::at_instant(const Target& target, const Observation<2>& seen, double late) const {
-  if (late == 0) return {seen.value, seen.covariance};
+  if (late == 0) return {seen.value, *seen.covariance};
   const double strayed = std::pow(late * kVelocityError, 2);
-  return {seen.value - late * target.filter.velocity(), seen.covariance + strayed * Matrix<2>::Identity()};
+  return {seen.value - late * target.filter.velocity(), *seen.covariance + strayed * Matrix<2>::Identity()};
 }
 
 std::optional<double> GroundRules::log_ratio(const Target& target, const Observation<2>& seen, const GroundPlace& place,

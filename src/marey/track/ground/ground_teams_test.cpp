@@ -123,7 +123,7 @@ int exchanges_between_teams(int cases, unsigned first_seed, const GroundLearnOpt
       const CameraObservations camera{CameraId{0}, now, seen};
       people.step(frame, now, {&camera, 1});
     }
-    const GroundRecorder::Joined joined = std::move(people).finish({});
+    const offline::GroundRecorder::Joined joined = std::move(people).finish({});
     const auto person = [&](int which, int frame) {
       return joined.person_of(whose[static_cast<std::size_t>(frame)][static_cast<std::size_t>(which)], frame);
     };

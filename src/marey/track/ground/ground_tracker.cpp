@@ -4,7 +4,7 @@
 #include "marey/track/bramble/bramble_tracker.h"
 #include "marey/track/ground/ground_gnn.h"
 #include "marey/track/ground/ground_jpda.h"
-#include "marey/track/ground/ground_mht.h"
+#include "marey/track/ground/mht/ground_mht.h"
 
 namespace marey::track::ground {
 namespace {
@@ -40,7 +40,7 @@ std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& o
   if (views == nullptr || views->cameras() == 0) throw Error("no camera sees the ground; calibrate one over it");
   switch (options.associate) {
     case GroundAssociation::mht:
-      return make_ground_mht(options, std::move(views));
+      return mht::make_ground_mht(options, std::move(views));
     case GroundAssociation::jpda:
       return make_ground_jpda(options, std::move(views));
     case GroundAssociation::bramble:

@@ -48,7 +48,7 @@ std::vector<int> surest_first(std::span<const CameraObservations> views) {
   std::vector<double> spread;
   for (const CameraObservations& view : views) {
     double sum = 0;
-    for (const Observation<2>& one : view.seen) sum += one.covariance.trace();
+    for (const Observation<2>& one : view.seen) sum += one.covariance->trace();
     spread.push_back(view.seen.empty() ? 0 : sum / static_cast<double>(view.seen.size()));
   }
   std::vector<int> order(views.size());

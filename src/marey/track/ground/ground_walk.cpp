@@ -24,12 +24,12 @@ struct PathStep {
   Matrix<2> covariance = Matrix<2>::Identity();
 };
 
-std::vector<PathStep> path_steps(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times) {
+std::vector<PathStep> path_steps(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times) {
   std::vector<PathStep> steps;
-  for (const GroundTracklet& tracklet : tracklets) {
+  for (const offline::GroundTracklet& tracklet : tracklets) {
     const std::size_t begin = steps.size();
     std::optional<Timestamp> last;
-    for (const GroundSample& sample : tracklet.samples) {
+    for (const offline::GroundSample& sample : tracklet.samples) {
       const Timestamp now = times[static_cast<std::size_t>(sample.instant)];
       if (last && seconds(now - *last) < kSpacing) continue;
       steps.push_back({last ? seconds(now - *last) : 0, sample.at(), sample.spread()});
@@ -77,7 +77,7 @@ double log_likelihood(std::span<const PathStep> steps, const filter::KalmanOptio
 
 }  // namespace
 
-std::optional<GroundWalk> learn_walk(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times) {
+std::optional<GroundWalk> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times) {
   const std::vector<PathStep> steps = path_steps(tracklets, times);
   if (steps.size() < kFewestSamples) return std::nullopt;
   GroundWalk walk;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "marey/core/time.h"
-#include "marey/track/ground/ground_tracklet.h"
+#include "marey/track/ground/offline/ground_tracklet.h"
 
 namespace marey::track::ground {
 
@@ -19,6 +19,6 @@ struct GroundWalk {
 };
 
 /// Nothing where the tracks are too few or too short. `times` by instant.
-std::optional<GroundWalk> learn_walk(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times);
+std::optional<GroundWalk> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times);
 
 }  // namespace marey::track::ground

@@ -11,11 +11,11 @@ namespace {
 
 /// Twenty people whose velocity strays by `acceleration` each √second, seen `rate` times a second with `noise` m, of which 0.1 m is
 /// known.
-std::vector<GroundTracklet> walks(double acceleration, double rate, double noise, int instants) {
+std::vector<offline::GroundTracklet> walks(double acceleration, double rate, double noise, int instants) {
   ground_scene::Random random(7);
-  std::vector<GroundTracklet> tracklets;
+  std::vector<offline::GroundTracklet> tracklets;
   for (int i = 0; i < 20; ++i) {
-    GroundTracklet& one = tracklets.emplace_back();
+    offline::GroundTracklet& one = tracklets.emplace_back();
     one.runs = {{TrackId{i + 1}, 0}};
     one.confirmed = true;
     Vector<2> place = random.gaussian(10), velocity = random.gaussian(1);
@@ -23,7 +23,7 @@ std::vector<GroundTracklet> walks(double acceleration, double rate, double noise
       velocity += random.gaussian(acceleration / std::sqrt(rate));
       place += velocity / rate;
       const Vector<2> seen = place + random.gaussian(noise);
-      GroundSample& sample = one.samples.emplace_back();
+      offline::GroundSample& sample = one.samples.emplace_back();
       sample.instant = k;
       sample.place = {static_cast<float>(seen.x()), static_cast<float>(seen.y())};
       sample.covariance = {0.01F, 0, 0.01F};

@@ -1,0 +1,68 @@
+// Plug-in Gait's markers of a recording, or another set's in their place, and what is known of the person.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/analyse/gait/body_marker_sets.h"
+#include "marey/analyse/gait/conventional_model.h"
+#include "marey/analyse/gait/gait_events.h"
+#include "marey/core/hooks.h"
+#include "marey/format/format.h"
+
+namespace marey::pipeline::bodies {
+
+namespace gait = analyse::gait;
+
+/// By row, one an instant from the first on. 0, 0, 0 is a marker that is missing; a subject's name before a label is left out.
+struct GaitMarkers {
+  double rate_hz = 0, begin_s = 0;
+  std::int64_t first_index = 0;
+  format::UpAxis up = format::UpAxis::z;                   ///< the axis of the file that was taken for up
+  const gait::BodyMarkerSet* set = &gait::plug_in_gait();  ///< rows have what the model calls its labels
+  std::vector<gait::MarkerPlaces> rows;
+  std::vector<std::string> warnings;
+
+  gait::MarkerPath path(std::string_view label) const {
+    gait::MarkerPath path(rows.size());
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      if (const auto found = rows[r].find(label); found != rows[r].end()) path[r] = found->second;
+    }
+    return path;
+  }
+};
+
+/// The set that a recording's labels are, subjects' names left out; `name`, where one is given. Throws Error with the file's name
+/// where they are none, or that one's lack.
+const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::string& name);
+
+/// `most` rows, or all.
+GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
+                              const gait::BodyMarkerSet& set = gait::plug_in_gait(), const std::optional<std::int64_t>& most = {});
+
+/// Means over a standing trial. Throws Error, with `name` for the file, where the person moves: a marker wanders by more than 3 cm.
+gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name);
+
+/// Where the markers are at the quietest moment of a motion in which most of them are seen.
+struct QuietMoment {
+  gait::MarkerPlaces places;
+  double time_s = 0;     ///< since the first row
+  double speed_m_s = 0;  ///< of the markers there, on the mean
+  bool stands = false;   ///< for a second about it, of which the places are the means
+};
+/// Throws Error, with `name` for the file, where there is no marker at all.
+QuietMoment quietest_moment(const GaitMarkers& markers, const std::string& name);
+
+/// Where the static trial is of another person, or the markers were put on anew: the pair of one segment's markers that lies most
+/// differently far apart in the walk. Nothing where all pairs agree.
+std::optional<std::string> other_person(const gait::MarkerPlaces& standing, const GaitMarkers& walk);
+
+/// What Vicon keeps of a person in its C3D files, where `subject` does not have it.
+void take_measures(const std::string& path, gait::GaitSubject& subject);
+
+/// How the feet stood in Vicon's own static trial, where a C3D file says so (PROCESSING, StaticPlantFlex): so far is the sole's
+/// line above the one from ankle to toe.
+void take_soles(const std::string& path, gait::GaitSubject& subject);
+
+}  // namespace marey::pipeline::bodies

@@ -1,0 +1,120 @@
+#include "marey/pipeline/bodies/joints_by_motion.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "marey/geometry/layout.h"
+
+namespace marey::pipeline::bodies {
+namespace {
+
+constexpr int kRounds = 3;             // of knee and hip, each by the other
+constexpr double kNearlyALine = 0.01;  // m, RMS of a cluster across its length
+
+/// Whether the places fix a frame: three at least, not in a line.
+bool fixes_a_frame(const std::vector<Vector<3>>& places) {
+  if (places.size() < 3) return false;
+  Vector<3> mean = Vector<3>::Zero();
+  for (const Vector<3>& place : places) mean += place / static_cast<double>(places.size());
+  Matrix<3> spread = Matrix<3>::Zero();
+  for (const Vector<3>& place : places) spread += (place - mean) * (place - mean).transpose() / static_cast<double>(places.size());
+  return Eigen::SelfAdjointEigenSolver<Matrix<3>>(spread).eigenvalues()[1] > kNearlyALine * kNearlyALine;
+}
+
+std::string of_side(gait::Side side, const char* label) {
+  return std::string(side == gait::Side::left ? "L" : "R") + label;
+}
+
+}  // namespace
+
+JointsByMotion::JointsByMotion(const gait::MarkerPlaces& standing, gait::GaitPose conventional, const GaitMarkers& motion)
+    : standing_(standing),
+      conventional_(std::move(conventional)),
+      motion_(motion),
+      pelvis_(poses_of(labels_of(gait::SegmentId::pelvis))) {}
+
+bool JointsByMotion::mostly_seen(const std::string& label) const {
+  const auto seen =
+      std::count_if(motion_.rows.begin(), motion_.rows.end(), [&](const gait::MarkerPlaces& row) { return row.contains(label); });
+  return 2 * seen > std::ssize(motion_.rows);
+}
+
+std::vector<std::string> JointsByMotion::labels_of(gait::SegmentId segment) const {
+  std::vector<std::string> labels;
+  for (const auto& [label, place] : standing_) {
+    if (motion_.set->segment_of(label) == segment && mostly_seen(label)) labels.push_back(label);
+  }
+  return labels;
+}
+
+JointsByMotion::Poses JointsByMotion::poses_of(const std::vector<std::string>& labels, const std::vector<Carried>& carried) const {
+  Poses poses(motion_.rows.size());
+  std::vector<Vector<3>> from, to;
+  for (const std::string& label : labels) from.push_back(standing_.at(label));
+  for (const Carried& point : carried) from.push_back(point.place);
+  if (!fixes_a_frame(from)) return poses;
+  for (std::size_t r = 0; r < poses.size(); ++r) {
+    to.clear();
+    for (const std::string& label : labels) {
+      const auto seen = motion_.rows[r].find(label);
+      if (seen != motion_.rows[r].end()) to.push_back(seen->second);
+    }
+    for (const Carried& point : carried) {
+      if (const auto& by = (*point.by)[r]) to.push_back(*by * point.place);
+    }
+    if (to.size() == from.size()) poses[r] = geometry::rigid_fit(from, to);
+  }
+  return poses;
+}
+
+/// The marker at the knee's outside lies near its axis, and stays where it is in the shank too.
+JointsByMotion::Poses JointsByMotion::shank_poses(gait::Side side) const {
+  std::vector<std::string> labels = labels_of(gait::of_side(gait::SegmentId::left_shank, side));
+  const std::string knee = of_side(side, "KNE");
+  if (standing_.contains(knee) && mostly_seen(knee)) labels.push_back(knee);
+  return poses_of(labels);
+}
+
+std::optional<solve::skeleton::FunctionalCentre> JointsByMotion::hip(gait::Side side) const {
+  const std::vector<std::string> labels = labels_of(gait::of_side(gait::SegmentId::left_thigh, side));
+  std::vector<Vector<3>> places;
+  for (const std::string& label : labels) places.push_back(standing_.at(label));
+  if (fixes_a_frame(places)) return solve::skeleton::functional_centre(pelvis_, poses_of(labels));
+  const auto& thigh = conventional_[gait::of_side(gait::SegmentId::left_thigh, side)];
+  const auto& shank = conventional_[gait::of_side(gait::SegmentId::left_shank, side)];
+  const auto outer = standing_.find(of_side(side, "KNE"));
+  if (!thigh || !shank || outer == standing_.end()) return std::nullopt;
+  const Poses shanks = shank_poses(side);
+  const Vector<3> inner = 2 * shank->translation - outer->second;
+  std::optional<solve::skeleton::FunctionalCentre> found;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto axis = knee(side, found ? found->in_parent : thigh->translation);
+    const Vector<3> shared = axis ? Vector<3>(axis->point + axis->direction * axis->direction.dot(inner - axis->point)) : inner;
+    found = solve::skeleton::functional_centre(pelvis_, poses_of(labels, {{shared, &shanks}}));
+    if (!found) break;
+  }
+  return found;
+}
+
+std::optional<solve::skeleton::FunctionalAxis> JointsByMotion::knee(gait::Side side, const Vector<3>& hip) const {
+  const Poses thigh = poses_of(labels_of(gait::of_side(gait::SegmentId::left_thigh, side)), {{hip, &pelvis_}});
+  return solve::skeleton::functional_axis(thigh, shank_poses(side));
+}
+
+std::optional<solve::skeleton::FunctionalAxis> JointsByMotion::elbow(gait::Side side) const {
+  const auto& upper_arm = conventional_[gait::of_side(gait::SegmentId::left_upper_arm, side)];
+  if (!upper_arm) return std::nullopt;
+  // The shoulder goes with the trunk and with its own marker.
+  std::vector<std::string> above = labels_of(gait::SegmentId::trunk);
+  for (const std::string& label : labels_of(gait::of_side(gait::SegmentId::left_clavicle, side))) above.push_back(label);
+  const Poses trunk = poses_of(above);
+  const Poses upper = poses_of(labels_of(gait::of_side(gait::SegmentId::left_upper_arm, side)), {{upper_arm->translation, &trunk}});
+  std::vector<std::string> forearm = labels_of(gait::of_side(gait::SegmentId::left_forearm, side));
+  const std::string elbow = of_side(side, "ELB");
+  if (standing_.contains(elbow) && mostly_seen(elbow)) forearm.push_back(elbow);
+  return solve::skeleton::functional_axis(upper, poses_of(forearm));
+}
+
+}  // namespace marey::pipeline::bodies

@@ -1,0 +1,268 @@
+#include "marey/pipeline/bodies/measure_gait.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/core/whole_file.h"
+#include "marey/draw/gait_report.h"
+#include "marey/pipeline/bodies/gait_c3d.h"
+#include "marey/pipeline/bodies/gait_markers.h"
+
+namespace marey::pipeline::bodies {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// Where the person walks to: the middle of the hips, over half a second on either side.
+Vector<2> heading_at(const gait::MarkerPath& sacrum, std::size_t row, double rate_hz) {
+  const auto around = static_cast<std::size_t>(std::lround(0.5 * rate_hz));
+  std::optional<Vector<3>> from, to;
+  for (std::size_t r = row > around ? row - around : 0; r <= std::min(row + around, sacrum.size() - 1); ++r) {
+    if (!sacrum[r]) continue;
+    if (!from) from = sacrum[r];
+    to = sacrum[r];
+  }
+  return from ? Vector<2>((*to - *from).head<2>()) : Vector<2>(Vector<2>::Zero());
+}
+
+std::vector<gait::AngleCurve> angle_curves(const GaitMarkers& markers, const gait::GaitSubject& subject,
+                                           const gait::MarkerPath& sacrum) {
+  std::vector<gait::AngleCurve> curves;
+  for (const std::string& name : gait::angle_names()) curves.push_back({name, {}});
+  for (std::size_t r = 0; r < markers.rows.size(); ++r) {
+    const auto angles = gait::angles_of(gait::pose_of(markers.rows[r], subject), heading_at(sacrum, r, markers.rate_hz));
+    for (std::size_t a = 0; a < curves.size(); ++a) curves[a].values.push_back(angles[a]);
+  }
+  for (gait::AngleCurve& curve : curves) gait::unwrap(curve.values);
+  return curves;
+}
+
+gait::FeetPaths feet_of(const GaitMarkers& markers) {
+  gait::FeetPaths feet;
+  feet.heel = {markers.path("LHEE"), markers.path("RHEE")};
+  feet.toe = {markers.path("LTOE"), markers.path("RTOE")};
+  feet.sacrum = markers.path("SACR");
+  for (const char* other : {"LPSI", "LASI"}) {
+    if (std::none_of(feet.sacrum.begin(), feet.sacrum.end(), [](const auto& place) { return place.has_value(); }))
+      feet.sacrum = markers.path(other);
+  }
+  return feet;
+}
+
+void write_cycles(const std::string& path, const gait::GaitCycles& cycles) {
+  WholeFile file(path);
+  std::string text = "angle,percent,mean_deg,deviation_deg,cycles\n";
+  for (const gait::CycleCurve& curve : cycles.curves) {
+    if (curve.cycles.empty()) continue;
+    for (std::size_t p = 0; p < gait::kCyclePoints; ++p)
+      fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{:.4f},{}\n", curve.name, p, curve.mean[p] * kDegrees,
+                     curve.deviation[p] * kDegrees, curve.cycles.size());
+  }
+  file.write(text);
+  file.finish();
+}
+
+void write_angles(const std::string& path, const GaitMeasure& measure) {
+  WholeFile file(path);
+  std::string text = "time_s";
+  for (const gait::AngleCurve& curve : measure.angles) text.append(1, ',').append(curve.name);
+  text += '\n';
+  for (std::int64_t r = 0; r < measure.frames; ++r) {
+    fmt::format_to(std::back_inserter(text), "{:.6g}", measure.begin_s + static_cast<double>(r) / measure.rate_hz);
+    for (const gait::AngleCurve& curve : measure.angles) {
+      const auto& value = curve.values[static_cast<std::size_t>(r)];
+      text += value ? fmt::format(",{:.4f}", *value * kDegrees) : ",";
+    }
+    text += '\n';
+  }
+  file.write(text);
+  file.finish();
+}
+
+/// "left_knee_flexion" on the page: knee flexion, of the left.
+void write_gait_report(const std::string& path, const std::string& recording, const GaitMeasure& measure) {
+  draw::GaitReport report;
+  report.title = std::filesystem::path(recording).filename().string();
+  for (const std::string& warning : measure.warnings) {  // "walks/a.c3d: …": the page names the file, not its folder
+    const std::size_t end = std::min(warning.find(": "), warning.size());
+    report.notes.push_back(std::filesystem::path(warning.substr(0, end)).filename().string() + warning.substr(end));
+  }
+  for (const gait::CycleCurve& curve : measure.cycles.curves) {
+    if (curve.cycles.empty()) continue;
+    const bool left = curve.name.starts_with("left_");
+    std::string joint = curve.name.substr(left ? 5 : 6);
+    std::replace(joint.begin(), joint.end(), '_', ' ');
+    const auto panel = std::find_if(report.panels.begin(), report.panels.end(), [&](const auto& p) { return p.title == joint; });
+    draw::GaitReport::Panel& at =
+        panel != report.panels.end() ? *panel : report.panels.emplace_back(draw::GaitReport::Panel{joint, {}, {}});
+    std::vector<std::pair<double, double>>& band = left ? at.left : at.right;
+    for (std::size_t p = 0; p < gait::kCyclePoints; ++p) band.emplace_back(curve.mean[p] * kDegrees, curve.deviation[p] * kDegrees);
+  }
+  for (const gait::GaitFigure& figure : measure.cycles.figures)
+    report.figures.push_back({figure.name, figure.unit, figure.mean, figure.deviation});
+  for (const gait::GaitEvent& event : measure.events)
+    report.events.push_back({event.side == gait::Side::left ? "left" : "right", event.strike ? "strike" : "off",
+                             measure.begin_s + event.time_s, event.deviation_s});
+  WholeFile file(path);
+  file.write(draw::to_html(report));
+  file.finish();
+}
+
+/// "left shoulder plane, left shoulder rotation", and how many more.
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNamed = 4;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i) text.append(i == 0 ? "" : ", ").append(names[i]);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return names.size() > kMostNamed ? fmt::format("{} and {} more", text, names.size() - kMostNamed) : text;
+}
+
+/// Rows in which an arm hangs down: it is known how far it is raised, and not in which plane.
+std::int64_t hanging_rows(const GaitMeasure& measure, const gait::AngleCurve& curve) {
+  const std::size_t shoulder = curve.name.find("shoulder_");
+  if (shoulder == std::string::npos) return 0;
+  const std::string raised = curve.name.substr(0, shoulder) + "shoulder_elevation";
+  const auto elevation =
+      std::find_if(measure.angles.begin(), measure.angles.end(), [&](const auto& c) { return c.name == raised; });
+  std::int64_t rows = 0;
+  for (std::size_t r = 0; elevation != measure.angles.end() && r < curve.values.size(); ++r)
+    rows += !curve.values[r] && elevation->values[r] ? 1 : 0;
+  return rows;
+}
+
+/// Which angles are not known at some time, or left out of the cycles' mean; those that share their reason in one sentence.
+void warn_of_gaps(const std::string& recording, GaitMeasure& measure) {
+  std::map<std::string, std::vector<std::string>> names_by_reason;
+  for (std::size_t a = 0; a < measure.angles.size(); ++a) {
+    const gait::AngleCurve& curve = measure.angles[a];
+    const gait::CycleCurve& over_cycle = measure.cycles.curves[a];
+    const auto unknown = std::count(curve.values.begin(), curve.values.end(), std::nullopt);
+    std::string reason;
+    if (unknown == std::ssize(curve.values)) {
+      reason = "never known: markers are missing";
+    } else if (unknown > 0) {
+      const std::int64_t hanging = hanging_rows(measure, curve);
+      const char* why = hanging == 0         ? "markers are missing"
+                        : hanging == unknown ? "an arm that hangs down has no plane"
+                                             : "markers are missing, or the arm hangs down and has no plane";
+      reason = fmt::format("not known for {:.2f} of {:.2f} s ({})", static_cast<double>(unknown) / measure.rate_hz,
+                           static_cast<double>(measure.frames) / measure.rate_hz, why);
+    }
+    if (over_cycle.jumping > 0) reason.append(reason.empty() ? "" : ", ").append("jumps by more than 90° between two frames");
+    const std::size_t left_out = over_cycle.unknown + over_cycle.jumping;
+    if (left_out > 0 && unknown < std::ssize(curve.values))
+      reason += fmt::format("; left out of the mean: {} of {} cycles", left_out, left_out + over_cycle.cycles.size());
+    if (!reason.empty()) names_by_reason[reason].push_back(curve.name);
+  }
+  for (const auto& [reason, names] : names_by_reason)
+    measure.warnings.push_back(fmt::format("{}: {}: {}", recording, listed(names), reason));
+}
+
+/// Throws Error where nothing of a walk is left to be told.
+void need_steps(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {
+  if (!measure.events.empty()) return;
+  const char* hint = measure.lies            ? "; it lies, by the --up that was given: is that right?"
+                     : output.angles.empty() ? "; --angles writes the angles of one who does not"
+                                             : "; --angles alone does not ask for any";
+  throw Error("{}: no steps were found: HEE and TOE of a side are needed, and a person who walks{}", recording, hint);
+}
+
+/// Throws Error where the pelvis' up is the recording's other axis, which was not said. Where it lies across the up that was said,
+/// that is returned, to be told: the person may lie down.
+std::optional<std::string> up_across(const std::string& recording, const std::optional<format::UpAxis>& said,
+                                     const GaitMarkers& markers, const gait::GaitSubject& subject) {
+  constexpr double kMostly = 0.8;  // cosine
+  Vector<3> up = Vector<3>::Zero();
+  for (const gait::MarkerPlaces& row : markers.rows) {
+    if (const auto pelvis = gait::pose_of(row, subject)[gait::SegmentId::pelvis]) up += pelvis->rotation.col(2);
+  }
+  if (!(up.norm() > 0)) return std::nullopt;
+  // A file's y is z here where its y was taken for up, and its z is then −y.
+  const bool y = markers.up == format::UpAxis::y;
+  const char *taken = y ? "y" : "z", *there = y ? "z" : "y";
+  if (!((y ? -1 : 1) * up.normalized().y() > kMostly)) return std::nullopt;
+  if (!said)
+    throw Error("{}: {} was taken for up, and the person's up is along {}: give --up {} (or --up {}, if it lies down)", recording,
+                taken, there, there, taken);
+  return fmt::format("{}: --up {} was given, and the person's up is along {}: does it lie down?", recording, taken, there);
+}
+
+void need_a_cycle(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {
+  need_steps(recording, measure, output);
+  if (std::any_of(measure.cycles.curves.begin(), measure.cycles.curves.end(), [](const auto& c) { return !c.cycles.empty(); }))
+    return;
+  if (!measure.cycles.cycles.empty()) throw Error("{}: no angle is known over a whole gait cycle: markers are missing", recording);
+  throw Error(
+      "{}: no gait cycle was found, from a foot's strike to its next within 0.4 to 3 s: HEE and TOE of a side are needed, and a "
+      "walk",
+      recording);
+}
+
+}  // namespace
+
+GaitMeasure measure_gait(const std::string& recording, const GaitOptions& options, const Hooks& hooks) {
+  GaitMeasure measure;
+  measure.subject = options.subject;
+  const GaitMarkers markers = read_gait_markers(recording, options.up, hooks);
+  measure.warnings = markers.warnings;
+  measure.frames = std::ssize(markers.rows);
+  measure.rate_hz = markers.rate_hz;
+  measure.begin_s = markers.begin_s;
+  measure.first_index = markers.first_index;
+  take_measures(recording, measure.subject);
+  if (!options.static_trial.empty()) {
+    take_measures(options.static_trial, measure.subject);
+    const auto standing = standing_places(read_gait_markers(options.static_trial, options.up, hooks), options.static_trial);
+    if (const auto pair = other_person(standing, markers))
+      measure.warnings.push_back(
+          fmt::format("{}: {}: another person's static trial, or markers that were put on anew?", options.static_trial, *pair));
+    measure.subject.learn_from(standing);
+  } else {
+    if (!measure.subject.leg_length[0] && !markers.rows.empty()) measure.subject.learn_from(markers.rows.front());
+    measure.warnings.push_back(
+        fmt::format("{}: no static trial, so that the ankles' zero is the line from ankle to toe", recording));
+    measure.subject.sole_from_ankle_toe = options.subject.sole_from_ankle_toe;
+  }
+  take_soles(recording, measure.subject);
+  if (auto across = up_across(recording, options.up, markers, measure.subject)) {
+    measure.lies = true;
+    measure.warnings.push_back(std::move(*across));
+  }
+  const gait::FeetPaths feet = feet_of(markers);
+  measure.angles = angle_curves(markers, measure.subject, feet.sacrum);
+  const bool any = std::any_of(measure.angles.begin(), measure.angles.end(), [](const gait::AngleCurve& curve) {
+    return std::any_of(curve.values.begin(), curve.values.end(), [](const auto& value) { return value.has_value(); });
+  });
+  if (!any)
+    throw Error(
+        "{}: has not the markers of Plug-in Gait that angles need: LASI, RASI and SACR (or LPSI, RPSI), then THI, KNE, TIB, ANK of "
+        "a side",
+        recording);
+  measure.events = gait::gait_events(feet, measure.rate_hz, options.events);
+  if (measure.events.empty())
+    measure.warnings.push_back(fmt::format("{}: no steps were found: HEE and TOE of a side are needed, and a walk", recording));
+  measure.cycles = gait::gait_cycles(measure.events, measure.angles, feet, measure.rate_hz);
+  warn_of_gaps(recording, measure);
+  return measure;
+}
+
+GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options, const Hooks& hooks) {
+  GaitMeasure measure = measure_gait(recording, options, hooks);
+  if (output.angles.empty() && output.c3d.empty()) need_steps(recording, measure, output);
+  if (!output.angles.empty()) write_angles(output.angles, measure);
+  if (!output.c3d.empty()) write_gait_c3d(output.c3d, recording, options.up, measure);
+  if (!output.cycles.empty() || !output.report.empty()) need_a_cycle(recording, measure, output);
+  if (!output.cycles.empty()) write_cycles(output.cycles, measure.cycles);
+  if (!output.report.empty()) write_gait_report(output.report, recording, measure);
+  return measure;
+}
+
+}  // namespace marey::pipeline::bodies

@@ -1,0 +1,50 @@
+// A walk's markers into joint angles, gait events, cycles and a report.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/analyse/gait/gait_cycles.h"
+#include "marey/analyse/gait/joint_angles.h"
+#include "marey/core/hooks.h"
+#include "marey/format/format.h"
+
+namespace marey::pipeline::bodies {
+
+struct GaitOptions {
+  std::string static_trial = {};  ///< the same person, standing; empty: the feet's neutral position is not known
+  std::optional<format::UpAxis> up = {};
+  analyse::gait::GaitSubject subject = {};  ///< what is given; a C3D file's own measures (PROCESSING) fill in the rest
+  analyse::gait::GaitEventOptions events = {};
+};
+
+struct GaitOutput {
+  std::string cycles;    ///< CSV: curve, percent, mean, deviation
+  std::string angles;    ///< CSV: a row an instant
+  std::string report;    ///< HTML
+  std::string c3d = {};  ///< the recording again, with angles and events
+};
+
+struct GaitMeasure {
+  bool lies = false;  ///< the person's up is across the recording's, as far as was said which that is
+  std::int64_t frames = 0;
+  double rate_hz = 0;
+  double begin_s = 0;            ///< the recording's time of the first row
+  std::int64_t first_index = 0;  ///< the recording's index of it
+  analyse::gait::GaitSubject subject;
+  std::vector<analyse::gait::AngleCurve> angles;
+  std::vector<analyse::gait::GaitEvent> events;
+  analyse::gait::GaitCycles cycles;
+  std::vector<std::string> warnings;
+};
+
+/// Throws Error where the recording lacks the markers of the pelvis or of both feet.
+GaitMeasure measure_gait(const std::string& recording, const GaitOptions& options, const Hooks& hooks = {});
+/// The same, written. Throws Error where cycles or a report are wanted and no angle is known over a whole cycle; the angles of
+/// every frame are written all the same.
+GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options,
+                         const Hooks& hooks = {});
+
+}  // namespace marey::pipeline::bodies

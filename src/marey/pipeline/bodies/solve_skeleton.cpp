@@ -1,0 +1,397 @@
+#include "marey/pipeline/bodies/solve_skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "marey/core/error.h"
+#include "marey/core/whole_file.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
+#include "marey/format/skeleton/gltf.h"
+#include "marey/format/skeleton/motion_table.h"
+#include "marey/pipeline/bodies/gait_markers.h"
+#include "marey/pipeline/keypoints/keypoint_skeleton.h"
+#include "marey/pipeline/markers/skeleton_in_space.h"
+#include "marey/solve/skeleton/calibrate.h"
+#include "marey/solve/skeleton/smooth.h"
+#include "marey/solve/skeleton/whole.h"
+
+namespace marey::pipeline::bodies {
+namespace {
+
+using format::Content;
+using format::UpAxis;
+constexpr std::size_t kMostCalibrationFrames = 4096;
+constexpr double kKeypointSigma_m = 0.02, kKeypointRobust_m = 0.15, kKeypointLost_m = 0.4;  // unswept
+constexpr std::int64_t kLooksAtPerson = 2000;  // rows by which it is told whether the static trial is another's
+
+bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
+  return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
+}
+
+/// Sums up poses as they come.
+class SolveCounts {
+ public:
+  explicit SolveCounts(const Skeleton& skeleton)
+      : skeleton_(&skeleton),
+        markers_(skeleton.markers.size()),
+        deviations_(skeleton.coordinates.size()),
+        observed_(skeleton.coordinates.size()) {}
+
+  void add(const solve::skeleton::SolvedPose& pose) {
+    starts_ += pose.started ? 1 : 0;
+    if (pose.seen == 0) {
+      ++empty_;
+      return;
+    }
+    for (std::size_t j = 0; j < markers_.size(); ++j) {
+      if (!pose.residuals[j]) continue;
+      ++markers_[j].seen;
+      markers_[j].rms_m += *pose.residuals[j] * *pose.residuals[j];
+      markers_[j].worst_m = std::max(markers_[j].worst_m, *pose.residuals[j]);
+    }
+    for (std::size_t c = 0; c < deviations_.size(); ++c) {
+      deviations_[c].push_back(static_cast<float>(pose.deviations[c]));
+      observed_[c] += pose.observed[c] ? 1 : 0;
+    }
+  }
+
+  /// All but the starts is forgotten.
+  void begin_anew() {
+    const std::int64_t starts = starts_;
+    *this = SolveCounts(*skeleton_);
+    starts_ = starts;
+  }
+
+  void write(const SkeletonMotion& motion, SolveSummary& summary) {
+    summary.starts = starts_;
+    summary.empty = empty_;
+    double sum = 0;
+    std::int64_t count = 0;
+    for (std::size_t j = 0; j < markers_.size(); ++j) {
+      SolveSummary::Marker& marker = markers_[j];
+      if (marker.seen == 0) continue;
+      marker.label = skeleton_->markers[j].label;
+      sum += marker.rms_m;
+      count += marker.seen;
+      marker.rms_m = std::sqrt(marker.rms_m / static_cast<double>(marker.seen));
+      summary.worst_m = std::max(summary.worst_m, marker.worst_m);
+      summary.markers.push_back(marker);
+    }
+    summary.skeleton_markers = static_cast<int>(markers_.size());
+    const std::int64_t with_any = std::ssize(motion.rows) - empty_;
+    summary.markers_a_frame = with_any > 0 ? static_cast<double>(count) / static_cast<double>(with_any) : 0;
+    summary.rms_m = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
+    for (std::size_t c = 0; c < skeleton_->coordinates.size(); ++c) {
+      if (skeleton_->coordinates[c].free()) summary.coordinates.push_back(coordinate(c, motion));
+    }
+  }
+
+ private:
+  SolveSummary::Coordinate coordinate(std::size_t c, const SkeletonMotion& motion) {
+    SolveSummary::Coordinate said{.name = skeleton_->coordinates[c].name, .turns = skeleton_->coordinates[c].turns};
+    for (std::size_t r = 0; r < motion.rows.size(); ++r) {
+      said.lowest = r == 0 ? motion.rows[r][c] : std::min(said.lowest, motion.rows[r][c]);
+      said.highest = r == 0 ? motion.rows[r][c] : std::max(said.highest, motion.rows[r][c]);
+    }
+    std::vector<float>& all = deviations_[c];
+    if (all.empty()) return said;
+    const auto middle = all.begin() + std::ssize(all) / 2;
+    std::nth_element(all.begin(), middle, all.end());
+    said.deviation = *middle;
+    said.observed = static_cast<double>(observed_[c]) / static_cast<double>(all.size());
+    return said;
+  }
+
+  const Skeleton* skeleton_;
+  std::vector<SolveSummary::Marker> markers_;
+  std::vector<std::vector<float>> deviations_;
+  std::vector<std::int64_t> observed_;
+  std::int64_t starts_ = 0, empty_ = 0;
+};
+
+/// The frames together: which way limbs are bent, and where it is asked for the second pass. What is said of the motion is then of
+/// the new one.
+void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::SeenMarkers>& seen, const SolveOptions& options,
+                 SolveCounts& counts) {
+  const double rate_hz = solved.motion.rate_hz;
+  const std::vector<bool> settled = solve::skeleton::settle_folds(solved.skeleton, solved.motion.rows, seen, rate_hz, options.pose);
+  const bool any = std::find(settled.begin(), settled.end(), true) != settled.end();
+  if (!any && !options.smooth) return;
+  if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, seen, rate_hz);
+  counts.begin_anew();
+  solve::skeleton::PoseSolver judge(solved.skeleton, options.pose);
+  judge.learn_noise_of(solved.motion.rows, seen);
+  for (std::size_t f = 0; f < seen.size(); ++f) {
+    const auto& pose = judge.look_at(solved.motion.rows[f], seen[f]);
+    counts.add(pose);
+    solved.observed[f] = pose.observed;
+    solved.residual_m[f] = pose.rms_m;
+  }
+}
+
+/// What is said of the recording's up; nothing: as it says itself.
+std::optional<UpAxis> up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
+  if (!options.up && format.name == "trc" && skeleton.ends_with(".osim")) return UpAxis::y;
+  return options.up;
+}
+
+std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options) {
+  const format::Format& format = format::format_to_read(path, Content::space);
+  format::ReadOptions how;
+  how.up = options.up;
+  auto reader = format::open_recording(path, format, how);
+  if (reader->header().frame.kind != FrameOfReference::Kind::space)
+    throw Error("{}: holds no points in space; a skeleton is solved from markers in space", path);
+  return reader;
+}
+
+/// The recording again, with its bodies, into a sink.
+void replay_with_bodies(const std::string& recording, const SolvedRecording& solved, const SolveOptions& options, Sink& sink) {
+  const auto reader = open_markers(recording, options);
+  RecordingHeader header = reader->header();
+  header.bodies = bodies_of(solved.skeleton);
+  const std::vector<Matrix<3>> rest = rest_of(solved.skeleton);
+  sink.begin(header);
+  std::size_t row = 0;
+  while (auto instant = reader->next()) {
+    if (row >= solved.motion.rows.size()) break;
+    if (row == 0) instant->named = reader->tracks();
+    instant->bodies = markers::segment_poses(solved.skeleton, header.bodies, rest, solved.motion.rows[row], solved.observed[row],
+                                             solved.residual_m[row]);
+    ++row;
+    sink.write(*instant);
+  }
+  sink.finish();
+}
+
+/// Says what the file could not hold of what stands beside the recording's points.
+std::optional<std::string> write_output(const std::string& path, const std::string& recording, const SolvedRecording& solved,
+                                        const SolveOptions& options) {
+  if (ends_with_any(path, {".mot", ".sto"})) {
+    format::skeleton::write_motion_table(path, solved.skeleton, solved.motion);
+    return std::nullopt;
+  }
+  if (ends_with_any(path, {".glb", ".bvh"})) {
+    const auto sink = path.ends_with(".glb") ? format::skeleton::create_glb(path) : format::skeleton::create_bvh(path, options.bvh);
+    replay_with_bodies(recording, solved, options, *sink);
+    return std::nullopt;
+  }
+  const format::Format& format = format::format_to_write(path, "", Content::space);
+  format::WritePlan plan = format::plan_of(*open_markers(recording, options), recording);
+  plan.info.header.bodies = bodies_of(solved.skeleton);
+  replay_with_bodies(recording, solved, options, *format::create_recording(path, format, plan));
+  return format::beside_lost(plan.info.beside, path, format);
+}
+
+}  // namespace
+
+void check_skeleton_output(const std::string& path) {
+  if (ends_with_any(path, {".mot", ".sto", ".bvh", ".glb"})) return;
+  try {
+    format::format_to_write(path, "", Content::space);
+  } catch (const format::WrongFormat&) {
+    throw format::WrongFormat(
+        "{}: unknown ending; a solved skeleton is written as .mot or .sto (angles), .bvh or .glb (bones), or with the markers as "
+        "{}",
+        path, format::endings_of_written(Content::space));
+  }
+}
+
+SolvedRecording solve_recording(const std::string& recording, const format::skeleton::SkeletonFile& file,
+                                const SolveOptions& options, const Hooks& hooks) {
+  SolvedRecording solved;
+  solved.skeleton = file.skeleton;
+  SolveSummary& summary = solved.summary;
+  summary.warnings = file.warnings;
+  summary.skeleton = file.skeleton.name;
+  const auto reader = open_markers(recording, options);
+  solved.motion.rate_hz = summary.rate_hz = reader->header().rate_hz;
+  markers::SkeletonInSpace solver(std::make_shared<const Skeleton>(file.skeleton), solved.motion.rate_hz, options.pose,
+                                  options.leave_out);
+  solver.name(reader->tracks());
+  SolveCounts counts(solved.skeleton);
+  std::vector<solve::skeleton::SeenMarkers> all;
+  while (const auto instant = reader->next()) {
+    const auto& pose = solver.solve(*instant);
+    counts.add(pose);
+    solved.motion.times.push_back(instant->time);
+    solved.motion.rows.push_back(pose.coordinates);
+    solved.observed.push_back(pose.observed);
+    solved.residual_m.push_back(pose.rms_m);
+    all.push_back(solver.seen());
+    if (hooks.report({.step = "solving", .done = ++summary.frames, .total = reader->instant_count()}) == Continue::no) {
+      summary.stopped = true;
+      break;
+    }
+  }
+  const markers::SkeletonMarkers& labels = solver.markers();
+  if (!labels.any()) throw Error("{}: {}", recording, labels.none_known(solved.skeleton.name));
+  if (!summary.stopped) solve_again(solved, all, options, counts);
+  for (const std::string& warning : reader->warnings()) summary.warnings.push_back(warning);
+  summary.not_recorded = labels.not_recorded();
+  summary.not_known = labels.unknown();
+  if (summary.frames > 1) summary.seconds = seconds(solved.motion.times.back() - solved.motion.times.front());
+  counts.write(solved.motion, summary);
+  return solved;
+}
+
+namespace {
+
+/// The markers of all frames, for a calibration.
+std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording, const Skeleton& skeleton,
+                                                   const SolveOptions& options) {
+  const auto reader = open_markers(recording, options);
+  markers::SkeletonMarkers labels(skeleton, options.leave_out);
+  labels.name(reader->tracks());
+  std::vector<solve::skeleton::SeenMarkers> frames;
+  std::size_t step = 1, count = 0;
+  while (const auto instant = reader->next()) {
+    labels.name(instant->named);
+    if (count++ % step != 0) continue;
+    solve::skeleton::SeenMarkers seen;
+    labels.take(*instant, seen);
+    frames.push_back(std::move(seen));
+    if (frames.size() < kMostCalibrationFrames) continue;
+    for (std::size_t i = 0; 2 * i < frames.size(); ++i) frames[i] = std::move(frames[2 * i]);
+    frames.resize((frames.size() + 1) / 2);
+    step *= 2;
+  }
+  return frames;
+}
+
+/// The human skeleton of who moves in the recording. Throws Error, with what else there is, where its markers are no set.
+HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& how, const Hooks& hooks) {
+  try {
+    return human_from_motion(recording, how, hooks);
+  } catch (const Error& error) {
+    throw Error("{}; so a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field",
+                error.what());
+  }
+}
+
+/// The skeleton of a person whose body keypoints are recorded; nothing where none are.
+std::optional<format::skeleton::SkeletonFile> skeleton_by_keypoints(const std::string& recording, SolveOptions& options) {
+  const auto reader = open_markers(recording, options);
+  const std::vector<std::string> people = keypoints::people_with_keypoints(reader->tracks());
+  if (people.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const std::string& prefix : people) names.push_back(prefix.substr(0, prefix.find(':')));
+  const auto found = options.person.empty() ? names.begin() : std::find(names.begin(), names.end(), options.person);
+  if (found == names.end())
+    throw Error("{}: has no keypoints of a person {}; there are {}", recording, options.person, fmt::join(names, ", "));
+  format::skeleton::SkeletonFile file;
+  file.skeleton = keypoints::skeleton_of_keypoints(read_all(*reader), people[static_cast<std::size_t>(found - names.begin())]);
+  if (people.size() > 1 && options.person.empty())
+    file.warnings.push_back(
+        fmt::format("{}: has keypoints of {}; {} is solved, the others with --person", recording, fmt::join(names, ", "), *found));
+  // A network's points lie farther off than markers do.
+  options.pose.marker_sigma_m = kKeypointSigma_m;
+  options.pose.robust_m = kKeypointRobust_m;
+  options.pose.lost_m = kKeypointLost_m;
+  return file;
+}
+
+format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const std::string& skeleton, SolveOptions& options,
+                                           SolveSummary& found, const Hooks& hooks) {
+  if (!skeleton.empty()) {
+    format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(skeleton, options.read_skeleton);
+    if (file.skeleton.name.empty()) file.skeleton.name = skeleton;
+    return markers::with_a_marker_a_joint(std::move(file));
+  }
+  if (options.static_trial.empty()) {
+    if (auto by_keypoints = skeleton_by_keypoints(recording, options)) return std::move(*by_keypoints);
+    options.calibrate = true;
+  }
+  format::skeleton::SkeletonFile file;
+  const HumanOptions how{.motion = options.motion, .marker_set = options.marker_set, .up = options.up};
+  HumanSkeleton human =
+      options.static_trial.empty() ? human_of_motion(recording, how, hooks) : human_from_static(options.static_trial, how, hooks);
+  file.skeleton = std::move(human.skeleton);
+  file.warnings = std::move(human.warnings);
+  if (!options.static_trial.empty()) {
+    const GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set, kLooksAtPerson);
+    if (const auto other = other_person(human.standing, moving))
+      file.warnings.push_back(fmt::format("{}: {}: another person's static trial than {}, or markers that were put on anew?",
+                                          options.static_trial, *other, recording));
+  }
+  found.joints = std::move(human.joints);
+  found.marker_set = std::move(human.marker_set);
+  return file;
+}
+
+/// Where the skeleton's up is mostly the recording's other axis: that one is up, unless the person lies down.
+std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxis taken, bool said, const std::string& recording) {
+  constexpr std::size_t kLooks = 64;
+  constexpr double kMostly = 0.8;  // cosine
+  const auto& rows = solved.motion.rows;
+  if (rows.empty()) return std::nullopt;
+  const Matrix<3> rest = pose_of(solved.skeleton, solved.skeleton.rest()).front().rotation;
+  Vector<3> up = Vector<3>::Zero();
+  for (std::size_t r = 0; r < rows.size(); r += std::max<std::size_t>(1, rows.size() / kLooks))
+    up += (pose_of(solved.skeleton, rows[r]).front().rotation * rest.transpose()).col(2);
+  // A file's y is z here where its y was taken for up, and its z is then −y.
+  const double other = taken == UpAxis::z ? up.normalized().y() : -up.normalized().y();
+  if (!(other > kMostly)) return std::nullopt;
+  const char *named = taken == UpAxis::z ? "z" : "y", *there = taken == UpAxis::z ? "y" : "z";
+  if (said)
+    return fmt::format("{}: --up {} was given, and the skeleton's up is along {}: does the person lie down?", recording, named,
+                       there);
+  return fmt::format("{}: {} was taken for up, and the skeleton's up is along {}: is {} up in this file? then give --up {}",
+                     recording, named, there, there, there);
+}
+
+void write_skeleton_file(const std::string& path, const Skeleton& skeleton) {
+  WholeFile file(path);
+  file.write(format::skeleton::to_toml(skeleton));
+  file.finish();
+}
+
+}  // namespace
+
+SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& given,
+                                    const Hooks& hooks) {
+  SolveOptions options = given;
+  SolveSummary found;
+  format::skeleton::SkeletonFile file = skeleton_of(recording, skeleton, options, found, hooks);
+  options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
+  std::optional<solve::skeleton::Calibration> calibration;
+  if (options.calibrate) {
+    calibration = solve::skeleton::calibrate(file.skeleton, all_seen(recording, file.skeleton, options));
+    file.skeleton = calibration->skeleton;
+  }
+  SolvedRecording solved = solve_recording(recording, file, options, hooks);
+  const UpAxis taken = format::up_axis(open_markers(recording, options)->info(), options.up);
+  if (auto sentence = lies_on_its_side(solved, taken, given.up.has_value(), recording))
+    solved.summary.warnings.push_back(std::move(*sentence));
+  solved.summary.joints = std::move(found.joints);
+  solved.summary.marker_set = std::move(found.marker_set);
+  if (calibration) {
+    solved.summary.overall_scale = calibration->overall_scale;
+    solved.summary.rms_before_m = calibration->rms_before_m;
+    solved.summary.undetermined = calibration->undetermined;
+  }
+  return solved;
+}
+
+SolveSummary solve_skeleton(const std::string& recording, const std::string& skeleton, const std::vector<std::string>& outputs,
+                            const SolveOptions& given, const Hooks& hooks) {
+  for (const std::string& path : outputs) check_skeleton_output(path);
+  const SolvedRecording solved = solve_with_skeleton(recording, skeleton, given, hooks);
+  if (solved.summary.stopped) return solved.summary;
+  SolveOptions options = given;
+  options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
+  SolveSummary summary = solved.summary;
+  for (const std::string& path : outputs) {
+    if (auto sentence = write_output(path, recording, solved, options)) summary.warnings.push_back(std::move(*sentence));
+  }
+  if (!options.write_skeleton.empty()) write_skeleton_file(options.write_skeleton, solved.skeleton);
+  return summary;
+}
+
+}  // namespace marey::pipeline::bodies

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/calibrate/board/board_detector.h"
+#include "marey/calibrate/lens_calibration.h"
+#include "marey/core/hooks.h"
+#include "marey/pipeline/corridor/feed.h"
+
+namespace marey::pipeline::calibrate {
+
+/// Pictures that a lens rests on, where nobody says how many.
+constexpr std::size_t kViewsOfLens = 60;
+
+/// A board in one frame of a camera.
+struct BoardSighting {
+  std::int64_t frame = 0;
+  Timestamp time{};  ///< by the camera's own clock
+  double sharpness = 0;
+  marey::calibrate::board::BoardView view;
+};
+
+/// All that one camera saw of a board.
+struct BoardSightings {
+  cv::Size size;                         ///< px
+  std::int64_t frames = 0;               ///< looked at
+  std::vector<BoardSighting> sightings;  ///< in the order of time
+  std::vector<std::string> warnings;     ///< the feed's
+};
+
+struct FindBoardsOptions {
+  std::int64_t every = 1;                      ///< look at every so many-th frame only
+  std::string step = "looking for the board";  ///< what its progress is called
+};
+
+/// Looks for the board in the camera's frames, several at once. Throws Stopped.
+BoardSightings find_boards(corridor::Feed& feed, const marey::calibrate::board::BoardDetector& detector,
+                           const FindBoardsOptions& options = {}, const Hooks& hooks = {});
+
+/// The lens by the best `most_views` of them. Throws as calibrate::calibrate_lens does.
+marey::calibrate::LensCalibration lens_by_sightings(const marey::calibrate::board::Board& board, const BoardSightings& seen,
+                                                    std::size_t most_views = kViewsOfLens,
+                                                    const marey::calibrate::LensOptions& how = {});
+
+}  // namespace marey::pipeline::calibrate

@@ -1,0 +1,95 @@
+#include "marey/pipeline/calibrate/live_blobs.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "marey/core/error.h"
+#include "marey/core/source_name.h"
+#include "marey/pipeline/live/live_feeds.h"
+
+namespace marey::pipeline::calibrate {
+namespace {
+
+constexpr double kLookEvery = 0.1;    // s
+constexpr double kNothingAfter = 10;  // s without a frame of any camera
+
+/// What has come of one camera since the last call.
+void take_blobs(corridor::Feed& feed, const source::LivePolicy& policy, double offset_s,
+                std::vector<marey::calibrate::wand::BlobFrame>& frames, CameraFrame& newest) {
+  for (CameraFrame& given : feed.arrived(policy)) {
+    auto& blobs = frames.emplace_back(marey::calibrate::wand::BlobFrame{seconds(given.frame.time) - offset_s, {}});
+    for (const Detection& blob : *given.detections) blobs.blobs.push_back(blob.centre);
+    newest = std::move(given);
+  }
+}
+
+std::string why_nothing_came(std::span<const corridor::Feed> feeds) {
+  std::string why = "no camera gave a frame";
+  for (const corridor::Feed& feed : feeds) {
+    if (const std::string trouble = feed.report().trouble; !trouble.empty())
+      why += fmt::format("\n  camera \"{}\": {}", feed.camera().name, trouble);
+  }
+  return why;
+}
+
+/// As they were seen: their sizes and rates.
+void enter_cameras(Rig& rig, std::span<const corridor::Feed> feeds) {
+  for (std::size_t c = 0; c < feeds.size(); ++c) {
+    rig.cameras[c] = feeds[c].camera();
+    if (const cv::Size size = feeds[c].report().received > 0 ? feeds[c].info().size : cv::Size(); !size.empty())
+      rig.cameras[c].size = size;
+    if (!rig.cameras[c].rate_hz) rig.cameras[c].rate_hz = feeds[c].info().rate_hz;
+  }
+}
+
+}  // namespace
+
+bool has_live_cameras(const Rig& rig) {
+  return std::any_of(rig.cameras.begin(), rig.cameras.end(),
+                     [](const RigCamera& camera) { return !scheme_of(camera.source).empty(); });
+}
+
+CameraBlobs see_live_blobs(Rig& rig, const LiveBlobsOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  const source::LivePolicy policy{.time = source::steady_time()};
+  live::CameraDesk as_rig_says(rig, options.markers.threshold);
+  live::CameraDesk& desk = options.desk != nullptr ? *options.desk : as_rig_says;
+  std::vector<corridor::Feed> feeds = live::open_live_feeds(rig, policy, options.patience_s, &desk);
+  for (std::size_t c = 0; c < feeds.size(); ++c) {
+    feeds[c].find(std::make_unique<corridor::TunedMarkers>(options.markers, desk.tuning(c)));
+    feeds[c].tune(desk.tuning(c));
+  }
+  CameraBlobs blobs;
+  blobs.seen.resize(feeds.size());
+  std::vector<CameraFrame> newest(feeds.size());
+  const double begin = seconds(policy.time->now());
+  std::optional<double> first;
+  double looked = begin;
+  while (true) {
+    tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t c) {
+      take_blobs(feeds[c], policy, rig.cameras[c].offset_s.value_or(0), blobs.seen[c], newest[c]);
+    });
+    const double now = seconds(policy.time->now());
+    std::int64_t frames = 0;
+    for (const auto& seen : blobs.seen) frames += std::ssize(seen);
+    hooks.advance({"looking for markers", frames, std::nullopt});
+    if (frames > 0 && !first) first = now;
+    if (!first && now - begin > kNothingAfter) throw Error("{}", why_nothing_came(feeds));
+    if (first && now - *first >= options.for_s) break;
+    if (options.will_do && now - looked >= kLookEvery) {
+      looked = now;
+      if (options.will_do({blobs, feeds, newest, policy, first ? now - *first : 0})) break;
+    }
+    if (std::all_of(feeds.begin(), feeds.end(), [](const corridor::Feed& feed) { return feed.has_ended(); })) break;
+    policy.time->wait();
+  }
+  if (!first) throw Error("{}", why_nothing_came(feeds));
+  enter_cameras(rig, feeds);
+  return blobs;
+}
+
+}  // namespace marey::pipeline::calibrate

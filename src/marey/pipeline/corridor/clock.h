@@ -1,0 +1,129 @@
+// One clock for all cameras: what their feeds deliver becomes sets of frames, one for each moment, with gaps explicit.
+//
+// The moments are either the frames of the first camera, or follow each other evenly at the rate of the fastest one, from the first
+// frame of the earliest. Each camera contributes the frame that lies nearest to the moment, if that is less than half a frame away.
+// A camera that stops, drops frames or is slower gives nothing to the moments it has no frame for; the others go on.
+//
+// Where `interpolate` is set, a camera that is out of step by a part of a frame saw the markers somewhere else than they are at the
+// moment: its detections are moved along the line between the frames before and after, each to the one of the other frame that is
+// its nearest and to which it is the nearest. What has no such partner is left out: nobody knows where it was.
+//
+// Live cameras (ClockOptions::live) are not waited for longer than the policy says. A moment is whole when every camera that gives
+// frames has given its own. The newest whole one is given, what is older is let go and counted by cause; where none is whole, the
+// newest one that is late goes on with its gaps. A camera that stalls is waited for no more, until it is back.
+//
+// Memory: a few frames a camera. Threads: cameras are asked for frames side by side; what comes out does not depend on them.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "marey/core/frame_set.h"
+#include "marey/core/stage_times.h"
+#include "marey/pipeline/corridor/feed.h"
+
+namespace marey::pipeline::corridor {
+
+struct ClockOptions {
+  enum class Pace {
+    first_camera,  ///< a moment is a frame of the first camera
+    even,          ///< moments follow each other at the rate of the fastest camera
+  };
+  Pace pace = Pace::first_camera;
+  bool interpolate = false;
+  std::optional<source::LivePolicy> live = {};  ///< the feeds are live cameras; the pace is even
+  std::function<void()> waiting = {};           ///< called now and then while live cameras are waited for
+};
+
+/// Moments and frames that a live run let go.
+struct LiveDrops {
+  std::int64_t overtaken = 0;    ///< moments that were whole, but so was a newer one: what follows is too slow
+  std::int64_t incomplete = 0;   ///< moments that were not, when a newer one went on
+  std::int64_t empty = 0;        ///< moments at which no camera gave anything
+  std::int64_t late_frames = 0;  ///< that came when their moment had gone on
+  std::int64_t overrun = 0;      ///< frames that left a camera's few kept ones before they were asked for
+};
+
+class Clock {
+ public:
+  explicit Clock(std::vector<Feed> feeds, const ClockOptions& options = {});
+
+  /// The next moment; nothing when the cameras have ended.
+  std::optional<FrameSet> next();
+
+  double rate_hz() const { return rate_hz_; }
+  /// How many moments there will be: an estimate, for progress only.
+  std::optional<std::int64_t> count() const;
+  const std::vector<Feed>& feeds() const { return feeds_; }
+  std::vector<Feed>& feeds() { return feeds_; }
+
+  bool can_rewind() const;
+  /// The same clock from the beginning, its feeds opened again: it gives the same moments, without detections. Throws Error where a
+  /// feed cannot be read twice.
+  Clock again() const;
+
+  /// Frames that camera `number` gave, and how many moments it had nothing for.
+  std::int64_t frames(std::size_t number) const { return lanes_[number].frames; }
+  std::int64_t missed(std::size_t number) const { return lanes_[number].missed; }
+  /// Nothing where the cameras are not live.
+  std::optional<LiveDrops> drops() const;
+  /// How each camera is now.
+  std::vector<FeedState> states() const;
+  const StageTimes& decoding() const { return decoding_; }
+  const StageTimes& detecting() const { return detecting_; }
+  std::vector<std::string> warnings() const;
+
+ private:
+  struct Lane {
+    std::deque<CameraFrame> waiting;
+    std::optional<Timestamp> used;  // of the last frame given
+    bool ended = false;
+    std::int64_t frames = 0, missed = 0;
+  };
+
+  static constexpr double kHalf = 0.505;   // of a frame: a camera's frame that is nearer belongs to the moment
+  static constexpr double kInStep = 0.02;  // of a frame: what moves no marker by more than noise
+
+  bool begin();
+  void fill(Timestamp until);
+  void read(std::size_t number, Timestamp until, std::vector<CameraFrame>& read);
+  std::optional<CameraFrame> take(std::size_t number, Timestamp now);
+  std::optional<Timestamp> next_moment();
+  bool all_over(Timestamp now) const;
+
+  // live_clock.cpp
+  std::optional<FrameSet> next_live();
+  void gather();
+  Timestamp moment(std::int64_t index) const;
+  std::int64_t last_moment() const;
+  bool has_frame_of(const Lane& lane, Timestamp now) const;
+  bool is_whole(std::int64_t index) const;
+  bool is_empty(std::int64_t index) const;
+  std::optional<std::int64_t> ready() const;
+  void let_go_before(std::int64_t index);
+  void forget_before(Timestamp now);
+  void follow(const FrameSet& set);
+
+  ClockOptions options_;
+  std::vector<Feed> feeds_;
+  std::vector<Lane> lanes_;
+  double rate_hz_ = 0;
+  bool begun_ = false;
+  std::optional<Timestamp> start_;
+  std::int64_t next_ = 0;
+  std::stop_token stop_ = StopScope::current();
+  Timestamp live_begin_{};
+  LiveDrops drops_;
+  std::vector<double> off_;  // follow's
+  StageTimes decoding_, detecting_;
+};
+
+/// The detections of a frame, moved to where they were `now` by those of another frame of the camera, before or after.
+std::vector<Detection> moved_to(Timestamp now, const CameraFrame& nearest, const CameraFrame& other);
+
+}  // namespace marey::pipeline::corridor

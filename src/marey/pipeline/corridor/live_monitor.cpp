@@ -1,0 +1,120 @@
+#include "marey/pipeline/corridor/live_monitor.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace marey::pipeline::corridor {
+namespace {
+
+constexpr double kTold = 0.25;   // s between two reports
+constexpr double kMeasured = 1;  // s over which rates are counted
+constexpr std::ptrdiff_t kNewsKept = 10;
+constexpr double kWindow = 5;  // s of latencies: those of the window before are shown until the next one is full
+
+Summary::StepTime step_of(const char* name, const StageTimes& times) {
+  return {name, times.count(), times.quantile(0.5), times.quantile(0.99)};
+}
+
+}  // namespace
+
+LiveMonitor::LiveMonitor(std::shared_ptr<source::LiveTime> time, Tell tell)
+    : time_(std::move(time)), tell_(std::move(tell)), begin_(time_->now()) {}
+
+void LiveMonitor::watch(const Clock& clock, const Sinks& sinks) {
+  clock_ = &clock;
+  sinks_ = &sinks;
+  const std::size_t cameras = clock.feeds().size();
+  rates_.assign(cameras, 0);
+  frames_.assign(cameras, 0);
+  detections_.assign(cameras, 0);
+  states_.assign(cameras, FeedState::connecting);
+}
+
+void LiveMonitor::saw(const FrameSet& frames, std::span<const Instant> instants, Timestamp given, Timestamp done) {
+  grouping_.add(seconds(given - frames.time));
+  solving_.add(seconds(done - given));
+  all_.add(seconds(done - frames.time));
+  recent_.add(seconds(done - frames.time));
+  instants_ += std::ssize(instants);
+  if (!instants.empty()) targets_ = std::ssize(instants.back().samples);
+  std::fill(detections_.begin(), detections_.end(), 0);
+  for (std::size_t i = 0; i < frames.cameras.size(); ++i) {
+    if (frames.cameras[i] && frames.cameras[i]->detections) detections_[i] = std::ssize(*frames.cameras[i]->detections);
+  }
+  if (!instants.empty() && std::none_of(frames.cameras.begin(), frames.cameras.end(),
+                                        [](const auto& camera) { return camera && camera->detections.has_value(); })) {
+    for (const SeenPoint& seen : instants.back().seen) ++detections_[static_cast<std::size_t>(number(seen.camera))];
+  }
+  tick();
+}
+
+void LiveMonitor::heard(const std::vector<std::string>& news) {
+  if (news.empty()) return;
+  news_count_ += std::ssize(news);
+  news_.insert(news_.end(), news.begin(), news.end());
+  if (std::ssize(news_) > kNewsKept) news_.erase(news_.begin(), news_.end() - kNewsKept);
+}
+
+void LiveMonitor::tick() {
+  const Timestamp now = time_->now();
+  if (!window_ || seconds(now - *window_) >= kWindow) {
+    if (window_) before_ = std::exchange(recent_, {});
+    window_ = now;
+  }
+  if (!measured_ || seconds(now - *measured_) >= kMeasured) measure_rates(now);
+  if (!tell_ || (told_ && seconds(now - *told_) < kTold)) return;
+  told_ = now;
+  tell_(status());
+}
+
+void LiveMonitor::measure_rates(Timestamp now) {
+  const double elapsed = measured_ ? seconds(now - *measured_) : 0;
+  measured_ = now;
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
+    const std::int64_t frames = clock_->feeds()[i].report().received;
+    if (elapsed > 0) rates_[i] = static_cast<double>(frames - frames_[i]) / elapsed;
+    frames_[i] = frames;
+  }
+}
+
+LiveStatus LiveMonitor::status() const {
+  LiveStatus status;
+  status.seconds = seconds(time_->now() - begin_);
+  const std::vector<FeedState> states = clock_->states();
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
+    const Feed& feed = clock_->feeds()[i];
+    LiveReport report = feed.report();
+    status.cameras.push_back({.name = feed.camera().name,
+                              .state = states[i],
+                              .trouble = std::move(report.trouble),
+                              .rate_hz = rates_[i],
+                              .frames = report.received,
+                              .lost = report.lost,
+                              .damaged = report.damaged,
+                              .overrun = report.overrun,
+                              .detections = detections_[i],
+                              .connections = report.connections});
+  }
+  status.drops = clock_->drops().value_or(LiveDrops{});
+  status.instants = instants_;
+  status.targets = targets_;
+  const StageTimes& latest = before_.count() > 0 ? before_ : recent_;
+  if (latest.count() > 0) {
+    status.latency_median_s = latest.quantile(0.5);
+    status.latency_p99_s = latest.quantile(0.99);
+  }
+  status.recording = recording_ && recording_();
+  status.troubles = sinks_->troubles();
+  status.news = news_;
+  status.news_count = news_count_;
+  for (const Feed& feed : clock_->feeds()) {
+    if (std::string warning = feed.rate_warning(); !warning.empty()) status.troubles.push_back(std::move(warning));
+  }
+  return status;
+}
+
+std::vector<Summary::StepTime> LiveMonitor::steps() const {
+  return {step_of("capture to group", grouping_), step_of("group to instant", solving_), step_of("capture to instant", all_)};
+}
+
+}  // namespace marey::pipeline::corridor

@@ -1,0 +1,82 @@
+// How a live run goes, while it does: every camera's state, rate and losses, how old results are, what was let go and why.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/core/stage_times.h"
+#include "marey/pipeline/corridor/run.h"
+
+namespace marey::pipeline::corridor {
+
+struct LiveStatus {
+  struct Camera {
+    std::string name;
+    FeedState state = FeedState::connecting;
+    std::string trouble;          ///< what went wrong last, one sentence; empty where nothing did
+    double rate_hz = 0;           ///< of the frames that came in the last second or two
+    std::int64_t frames = 0;      ///< that came
+    std::int64_t lost = 0;        ///< that the camera took and that never came
+    std::int64_t damaged = 0;     ///< that came in part, or could not be decoded
+    std::int64_t overrun = 0;     ///< that came and were let go before anybody asked for them
+    std::int64_t detections = 0;  ///< in its last frame
+    std::int64_t connections = 0;
+  };
+  double seconds = 0;  ///< since the run began
+  std::vector<Camera> cameras;
+  LiveDrops drops;
+  std::int64_t instants = 0;                              ///< so far
+  std::int64_t targets = 0;                               ///< in the last one
+  std::optional<double> latency_median_s, latency_p99_s;  ///< from exposure to the instant, over the last few seconds
+  bool recording = false;
+  std::vector<std::string> troubles;  ///< of sinks, one sentence each
+  std::vector<std::string> news;      ///< the last few things that were found out, one sentence each
+  std::int64_t news_count = 0;        ///< how many there were so far
+};
+
+/// Watches a clock and what is made of its moments. All from the run's own thread.
+class LiveMonitor {
+ public:
+  using Tell = std::function<void(const LiveStatus&)>;
+
+  /// `tell` is called four times a second; it may be empty.
+  LiveMonitor(std::shared_ptr<source::LiveTime> time, Tell tell);
+
+  /// What is watched: it must outlive the monitor's use. Before the first call of `saw`.
+  void watch(const Clock& clock, const Sinks& sinks);
+  /// A moment went on, and instants came of it.
+  void saw(const FrameSet& frames, std::span<const Instant> instants, Timestamp given, Timestamp done);
+  /// What the job found out, one sentence each.
+  void heard(const std::vector<std::string>& news);
+  /// Time goes on.
+  void tick();
+
+  LiveStatus status() const;
+  /// Of the whole run: "capture to group", "group to instant", "capture to instant".
+  std::vector<Summary::StepTime> steps() const;
+  void set_recording(std::function<bool()> recording) { recording_ = std::move(recording); }
+
+ private:
+  void measure_rates(Timestamp now);
+
+  std::shared_ptr<source::LiveTime> time_;
+  Tell tell_;
+  const Clock* clock_ = nullptr;
+  const Sinks* sinks_ = nullptr;
+  std::function<bool()> recording_;
+  Timestamp begin_{};
+  std::optional<Timestamp> told_, measured_, window_;
+  StageTimes grouping_, solving_, all_, recent_, before_;
+  std::vector<double> rates_;
+  std::vector<std::int64_t> frames_, detections_;
+  std::vector<FeedState> states_;
+  std::int64_t instants_ = 0, targets_ = 0, news_count_ = 0;
+  std::vector<std::string> news_;
+};
+
+}  // namespace marey::pipeline::corridor

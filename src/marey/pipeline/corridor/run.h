@@ -1,0 +1,128 @@
+// The one corridor that every job walks: a clock gives what the cameras saw at one moment, a stage makes of it what is known of
+// that moment, sinks take it where the user wants it. What a job does is its stage; where results go are its sinks; nothing else
+// differs.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "marey/core/hooks.h"
+#include "marey/core/instant.h"
+#include "marey/core/recording.h"
+#include "marey/core/sink.h"
+#include "marey/pipeline/corridor/clock.h"
+
+namespace marey::pipeline::corridor {
+
+/// What came of a run: what is in its results, what was lost on the way and why.
+struct Summary {
+  struct Camera {
+    std::string name;
+    std::int64_t frames = 0;      ///< looked at
+    std::int64_t missed = 0;      ///< moments without a frame
+    std::int64_t detections = 0;  ///< handed to the tracker
+    std::int64_t outside = 0;     ///< detections where nothing counts: beyond the area, above the horizon
+    std::int64_t noise = 0;       ///< regions too small to be a part of a person
+    std::int64_t misfits = 0;     ///< regions that no body explains
+  };
+  /// How long one step took, s.
+  struct StepTime {
+    std::string name;
+    std::int64_t count = 0;
+    double median = 0, p99 = 0;
+  };
+
+  std::int64_t frames = 0;                                           ///< moments
+  double seconds = 0;                                                ///< from the first moment to the last
+  double rate_hz = 0;                                                ///< of the moments
+  double first_pass_s = 0;                                           ///< wall time until the cameras had ended
+  std::int64_t tracks = 0;                                           ///< distinct ones in the results
+  std::int64_t labelled = 0;                                         ///< of these, with a label
+  std::int64_t samples = 0;                                          ///< tracks times the moments they are in
+  std::int64_t measured = 0, filled = 0, predicted = 0, solved = 0;  ///< of these
+  std::int64_t outlines = 0, held_outlines = 0;               ///< samples with an outline; those of which too little was seen
+  std::int64_t keypoints = 0;                                 ///< samples with body points
+  std::int64_t detections = 0;                                ///< handed to the tracker
+  std::map<std::string, std::int64_t, std::less<>> left_out;  ///< by reason: "noise", "too_brief", …
+  std::map<std::string, double, std::less<>> figures;         ///< what a stage found out besides: "noise_px", …
+  std::vector<Camera> cameras;
+  std::vector<StepTime> steps;
+  std::vector<std::string> notes;     ///< what was found out beside, one sentence each
+  std::vector<std::string> warnings;  ///< what went wrong without stopping the run, one sentence each
+  bool stopped = false;               ///< before the end, because a hook said so
+  bool sink_failed = false;           ///< of a live run: a warning names it
+};
+
+/// Instants, one after the other.
+class InstantSource {
+ public:
+  virtual ~InstantSource() = default;
+  /// Nothing at the end.
+  virtual std::optional<Instant> next() = 0;
+};
+
+/// One job's order of steps, from what the cameras saw at a moment to what is known of it.
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  virtual RecordingHeader header() const = 0;
+  /// Sinks want `Instant::boxes`. Before the first step.
+  virtual void want_boxes() {}
+  /// What is known after this moment, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
+  /// second pass keeps all for that.
+  virtual std::span<const Instant> step(const FrameSet& frames) = 0;
+  /// What somebody who watches should know at once of what the steps since the last call found out, one sentence each.
+  virtual std::vector<std::string> news() { return {}; }
+  /// What is known only now that the cameras have ended: instants that waited, or the whole recording after a second pass. Nothing
+  /// where all was told.
+  virtual std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) { return nullptr; }
+  /// Puts in what it counted and what it found out.
+  virtual void report(Summary& summary) const = 0;
+};
+
+/// The sinks of a run. Each is written behind a bounded queue of its own, so that one that waits (a film, a socket) holds nobody up
+/// before its queue is full. One that fails is closed and named: the run then ends, after the others have finished what there was.
+class Sinks {
+ public:
+  /// What happens where a sink is slower than the run.
+  enum class Slow {
+    waited_for,   ///< the run waits; one that fails ends it
+    passed_over,  ///< it is given no more before it has caught up, and that is counted; one that fails is closed, the run goes on
+  };
+  explicit Sinks(Slow slow = Slow::waited_for);
+  ~Sinks();
+  Sinks(Sinks&&) noexcept;
+  Sinks& operator=(Sinks&&) noexcept;
+
+  void add(std::unique_ptr<Sink> sink);
+  void begin(const RecordingHeader& header);
+  bool want_pictures() const;
+  bool want_boxes() const;
+  /// Whether the run may go on: that all still take what they are given, where they are waited for.
+  bool write(Instant instant);
+  /// Of sinks that are passed over: what they missed, and which of them failed, one sentence each.
+  std::vector<std::string> troubles() const;
+  bool failed() const;
+  /// Drops those that want pictures: they leave nothing behind. Returns their names.
+  std::vector<std::string> drop_pictures();
+  /// Commits all that did not fail. Throws Error, with the sink's name, where one has failed and is no trouble().
+  void finish();
+
+ private:
+  class Lane;
+  Slow slow_;
+  std::vector<std::unique_ptr<Lane>> lanes_;
+};
+
+/// Runs a job from its cameras' first frame to its sinks' last. Where a second pass reports moments that are past and a sink wants
+/// their pictures, the clock is asked for them again. A run that is asked to stop writes what is known until then, but for sinks
+/// whose pictures would have to be asked for again: they leave nothing, and a warning names them. Throws Error where not one frame
+/// could be read, or a sink has failed; Stopped where nothing was tracked before it was asked to stop.
+Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks = {});
+
+}  // namespace marey::pipeline::corridor

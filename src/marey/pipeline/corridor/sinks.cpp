@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <opencv2/core.hpp>
+#include <tbb/concurrent_queue.h>
+
+#include "marey/core/error.h"
+#include "marey/pipeline/corridor/run.h"
+
+namespace marey::pipeline::corridor {
+namespace {
+
+constexpr int kWaiting = 8;        // instants, with their pictures
+constexpr int kWaitingLive = 256;  // without them: what is live is not held up by a disk that is busy for a second
+
+}  // namespace
+
+/// A sink, written on a thread of its own.
+class Sinks::Lane {
+ public:
+  explicit Lane(std::unique_ptr<Sink> sink) : sink_(std::move(sink)), name_(sink_->name()) { queue_.set_capacity(kWaiting); }
+
+  ~Lane() {
+    if (!writer_.joinable()) return;
+    given_up_ = true;
+    queue_.push(nullptr);
+    writer_.join();
+  }
+
+  Sink::Wants begin(const RecordingHeader& header, Slow slow) {
+    wants_ = sink_->begin(header);
+    if (slow == Slow::passed_over && !wants_.pictures) queue_.set_capacity(kWaitingLive);
+    writer_ = std::thread([this] { write_all(); });
+    return wants_;
+  }
+
+  const Sink::Wants& wants() const { return wants_; }
+  const std::string& name() const { return name_; }
+  bool failed() const { return failed_; }
+  /// Called where the run ends because it failed.
+  void end_run() { ended_run_ = true; }
+  bool ended_run() const { return ended_run_; }
+  void give(const std::shared_ptr<const Instant>& instant) { queue_.push(instant); }
+  /// Only where there is room.
+  void offer(const std::shared_ptr<const Instant>& instant) { passed_over_ += failed_ || queue_.try_push(instant) ? 0 : 1; }
+
+  /// Nothing where there is none.
+  std::string trouble() const {
+    if (failed_) return message_of_failure();
+    return passed_over_ > 0 ? fmt::format("{}: too slow for {} instants, which it does not have", name_, passed_over_) : "";
+  }
+
+  /// Waits until all that was given is written.
+  void drain() {
+    queue_.push(nullptr);
+    writer_.join();
+    if (!failed_) commit();
+  }
+
+  /// Throws what the sink threw.
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void write_all() {
+    for (;;) {
+      std::shared_ptr<const Instant> instant;
+      queue_.pop(instant);
+      if (instant == nullptr) return;
+      if (!failed_ && !given_up_) attempt([&] { sink_->write(*instant); });
+    }
+  }
+
+  void commit() {
+    attempt([&] { sink_->finish(); });
+  }
+
+  std::string message_of_failure() const {
+    try {
+      std::rethrow_exception(failure_);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  }
+
+  /// A sink that fails is closed at once: nothing half-written stays.
+  template <typename Do>
+  void attempt(const Do& what) {
+    try {
+      what();
+    } catch (...) {
+      failure_ = std::current_exception();
+      failed_ = true;
+      sink_.reset();
+    }
+  }
+
+  std::unique_ptr<Sink> sink_;
+  std::string name_;
+  Sink::Wants wants_;
+  tbb::concurrent_bounded_queue<std::shared_ptr<const Instant>> queue_;  // null: the end
+  std::atomic<bool> failed_ = false, given_up_ = false;
+  std::exception_ptr failure_;  // before failed_
+  bool ended_run_ = false;
+  std::int64_t passed_over_ = 0;
+  std::thread writer_;
+};
+
+Sinks::Sinks(Slow slow) : slow_(slow) {}
+Sinks::~Sinks() = default;
+Sinks::Sinks(Sinks&&) noexcept = default;
+Sinks& Sinks::operator=(Sinks&&) noexcept = default;
+
+void Sinks::add(std::unique_ptr<Sink> sink) {
+  lanes_.push_back(std::make_unique<Lane>(std::move(sink)));
+}
+
+void Sinks::begin(const RecordingHeader& header) {
+  for (const auto& lane : lanes_) lane->begin(header, slow_);
+}
+
+bool Sinks::want_pictures() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().pictures && !lane->failed(); });
+}
+
+bool Sinks::want_boxes() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().boxes && !lane->failed(); });
+}
+
+bool Sinks::write(Instant instant) {
+  const auto shared = std::make_shared<const Instant>(std::move(instant));
+  bool all = true;
+  for (const auto& lane : lanes_) {
+    if (slow_ == Slow::passed_over) {
+      lane->offer(shared);
+    } else {
+      lane->give(shared);
+      if (!lane->failed()) continue;
+      lane->end_run();
+      all = false;
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> Sinks::troubles() const {
+  std::vector<std::string> all;
+  for (const auto& lane : lanes_) {
+    if (std::string trouble = lane->trouble(); slow_ == Slow::passed_over && !trouble.empty()) all.push_back(std::move(trouble));
+  }
+  return all;
+}
+
+bool Sinks::failed() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->failed(); });
+}
+
+std::vector<std::string> Sinks::drop_pictures() {
+  std::vector<std::string> names;
+  std::erase_if(lanes_, [&](const auto& lane) {
+    const bool dropped = lane->wants().pictures && !lane->failed();
+    if (dropped) names.push_back(lane->name());
+    return dropped;
+  });
+  return names;
+}
+
+void Sinks::finish() {
+  for (const auto& lane : lanes_) lane->drain();
+  if (slow_ == Slow::passed_over) return;
+  std::vector<std::string> whole;
+  for (const auto& lane : lanes_) {
+    if (!lane->failed()) whole.push_back(lane->name());
+  }
+  const auto add_what_is_whole = [&](const auto& lane) {
+    if (!lane->ended_run() || whole.empty()) throw;
+    throw Error("{}; the run ended there, and what was known until then is in {}", lane->trouble(), fmt::join(whole, ", "));
+  };
+  for (const auto& lane : lanes_) {
+    try {
+      lane->rethrow();
+    } catch (const Error&) {  // what a program's own sink throws reaches it as it is
+      add_what_is_whole(lane);
+    } catch (const cv::Exception&) {  // memory that OpenCV did not get
+      add_what_is_whole(lane);
+    }
+  }
+}
+
+}  // namespace marey::pipeline::corridor

@@ -1,0 +1,69 @@
+#include "marey/pipeline/keypoints/keypoint_cameras.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/format/keypoints/keypoint_file.h"
+
+namespace marey::pipeline::keypoints {
+namespace {
+
+void read_camera(RigCamera& camera, const std::string& set, std::optional<double> rate_hz, std::optional<KeypointCamera>& into,
+                 std::vector<std::string>& warnings, bool& assumed) {
+  const std::string path = keypoint_file_of(camera);
+  if (path.empty() || !camera.camera()) return;
+  if (!format::keypoints::may_hold_keypoints(path))
+    throw Error("{}: camera \"{}\" needs keypoints: a folder of OpenPose, or a .json or .csv file of them", path, camera.name);
+  KeypointCamera read{
+      .sequence = format::keypoints::read_keypoints(path, set), .rate_hz = 0, .offset_s = camera.offset_s.value_or(0)};
+  if (read.sequence.size) fit_to_size(camera, *read.sequence.size);
+  const auto rate = camera.rate_hz ? camera.rate_hz : rate_hz ? rate_hz : read.sequence.rate_hz;
+  assumed |= !rate;
+  read.rate_hz = rate.value_or(kUsualRate);
+  if (read.sequence.frames.empty()) warnings.push_back(fmt::format("{}: nobody is in any frame", path));
+  into = std::move(read);
+}
+
+/// Throws Error where they cannot be of one recording; warns where frames are missing.
+void check_together(const std::vector<const KeypointSequence*>& read, std::vector<std::string>& warnings) {
+  if (read.size() < 2)
+    throw Error("{} with keypoints; two are needed: CAMERA=FOLDER for each",
+                read.empty() ? "no calibrated camera" : "only one calibrated camera");
+  for (const KeypointSequence* one : read) {
+    if (one->set.points != read[0]->set.points)
+      throw Error("{}: has the keypoint set {}, and {} has {}; all cameras must have one set", one->from, one->set.name,
+                  read[0]->from, read[0]->set.name);
+  }
+  const auto [least, most] = std::minmax_element(read.begin(), read.end(),
+                                                 [](const auto* a, const auto* b) { return a->frames.size() < b->frames.size(); });
+  if ((*least)->frames.size() < (*most)->frames.size())
+    warnings.push_back(fmt::format("{}: has {} frames, and {} has {}; where one camera has none the others go on without it",
+                                   (*least)->from, (*least)->frames.size(), (*most)->from, (*most)->frames.size()));
+}
+
+}  // namespace
+
+std::string keypoint_file_of(const RigCamera& camera) {
+  return camera.detections.empty() ? camera.source : camera.detections;
+}
+
+std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const std::string& set, std::optional<double> rate_hz,
+                                                                 std::vector<std::string>& warnings) {
+  std::vector<std::optional<KeypointCamera>> cameras(rig.cameras.size());
+  bool assumed = false;
+  std::vector<const KeypointSequence*> read;
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    read_camera(rig.cameras[c], set, rate_hz, cameras[c], warnings, assumed);
+    if (cameras[c] && !cameras[c]->sequence.frames.empty()) read.push_back(&cameras[c]->sequence);
+  }
+  check_together(read, warnings);
+  if (assumed)
+    warnings.push_back(fmt::format(
+        "neither the rig nor the keypoints say how many frames there are in a second: {:g} are assumed; give --rate", kUsualRate));
+  return cameras;
+}
+
+}  // namespace marey::pipeline::keypoints

@@ -1,0 +1,118 @@
+#include "marey/pipeline/keypoints/keypoint_stage.h"
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "marey/core/error.h"
+#include "marey/detect/keypoints/blazepose.h"
+
+namespace marey::pipeline::keypoints {
+namespace {
+
+/// The instants that waited for the cameras' end, with keypoints out of the pictures, which are read once more.
+class LookedAt final : public corridor::InstantSource {
+ public:
+  LookedAt(std::unique_ptr<corridor::InstantSource> waited, BodyKeypoints& keypoints,
+           const std::function<corridor::Feed()>& open_again, std::int64_t count, const Hooks& hooks)
+      : waited_(std::move(waited)), keypoints_(keypoints), count_(count), hooks_(hooks) {
+    if (open_again) feed_.emplace(open_again());
+  }
+
+  std::optional<Instant> next() override {
+    while (!ended_) {
+      if (auto known = keypoints_.next()) return known;
+      auto instant = waited_->next();
+      ended_ = !instant || hooks_.report({"keypoints", ++done_, count_}) == Continue::no;
+      if (!ended_) {
+        Picture picture = picture_of(*instant);
+        keypoints_.add(std::move(*instant), picture);
+      }
+    }
+    return keypoints_.next(true);
+  }
+
+ private:
+  Picture picture_of(const Instant& instant) {
+    if (!instant.frames.empty()) return instant.frames.front().picture;
+    if (!feed_) return {};
+    while (!now_ || now_->frame.index < instant.index) {
+      now_ = feed_->next();
+      if (!now_) return {};
+    }
+    return now_->frame.index == instant.index ? now_->frame.picture : Picture();
+  }
+
+  std::unique_ptr<corridor::InstantSource> waited_;
+  BodyKeypoints& keypoints_;
+  std::optional<corridor::Feed> feed_;
+  std::optional<CameraFrame> now_;
+  std::int64_t count_, done_ = 0;
+  const Hooks& hooks_;
+  bool ended_ = false;
+};
+
+class KeypointStage final : public corridor::Stage {
+ public:
+  KeypointStage(std::unique_ptr<corridor::Stage> stage, const corridor::Feed& feed, const KeypointOptions& options, bool live)
+      : stage_(std::move(stage)), keypoints_(options, live) {
+    if (!live) open_again_ = feed.opener();
+  }
+
+  RecordingHeader header() const override {
+    RecordingHeader header = stage_->header();
+    header.keypoints = detect::keypoints::blazepose();
+    return header;
+  }
+  void want_boxes() override { stage_->want_boxes(); }
+  std::vector<std::string> news() override { return stage_->news(); }
+
+  std::span<const Instant> step(const FrameSet& frames) override {
+    ++frames_;
+    due_.clear();
+    for (const Instant& known : stage_->step(frames)) {
+      Picture picture;
+      if (!known.frames.empty()) {
+        picture = known.frames.front().picture;
+      } else if (frames.cameras.front() && known.index == frames.index) {
+        picture = frames.cameras.front()->frame.picture;
+      }
+      keypoints_.add(known, picture);
+      while (auto due = keypoints_.next()) due_.push_back(std::move(*due));
+    }
+    return due_;
+  }
+
+  std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override {
+    auto waited = stage_->finish(hooks);
+    if (waited == nullptr) return nullptr;
+    return std::make_unique<LookedAt>(std::move(waited), keypoints_, open_again_, frames_, hooks);
+  }
+
+  void report(corridor::Summary& summary) const override {
+    stage_->report(summary);
+    summary.left_out["nobody"] = keypoints_.left_out();
+    summary.steps.push_back(
+        {"keypoints", keypoints_.times().count(), keypoints_.times().quantile(0.5), keypoints_.times().quantile(0.99)});
+  }
+
+ private:
+  std::unique_ptr<corridor::Stage> stage_;
+  BodyKeypoints keypoints_;
+  std::function<corridor::Feed()> open_again_;
+  std::vector<Instant> due_;
+  std::int64_t frames_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<corridor::Stage> with_keypoints(std::unique_ptr<corridor::Stage> stage, const corridor::Feed& feed,
+                                                const KeypointOptions& options, bool live) {
+  if (!feed.has_pictures()) throw Error("{}: keypoints are looked for in pictures, and it brings none", feed.info().name);
+  if (!live && !feed.can_rewind())
+    throw Error("{}: keypoints are looked for where people were tracked, so it is read twice, and that cannot be: use --live",
+                feed.info().name);
+  return std::make_unique<KeypointStage>(std::move(stage), feed, options, live);
+}
+
+}  // namespace marey::pipeline::keypoints

@@ -1,0 +1,222 @@
+#include "marey/pipeline/live/live.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "marey/core/error.h"
+#include "marey/core/source_name.h"
+#include "marey/pipeline/corridor/preview.h"
+#include "marey/pipeline/live/camera_films.h"
+#include "marey/pipeline/live/live_feeds.h"
+#include "marey/pipeline/markers/named_in_take.h"
+
+namespace marey::pipeline::live {
+namespace {
+
+/// A job's stage, watched.
+class Watched final : public corridor::Stage {
+ public:
+  Watched(std::unique_ptr<corridor::Stage> stage, corridor::LiveMonitor& monitor, source::LiveTime& time)
+      : stage_(std::move(stage)), monitor_(monitor), time_(time) {}
+
+  RecordingHeader header() const override {
+    RecordingHeader header = stage_->header();
+    header.made_by.program = "marey live";
+    return header;
+  }
+  void want_boxes() override { stage_->want_boxes(); }
+  std::span<const Instant> step(const FrameSet& frames) override {
+    const Timestamp given = time_.now();
+    const std::span<const Instant> known = stage_->step(frames);
+    monitor_.heard(stage_->news());
+    monitor_.saw(frames, known, given, time_.now());
+    return known;
+  }
+  std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override { return stage_->finish(hooks); }
+  void report(corridor::Summary& summary) const override { stage_->report(summary); }
+
+ private:
+  std::unique_ptr<corridor::Stage> stage_;
+  corridor::LiveMonitor& monitor_;
+  source::LiveTime& time_;
+};
+
+Rig rig_as_fed(const Rig& rig, const std::vector<corridor::Feed>& feeds) {
+  Rig fed = rig;
+  for (std::size_t i = 0; i < feeds.size(); ++i) fed.cameras[i] = feeds[i].camera();
+  return fed;
+}
+
+bool feeds_find(LiveJob job, LiveTargets targets) {
+  return job == LiveJob::markers_in_space || (job == LiveJob::preview && targets == LiveTargets::markers);
+}
+
+void look_for_markers(std::vector<corridor::Feed>& feeds, LiveJob job, LiveOptions& options) {
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    if (options.targets == LiveTargets::markers) feeds[i].tune(options.desk->tuning(i));
+    if (feeds_find(job, options.targets))
+      feeds[i].find(std::make_unique<corridor::TunedMarkers>(options.space.markers, options.desk->tuning(i)));
+  }
+  options.markers.tuning = options.desk->tuning(0);
+}
+
+std::unique_ptr<corridor::Stage> stage_of(LiveJob job, const std::vector<corridor::Feed>& feeds, const Rig& rig, double rate_hz,
+                                          LiveOptions& options) {
+  switch (job) {
+    case LiveJob::markers_in_space:
+      options.space.live = true;
+      options.space.waits_for_names = false;
+      options.space.naming = options.naming;
+      return markers::markers_in_space(rig, rate_hz, options.space);
+    case LiveJob::markers_in_picture:
+      options.markers.live = true;
+      return markers::with_naming(markers::markers_in_picture(feeds.front(), options.markers), options.naming);
+    case LiveJob::people_in_picture:
+      options.people.live = true;
+      return markers::with_naming(people::people_in_picture(feeds.front(), options.people), options.naming);
+    case LiveJob::people_on_ground:
+      options.on_ground.live = true;
+      return markers::with_naming(people::people_on_ground(feeds, rig, options.on_ground), options.naming);
+    case LiveJob::preview:
+      break;
+  }
+  const detect::DetectorOptions people = options.people.detector, markers = options.space.markers;
+  return corridor::preview(feeds, rig, rate_hz, options.targets == LiveTargets::people ? people : markers);
+}
+
+corridor::Sinks sinks_of(LiveOptions& options) {
+  corridor::Sinks sinks(corridor::Sinks::Slow::passed_over);
+  if (!options.take.empty()) sinks.add(std::make_unique<corridor::Recorder>(options.take, options.recording, options.preroll_s));
+  if (!options.pictures.empty()) sinks.add(std::make_unique<CameraFilms>(options.pictures, options.recording));
+  for (std::unique_ptr<Sink>& sink : options.sinks) sinks.add(std::move(sink));
+  return sinks;
+}
+
+/// Why there is nothing, by what the cameras say.
+std::string nothing_came(const corridor::LiveStatus& status) {
+  std::string why = "no camera gave a frame";
+  for (const corridor::LiveStatus::Camera& camera : status.cameras) {
+    if (!camera.trouble.empty()) why += fmt::format("\n  camera \"{}\": {}", camera.name, camera.trouble);
+  }
+  return why;
+}
+
+/// What a user would not like to find out later: that much of what cameras saw was never looked at.
+void warn_of_losses(LiveSummary& summary) {
+  constexpr double kMuch = 0.2;
+  for (const corridor::LiveStatus::Camera& camera : summary.last.cameras) {
+    const std::int64_t gone = camera.lost + camera.damaged + camera.overrun, all = camera.frames + camera.lost + camera.damaged;
+    if (static_cast<double>(gone) <= kMuch * static_cast<double>(all)) continue;
+    summary.warnings.push_back(fmt::format(
+        "camera \"{}\" lost {:.0f} % of its frames, or there was no time for them; try a smaller picture, a lower rate or "
+        "fewer cameras",
+        camera.name, 100.0 * static_cast<double>(gone) / static_cast<double>(all)));
+  }
+  const std::int64_t gone = summary.last.drops.overtaken + summary.last.drops.incomplete, all = summary.last.instants + gone;
+  if (static_cast<double>(gone) > kMuch * static_cast<double>(all))
+    summary.warnings.push_back(
+        fmt::format("{:.0f} % of the moments were let go: cameras are faster than what looks at their pictures",
+                    100.0 * static_cast<double>(gone) / static_cast<double>(all)));
+}
+
+void report_cameras_live(LiveSummary& summary, const corridor::Clock& clock, const corridor::LiveMonitor& monitor) {
+  summary.last = monitor.status();
+  if (summary.cameras.empty()) {
+    for (std::size_t i = 0; i < clock.feeds().size(); ++i)
+      summary.cameras.push_back({.name = clock.feeds()[i].camera().name, .frames = clock.frames(i), .missed = clock.missed(i)});
+  }
+  const auto step = [](const char* name, const StageTimes& times) {
+    return corridor::Summary::StepTime{name, times.count(), times.quantile(0.5), times.quantile(0.99)};
+  };
+  if (clock.detecting().count() > 0 && clock.detecting().quantile(0.99) > 0)
+    summary.steps.insert(summary.steps.begin(), step("detect", clock.detecting()));
+  for (corridor::Summary::StepTime& each : monitor.steps()) summary.steps.push_back(std::move(each));
+}
+
+/// The names in the take that all cameras are played from; empty where they are not.
+MarkerSet names_of_played(const Rig& rig) {
+  const std::string path = path_of_source(rig.cameras.front().source);
+  for (const RigCamera& camera : rig.cameras) {
+    if (scheme_of(camera.source) != "play" || path_of_source(camera.source) != path) return {};
+  }
+  return markers::named_in_take(path);
+}
+
+}  // namespace
+
+std::string_view to_string(LiveJob job) {
+  switch (job) {
+    case LiveJob::markers_in_picture:
+      return "markers in a picture";
+    case LiveJob::markers_in_space:
+      return "markers in space";
+    case LiveJob::people_in_picture:
+      return "people in a picture";
+    case LiveJob::people_on_ground:
+      return "people on the ground";
+    case LiveJob::preview:
+      break;
+  }
+  return "a preview";
+}
+
+LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground) {
+  if (ground) return LiveJob::people_on_ground;
+  if (rig.cameras.size() == 1) return targets == LiveTargets::people ? LiveJob::people_in_picture : LiveJob::markers_in_picture;
+  const auto calibrated =
+      std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
+  return targets == LiveTargets::markers && calibrated >= 2 ? LiveJob::markers_in_space : LiveJob::preview;
+}
+
+LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
+  if (options.policy.time == nullptr) options.policy.time = source::steady_time();
+  if (options.recording == nullptr) options.recording = std::make_shared<corridor::RecordSwitch>(true);
+  const StopScope scope(hooks.stop);
+  if (options.desk == nullptr) options.desk = std::make_shared<CameraDesk>(rig, options.space.markers.threshold);
+  std::vector<corridor::Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s, options.desk.get());
+  const Rig fed = rig_as_fed(rig, feeds);
+  LiveSummary summary;
+  summary.job = live_job(fed, options.targets, options.ground);
+  if (options.space.set.labels.empty() && options.space.learned_set == nullptr) options.space.set = names_of_played(fed);
+  if (options.space.skeleton != nullptr && summary.job != LiveJob::markers_in_space)
+    throw Error("a skeleton is solved from markers in space, of two calibrated cameras or more; these cameras give {}",
+                to_string(summary.job));
+  if (options.space.learned_set != nullptr && summary.job != LiveJob::markers_in_space)
+    throw Error("a set names markers in space, of two calibrated cameras or more; these cameras give {}", to_string(summary.job));
+  look_for_markers(feeds, summary.job, options);
+  corridor::LiveMonitor monitor(options.policy.time, options.status);
+  monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });
+  bool begun = false;
+  corridor::ClockOptions how{.live = options.policy, .waiting = [&] {
+                               begun = true;
+                               monitor.tick();
+                             }};
+  const std::vector<corridor::Feed>& watched = feeds;
+  double rate_hz = 0;
+  for (const corridor::Feed& feed : watched) rate_hz = std::max(rate_hz, feed.info().rate_hz.value_or(0));
+  if (rate_hz <= 0) rate_hz = kUsualRate;
+  auto stage = stage_of(summary.job, feeds, fed, rate_hz, options);
+  corridor::Clock clock(std::move(feeds), how);
+  corridor::Sinks sinks = sinks_of(options);
+  monitor.watch(clock, sinks);
+  if (options.begun) options.begun(summary.job, fed);
+  Watched stages(std::move(stage), monitor, *options.policy.time);
+  Hooks own = hooks;
+  own.stop = {};  // the clock ends by itself when it is asked to: that is how a live run ends
+  try {
+    static_cast<corridor::Summary&>(summary) = corridor::run(stages, clock, sinks, own);
+  } catch (const Error&) {
+    if (begun && monitor.status().instants == 0) throw Error("{}", nothing_came(monitor.status()));
+    throw;
+  }
+  std::error_code ignored;
+  summary.recorded = !options.take.empty() && std::filesystem::exists(options.take, ignored);
+  report_cameras_live(summary, clock, monitor);
+  warn_of_losses(summary);
+  return summary;
+}
+
+}  // namespace marey::pipeline::live

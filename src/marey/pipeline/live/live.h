@@ -1,0 +1,65 @@
+// The jobs of a rig whose cameras are live: the same stages as for files, with the policy that the newest whole moment wins.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marey/core/rig.h"
+#include "marey/pipeline/corridor/live_monitor.h"
+#include "marey/pipeline/corridor/recorder.h"
+#include "marey/pipeline/live/camera_desk.h"
+#include "marey/pipeline/markers/markers_in_picture.h"
+#include "marey/pipeline/markers/markers_in_space.h"
+#include "marey/pipeline/markers/track_naming.h"
+#include "marey/pipeline/people/people_in_picture.h"
+#include "marey/pipeline/people/people_on_ground.h"
+
+namespace marey::pipeline::live {
+
+enum class LiveTargets { markers, people };
+
+/// What runs, by what is asked for and what is known of the rig.
+enum class LiveJob { preview, markers_in_picture, markers_in_space, people_in_picture, people_on_ground };
+
+/// "a preview", "markers in space", …
+std::string_view to_string(LiveJob job);
+
+struct LiveOptions {
+  LiveTargets targets = LiveTargets::markers;
+  bool ground = false;  ///< people are placed on the ground that the cameras look at
+  markers::MarkersInSpaceOptions space;
+  markers::MarkersInPictureOptions markers;
+  people::PeopleInPictureOptions people;
+  people::PeopleOnGroundOptions on_ground;
+  source::LivePolicy policy = {.time = nullptr, .late_s = 0.05, .stalled_s = 0.5, .lost_s = 5};  ///< without a time: the steady one
+  std::shared_ptr<CameraDesk> desk = {};  ///< what of the cameras is changed while they run; null: they are as the rig says
+  std::shared_ptr<markers::TrackNaming> naming = {};  ///< names that tracks are given by hand; null: none
+  double patience_s = 3;                              ///< that is waited at the beginning for cameras that are not there
+
+  std::string take;                                   ///< what is recorded into, NAME.marey; empty: nothing
+  std::string pictures;                               ///< a folder for what each camera saw while it was recorded; empty: not kept
+  std::shared_ptr<corridor::RecordSwitch> recording;  ///< null: all is recorded
+  double preroll_s = 5;                               ///< of what came before recording was switched on
+
+  std::vector<std::unique_ptr<Sink>> sinks;                      ///< wires, viewers and callbacks besides
+  std::function<void(const corridor::LiveStatus&)> status = {};  ///< four times a second, from the run's thread
+  std::function<void(LiveJob, const Rig&)> begun = {};           ///< the rig as its cameras are, once they are there
+};
+
+struct LiveSummary : corridor::Summary {
+  LiveJob job = LiveJob::preview;
+  corridor::LiveStatus last;  ///< when it ended
+  bool recorded = false;
+};
+
+/// One camera: in its picture. Several: markers in space where two or more are calibrated, people where `ground` asks for it, else
+/// a preview.
+LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground);
+
+/// Runs until `hooks.stop` says so, or all that is played has ended; what was recorded is whole then. Throws Error where a source
+/// cannot be meant, a camera's pictures do not fit the rig, no camera gave anything, or the take cannot be begun.
+LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks = {});
+
+}  // namespace marey::pipeline::live

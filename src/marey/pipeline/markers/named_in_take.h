@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "marey/core/marker_set.h"
+
+namespace marey::pipeline::markers {
+
+/// The names that a take gave its markers, and how they lay at the moment of its first second that has most of them: for who solves
+/// it again, or plays it as its cameras. Empty where the file is no take, or has no names.
+MarkerSet named_in_take(const std::string& path);
+
+}  // namespace marey::pipeline::markers

@@ -1,0 +1,71 @@
+#include "marey/pipeline/markers/set_stage.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace marey::pipeline::markers {
+namespace {
+
+/// What waited for the cameras' end, named as it comes.
+class NamedInstants final : public corridor::InstantSource {
+ public:
+  NamedInstants(std::unique_ptr<corridor::InstantSource> waited, SetInSpace& named) : waited_(std::move(waited)), named_(named) {}
+  std::optional<Instant> next() override {
+    auto instant = waited_->next();
+    if (instant) named_.add_to(*instant);
+    return instant;
+  }
+
+ private:
+  std::unique_ptr<corridor::InstantSource> waited_;
+  SetInSpace& named_;
+};
+
+class SetStage final : public corridor::Stage {
+ public:
+  SetStage(std::unique_ptr<corridor::Stage> stage, std::shared_ptr<const LearnedMarkers> set, const SetInSpaceOptions& options)
+      : stage_(std::move(stage)), named_(std::move(set), stage_->header().rate_hz, options) {}
+
+  RecordingHeader header() const override { return stage_->header(); }
+  void want_boxes() override { stage_->want_boxes(); }
+  std::span<const Instant> step(const FrameSet& frames) override {
+    const std::span<const Instant> known = stage_->step(frames);
+    instants_.assign(known.begin(), known.end());
+    for (Instant& instant : instants_) named_.add_to(instant);
+    return instants_;
+  }
+  std::vector<std::string> news() override {
+    std::vector<std::string> all = stage_->news();
+    for (std::string& sentence : named_.news()) all.push_back(std::move(sentence));
+    return all;
+  }
+  std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override {
+    auto waited = stage_->finish(hooks);
+    if (waited == nullptr) return nullptr;
+    return std::make_unique<NamedInstants>(std::move(waited), named_);
+  }
+  void report(corridor::Summary& summary) const override {
+    stage_->report(summary);
+    summary.steps.push_back({"names", named_.times().count(), named_.times().quantile(0.5), named_.times().quantile(0.99)});
+    summary.figures["set_points"] = static_cast<double>(named_.points());
+    summary.figures["set_named"] = static_cast<double>(named_.named());
+    summary.figures["set_searched_s"] = named_.searched_s();
+    if (const auto found = named_.found_at_s()) summary.figures["set_found_at_s"] = *found;
+    for (std::string& warning : named_.warnings()) summary.warnings.push_back(std::move(warning));
+  }
+
+ private:
+  std::unique_ptr<corridor::Stage> stage_;
+  SetInSpace named_;
+  std::vector<Instant> instants_;
+};
+
+}  // namespace
+
+std::unique_ptr<corridor::Stage> with_set(std::unique_ptr<corridor::Stage> stage, std::shared_ptr<const LearnedMarkers> set,
+                                          const SetInSpaceOptions& options) {
+  return std::make_unique<SetStage>(std::move(stage), std::move(set), options);
+}
+
+}  // namespace marey::pipeline::markers

@@ -1,0 +1,33 @@
+// The ball's way over a whole recording, after everybody's is known.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "marey/core/ground_views.h"
+#include "marey/core/recording.h"
+#include "marey/detect/ball/ball_detector.h"
+#include "marey/pipeline/corridor/run.h"
+#include "marey/reconstruct/ground_area.h"
+#include "marey/track/ball/ball_moment.h"
+#include "marey/track/ball/ball_way.h"
+
+namespace marey::pipeline::people {
+
+struct BallOptions {
+  detect::ball::BallDetectorOptions detector;
+  track::ball::BallWayOptions way;
+};
+
+/// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant a moment), and puts
+/// it into the recording, as a track of three dimensions that is called "ball". Returns its id; nothing where it was never found.
+std::optional<TrackId> follow_ball(std::vector<track::ball::BallMoment> moments, const std::shared_ptr<const GroundViews>& views,
+                                   const reconstruct::GroundArea& area, const BallOptions& options, const Hooks& hooks,
+                                   Recording& recording);
+
+/// The box of a ball in a camera's picture, px: its centre is over `place` (m, world), `height` m above the ground. Nothing outside
+/// the picture, or for a camera that is not known.
+std::optional<Box> ball_box(const GroundView& view, const Vector<2>& place, double height);
+
+}  // namespace marey::pipeline::people

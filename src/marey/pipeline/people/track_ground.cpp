@@ -1,0 +1,172 @@
+#include "marey/pipeline/people/track_ground.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "marey/core/error.h"
+#include "marey/core/rig_sources.h"
+#include "marey/draw/overlay_film.h"
+#include "marey/draw/pitch_view_film.h"
+#include "marey/format/match/ground_file.h"
+#include "marey/format/take/take_file.h"
+#include "marey/format/tracks/view_box_file.h"
+#include "marey/pipeline/corridor/steady_camera.h"
+#include "marey/pipeline/people/ground_again.h"
+#include "marey/pipeline/people/ground_offsets.h"
+
+namespace marey::pipeline::people {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options) {
+  if (options.rate_hz && !(*options.rate_hz > 0))
+    throw Error("the rate is {} frames a second; it must be positive", *options.rate_hz);
+  if (!(options.margin >= 0)) throw Error("the margin is {} m; it must not be negative", options.margin);
+  const auto has_pictures = [](const RigCamera& camera) { return !camera.source.empty(); };
+  if (!output.overlays.empty() && std::none_of(rig.cameras.begin(), rig.cameras.end(), has_pictures))
+    throw Error("{}: no camera has pictures to draw into; ask for a pitch view instead", output.overlays);
+}
+
+CameraId id_of(const Rig& rig, const std::string& name) {
+  Rig copy = rig;
+  return CameraId{static_cast<int>(&camera_named(copy, name) - copy.cameras.data())};
+}
+
+std::string overlay_of(const GroundOutput& output, const RigCamera& camera) {
+  return (fs::path(output.overlays) / (camera.name + ".mp4")).string();
+}
+
+void add_films(corridor::Sinks& sinks, const GroundOutput& output, const std::vector<corridor::Feed>& feeds) {
+  fs::create_directories(output.overlays);
+  for (const corridor::Feed& feed : feeds) {
+    if (!feed.has_pictures()) continue;
+    const RigCamera& camera = feed.camera();
+    const draw::OverlayFilm::View view{.camera = feed.id(),
+                                       .size = feed.info().size,
+                                       .rate_hz = feed.info().rate_hz,
+                                       .sound_of = feed.sound_source(),
+                                       .offset = duration_from_seconds(camera.offset_s.value_or(0))};
+    sinks.add(
+        std::make_unique<draw::OverlayFilm>(overlay_of(output, camera), view, draw::OverlayOptions{.trail_of_centres = true}));
+  }
+}
+
+corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options,
+                         const std::vector<corridor::Feed>& feeds) {
+  corridor::Sinks sinks;
+  if (output.tracks.empty()) {
+    // the caller's alone
+  } else if (output.tracks.ends_with(".marey")) {
+    sinks.add(std::make_unique<format::take::TakeWriter>(output.tracks));
+  } else if (output.boxes_of.empty()) {
+    sinks.add(std::make_unique<format::match::GroundWriter>(output.tracks));
+  } else {
+    sinks.add(std::make_unique<format::tracks::ViewBoxFile>(output.tracks, id_of(rig, output.boxes_of)));
+  }
+  if (!output.overlays.empty()) add_films(sinks, output, feeds);
+  if (!output.pitch_view.empty()) {
+    const reconstruct::GroundArea area = area_of(rig, options);
+    const draw::ShownGround shown{area.pitch(), area.margin(), area.mirrored()};
+    sinks.add(std::make_unique<draw::PitchViewFilm>(output.pitch_view, shown, feeds.front().info().rate_hz));
+  }
+  return sinks;
+}
+
+/// The rig's cameras, those that stand steadied; cameras that bring detections have no pictures to steady.
+std::vector<corridor::Feed> open_steadied(const Rig& rig, const PeopleOnGroundOptions& options,
+                                          std::vector<corridor::SteadyCamera>& steady) {
+  std::vector<std::optional<corridor::SteadyCamera>> found(rig.cameras.size());
+  std::vector<std::optional<corridor::Feed>> opened(rig.cameras.size());
+  tbb::parallel_for(std::size_t{0}, opened.size(), [&](std::size_t i) {
+    const RigCamera& camera = rig.cameras[i];
+    const CameraId id{static_cast<int>(i)};
+    corridor::FeedOptions how{.rate_hz = options.rate_hz};
+    if (!camera.source.empty() && turning_of(options.turning, id) == nullptr) {
+      found[i].emplace(camera, how, options.live);
+      how = found[i]->feed_options();
+    }
+    opened[i].emplace(camera, id, how);
+  });
+  std::vector<corridor::Feed> feeds;
+  for (auto& feed : opened) feeds.push_back(std::move(*feed));
+  for (auto& camera : found) {
+    if (camera) steady.push_back(std::move(*camera));
+  }
+  return feeds;
+}
+
+/// Sinks of files need the feeds, to know what to draw into.
+using SinksFor = std::function<corridor::Sinks(const Rig& rig, const std::vector<corridor::Feed>& feeds)>;
+
+GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  std::vector<corridor::SteadyCamera> steady;
+  std::vector<corridor::Feed> feeds =
+      options.steady ? open_steadied(rig, options, steady) : corridor::open_feeds(rig, {.rate_hz = options.rate_hz});
+  corridor::Sinks sinks = sinks_for(rig, feeds);
+  const bool pictures = std::any_of(feeds.begin(), feeds.end(), [](const corridor::Feed& feed) { return feed.has_pictures(); });
+  PeopleOnGroundOptions own = options;
+  own.steady =
+      options.steady && std::all_of(steady.begin(), steady.end(), [](const corridor::SteadyCamera& one) { return one.steadies(); });
+  const auto stage = people_on_ground_again(feeds, rig, own);
+  corridor::Clock clock(std::move(feeds));
+  GroundSummary summary{corridor::run(*stage, clock, sinks, hooks), stage->teams()};
+  for (const corridor::SteadyCamera& camera : steady) camera.report(summary);
+  if (!options.teams.names.empty() && !pictures)
+    summary.warnings.push_back("teams are told by their clothes, and there are no pictures: nobody has a team");
+  return summary;
+}
+
+GroundSummary track_timed(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  if (!lacks_offsets(rig)) return run_over(rig, sinks_for, options, hooks);
+  Rig timed = rig;
+  RigOffsets offsets;
+  if (options.live) {
+    offsets.warnings.push_back(
+        "when cameras were started is not known, and live it cannot be looked for: 0 is taken; give each camera's offset_s in the "
+        "rig");
+  } else {
+    RigOffsetsOptions how;
+    how.detector = options.detector;
+    how.rate_hz = options.rate_hz;
+    offsets = find_rig_offsets(rig, area_of(rig, options), how, hooks);
+    enter_offsets(timed, offsets);
+  }
+  GroundSummary summary = run_over(timed, sinks_for, options, hooks);
+  summary.notes.insert(summary.notes.begin(), offsets.notes.begin(), offsets.notes.end());
+  summary.warnings.insert(summary.warnings.begin(), offsets.warnings.begin(), offsets.warnings.end());
+  return summary;
+}
+
+}  // namespace
+
+GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  return track_ground(rig, output, {}, options, hooks);
+}
+
+GroundSummary track_ground(const Rig& rig, const GroundOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
+                           const PeopleOnGroundOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  check(rig, output, options);
+  const auto sinks_for = [&](const Rig& timed, const std::vector<corridor::Feed>& feeds) {
+    corridor::Sinks sinks = sinks_of(timed, output, options, feeds);
+    for (std::unique_ptr<Sink>& sink : own_sinks) sinks.add(std::move(sink));
+    return sinks;
+  };
+  return track_timed(rig, sinks_for, options, hooks);
+}
+
+std::vector<std::string> overlays_of(const Rig& rig, const GroundOutput& output) {
+  std::vector<std::string> files;
+  if (output.overlays.empty()) return files;
+  for (const RigCamera& camera : rig.cameras) files.push_back(overlay_of(output, camera));
+  return files;
+}
+
+}  // namespace marey::pipeline::people

@@ -1,0 +1,120 @@
+#include "marey/pipeline/people/track_in_picture.h"
+
+#include <fstream>
+#include <set>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "marey/core/error.h"
+#include "marey/draw/mask_folder.h"
+#include "marey/draw/overlay_film.h"
+#include "marey/draw/plot_file.h"
+#include "marey/format/recording_file.h"
+#include "marey/pipeline/corridor/steady_camera.h"
+#include "marey/source/open_source.h"
+
+namespace marey::pipeline::people {
+namespace {
+
+corridor::Feed open(const ImageFeed& given, const corridor::FeedOptions& options) {
+  const RigCamera& camera = given.camera;
+  if (camera.source.empty() == camera.detections.empty()) throw Error("{}", "give either pictures or detections to track");
+  if (camera.rate_hz && !(*camera.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", *camera.rate_hz);
+  corridor::Feed feed(camera, CameraId{}, options);
+  if (given.detector) feed.find(given.detector());
+  return feed;
+}
+
+corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own, const corridor::Feed& feed,
+                         const draw::OverlayOptions& drawn) {
+  corridor::Sinks sinks;
+  for (std::unique_ptr<Sink>& sink : own) sinks.add(std::move(sink));
+  if (!output.tracks.empty()) {
+    const format::Format& format = format::format_to_write(output.tracks, output.format, format::Content::image);
+    sinks.add(format::create_recording(output.tracks, format));
+  }
+  if (!output.plot.empty()) sinks.add(std::make_unique<draw::PlotFile>(output.plot));
+  if (output.overlay.empty()) return sinks;
+  if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
+  const draw::OverlayFilm::View view{
+      .camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz, .sound_of = feed.sound_source()};
+  sinks.add(std::make_unique<draw::OverlayFilm>(output.overlay, view, drawn));
+  return sinks;
+}
+
+corridor::Summary run_alone(corridor::Feed feed, corridor::Stage& stage, corridor::Sinks& sinks, const Hooks& hooks) {
+  std::vector<corridor::Feed> feeds;
+  feeds.push_back(std::move(feed));
+  corridor::Clock clock(std::move(feeds));
+  return corridor::run(stage, clock, sinks, hooks);
+}
+
+}  // namespace
+
+corridor::Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
+                               const Hooks& hooks) {
+  return track_people(ImageFeed{.camera = camera}, output, {}, options, hooks);
+}
+
+corridor::Summary track_people(const ImageFeed& given, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
+                               const PeopleInPictureOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  if (!options.masks.empty()) draw::MaskFolder::require_free(options.masks);  // before anything that takes long
+  std::optional<corridor::SteadyCamera> steady;
+  if (options.steady) steady.emplace(given.camera, given.how, options.live);
+  corridor::Feed feed = open(given, steady ? steady->feed_options() : given.how);
+  corridor::Sinks sinks = sinks_of(output, std::move(own_sinks), feed, {.trail_of_centres = options.outlines.has_value()});
+  PeopleInPictureOptions own = options;
+  if (!output.tracks.empty()) own.beside = output.tracks;
+  own.steady = steady && steady->steadies();
+  own.with_lines = !output.overlay.empty();
+  const auto stage = people_in_picture(feed, own);
+  corridor::Summary summary = run_alone(std::move(feed), *stage, sinks, hooks);
+  if (steady) steady->report(summary);
+  return summary;
+}
+
+corridor::Summary track_markers(const RigCamera& camera, const TrackOutput& output, const markers::MarkersInPictureOptions& options,
+                                const Hooks& hooks) {
+  return track_markers(ImageFeed{.camera = camera}, output, {}, options, hooks);
+}
+
+corridor::Summary track_markers(const ImageFeed& given, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
+                                const markers::MarkersInPictureOptions& options, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  corridor::Feed feed = open(given, given.how);
+  corridor::Sinks sinks = sinks_of(output, std::move(own_sinks), feed, {});
+  const auto stage = markers::markers_in_picture(feed, options);
+  return run_alone(std::move(feed), *stage, sinks, hooks);
+}
+
+std::vector<std::string> read_labels(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error("{}: cannot be read; give a text file with one name a line", path);
+  std::vector<std::string> labels;
+  std::set<std::string> seen;
+  int line_number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++line_number;
+    const auto first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos) continue;
+    line = line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
+    if (!seen.insert(line).second)
+      throw Error("{}:{}: the name \"{}\" occurs twice; every marker needs its own", path, line_number, line);
+    labels.push_back(line);
+  }
+  if (labels.empty()) throw Error("{}: holds no name; write one a line", path);
+  return labels;
+}
+
+cv::Mat read_mask(const std::string& path) {
+  constexpr double kBlack = 8;  // what a lossy picture may make of 0
+  const auto frame = source::open_source(path)->next();
+  if (!frame) throw Error("{}: cannot be read as a picture; give a PNG in which what is to be left out is white", path);
+  cv::Mat grey;
+  cv::cvtColor(frame->picture.bgr(), grey, cv::COLOR_BGR2GRAY);
+  return grey > kBlack;
+}
+
+}  // namespace marey::pipeline::people

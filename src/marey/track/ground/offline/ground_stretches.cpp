@@ -1,0 +1,184 @@
+#include "marey/track/ground/offline/ground_stretches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "marey/assign/no_index.h"
+#include "marey/track/offline/tracklet_chains.h"
+
+namespace marey::track::ground::offline {
+namespace {
+
+constexpr double kStep = 0.2;        // s between places that are counted
+constexpr double kLongestStep = 1;   // s that one place counts for
+constexpr double kJudgedSpan = 3;    // s of a tracklet that its end is judged by
+constexpr double kLeastGain = -12;   // of pairs of an end and a beginning that come into question
+constexpr double kMostBelieved = 3;  // either way, of what place and velocity tell of a meeting
+constexpr double kTouching = 0.8;    // m: who keep farther apart than this are less often exchanged,
+constexpr double kPassing = -3;      // for each metre more, as a logarithm of odds
+
+class GraphOfStretches {
+ public:
+  GraphOfStretches(std::span<const GroundTracklet> tracklets, std::span<const int> teams, std::span<const Timestamp> times,
+                   const GroundIdentityOptions& options)
+      : tracklets_(tracklets), teams_(teams), times_(times), options_(options) {}
+
+  StretchGraph graph(std::span<const GroundNaming> namings) {
+    cut(find_meetings(tracklets_, times_, options_.meeting.near), namings);
+    find_middles();
+    for (StretchGraph::Node& node : graph_.nodes) node.role = role_of(node);
+    for (const GroundNaming& naming : namings)
+      node_at(naming.tracklet, naming.instant).names.set(static_cast<std::size_t>(naming.name));
+    find_gaps();
+    return std::move(graph_);
+  }
+
+ private:
+  /// Where a tracklet is cut: from this instant on.
+  struct Cut {
+    std::int32_t from = 0;
+    int meeting = assign::kNoIndex;  // or two names that nothing lies between
+  };
+
+  void cut(const std::vector<GroundMeeting>& meetings, std::span<const GroundNaming> namings) {
+    std::vector<std::vector<Cut>> cuts(tracklets_.size());
+    for (std::size_t m = 0; m < meetings.size(); ++m) {
+      for (const int tracklet : {meetings[m].a, meetings[m].b})
+        cuts[static_cast<std::size_t>(tracklet)].push_back({meetings[m].nearest, static_cast<int>(m)});
+      graph_.crossings.push_back({.instant = meetings[m].nearest, .log_odds = log_odds_of(meetings[m])});
+    }
+    cut_between_names(cuts, namings);
+    for (std::size_t t = 0; t < tracklets_.size(); ++t) add_nodes(static_cast<int>(t), cuts[t], meetings);
+  }
+
+  /// Where nothing lies between two names of a tracklet, it is cut half-way.
+  static void cut_between_names(std::vector<std::vector<Cut>>& cuts, std::span<const GroundNaming> namings) {
+    std::vector<GroundNaming> sorted(namings.begin(), namings.end());
+    std::sort(sorted.begin(), sorted.end(), [](const GroundNaming& a, const GroundNaming& b) {
+      return std::pair(a.tracklet, a.instant) < std::pair(b.tracklet, b.instant);
+    });
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+      const GroundNaming &one = sorted[i - 1], &other = sorted[i];
+      if (one.tracklet != other.tracklet || one.name == other.name) continue;
+      std::vector<Cut>& here = cuts[static_cast<std::size_t>(one.tracklet)];
+      const auto between = [&](const Cut& c) { return one.instant < c.from && c.from <= other.instant; };
+      if (std::any_of(here.begin(), here.end(), between)) continue;
+      const Cut half{.from = one.instant + (other.instant - one.instant + 1) / 2};
+      here.insert(std::upper_bound(here.begin(), here.end(), half, [](const Cut& a, const Cut& b) { return a.from < b.from; }),
+                  half);
+    }
+  }
+
+  void add_nodes(int tracklet, const std::vector<Cut>& cuts, const std::vector<GroundMeeting>& meetings) {
+    const std::vector<GroundSample>& samples = tracklets_[static_cast<std::size_t>(tracklet)].samples;
+    std::int32_t from = samples.front().instant;
+    first_.push_back(static_cast<int>(graph_.nodes.size()));
+    for (const Cut& cut : cuts) {
+      const int node = static_cast<int>(graph_.nodes.size());
+      graph_.nodes.push_back({.tracklet = tracklet, .first = from, .last = std::max(cut.from, from) - 1, .role = {}, .names = {}});
+      from = std::max(cut.from, from);
+      graph_.follows.push_back(cut.meeting == assign::kNoIndex ? assign::kNoIndex : node + 1);
+      if (cut.meeting == assign::kNoIndex) continue;
+      StretchGraph::Crossing& crossing = graph_.crossings[static_cast<std::size_t>(cut.meeting)];
+      const std::size_t side = meetings[static_cast<std::size_t>(cut.meeting)].a == tracklet ? 0 : 1;
+      crossing.before[side] = node;
+      crossing.after[side] = node + 1;
+    }
+    graph_.nodes.push_back({.tracklet = tracklet, .first = from, .last = samples.back().instant, .role = {}, .names = {}});
+    graph_.follows.push_back(assign::kNoIndex);
+    last_.push_back(static_cast<int>(graph_.nodes.size()) - 1);
+  }
+
+  double log_odds_of(const GroundMeeting& meeting) const {
+    const auto gain =
+        gain_of_exchange(tracklets_[static_cast<std::size_t>(meeting.a)].samples,
+                         tracklets_[static_cast<std::size_t>(meeting.b)].samples, meeting, times_, colours_, options_.meeting);
+    const double told = gain ? std::clamp(options_.believed * *gain, -kMostBelieved, kMostBelieved) : 0;
+    return options_.exchanged + told + kPassing * std::max(0.0, std::sqrt(meeting.distance) - kTouching);
+  }
+
+  /// The mean place of all that are there, by instant.
+  void find_middles() {
+    middles_.assign(times_.size(), Vector<2>::Zero());
+    std::vector<int> counts(times_.size(), 0);
+    for (const GroundTracklet& tracklet : tracklets_) {
+      for (const GroundSample& sample : tracklet.samples) {
+        middles_[static_cast<std::size_t>(sample.instant)] += sample.at();
+        ++counts[static_cast<std::size_t>(sample.instant)];
+      }
+    }
+    for (std::size_t i = 0; i < counts.size(); ++i) middles_[i] /= std::max(1, counts[i]);
+  }
+
+  RoleSum role_of(const StretchGraph::Node& node) const {
+    const std::span<const GroundSample> samples = tracklets_[static_cast<std::size_t>(node.tracklet)].samples;
+    RoleSum role;
+    std::size_t i = index_from(samples, node.first);
+    while (i < samples.size() && samples[i].instant <= node.last) {
+      const Timestamp now = times_[static_cast<std::size_t>(samples[i].instant)];
+      std::size_t next = i + 1;
+      while (next < samples.size() && samples[next].instant <= node.last &&
+             seconds(times_[static_cast<std::size_t>(samples[next].instant)] - now) < kStep)
+        ++next;
+      const auto end = std::min(next < samples.size() ? samples[next].instant : node.last, node.last);
+      role.add(samples[i].at() - middles_[static_cast<std::size_t>(samples[i].instant)],
+               std::min(kLongestStep, seconds(times_[static_cast<std::size_t>(end)] - now)),
+               teams_[static_cast<std::size_t>(node.tracklet)]);
+      i = next;
+    }
+    return role;
+  }
+
+  StretchGraph::Node& node_at(int tracklet, std::int32_t instant) {
+    const auto begin = graph_.nodes.begin() + first_[static_cast<std::size_t>(tracklet)];
+    const auto end = graph_.nodes.begin() + last_[static_cast<std::size_t>(tracklet)] + 1;
+    const auto after = std::upper_bound(begin, end, instant,
+                                        [](std::int32_t sought, const StretchGraph::Node& node) { return sought < node.first; });
+    return after == begin ? *begin : *std::prev(after);
+  }
+
+  void find_gaps() {
+    std::vector<GroundEnd> heads, tails;
+    for (std::size_t t = 0; t < tracklets_.size(); ++t) {
+      const std::vector<GroundSample>& samples = tracklets_[t].samples;
+      GroundEnd head, tail;
+      head.piece = tail.piece = static_cast<int>(t);
+      head.time = times_[static_cast<std::size_t>(samples.front().instant)];
+      tail.time = times_[static_cast<std::size_t>(samples.back().instant)];
+      head.state = first_state(samples, times_, options_.join.motion, kJudgedSpan);
+      tail.state = last_state(samples, times_, options_.join.motion, kJudgedSpan);
+      head.coming = options_.coming;
+      tail.goes_on = tracklets_[t].goes_on;
+      heads.push_back(head);
+      tails.push_back(tail);
+    }
+    track::offline::for_each_successor(tails, heads, duration_from_seconds(options_.join.longest_gap), [&](int tail, int head) {
+      const auto gain =
+          gain_of_joining(tails[static_cast<std::size_t>(tail)], heads[static_cast<std::size_t>(head)], colours_, options_.join);
+      if (!gain || *gain < kLeastGain) return;
+      const StretchGraph::Gap gap{last_[static_cast<std::size_t>(tail)], first_[static_cast<std::size_t>(head)], *gain};
+      graph_.gaps.push_back(gap);
+      graph_.gain_of_gap[{gap.before, gap.after}] = gap.gain;
+    });
+  }
+
+  std::span<const GroundTracklet> tracklets_;
+  std::span<const int> teams_;
+  std::span<const Timestamp> times_;
+  const GroundIdentityOptions& options_;
+  GroundColours colours_{{}};
+  StretchGraph graph_;
+  std::vector<Vector<2>> middles_;
+  std::vector<int> first_, last_;  // of each tracklet its first and last node
+};
+
+}  // namespace
+
+StretchGraph graph_of_stretches(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
+                                std::span<const Timestamp> times, std::span<const GroundNaming> namings,
+                                const GroundIdentityOptions& options) {
+  return GraphOfStretches(tracklets, teams, times, options).graph(namings);
+}
+
+}  // namespace marey::track::ground::offline

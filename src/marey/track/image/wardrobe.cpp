@@ -1,0 +1,140 @@
+#include "marey/track/image/wardrobe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace marey::track::image {
+namespace {
+
+constexpr std::array<std::optional<Appearance> Clothes::*, 3> kPartsOfClothes{&Clothes::upper, &Clothes::lower, &Clothes::shanks};
+
+constexpr std::array<double, 3> kWithinFirst{36, 6, 6}, kAllFirst{350, 50, 50};  // variances before anything is learned,
+constexpr double kFirstWeight = 6;                                               // and how many tracklets they count for
+constexpr double kWidened = 1.7;    // variances: parts and components are not independent
+constexpr double kUnseenKinds = 1;  // people who wear what nobody wore yet, beside those who were seen
+constexpr double kSurestSame = 6, kSurestOther = -12;
+
+std::array<double, 3> values_of(const Appearance& colour) {
+  return {colour.lightness, colour.a, colour.b};
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// From the median of what lies about 0, half of which may be anything.
+double robust_variance(std::vector<double> values, double first) {
+  if (values.empty()) return first;
+  const double count = static_cast<double>(values.size());
+  for (double& value : values) value = std::abs(value);
+  const double deviation = 1.4826 * median_of(std::move(values));
+  return (deviation * deviation * count + first * kFirstWeight) / (count + kFirstWeight);
+}
+
+double log_normal_density(double difference, double variance) {
+  return -0.5 * (difference * difference / variance + std::log(2 * std::numbers::pi * variance));
+}
+
+/// The parts that both show.
+Clothes parts_of_both(const Clothes& a, const Clothes& b) {
+  Clothes both;
+  for (const auto part : kPartsOfClothes) {
+    if (a.*part && b.*part) both.*part = b.*part;
+  }
+  return both;
+}
+
+int count_of(const Clothes& parts) {
+  return static_cast<int>(
+      std::count_if(kPartsOfClothes.begin(), kPartsOfClothes.end(), [&](auto part) { return (parts.*part).has_value(); }));
+}
+
+}  // namespace
+
+Wardrobe::Wardrobe(std::span<const Worn> worn) : worn_(worn.begin(), worn.end()) {
+  learn_within();
+  learn_all();
+}
+
+void Wardrobe::learn_within() {
+  for (std::size_t p = 0; p < kPartsOfClothes.size(); ++p) {
+    for (std::size_t c = 0; c < kComponents; ++c) {
+      std::vector<double> differences;
+      for (const Worn& one : worn_) {
+        if (!one.early || !one.late) continue;
+        const auto &early = (*one.early).*kPartsOfClothes[p], &late = (*one.late).*kPartsOfClothes[p];
+        if (early && late) differences.push_back(values_of(*late)[c] - values_of(*early)[c]);
+      }
+      within_[p][c] = robust_variance(std::move(differences), kWithinFirst[c]);
+    }
+  }
+}
+
+void Wardrobe::learn_all() {
+  for (std::size_t p = 0; p < kPartsOfClothes.size(); ++p) {
+    for (std::size_t c = 0; c < kComponents; ++c) {
+      std::vector<double> values;
+      for (const Worn& one : worn_) {
+        if (const auto& colour = one.whole.*kPartsOfClothes[p]) values.push_back(values_of(*colour)[c]);
+      }
+      if (values.empty()) continue;
+      middle_[p][c] = median_of(values);
+      for (double& value : values) value -= middle_[p][c];
+      all_[p][c] = std::max(within_[p][c], robust_variance(std::move(values), kAllFirst[c]));
+    }
+  }
+}
+
+double Wardrobe::log_density(const Clothes& known, const Clothes& seen, const Clothes& parts) const {
+  double sum = 0;
+  for (std::size_t p = 0; p < kPartsOfClothes.size(); ++p) {
+    const auto &was = known.*kPartsOfClothes[p], &is = seen.*kPartsOfClothes[p];
+    if (!(parts.*kPartsOfClothes[p])) continue;
+    if (!was) return log_density_of_anybody(seen, parts);
+    const double measured = was->deviation * was->deviation + is->deviation * is->deviation;
+    for (std::size_t c = 0; c < kComponents; ++c)
+      sum += log_normal_density(values_of(*is)[c] - values_of(*was)[c], kWidened * (within_[p][c] + measured));
+  }
+  return sum;
+}
+
+double Wardrobe::log_density_of_anybody(const Clothes& seen, const Clothes& parts) const {
+  double sum = 0;
+  for (std::size_t p = 0; p < kPartsOfClothes.size(); ++p) {
+    if (!(parts.*kPartsOfClothes[p])) continue;
+    const auto& is = seen.*kPartsOfClothes[p];
+    for (std::size_t c = 0; c < kComponents; ++c)
+      sum += log_normal_density(values_of(*is)[c] - middle_[p][c], all_[p][c] + kWidened * within_[p][c]);
+  }
+  return sum;
+}
+
+/// Of those who were there when `later` was, as long as they were, and of somebody in clothes that nobody wore yet.
+double Wardrobe::log_density_of_others(int later, const Clothes& parts) const {
+  const Worn& one = worn_[static_cast<std::size_t>(later)];
+  std::vector<std::pair<double, double>> densities{{kUnseenKinds, log_density_of_anybody(one.first, parts)}};
+  for (std::size_t k = 0; k < worn_.size(); ++k) {
+    const double together = std::min(one.end, worn_[k].end) - std::max(one.begin, worn_[k].begin);
+    if (static_cast<int>(k) == later || together <= 0) continue;
+    densities.emplace_back(together / std::max(0.1, one.end - one.begin), log_density(worn_[k].whole, one.first, parts));
+  }
+  double most = densities.front().second, weights = 0, sum = 0;
+  for (const auto& [weight, density] : densities) most = std::max(most, density);
+  for (const auto& [weight, density] : densities) {
+    weights += weight;
+    sum += weight * std::exp(density - most);
+  }
+  return most + std::log(sum / weights);
+}
+
+std::optional<double> Wardrobe::log_ratio(int earlier, int later) const {
+  const Clothes &was = worn_[static_cast<std::size_t>(earlier)].last, &is = worn_[static_cast<std::size_t>(later)].first;
+  const Clothes parts = parts_of_both(was, is);
+  if (count_of(parts) < 2) return std::nullopt;
+  return std::clamp(log_density(was, is, parts) - log_density_of_others(later, parts), kSurestOther, kSurestSame);
+}
+
+}  // namespace marey::track::image
