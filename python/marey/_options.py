@@ -148,3 +148,52 @@ class ReconstructOptions(TypedDict, total=False):
     r"""cameras without an offset in the rig are taken as synchronous; default: offsets are found by the motion of people"""
     max_offset: float | None
     r"""s in [0.01, 10]: the largest offset that is searched (default: 0.5)"""
+
+
+class LiveOptions(TypedDict, total=False):
+    ground: bool | None
+    r"""people on the ground that the rig's cameras face"""
+    size: str | tuple[float, float] | None
+    r"""m, of the pitch, or of any other rectangle from the origin on (default: 105x68 if the rig was calibrated on a pitch, else people count everywhere)"""
+    area: str | Sequence[tuple[float, float]] | None
+    r"""where people count, in place of a pitch: its corners in order, "x,y x,y x,y" in m, or LENGTHxWIDTH"""
+    margin: float | None
+    r"""m in [0, 1000]: around the pitch or the area in which people still count (default: 2)"""
+    teams: str | None
+    r'''the teams' colours, "white,blue", or their names too, "City=white,United=blue"'''
+    associate: Literal["gnn", "jpda", "mht", "bramble"] | None
+    r"""data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks by particles in the images, without detections: gnn, jpda, mht, bramble"""
+    preroll: float | None
+    r"""s in [0, 60]: kept from before a recording is switched on (default: 5)"""
+    late: float | None
+    r"""s in [0.001, 1]: longest wait for a late frame of an instant (default: 0.05)"""
+    patience: float | None
+    r"""s in [0, 60]: longest wait for cameras at the beginning (default: 3)"""
+    labels: Path | None
+    r"""the markers' labels: CSV label,x,y,z of their positions at the beginning (m), or one label per line, by increasing x"""
+    set: Path | None
+    r"""label the markers, frame by frame, by a set that "marey label learn" made: set.toml"""
+    skeleton: Path | None
+    r"""solve the pose of this skeleton from the labelled markers in each frame: skeleton.toml or .osim, fitted to the person (marey solve --write-skeleton)"""
+    threshold: float | None
+    r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
+    dark: bool | None
+    r"""markers are darker than their surroundings"""
+    widest: float | None
+    r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
+    most_markers: int | None
+    r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
+    min_area: float | None
+    r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
+    max_area: float | None
+    r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
+    min_roundness: float | None
+    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    background: Literal["marey", "mog2", "knn"] | None
+    r"""model of the static background: marey, mog2, knn (default: marey)"""
+    detector: Path | None
+    r"""a detection network in addition to the background model: the file that describes it (docs/network.md)"""
+    every: int | None
+    r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
+    without_background: bool | None
+    r"""the network alone"""
