@@ -87,7 +87,7 @@ void measure(const Row& row, int samples) {
       --extra;
       const Vector<2> error = best->centre - disc.centre;
       ours.add(error);
-      normalised += error.dot(best->covariance.inverse() * error);
+      normalised += error.dot(best->covariance->inverse() * error);
       for (int axis = 0; axis < 2; ++axis) {
         const double within = disc.centre[axis] - std::floor(disc.centre[axis] + 0.5) + 0.5;
         bias[axis * bins + std::min(bins - 1, static_cast<int>(within * bins))] += Vector<2>(error[axis], 1);

@@ -153,7 +153,7 @@ void print_learned(const std::string& folder) {
   std::string noise;
   for (int camera = 0; camera < 6; ++camera) {
     one.camera = CameraId{camera};
-    noise += fmt::format(" {:.2f}", std::sqrt(agreement.corrected(one).covariance(0, 0)));
+    noise += fmt::format(" {:.2f}", std::sqrt(agreement.corrected(one).covariance.value()(0, 0)));
   }
   fmt::print(
       "noise{}; lasting disagreement of each camera: learned {:.3f} m, true {:.3f} m (single frames {:.3f}; uncorrected {:.3f}, "

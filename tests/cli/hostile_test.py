@@ -174,7 +174,7 @@ class Hostile(unittest.TestCase):
         take = self.take("b.marey")
         with sqlite3.connect(take) as database:
             names = [row[1] for row in database.execute("PRAGMA table_info(track)")]
-            values = ", ".join("n" if name == "id" else "''" if name in ("label", "team") else "0" for name in names)
+            values = ", ".join("n" if name == "id" else "''" if name in ("label", "team", "kind") else "0" for name in names)
             database.execute(f"WITH RECURSIVE many(n) AS (SELECT 10 UNION ALL SELECT n + 1 FROM many LIMIT 200000) "
                              f"INSERT INTO track ({', '.join(names)}) SELECT {values} FROM many")
         self.refused("info", take, words=["100000 tracks"])
