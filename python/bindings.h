@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -16,6 +17,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "marey/core/instant.h"
+#include "marey/core/recording.h"
 #include "marey/core/sink.h"
 #include "marey/core/source.h"
 #include "marey/detect/detector.h"
@@ -57,6 +59,9 @@ filter::CustomFilterOptions filter_of(const std::shared_ptr<Held>& make);
 
 /// What python/marey/_instant.py takes apart.
 nb::tuple tuple_of(const Instant& instant, int dimensions, bool pictures);
+
+/// Writes the file in the format of that name, else of the path's ending; what was lost, one sentence each. Without Python's lock.
+std::vector<std::string> write_recording(const Recording& recording, const std::string& path, const std::string& format);
 
 void bind_recording(nb::module_& module);
 void bind_jobs(nb::module_& module);

@@ -1,7 +1,10 @@
 #include "job.h"
 
+#include <array>
+
 #include "marey/core/error.h"
 #include "marey/core/overwriting.h"
+#include "marey/core/recording_reader.h"
 #include "marey/core/recording_sink.h"
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
@@ -9,6 +12,7 @@
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
+#include "marey/pipeline/jobs/register.h"
 
 namespace marey::python {
 namespace {
@@ -45,20 +49,82 @@ nb::tuple tuple_of(Result result) {
   return nb::make_tuple(std::move(result.recording), dict_of(result.summary));
 }
 
-Outputs::Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras)
+Rows::Rows(pipeline::jobs::Table table, const Options& options) : table_(std::move(table)) {
+  for (const auto& [name, text] : options.get<std::map<std::string, std::string>>("rows", {})) {
+    pipeline::jobs::Option* row = table_.find(name);
+    if (row == nullptr) throw Error("there is no option {}", name);
+    try {
+      row->set(text);
+    } catch (const Error& error) {
+      throw Error("{}: {}", in_python("--" + name), in_python(error.what()));
+    }
+  }
+  resolved([&] { table_.check_needs(); });
+}
+
+Listening Rows::listening(const Options& options) const {
+  Listening listening = listening_of(options);
+  listening.options = table_.given();
+  if (options.has("own_filter_name")) listening.options["filter"] = options.get<std::string>("own_filter_name", {});
+  return listening;
+}
+
+std::string Rows::in_python(const std::string& sentence) {
+  const auto is_of_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
+  std::string text;
+  for (std::size_t at = 0; at < sentence.size();) {
+    const bool starts = sentence.compare(at, 2, "--") == 0 && at + 2 < sentence.size() && is_of_name(sentence[at + 2]);
+    if (starts) at += 2;
+    do {
+      text += starts && sentence[at] == '-' ? '_' : sentence[at];
+      ++at;
+    } while (starts && at < sentence.size() && is_of_name(sentence[at]));
+  }
+  return text;
+}
+
+nb::list rows_of_job(const std::string& job) {
+  nb::list rows;
+  pipeline::jobs::with_table(job, [&](pipeline::jobs::Table& table) {
+    constexpr std::array kKinds{"flag", "number",  "whole",      "text",        "choice",
+                                "size", "corners", "input_file", "output_file", "output_folder"};
+    for (const pipeline::jobs::Option& option : table.options()) {
+      nb::dict row;
+      row["name"] = option.name;
+      row["kind"] = kKinds.at(static_cast<std::size_t>(option.kind));
+      row["help"] = option.help;
+      row["value"] = option.value;
+      row["default"] = option.fallback;
+      row["group"] = option.group;
+      row["choices"] = option.choices;
+      row["needs"] = option.needs;
+      row["depends"] = option.depends;
+      rows.append(row);
+    }
+  });
+  return rows;
+}
+
+Outputs::Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras, const Rows* rows,
+                 const std::vector<std::string>& also)
     : content_(content),
       files_(options.get<std::vector<std::pair<std::string, std::string>>>("files", {})),
       keep_(options.get("keep", true)) {
   for (const auto& [object, pictures] : options.get<std::vector<std::pair<nb::object, bool>>>("sinks", {}))
     objects_.push_back({std::make_shared<Held>(object), pictures});
-  keep_inputs(options, cameras);
-}
-
-void Outputs::keep_inputs(const Options& options, std::span<const RigCamera> cameras) const {
   std::vector<std::string> inputs{options.path("rig"), options.path("observations"), options.path("labels")};
   for (const RigCamera& camera : cameras) inputs.insert(inputs.end(), {path_of_source(camera.source), camera.detections});
-  std::vector<std::string> outputs{options.path("take")};
+  std::vector<std::string> outputs = also;
+  outputs.push_back(options.path("take"));
   for (const auto& [path, name] : files_) outputs.push_back(path);
+  if (rows != nullptr) {
+    for (const std::string& path : rows->files(false)) inputs.push_back(path);
+    for (const std::string& path : rows->files(true)) outputs.push_back(path);
+  }
+  keep_inputs(inputs, outputs);
+}
+
+void Outputs::keep_inputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs) {
     for (const std::string& input : inputs) {
       if (overwrites(output, input))
@@ -74,6 +140,14 @@ std::vector<std::unique_ptr<Sink>> Outputs::open(Recording& recording) const {
     sinks.push_back(format::create_recording(path, format::format_to_write(path, name, content_)));
   for (const auto& [held, pictures] : objects_) sinks.push_back(sink_of(held, pictures));
   return sinks;
+}
+
+void Outputs::write(const Recording& recording) const {
+  for (const auto& [path, name] : files_) write_recording(recording, path, name);
+  for (const Object& object : objects_) {
+    MemoryReader reader(recording);
+    replay(reader, *sink_of(object.held, object.pictures));
+  }
 }
 
 void Outputs::add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const {

@@ -20,6 +20,7 @@
 #include "marey/core/rig.h"
 #include "marey/format/format.h"
 #include "marey/pipeline/corridor/run.h"
+#include "marey/pipeline/jobs/option.h"
 
 #include "bindings.h"
 
@@ -59,6 +60,35 @@ struct Listening {
 };
 
 Listening listening_of(const Options& options);
+
+/// The rows of a job's description, set to what Python gave by name as texts ("rows").
+class Rows {
+ public:
+  /// Throws Error, with the option's name, for a text that is not in its domain, and for options that the job does not have.
+  Rows(pipeline::jobs::Table table, const Options& options);
+
+  /// `resolve()`; a sentence of its WrongOption spells options as Python does.
+  template <typename Resolve>
+  auto resolved(Resolve resolve) const {
+    try {
+      return resolve();
+    } catch (const pipeline::jobs::WrongOption& error) {
+      throw Error("{}", in_python(error.what()));
+    }
+  }
+  /// With the options for the recording.
+  Listening listening(const Options& options) const;
+  std::vector<std::string> files(bool outputs) const { return table_.files(outputs); }
+
+ private:
+  /// "--seen-only" → "seen_only".
+  static std::string in_python(const std::string& sentence);
+
+  pipeline::jobs::Table table_;
+};
+
+/// One dict per row: what the documentation and the signatures of python/marey are made from.
+nb::list rows_of_job(const std::string& job);
 
 /// `work(hooks)` on another thread: the one that called waits, so that Ctrl-C ends it, and lets others have Python meanwhile.
 /// Throws what it threw: an exception of Python's with its own traceback.
@@ -125,14 +155,18 @@ nb::tuple tuple_of(Result result);
 /// Files by name, and objects of Python's; the recording in memory, unless it is not wanted.
 class Outputs {
  public:
-  /// Throws Error where a file that is written is one that is read: one of the options', or what one of the cameras shows.
-  Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras);
+  /// `also`: files that are written besides. Throws Error where a file that is written is one that is read: one of the options', or
+  /// what one of the cameras shows.
+  Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras, const Rows* rows = nullptr,
+          const std::vector<std::string>& also = {});
 
   std::vector<std::unique_ptr<Sink>> open(Recording& recording) const;
   void add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const;
+  /// A recording that was made in memory.
+  void write(const Recording& recording) const;
 
  private:
-  void keep_inputs(const Options& options, std::span<const RigCamera> cameras) const;
+  static void keep_inputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
   struct Object {
     std::shared_ptr<Held> held;

@@ -16,6 +16,17 @@
 #include "bindings.h"
 
 namespace marey::python {
+std::vector<std::string> write_recording(const Recording& recording, const std::string& path, const std::string& name) {
+  const format::Format& format = format::format_to_write(path, name, format::content_of(recording.header.frame));
+  const auto reader = format::reader_of(recording);
+  std::vector<std::string> lost;
+  format::WritePlan plan = format::plan_of(*reader, path);
+  const auto again = format::reader_of(recording);
+  const auto sink = format::create_recording(path, format, plan, &lost);
+  replay(*again, *sink);
+  return lost;
+}
+
 namespace {
 
 /// Numbers that belong to `owner`: nothing is copied, and Python may not write.
@@ -114,14 +125,7 @@ FrameOfReference frame_named(const std::string& name) {
 
 std::vector<std::string> write(const Recording& recording, const std::string& path, const std::string& name) {
   const nb::gil_scoped_release free;
-  const format::Format& format = format::format_to_write(path, name, format::content_of(recording.header.frame));
-  const auto reader = format::reader_of(recording);
-  std::vector<std::string> lost;
-  format::WritePlan plan = format::plan_of(*reader, path);
-  const auto again = format::reader_of(recording);
-  const auto sink = format::create_recording(path, format, plan, &lost);
-  replay(*again, *sink);
-  return lost;
+  return write_recording(recording, path, name);
 }
 
 std::pair<Recording, std::vector<std::string>> read(const std::string& path, const std::string& format, double rate_hz,

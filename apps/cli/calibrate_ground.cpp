@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 
 #include "marey/format/rig/rig_file.h"
+#include "marey/pipeline/jobs/detection_rows.h"
 
-#include "blob_options.h"
 #include "board_option.h"
 #include "command_line.h"
 #include "commands.h"
@@ -63,7 +63,9 @@ void add_calibrate_ground(Command& calibrate) {
   add_board(command, options->board).excludes(frame);
   command.flag("--scale", options->options.scale, "the L-frame's size sets the rig's, as for a rig by a single light");
   command.output_file("-o,--output", options->out, "the rig file that is written").required().ends_in({".toml"}).may_replace(rig);
-  add_threshold(command, options->options.markers.threshold);
+  pipeline::jobs::Table rows;
+  add_threshold_row(rows, options->options.markers.threshold);
+  command.rows(std::move(rows));
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

@@ -12,8 +12,8 @@
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/calibrate/live_blobs.h"
+#include "marey/pipeline/jobs/detection_rows.h"
 
-#include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
 #include "ground_frame.h"
@@ -208,7 +208,9 @@ void add_calibrate_wand(Command& calibrate) {
   command.seed(options->options.how.seed, "of the random draws");
   command.number("--for", options->options.wave_s, "s", closed(1, 36'000),
                  "live cameras: the wand is waved until all have seen enough of it, at most so long");
-  add_threshold(command, options->options.markers.threshold);
+  pipeline::jobs::Table rows;
+  add_threshold_row(rows, options->options.markers.threshold);
+  command.rows(std::move(rows));
   command.flag("--dark", options->options.markers.dark, "markers are darker than what is around them");
   command.group("To be watched");
   command.flag("--view", options->view,

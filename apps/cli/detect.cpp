@@ -7,12 +7,12 @@
 
 #include <fmt/core.h>
 
+#include "marey/pipeline/jobs/detection_rows.h"
 #include "marey/pipeline/markers/detect_markers.h"
 
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
-#include "marker_options.h"
 #include "run_hooks.h"
 
 namespace marey::cli {
@@ -21,7 +21,7 @@ namespace {
 struct DetectCommand {
   RigCamera input;
   pipeline::markers::BlobOutput output;
-  MarkerFlags markers;
+  pipeline::jobs::MarkerDetection markers;
   bool json = false;
   bool quiet = false;
 };
@@ -76,7 +76,7 @@ std::string default_blobs(const std::string& input) {
 void run_detect(DetectCommand command) {
   if (command.output.blobs.empty()) command.output.blobs = default_blobs(command.input.source);
   if (command.output.blobs == "-") command.output.blobs = "/dev/stdout";
-  const detect::markers::MarkerOptions options = detector_options(command.markers);
+  const detect::markers::MarkerOptions options = detector_of(command.markers);
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) { return pipeline::markers::detect_markers(command.input, command.output, options, hooks); },
@@ -111,7 +111,9 @@ void add_detect(Command& program) {
     return {default_blobs(options->input.source)};
   });
   command.reports(options->json, options->quiet);
-  add_detector_options(command, options->markers);
+  pipeline::jobs::Table rows;
+  add_marker_rows(rows, options->markers);
+  command.rows(std::move(rows));
   command.runs([options] { run_detect(*options); });
 }
 

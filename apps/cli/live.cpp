@@ -14,23 +14,19 @@
 
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
-#include "marey/format/motion/marker_set.h"
+#include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/live/camera_films.h"
 #include "marey/pipeline/live/live_feeds.h"
 
-#include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
-#include "ground_options.h"
 #include "json_value.h"
 #include "live_outputs.h"
 #include "live_screen.h"
 #include "live_sources.h"
-#include "people_options.h"
 #include "realtime.h"
 #include "run_hooks.h"
-#include "set_option.h"
-#include "skeleton_option.h"
+#include "set_figures.h"
 #include "summary_figures.h"
 
 namespace marey::cli {
@@ -45,16 +41,11 @@ constexpr std::array<std::pair<const char*, LiveTargets>, 2> kLiveTargets{
 
 struct LiveCommand {
   std::vector<std::string> sources;
-  LiveTargets targets = LiveTargets::markers;
-  bool ground = false;
-  std::string out, labels, set, skeleton;
+  pipeline::jobs::Live job;
+  std::string out;
   Kept record = Kept::solved;
   bool armed = false, realtime = false;
   std::optional<double> for_s;
-  double preroll_s = 5, late_s = 0.05, patience_s = 3;
-  detect::markers::MarkerOptions markers;
-  PeopleFlags people;
-  GroundAreaFlags where;
   LiveOutputOptions outputs;
   bool json = false, quiet = false;
 };
@@ -121,23 +112,11 @@ std::vector<std::string> files_beside_take(const LiveCommand& command) {
 }
 
 pipeline::live::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
-  pipeline::live::LiveOptions options;
-  options.targets = command.targets;
-  options.ground = command.ground;
-  options.space.markers = options.markers.markers = command.markers;
-  options.space.predict_s = 0.1;
-  if (!command.labels.empty()) options.space.set = format::motion::read_marker_set(command.labels);
-  options.space.skeleton = skeleton_of(command.skeleton);
-  options.space.learned_set = learned_set_of(command.set, options.space.skeleton.get());
-  check_every(command.people, command.ground);
-  options.people = people_options(command.people, {}, true);
-  options.on_ground.detector = detector_options(command.people);
-  apply(command.where, rig, command.sources.front(), true, false, options.on_ground);
-  options.policy.late_s = command.late_s;
-  options.patience_s = command.patience_s;
+  std::vector<std::string> warnings;
+  pipeline::live::LiveOptions options = resolved(command.job, rig, warnings);
+  warn(warnings);
   options.take = command.out;
   if (command.record == Kept::raw) options.pictures = pictures_of(command.out);
-  options.preroll_s = command.preroll_s;
   options.recording = std::make_shared<pipeline::corridor::RecordSwitch>(!command.armed);
   options.policy.time = source::steady_time();
   return options;
@@ -147,11 +126,12 @@ pipeline::live::LiveOptions options_of(const LiveCommand& command, const Rig& ri
 void tell_of_slots(const LiveCommand& command) {
   const bool lsl = std::any_of(command.outputs.streams.streams.begin(), command.outputs.streams.streams.end(),
                                [](const std::string& target) { return target.starts_with("lsl"); });
-  if (!lsl || !command.labels.empty() || !command.skeleton.empty()) return;
+  if (!lsl || !command.job.names.labels.empty() || !command.job.names.skeleton.empty()) return;
   fmt::print(stderr,
              "marey: lsl: no labels are given ({}): the outlet has {} slots, each with a track's ID and coordinates, NaN where "
              "empty\n",
-             command.targets == LiveTargets::markers ? "--labels" : "people have none", command.outputs.streams.unlabelled_slots);
+             command.job.targets == LiveTargets::markers ? "--labels" : "people have none",
+             command.outputs.streams.unlabelled_slots);
 }
 
 /// The part of the ground that the page shows.
@@ -173,10 +153,10 @@ void run(const LiveCommand& command) {
   }
   const Rig rig = rig_of_live_sources(command.sources);
   pipeline::live::LiveOptions options = options_of(command, rig);
-  options.desk = std::make_shared<pipeline::live::CameraDesk>(rig, command.markers.threshold);
+  options.desk = std::make_shared<pipeline::live::CameraDesk>(rig, command.job.markers.threshold);
   options.naming = std::make_shared<pipeline::markers::TrackNaming>();
   LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.desk, options.naming},
-                      command.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
+                      command.job.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
   options.sinks = outputs.sinks();
   if (!command.quiet) tell_of_slots(command);
   LiveEnd end;
@@ -217,32 +197,30 @@ void add_live(Command& program) {
   auto options = std::make_shared<LiveCommand>();
   Command command = program.subcommand("live", "Track what live cameras see, while they see it");
   add_live_sources(command, options->sources);
-  command.choice("--targets", options->targets, kLiveTargets, "what is followed");
-  const Option ground = command.flag("--ground", options->ground, "people on the ground that the rig's cameras look at");
-  add_ground_area_options(command, ground, options->where);
+  command.choice("--targets", options->job.targets, kLiveTargets, "what is followed");
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
   command.also_reads([options] { return played_files(*options); });
   command.also_writes([options] { return files_beside_take(*options); });
   command.choice("--record", options->record, kKept,
                  "what is kept: the take alone, or the pictures too, a film of each camera and rig.toml in NAME_pictures");
   command.flag("--armed", options->armed, "record only from when r is pressed on, with the seconds before it");
-  command.number("--preroll", options->preroll_s, "s", closed(0, 60), "of what came before r was pressed");
   command.number("--for", options->for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C, or q)");
-  command.number("--late", options->late_s, "s", closed(0.001, 1), "a moment waits so long for its cameras' frames");
-  command.number("--patience", options->patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
   command.flag("--realtime", options->realtime, "go before other programs, where the system allows it");
-  command.input_file("--labels", options->labels, "the markers' names: CSV label,x,y,z as they lie at the beginning (m)");
-  add_set_option(command, options->set);
-  add_skeleton_option(command, options->skeleton);
-  add_blob_options(command, options->markers);
+  const pipeline::jobs::Table& rows = command.rows(table_of(options->job));
+  command.records([&rows, options = options.get()] {
+    auto given = rows.given();
+    if (options->job.targets == LiveTargets::people) given["targets"] = "people";
+    return given;
+  });
   add_live_outputs(command, options->outputs);
   command.reports(options->json, options->quiet);
   command.runs([options] {
     options->outputs.take = options->out;
     if (is_rig_file(options->sources.front())) options->outputs.rig = options->sources.front();
-    if (options->ground) options->targets = LiveTargets::people;
+    options->job.rig_name = options->sources.front();
+    if (options->job.ground) options->job.targets = LiveTargets::people;
     options->outputs.streams.unlabelled_slots =
-        std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->markers.most_markers));
+        std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->job.markers.most_markers));
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
     if (options->record == Kept::raw && options->out.empty()) throw WrongUsage("{}", "--record raw: name the take with -o");
     run(*options);

@@ -7,10 +7,10 @@
 
 #include "marey/core/rig_sources.h"
 #include "marey/core/source_name.h"
+#include "marey/pipeline/jobs/detection_rows.h"
 #include "marey/pipeline/live/camera_node.h"
 #include "marey/pipeline/live/live_feeds.h"
 
-#include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
@@ -98,7 +98,9 @@ void add_node(Command& program) {
                "hosts on other computers (--listen) may set exposure, gain and threshold, not this one's alone");
   command.number("--for", how.for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C)");
   command.number("--patience", how.patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
-  add_blob_options(command, how.markers);
+  pipeline::jobs::Table rows;
+  add_blob_rows(rows, how.markers);
+  command.rows(std::move(rows));
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

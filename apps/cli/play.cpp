@@ -11,6 +11,7 @@
 
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/pipeline/jobs/space_names.h"
 #include "marey/pipeline/markers/set_in_space.h"
 #include "marey/pipeline/markers/skeleton_in_space.h"
 
@@ -19,15 +20,14 @@
 #include "json_value.h"
 #include "pitch_size.h"
 #include "run_hooks.h"
-#include "set_option.h"
-#include "skeleton_option.h"
 #include "stream_options.h"
 
 namespace marey::cli {
 namespace {
 
 struct PlayCommand {
-  std::string recording, set, skeleton;
+  std::string recording;
+  pipeline::jobs::SpaceNames names;
   std::string size = "105x68";
   format::ReadOptions read;
   pipeline::take::PlayOptions how;
@@ -62,8 +62,10 @@ void report(const PlayCommand& command, const pipeline::take::PlaySummary& done,
 void run(PlayCommand& command) {
   command.read.pitch = parse_pitch_size(command.size);
   if (command.streams.streams.empty()) command.streams.streams = {"json"};
-  const auto skeleton = skeleton_of(command.skeleton);
-  const auto set = learned_set_of(command.set, skeleton.get());
+  std::vector<std::string> warnings;
+  const auto skeleton = pipeline::jobs::skeleton_of(command.names.skeleton, warnings);
+  warn(warnings);
+  const auto set = pipeline::jobs::learned_set_of(command.names.set, skeleton.get());
   pipeline::markers::SetInSpaceOptions naming;
   naming.names_hold = false;
   const auto open = [&]() -> std::unique_ptr<RecordingReader> {
@@ -91,8 +93,9 @@ void add_play(Command& program) {
   command.flag("--loop", how.loop, "from the beginning again, until Ctrl-C");
   command.number("--speed", how.speed, "times", closed(0.01, 100), "as fast as it was recorded");
   command.number("--rate", how.rate_hz, "Hz", kRates, "at most so many instants a second of the recording");
-  add_set_option(command, options->set);
-  add_skeleton_option(command, options->skeleton);
+  pipeline::jobs::Table names;
+  add_set_rows(names, options->names);
+  command.rows(std::move(names));
   add_stream_options(command, options->streams);
   command.group("The recording");
   using Axis = std::optional<format::UpAxis>;

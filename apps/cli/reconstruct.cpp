@@ -5,22 +5,20 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
-#include "marey/format/motion/marker_set.h"
-#include "marey/pipeline/people/track_in_picture.h"
+#include "marey/pipeline/jobs/reconstruct.h"
 
-#include "blob_options.h"
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
 #include "reconstruct_keypoints.h"
 #include "rig_inputs.h"
 #include "run_hooks.h"
-#include "set_option.h"
-#include "skeleton_option.h"
+#include "set_figures.h"
 #include "summary_figures.h"
 
 namespace marey::cli {
@@ -28,11 +26,10 @@ namespace {
 
 struct ReconstructCommand {
   RigInputs inputs;
-  std::string out, labels, set, skeleton;
-  pipeline::markers::MarkersInSpaceOptions options;
+  std::string out;
   bool of_keypoints = false;
-  pipeline::keypoints::KeypointsInSpaceOptions keypoints;
-  PeopleFlags people;  // of cameras with videos
+  pipeline::jobs::ReconstructMarkers markers;
+  pipeline::jobs::ReconstructKeypoints keypoints;
   bool json = false;
   bool quiet = false;
 };
@@ -78,19 +75,13 @@ void print_points_summary(const pipeline::corridor::Summary& summary, const std:
 }
 
 void run_keypoints(const ReconstructCommand& command) {
-  if (!command.inputs.observations.empty() || !command.labels.empty() || !command.set.empty() || !command.skeleton.empty())
+  const pipeline::jobs::SpaceNames& names = command.markers.names;
+  if (!command.inputs.observations.empty() || !names.labels.empty() || !names.set.empty() || !names.skeleton.empty())
     throw WrongUsage("{}", "--targets keypoints: --observations, --labels, --set and --skeleton are of markers; remove them");
-  pipeline::keypoints::KeypointsInSpaceOptions options = command.keypoints;
-  options.rate_hz = command.options.rate_hz;
-  PeopleFlags people = command.people;
-  people.keypoints = true;
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {
-        options.find = [&](const RigCamera& camera) {
-          return pipeline::people::find_keypoints(camera, people_options(people, {}, false), hooks);
-        };
-        return pipeline::keypoints::reconstruct_keypoints(rig_of(command.inputs), command.out, options, hooks);
+        return pipeline::keypoints::reconstruct_keypoints(rig_of(command.inputs), command.out, resolved(command.keypoints), hooks);
       },
       [&](const pipeline::keypoints::KeypointsSummary& summary, double) {
         if (command.json) {
@@ -103,10 +94,9 @@ void run_keypoints(const ReconstructCommand& command) {
 
 void run(const ReconstructCommand& command) {
   if (command.of_keypoints) return run_keypoints(command);
-  pipeline::markers::MarkersInSpaceOptions options = command.options;
-  if (!command.labels.empty()) options.set = format::motion::read_marker_set(command.labels);
-  options.skeleton = skeleton_of(command.skeleton);
-  options.learned_set = learned_set_of(command.set, options.skeleton.get());
+  std::vector<std::string> warnings;
+  const pipeline::markers::MarkersInSpaceOptions options = resolved(command.markers, warnings);
+  warn(warnings);
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {
@@ -128,28 +118,18 @@ void add_reconstruct(Command& program) {
   Command command =
       program.subcommand("reconstruct", "Place and follow the markers, or people's keypoints, that several calibrated cameras see");
   add_rig_inputs(command, options->inputs);
-  pipeline::markers::MarkersInSpaceOptions& how = options->options;
   command.output_file("-o,--output", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv")
       .required()
       .ends_in({".marey", ".c3d", ".trc", ".csv"});
   constexpr std::array<std::pair<const char*, bool>, 2> kTargets{{{"markers", false}, {"keypoints", true}}};
-  command.choice("--targets", options->of_keypoints, kTargets,
-                 "what is placed: markers; or people's body keypoints, found in the cameras' videos, or read where CAMERA=FILE or "
-                 "CAMERA=FOLDER names them (OpenPose, COCO, AlphaPose, MMPose, DeepLabCut, SLEAP, takes of marey track)");
-  command.input_file("--labels", options->labels,
-                     "the markers' names: CSV label,x,y,z as they lie at the beginning (m), or a name a line, by growing x");
-  add_set_option(command, options->set);
-  add_skeleton_option(command, options->skeleton);
-  command.number("--rate", how.rate_hz, "Hz", kRates, "frames a second, where sources and the rig do not say");
-  command.number("--noise", how.noise_px, "px", closed(1e-3, 100),
-                 "standard deviation of a blob's place and of the calibration (default: learned)");
-  command.number("--fill", how.fill_s, "s", closed(0, 10), "the longest gap that is filled");
-  command.number("--predict", how.predict_s, "s", closed(0, 10), "write so much of a longer gap as was predicted; at most --fill");
-  command.flag("--live", how.live, "every instant as it comes, as marey live tells it: no gap is filled, nothing waits");
-  command.number("--marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers nearer than this disturb each other");
-  command.number("--max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "no marker moves faster");
-  add_blob_options(command, how.markers);
-  add_keypoint_options(command, options->keypoints, options->people);
+  command.choice(
+      "--targets", options->of_keypoints, kTargets,
+      "what is reconstructed: markers; or people's body keypoints, found in the cameras' videos, or read where CAMERA=FILE or "
+      "CAMERA=FOLDER names them (OpenPose, COCO, AlphaPose, MMPose, DeepLabCut, SLEAP, takes of marey track)");
+  const pipeline::jobs::Table& markers = command.rows(table_of(options->markers));
+  const pipeline::jobs::Table& keypoints = command.rows(table_of(options->keypoints), "with --targets keypoints");
+  command.records(
+      [&markers, &keypoints, options = options.get()] { return (options->of_keypoints ? keypoints : markers).given(); });
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

@@ -6,28 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/core/keypoint_sets.h"
-
 namespace marey::cli {
-
-void add_keypoint_options(Command& command, pipeline::keypoints::KeypointsInSpaceOptions& options, PeopleFlags& people) {
-  add_keypoint_options(command, people);
-  people.without_background = true;  // people who fill the image, or stand in it from the beginning, are usual here
-  command.group("Keypoints");
-  command.flag("--with-background", people.without_background,
-               "videos: people are found by what changes too, which is faster; default: by a network alone", false);
-  command.whole("--every", people.every, "N", 1, 1000, "videos: run the networks on every N-th frame");
-  command
-      .text("--keypoint-set", options.set,
-            "the keypoint set of files that do not name their points: " + keypoint_set_names() + "; default: by the points")
-      .check([](const std::string& name) { keypoint_set_named(name); });
-  command.whole("--people", options.people, "N", 0, 1000, "keep the N people in the most images; 0: everybody");
-  command.flag("--no-smooth", options.smooth, "each instant by itself: no paths over all instants, no gap filled", false);
-  command.flag("--no-offsets", options.find_offsets,
-               "cameras without an offset in the rig run as they are; default: their offsets are found by how people move", false);
-  command.number("--max-offset", options.farthest_offset_s, "s", closed(0.01, 10), "the largest offset that is looked for");
-  command.group("");
-}
 
 Json keypoints_json(const pipeline::keypoints::KeypointsSummary& summary, const std::string& out) {
   Json people = Json::array(), cameras = Json::object();

@@ -83,7 +83,7 @@ Option Command::flag(const std::string& name, bool& value, const std::string& me
 Option Command::add_number(const std::string& name, const std::string& usual, int count, const char* unit, const Interval& interval,
                            const std::string& meaning, std::function<void(int, double)> set) {
   Option::Declared& option =
-      declared_->declare(name, meaning, fmt::format("{} in {}", unit, notation(interval)), count,
+      declared_->declare(name, meaning, fmt::format("{} in {}", unit, pipeline::jobs::notation(interval)), count,
                          [=](int index, const std::string& text) { set(index, number_in(text, unit, interval)); });
   option.parsed->default_str(usual);
   return Option(option);
@@ -92,7 +92,7 @@ Option Command::add_number(const std::string& name, const std::string& usual, in
 Option Command::add_whole(const std::string& name, const std::string& usual, int count, const char* unit, std::int64_t low,
                           std::int64_t high, const std::string& meaning, std::function<void(int, std::int64_t)> set) {
   Option::Declared& option =
-      declared_->declare(name, meaning, fmt::format("{} in {}", unit, notation(low, high)), count,
+      declared_->declare(name, meaning, fmt::format("{} in {}", unit, pipeline::jobs::notation(low, high)), count,
                          [=](int index, const std::string& text) { set(index, whole_number_in(text, unit, low, high)); });
   option.parsed->default_str(usual);
   return Option(option);

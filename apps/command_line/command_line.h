@@ -16,11 +16,20 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-
-#include "numbers.h"
+#include "marey/pipeline/jobs/option.h"
 
 // The one door to the library that parses the command line. A subcommand declares its options here, and what runs.
 namespace marey::cli {
+
+using pipeline::jobs::above;
+using pipeline::jobs::closed;
+using pipeline::jobs::Interval;
+using pipeline::jobs::kRates;
+using pipeline::jobs::number_in;
+using pipeline::jobs::number_of;
+using pipeline::jobs::numbers_in;
+using pipeline::jobs::whole_number_in;
+using pipeline::jobs::whole_number_of;
 
 /// The command line asks for what cannot be done: exit code 2, the message is one sentence.
 class WrongUsage : public Error {
@@ -78,7 +87,7 @@ class Command {
 
   /// A number, finite and in `interval`: help and refusals say "UNIT in [LOW, HIGH]".
   Option number(const std::string& name, double& value, const char* unit, const Interval& interval, const std::string& meaning) {
-    return add_number(name, contains(interval, value) ? shown(value) : "", 1, unit, interval, meaning,
+    return add_number(name, pipeline::jobs::contains(interval, value) ? shown(value) : "", 1, unit, interval, meaning,
                       [&value](int, double given) { value = given; });
   }
   Option number(const std::string& name, std::optional<double>& value, const char* unit, const Interval& interval,
@@ -140,6 +149,13 @@ class Command {
   /// is left to the command to find.
   void also_reads(Paths paths);
   void also_writes(Paths paths);
+
+  /// The rows of a job as options of this command, "--name" with their help, unit, domain and default. Rows of several jobs that
+  /// have one name are one option, which sets all of them; `when` states in which case this job runs, if its help differs
+  /// ("with --ground"). What a row needs was declared before. The command keeps the table.
+  pipeline::jobs::Table& rows(pipeline::jobs::Table table, const std::string& when = "");
+  /// What recordings hold as the options that were given, in place of the words of the command line.
+  void records(std::function<std::map<std::string, std::string>()> options);
 
   /// --json and -q,--quiet, which every command has; --markdown if there is a value for it.
   void reports(bool& json, bool& quiet, const std::string& what = "summary", bool* markdown = nullptr);

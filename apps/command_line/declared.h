@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -20,6 +21,7 @@ struct Option::Declared {
   std::vector<Check> checks;
   std::function<std::vector<std::string>()> inputs, outputs;
   const Declared* may_replace = nullptr;
+  std::vector<pipeline::jobs::Option*> rows;  ///< of jobs, which this option sets
 
   void take(const std::string& text, const Check& use) const {
     try {
@@ -39,7 +41,10 @@ struct Command::Declared {
   std::vector<Paths> reads, writes;
   std::function<void()> run;
   const bool* json = nullptr;
+  std::deque<pipeline::jobs::Table> tables;
+  std::function<std::map<std::string, std::string>()> records;
 
+  Option::Declared& declare_row(const pipeline::jobs::Option& row);
   /// An option that is given `count` values, or with 0 any number; `use` is called for each with its index.
   Option::Declared& declare(const std::string& name, const std::string& meaning, const std::string& type, int count,
                             std::function<void(int, const std::string&)> use) {

@@ -124,6 +124,7 @@ const std::set<std::string_view> kOfThisRun{"--threads", "--quiet", "--json"};  
 
 /// What was asked for, by option, but for its files: those are told by name and hash.
 std::map<std::string, std::string> Command::Declared::given() const {
+  if (records) return records();
   std::map<std::string, std::string> texts;
   for (const auto& option : options) {
     if (option->inputs || option->outputs || option->parsed->count() == 0) continue;
@@ -189,6 +190,9 @@ int Program::run(int argc, char** argv) {
     say(error.what());
     code = 2;
   } catch (const WrongUsage& error) {
+    say(error.what());
+    code = 2;
+  } catch (const pipeline::jobs::WrongOption& error) {
     say(error.what());
     code = 2;
   } catch (const format::WrongFormat& error) {

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
+import inspect
+import numbers
 import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
-
-import numpy as np
+from typing import Any, TypeVar, Unpack
 
 from . import _core
 from ._core import Error
@@ -15,6 +16,7 @@ from ._filters import MakeFilter, Maker
 from ._frames import Frames
 from ._instant import Instant, Names
 from ._interop import rows_of_detections
+from ._options import GroundOptions, ReconstructOptions, TrackOptions
 from ._recording import Recording
 from ._rig import Rig
 
@@ -22,6 +24,7 @@ Path = str | os.PathLike[str]
 Detector = Callable[[Any], Any]
 Progress = Callable[[str, int, int | None], None]
 Sink = Callable[[Instant], object] | Path | Any
+_Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 class Warning(UserWarning):
@@ -72,22 +75,79 @@ def _finish(result: tuple[_core.Recording, dict[str, Any]]) -> Recording:
 
 
 def _given(options: Mapping[str, Any]) -> dict[str, Any]:
-    """What was asked for: by name for the core, and in words for the recording, which keeps it as the command line would."""
+    """What was asked for: by name for the core, and as text for the recording."""
     chosen = {name: value for name, value in options.items() if value is not None and value is not False}
-    if callable(own := chosen.get("filter")):
-        maker = Maker(own)
-        return _given({**options, "filter": maker.name}) | {"filter": None, "own_filter": maker}
     said = {name.replace("_", "-"): "true" if value is True else str(value) for name, value in chosen.items()}
     return {**chosen, "given": said}
 
 
-def _camera(source: Path | Frames | np.ndarray[Any, Any] | None, detections: Path | None, detector: Detector | None) -> dict[str, Any]:
+def _text(name: str, value: Any) -> str:
+    """As the command line has it: 2.5, FILE, 105x68 of two numbers, "x,y x,y x,y" of corners."""
+    if value is True:
+        return "true"
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        return repr(float(value))
+    try:
+        if all(isinstance(each, numbers.Real) for each in value):
+            return "x".join(_text(name, each) for each in value)
+        return " ".join(",".join(_text(name, each) for each in corner) for corner in value)
+    except TypeError:
+        raise Error(f"{name}: {value!r} is neither a number nor text nor a path") from None
+
+
+def _rows(job: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """The options of a job by their names, as text; None and False are defaults. A filter of the user's own is an object."""
+    known = [row["name"].replace("-", "_") for row in _core.job_options(job)]
+    rows: dict[str, str] = {}
+    own: dict[str, Any] = {}
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        if name == "filter" and callable(value):
+            maker = Maker(value)
+            own = {"own_filter": maker, "own_filter_name": maker.name}
+            continue
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            raise Error(f"{name} is not an option of this job ({job}); {f'did you mean {near[0]}?' if near else 'help() lists them'}")
+        rows[name.replace("_", "-")] = _text(name, value)
+    return {"rows": rows, **own}
+
+
+def _shows(*jobs: str) -> Callable[[_Function], _Function]:
+    """help() and the signature of a function name the options of its jobs."""
+
+    def show(function: _Function) -> _Function:
+        signature = inspect.signature(function)
+        explicit = {name: parameter for name, parameter in signature.parameters.items() if name != "options"}
+        rows = {row["name"].replace("-", "_"): row for job in jobs for row in _core.job_options(job)}
+        added = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in rows if name not in explicit]
+        function.__signature__ = signature.replace(parameters=[*explicit.values(), *added])  # type: ignore[attr-defined]
+        lines = [f"    {name}: {_described(row)}" for name, row in rows.items()]
+        function.__doc__ = (function.__doc__ or "").rstrip() + "\n\n    Options, as on the command line:\n\n" + "\n".join(lines) + "\n    "
+        return function
+
+    return show
+
+
+def _described(row: Mapping[str, Any]) -> str:
+    unit = f"{row['value']}: " if row["kind"] in ("number", "whole") else ""
+    choices = ": " + ", ".join(row["choices"]) if row["choices"] else ""
+    default = f" (default: {row['default']})" if row["default"] else ""
+    return f"{unit}{row['help']}{choices}{default}"
+
+
+def _camera(source: Path | Frames | None, detections: Path | None, detector: Detector | None) -> dict[str, Any]:
     if (source is None) == (detections is None):
         raise Error("give either a source or detections: what is to be tracked?")
     if detections is not None:
         if detector is not None:
             raise Error("detections come from a file already; leave out the detector")
-        return {"detections": os.fspath(detections)}
+        return {}
     options: dict[str, Any] = {}
     if isinstance(source, (str, os.PathLike)):
         options["source"] = os.fspath(source)
@@ -100,56 +160,57 @@ def _camera(source: Path | Frames | np.ndarray[Any, Any] | None, detections: Pat
     return options
 
 
+_TARGETS: dict[str, tuple[Any, dict[str, Any]]] = {
+    "people": (_core.track_people, {}),
+    "keypoints": (_core.track_people, {"keypoints": True}),
+    "markers": (_core.track_markers, {}),
+}
+
+
+@_shows("track keypoints", "track markers")
 def track(
     source: Path | Frames | None = None,
     *,
     targets: str = "people",
-    detections: Path | None = None,
-    rate: float | None = None,
     filter: str | MakeFilter | None = None,
-    background: str | None = None,
-    outline: bool = False,
-    seen_only: bool = False,
-    labels: Sequence[str] | None = None,
-    threshold: float | None = None,
-    dark: bool = False,
-    colour: str | None = None,
-    fit_noise: bool = False,
-    live: bool = False,
-    delay: float | None = None,
-    detector: Detector | None = None,
+    detector: Path | Detector | None = None,
+    labels: Path | Sequence[str] | None = None,
     sinks: Iterable[Sink] = (),
     keep: bool = True,
     progress: Progress | None = None,
+    **options: Unpack[TrackOptions],
 ) -> Recording:
-    """Follows people, or markers, in what one fixed camera saw: `marey track`.
+    """Tracks people, their body points or markers in a recording of one static camera: `marey track`.
 
-    source: a video file, a folder of pictures, a pattern of names, or `Frames`. targets: "people" or "markers".
-    detections: in place of source, MOT text of another program's boxes. rate: Hz, where the source does not tell it.
-    detector: a function from a picture (H×W×3 uint8, blue first) to supervision's Detections or an array N×4 to N×6 (x1, y1, x2, y2 in px, score in
-        [0, 1], class), in place of background subtraction; people only. What it raises ends the run and comes out as it is.
-    filter: a motion filter by name (`marey track --help` lists them), or a function (z, R, unit) that begins one of your own (`marey.Filter`) at a
-        target's first measurement. What it raises ends the run and comes out as it is.
-    sinks: files to write beside, functions of an `Instant`, or objects with `write(instant)` and, if they like, `begin(header)`, `finish()` and
+    source: a video file, a folder of images, a pattern of names, or `Frames`; or detections in place of it. targets: "people", "keypoints" or
+        "markers".
+    detector: the file of a detection network, or a function from an image (H×W×3 uint8, blue first) to supervision's Detections or an array N×4 to N×6
+        (x1, y1, x2, y2 in px, score in [0, 1], class), in place of background subtraction; not of markers. An exception of it ends the run and is raised.
+    filter: a motion filter by name, or a function (z, R, unit) that begins one of your own (`marey.Filter`) at a target's first measurement. An
+        exception of it ends the run and is raised.
+    labels: of markers, a file or names, from left to right in the first frame.
+    sinks: files to write, functions of an `Instant`, or objects with `write(instant)` and, optionally, `begin(header)`, `finish()` and
         `pictures = True`. They are called on threads of the run, one call at a time each.
-    labels: of markers, from left to right in the first frame. threshold: grey level that markers pass. colour: their hue in degrees, "120" or
-        "120+-15". live: nothing is improved by what came later; delay: s that it may look ahead.
     keep: False for a run into sinks alone: the recording that is returned is empty, and memory does not grow with a live one.
     progress: called now and then with (step, done, total or None).
 
-    Returns a Recording in px. Raises marey.Error where the source cannot be read or a sink cannot be written, KeyboardInterrupt.
+    Returns a Recording in px. Raises marey.Error if the source cannot be read or a sink cannot be written, KeyboardInterrupt.
     """
-    options = _camera(source, detections, detector) | _sinks(sinks) | {"keep": keep}
-    shared = {"filter": filter, "live": live, "rate": rate}
-    if targets == "markers":
-        if detector is not None or detections is not None:
-            raise Error("a detector and detections bring boxes, not markers")
-        given = _given({"targets": targets, **shared, "threshold": threshold, "dark": dark, "colour": colour, "fit_noise": fit_noise})
-        return _finish(_core.track_markers(options | given | {"labels": list(labels or []), "progress": progress}))
-    if targets != "people":
-        raise Error(f'targets is "{targets}"; known are people and markers')
-    given = _given({**shared, "background": background, "outline": outline, "seen_only": seen_only, "delay": delay})
-    return _finish(_core.track_people(options | given | {"progress": progress}))
+    if targets not in _TARGETS:
+        raise Error(f'targets is "{targets}"; use one of people, keypoints, markers')
+    run, objects = _TARGETS[targets]
+    rows: dict[str, Any] = {**options, "filter": filter}
+    if isinstance(detector, (str, os.PathLike)):
+        rows["detector"] = detector
+        detector = None
+    if detector is not None and targets == "markers":
+        raise Error("a detector brings boxes, not markers")
+    if isinstance(labels, (str, os.PathLike)) or labels is None:
+        rows["labels"] = labels
+    else:
+        objects = {**objects, "label_names": list(labels)}
+    given = _camera(source, options.get("detections"), detector) | _sinks(sinks) | {"keep": keep, "progress": progress}
+    return _finish(run(given | objects | _rows(f"track {targets}", rows)))
 
 
 def _rig(rig: Path | Rig | None) -> dict[str, Any]:
@@ -162,97 +223,61 @@ def _sources(sources: Mapping[str, Path] | None) -> list[str]:
     return [f"{camera}={os.fspath(path)}" for camera, path in (sources or {}).items()]
 
 
+@_shows("track ground")
 def track_ground(
     rig: Path | Rig,
     *,
     sources: Mapping[str, Path] | None = None,
-    rate: float | None = None,
     pitch: tuple[float, float] | None = None,
-    area: Sequence[tuple[float, float]] | None = None,
-    margin: float | None = None,
-    teams: str | None = None,
-    ball: bool = False,
-    steady: bool = False,
-    associate: str | None = None,
     filter: str | MakeFilter | None = None,
-    background: str | None = None,
-    live: bool = False,
     sinks: Iterable[Sink] = (),
     progress: Progress | None = None,
+    **options: Unpack[GroundOptions],
 ) -> Recording:
-    """Follows everybody on the ground that a rig's cameras look at, under one identity: `marey track --ground`.
+    """Tracks people on the ground that the cameras of a rig face, with one identity in all of them: `marey track --ground`.
 
-    rig: a rig file, or a Rig (PTZ cameras need the file). sources: {camera: file} in place of the rig's own. pitch: length and width in m,
-    (105, 68), or area: corners [(x, y), ...] in m; only people on it, and `margin` m round it, count. ball: track the ball too. steady: stabilise
-    cameras that shake. teams: "white,blue" or "City=white,United=blue". associate: "gnn", "jpda", "mht" or "bramble". The rest as in `track`.
+    rig: a rig file, or a Rig (PTZ cameras need the file). sources: {camera: file} in place of the rig's own. pitch: the size of the pitch. Sizes are
+    (length, width) in m, areas [(x, y), ...]. filter, sinks, progress: as in `track`.
 
-    Returns a Recording in m on the ground, in the coordinates of the rig's user. Raises marey.Error where a camera is not calibrated or cannot be
-    read, KeyboardInterrupt.
+    Returns a Recording in m on the ground, in the coordinates of the rig's user. Raises marey.Error if a camera is not calibrated or cannot be read,
+    KeyboardInterrupt.
     """
-    given = _given(
-        {
-            "margin": margin,
-            "teams": teams,
-            "associate": associate,
-            "filter": filter,
-            "background": background,
-            "live": live,
-            "rate": rate,
-            "ball": ball,
-            "steady": steady,
-        }
-    )
-    options = _rig(rig) | _sinks(sinks) | given | {"sources": _sources(sources), "progress": progress}
-    if area is not None:
-        options["area"] = [[float(x), float(y)] for x, y in area]
+    rows: dict[str, Any] = {**options, "filter": filter}
     if pitch is not None:
-        options["pitch"] = [float(pitch[0]), float(pitch[1])]
-    return _finish(_core.track_ground(options))
+        rows["size"] = pitch
+    given = _rig(rig) | _sinks(sinks) | {"sources": _sources(sources), "progress": progress}
+    return _finish(_core.track_ground(given | _rows("track ground", rows)))
 
 
+@_shows("reconstruct markers", "reconstruct keypoints")
 def reconstruct(
     rig: Path | Rig | None = None,
     *,
+    targets: str = "markers",
     observations: Path | None = None,
     sources: Mapping[str, Path] | None = None,
-    labels: Path | None = None,
-    rate: float | None = None,
-    noise: float | None = None,
-    fill: float | None = None,
-    predict: float | None = None,
-    marker_width: float | None = None,
-    max_speed: float | None = None,
     filter: MakeFilter | None = None,
-    threshold: float | None = None,
-    dark: bool = False,
     sinks: Iterable[Sink] = (),
     progress: Progress | None = None,
+    **options: Unpack[ReconstructOptions],
 ) -> Recording:
-    """Places and follows the markers that several calibrated cameras see: `marey reconstruct`.
+    """Reconstructs and tracks the markers, or people's body keypoints, that several calibrated cameras observe: `marey reconstruct`.
 
-    rig: a rig file, or a Rig; may be left out where observations name the cameras. observations: blobs that another program found, a CSV with
-    camera,frame,x,y[,marker]. labels: CSV label,x,y,z (m), or a name a line. noise: px. fill, predict: s. marker_width: m. max_speed: m/s.
-    filter: a function that begins a motion filter of your own, as in `track`.
+    rig: a rig file, or a Rig; may be left out if observations name the cameras. targets: "markers" or "keypoints"; of keypoints each camera's source
+    names a file or folder of them. observations: blobs of another program, a CSV with camera,frame,x,y[,marker]. sources: {camera: file} in place of
+    the rig's own. filter: a function that begins a motion filter of your own. sinks, progress: as in `track`.
 
-    Returns a Recording in m, z up. Raises marey.Error where an input cannot be read, KeyboardInterrupt.
+    Returns a Recording in m, z up. Raises marey.Error if an input cannot be read, KeyboardInterrupt.
     """
-    given = _given(
-        {
-            "rate": rate,
-            "noise": noise,
-            "fill": fill,
-            "predict": predict,
-            "marker_width": marker_width,
-            "max_speed": max_speed,
-            "filter": filter,
-            "threshold": threshold,
-            "dark": dark,
-        }
-    )
-    options = _rig(rig) | _sinks(sinks) | given | {"sources": _sources(sources), "progress": progress}
-    options |= {"observations": os.fspath(observations) if observations is not None else None}
-    options |= {"labels": os.fspath(labels) if labels is not None else None}
-    return _finish(_core.reconstruct(options))
+    if targets not in ("markers", "keypoints"):
+        raise Error(f'targets is "{targets}"; use one of markers, keypoints')
+    given = _rig(rig) | _sinks(sinks) | {"sources": _sources(sources), "progress": progress}
+    given |= {"observations": os.fspath(observations) if observations is not None else None}
+    if targets == "keypoints":
+        if observations is not None or filter is not None:
+            raise Error("observations and a filter are of markers; remove them")
+        return _finish(_core.reconstruct_keypoints(given | _rows("reconstruct keypoints", options)))
+    return _finish(_core.reconstruct(given | _rows("reconstruct markers", {**options, "filter": filter})))
 
 
 def threads(count: int) -> None:

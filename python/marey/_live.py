@@ -13,7 +13,7 @@ from . import _core
 from ._core import Error
 from ._frames import Frames
 from ._instant import Instant
-from ._jobs import Path, Sink, Warning, _rig, _sinks, track
+from ._jobs import Path, Sink, Warning, _rig, _rows, _shows, _sinks, track
 from ._rig import Rig
 
 _KEPT = 8  # moments that wait for who iterates
@@ -23,55 +23,36 @@ class _Left(Exception):
     """The loop over the moments was left."""
 
 
+@_shows("live")
 def live(
     source: Path | Frames | Rig | Sequence[str],
     *,
     targets: str | None = None,
-    ground: bool = False,
-    labels: Path | None = None,
-    threshold: float | None = None,
-    dark: bool = False,
-    background: str | None = None,
-    patience: float | None = None,
     take: Path | None = None,
     sinks: Iterable[Sink] = (),
     **options: Any,
 ) -> Iterator[Instant]:
-    """Who is where, moment by moment, as it comes: `for instant in marey.live("rig.toml")`. The run ends when the loop is left.
+    """People or markers, one instant after the other, while cameras observe them: `for instant in marey.live("rig.toml")`. The run ends with the loop.
 
     source: a rig file or Rig whose cameras are live, or live sources alone, each a camera ("v4l2:/dev/video0", "rtsp://…",
-        "sim://room?cameras=4"): `marey live`. The newest moment wins: where the loop is slow, moments are left out, as their `index` shows.
-        Or one film, or Frames: what `track` does with `live=True`, and its options; there nothing is left out, the run waits for the loop.
-    targets: "markers" or "people"; usual are markers of live cameras, people of one film. ground: people, where they stand on the ground that a
-        rig's cameras look at. labels: a file of the markers' names. threshold: grey level that markers pass. dark: markers are dark.
-        background: how people are told from it. patience: s that cameras are waited for at the beginning. take: NAME.marey, written as it grows.
-    sinks: functions or objects, as in `track`; of live cameras no files: name a take. One that raises is closed, which a `marey.Warning` says at
-        the end, and the run goes on.
+        "sim://room?cameras=4"): `marey live`. If the loop is slow, instants are left out, as their `index` shows.
+        Or one video, or Frames: `track` with `live=True`, and its options; there nothing is left out, the run waits for the loop.
+    targets: "markers" or "people"; default: markers of live cameras, people of one video. take: NAME.marey, written as it grows.
+    sinks: functions or objects, as in `track`; of live cameras no files: name a take. One that raises is closed, which a `marey.Warning` states at
+        the end, and the run continues.
 
-    Raises what `track` raises, and marey.Error where no camera gave anything.
+    Raises what `track` raises, and marey.Error if no camera delivered a frame.
     """
     cameras = _live_cameras(source)
     if cameras is None:
-        chosen = {"labels": labels, "threshold": threshold, "dark": dark or None, "background": background, "targets": targets}
-        if ground or take is not None or patience is not None:
-            raise Error("ground, take and patience are for live cameras: a rig, or sources such as v4l2:/dev/video0")
-        options |= {name: value for name, value in chosen.items() if value is not None}
+        if take is not None or {"ground", "patience", "late", "preroll"} & options.keys():
+            raise Error("ground, take, late, preroll and patience are for live cameras: a rig, or sources such as v4l2:/dev/video0")
+        if targets is not None:
+            options["targets"] = targets
         return _moments(lambda put, ends: _follow_film(source, put, sinks, options), waits=True)
-    if options:
-        raise Error(f"live cameras take no {', '.join(sorted(options))}")
     if targets not in (None, "markers", "people"):
-        raise Error(f'targets is "{targets}"; known are people and markers')
-    given = {
-        "people": ground or targets == "people",
-        "ground": ground,
-        "labels": None if labels is None else os.fspath(labels),
-        "threshold": threshold,
-        "dark": dark,
-        "background": background,
-        "patience": patience,
-        "take": None if take is None else os.fspath(take),
-        "keep": False,
-    }
+        raise Error(f'targets is "{targets}"; use one of people, markers')
+    given = _rows("live", options) | {"people": targets == "people", "take": None if take is None else os.fspath(take), "keep": False}
     return _moments(lambda put, ends: _follow_cameras(cameras | given, put, ends, sinks), waits=False)
 
 

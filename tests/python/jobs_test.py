@@ -91,9 +91,16 @@ class Jobs(SimulatedFilm):
             (lambda: marey.track(self.pictures), "wrap pictures: marey.Frames"),
             (lambda: marey.track("nothing.mp4"), "nothing.mp4: no such file"),
             (lambda: marey.track(), "what is to be tracked?"),
-            (lambda: marey.track(self.film, targets="cars"), "known are people and markers"),
-            (lambda: marey.track(self.film, filter="imn"), "imn"),
-            (lambda: marey.track(self.film, rate=-1), "it must be positive"),
+            (lambda: marey.track(self.film, targets="cars"), "use one of people, keypoints, markers"),
+            (lambda: marey.track(self.film, filter="imn"), 'filter: filter "imn" is not known'),
+            (lambda: marey.track(self.film, seen_onyl=True), "did you mean seen_only?"),
+            (lambda: marey.track(self.film, associate="mht"), "associate is not an option of this job (track people)"),
+            (lambda: marey.track(self.film, delay=1), "delay 1: is an option of live"),
+            (lambda: marey.track(self.film, order=3), "order requires outline"),
+            (lambda: marey.track(self.film, plot="plot.png"), "name a file that ends in .svg"),
+            (lambda: marey.track(self.film, rate=[1, 2]), 'rate: "1x2" is no number'),
+            (lambda: marey.track(self.film, plot=object()), "is neither a number nor text nor a path"),
+            (lambda: marey.track(self.film, rate=-1), "rate: -1 is out of range; give Hz in"),
             (lambda: marey.track(self.film, sinks=["tracks.xyz"]), "xyz"),
             (lambda: marey.track(self.film, sinks=["/nowhere/tracks.txt"]), "/nowhere/tracks.txt"),
             (lambda: marey.track(self.film, sinks=[3]), "3 is no sink"),
@@ -158,6 +165,14 @@ class Jobs(SimulatedFilm):
         done = subprocess.run([self.interpreter(), "-c", program], capture_output=True, text=True, timeout=60)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_signatures_name_the_options(self):
+        import inspect
+
+        for function, option in ((marey.track, "seen_only"), (marey.track, "model"), (marey.track_ground, "ball"), (marey.reconstruct, "no_offsets"), (marey.live, "late")):
+            self.assertIn(option, inspect.signature(function).parameters)
+            self.assertIn(f"    {option}: ", function.__doc__)
+        self.assertNotIn("options", inspect.signature(marey.track).parameters)
+
     # ---- markers, the ground, space
 
     def test_markers(self):
@@ -177,20 +192,6 @@ class Jobs(SimulatedFilm):
             warnings.simplefilter("ignore", marey.Warning)
             people = marey.track_ground(rig, sinks=[self.folder / "python_ground.csv"])
         self.assertEqual((self.folder / "python_ground.csv").read_bytes(), (self.folder / "ground.csv").read_bytes())
-        for options, keywords in (
-            (["--filter", "kalman"], {"filter": "kalman"}),
-            (["--associate", "jpda"], {"associate": "jpda"}),
-            (["--live"], {"live": True}),
-            (["--size", "100x60", "--margin", "1"], {"pitch": (100, 60), "margin": 1}),
-            (["--area", "10,5 90,5 50,60"], {"area": [(10, 5), (90, 5), (50, 60)]}),
-            (["--area", "10,5 90,5 50,60", "--live", "--filter", "imm"], {"area": [(10, 5), (90, 5), (50, 60)], "live": True, "filter": "imm"}),
-            (["--filter", "kalman", "--associate", "gnn"], {"filter": "kalman", "associate": "gnn"}),
-        ):
-            with self.subTest(options=options), warnings.catch_warnings():
-                warnings.simplefilter("ignore", marey.Warning)
-                command("track", rig, "--ground", *options, "-o", "ground.csv", "-q", cwd=self.folder)
-                marey.track_ground(rig, sinks=[self.folder / "python_ground.csv"], **keywords)
-                self.assertEqual((self.folder / "python_ground.csv").read_bytes(), (self.folder / "ground.csv").read_bytes())
         self.assertEqual(people.dimensions, 2)
         scores = marey.evaluate(self.folder / "match" / "truth.csv", people, distance=2)
         self.assertGreater(scores.recall, 0.8)

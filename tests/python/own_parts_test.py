@@ -155,7 +155,7 @@ class OwnParts(SimulatedFilm):
         for wrong, said in [
             (lambda: marey.live("sim://room?colour=red"), "no option"),
             (lambda: marey.live(room, targets="cars"), 'targets is "cars"'),
-            (lambda: marey.live(room, filter="imm"), "live cameras take no filter"),
+            (lambda: marey.live(room, filter="imm"), "filter is not an option of this job (live)"),
             (lambda: marey.live(room, sinks=["out.csv"]), "no files but a take"),
             (lambda: marey.live(self.film, ground=True), "for live cameras"),
         ]:

@@ -12,19 +12,20 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
-KeypointSequence sequence_of(const RigCamera& camera, const std::string& path, const std::string& set, const FindInImages& find) {
+KeypointSequence sequence_of(const RigCamera& camera, const std::string& path, const std::string& set, const FindInImages& find,
+                             const Hooks& hooks) {
   if (format::keypoints::may_hold_keypoints(path)) return format::keypoints::read_keypoints(path, set);
   if (path.ends_with(".marey")) return keypoints_of_take(path);
-  if (find && camera.detections.empty()) return find(camera);
+  if (find && camera.detections.empty()) return find(camera, hooks);
   throw Error("{}: camera \"{}\" needs a video, or keypoints: a folder of OpenPose, a .json or .csv file, or a take", path, camera.name);
 }
 
-void read_camera(RigCamera& camera, const std::string& set, std::optional<double> rate_hz, const FindInImages& find,
+void read_camera(RigCamera& camera, const std::string& set, std::optional<double> rate_hz, const FindInImages& find, const Hooks& hooks,
                  std::optional<KeypointCamera>& into, std::vector<std::string>& warnings, bool& assumed) {
   const std::string path = keypoint_file_of(camera);
   if (path.empty() || !camera.camera()) return;
   KeypointCamera read{
-      .sequence = sequence_of(camera, path, set, find), .rate_hz = 0, .offset_s = camera.offset_s.value_or(0)};
+      .sequence = sequence_of(camera, path, set, find, hooks), .rate_hz = 0, .offset_s = camera.offset_s.value_or(0)};
   if (read.sequence.size) fit_to_size(camera, *read.sequence.size);
   const auto rate = camera.rate_hz ? camera.rate_hz : rate_hz ? rate_hz : read.sequence.rate_hz;
   assumed |= !rate;
@@ -57,12 +58,13 @@ std::string keypoint_file_of(const RigCamera& camera) {
 }
 
 std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const std::string& set, std::optional<double> rate_hz,
-                                                                 const FindInImages& find, std::vector<std::string>& warnings) {
+                                                                 const FindInImages& find, const Hooks& hooks,
+                                                                 std::vector<std::string>& warnings) {
   std::vector<std::optional<KeypointCamera>> cameras(rig.cameras.size());
   bool assumed = false;
   std::vector<const KeypointSequence*> read;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
-    read_camera(rig.cameras[c], set, rate_hz, find, cameras[c], warnings, assumed);
+    read_camera(rig.cameras[c], set, rate_hz, find, hooks, cameras[c], warnings, assumed);
     if (cameras[c] && !cameras[c]->sequence.frames.empty()) read.push_back(&cameras[c]->sequence);
   }
   check_together(read, warnings);

@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/hooks.h"
 #include "marey/core/rig.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 
 namespace marey::pipeline::keypoints {
 
 /// Finds the keypoints in a camera's images: its `source` is a video or a folder of images.
-using FindInImages = std::function<KeypointSequence(const RigCamera&)>;
+using FindInImages = std::function<KeypointSequence(const RigCamera&, const Hooks&)>;
 
 /// Where a camera's keypoints are: its `detections`, else its `source`.
 std::string keypoint_file_of(const RigCamera& camera);
@@ -21,6 +22,7 @@ std::string keypoint_file_of(const RigCamera& camera);
 /// `find`, if there is one. Throws Error if a file cannot be read, fewer than two calibrated cameras have keypoints, or keypoint sets
 /// differ.
 std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const std::string& set, std::optional<double> rate_hz,
-                                                                 const FindInImages& find, std::vector<std::string>& warnings);
+                                                                 const FindInImages& find, const Hooks& hooks,
+                                                                 std::vector<std::string>& warnings);
 
 }  // namespace marey::pipeline::keypoints

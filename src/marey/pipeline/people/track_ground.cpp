@@ -39,6 +39,10 @@ CameraId id_of(const Rig& rig, const std::string& name) {
   return CameraId{static_cast<int>(&camera_named(copy, name) - copy.cameras.data())};
 }
 
+std::string overlay_of(const GroundOutput& output, const RigCamera& camera) {
+  return (fs::path(output.overlays) / (camera.name + ".mp4")).string();
+}
+
 void add_films(corridor::Sinks& sinks, const GroundOutput& output, const std::vector<corridor::Feed>& feeds) {
   fs::create_directories(output.overlays);
   for (const corridor::Feed& feed : feeds) {
@@ -49,15 +53,17 @@ void add_films(corridor::Sinks& sinks, const GroundOutput& output, const std::ve
                                        .rate_hz = feed.info().rate_hz,
                                        .sound_of = feed.sound_source(),
                                        .offset = duration_from_seconds(camera.offset_s.value_or(0))};
-    sinks.add(std::make_unique<draw::OverlayFilm>((fs::path(output.overlays) / (camera.name + ".mp4")).string(), view,
-                                                  draw::OverlayOptions{.trail_of_centres = true}));
+    sinks.add(
+        std::make_unique<draw::OverlayFilm>(overlay_of(output, camera), view, draw::OverlayOptions{.trail_of_centres = true}));
   }
 }
 
 corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options,
                          const std::vector<corridor::Feed>& feeds) {
   corridor::Sinks sinks;
-  if (output.tracks.ends_with(".marey")) {
+  if (output.tracks.empty()) {
+    // the caller's alone
+  } else if (output.tracks.ends_with(".marey")) {
     sinks.add(std::make_unique<format::take::TakeWriter>(output.tracks));
   } else if (output.boxes_of.empty()) {
     sinks.add(std::make_unique<format::match::GroundWriter>(output.tracks));
@@ -96,14 +102,14 @@ std::vector<corridor::Feed> open_steadied(const Rig& rig, const PeopleOnGroundOp
   return feeds;
 }
 
-/// Sinks of files need the feeds, to know what to draw into; a caller's are there already.
-using SinksFor = std::function<corridor::Sinks&(const Rig& rig, const std::vector<corridor::Feed>& feeds)>;
+/// Sinks of files need the feeds, to know what to draw into.
+using SinksFor = std::function<corridor::Sinks(const Rig& rig, const std::vector<corridor::Feed>& feeds)>;
 
 GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
   std::vector<corridor::SteadyCamera> steady;
   std::vector<corridor::Feed> feeds =
       options.steady ? open_steadied(rig, options, steady) : corridor::open_feeds(rig, {.rate_hz = options.rate_hz});
-  corridor::Sinks& sinks = sinks_for(rig, feeds);
+  corridor::Sinks sinks = sinks_for(rig, feeds);
   const bool pictures = std::any_of(feeds.begin(), feeds.end(), [](const corridor::Feed& feed) { return feed.has_pictures(); });
   PeopleOnGroundOptions own = options;
   own.steady =
@@ -141,20 +147,26 @@ GroundSummary track_timed(const Rig& rig, const SinksFor& sinks_for, const Peopl
 }  // namespace
 
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options, const Hooks& hooks) {
-  const StopScope scope(hooks.stop);
-  check(rig, output, options);
-  corridor::Sinks sinks;
-  const auto to_files = [&](const Rig& timed, const std::vector<corridor::Feed>& feeds) -> corridor::Sinks& {
-    return sinks = sinks_of(timed, output, options, feeds);
-  };
-  return track_timed(rig, to_files, options, hooks);
+  return track_ground(rig, output, {}, options, hooks);
 }
 
-GroundSummary track_ground(const Rig& rig, corridor::Sinks& sinks, const PeopleOnGroundOptions& options, const Hooks& hooks) {
+GroundSummary track_ground(const Rig& rig, const GroundOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
+                           const PeopleOnGroundOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
-  check(rig, {}, options);
-  return track_timed(
-      rig, [&](const Rig&, const std::vector<corridor::Feed>&) -> corridor::Sinks& { return sinks; }, options, hooks);
+  check(rig, output, options);
+  const auto sinks_for = [&](const Rig& timed, const std::vector<corridor::Feed>& feeds) {
+    corridor::Sinks sinks = sinks_of(timed, output, options, feeds);
+    for (std::unique_ptr<Sink>& sink : own_sinks) sinks.add(std::move(sink));
+    return sinks;
+  };
+  return track_timed(rig, sinks_for, options, hooks);
+}
+
+std::vector<std::string> overlays_of(const Rig& rig, const GroundOutput& output) {
+  std::vector<std::string> files;
+  if (output.overlays.empty()) return files;
+  for (const RigCamera& camera : rig.cameras) files.push_back(overlay_of(output, camera));
+  return files;
 }
 
 }  // namespace marey::pipeline::people

@@ -1,6 +1,7 @@
 // The job from a rig's cameras to everybody on the ground.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,10 @@ namespace marey::pipeline::people {
 
 /// Where the results go; what is empty is not made.
 struct GroundOutput {
-  std::string tracks;      ///< a take (.marey), else CSV as format/match/ground_file.h has it, unless `boxes_of` names a camera
-  std::string boxes_of;    ///< a camera: `tracks` then is MOT text, the boxes in that view by that camera's own frames
-  std::string overlays;    ///< a folder: <camera>.mp4, a film of each camera that has pictures
-  std::string pitch_view;  ///< a film of the ground from above
+  std::string tracks = {};    ///< a take (.marey), else CSV as format/match/ground_file.h has it, unless `boxes_of` names a camera
+  std::string boxes_of = {};  ///< a camera: `tracks` then is MOT text, the boxes in that view by that camera's own frames
+  std::string overlays = {};  ///< a folder: <camera>.mp4, a film of each camera that has pictures
+  std::string pitch_view = {};  ///< a film of the ground from above
 };
 
 struct GroundSummary : corridor::Summary {
@@ -29,8 +30,11 @@ struct GroundSummary : corridor::Summary {
 /// behind.
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options = {},
                            const Hooks& hooks = {});
-/// The same, into sinks of the caller's.
-GroundSummary track_ground(const Rig& rig, corridor::Sinks& sinks, const PeopleOnGroundOptions& options = {},
-                           const Hooks& hooks = {});
+/// The same, into `sinks` besides `output`, whose `tracks` may be empty.
+GroundSummary track_ground(const Rig& rig, const GroundOutput& output, std::vector<std::unique_ptr<Sink>> sinks,
+                           const PeopleOnGroundOptions& options, const Hooks& hooks);
+
+/// The files in `output.overlays`; none if it is empty.
+std::vector<std::string> overlays_of(const Rig& rig, const GroundOutput& output);
 
 }  // namespace marey::pipeline::people

@@ -18,16 +18,23 @@
 namespace marey::pipeline::people {
 namespace {
 
-corridor::Feed open(const RigCamera& camera, const corridor::FeedOptions& options = {}) {
+corridor::Feed open(const ImageFeed& given, const corridor::FeedOptions& options) {
+  const RigCamera& camera = given.camera;
   if (camera.source.empty() == camera.detections.empty()) throw Error("{}", "give either pictures or detections to track");
   if (camera.rate_hz && !(*camera.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", *camera.rate_hz);
-  return corridor::Feed(camera, CameraId{}, options);
+  corridor::Feed feed(camera, CameraId{}, options);
+  if (given.detector) feed.find(given.detector());
+  return feed;
 }
 
-corridor::Sinks sinks_of(const TrackOutput& output, const corridor::Feed& feed, const draw::OverlayOptions& drawn) {
+corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own, const corridor::Feed& feed,
+                         const draw::OverlayOptions& drawn) {
   corridor::Sinks sinks;
-  const format::Format& format = format::format_to_write(output.tracks, output.format, format::Content::image);
-  sinks.add(format::create_recording(output.tracks, format));
+  for (std::unique_ptr<Sink>& sink : own) sinks.add(std::move(sink));
+  if (!output.tracks.empty()) {
+    const format::Format& format = format::format_to_write(output.tracks, output.format, format::Content::image);
+    sinks.add(format::create_recording(output.tracks, format));
+  }
   if (!output.plot.empty()) sinks.add(std::make_unique<draw::PlotFile>(output.plot));
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
@@ -48,14 +55,19 @@ corridor::Summary run_alone(corridor::Feed feed, corridor::Stage& stage, corrido
 
 corridor::Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options,
                                const Hooks& hooks) {
+  return track_people(ImageFeed{.camera = camera}, output, {}, options, hooks);
+}
+
+corridor::Summary track_people(const ImageFeed& given, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
+                               const PeopleInPictureOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   if (!options.masks.empty()) draw::MaskFolder::require_free(options.masks);  // before anything that takes long
   std::optional<corridor::SteadyCamera> steady;
-  if (options.steady) steady.emplace(camera, corridor::FeedOptions{}, options.live);
-  corridor::Feed feed = open(camera, steady ? steady->feed_options() : corridor::FeedOptions{});
-  corridor::Sinks sinks = sinks_of(output, feed, {.trail_of_centres = options.outlines.has_value()});
+  if (options.steady) steady.emplace(given.camera, given.how, options.live);
+  corridor::Feed feed = open(given, steady ? steady->feed_options() : given.how);
+  corridor::Sinks sinks = sinks_of(output, std::move(own_sinks), feed, {.trail_of_centres = options.outlines.has_value()});
   PeopleInPictureOptions own = options;
-  own.beside = output.tracks;
+  if (!output.tracks.empty()) own.beside = output.tracks;
   own.steady = steady && steady->steadies();
   own.with_lines = !output.overlay.empty();
   const auto stage = people_in_picture(feed, own);
@@ -80,9 +92,14 @@ KeypointSequence find_keypoints(const RigCamera& camera, const PeopleInPictureOp
 
 corridor::Summary track_markers(const RigCamera& camera, const TrackOutput& output, const markers::MarkersInPictureOptions& options,
                                 const Hooks& hooks) {
+  return track_markers(ImageFeed{.camera = camera}, output, {}, options, hooks);
+}
+
+corridor::Summary track_markers(const ImageFeed& given, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
+                                const markers::MarkersInPictureOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
-  corridor::Feed feed = open(camera);
-  corridor::Sinks sinks = sinks_of(output, feed, {});
+  corridor::Feed feed = open(given, given.how);
+  corridor::Sinks sinks = sinks_of(output, std::move(own_sinks), feed, {});
   const auto stage = markers::markers_in_picture(feed, options);
   return run_alone(std::move(feed), *stage, sinks, hooks);
 }

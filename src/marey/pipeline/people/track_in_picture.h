@@ -1,6 +1,8 @@
 // The two jobs of one camera's pictures, from its file to the user's files.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,20 @@ KeypointSequence find_keypoints(const RigCamera& camera, const PeopleInPictureOp
 /// Follows markers through a recording under the names they have in its first frame. Throws likewise, and where labels do not fit.
 corridor::Summary track_markers(const RigCamera& camera, const TrackOutput& output,
                                 const markers::MarkersInPictureOptions& options = {}, const Hooks& hooks = {});
+
+/// Images of one camera that another program may hold.
+struct ImageFeed {
+  RigCamera camera;
+  corridor::FeedOptions how = {};
+  std::function<std::unique_ptr<detect::Detector>()> detector = {};  ///< another program's, of people; empty: none
+};
+
+/// The same, into `sinks` besides `output`, whose `tracks` may be empty. Outlines that wait for the second pass then are in a file
+/// next to `options.beside`.
+corridor::Summary track_people(const ImageFeed& feed, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> sinks,
+                               const PeopleInPictureOptions& options, const Hooks& hooks);
+corridor::Summary track_markers(const ImageFeed& feed, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> sinks,
+                                const markers::MarkersInPictureOptions& options, const Hooks& hooks);
 
 /// Names from a text file, one a line; blank lines do not count. Throws Error where it cannot be read, holds no name, or one twice.
 std::vector<std::string> read_labels(const std::string& path);

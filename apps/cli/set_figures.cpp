@@ -1,34 +1,12 @@
-#include "set_option.h"
+#include "set_figures.h"
 
-#include <algorithm>
 #include <cstdio>
 
 #include <fmt/core.h>
 
-#include "marey/core/error.h"
-#include "marey/format/bodies/label_set_file.h"
-
 #include "summary_figures.h"
 
 namespace marey::cli {
-
-void add_set_option(Command& command, std::string& set) {
-  command.input_file("--set", set, "name the markers, frame by frame, by a set that \"marey label learn\" made: set.toml");
-}
-
-std::shared_ptr<const LearnedMarkers> learned_set_of(const std::string& path, const Skeleton* skeleton) {
-  if (path.empty()) return nullptr;
-  auto set = std::make_shared<const LearnedMarkers>(format::bodies::read_label_set(path));
-  if (skeleton == nullptr) return set;
-  const auto is_marker = [&](const std::string& label) {
-    return std::any_of(skeleton->markers.begin(), skeleton->markers.end(),
-                       [&](const SkeletonMarker& marker) { return marker.label == label; });
-  };
-  if (std::none_of(set->labels.begin(), set->labels.end(), is_marker))
-    throw Error("{}: none of its names is a marker of the skeleton {}: the set has {} …, the skeleton {} …", path, skeleton->name,
-                set->labels.front(), skeleton->markers.front().label);
-  return set;
-}
 
 void add_set_figures(const pipeline::corridor::Summary& summary, Json& json) {
   if (!summary.figures.contains("set_points")) return;

@@ -6,7 +6,16 @@
 #include <string_view>
 #include <vector>
 
-namespace marey::cli {
+#include "marey/core/error.h"
+
+namespace marey::pipeline::jobs {
+
+/// A text that an option does not take, or options that exclude each other: wrong usage, not a failure of the outside world.
+/// Options are spelled as on the command line ("--seen-only"); a front end that spells them otherwise replaces that.
+class WrongOption : public Error {
+ public:
+  using Error::Error;
+};
 
 /// The numbers that an option takes; both ends are finite, so that a number in it is.
 struct Interval {
@@ -21,8 +30,8 @@ constexpr Interval above(double low, double high) {
   return {low, high, true};
 }
 
-/// Frames a second of any recording.
-constexpr Interval kRates = closed(0.001, 1e6);
+/// Frame rates of any recording, Hz.
+inline constexpr Interval kRates = closed(0.001, 1e6);
 
 bool contains(const Interval& interval, double value);
 
@@ -36,11 +45,11 @@ std::optional<double> number_of(std::string_view text);
 /// The whole of `text` as a whole number of 64 bits; nothing where it is none.
 std::optional<std::int64_t> whole_number_of(std::string_view text);
 
-/// A number with its unit. Throws WrongUsage, which says what `text` should have been.
+/// A number with its unit. Throws WrongOption, which states what `text` should be.
 double number_in(std::string_view text, std::string_view unit, const Interval& interval);
 std::int64_t whole_number_in(std::string_view text, std::string_view unit, std::int64_t low, std::int64_t high);
 
-/// Numbers with `separator` between them, each in `interval`. Throws WrongUsage, which says `form`: what should have been written.
+/// Numbers with `separator` between them, each in `interval`. Throws WrongOption, which states the expected `form`.
 std::vector<double> numbers_in(std::string_view text, char separator, const Interval& interval, std::string_view form);
 
-}  // namespace marey::cli
+}  // namespace marey::pipeline::jobs

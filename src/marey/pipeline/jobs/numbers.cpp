@@ -1,4 +1,4 @@
-#include "numbers.h"
+#include "marey/pipeline/jobs/numbers.h"
 
 #include <charconv>
 #include <cmath>
@@ -6,9 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "command_line.h"
-
-namespace marey::cli {
+namespace marey::pipeline::jobs {
 namespace {
 
 template <typename T>
@@ -54,15 +52,15 @@ std::optional<std::int64_t> whole_number_of(std::string_view text) {
 
 double number_in(std::string_view text, std::string_view unit, const Interval& interval) {
   const auto value = number_of(text);
-  if (!value) throw WrongUsage("\"{}\" is no number; give {} in {}", text, unit, notation(interval));
-  if (!contains(interval, *value)) throw WrongUsage("{} is out of range; give {} in {}", text, unit, notation(interval));
+  if (!value) throw WrongOption("\"{}\" is no number; give {} in {}", text, unit, notation(interval));
+  if (!contains(interval, *value)) throw WrongOption("{} is out of range; give {} in {}", text, unit, notation(interval));
   return *value;
 }
 
 std::int64_t whole_number_in(std::string_view text, std::string_view unit, std::int64_t low, std::int64_t high) {
   const auto value = whole_number_of(text);
-  if (!value) throw WrongUsage("\"{}\" is no whole number; give {} in {}", text, unit, notation(low, high));
-  if (*value < low || *value > high) throw WrongUsage("{} is out of range; give {} in {}", text, unit, notation(low, high));
+  if (!value) throw WrongOption("\"{}\" is no whole number; give {} in {}", text, unit, notation(low, high));
+  if (*value < low || *value > high) throw WrongOption("{} is out of range; give {} in {}", text, unit, notation(low, high));
   return *value;
 }
 
@@ -71,12 +69,12 @@ std::vector<double> numbers_in(std::string_view text, char separator, const Inte
   for (std::size_t at = 0; at <= text.size();) {
     const std::string_view part = text.substr(at, text.find(separator, at) - at);
     const auto value = number_of(part);
-    if (!value) throw WrongUsage("{}: \"{}\" is no number; write {}", text, part, form);
-    if (!contains(interval, *value)) throw WrongUsage("{}: {} is not in {}; write {}", text, part, notation(interval), form);
+    if (!value) throw WrongOption("{}: \"{}\" is no number; write {}", text, part, form);
+    if (!contains(interval, *value)) throw WrongOption("{}: {} is not in {}; write {}", text, part, notation(interval), form);
     values.push_back(*value);
     at += part.size() + 1;
   }
   return values;
 }
 
-}  // namespace marey::cli
+}  // namespace marey::pipeline::jobs

@@ -1,0 +1,199 @@
+"""Keyword arguments of the jobs; written by script/job-options from src/marey/pipeline/jobs, not by hand."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Literal, TypedDict
+
+Path = str | os.PathLike[str]
+
+
+class TrackOptions(TypedDict, total=False):
+    detections: Path | None
+    r"""in place of INPUT, detections: MOT text, frame,-1,left,top,width,height,score; of markers the output of marey detect"""
+    rate: float | None
+    r"""Hz in [0.001, 1e6]: frame rate, if the file does not specify it or is wrong"""
+    overlay: Path | None
+    r"""a video with boxes, IDs and trails drawn into the images: FILE.mp4"""
+    plot: Path | None
+    r"""the trajectories as one image, in its coordinates: FILE.svg"""
+    masks: Path | None
+    r"""a new folder for the output of the background model: bin000001.png of the first frame, white on black"""
+    live: bool | None
+    r"""write each frame's tracks at once; nothing is corrected by later frames"""
+    delay: float | None
+    r"""s in [0, 60]: with --live: use the frames of this duration before each frame's tracks are written (default: 0)"""
+    steady: bool | None
+    r"""the camera shakes (wind, steps): stabilise its images first; results are in the pixels of its rest"""
+    seen_only: bool | None
+    r"""leave out the rows of people who were not detected in that frame"""
+    background: Literal["marey", "mog2", "knn"] | None
+    r"""model of the static background: marey, mog2, knn (default: marey)"""
+    every: int | None
+    r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
+    without_background: bool | None
+    r"""the network alone"""
+    outline: bool | None
+    r"""track each person's outline too: a closed spline"""
+    control_points: int | None
+    r"""N in [3, 64]: of each outline (default: as many as its silhouette needs, at most 40)"""
+    order: int | None
+    r"""N in [2, 8]: of the spline, degree + 1 (default: 4, cubic)"""
+    lines: int | None
+    r"""N in [1, 512]: measurement lines across each outline, along which it is searched (default: 24)"""
+    model: str | None
+    r"""the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx (default: full)"""
+    threshold: float | None
+    r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
+    dark: bool | None
+    r"""markers are darker than their surroundings"""
+    widest: float | None
+    r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
+    most_markers: int | None
+    r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
+    min_area: float | None
+    r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
+    max_area: float | None
+    r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
+    min_roundness: float | None
+    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    colour: str | None
+    r"""markers of this hue, in degrees: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta; 120+-15 sets the tolerance"""
+    saturation: float | None
+    r"""share in [0.001, 0.999]: with --colour: minimum of (largest - smallest of red, green, blue), as a share of white (default: 0.2)"""
+    mask: Path | None
+    r"""an image of the video's size; what is not black in it is left out"""
+    auto_mask: float | None
+    r"""s in [0, 3600]: leave out what is bright and static in the first N seconds (lamps, reflections, and markers that do not move); 0: off (default: 0)"""
+    fit_noise: bool | None
+    r"""estimate process and measurement noise from the recording"""
+
+
+class GroundOptions(TypedDict, total=False):
+    rate: float | None
+    r"""Hz in [0.001, 1e6]: frame rate, if the file does not specify it or is wrong"""
+    overlay: Path | None
+    r"""a folder for such a video of each camera, CAMERA.mp4"""
+    live: bool | None
+    r"""write each frame's tracks at once; nothing is corrected by later frames"""
+    steady: bool | None
+    r"""the camera shakes (wind, steps): stabilise its images first; results are in the pixels of its rest"""
+    background: Literal["marey", "mog2", "knn"] | None
+    r"""model of the static background: marey, mog2, knn (default: marey)"""
+    detector: Path | None
+    r"""a detection network in addition to the background model: the file that describes it (docs/network.md)"""
+    every: int | None
+    r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
+    without_background: bool | None
+    r"""the network alone"""
+    size: str | tuple[float, float] | None
+    r"""m, of the pitch, or of any other rectangle from the origin on (default: 105x68 if the rig was calibrated on a pitch, else people count everywhere)"""
+    area: str | Sequence[tuple[float, float]] | None
+    r"""where people count, in place of a pitch: its corners in order, "x,y x,y x,y" in m, or LENGTHxWIDTH"""
+    margin: float | None
+    r"""m in [0, 1000]: around the pitch or the area in which people still count (default: 2)"""
+    teams: str | None
+    r'''the teams' colours, "white,blue", or their names too, "City=white,United=blue"'''
+    associate: Literal["gnn", "jpda", "mht", "bramble"] | None
+    r"""data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks by particles in the images, without detections: gnn, jpda, mht, bramble"""
+    ball: bool | None
+    r"""track the ball too: a track named "ball", with its height"""
+    pitch_view: Path | None
+    r"""a video of the ground from above, with the trail of each person: FILE.mp4"""
+
+
+class ReconstructOptions(TypedDict, total=False):
+    labels: Path | None
+    r"""the markers' labels: CSV label,x,y,z of their positions at the beginning (m), or one label per line, by increasing x"""
+    set: Path | None
+    r"""label the markers, frame by frame, by a set that "marey label learn" made: set.toml"""
+    skeleton: Path | None
+    r"""solve the pose of this skeleton from the labelled markers in each frame: skeleton.toml or .osim, fitted to the person (marey solve --write-skeleton)"""
+    rate: float | None
+    r"""Hz in [0.001, 1e6]: frame rate, if neither the sources nor the rig specify it"""
+    noise: float | None
+    r"""px in [0.001, 100]: standard deviation of a blob's position and of the calibration (default: learned)"""
+    fill: float | None
+    r"""s in [0, 10]: the longest gap that is filled (default: 0.5)"""
+    predict: float | None
+    r"""s in [0, 10]: write predictions for this duration of a longer gap; at most --fill (default: 0)"""
+    live: bool | None
+    r"""write every instant at once, as marey live does: no gap is filled"""
+    marker_width: float | None
+    r"""m in [0.0001, 1]: markers closer than this disturb each other (default: 0.02)"""
+    max_speed: float | None
+    r"""m/s in [0.001, 10000]: the largest speed of a marker (default: 15)"""
+    threshold: float | None
+    r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
+    dark: bool | None
+    r"""markers are darker than their surroundings"""
+    widest: float | None
+    r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
+    most_markers: int | None
+    r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
+    min_area: float | None
+    r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
+    max_area: float | None
+    r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
+    min_roundness: float | None
+    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    keypoint_set: str | None
+    r"""the keypoint set of files that do not name their points: body_25, body_25b, coco_18, coco, halpe_26, blazepose (default: by the points)"""
+    people: int | None
+    r"""N in [0, 1000]: keep the N people in the most images; 0: all (default: 0)"""
+    no_smooth: bool | None
+    r"""each instant by itself: no trajectories over all instants, no gap filled"""
+    no_offsets: bool | None
+    r"""cameras without an offset in the rig are taken as synchronous; default: offsets are found by the motion of people"""
+    max_offset: float | None
+    r"""s in [0.01, 10]: the largest offset that is searched (default: 0.5)"""
+
+
+class LiveOptions(TypedDict, total=False):
+    ground: bool | None
+    r"""people on the ground that the rig's cameras face"""
+    size: str | tuple[float, float] | None
+    r"""m, of the pitch, or of any other rectangle from the origin on (default: 105x68 if the rig was calibrated on a pitch, else people count everywhere)"""
+    area: str | Sequence[tuple[float, float]] | None
+    r"""where people count, in place of a pitch: its corners in order, "x,y x,y x,y" in m, or LENGTHxWIDTH"""
+    margin: float | None
+    r"""m in [0, 1000]: around the pitch or the area in which people still count (default: 2)"""
+    teams: str | None
+    r'''the teams' colours, "white,blue", or their names too, "City=white,United=blue"'''
+    associate: Literal["gnn", "jpda", "mht", "bramble"] | None
+    r"""data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks by particles in the images, without detections: gnn, jpda, mht, bramble"""
+    preroll: float | None
+    r"""s in [0, 60]: kept from before a recording is switched on (default: 5)"""
+    late: float | None
+    r"""s in [0.001, 1]: longest wait for a late frame of an instant (default: 0.05)"""
+    patience: float | None
+    r"""s in [0, 60]: longest wait for cameras at the beginning (default: 3)"""
+    labels: Path | None
+    r"""the markers' labels: CSV label,x,y,z of their positions at the beginning (m), or one label per line, by increasing x"""
+    set: Path | None
+    r"""label the markers, frame by frame, by a set that "marey label learn" made: set.toml"""
+    skeleton: Path | None
+    r"""solve the pose of this skeleton from the labelled markers in each frame: skeleton.toml or .osim, fitted to the person (marey solve --write-skeleton)"""
+    threshold: float | None
+    r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
+    dark: bool | None
+    r"""markers are darker than their surroundings"""
+    widest: float | None
+    r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
+    most_markers: int | None
+    r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
+    min_area: float | None
+    r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
+    max_area: float | None
+    r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
+    min_roundness: float | None
+    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    background: Literal["marey", "mog2", "knn"] | None
+    r"""model of the static background: marey, mog2, knn (default: marey)"""
+    detector: Path | None
+    r"""a detection network in addition to the background model: the file that describes it (docs/network.md)"""
+    every: int | None
+    r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
+    without_background: bool | None
+    r"""the network alone"""

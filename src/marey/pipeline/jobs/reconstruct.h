@@ -1,0 +1,37 @@
+// `marey reconstruct` as a value: markers, or people's body keypoints, in space.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "marey/pipeline/jobs/detection_rows.h"
+#include "marey/pipeline/jobs/space_names.h"
+#include "marey/pipeline/keypoints/keypoints_in_space.h"
+#include "marey/pipeline/markers/markers_in_space.h"
+
+namespace marey::pipeline::jobs {
+
+struct ReconstructMarkers {
+  SpaceNames names = {};
+  std::optional<filter::FilterOptions> own_filter = {};  ///< of a caller's, in place of the default one
+  markers::MarkersInSpaceOptions options = {};           ///< rows without dependent defaults are bound to these
+};
+
+Table table_of(ReconstructMarkers& job);
+/// Reads the files of names. Throws Error if one cannot be read.
+markers::MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vector<std::string>& warnings);
+
+struct ReconstructKeypoints {
+  /// How people are detected in cameras' videos: by a network alone unless the user wants the background too, because people who fill the
+  /// image, or stand in it from the beginning, are usual here.
+  PeopleDetection detection = {.without_background = true};
+  std::string model = keypoints::KeypointOptions{}.model;
+  keypoints::KeypointsInSpaceOptions options = {};
+};
+
+Table table_of(ReconstructKeypoints& job);
+/// With the search in videos. It loads its networks when the first video is read.
+keypoints::KeypointsInSpaceOptions resolved(const ReconstructKeypoints& job);
+
+}  // namespace marey::pipeline::jobs
