@@ -84,7 +84,8 @@ nb::object moments_of(nb::handle self) {
 nb::list tracks_of(const Recording& recording) {
   nb::list tracks;
   for (const TrackColumns& track : recording.tracks())
-    tracks.append(nb::make_tuple(number(track.id()), track.name.label, track.name.team, track.size(), std::string(to_string(track.name.kind))));
+    tracks.append(nb::make_tuple(number(track.id()), track.name.label, track.name.team, track.size(),
+                                 std::string(to_string(track.name.kind))));
   return tracks;
 }
 

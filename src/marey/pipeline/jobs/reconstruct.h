@@ -23,8 +23,8 @@ Table table_of(ReconstructMarkers& job);
 markers::MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vector<std::string>& warnings);
 
 struct ReconstructKeypoints {
-  /// How people are detected in cameras' videos: by a network alone unless the user wants the background too, because people who fill the
-  /// image, or stand in it from the beginning, are usual here.
+  /// How people are detected in cameras' videos: by a network alone unless the user wants the background too, because people who
+  /// fill the image, or stand in it from the beginning, are usual here.
   PeopleDetection detection = {.without_background = true};
   std::string model = keypoints::KeypointOptions{}.model;
   keypoints::KeypointsInSpaceOptions options = {};

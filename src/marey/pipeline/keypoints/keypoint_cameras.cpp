@@ -17,11 +17,12 @@ KeypointSequence sequence_of(const RigCamera& camera, const std::string& path, c
   if (format::keypoints::may_hold_keypoints(path)) return format::keypoints::read_keypoints(path, set);
   if (path.ends_with(".marey")) return keypoints_of_take(path);
   if (find && camera.detections.empty()) return find(camera, hooks);
-  throw Error("{}: camera \"{}\" needs a video, or keypoints: a folder of OpenPose, a .json or .csv file, or a take", path, camera.name);
+  throw Error("{}: camera \"{}\" needs a video, or keypoints: a folder of OpenPose, a .json or .csv file, or a take", path,
+              camera.name);
 }
 
-void read_camera(RigCamera& camera, const std::string& set, std::optional<double> rate_hz, const FindInImages& find, const Hooks& hooks,
-                 std::optional<KeypointCamera>& into, std::vector<std::string>& warnings, bool& assumed) {
+void read_camera(RigCamera& camera, const std::string& set, std::optional<double> rate_hz, const FindInImages& find,
+                 const Hooks& hooks, std::optional<KeypointCamera>& into, std::vector<std::string>& warnings, bool& assumed) {
   const std::string path = keypoint_file_of(camera);
   if (path.empty() || !camera.camera()) return;
   KeypointCamera read{

@@ -30,8 +30,8 @@ struct TrackOutput {
 corridor::Summary track_people(const RigCamera& camera, const TrackOutput& output, const PeopleInPictureOptions& options = {},
                                const Hooks& hooks = {});
 
-/// The body keypoints of one camera's images, as track_people finds them; `options.keypoints` is set. Throws Error if the images cannot
-/// be read, or the network is not usable.
+/// The body keypoints of one camera's images, as track_people finds them; `options.keypoints` is set. Throws Error if the images
+/// cannot be read, or the network is not usable.
 KeypointSequence find_keypoints(const RigCamera& camera, const PeopleInPictureOptions& options, const Hooks& hooks = {});
 
 /// Follows markers through a recording under the names they have in its first frame. Throws likewise, and where labels do not fit.
