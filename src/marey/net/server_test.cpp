@@ -100,7 +100,7 @@ std::string masked(unsigned char first, std::string payload) {
   return frame;
 }
 
-/// Says back what it hears: bytes up to each line break, or messages. A line "bad" is none of its protocol.
+/// Says back what it hears: bytes up to each line break, or messages. A line "bad" breaks its protocol.
 class Echo : public Session {
  public:
   void joined(Outbox& out) override { out.answer("hello\n"); }
@@ -263,7 +263,7 @@ TEST(Server, ClosesWithTheCodeOfWhatWasWrong) {
   EXPECT_EQ(code_of(masked(0x09, "x")), 1002) << "a ping in pieces";
   EXPECT_EQ(code_of(masked(0x80, "x")), 1002) << "the rest of nothing";
   EXPECT_EQ(code_of(masked(0x89, std::string(126, 'x'))), 1002) << "a ping that is too long";
-  EXPECT_EQ(code_of(masked(0x81, "\xff\xfe")), 1007) << "a text that is none";
+  EXPECT_EQ(code_of(masked(0x81, "\xff\xfe")), 1007) << "a text that is not UTF-8";
   EXPECT_EQ(code_of(std::string("\x82\xff\x7f\xff\xff\xff\xff\xff\xff\xff"
                                 "mask",
                                 14)),
