@@ -121,7 +121,7 @@ class Node(unittest.TestCase):
         self.assertLessEqual(camera["lost"], 0.1 * camera["sent"], "a few may be lost on a busy machine")
         self.assertGreaterEqual(live["targets"], 6)
 
-    def test_a_web_page_sees_no_camera(self):
+    def test_a_web_page_is_refused(self):
         node = self.start(ROOM)
         for origin, status in (("Origin: https://evil.example\r\n", b"403"), ("Origin: null\r\n", b"403"), ("", b"101")):
             with socket.create_connection(("127.0.0.1", self.port), timeout=10) as wire:

@@ -122,7 +122,7 @@ class RawServer {
   std::jthread thread_;
 };
 
-void say(int socket, std::string_view bytes) {
+void write_bytes(int socket, std::string_view bytes) {
   send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
@@ -133,7 +133,7 @@ TEST(WebSocketClient, RefusesAServerOfAnotherProtocol) {
                     "Sec-WebSocket-Accept: AAAAAAAAAAAAAAAAAAAAAAAAAAA=\r\n\r\n"),
         "HTTP/1.1 101 " + std::string(100'000, 'x')}) {
     RawServer server([&](int socket) {
-      say(socket, greeting);
+      write_bytes(socket, greeting);
       std::this_thread::sleep_for(300ms);
     });
     EXPECT_THROW(WebSocketClient("127.0.0.1", server.port(), {.connect = 200ms}, {}), Error) << greeting.substr(0, 20);
@@ -154,7 +154,7 @@ TEST(WebSocketClient, EndsWithAServerThatSendsTooMuchOrNothing) {
       if (got > 0) request.append(bytes.data(), static_cast<std::size_t>(got));
       if (got == 0) return;
     }
-    say(socket, "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n");
+    write_bytes(socket, "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n");
     std::this_thread::sleep_for(300ms);
   });
   EXPECT_THROW(WebSocketClient("127.0.0.1", silent.port(), {.connect = 200ms}, {}), Error) << "no answer to the key";

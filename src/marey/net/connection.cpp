@@ -179,7 +179,7 @@ class TcpConnection final : public Connection, public std::enable_shared_from_th
   void take_request(const Code& failed) {
     const bool of_http = failed.category() == make_error_code(http::error::bad_method).category();
     if (of_http && failed != http::error::end_of_stream && failed != http::error::partial_message)
-      return answer(refusal(400, "this is no request of HTTP that is served here"), false, false);
+      return answer(refusal(400, "this is not an HTTP request"), false, false);
     if (failed) return close();
     request_ = parser_->release();
     // RFC 6455 asks for this field too; clients that leave it out were always served.

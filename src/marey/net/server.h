@@ -1,6 +1,6 @@
 // A TCP server that no client can hold up: frames go out newest first where a client is slow, and what it did not take is counted.
-// A connection is a byte stream, or HTTP that may become a WebSocket (RFC 6455, Boost.Beast); both on one port where the first
-// bytes tell.
+// A connection is a byte stream, or HTTP that may become a WebSocket (RFC 6455, Boost.Beast); both on one port by the first
+// bytes.
 #pragma once
 
 #include <chrono>

@@ -36,7 +36,7 @@ class TestSocket {
 
   void say(std::string_view bytes) { send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL); }
   /// A byte at a time, as a slow line brings them.
-  void say_slowly(std::string_view bytes) {
+  void write_slowly(std::string_view bytes) {
     for (const char byte : bytes) {
       say({&byte, 1});
       std::this_thread::sleep_for(1ms);
@@ -100,7 +100,7 @@ std::string masked(unsigned char first, std::string payload) {
   return frame;
 }
 
-/// Says back what it hears: bytes up to each line break, or messages. A line "bad" is none of its protocol.
+/// Says back what it hears: bytes up to each line break, or messages. A line "bad" breaks its protocol.
 class Echo : public Session {
  public:
   void joined(Outbox& out) override { out.answer("hello\n"); }
@@ -168,7 +168,7 @@ TEST(Server, ReadsLinesInPieces) {
   Served served({.protocol = Protocol::bytes});
   TestSocket client(served.server());
   EXPECT_EQ(client.hear(6), "hello\n");
-  client.say_slowly("one\ntwo\nth");
+  client.write_slowly("one\ntwo\nth");
   EXPECT_EQ(client.hear(8), "one\ntwo\n");
   client.say("ree\nbye\nnot heard\n");
   EXPECT_EQ(client.hear(10), "three\n");
@@ -191,7 +191,7 @@ TEST(Server, DisconnectsAClientOfAnotherProtocol) {
 TEST(Server, AnswersRequestsOfHttp) {
   Served served;
   TestSocket client(served.server());
-  client.say_slowly("GET / HTTP/1.1\r\nHost: here\r\n\r\n");
+  client.write_slowly("GET / HTTP/1.1\r\nHost: here\r\n\r\n");
   EXPECT_NE(client.hear_until("GET here").find("Content-Length: 8\r\n"), std::string::npos);
   client.say("HEAD / HTTP/1.1\r\nHost: here\r\n\r\n");
   EXPECT_NE(client.hear_until("\r\n\r\n").find("Content-Length: 9\r\n"), std::string::npos);
@@ -221,7 +221,7 @@ TEST(Server, RefusesWhatIsNoRequest) {
 TEST(Server, ShakesHandsAsTheStandardsExample) {
   Served served;
   TestSocket client(served.server());
-  client.say_slowly(kUpgrade);
+  client.write_slowly(kUpgrade);
   EXPECT_NE(client.hear_until("\r\n\r\n").find("Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n"), std::string::npos);
   // Clients that leave out "Connection: Upgrade" were always served.
   TestSocket terse(served.server());
@@ -234,7 +234,7 @@ TEST(Server, ShakesHandsAsTheStandardsExample) {
 TEST(Server, TakesMessagesOfEverySizeAndInPieces) {
   Served served;
   TestSocket client = opened(served);
-  client.say_slowly(masked(0x81, "Hello"));
+  client.write_slowly(masked(0x81, "Hello"));
   EXPECT_EQ(client.hear(7), "\x81\x05Hello");
   client.say(masked(0x02, "in "));
   client.say(masked(0x89, "ping"));
@@ -263,7 +263,7 @@ TEST(Server, ClosesWithTheCodeOfWhatWasWrong) {
   EXPECT_EQ(code_of(masked(0x09, "x")), 1002) << "a ping in pieces";
   EXPECT_EQ(code_of(masked(0x80, "x")), 1002) << "the rest of nothing";
   EXPECT_EQ(code_of(masked(0x89, std::string(126, 'x'))), 1002) << "a ping that is too long";
-  EXPECT_EQ(code_of(masked(0x81, "\xff\xfe")), 1007) << "a text that is none";
+  EXPECT_EQ(code_of(masked(0x81, "\xff\xfe")), 1007) << "a text that is not UTF-8";
   EXPECT_EQ(code_of(std::string("\x82\xff\x7f\xff\xff\xff\xff\xff\xff\xff"
                                 "mask",
                                 14)),
@@ -288,7 +288,7 @@ TEST(Server, SaysGoodbye) {
 TEST(Server, TellsBytesFromHttpByTheFirstFour) {
   Served served({.protocol = Protocol::either});
   TestSocket web(served.server()), lines(served.server()), silent(served.server());
-  web.say_slowly(kUpgrade);
+  web.write_slowly(kUpgrade);
   EXPECT_TRUE(web.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
   lines.say("GETS\n");
   EXPECT_EQ(lines.hear(11), "hello\nGETS\n");

@@ -49,7 +49,8 @@ std::vector<std::uint32_t> own_hosts();
 /// Listening, not waiting, closed on exec; `address.port` becomes the one it got where it was 0. Throws Error, which begins with
 /// `what`, where the port is in use or may not be had.
 Descriptor listen_at(Address& address, const std::string& what);
-/// Of IPv4 or IPv6, at an address in digits. Nothing if it is none, or with the system's reason in errno if it cannot be had.
+/// Of IPv4 or IPv6, at an address in digits. Nothing if the text is not an address, or with the system's reason in errno if it
+/// cannot be had.
 std::optional<Descriptor> listen_at_digits(const std::string& address, int& port);
 /// The next client, whose socket does not block; none with errno set. `peer` is 0.0.0.0 for a client of IPv6.
 Descriptor accept_from(const Descriptor& listener, Address& peer);

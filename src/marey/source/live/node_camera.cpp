@@ -78,7 +78,7 @@ class NodeLine {
         continue;
       }
       if (++answered_ > asked_ || message->size() > kLongestAnswer)
-        throw Error("{}: it is no node of Marey, or one of another version", place_.node());
+        throw Error("{}: it is not a node of Marey, or one of another version", place_.node());
       if (answered_ < asked_) continue;  // to a question that nobody waits for any more
       answer_ = std::move(message);
       return;  // when it came matters
