@@ -1,5 +1,6 @@
 // The jobs, each from Python's options to the pipeline's.
 #include <algorithm>
+#include <filesystem>
 
 #include <tbb/global_control.h>
 
@@ -52,7 +53,7 @@ nb::tuple track_people(nb::dict given) {
   const Rows rows(table_of(job), options);
   job.input.own_filter = own_filter(options);
   pipeline::people::PeopleInPictureOptions how = rows.resolved([&] { return resolved(job); });
-  how.beside = "/tmp/marey";
+  how.beside = (std::filesystem::temp_directory_path() / "marey").string();
   return in_image(options, job.input, rows, [&](const auto& feed, const auto& output, auto sinks, const Hooks& hooks) {
     return pipeline::people::track_people(feed, output, std::move(sinks), how, hooks);
   });

@@ -52,7 +52,7 @@ class Outbox {
   // For the connection.
   /// Called when there is something to send, or the end was asked for.
   void on_change(std::function<void()> flush) { flush_ = std::move(flush); }
-  /// The next message, which is being sent until `done`. Null if there is none.
+  /// The next message, which is being sent until `done`. Null if nothing waits.
   const Message* begin_next();
   /// The message that is being sent has gone out.
   void done();

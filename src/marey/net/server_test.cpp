@@ -34,11 +34,11 @@ class TestSocket {
     if (connect(socket_.get(), reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) socket_.reset();
   }
 
-  void say(std::string_view bytes) { send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL); }
+  void transmit(std::string_view bytes) { send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL); }
   /// A byte at a time, as a slow line brings them.
   void write_slowly(std::string_view bytes) {
     for (const char byte : bytes) {
-      say({&byte, 1});
+      transmit({&byte, 1});
       std::this_thread::sleep_for(1ms);
     }
   }
@@ -159,7 +159,7 @@ class Served {
 /// With a WebSocket that is open.
 TestSocket opened(Served& served, int receive_buffer = 0) {
   TestSocket client(served.server(), receive_buffer);
-  client.say(kUpgrade);
+  client.transmit(kUpgrade);
   EXPECT_TRUE(client.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101 Switching Protocols\r\n"));
   return client;
 }
@@ -170,7 +170,7 @@ TEST(Server, ReadsLinesInPieces) {
   EXPECT_EQ(client.hear(6), "hello\n");
   client.write_slowly("one\ntwo\nth");
   EXPECT_EQ(client.hear(8), "one\ntwo\n");
-  client.say("ree\nbye\nnot heard\n");
+  client.transmit("ree\nbye\nnot heard\n");
   EXPECT_EQ(client.hear(10), "three\n");
   EXPECT_TRUE(client.is_closed());
 }
@@ -178,11 +178,11 @@ TEST(Server, ReadsLinesInPieces) {
 TEST(Server, DisconnectsAClientOfAnotherProtocol) {
   Served served({.protocol = Protocol::bytes, .max_bytes = 1000});
   TestSocket bad(served.server()), endless(served.server()), good(served.server());
-  bad.say("bad\n");
+  bad.transmit("bad\n");
   EXPECT_TRUE(bad.is_closed());
-  endless.say(std::string(5000, 'x'));
+  endless.transmit(std::string(5000, 'x'));
   EXPECT_TRUE(endless.is_closed());
-  good.say("good\n");
+  good.transmit("good\n");
   EXPECT_EQ(good.hear(11), "hello\ngood\n");
   EXPECT_TRUE(served.becomes([](const auto& counts) { return counts.disconnected == 2 && counts.now == 1; }));
   EXPECT_EQ(served.counts().last_complaint, "5000 bytes that make no message");
@@ -193,9 +193,9 @@ TEST(Server, AnswersRequestsOfHttp) {
   TestSocket client(served.server());
   client.write_slowly("GET / HTTP/1.1\r\nHost: here\r\n\r\n");
   EXPECT_NE(client.hear_until("GET here").find("Content-Length: 8\r\n"), std::string::npos);
-  client.say("HEAD / HTTP/1.1\r\nHost: here\r\n\r\n");
+  client.transmit("HEAD / HTTP/1.1\r\nHost: here\r\n\r\n");
   EXPECT_NE(client.hear_until("\r\n\r\n").find("Content-Length: 9\r\n"), std::string::npos);
-  client.say("GET /other HTTP/1.1\r\nHost: here\r\n\r\n");
+  client.transmit("GET /other HTTP/1.1\r\nHost: here\r\n\r\n");
   EXPECT_TRUE(client.hear_until("no such page\n").starts_with("HTTP/1.1 404 Not Found\r\n"));
   EXPECT_TRUE(client.is_closed());
 }
@@ -206,15 +206,15 @@ TEST(Server, RefusesWhatIsNoRequest) {
                                    "GET /" + std::string(5000, 'a') + " HTTP/1.1\r\n\r\n", std::string("bad\r\n\r\n"),
                                    "GET / HTTP/1.1\r\nContent-Length: 99\r\n\r\n" + std::string(99, 'x')}) {
     TestSocket client(served.server());
-    client.say(wrong);
+    client.transmit(wrong);
     EXPECT_TRUE(client.hear(12) == "HTTP/1.1 400" || client.is_closed());
     EXPECT_TRUE(client.is_closed());
   }
   TestSocket client(served.server());
-  client.say("GET /socket HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n");
+  client.transmit("GET /socket HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n");
   EXPECT_FALSE(client.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
   TestSocket hasty(served.server());
-  hasty.say(std::string(kUpgrade) + masked(0x81, "early"));
+  hasty.transmit(std::string(kUpgrade) + masked(0x81, "early"));
   EXPECT_TRUE(hasty.hear_until("\r\n\r\n").starts_with("HTTP/1.1 400"));
 }
 
@@ -227,7 +227,7 @@ TEST(Server, ShakesHandsAsTheStandardsExample) {
   TestSocket terse(served.server());
   std::string request(kUpgrade);
   request.erase(request.find("Connection: Upgrade\r\n"), 21);
-  terse.say(request);
+  terse.transmit(request);
   EXPECT_TRUE(terse.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
 }
 
@@ -236,14 +236,14 @@ TEST(Server, TakesMessagesOfEverySizeAndInPieces) {
   TestSocket client = opened(served);
   client.write_slowly(masked(0x81, "Hello"));
   EXPECT_EQ(client.hear(7), "\x81\x05Hello");
-  client.say(masked(0x02, "in "));
-  client.say(masked(0x89, "ping"));
-  client.say(masked(0x80, "pieces"));
+  client.transmit(masked(0x02, "in "));
+  client.transmit(masked(0x89, "ping"));
+  client.transmit(masked(0x80, "pieces"));
   EXPECT_EQ(client.hear(6), "\x8a\x04ping");
   EXPECT_EQ(client.hear(11), "\x82\x09in pieces");
-  client.say(masked(0x82, std::string(300, 'm')));
+  client.transmit(masked(0x82, std::string(300, 'm')));
   EXPECT_EQ(client.hear(304), std::string("\x82\x7e\x01\x2c", 4) + std::string(300, 'm'));
-  client.say(masked(0x82, std::string(65'536, 'l')));
+  client.transmit(masked(0x82, std::string(65'536, 'l')));
   EXPECT_EQ(client.hear(65'546), std::string("\x82\x7f\0\0\0\0\0\x01\0\0", 10) + std::string(65'536, 'l'));
 }
 
@@ -251,7 +251,7 @@ TEST(Server, ClosesWithTheCodeOfWhatWasWrong) {
   Served served;
   const auto code_of = [&](const std::string& wrong) {
     TestSocket client = opened(served);
-    client.say(wrong);
+    client.transmit(wrong);
     const std::string heard = client.hear(4);
     if (heard.size() < 4 || heard[0] != '\x88') return -1;
     EXPECT_TRUE(client.is_closed()) << wrong.substr(0, 20);
@@ -279,9 +279,9 @@ TEST(Server, ClosesWithTheCodeOfWhatWasWrong) {
 TEST(Server, SaysGoodbye) {
   Served served;
   TestSocket client = opened(served);
-  client.say(masked(0x81, "bye"));
+  client.transmit(masked(0x81, "bye"));
   EXPECT_EQ(client.hear(4), std::string("\x88\x02\x03\xe8", 4));
-  client.say(masked(0x88, std::string("\x03\xe8", 2)));
+  client.transmit(masked(0x88, std::string("\x03\xe8", 2)));
   EXPECT_TRUE(client.is_closed());
 }
 
@@ -290,10 +290,10 @@ TEST(Server, TellsBytesFromHttpByTheFirstFour) {
   TestSocket web(served.server()), lines(served.server()), silent(served.server());
   web.write_slowly(kUpgrade);
   EXPECT_TRUE(web.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
-  lines.say("GETS\n");
+  lines.transmit("GETS\n");
   EXPECT_EQ(lines.hear(11), "hello\nGETS\n");
   EXPECT_EQ(silent.hear(6), "hello\n");
-  silent.say("GET / is a line now\n");
+  silent.transmit("GET / is a line now\n");
   EXPECT_EQ(silent.hear(20), "GET / is a line now\n");
 }
 
@@ -331,7 +331,7 @@ TEST(Server, DisconnectsAClientThatAsksAndReadsNothing) {
   Served served;
   TestSocket client = opened(served, 4096);
   const std::string question = masked(0x82, std::string(60'000, 'q'));
-  for (int i = 0; i < 200 && served.counts().now > 0; ++i) client.say(question);
+  for (int i = 0; i < 200 && served.counts().now > 0; ++i) client.transmit(question);
   EXPECT_TRUE(served.becomes([](const auto& counts) { return counts.now == 0; }));
   EXPECT_EQ(served.counts().last_complaint, "left its answers unread");
 }
@@ -343,11 +343,11 @@ TEST(Server, ReadsNoMoreFromAClientThatPingsAndReadsNothing) {
   for (int i = 0; i < 500; ++i) pings += masked(0x89, std::string(125, 'p'));
   std::atomic<bool> over = false;
   std::thread flood([&] {
-    for (int i = 0; i < 200 && !over; ++i) client.say(pings);
+    for (int i = 0; i < 200 && !over; ++i) client.transmit(pings);
   });
   std::this_thread::sleep_for(300ms);
   TestSocket other = opened(served);
-  other.say(masked(0x81, "still there"));
+  other.transmit(masked(0x81, "still there"));
   EXPECT_EQ(other.hear(13), "\x81\x0bstill there");
   over = true;
   client.is_closed();  // reads on, so that the flood ends
@@ -384,7 +384,7 @@ TEST(Server, EndsAWebSocketWhoseClientIsSilent) {
 TEST(Server, EndsAConnectionThatAsksNothing) {
   Served served({.protocol = Protocol::web, .patience = 1s});
   TestSocket silent(served.server()), half(served.server());
-  half.say("GET / HT");
+  half.transmit("GET / HT");
   EXPECT_TRUE(silent.is_closed());
   EXPECT_TRUE(half.is_closed());
 }

@@ -41,7 +41,7 @@ inline constexpr std::uint32_t kLoopback = 0x7f000001;
 /// "127.0.0.1:22223".
 std::string to_string(const Address& address);
 std::string host_text(std::uint32_t host);
-/// Of "127.0.0.1" or of a name that the system knows. `what` begins the sentence of the Error that is thrown where there is none.
+/// Of "127.0.0.1" or of a name that the system knows. `what` begins the sentence of the Error for an unknown address.
 std::uint32_t host_named(const std::string& name, const std::string& what);
 /// Those of this host's interfaces, loopback's too.
 std::vector<std::uint32_t> own_hosts();

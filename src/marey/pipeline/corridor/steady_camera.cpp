@@ -108,14 +108,14 @@ void SteadyCamera::report(Summary& summary) const {
   for (const std::string& warning : source::steady::warned(counts)) summary.warnings.push_back(said_of(camera_, warning));
 }
 
-std::string said_of_shaking(double px) {
+std::string shaking_warning(double px) {
   return fmt::format("the camera shakes, by {:.1f} px (root mean square); --steady steadies its pictures first", px);
 }
 
 std::optional<std::string> shaking(std::span<const Frame> samples) {
   const auto moved = source::steady::motion_among(samples);
   if (!moved || *moved < kShakes) return std::nullopt;
-  return said_of_shaking(*moved);
+  return shaking_warning(*moved);
 }
 
 }  // namespace marey::pipeline::corridor

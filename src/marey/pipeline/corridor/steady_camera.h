@@ -39,7 +39,7 @@ class SteadyCamera {
 /// px root mean square, from which on people are lost to a camera's shaking (docs/tuning.md).
 inline constexpr double kShakes = 1.5;
 /// What the user should know of a camera that shakes so much.
-std::string said_of_shaking(double px);
+std::string shaking_warning(double px);
 
 /// What the user should know where `samples` of a camera that is not steadied show that it shakes; else nothing.
 std::optional<std::string> shaking(std::span<const Frame> samples);

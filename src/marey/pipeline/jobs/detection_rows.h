@@ -11,7 +11,7 @@ namespace marey::pipeline::jobs {
 /// How people are detected in images.
 struct PeopleDetection {
   std::string background = std::string(detect::background::AdaptiveOptions::name);
-  std::string network;  ///< the file that describes it; empty: none
+  std::string network = {};  ///< the file that describes it; empty: none
   bool without_background = false;
   int every = 1;
 };

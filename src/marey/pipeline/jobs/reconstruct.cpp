@@ -66,7 +66,11 @@ Table table_of(ReconstructKeypoints& job) {
 keypoints::KeypointsInSpaceOptions resolved(const ReconstructKeypoints& job) {
   keypoints::KeypointsInSpaceOptions options = job.options;
   options.find = [detection = job.detection, model = job.model](const RigCamera& camera, const Hooks& hooks) {
-    return people::find_keypoints(camera, resolved(TrackPeople{.keypoints = true, .detection = detection, .model = model}), hooks);
+    TrackPeople search;
+    search.keypoints = true;
+    search.detection = detection;
+    search.model = model;
+    return people::find_keypoints(camera, resolved(search), hooks);
   };
   return options;
 }

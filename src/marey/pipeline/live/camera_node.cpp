@@ -24,9 +24,9 @@ using source::live::NodeQuestion;
 using source::live::NodeServer;
 
 /// What hosts are told of the cameras: each as its frames are, which come with its region and by its own clock.
-class ToldCameras {
+class AdvertisedCameras {
  public:
-  explicit ToldCameras(const Rig& rig, std::shared_ptr<source::LiveTime> time)
+  explicit AdvertisedCameras(const Rig& rig, std::shared_ptr<source::LiveTime> time)
       : session_((static_cast<std::uint64_t>(std::random_device{}()) << 32) | std::random_device{}()),
         time_(std::move(time)),
         rig_(rig) {}
@@ -183,19 +183,19 @@ std::vector<NodeSummary::Camera> cameras_of(const std::vector<corridor::Feed>& f
 NodeSummary serve_cameras(const Rig& rig, const NodeOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   const source::LivePolicy policy{.time = source::steady_time()};
-  ToldCameras told(rig, policy.time);
-  HostsWishes wishes(rig, options, told.session());
+  AdvertisedCameras advertised(rig, policy.time);
+  HostsWishes wishes(rig, options, advertised.session());
   std::vector<corridor::Feed> feeds = open_live_feeds(without_offsets(rig), policy, options.patience_s, &wishes.desk());
-  told.look_at(feeds);
+  advertised.look_at(feeds);
   std::vector<std::unique_ptr<Outgoing>> outgoing;
   for (std::size_t i = 0; i < feeds.size(); ++i) {
     if (!options.quality) feeds[i].find(std::make_unique<corridor::TunedMarkers>(options.markers, wishes.desk().tuning(i)));
-    outgoing.push_back(std::make_unique<Outgoing>(told.session()));
+    outgoing.push_back(std::make_unique<Outgoing>(advertised.session()));
   }
   NodeServer server(
-      options.address, options.port, [&](const std::string& camera) { return told.answer(camera); },
-      [&] { return format::rig::rig_text(told.rig()); }, [&](const NodeQuestion& question) { return wishes.hear(question); });
-  if (options.begun) options.begun(told.rig());
+      options.address, options.port, [&](const std::string& camera) { return advertised.answer(camera); },
+      [&] { return format::rig::rig_text(advertised.rig()); }, [&](const NodeQuestion& question) { return wishes.hear(question); });
+  if (options.begun) options.begun(advertised.rig());
   NodeSummary summary;
   std::int64_t frames = 0;
   const auto ended = [&] {
@@ -213,7 +213,7 @@ NodeSummary serve_cameras(const Rig& rig, const NodeOptions& options, const Hook
         any = true;
       }
     }
-    told.look_at(feeds);
+    advertised.look_at(feeds);
     if (!any) policy.time->wait();
   }
   summary.seconds = seconds(policy.time->now());

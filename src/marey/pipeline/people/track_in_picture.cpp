@@ -77,16 +77,11 @@ corridor::Summary track_people(const ImageFeed& given, const TrackOutput& output
 }
 
 KeypointSequence find_keypoints(const RigCamera& camera, const PeopleInPictureOptions& options, const Hooks& hooks) {
-  const StopScope scope(hooks.stop);
-  corridor::Feed feed = open(camera);
   KeypointSequence found;
   found.from = camera.source;
-  const cv::Size size = feed.info().size;
-  corridor::Sinks sinks;
-  sinks.add(std::make_unique<keypoints::KeypointCollector>(found));
-  const auto stage = people_in_picture(feed, options);
-  run_alone(std::move(feed), *stage, sinks, hooks);
-  found.size = size;
+  std::vector<std::unique_ptr<Sink>> sinks;
+  sinks.push_back(std::make_unique<keypoints::KeypointCollector>(found));
+  track_people(ImageFeed{.camera = camera}, {}, std::move(sinks), options, hooks);
   return found;
 }
 

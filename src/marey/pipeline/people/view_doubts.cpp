@@ -66,7 +66,7 @@ std::vector<std::string> said_of_view(const source::steady::ViewReport& report, 
   if (shaking) {
     all.push_back(*shaking);
   } else if (report.shake_px >= corridor::kShakes) {
-    all.push_back(corridor::said_of_shaking(report.shake_px));
+    all.push_back(corridor::shaking_warning(report.shake_px));
   }
   return all;
 }
@@ -97,7 +97,7 @@ std::vector<std::string> ViewDoubts::news() {
                      "then; how far it went is told at the end",
                      report.turn->from_s));
   } else if (!steadied_ && report.shake_px >= corridor::kShakes && report.cuts.empty()) {
-    tell(shaking_told_, corridor::said_of_shaking(report.shake_px));
+    tell(shaking_told_, corridor::shaking_warning(report.shake_px));
   }
   return all;
 }
