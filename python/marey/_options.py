@@ -148,6 +148,14 @@ class ReconstructOptions(TypedDict, total=False):
     r"""cameras without an offset in the rig are taken as synchronous; default: offsets are found by the motion of people"""
     max_offset: float | None
     r"""s in [0.01, 10]: the largest offset that is searched (default: 0.5)"""
+    model: str | None
+    r"""the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx (default: full)"""
+    detector: Path | None
+    r"""a detection network in place of the one for people: the file that describes it (docs/network.md)"""
+    with_background: bool | None
+    r"""people are detected by what changes too, which is faster; default: by the network alone"""
+    every: int | None
+    r"""N in [1, 1000]: run the networks on every N-th frame (default: 1)"""
 
 
 class LiveOptions(TypedDict, total=False):
