@@ -63,7 +63,7 @@ class Keypoints(unittest.TestCase):
             for content in (b"", b"no network"):
                 (pathlib.Path(empty) / "pose_landmark_full.onnx").write_bytes(content)
                 self.refused(1, "script/model", *track, models=empty)
-        self.refused(2, "lite, full, heavy", *track, "--model", "tiny")
+        self.refused(2, "lite, full or heavy", *track, "--model", "tiny")
         self.refused(2, "--ground", *track, "--ground")
         self.refused(2, "requires --detector", "track", "people.mp4", "--every", "3")
         self.refused(2, "requires --detector", "track", "people.mp4", "--without-background")

@@ -106,7 +106,7 @@ class Keypoints(unittest.TestCase):
         (self.folder / "other.json").write_text(json.dumps([{"image_id": 0, "keypoints": [1, 2, 0.5] * 17}]))
         self.assertIn("one set", self.refused(*self.keypoints("one", cam2="other.json")))
         (self.folder / "empty").mkdir()
-        self.assertIn("needs keypoints", self.refused(*self.keypoints("one", cam1="empty")))
+        self.assertIn("needs a video, or keypoints", self.refused(*self.keypoints("one", cam1="empty")))
         self.assertIn("only one", self.refused("cam1=one/keypoints_cam1.json"))
 
     def test_cameras_that_see_different_people_place_nobody(self):

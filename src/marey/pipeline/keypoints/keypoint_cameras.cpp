@@ -1,6 +1,7 @@
 #include "marey/pipeline/keypoints/keypoint_cameras.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,11 +13,14 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
+namespace fs = std::filesystem;
+
 KeypointSequence sequence_of(const RigCamera& camera, const std::string& path, const std::string& set, const FindInImages& find,
                              const Hooks& hooks) {
   if (format::keypoints::may_hold_keypoints(path)) return format::keypoints::read_keypoints(path, set);
   if (path.ends_with(".marey")) return keypoints_of_take(path);
-  if (find && camera.detections.empty()) return find(camera, hooks);
+  std::error_code ignored;
+  if (find && camera.detections.empty() && !fs::is_empty(path, ignored)) return find(camera, hooks);
   throw Error("{}: camera \"{}\" needs a video, or keypoints: a folder of OpenPose, a .json or .csv file, or a take", path,
               camera.name);
 }
