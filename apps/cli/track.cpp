@@ -106,14 +106,13 @@ GroundCommand ground_command(const TrackCommand& command) {
   return ground;
 }
 
-void run_on_ground(TrackCommand& command) {
+void check_on_ground(const TrackCommand& command) {
   if (command.targets == Targets::markers)
     throw WrongUsage("--ground tracks people; markers are not on the ground: leave out one of the two");
   if (command.targets == Targets::keypoints)
     throw WrongUsage("--ground localises people by their boxes; keypoints are of one camera's images: leave out one of the two");
   if (!command.people.input.plot.empty())
     throw WrongUsage("--plot shows trajectories in one image; with --ground there is --pitch-view");
-  track_on_ground(ground_command(command));
 }
 
 /// Options that would change the output much: without effect they are refused, the others are named in a warning.
@@ -164,8 +163,9 @@ void run_in_image(TrackCommand& command, Job& job) {
 }
 
 void run(TrackCommand& command) {
+  if (command.on_ground) check_on_ground(command);
   check_of_other_jobs(command);
-  if (command.on_ground) return run_on_ground(command);
+  if (command.on_ground) return track_on_ground(ground_command(command));
   if (command.source.ends_with(".toml"))
     throw WrongUsage("{} is a rig: add --ground to track people on the ground that its cameras face", command.source);
   if (!command.ground.sources.empty())

@@ -33,9 +33,6 @@ constexpr double kSpeck = 0.1;               // of the tallest body seen: less i
 constexpr double kUnknownFlattestCut = 0.3;  // the same of what the border cuts off
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
-// Share of its box that one whole person fills; a walker fills about half. Without a scene learned ahead, more is asked for while
-// no size is known: where people stood in the first frame, parts are left.
-constexpr double kWholeFilled = 0.6, kUnknownFilled = 0.4;
 
 bool at_border(const Box& box, cv::Size image) {
   return box.left <= 1 || box.top <= 1 || box.right() >= image.width - 1 || box.bottom() >= image.height - 1;
@@ -138,7 +135,6 @@ std::optional<Box> PeopleDetector::body_at(const Vector<2>& foot) const {
 
 void PeopleDetector::prime(std::span<const Frame> samples) {
   background_->prime(samples);
-  scene_known_ = !samples.empty();
   if (options_.sizes) return;
   for (const Frame& sample : samples) {
     // Held everywhere: the model says what it sees and learns nothing, so that the first frame finds it as it was primed.
@@ -312,8 +308,7 @@ Box PeopleDetector::without_halo(const Box& box, std::span<const PixelRun> runs)
 Detection PeopleDetector::whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground) {
   const auto foot = cluster.body.foot();
   const auto size = size_at(foot.x(), foot.y());
-  const double whole = size || !scene_known_ ? kWholeFilled : kUnknownFilled;
-  const double filled = std::min(1.0, cluster.area / (whole * cluster.body.area()));
+  const double filled = std::min(1.0, cluster.area / (0.6 * cluster.body.area()));
   if (!size) return detection_of(completed(cluster, expected, foreground.mask.size()), cluster.runs, 0.5 * filled, foreground);
   const double off = (cluster.body.height / size->height - 1) / 0.3;
   Box box = without_halo(cluster.body, cluster.runs);

@@ -94,8 +94,7 @@ class PeopleDetector final : public Detector {
   PersonSizeModel sizes_;
   HiddenPlaces hidden_;
   SilhouetteExcess excess_;
-  bool scene_known_ = false;  ///< learned ahead
-  Picture picture_;           ///< the frame's
+  Picture picture_;  ///< the frame's
   Counts counts_;
   int groups_ = 0;  ///< numbers given to shared regions in this frame
 };

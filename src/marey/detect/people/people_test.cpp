@@ -166,31 +166,6 @@ TEST(PeopleDetector, ReportsRegionsThemselvesWhileNoSizeIsKnown) {
   EXPECT_LE(result.detections[0].score, 0.5);
 }
 
-/// In a clip that is too short for the size of people to be known, a walker begins a track in every phase of a step: before
-/// a scene that was learned ahead a body fills half of its box.
-TEST(PeopleDetector, WalkersAreConfidentWhileNoSizeIsKnown) {
-  constexpr double kConfident = 0.5;  // track::EvidenceOptions
-  for (const double stride : {0.0, 0.5, 1.0}) {
-    SCOPED_TRACE(stride);
-    PeopleDetector detector(std::make_unique<Drawn>());
-    const cv::Mat empty = cv::Mat::zeros(kSceneImage, CV_8UC1);
-    const std::array<Frame, 1> samples{frame_of(empty)};
-    detector.prime(samples);
-    cv::Mat mask = empty.clone();
-    const Box truth = walker_at(300, 400);
-    bodies::draw(mask, truth, stride);
-    cv::Mat shirt =
-        mask(cv::Rect(static_cast<int>(truth.left + 0.3 * truth.width), static_cast<int>(truth.top + 0.22 * truth.height),
-                      static_cast<int>(0.4 * truth.width), static_cast<int>(0.28 * truth.height)));
-    shirt.setTo(0);  // of the colour of the scene
-    ASSERT_LT(cv::countNonZero(mask), 0.58 * truth.area());
-    const auto result = detector.detect(frame_of(mask), {});
-    ASSERT_EQ(result.detections.size(), 1u);
-    EXPECT_FALSE(detector.size_at(300, 400));
-    EXPECT_GE(result.detections[0].score, kConfident);
-  }
-}
-
 TEST(PeopleDetector, WhatADetectionHoldsFitsTogether) {
   PeopleDetector detector = trained(30, 5);
   std::mt19937 random(6);
