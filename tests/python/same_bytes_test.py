@@ -83,7 +83,15 @@ EXAMPLES["reconstruct markers"] = {
     "set": "set.toml",
     "skeleton": "skeleton.toml",
 }
-EXAMPLES["reconstruct keypoints"] = {"rate": 20, "keypoint-set": "body_25", "people": 1, "max-offset": 0.1}
+EXAMPLES["reconstruct keypoints"] = {
+    "rate": 20,
+    "keypoint-set": "body_25",
+    "people": 1,
+    "max-offset": 0.1,
+    "model": "lite",
+    "detector": MODELS / "person.toml",
+    "every": 3,
+}
 EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
 WITH = {"masks": ["background"], "every": ["detector"], "without-background": ["detector"]}

@@ -168,7 +168,7 @@ TEST_F(KeypointsInSpace, AreRefusedInOneSentence) {
   EXPECT_NE(error_of(other).find("all cameras must have one set"), std::string::npos);
   Rig video = rig;
   video.cameras[0].source = folder_ / "cam1.mp4";
-  EXPECT_NE(error_of(video).find("needs keypoints"), std::string::npos);
+  EXPECT_NE(error_of(video).find("needs a video, or keypoints"), std::string::npos);
 }
 
 TEST_F(KeypointsInSpace, GoOnWithoutACameraThatEnds) {
