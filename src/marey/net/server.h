@@ -104,6 +104,7 @@ class Server {
   Make make_;
   std::list<std::shared_ptr<Connection>> connections_;
   Counts counts_;
+  bool full_ = false;  // was so when clients were to be accepted, which was put off once
 };
 
 }  // namespace marey::net

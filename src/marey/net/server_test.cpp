@@ -354,6 +354,25 @@ TEST(Server, ReadsNoMoreFromAClientThatPingsAndReadsNothing) {
   flood.join();
 }
 
+TEST(Server, ClientsThatHaveLeftMakeRoomAtOnce) {
+  Served served({.protocol = Protocol::web, .max_clients = 8});
+  for (int round = 0; round < 10; ++round) {
+    {
+      std::vector<TestSocket> crowd;
+      for (int i = 0; i < 7; ++i) {
+        crowd.emplace_back(served.server());
+        crowd.back().transmit("GET / HTT");  // never a whole request
+      }
+    }
+    std::vector<TestSocket> next;
+    for (int i = 0; i < 4; ++i) {
+      next.emplace_back(served.server());
+      next.back().transmit("nonsense\r\n\r\n");
+    }
+    for (TestSocket& client : next) ASSERT_EQ(client.hear(12), "HTTP/1.1 400") << round;
+  }
+}
+
 TEST(Server, TwoHundredClientsGetEveryFrame) {
   Served served({.protocol = Protocol::web, .max_clients = 200});
   std::vector<TestSocket> crowd;
