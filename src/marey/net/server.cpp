@@ -48,16 +48,17 @@ Server::~Server() {
 
 bool Server::accept_all() {
   sweep();
+  // Clients that have left may not be noticed yet: those in line wait for a tick, and are refused if nobody left until then.
+  const bool refuses = std::exchange(full_, false) && connections_.size() >= options_.max_clients;
   for (;;) {
-    // Clients that have left may not be noticed yet: those in line wait for a tick, then they are accepted or refused.
-    if (connections_.size() >= options_.max_clients && !std::exchange(full_, true)) return false;
+    if (connections_.size() >= options_.max_clients && !refuses) {
+      full_ = true;
+      return false;
+    }
     Address peer;
     Descriptor socket = accept_from(listener_, peer);
     // Without a descriptor for it the client stays in line: another attempt at once would repeat without end.
-    if (!socket) {
-      full_ = false;
-      return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
-    }
+    if (!socket) return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
     if (connections_.size() >= options_.max_clients) {
       ++counts_.refused;
       continue;
