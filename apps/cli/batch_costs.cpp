@@ -42,7 +42,7 @@ CostModel model_of(const std::string& job) {
   return {94, 3, 23, 3.2, 0, 0, 5, 1e6, 0};
 }
 
-/// How many frames of a film the background is learned from (pipeline::Feed::sample_beginning): up to 30, evenly out of the first
+/// How many frames of a film the background is learned from (pipeline::corridor::Feed::sample_beginning): up to 30, evenly out of the first
 /// 30 seconds, of which 300 frames are read at most.
 double learned_frames(const SourceInfo& film) {
   constexpr double kLearned = 30, kSeconds = 30, kRead = 300;
