@@ -295,6 +295,7 @@ void Recording::shift_times(Duration shift) {
 void Recording::put(TrackColumns track) {
   TrackColumns& place = track_of(track.id());
   place = std::move(track);
+  if (place.name.kind == TrackKind::unspecified) place.name.kind = header.track_kind;
 }
 
 void Recording::put(BodyColumns body) {

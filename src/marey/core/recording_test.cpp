@@ -111,6 +111,8 @@ TEST(Recording, KeepsTheKindOfATrackThatIsRenamed) {
   EXPECT_EQ(recording.tracks()[1].name.kind, TrackKind::ball);
   EXPECT_EQ(recording.tracks()[1].position(0), Vector<3>(5, 10, 2));
   EXPECT_EQ(recording.tracks()[2].name.kind, TrackKind::person);
+  recording.put(TrackColumns({.id = TrackId{4}, .label = {}, .team = {}}, 2));
+  EXPECT_EQ(recording.find(TrackId{4})->name.kind, TrackKind::person);
   InstantsOf instants(recording);
   const auto again = instants.next();
   ASSERT_TRUE(again);

@@ -55,6 +55,7 @@ class CursorOfSchema2 : public TakeCursor {
       RecordingSummary::TrackCount count;
       count.name = {checked_track(tracks.integer(0), *database_), plain_text(tracks.text(1)), plain_text(tracks.text(2))};
       count.name.kind = kinds ? checked_kind(tracks.text(9)) : kind_of_label(count.name);
+      if (count.name.kind == TrackKind::unspecified) count.name.kind = header_.track_kind;
       check_name(count.name, summary.tracks.size(), options_.limits, *database_);
       if (tracks.is_number(3)) count.first_index = tracks.integer(3);
       if (tracks.is_number(4)) count.last_index = tracks.integer(4);

@@ -189,6 +189,7 @@ TEST_F(TakeColumnsTest, KindsComeBackAndOldTakesKnowTheBallByItsLabel) {
   EXPECT_EQ(read.tracks()[1].name.kind, TrackKind::ball);
   EXPECT_EQ(read.tracks()[1].position(0), Vector<3>(1, 2, 0.5));
   EXPECT_EQ(read.tracks()[2].name.kind, TrackKind::person);
+  EXPECT_EQ(TakeReader(path_).read_track(TrackId{3}).name.kind, TrackKind::person);
 
   Database(path_, Database::Mode::create)
       .run(
