@@ -16,7 +16,7 @@
 namespace marey::pipeline::markers {
 namespace {
 
-constexpr double kFittedSeconds = 20;  // of the recording, from which noise is told
+constexpr double kFittedSeconds = 20;       // of the recording, from which noise is told
 constexpr double kUnknownDeviation = 0.25;  // px, of a blob whose source states none; as blob files have it; unswept
 
 using Markers = std::map<TrackId, std::string>;
