@@ -18,6 +18,7 @@
 #include <fmt/core.h>
 
 #include "marey/filter/filters.h"
+#include "marey/geometry/median.h"
 
 #include "experiments/markdown_table.h"
 
@@ -160,12 +161,6 @@ struct Follow {
   }
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double root_mean_square(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value * value;
@@ -203,7 +198,7 @@ int main(int count, char** words) {
       }
       cells.push_back(fmt::format("{:.2f} · {:.1f} % · {:.0f}", root_mean_square(result.errors),
                                   100.0 * static_cast<double>(result.outside) / static_cast<double>(result.errors.size()),
-                                  median(result.radii)));
+                                  geometry::median(result.radii)));
     }
     fmt::print("{}", experiments::markdown_row(cells));
   }

@@ -21,6 +21,7 @@
 #include "marey/edit/fill_gap.h"
 #include "marey/edit/tracks.h"
 #include "marey/format/recording_file.h"
+#include "marey/geometry/median.h"
 
 namespace {
 
@@ -39,13 +40,6 @@ struct Score {
   std::vector<double> rms, expected;  // of each hole, m
   int covered = 0, places = 0, open = 0, holes = 0;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 bool is_marker(const std::string& label, const std::set<std::string>& labels) {
   return labels.contains("all") ? !label.empty() : labels.contains(label);
@@ -141,8 +135,8 @@ int run(const std::vector<std::string>& files, const std::set<std::string>& labe
       std::sort(score.rms.begin(), score.rms.end());
       if (score.rms.empty()) continue;
       std::printf("%-8g %-8s %8d %10.2f %10.2f %12.2f %7.1f%% %7.1f%%\n", length_s, kMethods[method].first, score.holes,
-                  1e3 * median(score.rms), 1e3 * score.rms[score.rms.size() * 9 / 10], 1e3 * median(score.expected),
-                  100.0 * score.covered / score.places, 100.0 * score.open / score.holes);
+                  1e3 * geometry::median(std::vector(score.rms)), 1e3 * score.rms[score.rms.size() * 9 / 10],
+                  1e3 * geometry::median(score.expected), 100.0 * score.covered / score.places, 100.0 * score.open / score.holes);
     }
   }
   return 0;

@@ -18,6 +18,7 @@
 
 #include "marey/detect/detectors.h"
 #include "marey/detect/people/person_size_map.h"
+#include "marey/geometry/median.h"
 #include "marey/reconstruct/person_view.h"
 #include "marey/reconstruct/place_people.h"
 #include "marey/simulate/match/match_camera.h"
@@ -45,13 +46,6 @@ struct Method {
   std::string name;
   std::vector<std::array<double, 4>> off;  // rows too low, height, m off, distance
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Vector<2> between_soles(const simulate::people::Figure& figure, const simulate::people::Stance& stance) {
   Vector<2> sum = Vector<2>::Zero();
@@ -213,15 +207,15 @@ void print(const Method& method) {
       rows.push_back(off[0]);
       sum += off[0];
     }
-    line +=
-        fmt::format(" |{:4} {:6.2f} {:6.2f}", rows.size(), rows.empty() ? 0 : sum / static_cast<double>(rows.size()), median(rows));
+    line += fmt::format(" |{:4} {:6.2f} {:6.2f}", rows.size(), rows.empty() ? 0 : sum / static_cast<double>(rows.size()),
+                        geometry::median_or(rows, 0));
   }
   for (const double distance : {20.0, 40.0, 65.0}) {
     std::vector<double> metres;
     for (const auto& off : method.off) {
       if (off[3] > distance - 5 && off[3] < distance + 5 && off[1] >= 30) metres.push_back(off[2]);
     }
-    line += fmt::format(" |{:4} {:5.2f}", metres.size(), median(metres));
+    line += fmt::format(" |{:4} {:5.2f}", metres.size(), geometry::median_or(metres, 0));
   }
   fmt::print("{}\n", line);
 }

@@ -13,6 +13,7 @@
 #include "marey/calibrate/wand/wand.h"
 #include "marey/calibrate/wand/wand_coverage.h"
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 #include "marey/simulate/room/room.h"
 
 namespace {
@@ -92,12 +93,6 @@ std::optional<double> off_mm(const Waved& all, double seconds, std::string& why)
   }
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return NAN;
-  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
-  return values[values.size() / 2];
-}
-
 void judge(int cameras, int trials, double rate_hz, std::uint64_t first, bool lenses) {
   int failed = 0, much_worse = 0, never = 0;
   std::vector<double> after, then, whole;
@@ -120,8 +115,8 @@ void judge(int cameras, int trials, double rate_hz, std::uint64_t first, bool le
   fmt::print(
       "{} cameras, {:g} Hz, lenses {}: {} of {} failed, {} were more than 3 times as far off as after {:g} s (and 1 mm), {} were "
       "never enough; enough after {:.0f} s, off by {:.2f} mm then and {:.2f} mm at last (medians)\n",
-      cameras, rate_hz, lenses ? "given" : "not given", failed, trials, much_worse, kWhole, never, median(after), median(then),
-      median(whole));
+      cameras, rate_hz, lenses ? "given" : "not given", failed, trials, much_worse, kWhole, never, geometry::median_or(after, NAN),
+      geometry::median_or(then, NAN), geometry::median_or(whole, NAN));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "marey/filter/human_motion.h"
 #include "marey/geometry/butterworth.h"
 #include "marey/geometry/decompositions.h"
+#include "marey/geometry/median.h"
 
 namespace marey::analyse {
 namespace {
@@ -37,10 +38,9 @@ bool is_measured(const Row& nearest, double time, double step_s) {
 Path evenly(std::span<const Row> piece) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < piece.size(); ++i) steps.push_back(piece[i].time - piece[i - 1].time);
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
   Path path;
   path.start_s = piece.front().time;
-  path.step_s = steps[steps.size() / 2];
+  path.step_s = geometry::median(steps);
   const double span = piece.back().time - path.start_s;
   const auto count = static_cast<std::size_t>(std::max(1.0, std::round(span / path.step_s))) + 1;
   path.step_s = span / static_cast<double>(count - 1);

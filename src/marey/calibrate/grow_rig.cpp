@@ -8,6 +8,7 @@
 #include "marey/calibrate/resection.h"
 #include "marey/calibrate/two_views.h"
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate {
 namespace {
@@ -17,12 +18,6 @@ constexpr std::size_t kMostPairs = 12;    // looked at before one is chosen
 constexpr double kGoodParallax = 0.15;    // rad, from which on more does not count
 constexpr double kLeastParallax = 0.01;   // rad
 constexpr double kProportionOff = 0.05;   // by which the middle marker's share of the length may differ from the wand's
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 class Grower {
  public:
@@ -153,12 +148,12 @@ double Grower::metres_per_baseline(const Start& start) {
     throw Error("{}", "too few views of the wand fit together: wave it longer, where the cameras see it");
   }
   require_proportions(shares);
-  return at_.wand().length() / median(lengths);
+  return at_.wand().length() / geometry::median(lengths);
 }
 
 void Grower::require_proportions(const std::vector<double>& shares) const {
   if (shares.empty() || at_.wand().reversible()) return;
-  const double seen = median(shares), said = at_.wand().distances[1] / at_.wand().distances[2];
+  const double seen = geometry::median(std::vector(shares)), said = at_.wand().distances[1] / at_.wand().distances[2];
   if (std::abs(seen - said) <= kProportionOff) return;
   throw Error(
       "the wand's middle marker lies at {:.0f} % of its length by what the cameras see, and at {:.0f} % by --wand: give the "

@@ -11,6 +11,7 @@
 #include "marey/calibrate/board/board_pose.h"
 #include "marey/calibrate/lens_start.h"
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate {
 namespace {
@@ -121,9 +122,7 @@ class Solver {
         const auto pixel = pose ? board::pixel_of(lens, *pose * board_.corner(corner.id)) : std::nullopt;
         distances.push_back(pixel ? (*pixel - corner.pixel).norm() : 1e6);
       }
-      const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-      std::nth_element(distances.begin(), middle, distances.end());
-      all.push_back(*middle);
+      all.push_back(geometry::median(distances));
     }
     return all;
   }

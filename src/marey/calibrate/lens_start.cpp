@@ -8,6 +8,7 @@
 
 #include "marey/calibrate/board/board_pose.h"
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate {
 namespace {
@@ -24,9 +25,8 @@ std::optional<double> misfit(const board::Board& board, std::span<const LensView
     const auto rms = pose ? board::board_rms(board, views[i].board, lens, *pose) : std::nullopt;
     misfits.push_back(rms.value_or(1e6));
   }
-  const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
-  std::nth_element(misfits.begin(), middle, misfits.end());
-  return *middle < 1e6 ? std::optional(*middle) : std::nullopt;
+  const auto middle = geometry::median(misfits);
+  return middle < 1e6 ? std::optional(middle) : std::nullopt;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "marey/calibrate/rays.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate {
 namespace {
@@ -44,13 +45,6 @@ struct Sum {
   }
 };
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 /// Standard deviation of a point's place over all axes, m; nothing where fewer than two cameras see it.
 std::optional<double> point_deviation(const std::vector<Camera>& cameras, const Vector<3>& point, double noise_px, int& seeing) {
   Matrix<3> information = Matrix<3>::Zero();
@@ -71,8 +65,8 @@ VolumeReport volume_of(const std::vector<Camera>& cameras, const std::vector<Vec
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const auto& point : points) values.push_back(point[axis]);
-    volume.low[axis] = quantile(values, 0.05);
-    volume.high[axis] = quantile(values, 0.95);
+    volume.low[axis] = geometry::quantile(values, 0.05);
+    volume.high[axis] = geometry::quantile(values, 0.95);
   }
   constexpr int steps = 9;
   std::vector<double> deviations;
@@ -90,8 +84,8 @@ VolumeReport volume_of(const std::vector<Camera>& cameras, const std::vector<Vec
     }
   }
   constexpr double all = steps * steps * steps;
-  volume.median_mm = quantile(deviations, 0.5);
-  volume.worst_tenth_mm = quantile(deviations, 0.9);
+  volume.median_mm = geometry::quantile(deviations, 0.5);
+  volume.worst_tenth_mm = geometry::quantile(deviations, 0.9);
   volume.seen_by_two = two / all;
   volume.seen_by_three = three / all;
   return volume;

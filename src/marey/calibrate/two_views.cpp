@@ -10,6 +10,7 @@
 
 #include "marey/calibrate/draw_below.h"
 #include "marey/geometry/decompositions.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate {
 namespace {
@@ -265,9 +266,7 @@ TwoViews Relation::describe(const Matrix<3>& E) const {
   std::vector<double> angles;
   for (const Match& match : matches) angles.push_back(angle_between(views.b_from_a.rotation * match.a, match.b));
   if (!angles.empty()) {
-    const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-    std::nth_element(angles.begin(), middle, angles.end());
-    views.parallax = *middle;
+    views.parallax = geometry::median(angles);
   }
   if (matches.empty()) return views;
   const double sigma = std::hypot(options_.sigma_a, options_.sigma_b);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 
 namespace marey {
 namespace {
@@ -36,11 +37,10 @@ std::optional<double> FrameNumbers::rate_hz() const {
   std::vector<double> each;
   each.reserve(steps_.size());
   for (const auto& [frames, step] : steps_) each.push_back(step / frames);
-  const auto middle = each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2);
-  std::nth_element(each.begin(), middle, each.end());
+  const auto middle = geometry::median(each);
   double frames_in_all = 0, time_in_all = 0;
   for (const auto& [frames, step] : steps_) {
-    if (std::abs(step / frames - *middle) > kAgree * *middle) continue;
+    if (std::abs(step / frames - middle) > kAgree * middle) continue;
     frames_in_all += frames;
     time_in_all += step;
   }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 
 namespace marey {
 namespace {
@@ -367,9 +368,7 @@ std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants
     if (step > 0 && frames > 0) steps.push_back(step / frames);
   }
   if (steps.empty()) return std::nullopt;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return 1 / *middle;
+  return 1 / geometry::median(steps);
 }
 
 Recording with_time_base(Recording recording, const TimeBase& base) {

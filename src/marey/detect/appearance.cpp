@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "marey/core/colour.h"
+#include "marey/geometry/median.h"
 
 namespace marey::detect {
 namespace {
@@ -73,11 +74,6 @@ Quad quad_at(const cv::Mat& luma, const cv::Mat& mask, int column, int row) {
   return {static_cast<float>(sum) / static_cast<float>(all), 2 * seen > all};
 }
 
-float median(std::array<float, 2 * most_samples>& values, int n) {
-  std::nth_element(values.begin(), values.begin() + n / 2, values.begin() + n);
-  return values[n / 2];
-}
-
 /// The boxes of those who share the region of `detection` and stand nearer.
 std::vector<Box> boxes_before(std::span<const Detection> detections, const Detection& detection) {
   std::vector<Box> nearer;
@@ -116,9 +112,9 @@ class Samples {
     std::array<float, 3> colour{};
     float variance = 0;
     for (int i = 0; i < 3; ++i) {
-      colour[i] = median(values_[i], n_);
+      colour[i] = geometry::median(std::span(values_[i]).first(static_cast<std::size_t>(n_)));
       for (int k = 0; k < n_; ++k) values_[i][k] = std::abs(values_[i][k] - colour[i]);
-      const float spread = half_of_normal * median(values_[i], n_);
+      const float spread = half_of_normal * geometry::median(std::span(values_[i]).first(static_cast<std::size_t>(n_)));
       variance += spread * spread / 3;
     }
     const float independent = std::max(1.0F, static_cast<float>(n_) / alike);

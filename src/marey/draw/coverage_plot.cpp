@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/draw/svg.h"
+#include "marey/geometry/median.h"
 
 namespace marey::draw {
 namespace {
@@ -22,9 +23,7 @@ double magnification(const CoveragePlot& plot) {
     if (mark.used) sizes.push_back(mark.error.norm());
   }
   if (sizes.empty()) return 1;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double wanted = 0.01 * plot.size.width / std::max(1e-3, *middle);
+  const double wanted = 0.01 * plot.size.width / std::max(1e-3, geometry::median(sizes));
   const double power = std::pow(10, std::floor(std::log10(wanted)));
   return std::max(1.0, (wanted >= 5 * power ? 5 : wanted >= 2 * power ? 2 : 1) * power);
 }

@@ -9,6 +9,7 @@
 #include "marey/core/text_safety.h"
 #include "marey/edit/fill_gap.h"
 #include "marey/edit/lowpass.h"
+#include "marey/geometry/median.h"
 
 namespace marey::edit {
 namespace {
@@ -75,10 +76,9 @@ double require_cutoff(double cutoff_hz, const Tracks& tracks) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < moments.size(); ++i) steps_s.push_back(seconds(moments[i].time - moments[i - 1].time));
   if (steps_s.empty()) return cutoff_hz;
-  const auto median = steps_s.begin() + std::ssize(steps_s) / 2;  // instants may be left out
-  std::nth_element(steps_s.begin(), median, steps_s.end());
-  if (!(*median > 0)) return cutoff_hz;
-  const double rate_hz = 1 / *median;
+  const auto median = geometry::median(steps_s);  // instants may be left out
+  if (!(median > 0)) return cutoff_hz;
+  const double rate_hz = 1 / median;
   if (cutoff_hz < highest_cutoff(rate_hz)) return cutoff_hz;
   throw Error("filter: at {:.4g} frames a second a cut-off of {:g} Hz would change nothing; it lies below {:.1f} Hz", rate_hz,
               cutoff_hz, highest_cutoff(rate_hz));

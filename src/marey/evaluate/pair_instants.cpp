@@ -6,16 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "marey/geometry/median.h"
+
 namespace marey::evaluate {
 namespace {
 
 constexpr double kSame = 0.02;  // share by which periods may differ and still be one
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 bool alike(double a, double b) {
   return std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b));
@@ -75,8 +71,8 @@ InstantClock clock_of(const Recording& recording) {
     steps.push_back(step);
     per_frame.push_back(step / static_cast<double>(clock.instants[i].index - clock.instants[i - 1].index));
   }
-  clock.period = median(std::move(steps));
-  clock.frame_s = median(std::move(per_frame));
+  clock.period = geometry::median_or(std::move(steps), 0);
+  clock.frame_s = geometry::median_or(std::move(per_frame), 0);
   return clock;
 }
 

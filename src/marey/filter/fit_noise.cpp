@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "marey/geometry/median.h"
+
 namespace marey::filter {
 namespace {
 
@@ -106,8 +108,7 @@ std::optional<NoiseFit> fit_noise(std::span<const MeasuredPath<D>> paths) {
     }
   }
   if (steps.empty()) return std::nullopt;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  const double step = steps[steps.size() / 2];
+  const double step = geometry::median(steps);
 
   // The ratio without a unit: q step³ / r, from all noise in the measurement to all in the motion.
   const double unit = 1 / (step * step * step);

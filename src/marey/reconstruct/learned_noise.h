@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "marey/geometry/median.h"
 #include "marey/reconstruct/correspond.h"
 
 namespace marey::reconstruct {
@@ -27,9 +28,7 @@ class LearnedNoise {
       if (placed.point.rays > 2) ratios_.push_back(placed.point.chi_square / (2 * placed.point.rays - 3));
     }
     if (std::ssize(ratios_) < kFewest) return false;
-    const auto middle = ratios_.begin() + static_cast<std::ptrdiff_t>(ratios_.size() / 2);
-    std::nth_element(ratios_.begin(), middle, ratios_.end());
-    const double median = *middle;
+    const double median = geometry::median(ratios_);
     double sum = 0;
     int count = 0;
     for (const double ratio : ratios_) {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "marey/geometry/butterworth.h"
+#include "marey/geometry/median.h"
 
 namespace marey::analyse::gait {
 namespace {
@@ -80,14 +81,13 @@ std::vector<GaitEvent> gait_events(const FeetPaths& feet, double rate_hz, const 
   std::vector<GaitEvent> events;
   std::vector<double> walk = ground_speed(feet.sacrum, kWalkCutoffHz, rate_hz);
   if (walk.empty()) return events;
-  const auto middle = walk.begin() + std::ssize(walk) / 2;
-  std::nth_element(walk.begin(), middle, walk.end());
-  if (*middle < options.slowest_m_s) return events;
+  const auto middle = geometry::median(walk);
+  if (middle < options.slowest_m_s) return events;
   for (const Side side : kSides) {
     const auto i = static_cast<std::size_t>(side);
     const std::vector<double> heel = ground_speed(feet.heel[i], options.cutoff_hz, rate_hz),
                               toe = ground_speed(feet.toe[i], options.cutoff_hz, rate_hz);
-    if (!heel.empty() && heel.size() == toe.size()) add_events(side, heel, toe, *middle, rate_hz, options, events);
+    if (!heel.empty() && heel.size() == toe.size()) add_events(side, heel, toe, middle, rate_hz, options, events);
   }
   std::stable_sort(events.begin(), events.end(), [](const GaitEvent& a, const GaitEvent& b) { return a.time_s < b.time_s; });
   return events;

@@ -10,6 +10,7 @@
 
 #include "marey/core/error.h"
 #include "marey/geometry/decompositions.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::board {
 namespace {
@@ -19,17 +20,11 @@ constexpr double kLeastShare = 0.3;     // of the most views that any offset bri
 constexpr double kLongestGap = 2.5;     // frames between two views that are still interpolated between
 constexpr double kLimitOfSpread = 0.2;  // a pair whose views disagree more decides nothing
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Median time between neighbours, s.
 double period_of(std::span<const PosedView> views) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < views.size(); ++i) steps.push_back(views[i].time_s - views[i - 1].time_s);
-  return steps.empty() ? 0 : median_of(std::move(steps));
+  return steps.empty() ? 0 : geometry::median(std::move(steps));
 }
 
 /// The pose at a time between two views; nothing outside, or within a gap.
@@ -62,7 +57,7 @@ Rigid3 common_pose(const std::vector<Rigid3>& poses, double depth, double& sprea
   for (std::size_t i = 0; i < poses.size(); i += stride) {
     std::vector<double> distances;
     for (const Rigid3& other : poses) distances.push_back(apart(poses[i], other));
-    const double here = median_of(std::move(distances));
+    const double here = geometry::median(std::move(distances));
     if (here < spread) spread = here, centre = poses[i];
   }
   for (int round = 0; round < 3; ++round) {
@@ -81,7 +76,7 @@ Rigid3 common_pose(const std::vector<Rigid3>& poses, double depth, double& sprea
     const geometry::SingularValues3 svd = geometry::singular_values(rotations);
     const double sign = (svd.U * svd.V.transpose()).determinant();
     centre = {svd.U * Vector<3>(1, 1, sign).asDiagonal() * svd.V.transpose(), translations / count};
-    spread = median_of(std::move(distances));
+    spread = geometry::median(std::move(distances));
   }
   return centre;
 }
@@ -100,7 +95,7 @@ std::optional<BoardPair> compare_at(std::span<const PosedView> first, std::span<
   BoardPair pair;
   pair.offset_s = offset_s;
   pair.common = static_cast<int>(poses.size());
-  pair.second_from_first = common_pose(poses, median_of(std::move(depths)), pair.spread);
+  pair.second_from_first = common_pose(poses, geometry::median(std::move(depths)), pair.spread);
   return pair;
 }
 

@@ -20,6 +20,7 @@
 #include "marey/calibrate/bundle/bundle_residual.h"
 #include "marey/calibrate/solve.h"
 #include "marey/calibrate/wand/rough_path.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::board {
 namespace {
@@ -92,9 +93,7 @@ class Motion {
       }
     }
     if (distances.empty()) return;
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    noise_px_ = std::max(kLeastNoise, *middle / 1.1774);  // the median of a Rayleigh distribution
+    noise_px_ = std::max(kLeastNoise, geometry::median(distances) / 1.1774);  // the median of a Rayleigh distribution
     const double limit = std::max(kAlwaysGood, kOutlierSigmas * noise_px_);
     double square = 0;
     for (const View& view : views_) square += view.jitter_s * view.jitter_s;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "marey/geometry/median.h"
+
 namespace marey::calibrate::board {
 namespace {
 
@@ -36,9 +38,7 @@ double sharpness_of(const Picture& picture, const BoardView& view) {
     values.push_back(luma.depth() == CV_16U ? steepness<unsigned short>(luma, x, y) : steepness<unsigned char>(luma, x, y));
   }
   if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return geometry::median(values);
 }
 
 }  // namespace marey::calibrate::board

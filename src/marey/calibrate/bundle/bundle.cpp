@@ -11,6 +11,7 @@
 #include "marey/calibrate/bundle/bundle_deviations.h"
 #include "marey/calibrate/bundle/bundle_residual.h"
 #include "marey/calibrate/solve.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::bundle {
 namespace {
@@ -193,9 +194,7 @@ double median_noise(const std::vector<std::optional<Vector<2>>>& errors, const s
     if (inlier[i] && errors[i]) distances.push_back(errors[i]->norm());
   }
   if (distances.empty()) return 0;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle / 1.1774;
+  return geometry::median(distances) / 1.1774;
 }
 
 /// Judges every observation anew; true where any verdict changed.

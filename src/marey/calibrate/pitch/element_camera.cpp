@@ -7,6 +7,7 @@
 #include <ceres/ceres.h>
 
 #include "marey/calibrate/solve.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -96,9 +97,7 @@ double median_error(const ElementView& view, const ElementSight& sight) {
   std::vector<double> errors;
   for (const Vector<2>& point : sight.points)
     errors.push_back(off(sight.model, frame, straightened(point, view.p[ElementView::bend])).norm());
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+  return geometry::median(errors);
 }
 
 struct Fitted {

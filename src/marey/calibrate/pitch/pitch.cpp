@@ -9,6 +9,7 @@
 #include "marey/core/error.h"
 #include "marey/core/geometry.h"
 #include "marey/geometry/ground_view.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -19,13 +20,6 @@ constexpr double kLastReaches[] = {8, 6};  // when lens and ground are known tog
 constexpr double kReferenceWidth = 3072;
 constexpr double kSampleStep = 0.25;   // m
 constexpr double kFarthestClick = 50;  // px: what is clicked further off its line is no click on it
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 /// Frames with their origin in the middle of the pitch have negative coordinates within half a pitch.
 Vector<2> corner_of(const std::vector<PitchView>& views, const geometry::PitchSize& size) {
@@ -60,10 +54,10 @@ void measure_lines(const geometry::GroundSurface& ground, PitchViewResult& resul
     pixels.push_back(std::abs(off));
     metres.push_back(std::abs(off) / seen.pixels_per_metre);
   }
-  result.line_median_px = quantile(pixels, 0.5);
-  result.line_95_px = quantile(pixels, 0.95);
-  result.line_median_m = quantile(metres, 0.5);
-  result.line_95_m = quantile(metres, 0.95);
+  result.line_median_px = geometry::quantile(pixels, 0.5);
+  result.line_95_px = geometry::quantile(pixels, 0.95);
+  result.line_median_m = geometry::quantile(metres, 0.5);
+  result.line_95_m = geometry::quantile(metres, 0.95);
 }
 
 /// Clicks against the camera; an outlier is given the other name on the pitch that would suit it.

@@ -12,6 +12,7 @@
 #include "marey/calibrate/solve.h"
 #include "marey/core/error.h"
 #include "marey/geometry/decompositions.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -177,9 +178,7 @@ std::optional<CameraNumbers> camera_from(const PitchStart& start, const std::vec
 }
 
 std::vector<char> inliers_of(const std::vector<double>& errors) {
-  std::vector<double> sorted = errors;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double reach = std::max(kLeastOutlier, kOutlierSigmas * 1.2 * sorted[sorted.size() / 2]);
+  const double reach = std::max(kLeastOutlier, kOutlierSigmas * 1.2 * geometry::median(std::vector(errors)));
   std::vector<char> inlier;
   for (const double error : errors) inlier.push_back(error < reach);
   return inlier;
@@ -258,12 +257,10 @@ PitchCamera camera_from_points(const std::string& name, const std::vector<PitchP
   PitchCamera result{numbers.camera(size), {}, {}};
   result.error_px = errors_of(result.camera, points);
   result.inlier = inliers_of(result.error_px);
-  std::vector<double> sorted = result.error_px;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  if (*middle > kWorstMedian * size.width)
+  const double middle = geometry::median(std::vector(result.error_px));
+  if (middle > kWorstMedian * size.width)
     throw Error("{}: no camera sees half of the {} points within {:.0f} px of their clicks; most are clicked or named wrong", name,
-                points.size(), *middle);
+                points.size(), middle);
   const auto good = std::count(result.inlier.begin(), result.inlier.end(), 1);
   if (good < 4 || 2 * good <= static_cast<std::ptrdiff_t>(points.size()))
     throw Error("{}: only {} of {} points agree on one camera; most are clicked or named wrong, or left and right are exchanged",

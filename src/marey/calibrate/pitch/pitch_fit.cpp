@@ -12,6 +12,7 @@
 #include "marey/calibrate/solve.h"
 #include "marey/geometry/decompositions.h"
 #include "marey/geometry/ground_view.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -127,9 +128,8 @@ std::vector<SeenPlace> pieces_of(const std::vector<LineSighting>& painted, const
     const LineSighting& middle = painted[(begin + end - 1) / 2];
     const auto expected = view.pixel(middle.ground);
     if (off.empty() || !expected) continue;
-    std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2), off.end());
     pieces.push_back(across_line(middle.ground, view.surface().relative(middle.ground), middle,
-                                 *expected + off[off.size() / 2] * middle.normal,
+                                 *expected + geometry::median(off) * middle.normal,
                                  std::hypot(kPaintPixels, kPaintMetres * middle.pixels_per_metre)));
   }
   return pieces;
@@ -247,12 +247,6 @@ void settle(const std::vector<SeenPitch>& seen, PitchModel& candidate, const Noi
   }
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The first `count` errors of a place, whitened by what is usual.
 Vector<2> error_of(const SeenPlace& place, const PitchState& state, std::size_t camera) {
   const auto& p = state.cameras[camera].p;
@@ -290,8 +284,8 @@ Noise learned(const std::vector<SeenPitch>& seen, const PitchModel& richest) {
   const double count = news_in(seen, noise), numbers = free_terms(richest) + 9.0 * static_cast<double>(seen.size());
   if (count < 1.5 * numbers) return noise;  // too little to tell noise from what the model takes
   const double taken = std::sqrt(count / (count - numbers));
-  if (!clicks.empty()) noise.click = std::max(kLeastScale, taken * median_of(clicks) / kOfPlane);
-  if (!paint.empty()) noise.paint = std::max(kLeastScale, taken * median_of(paint) / kOfLine);
+  if (!clicks.empty()) noise.click = std::max(kLeastScale, taken * geometry::median(clicks) / kOfPlane);
+  if (!paint.empty()) noise.paint = std::max(kLeastScale, taken * geometry::median(paint) / kOfLine);
   noise.news = news_of(seen, richest.state);
   return noise;
 }

@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <ceres/jet.h>
 
+#include "marey/geometry/median.h"
+
 namespace marey::calibrate::turning {
 namespace {
 
@@ -58,9 +60,7 @@ void judge(std::span<const PaintSighting> paint, const geometry::TripodFrame<Jet
   fit.agreeing = static_cast<int>(near.size());
   fit.lines = static_cast<int>(std::count_if(of_line.begin(), of_line.end(), [](int n) { return n >= 3; }));
   if (near.empty()) return;
-  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-  std::nth_element(near.begin(), middle, near.end());
-  fit.median_px = *middle;
+  fit.median_px = geometry::median(near);
 }
 
 }  // namespace

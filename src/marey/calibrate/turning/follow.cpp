@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "marey/geometry/median.h"
+
 namespace marey::calibrate::turning {
 namespace {
 
@@ -192,9 +194,7 @@ TurningResult TurningFollower::finish() {
     result_.lost += sure ? 0 : 1;
   }
   if (!medians_.empty()) {
-    const auto middle = medians_.begin() + static_cast<std::ptrdiff_t>(medians_.size() / 2);
-    std::nth_element(medians_.begin(), middle, medians_.end());
-    result_.median_px = *middle;
+    result_.median_px = geometry::median(medians_);
   }
   return result_;
 }

@@ -9,6 +9,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "marey/calibrate/turning/aim.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::turning {
 namespace {
@@ -95,11 +96,7 @@ OdometryFit fit_heading(const geometry::Tripod& tripod, const Matches& matches, 
       const Vector<2> off = match.seen - frame.seen(match.place);
       across.push_back(off.x()), down.push_back(off.y());
     }
-    const auto median = [](std::vector<double>& values) {
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      return *middle;
-    };
+    const auto median = [](std::vector<double>& values) { return geometry::median(values); };
     result.heading.x() -= median(across) / frame.focal / std::max(0.3, std::cos(start.tilt));
     result.heading.y() -= median(down) / frame.focal;
   }

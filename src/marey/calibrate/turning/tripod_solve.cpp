@@ -10,6 +10,7 @@
 
 #include "marey/calibrate/solve.h"
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::turning {
 namespace {
@@ -100,12 +101,6 @@ std::vector<double> errors_of(const geometry::Tripod& tripod, const geometry::He
   for (const ClickedPlace& click : frame.places)
     errors.push_back((pixel_of(numbers.data(), turned.data(), click.ground, size) - click.pixel).norm());
   return errors;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::vector<TripodFrameSight> sights_of(std::span<const ClickedFrame> frames, const TripodGuess& guess) {
@@ -216,9 +211,9 @@ ClickedTripod tripod_from_clicks(const std::vector<ClickedFrame>& clicks, cv::Si
   for (std::size_t i = 0; i < used.size(); ++i) {
     result.error_px.push_back(errors_of(found.tripod, found.headings[i], used[i], size));
     all.insert(all.end(), result.error_px.back().begin(), result.error_px.back().end());
-    worst = std::max(worst, median_of(result.error_px.back()));
+    worst = std::max(worst, geometry::median(std::vector(result.error_px.back())));
   }
-  result.median_px = median_of(all);
+  result.median_px = geometry::median(all);
   if (worst > 2 * options.click_px * size.width / 1280.0) check_halves(clicks, size, pitch, options, found.cost);
   if (worst > kWorstMedian * size.width)
     throw Error(

@@ -9,6 +9,7 @@
 
 #include "marey/core/error.h"
 #include "marey/geometry/decompositions.h"
+#include "marey/geometry/median.h"
 
 namespace marey::calibrate::wand {
 namespace {
@@ -18,12 +19,6 @@ constexpr std::size_t kLeastWands = 30;   // places of the wand, over all
 constexpr double kApart = 0.01;           // of their distance from the wand: nearer, two cameras are one
 constexpr double kFlat = 0.03;            // extent across a plane, as a share of the extent in it
 constexpr double kLengthChange = 0.015;   // between parts of a recording
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Vector<3> centre_of(const bundle::Bundle& bundle, std::size_t c) {
   return bundle.cameras[c].camera_from_world.inverse().translation;
@@ -74,19 +69,19 @@ void check_tracks(const WandInput& input, const std::vector<MarkTrack>& tracks) 
 void check_lengths(const std::vector<double>& lengths, const WandShape& wand) {
   constexpr std::size_t parts = 8, least = 5;
   if (wand.markers() < 2 || lengths.size() < parts * least) return;
-  const double all = median(lengths);
+  const double all = geometry::median(std::vector(lengths));
   std::vector<std::vector<double>> by_part(parts);
   std::vector<double> spreads;  // within the parts: a wand that changes has two lengths, each sharp
   for (std::size_t i = 0; i < lengths.size(); ++i) by_part[i * parts / lengths.size()].push_back(lengths[i]);
   for (const auto& part : by_part) {
-    const double middle = median(part);
+    const double middle = geometry::median(std::vector(part));
     std::vector<double> off;
     for (const double length : part) off.push_back(std::abs(length - middle));
-    spreads.push_back(1.4826 * median(off));
+    spreads.push_back(1.4826 * geometry::median(off));
   }
-  const double spread = median(spreads);
+  const double spread = geometry::median(spreads);
   for (std::size_t part = 0; part < parts; ++part) {
-    const double here = median(by_part[part]);
+    const double here = geometry::median(by_part[part]);
     const double noise = 5 * spread / std::sqrt(static_cast<double>(by_part[part].size()));
     if (std::abs(here - all) <= std::max(kLengthChange * all, noise)) continue;
     throw Error(

@@ -14,6 +14,7 @@
 #include "marey/detect/background/background_light.h"
 #include "marey/detect/background/background_patches.h"
 #include "marey/detect/background/background_sway.h"
+#include "marey/geometry/median.h"
 
 namespace marey::detect::background {
 namespace {
@@ -26,8 +27,7 @@ constexpr int kComparedEvery = 8;  // px
 std::size_t middle_sample(std::span<const FramePlanes> samples) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < samples.size(); ++i) order.emplace_back(cv::mean(samples[i].luma)[0], i);
-  std::nth_element(order.begin(), order.begin() + std::ssize(order) / 2, order.end());
-  return order[order.size() / 2].second;
+  return geometry::median(order).second;
 }
 
 /// Over a sparse grid, the share of the samples' pixels that are not as the median of the samples is there.
@@ -38,9 +38,7 @@ double disagreement(std::span<const FramePlanes> samples) {
   for (int y = kComparedEvery / 2; y < size.height; y += kComparedEvery) {
     for (int x = kComparedEvery / 2; x < size.width; x += kComparedEvery) {
       for (std::size_t i = 0; i < samples.size(); ++i) levels[i] = samples[i].luma.at<std::uint8_t>(y, x);
-      const auto middle = levels.begin() + std::ssize(levels) / 2;
-      std::nth_element(levels.begin(), middle, levels.end());
-      const int median = *middle;
+      const int median = geometry::median(levels);
       other += static_cast<double>(
           std::count_if(levels.begin(), levels.end(), [&](int level) { return std::abs(level - median) > kSameSample; }));
       all += static_cast<double>(levels.size());

@@ -10,6 +10,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/geometry/median.h"
+
 namespace marey::detect::background {
 namespace {
 
@@ -19,12 +21,6 @@ constexpr int kBrightest = 235;  // brighter ones may be clipped
 constexpr float kNoticeable = 0.03F;
 constexpr float kGreatest = 2.5F;  // beyond, and below its inverse, something covers the camera or its scene is another
 constexpr std::size_t kFewestRatios = 12;
-
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -48,7 +44,7 @@ void LightMeter::judge(Cell& cell, float overall_gain) {
   cell.gain = overall_gain;
   cell.sure = false;
   if (cell.ratios.size() < kFewestRatios) return;
-  const float gain = median(cell.ratios);
+  const float gain = geometry::median(cell.ratios);
   const auto agree =
       std::count_if(cell.ratios.begin(), cell.ratios.end(), [&](float ratio) { return std::abs(ratio - gain) < 0.08F * gain; });
   cell.sure = static_cast<std::size_t>(agree) * 10 > cell.ratios.size() * 6;
@@ -68,7 +64,7 @@ cv::Mat LightMeter::smoothed(float overall_gain) const {
           if (cell.sure) round.push_back(cell.gain);
         }
       }
-      gains.at<float>(y, x) = round.size() < 3 ? overall_gain : median(round);
+      gains.at<float>(y, x) = round.size() < 3 ? overall_gain : geometry::median(round);
     }
   }
   return gains;
@@ -77,7 +73,7 @@ cv::Mat LightMeter::smoothed(float overall_gain) const {
 std::optional<LightChange> LightMeter::measure(const cv::Mat& luma, const ScenePlane& scene, int black) {
   sample(luma, scene, black);
   if (all_.size() < kFewestRatios) return std::nullopt;
-  const float overall_gain = median(all_);
+  const float overall_gain = geometry::median(all_);
   for (Cell& cell : cells_) judge(cell, overall_gain);
   const auto sure = std::count_if(cells_.begin(), cells_.end(), [](const Cell& cell) { return cell.sure; });
   if (sure * 2 < kColumns * kRows) return std::nullopt;
@@ -101,7 +97,7 @@ double median_difference(const cv::Mat& picture, const ScenePlane& scene) {
       differences.push_back(static_cast<float>(picture.at<std::uint8_t>(y, x)) - static_cast<float>(scene.mean(y)[x]) / 128.0F);
     }
   }
-  return differences.empty() ? 0 : median(differences);
+  return differences.empty() ? 0 : geometry::median(differences);
 }
 
 }  // namespace marey::detect::background

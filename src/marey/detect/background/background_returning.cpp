@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include "marey/geometry/median.h"
+
 namespace marey::detect::background {
 namespace {
 
@@ -92,9 +94,7 @@ struct Level {
 };
 
 Level level_of(std::vector<int> levels) {
-  const auto middle = levels.begin() + std::ssize(levels) / 2;
-  std::nth_element(levels.begin(), middle, levels.end());
-  const int level = *middle;
+  const int level = geometry::median(levels);
   for (int& one : levels) one = std::abs(one - level);
   const auto upper = levels.begin() + 3 * std::ssize(levels) / 4;
   std::nth_element(levels.begin(), upper, levels.end());

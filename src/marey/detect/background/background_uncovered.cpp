@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/detect/background/difference_sums.h"
+#include "marey/geometry/median.h"
 
 namespace marey::detect::background {
 namespace {
@@ -21,13 +22,6 @@ constexpr double kGap = 1.0 / 15;                      // of the body's height: 
 constexpr double kSharper = 1.3, kSharperLevels = 2;   // how much sharper the border is in the scene, and by how many levels more
 constexpr double kSameLevels = 8;                      // mean difference of what is the same
 constexpr int kBlurReach = 2;                          // px about a region that its blur reaches
-
-double middle_value(std::vector<float>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<float> values_of(const cv::Mat& plane, const cv::Mat& mask) {
   std::vector<float> values;
@@ -80,9 +74,9 @@ void mark_differing(const cv::Mat& scene, const cv::Mat& now, const cv::Rect& bo
   cv::Mat difference = as_float(now) - as_float(scene);
   cv::blur(difference, difference, {3, 3});
   std::vector<float> values = values_of(difference, beside);
-  const double shade = middle_value(values);
+  const double shade = geometry::median_or(values, 0);
   for (float& value : values) value = static_cast<float>(std::abs(value - shade));
-  mask |= cv::abs(difference - shade) > std::max(unlike, kNoiseSigmas * kOfGaussian * middle_value(values));
+  mask |= cv::abs(difference - shade) > std::max(unlike, kNoiseSigmas * kOfGaussian * geometry::median_or(values, 0));
 }
 
 /// How sharp the pictures are along a band, levels: of each pixel its sharpest plane.
@@ -143,7 +137,7 @@ void lay(const cv::Mat& patch, const cv::Mat& mask, cv::Mat plane) {
   plane.convertTo(there, CV_32F);
   patch.convertTo(put, CV_32F);
   std::vector<float> shades = values_of(there - put, mask == 0);
-  put += cv::Scalar(middle_value(shades));
+  put += cv::Scalar(geometry::median_or(shades, 0));
   put.convertTo(put, plane.type());
   put.copyTo(plane, mask);
 }
@@ -172,7 +166,7 @@ bool same_within(const Picture& a, const Picture& b, const cv::Mat& mask) {
   if (a.size() != b.size() || a.empty()) return false;
   cv::Mat difference = as_float(levels_of(a).front()) - as_float(levels_of(b).front());
   std::vector<float> beside = values_of(difference, mask == 0);
-  difference -= cv::Scalar(middle_value(beside));
+  difference -= cv::Scalar(geometry::median_or(beside, 0));
   return cv::mean(cv::abs(difference), mask)[0] < kSameLevels;
 }
 

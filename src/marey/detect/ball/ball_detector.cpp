@@ -13,6 +13,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/geometry/median.h"
+
 namespace marey::detect::ball {
 
 void BallDetector::prime(std::span<const Frame> samples) {
@@ -23,12 +25,10 @@ void BallDetector::prime(std::span<const Frame> samples) {
   if (pictures.size() < 3) return;
   scene_.create(pictures.front().size(), CV_8UC1);
   std::vector<std::uint8_t> levels(pictures.size());
-  const auto middle = levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2);
   for (int y = 0; y < scene_.rows; ++y) {
     for (int x = 0; x < scene_.cols; ++x) {
       for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = pictures[i].at<std::uint8_t>(y, x);
-      std::nth_element(levels.begin(), middle, levels.end());
-      scene_.at<std::uint8_t>(y, x) = *middle;
+      scene_.at<std::uint8_t>(y, x) = geometry::median(levels);
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "marey/filter/random_stream.h"
+#include "marey/geometry/median.h"
 
 namespace marey::detect::blobs {
 namespace {
@@ -23,12 +24,6 @@ constexpr std::size_t kFewest = 200;   // responses that a foreground can be lea
 constexpr std::size_t kMost = 6000;    // of those that are given
 constexpr int kRounds = 12;
 
-float median_of(std::vector<float>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Middle {
   Response median, sigma;
 };
@@ -38,9 +33,9 @@ Middle middle_of(std::span<const Response> seen, const Response& noise, std::vec
   for (int i = 0; i < kResponses; ++i) {
     values.clear();
     for (const Response& one : seen) values.push_back(one[i]);
-    middle.median[i] = median_of(values);
+    middle.median[i] = geometry::median(values);
     for (float& value : values) value = std::abs(value - middle.median[i]);
-    middle.sigma[i] = std::max(noise[i], kDeviation * median_of(values));
+    middle.sigma[i] = std::max(noise[i], kDeviation * geometry::median(values));
   }
   return middle;
 }
@@ -228,7 +223,7 @@ Response response_noise(std::span<const cv::Mat> seen) {
     for (int i = 0; i < kResponses; ++i) deviations[static_cast<std::size_t>(i)].push_back(middle.sigma[i]);
   }
   for (int i = 0; i < kResponses; ++i) {
-    noise[i] = std::max(i < 3 ? 1.0F : 0.5F, median_of(deviations[static_cast<std::size_t>(i)]));
+    noise[i] = std::max(i < 3 ? 1.0F : 0.5F, geometry::median(deviations[static_cast<std::size_t>(i)]));
   }
   return noise;
 }

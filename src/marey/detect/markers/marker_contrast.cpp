@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "marey/geometry/median.h"
+
 namespace marey::detect::markers {
 namespace {
 
@@ -59,9 +61,7 @@ std::optional<double> middle_round(const cv::Mat& luma, const cv::Rect& box, int
   std::size_t n = 0;
   walk_round(box, margin, luma.size(), [&](int x, int y, int, int) { rim[n++] = luma.ptr<Pixel>(y)[x]; });
   if (n == 0) return std::nullopt;
-  const auto middle = rim.begin() + static_cast<std::ptrdiff_t>(n / 2);
-  std::nth_element(rim.begin(), middle, rim.begin() + static_cast<std::ptrdiff_t>(n));
-  return *middle;
+  return geometry::median(std::span(rim).first(n));
 }
 
 template <typename Pixel>
@@ -79,15 +79,12 @@ MarkerContrast measured(const cv::Mat& luma, const MarkerBlob& blob, bool dark, 
     ++n;
   });
   if (n == 0) return {otherwise, peak - sign * otherwise, 0};
-  const auto end = static_cast<std::ptrdiff_t>(n);
-  const auto middle = rim.begin() + end / 2;
-  std::nth_element(rim.begin(), middle, rim.begin() + end);
-  const auto sill = valleys.begin() + static_cast<std::ptrdiff_t>(kAllRound * static_cast<double>(n - 1));
-  std::nth_element(valleys.begin(), sill, valleys.begin() + end);
-  MarkerContrast result{static_cast<double>(sign * *middle), static_cast<double>(peak - *sill), 0};
+  const auto middle = geometry::median(std::span(rim).first(n));
+  const auto sill = geometry::quantile(std::span(valleys).first(n), kAllRound);
+  MarkerContrast result{static_cast<double>(sign * middle), static_cast<double>(peak - sill), 0};
   if (blob.area < kLampArea) return result;
   const auto further = middle_round<Pixel>(luma, blob.box, kFurther);
-  if (further && peak > *middle) result.halo = (*middle - sign * *further) / (peak - *middle);
+  if (further && peak > middle) result.halo = (middle - sign * *further) / (peak - middle);
   return result;
 }
 
@@ -104,17 +101,6 @@ double roundness_of(const MarkerBlob& blob) {
   return static_cast<double>(blob.area) / (4 * std::numbers::pi * largest);
 }
 
-std::optional<double> weighted_median(std::vector<Weighted>& values) {
-  std::sort(values.begin(), values.end(), [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
-  double total = 0, below = 0;
-  for (const Weighted& one : values) total += one.weight;
-  for (const Weighted& one : values) {
-    below += one.weight;
-    if (2 * below >= total && total > 0) return one.value;
-  }
-  return std::nullopt;
-}
-
 double say_of(double contrast, double area) {
   return std::max(0.0, contrast) * std::min(area, kEnoughArea);
 }
@@ -127,9 +113,7 @@ double above_clutter(std::span<const double> contrasts, double typical) {
   if (std::ssize(excess) < kFewestClutter) return 0;
   const double least = *std::min_element(excess.begin(), excess.end());
   for (double& contrast : excess) contrast -= least;
-  const auto middle = excess.begin() + std::ssize(excess) / 2;
-  std::nth_element(excess.begin(), middle, excess.end());
-  const double mean = std::max(0.0, *middle) / std::numbers::ln2;
+  const double mean = std::max(0.0, geometry::median(excess)) / std::numbers::ln2;
   return std::min(kMostOfTypical * typical, least + mean * std::log(static_cast<double>(excess.size()) / kFalseAPicture));
 }
 

@@ -26,15 +26,6 @@ MarkerContrast contrast_of(const cv::Mat& luma, const MarkerBlob& blob, bool dar
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
 double roundness_of(const MarkerBlob& blob);
 
-/// A value and how much it counts.
-struct Weighted {
-  double value = 0;
-  double weight = 0;
-};
-
-/// The value below which half of the weight lies; nothing where there is none.
-std::optional<double> weighted_median(std::vector<Weighted>& values);
-
 /// How much a blob counts where it is asked what markers are like: the brighter and the larger the more, up to a size beyond which
 /// it is no better a marker. Specks are many, and count little.
 double say_of(double contrast, double area);

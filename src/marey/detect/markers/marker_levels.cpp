@@ -11,6 +11,8 @@
 #include <array>
 #include <cmath>
 
+#include "marey/geometry/median.h"
+
 namespace marey::detect::markers {
 namespace {
 
@@ -111,8 +113,7 @@ double MarkerLevels::smooth_median(int tile) const {
       around[n++] = raw_[static_cast<std::size_t>(j) * tiles_.width + i].median;
     }
   }
-  std::nth_element(around.begin(), around.begin() + (n - 1) / 2, around.begin() + n);
-  return around[(n - 1) / 2];
+  return geometry::nth_value(std::span(around).first(static_cast<std::size_t>(n)), static_cast<std::size_t>((n - 1) / 2));
 }
 
 double MarkerLevels::brighter_level(int tile) const {
@@ -185,8 +186,7 @@ double MarkerLevels::typical_least_contrast() const {
     all.push_back(std::abs(height - level_[i]));
   }
   if (all.empty()) return 0;
-  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
-  return all[all.size() / 2];
+  return geometry::median(all);
 }
 
 double MarkerLevels::least_contrast(int x, int y) const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "marey/geometry/median.h"
+
 namespace marey::detect::markers {
 namespace {
 
@@ -32,9 +34,9 @@ void MarkerLikeness::learn(std::span<const Witness> seen) {
     radii_.push_back({one.radius, one.say});
     if (one.blur) blurs_.push_back({*one.blur, one.say});
   }
-  radius_ = faded(radius_, weighted_median(radii_));
+  radius_ = faded(radius_, geometry::weighted_median(radii_));
   large_ = faded(large_, large_kind(seen));
-  blur_ = faded(blur_, weighted_median(blurs_));
+  blur_ = faded(blur_, geometry::weighted_median(blurs_));
 }
 
 /// Things that are no discs as the small ones are, but round, as bright, and as large as each other: spheres lit from aside among
@@ -44,7 +46,7 @@ std::optional<double> MarkerLikeness::large_kind(std::span<const Witness> seen) 
   if (!radius_) return std::nullopt;
   contrasts_.clear();
   for (const Witness& one : seen) contrasts_.push_back({one.contrast, 1});
-  const double bright = kKindContrast * weighted_median(contrasts_).value_or(0), small = kLarger * (*radius_ + 0.5);
+  const double bright = kKindContrast * geometry::weighted_median(contrasts_).value_or(0), small = kLarger * (*radius_ + 0.5);
   for (const Witness& one : seen) {
     if (one.round && one.contrast > bright && one.radius > small) radii.push_back(one.radius);
   }

@@ -7,6 +7,7 @@
 
 #include "marey/detect/markers/marker_contrast.h"
 #include "marey/detect/markers/marker_fit.h"
+#include "marey/geometry/median.h"
 
 namespace marey::detect::markers {
 
@@ -55,7 +56,7 @@ class MarkerLikeness {
   double said_radius_;
   std::optional<double> radius_, blur_;
   std::optional<double> large_;  ///< px, the radius of the large kind where there are two
-  std::vector<Weighted> radii_, blurs_, contrasts_;
+  std::vector<geometry::WeightedValue> radii_, blurs_, contrasts_;
 };
 
 }  // namespace marey::detect::markers

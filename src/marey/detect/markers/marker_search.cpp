@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 
 namespace marey::detect::markers {
 namespace {
@@ -202,7 +203,7 @@ void MarkerSearch::assess(const cv::Mat& luma) {
   contrasts_.assign(blobs_.size(), {});
   standing_.assign(blobs_.size(), Standing::unseen);
   heights_.clear();
-  std::vector<Weighted> contrasts, tops, areas;
+  std::vector<geometry::WeightedValue> contrasts, tops, areas;
   for (std::size_t i = 0; i < blobs_.size(); ++i) {
     const MarkerBlob& blob = blobs_[i];
     const auto area = static_cast<double>(blob.area);
@@ -219,9 +220,9 @@ void MarkerSearch::assess(const cv::Mat& luma) {
     tops.push_back({(options_.dark ? levels_.white() - around : around) + height, say});
     if (round >= kRound) areas.push_back({area, say});
   }
-  const auto contrast = weighted_median(contrasts), top = weighted_median(tops);
+  const auto contrast = geometry::weighted_median(contrasts), top = geometry::weighted_median(tops);
   typical_ = contrast ? std::optional(TypicalMarker{*contrast, *top}) : std::nullopt;
-  typical_area_ = weighted_median(areas);
+  typical_area_ = geometry::weighted_median(areas);
   if (typical_) leave_clutter();
 }
 

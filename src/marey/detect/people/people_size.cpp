@@ -17,6 +17,8 @@
 
 #include <Eigen/Dense>
 
+#include "marey/geometry/median.h"
+
 namespace marey::detect::people {
 namespace {
 
@@ -44,17 +46,6 @@ class Draw {
  private:
   std::uint64_t state_ = 20;
 };
-
-double weighted_median(std::vector<std::pair<double, double>> values) {
-  std::sort(values.begin(), values.end());
-  double half = 0;
-  for (const auto& [value, weight] : values) half += weight / 2;
-  for (const auto& [value, weight] : values) {
-    half -= weight;
-    if (half <= 0) return value;
-  }
-  return values.empty() ? 0 : values.back().first;
-}
 
 }  // namespace
 
@@ -168,23 +159,23 @@ PersonSizeModel::Features PersonSizeModel::refined(Features start, const std::ve
 }
 
 void PersonSizeModel::take_over(const Features& solution, const std::vector<Sample>& samples) {
-  std::vector<std::pair<double, double>> aspects, offs;
+  std::vector<geometry::WeightedValue> aspects, offs;
   double support = 0;
   smallest_ = largest_ = 0;
   for (const Sample& sample : samples) {
     const double expected = solution.dot(sample.features);
     const double off = sample.height / std::max(expected, 1.0) - 1;
     if (sample.cut || expected < kSmallestHeight / 2 || std::abs(off) > kAgreement) continue;
-    aspects.emplace_back(sample.aspect, sample.weight);
-    offs.emplace_back(std::abs(off), sample.weight);
+    aspects.push_back({sample.aspect, sample.weight});
+    offs.push_back({std::abs(off), sample.weight});
     support += sample.weight;
     smallest_ = smallest_ == 0 ? expected : std::min(smallest_, expected);
     largest_ = std::max(largest_, expected);
   }
   if (support < kNeeded || support_of(solution, samples) <= 0) return;
   coefficients_ = solution;
-  aspect_ = weighted_median(std::move(aspects));
-  spread_ = std::max(0.04, 1.4826 * weighted_median(std::move(offs)));
+  aspect_ = geometry::weighted_median(aspects).value_or(0);
+  spread_ = std::max(0.04, 1.4826 * geometry::weighted_median(offs).value_or(0));
 }
 
 void PersonSizeModel::fit() {

@@ -19,6 +19,7 @@
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
+#include "marey/geometry/median.h"
 
 namespace marey::format::match {
 namespace {
@@ -207,9 +208,7 @@ class GroundFileReader {
     for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
     if (!times.empty()) start_s_ = times.front();
     if (steps.empty()) return;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    step_s_ = *middle;
+    step_s_ = geometry::median(steps);
     start_s_ = std::min(0.0, times.front());
     if ((times.back() - start_s_) / step_s_ > 1e9)
       throw Error("{}: its times are {:g} s apart, which makes no rate", name_, step_s_);

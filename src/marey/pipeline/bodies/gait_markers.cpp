@@ -20,6 +20,7 @@
 #include "marey/format/motion/c3d_parameters.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/geometry/median.h"
 
 namespace marey::pipeline::bodies {
 namespace {
@@ -63,9 +64,7 @@ std::optional<double> mostly_apart(const GaitMarkers& walk, std::string_view a, 
     if (const auto distance = apart(row, a, b)) all.push_back(*distance);
   }
   if (all.empty()) return std::nullopt;
-  const auto middle = all.begin() + std::ssize(all) / 2;
-  std::nth_element(all.begin(), middle, all.end());
-  return *middle;
+  return geometry::median(all);
 }
 
 }  // namespace

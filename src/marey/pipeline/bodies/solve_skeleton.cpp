@@ -14,6 +14,7 @@
 #include "marey/format/register.h"
 #include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
+#include "marey/geometry/median.h"
 #include "marey/pipeline/bodies/gait_markers.h"
 #include "marey/pipeline/keypoints/keypoint_skeleton.h"
 #include "marey/pipeline/markers/skeleton_in_space.h"
@@ -101,9 +102,7 @@ class SolveCounts {
     }
     std::vector<float>& all = deviations_[c];
     if (all.empty()) return said;
-    const auto middle = all.begin() + std::ssize(all) / 2;
-    std::nth_element(all.begin(), middle, all.end());
-    said.deviation = *middle;
+    said.deviation = geometry::median(all);
     said.observed = static_cast<double>(observed_[c]) / static_cast<double>(all.size());
     return said;
   }

@@ -15,6 +15,7 @@
 #include "marey/draw/picture_file.h"
 #include "marey/draw/pitch_drawing.h"
 #include "marey/format/pitch_points.h"
+#include "marey/geometry/median.h"
 #include "marey/pipeline/corridor/feed.h"
 
 namespace marey::pipeline::calibrate {
@@ -49,12 +50,10 @@ cv::Mat empty_ground(corridor::Feed& feed) {
   if (pictures.empty()) throw Error("{}: not one frame could be read", feed.info().name);
   cv::Mat median(pictures[0].size(), CV_8UC1);
   std::vector<unsigned char> values(pictures.size());
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   for (int y = 0; y < median.rows; ++y) {
     for (int x = 0; x < median.cols; ++x) {
       for (std::size_t i = 0; i < pictures.size(); ++i) values[i] = pictures[i].at<unsigned char>(y, x);
-      std::nth_element(values.begin(), middle, values.end());
-      median.at<unsigned char>(y, x) = *middle;
+      median.at<unsigned char>(y, x) = geometry::median(values);
     }
   }
   return median;

@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "marey/geometry/median.h"
 #include "marey/pipeline/corridor/clock.h"
 
 namespace marey::pipeline::corridor {
@@ -91,8 +92,7 @@ void Clock::follow(const FrameSet& set) {
     if (camera) off_.push_back(seconds(camera->frame.time - set.time));
   }
   if (off_.empty()) return;
-  std::nth_element(off_.begin(), off_.begin() + static_cast<std::ptrdiff_t>(off_.size() / 2), off_.end());
-  const double off = off_[off_.size() / 2];
+  const double off = geometry::median(off_);
   if (std::abs(off) > kInStep / rate_hz_) *start_ += duration_from_seconds(kFollow * off);
 }
 

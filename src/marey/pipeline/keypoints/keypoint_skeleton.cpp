@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 #include "marey/solve/skeleton/human.h"
 
 namespace marey::pipeline::keypoints {
@@ -33,12 +34,6 @@ std::string other_side(const std::string& name) {
   if (name.starts_with("left_")) return "right_" + name.substr(5);
   if (name.starts_with("right_")) return "left_" + name.substr(6);
   return name;
-}
-
-double middle_of(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// A person's points over the recording.
@@ -87,7 +82,7 @@ std::optional<double> length_of(const KeypointTracks& tracks, const std::string&
   add(a, b);
   if (other_side(a) != b && other_side(a) != a) add(other_side(a), other_side(b));
   if (static_cast<double>(lengths.size()) < kLeastPlaces) return std::nullopt;
-  return middle_of(lengths);
+  return geometry::median(lengths);
 }
 
 using FrameAt = std::function<std::optional<Rigid3>(std::size_t instant)>;
@@ -111,7 +106,7 @@ std::optional<Vector<3>> place_in(const KeypointTracks& tracks, const std::strin
   add(point, frame, 1);
   if (mirrored && other_side(point) != point) add(other_side(point), mirrored, -1);
   if (static_cast<double>(places[0].size()) < kLeastPlaces) return std::nullopt;
-  return Vector<3>(middle_of(places[0]), middle_of(places[1]), middle_of(places[2]));
+  return Vector<3>(geometry::median(places[0]), geometry::median(places[1]), geometry::median(places[2]));
 }
 
 /// x ahead, y to the left, z up, from a direction that is exact and one that is about so.
@@ -271,7 +266,7 @@ class StandingPerson {
       ears[1].push_back(local.z());
     }
     if (static_cast<double>(ears[0].size()) < kLeastPlaces) return;
-    const Vector<3> between_ears = hips + Vector<3>(middle_of(ears[0]), 0, middle_of(ears[1]));
+    const Vector<3> between_ears = hips + Vector<3>(geometry::median(ears[0]), 0, geometry::median(ears[1]));
     const Vector<3> shoulders = *segments_[1].end;
     add("head", shoulders + kHeadAboveNeck * (between_ears - shoulders));
     const FrameAt head = [this](std::size_t t) { return head_at(tracks_, t); };

@@ -16,6 +16,7 @@
 #include "marey/format/input_hash.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/geometry/median.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
 #include "marey/pipeline/keypoints/keypoint_tracks.h"
@@ -34,13 +35,6 @@ constexpr double kFewPlaced = 0.5;       // share of views
 constexpr double kMostPlaced = 0.75;     // share of views below which it is asked why
 constexpr double kWorstCamera = 2.5;     // times the median of all cameras
 constexpr double kMedianLength = 1.177;  // of a vector of two standard normal variables
-
-double median_value(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The steps of the job, which share the cameras and their frames.
 class KeypointJob {
@@ -137,7 +131,7 @@ double KeypointJob::learn_noise() const {
     if (placed <= kMuchMore * best_placed) continue;
     best_placed = placed;
     // The median of a sum of squares is a little below its mean.
-    best = noise * std::sqrt(median_value(followed.squares) / 0.9);
+    best = noise * std::sqrt(geometry::median_or(followed.squares, 0) / 0.9);
   }
   return std::clamp(best, 0.1, 10.0);
 }
@@ -290,12 +284,12 @@ void KeypointJob::report(const Followed& followed) {
   for (std::size_t c = 0; c < residuals_.size(); ++c) {
     all.insert(all.end(), residuals_[c].begin(), residuals_[c].end());
     ratios.insert(ratios.end(), ratios_[c].begin(), ratios_[c].end());
-    summary_.cameras[c].residual_px = median_value(residuals_[c]);
-    summary_.cameras[c].noise = median_value(ratios_[c]) / kMedianLength;
+    summary_.cameras[c].residual_px = geometry::median_or(residuals_[c], 0);
+    summary_.cameras[c].noise = geometry::median_or(ratios_[c], 0) / kMedianLength;
   }
-  summary_.residual_px = median_value(all);
-  summary_.noise = median_value(ratios) / kMedianLength;
-  summary_.place_ms = median_value(times);
+  summary_.residual_px = geometry::median_or(all, 0);
+  summary_.noise = geometry::median_or(ratios, 0) / kMedianLength;
+  summary_.place_ms = geometry::median_or(times, 0);
   summary_.views = followed.seen;
   summary_.placed = followed.placed;
   warn_of_misfit();

@@ -11,6 +11,7 @@
 
 #include "marey/assign/no_index.h"
 #include "marey/core/error.h"
+#include "marey/geometry/median.h"
 #include "marey/pipeline/corridor/stopwatch.h"
 #include "marey/pipeline/markers/labels_in_space.h"
 
@@ -30,12 +31,6 @@ constexpr double kManyHeld = 0.7;      // of the names that could be
 constexpr double kFewNamed = 0.6;      // of the set, on average: a doubtful set
 constexpr std::size_t kFewestMarkers = 4;
 constexpr std::size_t kSearchesToReport = 2;  // that found names, before a misfit is reported while cameras see
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 class NamedReader final : public RecordingReader {
  public:
@@ -289,7 +284,8 @@ void SetInSpace::tell(Instant& instant) {
 /// By the median over all searches: a short one alone may be off.
 std::optional<std::string> SetInSpace::misfit() const {
   const auto found = std::count_if(seen_.begin(), seen_.end(), [](std::int64_t points) { return points > 0; });
-  return set_misfit("the set", median_of(misfits_), median_of(misfits_m_), static_cast<std::size_t>(found), seen_.size());
+  return set_misfit("the set", geometry::median(std::vector(misfits_)), geometry::median(std::vector(misfits_m_)),
+                    static_cast<std::size_t>(found), seen_.size());
 }
 
 std::vector<std::string> SetInSpace::news() {

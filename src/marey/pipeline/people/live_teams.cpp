@@ -6,6 +6,7 @@
 #include <set>
 
 #include "marey/draw/canvas.h"
+#include "marey/geometry/median.h"
 
 namespace marey::pipeline::people {
 namespace {
@@ -20,10 +21,8 @@ constexpr double kCorrelated =
 std::optional<Appearance> median_of(std::vector<Appearance>& samples) {
   if (samples.empty()) return std::nullopt;
   const auto median = [&](float Appearance::* component) {
-    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
-    std::nth_element(samples.begin(), middle, samples.end(),
-                     [&](const Appearance& a, const Appearance& b) { return a.*component < b.*component; });
-    return (*middle).*component;
+    const auto less = [&](const Appearance& a, const Appearance& b) { return a.*component < b.*component; };
+    return geometry::median(samples, less).*component;
   };
   double variance = 0;
   for (const Appearance& sample : samples) variance += static_cast<double>(sample.deviation) * sample.deviation;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "marey/geometry/median.h"
 #include "marey/pipeline/corridor/feed.h"
 
 namespace marey::pipeline::people {
@@ -64,13 +65,12 @@ std::vector<std::string> PictureDoubts::warnings() const {
         most_in_one_, percent(crowded_)));
   if (kept_.size() >= kFewestKept) {
     std::vector<float> kept = kept_;
-    const auto middle = kept.begin() + std::ssize(kept) / 2;
-    std::nth_element(kept.begin(), middle, kept.end());
-    if (*middle < kHardlyKept)
+    const auto middle = geometry::median(kept);
+    if (middle < kHardlyKept)
       all.push_back(
           fmt::format("what moves has left its place in the next picture ({:.0f} % of it is still there): either the pictures are "
                       "too far apart in time to track anyone (a time lapse), or what moves is rain, snow or noise",
-                      100.0 * *middle));
+                      100.0 * middle));
   }
   for (auto one = all.begin() + of_view; one != all.end(); ++one) *one = corridor::said_of(camera_, *one);
   return all;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "marey/geometry/median.h"
+
 namespace marey::reconstruct::keypoints {
 namespace {
 
@@ -82,9 +84,7 @@ class PathFinder {
     std::vector<double> squares;
     for (std::size_t i = 0; i < set_.points.size(); ++i) append_squares(lines_of(i), path.points[i], squares);
     if (squares.empty()) return;
-    const auto middle = squares.begin() + std::ssize(squares) / 2;
-    std::nth_element(squares.begin(), middle, squares.end());
-    noise_ = std::max(kLeastNoise, noise_ * std::sqrt(*middle / kMedianSquare));
+    noise_ = std::max(kLeastNoise, noise_ * std::sqrt(geometry::median(squares) / kMedianSquare));
   }
 
   /// Of each camera and point the mean error over a while, px: errors are averaged across the view at the point's distance, those

@@ -7,6 +7,7 @@
 
 #include "marey/core/error.h"
 #include "marey/geometry/layout.h"
+#include "marey/geometry/median.h"
 #include "marey/solve/bodies/pose_fit.h"
 
 namespace marey::solve::bodies {
@@ -63,13 +64,6 @@ std::vector<Places> instants_with(const std::vector<const TrackColumns*>& tracks
   return spread;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The mean shape of those markers that count, and how each varies about it.
 class MeanShape {
  public:
@@ -117,7 +111,7 @@ class MeanShape {
       squares += distances.back() * distances.back();
     }
     deviation = std::sqrt(squares / (3 * static_cast<double>(places.size())));
-    const double limit = std::max(kTukey * median_of(distances), 1e-9);
+    const double limit = std::max(kTukey * geometry::median_or(std::vector(distances), 0), 1e-9);
     Vector<3> sum = Vector<3>::Zero();
     double weights = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -172,7 +166,7 @@ MeanShape fixed_shape(const std::vector<Places>& instants, double loose, std::ve
     for (std::size_t m = 0; m < fixed.size(); ++m) {
       if (others[m]) deviations.push_back(without.deviation(m));
     }
-    if (without.deviation(loosest) <= std::max(kLeastLoose, loose * median_of(deviations))) return shape;
+    if (without.deviation(loosest) <= std::max(kLeastLoose, loose * geometry::median_or(deviations, 0))) return shape;
     fixed = others;
   }
 }

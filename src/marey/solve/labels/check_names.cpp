@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "marey/assign/no_index.h"
+#include "marey/geometry/median.h"
 
 namespace marey::solve::labels {
 namespace {
@@ -231,13 +232,8 @@ Misfit misfit_of(const std::vector<DistanceSeen>& named, const DistanceModel& le
     }
   }
   if (off.empty()) return {};
-  const auto median = [](std::vector<double>& values) {
-    const auto middle = values.begin() + std::ssize(values) / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  };
   constexpr double kMedianOfNormal = 0.6745;
-  return {.ratio = median(ratios) / kMedianOfNormal, .off_m = median(off)};
+  return {.ratio = geometry::median(ratios) / kMedianOfNormal, .off_m = geometry::median(off)};
 }
 
 }  // namespace marey::solve::labels

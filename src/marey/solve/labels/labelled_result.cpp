@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "marey/geometry/median.h"
+
 namespace marey::solve::labels {
 namespace {
 
@@ -81,9 +83,7 @@ class Result {
       if (off.size() == kOutlierPartners) break;
     }
     if (off.size() < kFewestPartners) return false;
-    const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-    std::nth_element(off.begin(), middle, off.end());
-    return *middle > kOutlier;
+    return geometry::median(off) > kOutlier;
   }
 
   /// One track's pieces that stay without a name.

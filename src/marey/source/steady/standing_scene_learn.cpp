@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "marey/geometry/median.h"
 #include "marey/source/steady/standing_scene.h"
 
 namespace marey::source::steady {
@@ -14,12 +15,6 @@ constexpr std::size_t kTooFewOf = 8;
 constexpr double kPlainlyInSamples = 0.03;  // a few that are wrong do not matter to their median
 constexpr int kLookRounds = 3;              // of bringing samples to their median
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Pixel by pixel.
 cv::Mat median_picture(const std::vector<cv::Mat>& pictures) {
   cv::Mat median(pictures.front().size(), CV_8UC1);
@@ -27,9 +22,7 @@ cv::Mat median_picture(const std::vector<cv::Mat>& pictures) {
   for (int y = 0; y < median.rows; ++y) {
     for (int x = 0; x < median.cols; ++x) {
       for (std::size_t i = 0; i < pictures.size(); ++i) levels[i] = pictures[i].at<std::uint8_t>(y, x);
-      const auto middle = levels.begin() + std::ssize(levels) / 2;
-      std::nth_element(levels.begin(), middle, levels.end());
-      median.at<std::uint8_t>(y, x) = *middle;
+      median.at<std::uint8_t>(y, x) = geometry::median(levels);
     }
   }
   return median;
@@ -131,7 +124,7 @@ bool StandingScene::learn(std::span<const Picture> pictures) {
     if (const auto again = fit_motion(sample.places, view_, options_.agree)) sample.motion = again->motion;
     for (int axis = 0; axis < 3; ++axis) turns[static_cast<std::size_t>(axis)].push_back(sample.motion->turn[axis]);
   }
-  for (int axis = 0; axis < 3; ++axis) rest.turn[axis] = median_of(turns[static_cast<std::size_t>(axis)]);
+  for (int axis = 0; axis < 3; ++axis) rest.turn[axis] = geometry::median(turns[static_cast<std::size_t>(axis)]);
   const cv::Mat median = laid_over(samples, rest);
   corners_.clear();
   last_ = {};

@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "marey/geometry/median.h"
+
 namespace marey::source::steady {
 namespace {
 
@@ -228,9 +230,7 @@ bool ViewWatch::scrolls(const std::vector<FollowedPlace>& places, const Shift& m
   }
   if (still < kFewestScrolling || std::ssize(up) < kFewestScrolling) return false;
   if (main.norm() > kStands && std::abs(main.x()) > kAside) return false;
-  const auto middle = up.begin() + std::ssize(up) / 2;
-  std::nth_element(up.begin(), middle, up.end());
-  const double by = *middle;
+  const double by = geometry::median(up);
   const auto together = std::count_if(up.begin(), up.end(), [&](double one) { return std::abs(one - by) < kAside; });
   return together >= kFewestScrolling && 5 * together >= std::ssize(places);
 }

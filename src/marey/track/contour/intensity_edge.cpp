@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include "marey/geometry/median.h"
+
 namespace marey::track::contour {
 namespace {
 
@@ -92,9 +94,7 @@ std::vector<Vector<2>> moved_to_intensity_edges(const std::vector<Vector<2>>& po
       if (const auto& one = offsets[wrapped(i + k)]) near.push_back(*one);
     }
     if (near.size() <= kNeighbours) continue;
-    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-    std::nth_element(near.begin(), middle, near.end());
-    moved[i] += kTrust * *middle * normals[i];
+    moved[i] += kTrust * geometry::median(near) * normals[i];
   }
   return moved;
 }

@@ -9,6 +9,7 @@
 
 #include <Eigen/LU>
 
+#include "marey/geometry/median.h"
 #include "marey/track/ground/ground_lasting.h"
 
 namespace marey::track::ground {
@@ -86,13 +87,6 @@ Shots shots_of(std::span<const GroundInstant> instants, int cameras) {
   return shots;
 }
 
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 class Agreeing {
  public:
   Agreeing(const Shots& shots, int cameras) : shots_(shots.first), all_(shots), cameras_(static_cast<std::size_t>(cameras)) {
@@ -102,8 +96,8 @@ class Agreeing {
         for (const Seen& one : camera) all[0].push_back(one.place.x()), all[1].push_back(one.place.y());
       }
     }
-    const Vector<2> least(quantile(all[0], kFew), quantile(all[1], kFew)),
-        most(quantile(all[0], 1 - kFew), quantile(all[1], 1 - kFew));
+    const Vector<2> least(geometry::quantile(all[0], kFew), geometry::quantile(all[1], kFew)),
+        most(geometry::quantile(all[0], 1 - kFew), geometry::quantile(all[1], 1 - kFew));
     grid_ = GroundGrid::over(least, most, kCell);
     extent_ = std::max(1.0, (most - least).maxCoeff());
     bias_.assign(cameras_, GroundField(grid_));
@@ -273,7 +267,7 @@ class Agreeing {
 double median_distance(const Agreeing& agreeing, bool odd) {
   std::vector<double> distances;
   for (const Pair& pair : agreeing.pairs(odd, kFirstGate)) distances.push_back(agreeing.difference(pair).norm());
-  return distances.empty() ? 0 : quantile(distances, 0.5);
+  return distances.empty() ? 0 : geometry::quantile(distances, 0.5);
 }
 
 /// How finely fields vary that best bring pairs together which they were not learned from; nothing where none is worth it.
@@ -309,9 +303,10 @@ LastingDisagreement of_single_instants(const Agreeing& agreeing, int cameras) {
   LastingDisagreement found;
   for (std::vector<double>& of : ratios) {
     const bool enough = of.size() >= kFewestRatios;
-    found.noise.push_back(enough ? std::clamp(std::sqrt(quantile(of, 0.5) / kChiSquareMedian), kLeastNoise, kMostNoise) : 1.0);
+    found.noise.push_back(enough ? std::clamp(std::sqrt(geometry::quantile(of, 0.5) / kChiSquareMedian), kLeastNoise, kMostNoise)
+                                 : 1.0);
   }
-  found.deviation = kOwnErrors * std::sqrt(quantile(squares, 0.5) / kChiSquareMedian / 2);  // of two cameras
+  found.deviation = kOwnErrors * std::sqrt(geometry::quantile(squares, 0.5) / kChiSquareMedian / 2);  // of two cameras
   return found;
 }
 

@@ -8,6 +8,8 @@
 
 #include <Eigen/LU>
 
+#include "marey/geometry/median.h"
+
 namespace marey::track::ground {
 namespace {
 
@@ -17,19 +19,13 @@ constexpr double kNoisiest = 3;
 constexpr double kTwoSquaresMedian = 1.386;  // of two degrees
 constexpr double kOneSquareMedian = 0.4549;  // of one
 
-double middle_of(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// What two cameras say of one person at two instants, along an axis: their differences' sum and change, squared, m².
 struct Squares {
   std::vector<double> sums, changes;
 
   /// The covariance of the differences at the two instants, m². Sums have twice their variance and twice this, changes twice and
   /// minus twice.
-  double covariance() { return (middle_of(sums) - middle_of(changes)) / kOneSquareMedian / 4; }
+  double covariance() { return (geometry::median(sums) - geometry::median(changes)) / kOneSquareMedian / 4; }
 };
 
 /// By axes of the link's own uncertainty, the greater first: along it errors are of one size, where those of north and east would
@@ -83,7 +79,7 @@ LastingDisagreement lasting_disagreement(std::span<const LinkedDifferences> link
   LastingDisagreement lasting;
   for (std::vector<double>& of : ratios) {
     const bool enough = of.size() >= kFewestChanges;
-    lasting.noise.push_back(enough ? std::clamp(std::sqrt(middle_of(of) / kTwoSquaresMedian), 1.0, kNoisiest) : 1.0);
+    lasting.noise.push_back(enough ? std::clamp(std::sqrt(geometry::median(of) / kTwoSquaresMedian), 1.0, kNoisiest) : 1.0);
   }
   if (links.size() >= kFewestLinks)
     lasting.deviation = std::clamp(std::sqrt(lasting_variance(by_cameras)), kLeastLasting, kMostLasting);

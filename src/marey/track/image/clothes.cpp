@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "marey/geometry/median.h"
+
 namespace marey::track::image {
 namespace {
 
@@ -24,11 +26,9 @@ double squared(double x) {
 /// A variance from differences, half of which may be anything: from their median.
 double variance_of(std::vector<double> differences, double prior) {
   if (differences.empty()) return prior;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   for (double& one : differences) one = std::abs(one);
-  std::nth_element(differences.begin(), middle, differences.end());
   const double count = static_cast<double>(differences.size());
-  return (squared(1.4826 * *middle) * count + prior * kPriorCount) / (count + kPriorCount);
+  return (squared(1.4826 * geometry::median(differences)) * count + prior * kPriorCount) / (count + kPriorCount);
 }
 
 std::optional<Appearance> mean_colour(std::span<const Clothes> seen, std::optional<Appearance> Clothes::* part) {

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "marey/geometry/median.h"
+
 namespace marey::track::image {
 namespace {
 
@@ -23,18 +25,12 @@ std::array<double, 3> values_of(const Appearance& colour) {
   return {colour.lightness, colour.a, colour.b};
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// From the median of what lies about 0, half of which may be anything.
 double robust_variance(std::vector<double> values, double first) {
   if (values.empty()) return first;
   const double count = static_cast<double>(values.size());
   for (double& value : values) value = std::abs(value);
-  const double deviation = 1.4826 * median_of(std::move(values));
+  const double deviation = 1.4826 * geometry::median(std::move(values));
   return (deviation * deviation * count + first * kFirstWeight) / (count + kFirstWeight);
 }
 
@@ -92,7 +88,7 @@ void Wardrobe::learn_all() {
         if (const auto& colour = one.whole.*kPartsOfClothes[p]) values.push_back(values_of(*colour)[c]);
       }
       if (values.empty()) continue;
-      middle_[p][c] = median_of(values);
+      middle_[p][c] = geometry::median(values);
       for (double& value : values) value -= middle_[p][c];
       all_[p][c] = std::max(within_[p][c], robust_variance(std::move(values), kAllFirst[c]));
     }

@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "marey/geometry/median.h"
 #include "marey/track/offline/fill_gaps.h"
 #include "marey/track/offline/tracklet_linker.h"
 
@@ -66,9 +67,7 @@ double usual_score(std::span<const Tracklet> tracklets) {
     }
   }
   if (scores.empty()) return 1;
-  const auto middle = scores.begin() + static_cast<std::ptrdiff_t>(scores.size() / 2);
-  std::nth_element(scores.begin(), middle, scores.end());
-  return *middle;
+  return geometry::median(scores);
 }
 
 /// Too short, seen too rarely, or both rather short or rarely seen and unusually weak.

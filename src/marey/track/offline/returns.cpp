@@ -10,6 +10,7 @@
 
 #include "marey/assign/association_beliefs.h"
 #include "marey/assign/sparse_assignment.h"
+#include "marey/geometry/median.h"
 #include "marey/track/image/wardrobe.h"
 #include "marey/track/offline/tracklet_chains.h"
 
@@ -63,9 +64,7 @@ double distance_along(double a, double b, const Box& view) {
 double height_near(std::span<const TrackRow> rows, bool tail) {
   std::vector<float> heights;
   for (std::size_t k = 0; k < rows.size() && k < 100; ++k) heights.push_back((tail ? rows[rows.size() - 1 - k] : rows[k]).height);
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return std::max(1.0F, *middle);
+  return std::max(1.0F, geometry::median(heights));
 }
 
 class Crossings {

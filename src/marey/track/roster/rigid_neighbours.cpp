@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "marey/geometry/decompositions.h"
+#include "marey/geometry/median.h"
 
 namespace marey::track::roster {
 namespace {
@@ -135,10 +136,8 @@ std::optional<double> RigidNeighbours::difference(int a, int b) const {
     thirds[place] = {spread, off * off / (spread + 2 * kDoubt * kDoubt)};
   }
   if (asked < kThirds) return std::nullopt;
-  const auto middle = thirds.begin() + static_cast<std::ptrdiff_t>(asked / 2);
-  std::nth_element(thirds.begin(), middle, thirds.begin() + static_cast<std::ptrdiff_t>(asked),
-                   [](const auto& p, const auto& q) { return p.second < q.second; });
-  return middle->second;
+  const auto less = [](const auto& p, const auto& q) { return p.second < q.second; };
+  return geometry::median(std::span(thirds).first(asked), less).second;
 }
 
 void RigidNeighbours::merge(int number, int other) {

@@ -9,6 +9,7 @@
 
 #include "marey/core/colour.h"
 #include "marey/filter/human_motion.h"
+#include "marey/geometry/median.h"
 
 namespace marey::track::ground::offline {
 namespace {
@@ -28,7 +29,7 @@ Vector<3> point_of(const GroundSample& sample) {
                     .b = static_cast<float>(sample.colour[2])});
 }
 
-Vector<3> median(std::span<const GroundSample> samples) {
+Vector<3> median_colour(std::span<const GroundSample> samples) {
   Vector<3> colour;
   std::array<std::vector<double>, 3> values;
   for (const GroundSample& sample : samples) {
@@ -36,11 +37,7 @@ Vector<3> median(std::span<const GroundSample> samples) {
     const Vector<3> point = point_of(sample);
     for (int i = 0; i < 3; ++i) values[i].push_back(point[i]);
   }
-  for (int i = 0; i < 3; ++i) {
-    const auto middle = values[i].begin() + static_cast<std::ptrdiff_t>(values[i].size() / 2);
-    std::nth_element(values[i].begin(), middle, values[i].end());
-    colour[i] = *middle;
-  }
+  for (int i = 0; i < 3; ++i) colour[i] = geometry::median(values[i]);
   return colour;
 }
 
@@ -52,7 +49,7 @@ std::vector<Bin> bins_of(std::span<const GroundSample> samples, std::span<const 
     std::size_t last = first;
     bool coloured = false;
     for (; last < samples.size() && times[samples[last].instant] < end; ++last) coloured |= samples[last].has_colour();
-    if (coloured) bins.push_back({first, last, median(samples.subspan(first, last - first))});
+    if (coloured) bins.push_back({first, last, median_colour(samples.subspan(first, last - first))});
     first = last;
   }
   return bins;

@@ -12,6 +12,7 @@
 #include "marey/assign/association_beliefs.h"
 #include "marey/assign/sparse_assignment.h"
 #include "marey/core/colour.h"
+#include "marey/geometry/median.h"
 #include "marey/track/ground/offline/ground_openness.h"
 #include "marey/track/offline/tracklet_chains.h"
 
@@ -289,14 +290,10 @@ std::optional<Appearance> appearance_of(std::span<const GroundSample> samples) {
   const std::size_t n = values[0].size();
   if (n == 0) return std::nullopt;
   constexpr double alike = 8;  // neighbouring samples err alike: so many count as one
-  const auto median = [&](std::vector<float>& of) {
-    std::nth_element(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(n / 2), of.end());
-    return of[n / 2];
-  };
   const double count = static_cast<double>(n);
-  return Appearance{.lightness = median(values[0]),
-                    .a = median(values[1]),
-                    .b = median(values[2]),
+  return Appearance{.lightness = geometry::median(values[0]),
+                    .a = geometry::median(values[1]),
+                    .b = geometry::median(values[2]),
                     .deviation = static_cast<float>(std::sqrt(variance / count / std::max(1.0, count / alike)))};
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "marey/geometry/median.h"
+
 namespace marey::track::ground::offline {
 namespace {
 
@@ -18,20 +20,14 @@ constexpr double kReach = 1.5;          // m, standard deviation: as far round a
 constexpr double kPassageCell = 0.75;   // m
 constexpr double kFewPassages = 0.002;  // of the passages lie beyond the grid on each side
 
-double quantile_of(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 GroundGrid grid_over(std::span<const GroundOpenness::Passage> came, std::span<const GroundOpenness::Passage> left) {
   std::vector<double> x, y;
   for (const auto& passages : {came, left}) {
     for (const GroundOpenness::Passage& one : passages) x.push_back(one.place.x()), y.push_back(one.place.y());
   }
   if (x.empty()) return {};
-  return GroundGrid::over({quantile_of(x, kFewPassages), quantile_of(y, kFewPassages)},
-                          {quantile_of(x, 1 - kFewPassages), quantile_of(y, 1 - kFewPassages)}, kPassageCell);
+  return GroundGrid::over({geometry::quantile(x, kFewPassages), geometry::quantile(y, kFewPassages)},
+                          {geometry::quantile(x, 1 - kFewPassages), geometry::quantile(y, 1 - kFewPassages)}, kPassageCell);
 }
 
 std::vector<double> sums_over(const GroundGrid& grid, std::span<const GroundOpenness::Passage> passages, bool weighted) {
