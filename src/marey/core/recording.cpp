@@ -367,8 +367,7 @@ std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants
     const double step = seconds(instants[i].time - instants[i - 1].time);
     if (step > 0 && frames > 0) steps.push_back(step / frames);
   }
-  if (steps.empty()) return std::nullopt;
-  return 1 / geometry::median(steps);
+  return steps.empty() ? std::nullopt : std::optional(1 / geometry::median(steps));
 }
 
 Recording with_time_base(Recording recording, const TimeBase& base) {

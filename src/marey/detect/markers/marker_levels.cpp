@@ -105,7 +105,7 @@ void MarkerLevels::learn_noise() {
 }
 
 double MarkerLevels::smooth_median(int tile) const {
-  std::array<std::uint16_t, 9> around;
+  std::array<std::uint16_t, 9> around{};
   int n = 0;
   const int column = tile % tiles_.width, row = tile / tiles_.width;
   for (int j = std::max(0, row - 1); j <= std::min(tiles_.height - 1, row + 1); ++j) {
