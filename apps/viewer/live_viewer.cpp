@@ -37,8 +37,7 @@ WebServer::Message text_message(int topic, std::string text) {
 }
 
 cli::Json json_of(const LiveReport::Camera& camera) {
-  cli::Json told{
-      {"state", to_string(camera.state)}, {"rate", camera.rate_hz}, {"frames", camera.frames}, {"dropped", camera.dropped}};
+  cli::Json told = cli::page_json_of(camera.health);
   told["dials"] = cli::Json::array();
   for (const auto& dial : camera.dials) {
     told["dials"].push_back(

@@ -30,7 +30,7 @@ void take_blobs(corridor::Feed& feed, const source::LivePolicy& policy, double o
 std::string why_nothing_came(std::span<const corridor::Feed> feeds) {
   std::string why = "no camera gave a frame";
   for (const corridor::Feed& feed : feeds) {
-    if (const std::string trouble = feed.report().trouble; !trouble.empty())
+    if (const std::string trouble = feed.health().trouble; !trouble.empty())
       why += fmt::format("\n  camera \"{}\": {}", feed.camera().name, trouble);
   }
   return why;

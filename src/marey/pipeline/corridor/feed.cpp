@@ -139,8 +139,16 @@ bool Feed::has_ended() const {
   return state_ == FeedState::ended || input_->has_ended();
 }
 
-LiveReport Feed::report() const {
-  return input_->report();
+CameraHealth Feed::health() const {
+  CameraHealth health = input_->health();
+  health.name = camera_.name;
+  return health;
+}
+
+CameraHealth Feed::health(Timestamp begin, const source::LivePolicy& policy) const {
+  CameraHealth health = this->health();
+  health.state = state(begin, policy);
+  return health;
 }
 
 void Feed::find(std::unique_ptr<detect::Detector> detector) {

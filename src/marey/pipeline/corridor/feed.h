@@ -74,7 +74,9 @@ class Feed {
   void search(CameraFrame& given);
   /// Of a live camera: whether it is there, and what became of its frames.
   bool is_connected() const;
-  LiveReport report() const;
+  CameraHealth health() const;
+  /// The same with its state as it is now; `begin` is when the run began.
+  CameraHealth health(Timestamp begin, const source::LivePolicy& policy) const;
 
   FeedState state() const { return state_; }
   bool has_ended() const;

@@ -33,7 +33,7 @@ class FeedInput {
   }
   virtual bool has_ended() const { return false; }
   virtual bool is_connected() const { return true; }
-  virtual LiveReport report() const { return {}; }
+  virtual CameraHealth health() const { return {}; }
   /// What to do if the rig's rate is not the live camera's; empty if it is.
   virtual std::string rate_warning() const { return {}; }
 };

@@ -51,7 +51,7 @@ class LiveGrouping final : public FrameGrouping {
 
   std::optional<LiveDrops> drops() const override {
     LiveDrops all = drops_;
-    for (const Feed& feed : feeds_) all.overrun += feed.report().overrun;
+    for (const Feed& feed : feeds_) all.overrun += feed.health().overrun;
     return all;
   }
 

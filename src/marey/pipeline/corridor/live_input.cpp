@@ -44,7 +44,7 @@ class LiveInput final : public FeedInput {
 
   bool has_ended() const override { return source_->ended(); }
   bool is_connected() const override { return source_->connected(); }
-  LiveReport report() const override { return source_->report(); }
+  CameraHealth health() const override { return source_->health(); }
 
   std::string rate_warning() const override {
     if (!rig_rate_hz_) return {};

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/camera_health.h"
 #include "marey/core/hooks.h"
 #include "marey/core/instant.h"
 #include "marey/core/recording.h"
@@ -21,14 +22,11 @@ namespace marey::pipeline::corridor {
 
 /// What came of a run: what is in its results, what was lost on the way and why.
 struct Summary {
-  struct Camera {
-    std::string name;
-    std::int64_t frames = 0;      ///< looked at
-    std::int64_t missed = 0;      ///< moments without a frame
-    std::int64_t detections = 0;  ///< handed to the tracker
-    std::int64_t outside = 0;     ///< detections where nothing counts: beyond the area, above the horizon
-    std::int64_t noise = 0;       ///< regions too small to be a part of a person
-    std::int64_t misfits = 0;     ///< regions that no body explains
+  /// Its frames are those that were searched, its detections those that the tracker was given.
+  struct Camera : CameraHealth {
+    std::int64_t outside = 0;  ///< detections where nothing counts: beyond the area, above the horizon
+    std::int64_t noise = 0;    ///< regions too small to be a part of a person
+    std::int64_t misfits = 0;  ///< regions that no body explains
   };
   /// How long one step took, s.
   struct StepTime {

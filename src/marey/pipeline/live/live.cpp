@@ -98,7 +98,7 @@ corridor::Sinks sinks_of(LiveOptions& options) {
 /// Why there is nothing, by what the cameras say.
 std::string nothing_came(const corridor::LiveStatus& status) {
   std::string why = "no camera gave a frame";
-  for (const corridor::LiveStatus::Camera& camera : status.cameras) {
+  for (const CameraHealth& camera : status.cameras) {
     if (!camera.trouble.empty()) why += fmt::format("\n  camera \"{}\": {}", camera.name, camera.trouble);
   }
   return why;
@@ -107,8 +107,8 @@ std::string nothing_came(const corridor::LiveStatus& status) {
 /// What a user would not like to find out later: that much of what cameras saw was never looked at.
 void warn_of_losses(LiveSummary& summary) {
   constexpr double kMuch = 0.2;
-  for (const corridor::LiveStatus::Camera& camera : summary.last.cameras) {
-    const std::int64_t gone = camera.lost + camera.damaged + camera.overrun, all = camera.frames + camera.lost + camera.damaged;
+  for (const CameraHealth& camera : summary.last.cameras) {
+    const std::int64_t gone = camera.dropped(), all = camera.frames + camera.lost + camera.damaged;
     if (static_cast<double>(gone) <= kMuch * static_cast<double>(all)) continue;
     summary.warnings.push_back(fmt::format(
         "camera \"{}\" lost {:.0f} % of its frames, or there was no time for them; try a smaller picture, a lower rate or "
@@ -125,8 +125,12 @@ void warn_of_losses(LiveSummary& summary) {
 void report_cameras_live(LiveSummary& summary, const corridor::Clock& clock, const corridor::LiveMonitor& monitor) {
   summary.last = monitor.status();
   if (summary.cameras.empty()) {
-    for (std::size_t i = 0; i < clock.feeds().size(); ++i)
-      summary.cameras.push_back({.name = clock.feeds()[i].camera().name, .frames = clock.frames(i), .missed = clock.missed(i)});
+    for (std::size_t i = 0; i < clock.feeds().size(); ++i) {
+      corridor::Summary::Camera& camera = summary.cameras.emplace_back();
+      camera.name = clock.feeds()[i].camera().name;
+      camera.frames = clock.frames(i);
+      camera.missed = clock.missed(i);
+    }
   }
   const auto step = [](const char* name, const StageTimes& times) {
     return corridor::Summary::StepTime{name, times.count(), times.quantile(0.5), times.quantile(0.99)};

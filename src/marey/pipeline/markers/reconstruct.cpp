@@ -48,7 +48,10 @@ corridor::Clock clock_of(const Rig& rig, const std::string& observations, const 
 void report_cameras(const corridor::Clock& clock, const Rig& rig, corridor::Summary& summary) {
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const std::string& name = rig.cameras[c].name;
-    summary.cameras.push_back({.name = name, .frames = clock.frames(c), .missed = clock.missed(c)});
+    corridor::Summary::Camera& camera = summary.cameras.emplace_back();
+    camera.name = name;
+    camera.frames = clock.frames(c);
+    camera.missed = clock.missed(c);
     if (rig.cameras[c].camera() && clock.frames(c) == 0) {
       summary.warnings.push_back(fmt::format("camera \"{}\" gave not one frame", name));
     } else if (clock.missed(c) > 0) {
