@@ -42,7 +42,8 @@ double overlap(const std::vector<Vector<2>>& a, const std::vector<Vector<2>>& b)
 Frame frame_with_disc(int index, double x) {
   cv::Mat image = cv::Mat::zeros(120, 160, CV_8UC1);
   constexpr int shift = 8;
-  cv::circle(image, {static_cast<int>(std::lround(x * (1 << shift))), 60 << shift}, 15 << shift, 255, cv::FILLED, cv::LINE_8, shift);
+  cv::circle(image, {static_cast<int>(std::lround(x * (1 << shift))), 60 << shift}, 15 << shift, 255, cv::FILLED, cv::LINE_8,
+             shift);
   cv::GaussianBlur(image, image, {}, 0.8);
   Frame frame;
   frame.index = index;

@@ -219,12 +219,8 @@ class BoxMethod final : public LoneFilters<BoxFilter> {
       filter.step(std::nullopt, std::nullopt);
     }
   }
-  BoxFilter make(const Detection& /*before*/, const Detection& now) const override {
-    return {{}, now.box, now.centre};
-  }
-  FollowedShape shape_of(const BoxFilter& filter) const override {
-    return {"", filter.centre(), corners(filter.box()), {}};
-  }
+  BoxFilter make(const Detection& /*before*/, const Detection& now) const override { return {{}, now.box, now.centre}; }
+  FollowedShape shape_of(const BoxFilter& filter) const override { return {"", filter.centre(), corners(filter.box()), {}}; }
 };
 
 }  // namespace

@@ -25,8 +25,9 @@ constexpr int kToldEvery = 3;                               // of the looks, whi
 constexpr auto kToBeSent = std::chrono::milliseconds(300);  // the last words of a program that ends
 
 Json seen_by(const pipeline::calibrate::WandSeen::Camera& camera) {
-  return {{"name", camera.health.name}, {"state", to_string(camera.health.state)}, {"coverage", camera.coverage},
-          {"views", camera.views}, {"covered", camera.covered},        {"parts", Json(camera.parts)}};
+  return {{"name", camera.health.name},  {"state", to_string(camera.health.state)},
+          {"coverage", camera.coverage}, {"views", camera.views},
+          {"covered", camera.covered},   {"parts", Json(camera.parts)}};
 }
 
 std::function<void(const viewer::PageCommand&)> changing_wands(const WandPage::Options& options,

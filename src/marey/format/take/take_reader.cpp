@@ -93,8 +93,9 @@ std::unique_ptr<TakeCursor> open(const std::string& path, TakeReaderOptions opti
                 kTakeSchemaVersion);
   }
   if (version == 1)
-    throw Error("{}: is of schema 1, which no release wrote; commit {} is the last that reads it: marey convert there writes schema 2",
-                path, kLastCommitOfSchema1);
+    throw Error(
+        "{}: is of schema 1, which no release wrote; commit {} is the last that reads it: marey convert there writes schema 2",
+        path, kLastCommitOfSchema1);
   if (version == kTakeSchemaVersion) return believable(open_schema_2(std::move(database), options), path);
   throw Error("{}: is damaged (schema version {})", path, version);
 }

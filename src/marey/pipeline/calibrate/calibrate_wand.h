@@ -18,10 +18,10 @@ namespace marey::pipeline::calibrate {
 struct WandSeen {
   struct Camera {
     CameraHealth health;
-    double coverage = 0;                   ///< share of its picture in which the wand was
-    std::int64_t views = 0;                ///< frames in which it was
-    bool covered = false;                  ///< that is enough
-    std::vector<int> parts;                ///< in which it was, of 10 × 8 row by row
+    double coverage = 0;     ///< share of its picture in which the wand was
+    std::int64_t views = 0;  ///< frames in which it was
+    bool covered = false;    ///< that is enough
+    std::vector<int> parts;  ///< in which it was, of 10 × 8 row by row
   };
   /// Two cameras that saw it at the same time.
   struct Shared {
