@@ -269,6 +269,12 @@ std::vector<Feed> open_feeds(const Rig& rig, const FeedOptions& options, bool al
   return feeds;
 }
 
+Rig rig_as_fed(const Rig& rig, const std::vector<Feed>& feeds) {
+  Rig fed = rig;
+  for (std::size_t i = 0; i < feeds.size(); ++i) fed.cameras[i] = feeds[i].camera();
+  return fed;
+}
+
 std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz) {
   std::vector<std::unique_ptr<FeedInput>> inputs = observation_inputs(path, rig, rate_hz);
   std::vector<Feed> feeds;

@@ -123,6 +123,9 @@ class Feed {
 /// a rig without any other is refused.
 std::vector<Feed> open_feeds(const Rig& rig, const FeedOptions& options, bool allow_absent = false);
 
+/// The rig with its cameras as their feeds are.
+Rig rig_as_fed(const Rig& rig, const std::vector<Feed>& feeds);
+
 /// What another program saw of markers, from a file or folder that format/observations.h reads: a feed for each of the rig's
 /// cameras. `rate_hz` counts where the rig does not say; without either it is 100 Hz.
 std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);

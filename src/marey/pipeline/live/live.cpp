@@ -28,6 +28,7 @@ class Watched final : public corridor::Stage {
     return header;
   }
   void want_boxes() override { stage_->want_boxes(); }
+  void want_foregrounds(std::function<void(corridor::FrameForeground)> give) override { stage_->want_foregrounds(std::move(give)); }
   std::span<const Instant> step(const FrameSet& frames) override {
     const Timestamp given = time_.now();
     const std::span<const Instant> known = stage_->step(frames);
@@ -43,12 +44,6 @@ class Watched final : public corridor::Stage {
   corridor::LiveMonitor& monitor_;
   source::LiveTime& time_;
 };
-
-Rig rig_as_fed(const Rig& rig, const std::vector<corridor::Feed>& feeds) {
-  Rig fed = rig;
-  for (std::size_t i = 0; i < feeds.size(); ++i) fed.cameras[i] = feeds[i].camera();
-  return fed;
-}
 
 bool feeds_find(LiveJob job, LiveTargets targets) {
   return job == LiveJob::markers_in_space || (job == LiveJob::preview && targets == LiveTargets::markers);
@@ -181,7 +176,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   if (options.desk == nullptr) options.desk = std::make_shared<CameraDesk>(rig, options.space.markers.threshold);
   std::vector<corridor::Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s, options.desk.get());
-  const Rig fed = rig_as_fed(rig, feeds);
+  const Rig fed = corridor::rig_as_fed(rig, feeds);
   LiveSummary summary;
   summary.job = live_job(fed, options.targets, options.ground);
   if (options.space.set.labels.empty() && options.space.learned_set == nullptr) options.space.set = names_of_played(fed);

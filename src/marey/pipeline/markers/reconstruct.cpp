@@ -72,8 +72,7 @@ corridor::Summary reconstruct(const Rig& rig, const std::string& observations, c
   const StopScope scope(hooks.stop);
   corridor::Clock clock = clock_of(rig, observations, options);
   if (clock.rate_hz() <= 0) throw Error("{}", "not one frame could be read from any camera");
-  Rig fitted = rig;
-  for (std::size_t i = 0; i < fitted.cameras.size(); ++i) fitted.cameras[i] = clock.feeds()[i].camera();
+  const Rig fitted = corridor::rig_as_fed(rig, clock.feeds());
   MarkersInSpaceOptions named = options;
   if (named.set.labels.empty() && named.learned_set == nullptr) named.set = named_in_take(observations);
   const auto stage = markers_in_space(fitted, clock.rate_hz(), named);

@@ -26,29 +26,28 @@ void GroundBoxes::rename(const std::function<std::optional<TrackId>(TrackId, std
   for (track::image::ViewLog& log : logs_) log.name(track_of);
 }
 
-std::optional<Box> GroundBoxes::box_of(const Sample& sample, std::int64_t instant, Timestamp time, std::size_t number,
-                                       const GroundCamera& camera, const Vector<2>& position) const {
-  if (const auto observed = logs_[number].box(instant, sample.track)) return observed;
-  const auto whole = camera.box_at(position, time);
+std::optional<Box> GroundBoxes::box_of(const Sample& sample, std::int64_t instant, Timestamp time, CameraId camera,
+                                       const GroundScene& scene, const Vector<2>& position) const {
+  if (const auto observed = logs_[static_cast<std::size_t>(number(camera))].box(instant, sample.track)) return observed;
+  const auto whole = scene.box_at(camera, position, time);
   if (!whole) return std::nullopt;
-  const cv::Size size = camera.view_at(time).size();
+  const cv::Size size = scene.views->view_at(camera, time).size();
   const Box visible = geometry::intersection(*whole, {0, 0, static_cast<double>(size.width), static_cast<double>(size.height)});
   if (visible.empty()) return std::nullopt;
   return visible;
 }
 
-void GroundBoxes::add_to(Instant& instant, Timestamp time, const GroundCameras& cameras, const reconstruct::GroundArea& area,
-                         std::optional<TrackId> ball) const {
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
+void GroundBoxes::add_to(Instant& instant, Timestamp time, const GroundScene& scene, std::optional<TrackId> ball) const {
+  for (std::size_t i = 0; i < logs_.size(); ++i) {
     const auto frame = logs_[i].frame_at(instant.index);
     if (!frame) continue;
-    const GroundView& view = cameras[i].view_at(time);
     const CameraId camera{static_cast<int>(i)};
+    const GroundView& view = scene.views->view_at(camera, time);
     for (const Sample& sample : instant.samples) {
-      const Vector<2> position = area.world(sample.position.head<2>());
+      const Vector<2> position = scene.area.world(sample.position.head<2>());
       const bool is_ball = sample.track == ball;
       const std::optional<Box> box =
-          is_ball ? ball_box(view, position, sample.position.z()) : box_of(sample, instant.index, time, i, cameras[i], position);
+          is_ball ? ball_box(view, position, sample.position.z()) : box_of(sample, instant.index, time, camera, scene, position);
       if (!box) continue;
       instant.boxes.push_back({.camera = camera,
                                .frame = *frame,

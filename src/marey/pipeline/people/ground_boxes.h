@@ -9,8 +9,7 @@
 
 #include "marey/core/frame_set.h"
 #include "marey/core/instant.h"
-#include "marey/pipeline/people/ground_cameras.h"
-#include "marey/reconstruct/ground_area.h"
+#include "marey/pipeline/people/ground_scene.h"
 #include "marey/track/ground/ground_instant.h"
 #include "marey/track/image/view_log.h"
 
@@ -35,12 +34,11 @@ class GroundBoxes {
 
   /// Adds the boxes of the instant's samples (positions in the user's frame). `time` is the instant's by the rig's clock, `ball`
   /// the ball's track. After `rename`.
-  void add_to(Instant& instant, Timestamp time, const GroundCameras& cameras, const reconstruct::GroundArea& area,
-              std::optional<TrackId> ball) const;
+  void add_to(Instant& instant, Timestamp time, const GroundScene& scene, std::optional<TrackId> ball) const;
 
  private:
-  std::optional<Box> box_of(const Sample& sample, std::int64_t instant, Timestamp time, std::size_t number,
-                            const GroundCamera& camera, const Vector<2>& position) const;
+  std::optional<Box> box_of(const Sample& sample, std::int64_t instant, Timestamp time, CameraId camera, const GroundScene& scene,
+                            const Vector<2>& position) const;
 
   std::vector<track::image::ViewLog> logs_;  // by camera
   bool wanted_ = false;

@@ -20,15 +20,15 @@
 
 namespace marey::pipeline::people {
 
+/// How the cameras see the ground, each with its motion. Throws Error if that is not known of one.
+std::shared_ptr<GroundViews> views_of(const Rig& fed, const TurningCameras& turning);
+
 class GroundCameras {
  public:
-  /// Throws Error if there is no camera, there are more than 64, or one of them is not calibrated or does not suit the detector.
-  GroundCameras(const std::vector<corridor::Feed>& feeds, const Rig& rig, const reconstruct::GroundArea& area,
-                const PeopleOnGroundOptions& options);
+  /// `views` and `area` as in a GroundScene. Throws Error if a camera is not calibrated or does not suit the detector.
+  GroundCameras(const std::vector<corridor::Feed>& feeds, const std::shared_ptr<GroundViews>& views,
+                const reconstruct::GroundArea& area, const PeopleOnGroundOptions& options);
 
-  /// The rig with its cameras as their feeds are.
-  const Rig& rig() const { return rig_; }
-  const std::shared_ptr<GroundViews>& views() const { return views_; }
   std::size_t size() const { return cameras_.size(); }
   const GroundCamera& operator[](std::size_t camera) const { return cameras_[camera]; }
 
@@ -39,17 +39,12 @@ class GroundCameras {
   /// Whether any camera searches for the ball.
   bool search_ball() const;
 
-  /// Whether a position (m, world) is within `area` and within some camera's image at this time, by the rig's clock.
-  bool in_view(const Vector<2>& position, Timestamp time, const reconstruct::GroundArea& area) const;
-
   std::vector<std::shared_ptr<StandingPeople>> standing() const;
   std::vector<std::string> news();
   std::vector<std::string> news_of(std::size_t camera) { return cameras_[camera].news(); }
   void report(corridor::Summary& summary) const;
 
  private:
-  Rig rig_;
-  std::shared_ptr<GroundViews> views_;
   std::vector<GroundCamera> cameras_;
   std::vector<track::ground::CameraObservations> all_, observed_;  // by camera; of those with a frame
 };

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "marey/draw/canvas.h"
-#include "marey/pipeline/corridor/stopwatch.h"
 #include "marey/pipeline/people/ball_on_ground.h"
 
 namespace marey::pipeline::people {
@@ -42,9 +41,9 @@ void find_teams(const GroundRecorder::Joined& joined, const std::map<TrackId, Tr
 /// The recording, instant by instant.
 class GroundInstants final : public corridor::InstantSource {
  public:
-  GroundInstants(const GroundPeople& people, const GroundTracked& tracked, const GroundBoxes& boxes,
+  GroundInstants(const GroundPeople& people, const GroundScene& scene, const GroundBoxes& boxes,
                  const std::vector<Recording::Moment>& moments)
-      : people_(people), tracked_(tracked), boxes_(boxes), moments_(moments), instants_(people.recording) {}
+      : people_(people), scene_(scene), boxes_(boxes), moments_(moments), instants_(people.recording) {}
 
   std::optional<Instant> next() override {
     if (next_ == moments_.size()) return std::nullopt;
@@ -57,8 +56,8 @@ class GroundInstants final : public corridor::InstantSource {
     for (TrackName& name : instant.named) name.colour = colour_of(people_.teams, name.id);
     name_ball(instant);
     name_unnamed(instant);
-    const Timestamp rig_time = instant.time + rig_time_offset(tracked_.header.time_base, tracked_.cameras.rig());
-    if (boxes_.wanted()) boxes_.add_to(instant, rig_time, tracked_.cameras, tracked_.area, people_.ball);
+    const Timestamp rig_time = instant.time + rig_time_offset(people_.recording.header.time_base, scene_.rig);
+    if (boxes_.wanted()) boxes_.add_to(instant, rig_time, scene_, people_.ball);
     return instant;
   }
 
@@ -81,7 +80,7 @@ class GroundInstants final : public corridor::InstantSource {
   }
 
   const GroundPeople& people_;
-  GroundTracked tracked_;
+  const GroundScene& scene_;
   const GroundBoxes& boxes_;
   const std::vector<Recording::Moment>& moments_;
   InstantsOf instants_;
@@ -92,25 +91,21 @@ class GroundInstants final : public corridor::InstantSource {
 
 }  // namespace
 
-GroundPeople second_pass(track::ground::GroundRun& tracking, const GroundTracked& tracked, GroundBoxes& boxes,
+GroundPeople second_pass(GroundRecorder::Joined joined, const GroundScene& scene, const RecordingHeader& header, GroundBoxes& boxes,
                          std::vector<track::ball::BallMoment> ball_candidates, const PeopleOnGroundOptions& options,
                          const Hooks& hooks) {
-  const corridor::Stopwatch taken;
   GroundPeople people;
-  auto joined = tracking.finish(
-      [&](const Vector<2>& position, Timestamp time) { return tracked.cameras.in_view(position, time, tracked.area); });
   people.links = std::ssize(joined.joins);
   people.uncertain_links =
       std::count_if(joined.joins.begin(), joined.joins.end(), [](const auto& one) { return one.probability < kConfidentLink; });
   const std::size_t all = joined.recording.tracks().size();
-  joined.recording.header.rig = tracked.cameras.rig();
+  joined.recording.header.rig = scene.rig;
   joined.recording.header.time_base = {.kind = TimeBase::Kind::rig};
-  reconstruct::KeptPeople kept =
-      reconstruct::people_in(tracked.area, with_time_base(std::move(joined.recording), tracked.header.time_base));
+  reconstruct::KeptPeople kept = reconstruct::people_in(scene.area, with_time_base(std::move(joined.recording), header.time_base));
   people.recording = std::move(kept.recording);
-  people.recording.header = tracked.header;
+  people.recording.header = header;
   people.outside = static_cast<std::int64_t>(all - kept.now.size());
-  find_teams(joined, kept.now, tracked.area, options.teams, people);
+  find_teams(joined, kept.now, scene.area, options.teams, people);
   boxes.rename([&](TrackId track, std::int32_t instant) -> std::optional<TrackId> {
     const auto person = joined.person_of(track, instant);
     const auto now = person ? kept.now.find(*person) : kept.now.end();
@@ -118,15 +113,27 @@ GroundPeople second_pass(track::ground::GroundRun& tracking, const GroundTracked
     return now->second;
   });
   if (options.ball)
-    people.ball =
-        follow_ball(std::move(ball_candidates), tracked.cameras.views(), tracked.area, *options.ball, hooks, people.recording);
-  people.seconds = taken.seconds();
+    people.ball = follow_ball(std::move(ball_candidates), scene.views, scene.area, *options.ball, hooks, people.recording);
   return people;
 }
 
-std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& people, const GroundTracked& tracked,
+std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& people, const GroundScene& scene,
                                                          const GroundBoxes& boxes, const std::vector<Recording::Moment>& moments) {
-  return std::make_unique<GroundInstants>(people, tracked, boxes, moments);
+  return std::make_unique<GroundInstants>(people, scene, boxes, moments);
+}
+
+void report_people(const GroundPeople& people, bool ball_wanted, bool ball_searched, corridor::Summary& summary) {
+  summary.left_out["off_pitch"] = people.outside;
+  summary.figures["joins"] = static_cast<double>(people.links);
+  summary.figures["doubtful_joins"] = static_cast<double>(people.uncertain_links);
+  if (!ball_wanted) return;
+  const TrackColumns* ball = people.ball ? people.recording.find(*people.ball) : nullptr;
+  summary.figures["ball_samples"] = ball == nullptr ? 0.0 : static_cast<double>(ball->size());
+  if (!ball_searched)
+    summary.warnings.push_back(
+        "the ball was not looked for: that needs pictures of a camera that stands and is calibrated (marey calibrate pitch)");
+  else if (ball == nullptr)
+    summary.warnings.push_back("the ball was not found");
 }
 
 }  // namespace marey::pipeline::people
