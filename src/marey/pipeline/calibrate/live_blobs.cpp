@@ -40,7 +40,7 @@ std::string why_nothing_came(std::span<const corridor::Feed> feeds) {
 void enter_cameras(Rig& rig, std::span<const corridor::Feed> feeds) {
   for (std::size_t c = 0; c < feeds.size(); ++c) {
     rig.cameras[c] = feeds[c].camera();
-    if (const cv::Size size = feeds[c].report().received > 0 ? feeds[c].info().size : cv::Size(); !size.empty())
+    if (const cv::Size size = feeds[c].health().frames > 0 ? feeds[c].info().size : cv::Size(); !size.empty())
       rig.cameras[c].size = size;
     if (!rig.cameras[c].rate_hz) rig.cameras[c].rate_hz = feeds[c].info().rate_hz;
   }

@@ -8,6 +8,7 @@
 #include "marey/pipeline/people/turned_views.h"
 
 namespace marey::pipeline::people {
+
 std::shared_ptr<GroundViews> views_of(const Rig& fed, const TurningCameras& turning) {
   const auto id_of = [](std::size_t i) { return CameraId{static_cast<int>(i)}; };
   std::vector<GroundView> first;

@@ -39,7 +39,7 @@ bool needs_static_camera(const detect::DetectorOptions& detector) {
 
 /// Background subtraction needs a static camera; of another program's detections, and of what a network alone searches, nothing is
 /// known.
-track::TrackerOptions tracker_options(const corridor::Feed& feed, const PeopleInPictureOptions& options) {
+track::TrackerOptions image_tracker_options(const corridor::Feed& feed, const PeopleInPictureOptions& options) {
   track::TrackerOptions tracker = feed.has_pictures() ? options.tracker : track::box_tracker_options(options.tracker);
   tracker.steady_camera = feed.has_pictures() && needs_static_camera(options.detector);
   tracker.reidentify = tracker.steady_camera && options.live;
@@ -62,7 +62,7 @@ ObservedFrame observed_in(const Frame& frame, const detect::Detections& found) {
 
 ImageTracking::ImageTracking(const corridor::Feed& feed, const PeopleInPictureOptions& options)
     : detector_options_(options.detector),
-      tracker_options_(tracker_options(feed, options)),
+      tracker_options_(image_tracker_options(feed, options)),
       contour_options_(options.outlines),
       tracker_(track::make_tracker(tracker_options_)) {
   if (feed.has_pictures() && feed.detector() == nullptr) detector_ = detect::make_detector(options.detector);
