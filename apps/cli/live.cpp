@@ -69,7 +69,7 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
   for (std::size_t i = 0; i < summary.last.cameras.size(); ++i) {
     const CameraHealth& camera = summary.last.cameras[i];
     Json& told = json["cameras"][camera.name];
-    told = json_of(camera, "frames", camera.frames);
+    told = health_json_of(camera, "frames", camera.frames);
     told["connections"] = camera.connections;
     if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
   }

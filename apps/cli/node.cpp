@@ -52,7 +52,7 @@ Json as_json(const pipeline::live::NodeSummary& summary, const NodeCommand& comm
             {"bytes", summary.bytes},
             {"cameras", Json::object()}};
   for (const pipeline::live::NodeSummary::Camera& camera : summary.cameras)
-    json["cameras"][camera.health.name] = json_of(camera.health, "sent", camera.sent);
+    json["cameras"][camera.health.name] = health_json_of(camera.health, "sent", camera.sent);
   return json;
 }
 

@@ -4,7 +4,7 @@
 
 namespace marey::cli {
 
-Json json_of(const CameraHealth& health, const char* counted, std::int64_t count) {
+Json health_json_of(const CameraHealth& health, const char* counted, std::int64_t count) {
   return {{"state", to_string(health.state)},
           {counted, count},
           {"lost", health.lost},

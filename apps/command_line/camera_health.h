@@ -11,7 +11,7 @@
 namespace marey::cli {
 
 /// Of a summary: the state, `count` under the name `counted`, and what was lost.
-Json json_of(const CameraHealth& health, const char* counted, std::int64_t count);
+Json health_json_of(const CameraHealth& health, const char* counted, std::int64_t count);
 /// Of the viewer's page (page/src/state.ts).
 Json page_json_of(const CameraHealth& health);
 /// "cam1    1200 frames, 0 lost, 3 damaged, 0 overrun", the name and `count` in columns; `counted` is "frames" or "frames sent".
