@@ -1,4 +1,4 @@
-// How cameras are, as programs print it and hand it on.
+// How cameras are, as programs print it and send it to the page.
 #pragma once
 
 #include <cstdint>

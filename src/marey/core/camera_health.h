@@ -8,7 +8,7 @@
 
 namespace marey {
 
-/// How a camera is, and what became of its frames: the same for a live camera, a node, a run, its summary and the viewer.
+/// How a camera is, and its counts of frames: the same for a live camera, a node, a run, its summary and the viewer.
 struct CameraHealth {
   std::string name = {};
   FeedState state = FeedState::connecting;

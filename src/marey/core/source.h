@@ -52,7 +52,7 @@ class LiveSource {
   virtual void take_only(cv::Size /*size*/) {}
   /// Whether nothing will come any more.
   virtual bool ended() const = 0;
-  /// What became of its frames so far; its name and how long it has been silent are for its reader to know.
+  /// Its counts of frames so far; its name and how long it has been silent are for its reader to know.
   virtual CameraHealth health() const { return {}; }
   virtual std::vector<std::string> warnings() const { return {}; }
 };

@@ -24,7 +24,7 @@ class FrameGrouping {
   /// What a live run dropped; nothing for files, which drop nothing.
   virtual std::optional<LiveDrops> drops() const { return std::nullopt; }
 
-  /// Frames of one camera that wait for their instant, and what became of its others.
+  /// Frames of one camera that wait for their instant, and counts of all.
   struct Lane {
     std::deque<CameraFrame> waiting;
     std::optional<Timestamp> used;  // of the last frame given

@@ -166,8 +166,8 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   Counter counter(summary);
   sinks.begin(signed_header(stage.header(), clock, hooks));
   if (sinks.want_boxes()) stage.want_boxes();
-  if (sinks.want_foregrounds()) {
-    stage.want_foregrounds([&](FrameForeground foreground) {
+  if (sinks.need_foregrounds()) {
+    stage.need_foregrounds([&](FrameForeground foreground) {
       if (!sinks.write(std::move(foreground))) summary.stopped = true;
     });
   }

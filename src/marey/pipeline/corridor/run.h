@@ -74,7 +74,7 @@ class Stage {
   /// Sinks want `Instant::boxes`. Before the first step.
   virtual void want_boxes() {}
   /// Sinks want the foreground of each frame that is searched, in `step` and in `finish`: `give` takes it. Before the first step.
-  virtual void want_foregrounds(std::function<void(FrameForeground)> /*give*/) {}
+  virtual void need_foregrounds(std::function<void(FrameForeground)> /*give*/) {}
   /// What is known after this moment, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
   /// second pass keeps all for that.
   virtual std::span<const Instant> step(const FrameSet& frames) = 0;
@@ -105,7 +105,7 @@ class Sinks {
   void begin(const RecordingHeader& header);
   bool want_pictures() const;
   bool want_boxes() const;
-  bool want_foregrounds() const;
+  bool need_foregrounds() const;
   /// To those that want foregrounds; false as for `write`.
   bool write(FrameForeground foreground);
   /// To all others. Whether the run may go on: that all still take what they are given, where they are waited for.

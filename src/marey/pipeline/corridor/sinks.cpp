@@ -56,7 +56,7 @@ class Sinks::Lane {
   /// Called where the run ends because it failed.
   void end_run() { ended_run_ = true; }
   bool ended_run() const { return ended_run_; }
-  bool wants_foregrounds() const { return foregrounds_ != nullptr && !failed_; }
+  bool needs_foregrounds() const { return foregrounds_ != nullptr && !failed_; }
   void give(const Work& work) { queue_.push(work); }
   /// Only where there is room.
   void offer(const Work& work) { passed_over_ += failed_ || queue_.try_push(work) ? 0 : 1; }
@@ -148,8 +148,8 @@ bool Sinks::want_boxes() const {
   return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().boxes && !lane->failed(); });
 }
 
-bool Sinks::want_foregrounds() const {
-  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants_foregrounds(); });
+bool Sinks::need_foregrounds() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->needs_foregrounds(); });
 }
 
 bool Sinks::write(Instant instant) {
@@ -162,7 +162,7 @@ bool Sinks::write(Instant instant) {
 bool Sinks::write(FrameForeground foreground) {
   const Lane::Work work{.foreground = std::make_shared<const FrameForeground>(std::move(foreground))};
   bool all = true;
-  for (const auto& lane : lanes_) all = (!lane->wants_foregrounds() || hand_to(*lane, work)) && all;
+  for (const auto& lane : lanes_) all = (!lane->needs_foregrounds() || hand_to(*lane, work)) && all;
   return all;
 }
 

@@ -28,7 +28,7 @@ class Watched final : public corridor::Stage {
     return header;
   }
   void want_boxes() override { stage_->want_boxes(); }
-  void want_foregrounds(std::function<void(corridor::FrameForeground)> give) override { stage_->want_foregrounds(std::move(give)); }
+  void need_foregrounds(std::function<void(corridor::FrameForeground)> give) override { stage_->need_foregrounds(std::move(give)); }
   std::span<const Instant> step(const FrameSet& frames) override {
     const Timestamp given = time_.now();
     const std::span<const Instant> known = stage_->step(frames);

@@ -15,7 +15,6 @@ namespace {
 
 using assign::kNoIndex;
 
-constexpr double kMinHeld = 0.4;      // of the set's labels, below which a later search's tracker replaces the one that runs
 constexpr double kMinLabelled = 0.6;  // of the set, on average, below which it is doubtful
 constexpr std::size_t kMinMarkers = 4;
 
@@ -94,7 +93,7 @@ void SetInSpace::take_answer(Timestamp now) {
   if (!counts_.found_at_s) counts_.found_at_s = seconds(now);
   // With a set of a person who stood still, rigid distances are known the better the longer they were observed.
   if (follower_ == nullptr || !set_->moves ||
-      static_cast<double>(follower_->held()) < kMinHeld * static_cast<double>(set_->size())) {
+      static_cast<double>(follower_->held()) < SetSearch::kMinObserved * static_cast<double>(set_->size())) {
     if (follower_ != nullptr) found->follower->take(follower_->borne());
     follower_ = std::move(found->follower);
   }

@@ -13,7 +13,6 @@ namespace {
 
 using solve::labels::TrackedPoint;
 
-constexpr double kMinObserved = 0.4;    // of the set's markers, below which nothing is searched; as label_recording has it
 constexpr double kRememberedHz = 100;   // about, of the points that are kept
 constexpr double kAgainS = 2;           // after a search, if many labels are missing
 constexpr double kMinFirstStaticS = 1;  // of points that are searched first, with a set of a person who stood still

@@ -59,6 +59,8 @@ class RecentPoints {
 
 class SetSearch {
  public:
+  static constexpr double kMinObserved = 0.4;  ///< of the set's markers, below which nothing is searched; as label_recording has it
+
   SetSearch(std::shared_ptr<const LearnedMarkers> set, double rate_hz, const SetInSpaceOptions& options);
   ~SetSearch();
   SetSearch(const SetSearch&) = delete;

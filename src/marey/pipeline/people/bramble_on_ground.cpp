@@ -180,7 +180,7 @@ class BrambleOnGround final : public GroundStage {
       report_people(people_, options_.ball.has_value(), searched, summary);
     }
     for (const BrambleCamera& camera : cameras_) camera.report(summary);
-    report_nobody(summary);
+    explain_empty_result(summary);
     report_times(summary);
   }
 

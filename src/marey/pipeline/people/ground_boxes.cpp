@@ -5,7 +5,7 @@
 namespace marey::pipeline::people {
 
 void GroundBoxes::add_frames(const FrameSet& frames) {
-  if (!wanted_) return;
+  if (!enabled_) return;
   for (std::size_t i = 0; i < logs_.size(); ++i) {
     if (frames.cameras[i])
       logs_[i].add_frame(static_cast<std::int32_t>(frames.index), static_cast<std::int32_t>(frames.cameras[i]->frame.index));
@@ -13,7 +13,7 @@ void GroundBoxes::add_frames(const FrameSet& frames) {
 }
 
 void GroundBoxes::add(const track::ground::GroundInstant& instant, std::span<const track::ground::ObservationMatch> matches) {
-  if (!wanted_) return;
+  if (!enabled_) return;
   for (const track::ground::ObservationMatch& match : matches) {
     const track::ground::CameraObservations& camera = instant.cameras[static_cast<std::size_t>(match.view)];
     const Observation<2>& observation = camera.seen[static_cast<std::size_t>(match.observation)];

@@ -20,8 +20,8 @@ class GroundBoxes {
   explicit GroundBoxes(std::size_t cameras) : logs_(cameras) {}
 
   /// Nothing is kept before this was called.
-  void want() { wanted_ = true; }
-  bool wanted() const { return wanted_; }
+  void enable() { enabled_ = true; }
+  bool enabled() const { return enabled_; }
 
   /// Which frame each camera gave to an instant; before `add` of that instant. Instants grow.
   void add_frames(const FrameSet& frames);
@@ -41,7 +41,7 @@ class GroundBoxes {
                             const Vector<2>& position) const;
 
   std::vector<track::image::ViewLog> logs_;  // by camera
-  bool wanted_ = false;
+  bool enabled_ = false;
 };
 
 }  // namespace marey::pipeline::people

@@ -57,7 +57,7 @@ class GroundInstants final : public corridor::InstantSource {
     name_ball(instant);
     name_unnamed(instant);
     const Timestamp rig_time = instant.time + rig_time_offset(people_.recording.header.time_base, scene_.rig);
-    if (boxes_.wanted()) boxes_.add_to(instant, rig_time, scene_, people_.ball);
+    if (boxes_.enabled()) boxes_.add_to(instant, rig_time, scene_, people_.ball);
     return instant;
   }
 
@@ -122,11 +122,11 @@ std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& peo
   return std::make_unique<GroundInstants>(people, scene, boxes, moments);
 }
 
-void report_people(const GroundPeople& people, bool ball_wanted, bool ball_searched, corridor::Summary& summary) {
+void report_people(const GroundPeople& people, bool with_ball, bool ball_searched, corridor::Summary& summary) {
   summary.left_out["off_pitch"] = people.outside;
   summary.figures["joins"] = static_cast<double>(people.links);
   summary.figures["doubtful_joins"] = static_cast<double>(people.uncertain_links);
-  if (!ball_wanted) return;
+  if (!with_ball) return;
   const TrackColumns* ball = people.ball ? people.recording.find(*people.ball) : nullptr;
   summary.figures["ball_samples"] = ball == nullptr ? 0.0 : static_cast<double>(ball->size());
   if (!ball_searched)

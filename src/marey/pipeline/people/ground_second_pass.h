@@ -38,7 +38,7 @@ GroundPeople second_pass(track::ground::offline::GroundRecorder::Joined joined, 
 std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& people, const GroundScene& scene,
                                                          const GroundBoxes& boxes, const std::vector<Recording::Moment>& moments);
 
-/// What was counted of it. `ball_wanted`: the ball was to be tracked too; `ball_searched`: a camera could search for it.
-void report_people(const GroundPeople& people, bool ball_wanted, bool ball_searched, corridor::Summary& summary);
+/// What was counted of it. `with_ball`: the ball was to be tracked too; `ball_searched`: a camera could search for it.
+void report_people(const GroundPeople& people, bool with_ball, bool ball_searched, corridor::Summary& summary);
 
 }  // namespace marey::pipeline::people

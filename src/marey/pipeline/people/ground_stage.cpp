@@ -61,7 +61,7 @@ Instant GroundStage::live_instant(const FrameSet& frames, std::span<const Track<
 
 void GroundStage::add_live_boxes(const FrameSet& frames, std::span<const track::ground::CameraObservations> observed,
                                  std::span<const track::ground::ObservationMatch> matches, Instant& instant) {
-  if (!boxes_.wanted()) return;
+  if (!boxes_.enabled()) return;
   boxes_.clear();
   boxes_.add_frames(frames);
   boxes_.add(track::ground::GroundInstant(static_cast<std::int32_t>(frames.index), frames.time, observed), matches);
@@ -70,7 +70,7 @@ void GroundStage::add_live_boxes(const FrameSet& frames, std::span<const track::
   boxes_.add_to(instant, rig_time, scene_, std::nullopt);
 }
 
-void GroundStage::report_nobody(corridor::Summary& summary) {
+void GroundStage::explain_empty_result(corridor::Summary& summary) {
   if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
 }
 

@@ -20,7 +20,7 @@ Rig ground_rig(const Rig& rig, const std::vector<corridor::Feed>& feeds);
 class GroundStage : public PeopleOnGround {
  public:
   RecordingHeader header() const override { return header_; }
-  void want_boxes() override { boxes_.want(); }
+  void want_boxes() override { boxes_.enable(); }
 
  protected:
   GroundStage(const std::vector<corridor::Feed>& feeds, const PeopleOnGroundOptions& options, GroundScene scene);
@@ -38,7 +38,7 @@ class GroundStage : public PeopleOnGround {
                       std::span<const track::ground::ObservationMatch> matches, Instant& instant);
 
   /// After the cameras have reported: why there is nobody, and cameras without frames or with a wrong offset.
-  static void report_nobody(corridor::Summary& summary);
+  static void explain_empty_result(corridor::Summary& summary);
   void report_times(corridor::Summary& summary) const;
 
   PeopleOnGroundOptions options_;

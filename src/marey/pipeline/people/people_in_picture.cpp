@@ -38,7 +38,7 @@ class ImageStage : public corridor::Stage {
   }
 
   RecordingHeader header() const override { return header_; }
-  void want_foregrounds(std::function<void(corridor::FrameForeground)> give) override {
+  void need_foregrounds(std::function<void(corridor::FrameForeground)> give) override {
     tracking_.give_foregrounds(std::move(give));
   }
 

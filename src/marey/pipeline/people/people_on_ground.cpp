@@ -83,7 +83,7 @@ class RecordedGround final : public DetectedGround {
     summary.figures["joining_s"] = second_pass_s_;
     report_people(people_, options_.ball.has_value(), cameras_.search_ball(), summary);
     cameras_.report(summary);
-    report_nobody(summary);
+    explain_empty_result(summary);
     if (options_.learn.agreement) report_agreement(summary);
     report_times(summary);
   }
@@ -139,7 +139,7 @@ class LiveGround final : public DetectedGround {
 
   void report(corridor::Summary& summary) const override {
     cameras_.report(summary);
-    report_nobody(summary);
+    explain_empty_result(summary);
     report_times(summary);
   }
 
