@@ -12,8 +12,9 @@
 #include "marey/core/geometry.h"
 #include "marey/detect/people/people.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/box_filter.h"
 #include "marey/track/tracker.h"
+
+#include "experiments/box_filter.h"
 
 namespace marey::experiments {
 namespace {
@@ -181,29 +182,29 @@ class LoneFilters : public OutlineMethod {
   std::map<int, Detection> before_;
 };
 
-class PublishedMethod final : public LoneFilters<track::contour::PublishedOutline> {
+class PublishedMethod final : public LoneFilters<PublishedOutline> {
  public:
-  explicit PublishedMethod(const track::contour::PublishedOptions& options) : options_(options) {}
+  explicit PublishedMethod(const PublishedOptions& options) : options_(options) {}
 
  private:
-  void advance(track::contour::PublishedOutline& filter, const Frame& frame, std::span<const Detection> /*detections*/) override {
+  void advance(PublishedOutline& filter, const Frame& frame, std::span<const Detection> /*detections*/) override {
     filter.step(frame);
   }
-  track::contour::PublishedOutline make(const Detection& before, const Detection& now) const override {
+  PublishedOutline make(const Detection& before, const Detection& now) const override {
     return {options_, before.outline, now.outline};
   }
-  FollowedShape shape_of(const track::contour::PublishedOutline& filter) const override {
+  FollowedShape shape_of(const PublishedOutline& filter) const override {
     const Outline& outline = filter.outline();
     return {"", outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon(), {}};
   }
 
-  track::contour::PublishedOptions options_;
+  PublishedOptions options_;
 };
 
-class BoxMethod final : public LoneFilters<track::contour::BoxFilter> {
+class BoxMethod final : public LoneFilters<BoxFilter> {
  private:
   /// The nearest detection within a box's height of the filter's centre.
-  void advance(track::contour::BoxFilter& filter, const Frame& /*frame*/, std::span<const Detection> detections) override {
+  void advance(BoxFilter& filter, const Frame& /*frame*/, std::span<const Detection> detections) override {
     const Detection* nearest = nullptr;
     double reach = filter.box().height;
     for (const Detection& detection : detections) {
@@ -218,12 +219,8 @@ class BoxMethod final : public LoneFilters<track::contour::BoxFilter> {
       filter.step(std::nullopt, std::nullopt);
     }
   }
-  track::contour::BoxFilter make(const Detection& /*before*/, const Detection& now) const override {
-    return {{}, now.box, now.centre};
-  }
-  FollowedShape shape_of(const track::contour::BoxFilter& filter) const override {
-    return {"", filter.centre(), corners(filter.box()), {}};
-  }
+  BoxFilter make(const Detection& /*before*/, const Detection& now) const override { return {{}, now.box, now.centre}; }
+  FollowedShape shape_of(const BoxFilter& filter) const override { return {"", filter.centre(), corners(filter.box()), {}}; }
 };
 
 }  // namespace
@@ -236,7 +233,7 @@ std::unique_ptr<OutlineMethod> marey_method(const track::contour::OutlineOptions
   return std::make_unique<TrackedMethod>(options);
 }
 
-std::unique_ptr<OutlineMethod> published_method(const track::contour::PublishedOptions& options) {
+std::unique_ptr<OutlineMethod> published_method(const PublishedOptions& options) {
   return std::make_unique<PublishedMethod>(options);
 }
 

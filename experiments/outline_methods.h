@@ -10,7 +10,8 @@
 #include "marey/core/frame.h"
 #include "marey/simulate/people/people_renderer.h"
 #include "marey/track/contour/outline_follower.h"
-#include "marey/track/contour/published_outline.h"
+
+#include "experiments/published_outline.h"
 
 namespace marey::experiments {
 
@@ -52,7 +53,7 @@ class OutlineMethod {
 std::unique_ptr<OutlineMethod> silhouette_method();
 /// The same with followed outlines.
 std::unique_ptr<OutlineMethod> marey_method(const track::contour::OutlineOptions& options);
-std::unique_ptr<OutlineMethod> published_method(const track::contour::PublishedOptions& options);
+std::unique_ptr<OutlineMethod> published_method(const PublishedOptions& options);
 std::unique_ptr<OutlineMethod> box_method();
 
 }  // namespace marey::experiments

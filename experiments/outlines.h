@@ -8,7 +8,8 @@
 #include "marey/core/hooks.h"
 #include "marey/simulate/people/people_film.h"
 #include "marey/track/contour/outline_follower.h"
-#include "marey/track/contour/published_outline.h"
+
+#include "experiments/published_outline.h"
 
 namespace marey::experiments {
 
@@ -56,7 +57,7 @@ struct OutlineExperimentOptions {
   std::uint64_t seed = 1;
   std::string only;  ///< names of cases that hold this text; empty for all
   track::contour::OutlineOptions outlines;
-  track::contour::PublishedOptions published;
+  PublishedOptions published;
 };
 
 /// The same films, seen once by Marey's detector, followed in four ways with settings that are the same for all cases:

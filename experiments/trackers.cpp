@@ -22,8 +22,9 @@
 #include "marey/pipeline/corridor/simulation_files.h"
 #include "marey/simulate/markers/marker_scene.h"
 #include "marey/source/video_source.h"
-#include "marey/track/image/independent_tracker.h"
 #include "marey/track/roster/roster_tracker.h"
+
+#include "experiments/independent_tracker.h"
 
 namespace marey::experiments {
 namespace {
@@ -53,7 +54,7 @@ struct TrackerMethod {
 };
 
 TrackerMethod alone(std::string name, const filter::FilterOptions& options) {
-  return {std::move(name), [options] { return std::make_unique<track::image::IndependentTracker>(options); }};
+  return {std::move(name), [options] { return std::make_unique<IndependentTracker>(options); }};
 }
 
 /// The paper's three, with its parameters; every other filter in their place; and Marey's own tracker.

@@ -54,7 +54,8 @@ nb::tuple track_people(nb::dict given) {
   job.input.own_filter = own_filter(options);
   pipeline::people::PeopleInPictureOptions how = rows.resolved([&] { return resolved(job); });
   how.beside = (std::filesystem::temp_directory_path() / "marey").string();
-  return in_image(options, job.input, rows, [&](const auto& feed, const auto& output, auto sinks, const Hooks& hooks) {
+  return in_image(options, job.input, rows, [&](const auto& feed, auto output, auto sinks, const Hooks& hooks) {
+    output.masks = job.masks;
     return pipeline::people::track_people(feed, output, std::move(sinks), how, hooks);
   });
 }

@@ -18,6 +18,7 @@
 #include "marey/pipeline/live/camera_films.h"
 #include "marey/pipeline/live/live_feeds.h"
 
+#include "camera_health.h"
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
@@ -66,10 +67,10 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
                      {"late_frames", drops.late_frames},
                      {"overrun", drops.overrun}};
   for (std::size_t i = 0; i < summary.last.cameras.size(); ++i) {
-    const pipeline::corridor::LiveStatus::Camera& camera = summary.last.cameras[i];
+    const CameraHealth& camera = summary.last.cameras[i];
     Json& told = json["cameras"][camera.name];
-    told = {{"state", to_string(camera.state)}, {"frames", camera.frames},   {"lost", camera.lost},
-            {"damaged", camera.damaged},        {"overrun", camera.overrun}, {"connections", camera.connections}};
+    told = health_json_of(camera, "frames", camera.frames);
+    told["connections"] = camera.connections;
     if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
   }
   add_set_figures(summary, json);
@@ -81,9 +82,8 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
 void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& command) {
   fmt::print(stderr, "{}: {} instants in {:.1f} s at {:g} Hz; {} targets\n", to_string(summary.job), summary.frames,
              summary.seconds, summary.rate_hz, summary.tracks);
-  for (const pipeline::corridor::LiveStatus::Camera& camera : summary.last.cameras) {
-    fmt::print(stderr, "  {:<12} {:>7} frames, {} lost, {} damaged, {} overrun{}\n", camera.name, camera.frames, camera.lost,
-               camera.damaged, camera.overrun,
+  for (const CameraHealth& camera : summary.last.cameras) {
+    fmt::print(stderr, "  {}{}\n", line_of(camera, camera.frames, "frames"),
                camera.connections > 1 ? fmt::format("; connected {} times", camera.connections) : "");
   }
   const pipeline::corridor::LiveDrops& drops = summary.last.drops;

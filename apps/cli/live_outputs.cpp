@@ -58,12 +58,8 @@ std::vector<std::unique_ptr<Sink>> LiveOutputs::sinks() {
   return sinks;
 }
 
-viewer::LiveReport::Camera LiveOutputs::camera_of(const pipeline::corridor::LiveStatus::Camera& camera, std::size_t index) const {
-  viewer::LiveReport::Camera told{.state = camera.state,
-                                  .rate_hz = camera.rate_hz > 0 ? std::optional(camera.rate_hz) : std::nullopt,
-                                  .frames = camera.frames,
-                                  .dropped = camera.lost + camera.damaged + camera.overrun,
-                                  .finds_markers = finds_markers_};
+viewer::LiveReport::Camera LiveOutputs::camera_of(const CameraHealth& camera, std::size_t index) const {
+  viewer::LiveReport::Camera told{.health = camera, .finds_markers = finds_markers_};
   tell_changeable(told, handles_.desk->camera(index));
   return told;
 }
@@ -76,7 +72,7 @@ void LiveOutputs::report(const pipeline::corridor::LiveStatus& status) {
                             .unsaved = handles_.desk->has_changed(),
                             .notes = status.troubles};
   report.notes.insert(report.notes.end(), status.news.begin(), status.news.end());
-  for (const pipeline::corridor::LiveStatus::Camera& camera : status.cameras) {
+  for (const CameraHealth& camera : status.cameras) {
     report.cameras.push_back(camera_of(camera, report.cameras.size()));
     if (!camera.trouble.empty()) report.notes.push_back(camera.trouble);
   }

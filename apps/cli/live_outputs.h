@@ -43,7 +43,7 @@ class LiveOutputs {
   const stream::Streams& streams() const { return streams_; }
 
  private:
-  viewer::LiveReport::Camera camera_of(const pipeline::corridor::LiveStatus::Camera& camera, std::size_t index) const;
+  viewer::LiveReport::Camera camera_of(const CameraHealth& camera, std::size_t index) const;
 
   std::string take_;
   LiveHandles handles_;

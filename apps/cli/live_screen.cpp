@@ -11,6 +11,8 @@
 
 #include "marey/core/text_safety.h"
 
+#include "camera_health.h"
+
 namespace marey::cli {
 namespace {
 
@@ -30,11 +32,8 @@ int terminal_columns() {
 std::string line_of(const pipeline::corridor::LiveStatus& status) {
   std::string text = fmt::format("{:.0f} s ", status.seconds);
   for (const auto& camera : status.cameras) {
-    const std::int64_t gone = camera.lost + camera.overrun + camera.damaged;
-    text += is_silent(camera.state) || camera.state == FeedState::ended
-                ? fmt::format(" {} {}", camera.name, to_string(camera.state))
-                : fmt::format(" {} {:.0f} Hz {}", camera.name, camera.rate_hz, camera.detections);
-    if (gone > 0) text += fmt::format(" -{}", gone);
+    text += " " + short_line_of(camera, fmt::format("{:.0f} Hz {}", camera.rate_hz.value_or(0), camera.detections));
+    if (camera.dropped() > 0) text += fmt::format(" -{}", camera.dropped());
   }
   const pipeline::corridor::LiveDrops& drops = status.drops;
   text += fmt::format(" | {} targets | dropped {}", status.targets, drops.overtaken + drops.incomplete + drops.late_frames);

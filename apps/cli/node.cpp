@@ -11,6 +11,7 @@
 #include "marey/pipeline/live/camera_node.h"
 #include "marey/pipeline/live/live_feeds.h"
 
+#include "camera_health.h"
 #include "command_line.h"
 #include "commands.h"
 #include "json_value.h"
@@ -51,18 +52,14 @@ Json as_json(const pipeline::live::NodeSummary& summary, const NodeCommand& comm
             {"bytes", summary.bytes},
             {"cameras", Json::object()}};
   for (const pipeline::live::NodeSummary::Camera& camera : summary.cameras)
-    json["cameras"][camera.name] = {{"state", to_string(camera.state)},
-                                    {"sent", camera.sent},
-                                    {"lost", camera.lost},
-                                    {"damaged", camera.damaged},
-                                    {"overrun", camera.overrun}};
+    json["cameras"][camera.health.name] = health_json_of(camera.health, "sent", camera.sent);
   return json;
 }
 
 void print_node(const pipeline::live::NodeSummary& summary) {
   for (const pipeline::live::NodeSummary::Camera& camera : summary.cameras) {
-    fmt::print(stderr, "  {:<12} {:>7} frames sent, {} lost, {} damaged, {} overrun{}\n", camera.name, camera.sent, camera.lost,
-               camera.damaged, camera.overrun, camera.trouble.empty() ? "" : "; " + camera.trouble);
+    fmt::print(stderr, "  {}{}\n", line_of(camera.health, camera.sent, "frames sent"),
+               camera.health.trouble.empty() ? "" : "; " + camera.health.trouble);
   }
   fmt::print(stderr, "{:.1f} s, {:.1f} MB\n", summary.seconds, 1e-6 * static_cast<double>(summary.bytes));
 }

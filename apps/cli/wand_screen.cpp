@@ -13,6 +13,7 @@
 #include "marey/core/stop.h"
 #include "marey/format/rig/rig_file.h"
 
+#include "camera_health.h"
 #include "page_changes.h"
 #include "run_hooks.h"
 
@@ -23,13 +24,10 @@ using calibrate::wand::WandCoverage;
 constexpr int kToldEvery = 3;                               // of the looks, which are ten a second
 constexpr auto kToBeSent = std::chrono::milliseconds(300);  // the last words of a program that ends
 
-bool gives(FeedState state) {
-  return state == FeedState::live || state == FeedState::back;
-}
-
 Json seen_by(const pipeline::calibrate::WandSeen::Camera& camera) {
-  return {{"name", camera.name},   {"state", to_string(camera.state)}, {"coverage", camera.coverage},
-          {"views", camera.views}, {"covered", camera.covered},        {"parts", Json(camera.parts)}};
+  return {{"name", camera.health.name},  {"state", to_string(camera.health.state)},
+          {"coverage", camera.coverage}, {"views", camera.views},
+          {"covered", camera.covered},   {"parts", Json(camera.parts)}};
 }
 
 std::function<void(const viewer::PageCommand&)> changing_wands(const WandPage::Options& options,
@@ -49,14 +47,13 @@ void WandScreen::show(const pipeline::calibrate::WandSeen& seen) {
   for (std::size_t c = 0; c < seen.cameras.size(); ++c) {
     if (!seen.cameras[c].covered || covered_[c]) continue;
     covered_[c] = true;
-    out_->say(fmt::format("camera \"{}\" has seen enough: {:.0f} % of its picture", seen.cameras[c].name,
+    out_->say(fmt::format("camera \"{}\" has seen enough: {:.0f} % of its picture", seen.cameras[c].health.name,
                           100 * seen.cameras[c].coverage));
   }
   if (seen.enough) out_->say(fmt::format("all of them have, after {:.0f} s", seen.seconds));
   std::string line = fmt::format("{:.0f} s ", seen.seconds);
   for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) {
-    line += gives(camera.state) ? fmt::format(" {} {:.0f} %", camera.name, 100 * camera.coverage)
-                                : fmt::format(" {} {}", camera.name, to_string(camera.state));
+    line += " " + short_line_of(camera.health, fmt::format("{:.0f} %", 100 * camera.coverage));
   }
   out_->show(line);
 }
@@ -97,11 +94,7 @@ void WandPage::tell(const char* phase) {
 void WandPage::report(const pipeline::calibrate::WandSeen& seen) {
   viewer::LiveReport told;
   for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) {
-    auto& entry = told.cameras.emplace_back(viewer::LiveReport::Camera{.state = camera.state,
-                                                                       .rate_hz = camera.rate_hz,
-                                                                       .frames = camera.frames,
-                                                                       .dropped = camera.dropped,
-                                                                       .finds_markers = true});
+    auto& entry = told.cameras.emplace_back(viewer::LiveReport::Camera{.health = camera.health, .finds_markers = true});
     tell_changeable(entry, desk_->camera(told.cameras.size() - 1));
   }
   viewer_.report(told);

@@ -16,11 +16,11 @@
 #include "marey/draw/jpeg.h"
 
 #include "access.h"
-#include "json_value.h"
 #include "live_tracks.h"
 #include "page_files.h"
 #include "page_words.h"
 #include "scene.h"
+#include "status_text.h"
 #include "wire.h"
 
 namespace marey::viewer {
@@ -34,35 +34,6 @@ std::uint64_t steady_ns() {
 
 WebServer::Message text_message(int topic, std::string text) {
   return {.topic = topic, .bytes = bytes_of(std::move(text)), .text = true};
-}
-
-cli::Json json_of(const LiveReport::Camera& camera) {
-  cli::Json told{
-      {"state", to_string(camera.state)}, {"rate", camera.rate_hz}, {"frames", camera.frames}, {"dropped", camera.dropped}};
-  told["dials"] = cli::Json::array();
-  for (const auto& dial : camera.dials) {
-    told["dials"].push_back(
-        {{"name", dial.name}, {"unit", dial.unit}, {"least", dial.least}, {"most", dial.most}, {"now", dial.now}});
-  }
-  if (!camera.refused.empty()) told["refused"] = camera.refused;
-  if (!camera.finds_markers) return told;
-  told["threshold"] = camera.threshold;
-  told["learning"] = camera.learning;
-  told["masks"] = cli::Json::array();
-  for (const Mask& mask : camera.masks) told["masks"].push_back(cli::Json(mask.numbers()));
-  return told;
-}
-
-std::string status_text(const LiveReport& report) {
-  cli::Json status{{"cameras", cli::Json::array()},
-                   {"steps", cli::Json::array()},
-                   {"overtaken", report.overtaken},
-                   {"unsaved", report.unsaved},
-                   {"notes", cli::Json(report.notes)}};
-  for (const LiveReport::Camera& camera : report.cameras) status["cameras"].push_back(json_of(camera));
-  for (const LiveReport::Step& step : report.steps)
-    status["steps"].push_back({{"name", step.name}, {"median", step.median}, {"p99", step.p99}});
-  return "status " + compact(status);
 }
 
 /// Which camera's picture a page shows, and how wide, px.

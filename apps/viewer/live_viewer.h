@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "marey/core/frame_set.h"
+#include "marey/core/camera_health.h"
 #include "marey/core/mask.h"
 #include "marey/core/sink.h"
 #include "marey/geometry/pitch.h"
@@ -20,9 +20,7 @@ namespace marey::viewer {
 /// How the cameras are and what is lost, as the page shows it beside them.
 struct LiveReport {
   struct Camera {
-    FeedState state = FeedState::connecting;
-    std::optional<double> rate_hz = {};
-    std::int64_t frames = 0, dropped = 0;
+    CameraHealth health = {};
     /// What of it can be changed, and how it is now.
     struct Dial {
       std::string name, unit;

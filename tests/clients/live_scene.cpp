@@ -90,10 +90,10 @@ viewer::LiveReport report_of(const Recording& take, std::int64_t count, double r
   viewer::LiveReport report;
   const std::size_t cameras = take.header.rig ? take.header.rig->cameras.size() : 0;
   for (std::size_t camera = 0; camera < cameras; ++camera)
-    report.cameras.push_back({.state = camera == 5 ? FeedState::stalled : FeedState::live,
-                              .rate_hz = rate_hz,
-                              .frames = count,
-                              .dropped = camera == 2 ? 7 : 0});
+    report.cameras.push_back({.health = {.state = camera == 5 ? FeedState::stalled : FeedState::live,
+                                         .rate_hz = rate_hz,
+                                         .frames = count,
+                                         .lost = camera == 2 ? 7 : 0}});
   report.steps = {{"Decode", 0.0011, 0.0024}, {"Track", 0.0016, 0.0031}};
   return report;
 }

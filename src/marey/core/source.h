@@ -7,6 +7,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "marey/core/camera_health.h"
 #include "marey/core/frame.h"
 #include "marey/core/frame_set.h"
 
@@ -35,17 +36,6 @@ class Source {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-/// How a live camera is, and what became of its frames so far.
-struct LiveReport {
-  bool connected = false;
-  std::string trouble;           ///< why it is not, or what went wrong last, one sentence; empty where nothing did
-  std::int64_t connections = 0;  ///< how often it was opened
-  std::int64_t received = 0;     ///< frames that came
-  std::int64_t lost = 0;         ///< frames that it took and that never came, by the gaps in its own numbers
-  std::int64_t damaged = 0;      ///< frames that came in part, could not be decoded, or had another size than the first
-  std::int64_t overrun = 0;      ///< frames let go because more had come than the few that are kept
-};
-
 /// A camera that does not wait for its reader.
 class LiveSource {
  public:
@@ -62,7 +52,8 @@ class LiveSource {
   virtual void take_only(cv::Size /*size*/) {}
   /// Whether nothing will come any more.
   virtual bool ended() const = 0;
-  virtual LiveReport report() const { return {}; }
+  /// Its counts of frames so far; its name and how long it has been silent are for its reader to know.
+  virtual CameraHealth health() const { return {}; }
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "marey/core/blob_evidence.h"
 #include "marey/core/detection.h"
 #include "marey/core/foreground.h"
 #include "marey/core/frame.h"
@@ -17,9 +16,8 @@ namespace marey::detect {
 
 struct Detections {
   std::vector<Detection> detections;
-  Foreground foreground;                              ///< empty where the detector has no background model
-  std::shared_ptr<const BlobEvidence> evidence = {};  ///< of a detector that gives it in place of detections; else nothing
-  bool searched = true;                               ///< false: a frame that the detector skipped; nothing follows from it
+  Foreground foreground;  ///< empty where the detector has no background model
+  bool searched = true;   ///< false: a frame that the detector skipped; nothing follows from it
 };
 
 /// What a detector's results mean: a value, so that our own silhouettes, a network's boxes and another program's stand side by

@@ -22,10 +22,6 @@ std::unique_ptr<Detector> make(const network::NetworkDetectorOptions& options) {
   return std::make_unique<network::NetworkDetector>(options);
 }
 
-std::unique_ptr<Detector> make(const blobs::BlobDetectorOptions& options) {
-  return std::make_unique<blobs::BlobDetector>(options);
-}
-
 template <std::size_t... I>
 std::array<DetectorOptions, sizeof...(I)> defaults(std::index_sequence<I...>) {
   return {std::variant_alternative_t<I, DetectorOptions>{}...};

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <variant>
 
-#include "marey/detect/blobs/blob_detector.h"
 #include "marey/detect/detector.h"
 #include "marey/detect/markers/marker_detector.h"
 #include "marey/detect/network/network_options.h"
@@ -15,8 +14,7 @@ namespace marey::detect {
 
 /// The register of detectors that look at pictures: which one, with its parameters. A new one is named here and made in
 /// detectors.cpp, which does not compile before. Detections that another program found come through a source (pipeline).
-using DetectorOptions = std::variant<people::PeopleDetectorOptions, markers::MarkerOptions, network::NetworkDetectorOptions,
-                                     blobs::BlobDetectorOptions>;
+using DetectorOptions = std::variant<people::PeopleDetectorOptions, markers::MarkerOptions, network::NetworkDetectorOptions>;
 
 std::unique_ptr<Detector> make_detector(const DetectorOptions& options);
 

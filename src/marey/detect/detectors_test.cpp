@@ -31,7 +31,7 @@ TEST(Detectors, AreMadeByNameAndSayWhatTheirBoxesMean) {
 }
 
 TEST(Detectors, NamesAndOptionsBelongTogether) {
-  EXPECT_EQ(detector_names(), "people, markers, network, blobs");
+  EXPECT_EQ(detector_names(), "people, markers, network");
   EXPECT_EQ(name_of(detector_named("markers")), "markers");
   EXPECT_EQ(name_of(detector_named("network")), "network");
   EXPECT_EQ(name_of(people::PeopleDetectorOptions{}), "people");

@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 
-#include "marey/core/blob_evidence.h"
 #include "marey/core/ids.h"
 #include "marey/core/observation.h"
 #include "marey/core/time.h"
@@ -20,9 +19,8 @@ namespace marey::track {
 template <int D>
 struct CameraObservations {
   CameraId camera{};
-  Timestamp time{};                                   ///< of the frame, by the rig's clock: near the instant's, seldom equal
-  std::span<const Observation<D>> seen = {};          ///< `box` in px of this camera
-  std::shared_ptr<const BlobEvidence> evidence = {};  ///< on the ground, for a tracker that has no use for detections
+  Timestamp time{};                           ///< of the frame, by the rig's clock: near the instant's, seldom equal
+  std::span<const Observation<D>> seen = {};  ///< `box` in px of this camera
 };
 
 /// Which track an observation of the last step belongs to.
@@ -37,9 +35,7 @@ template <int D>
 struct Decision {
   Timestamp now{};
   std::span<const Track<D>> tracks = {};           ///< by id
-  std::span<const ObservationMatch> matches = {};  ///< of the views of that instant, or of `seen`
-  /// What a tracker takes the cameras to have seen that was given evidence in place of observations; else nothing.
-  std::span<const CameraObservations<D>> seen = {};
+  std::span<const ObservationMatch> matches = {};  ///< of the views of that instant
 };
 
 /// Follows many targets: observations of one instant in, tracks out. D = 2 in the image (px) and on the ground (m), 3 in space.

@@ -1,5 +1,5 @@
 // What lies in a take's columns: random recordings of every kind come back, a track that is read alone is what row by row SQL says,
-// schema 1 is read as before, and what no writer wrote is refused.
+// schema 1 is refused, and so is what no writer wrote.
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/format/take/schema_1_records.h"
 #include "marey/format/take/take_file.h"
 #include "marey/format/take/take_schema.h"
 #include "marey/format/take/take_testing.h"
@@ -280,67 +279,12 @@ TEST_F(TakeColumnsTest, ColumnsThatNobodyFillsAreNotThere) {
   EXPECT_EQ(testing_take::number_in(path_, "SELECT length(y) FROM samples"), 4000) << "quarters are floats without a loss";
 }
 
-/// A take as Marey 0.1 wrote it.
-void write_schema_1(const std::string& path) {
-  Database database(path, Database::Mode::create);
-  database.run(R"(
-    PRAGMA application_id = 0x4D524559;
-    PRAGMA user_version = 1;
-    CREATE TABLE take (key TEXT PRIMARY KEY, value) WITHOUT ROWID;
-    CREATE TABLE track (id INTEGER PRIMARY KEY, label TEXT NOT NULL, first_frame INTEGER, last_frame INTEGER,
-                        measured INTEGER NOT NULL, filled INTEGER NOT NULL, predicted INTEGER NOT NULL);
-    CREATE TABLE frame (frame INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, points BLOB NOT NULL, observations BLOB NOT NULL);
-    CREATE TABLE edit (id INTEGER PRIMARY KEY, time TEXT NOT NULL, what TEXT NOT NULL);
-    INSERT INTO take VALUES ('name', 'walk'), ('made_by', 'old'), ('recorded_at', ''), ('rate_hz', 100.0), ('complete', 1),
-                            ('frames', 200), ('points', 200), ('observations', 200);
-    INSERT INTO track VALUES (3, 'head', 0, 199, 100, 100, 0);
-    INSERT INTO edit (time, what) VALUES ('2026-01-01', 'head "renamed"'), ('', 'tail');
-  )");
-  Statement add(database, "INSERT INTO frame VALUES (?, ?, ?, ?)");
-  for (std::int64_t i = 0; i < 200; ++i) {
-    PointRecord point{};
-    point.x = static_cast<double>(i) / 3;
-    point.z = 1;
-    point.cameras = 5;
-    point.residual_px = 0.25;
-    point.track = 3;
-    point.provenance = static_cast<std::uint8_t>(i % 2);
-    point.flags = PointRecord::has_residual_px;
-    const ObservationRecord seen{1.5, 2.5, 0, 12, 1, 0};
-    add.bind(0, i);
-    add.bind(1, i * 10'000'000);
-    add.bind(2, std::as_bytes(std::span(&point, 1)));
-    add.bind(3, std::as_bytes(std::span(&seen, 1)));
-    add.run();
-  }
-}
-
-TEST_F(TakeColumnsTest, Schema1IsStillRead) {
-  write_schema_1(path_);
-  TakeReader reader(path_);
-  EXPECT_EQ(reader.header().made_by.program, "old");
-  EXPECT_EQ(reader.header().frame.kind, Kind::space);
-  EXPECT_EQ(reader.summary().tracks.at(0).of(Provenance::filled), 100);
-  ASSERT_EQ(reader.edits().size(), 2U);
-  EXPECT_EQ(reader.edits()[0], (Edit{1, {}, "note", R"({"time":"2026-01-01","what":"head \"renamed\""})"}));
-  EXPECT_EQ(reader.edits()[1].parent, 1);
-  EXPECT_EQ(reader.head(), 2);
-  reader.seek(77);
-  const auto instant = reader.next();
-  ASSERT_TRUE(instant);
-  EXPECT_EQ(instant->index, 77);
-  EXPECT_EQ(instant->samples.at(0).position, Vector<3>(77.0 / 3, 0, 1));
-  EXPECT_EQ(instant->samples.at(0).provenance, Provenance::filled);
-  EXPECT_EQ(instant->seen.at(0), (SeenPoint{CameraId{1}, {1.5, 2.5}, {}, 12, {}}));
-  const auto track = reader.read_track(TrackId{3});
-  EXPECT_EQ(track.name.label, "head");
-  ASSERT_EQ(track.size(), 200U);
-  EXPECT_EQ(track.position(150).x(), 50);
-  // And written again, it is the same recording.
-  const Recording old = read_recording(path_);
-  write_recording(folder_ / "new.marey", old);
-  EXPECT_EQ(testing_take::number_in(folder_ / "new.marey", "PRAGMA user_version"), 2);
-  testing_take::expect_same(read_recording(folder_ / "new.marey"), old);
+TEST_F(TakeColumnsTest, RefusesSchema1AndNamesTheCommitThatReadsIt) {
+  write_recording(path_, random_recording(Kind::space, 1));
+  Database(path_, Database::Mode::create).run("PRAGMA user_version = 1");
+  const std::string message = error_of([&] { TakeReader reader(path_); });
+  EXPECT_NE(message.find("schema 1"), std::string::npos) << message;
+  EXPECT_NE(message.find("6ee6ccf74"), std::string::npos) << message;
 }
 
 TEST_F(TakeColumnsTest, LaterSchemasAndOtherProgramsFilesAreRefused) {

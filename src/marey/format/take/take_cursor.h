@@ -14,7 +14,7 @@
 
 namespace marey::format::take {
 
-/// A take of one schema, open to be read: what `TakeReader` stands before.
+/// A take, open to be read: the implementation of `TakeReader`.
 class TakeCursor {
  public:
   virtual ~TakeCursor() = default;
@@ -28,8 +28,7 @@ class TakeCursor {
   virtual TrackColumns read_track(const TrackName& name) = 0;
 };
 
-/// These throw Error where the file lacks what its schema demands. The database is a take's.
-std::unique_ptr<TakeCursor> open_schema_1(std::unique_ptr<Database> database, TakeReaderOptions options);
+/// Throws Error if the file lacks what its schema demands. The database is a take's.
 std::unique_ptr<TakeCursor> open_schema_2(std::unique_ptr<Database> database, TakeReaderOptions options);
 
 /// Values by key, of table `take`.
@@ -50,7 +49,7 @@ class TakeValues {
 
 /// Throws Error where one of `tables` (in quotes, commas between them) is missing.
 void require_tables(const Database& database, const char* tables, int count);
-/// A name, a rate, a rig: what both schemas have.
+/// A name, a rate, a rig.
 RecordingHeader common_header(const Database& database, TakeValues& values);
 /// Throws Error where the take has `known` tracks already that are as many as there may be, or where a name is too long.
 void check_name(const TrackName& name, std::size_t known, const Limits& limits, const Database& database);

@@ -21,6 +21,8 @@
 namespace marey::format::take {
 namespace {
 
+constexpr std::string_view kLastCommitOfSchema1 = "6ee6ccf74";
+
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic{"SQLite format 3\0", 16};
@@ -90,7 +92,10 @@ std::unique_ptr<TakeCursor> open(const std::string& path, TakeReaderOptions opti
     throw Error("{}: was written by a later version of Marey (schema {}, this one knows {}); bring Marey up to date", path, version,
                 kTakeSchemaVersion);
   }
-  if (version == 1) return believable(open_schema_1(std::move(database), options), path);
+  if (version == 1)
+    throw Error(
+        "{}: is of schema 1, which no release wrote; commit {} is the last that reads it: marey convert there writes schema 2",
+        path, kLastCommitOfSchema1);
   if (version == kTakeSchemaVersion) return believable(open_schema_2(std::move(database), options), path);
   throw Error("{}: is damaged (schema version {})", path, version);
 }

@@ -38,16 +38,10 @@ class WavedWand {
     seen_ = {.seconds = now.seconds, .cameras = {}, .shared = {}, .now = seen_now(now), .enough = coverage_.is_enough()};
     for (std::size_t c = 0; c < now.feeds.size(); ++c) {
       const auto& parts = coverage_.parts(c);
-      const LiveReport report = now.feeds[c].report();
-      seen_.cameras.push_back({now.feeds[c].camera().name,
-                               now.feeds[c].state({}, now.policy),
-                               coverage_.coverage(c),
-                               coverage_.views(c),
-                               coverage_.is_covered(c),
-                               {parts.begin(), parts.end()},
-                               report.received,
-                               report.lost + report.damaged + report.overrun,
-                               now.feeds[c].info().rate_hz});
+      CameraHealth health = now.feeds[c].health({}, now.policy);
+      health.rate_hz = now.feeds[c].info().rate_hz;
+      seen_.cameras.push_back(
+          {std::move(health), coverage_.coverage(c), coverage_.views(c), coverage_.is_covered(c), {parts.begin(), parts.end()}});
       for (std::size_t other = c + 1; other < now.feeds.size(); ++other) {
         const std::int64_t views = coverage_.shared(c, other);
         seen_.shared.push_back({c, other, views, views >= WandCoverage::kEnoughShared});
@@ -61,8 +55,9 @@ class WavedWand {
     std::vector<std::string> sentences;
     for (const WandSeen::Camera& camera : seen_.cameras) {
       if (!camera.covered)
-        sentences.push_back(fmt::format("camera \"{}\" saw the wand in {:.0f} % of its picture; {:.0f} % are wanted", camera.name,
-                                        100 * camera.coverage, 100 * marey::calibrate::wand::WandCoverage::wanted(lenses_known_)));
+        sentences.push_back(fmt::format("camera \"{}\" saw the wand in {:.0f} % of its picture; {:.0f} % are wanted",
+                                        camera.health.name, 100 * camera.coverage,
+                                        100 * marey::calibrate::wand::WandCoverage::wanted(lenses_known_)));
     }
     return sentences;
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "marey/calibrate/wand/wand.h"
-#include "marey/core/frame_set.h"
+#include "marey/core/camera_health.h"
 #include "marey/core/hooks.h"
 #include "marey/core/instant.h"
 #include "marey/detect/markers/marker_detector.h"
@@ -17,14 +17,11 @@ namespace marey::pipeline::calibrate {
 /// How far a wand that is waved before live cameras has been seen.
 struct WandSeen {
   struct Camera {
-    std::string name;
-    FeedState state = FeedState::connecting;
-    double coverage = 0;                   ///< share of its picture in which the wand was
-    std::int64_t views = 0;                ///< frames in which it was
-    bool covered = false;                  ///< that is enough
-    std::vector<int> parts;                ///< in which it was, of 10 × 8 row by row
-    std::int64_t frames = 0, dropped = 0;  ///< that came, and that were lost or not taken in time
-    std::optional<double> rate_hz = {};
+    CameraHealth health;
+    double coverage = 0;     ///< share of its picture in which the wand was
+    std::int64_t views = 0;  ///< frames in which it was
+    bool covered = false;    ///< that is enough
+    std::vector<int> parts;  ///< in which it was, of 10 × 8 row by row
   };
   /// Two cameras that saw it at the same time.
   struct Shared {

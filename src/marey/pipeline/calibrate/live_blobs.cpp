@@ -30,7 +30,7 @@ void take_blobs(corridor::Feed& feed, const source::LivePolicy& policy, double o
 std::string why_nothing_came(std::span<const corridor::Feed> feeds) {
   std::string why = "no camera gave a frame";
   for (const corridor::Feed& feed : feeds) {
-    if (const std::string trouble = feed.report().trouble; !trouble.empty())
+    if (const std::string trouble = feed.health().trouble; !trouble.empty())
       why += fmt::format("\n  camera \"{}\": {}", feed.camera().name, trouble);
   }
   return why;
@@ -40,7 +40,7 @@ std::string why_nothing_came(std::span<const corridor::Feed> feeds) {
 void enter_cameras(Rig& rig, std::span<const corridor::Feed> feeds) {
   for (std::size_t c = 0; c < feeds.size(); ++c) {
     rig.cameras[c] = feeds[c].camera();
-    if (const cv::Size size = feeds[c].report().received > 0 ? feeds[c].info().size : cv::Size(); !size.empty())
+    if (const cv::Size size = feeds[c].health().frames > 0 ? feeds[c].info().size : cv::Size(); !size.empty())
       rig.cameras[c].size = size;
     if (!rig.cameras[c].rate_hz) rig.cameras[c].rate_hz = feeds[c].info().rate_hz;
   }

@@ -16,10 +16,9 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -49,18 +48,24 @@ struct LiveDrops {
   std::int64_t overrun = 0;      ///< frames that left a camera's few kept ones before they were asked for
 };
 
+class FrameGrouping;
+
+/// One clock for files and live cameras: which of the two, `options` decides.
 class Clock {
  public:
   explicit Clock(std::vector<Feed> feeds, const ClockOptions& options = {});
+  ~Clock();
+  Clock(Clock&&) noexcept;
+  Clock& operator=(Clock&&) noexcept;
 
   /// The next moment; nothing when the cameras have ended.
   std::optional<FrameSet> next();
 
-  double rate_hz() const { return rate_hz_; }
+  double rate_hz() const;
   /// How many moments there will be: an estimate, for progress only.
   std::optional<std::int64_t> count() const;
-  const std::vector<Feed>& feeds() const { return feeds_; }
-  std::vector<Feed>& feeds() { return feeds_; }
+  const std::vector<Feed>& feeds() const;
+  std::vector<Feed>& feeds();
 
   bool can_rewind() const;
   /// The same clock from the beginning, its feeds opened again: it gives the same moments, without detections. Throws Error where a
@@ -68,59 +73,18 @@ class Clock {
   Clock again() const;
 
   /// Frames that camera `number` gave, and how many moments it had nothing for.
-  std::int64_t frames(std::size_t number) const { return lanes_[number].frames; }
-  std::int64_t missed(std::size_t number) const { return lanes_[number].missed; }
+  std::int64_t frames(std::size_t number) const;
+  std::int64_t missed(std::size_t number) const;
   /// Nothing where the cameras are not live.
   std::optional<LiveDrops> drops() const;
   /// How each camera is now.
   std::vector<FeedState> states() const;
-  const StageTimes& decoding() const { return decoding_; }
-  const StageTimes& detecting() const { return detecting_; }
+  const StageTimes& decoding() const;
+  const StageTimes& detecting() const;
   std::vector<std::string> warnings() const;
 
  private:
-  struct Lane {
-    std::deque<CameraFrame> waiting;
-    std::optional<Timestamp> used;  // of the last frame given
-    bool ended = false;
-    std::int64_t frames = 0, missed = 0;
-  };
-
-  static constexpr double kHalf = 0.505;   // of a frame: a camera's frame that is nearer belongs to the moment
-  static constexpr double kInStep = 0.02;  // of a frame: what moves no marker by more than noise
-
-  bool begin();
-  void fill(Timestamp until);
-  void read(std::size_t number, Timestamp until, std::vector<CameraFrame>& read);
-  std::optional<CameraFrame> take(std::size_t number, Timestamp now);
-  std::optional<Timestamp> next_moment();
-  bool all_over(Timestamp now) const;
-
-  // live_clock.cpp
-  std::optional<FrameSet> next_live();
-  void gather();
-  Timestamp moment(std::int64_t index) const;
-  std::int64_t last_moment() const;
-  bool has_frame_of(const Lane& lane, Timestamp now) const;
-  bool is_whole(std::int64_t index) const;
-  bool is_empty(std::int64_t index) const;
-  std::optional<std::int64_t> ready() const;
-  void let_go_before(std::int64_t index);
-  void forget_before(Timestamp now);
-  void follow(const FrameSet& set);
-
-  ClockOptions options_;
-  std::vector<Feed> feeds_;
-  std::vector<Lane> lanes_;
-  double rate_hz_ = 0;
-  bool begun_ = false;
-  std::optional<Timestamp> start_;
-  std::int64_t next_ = 0;
-  std::stop_token stop_ = StopScope::current();
-  Timestamp live_begin_{};
-  LiveDrops drops_;
-  std::vector<double> off_;  // follow's
-  StageTimes decoding_, detecting_;
+  std::unique_ptr<FrameGrouping> grouping_;
 };
 
 /// The detections of a frame, moved to where they were `now` by those of another frame of the camera, before or after.

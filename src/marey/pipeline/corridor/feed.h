@@ -16,7 +16,7 @@
 #include "marey/core/stop.h"
 #include "marey/detect/detector.h"
 #include "marey/pipeline/corridor/marker_tuning.h"
-#include "marey/source/feed_health.h"
+#include "marey/source/live_time.h"
 
 namespace marey::pipeline::corridor {
 
@@ -29,6 +29,8 @@ struct FeedOptions {
   std::function<std::unique_ptr<Source>()> open = {};
   bool opens_again = false;  ///< `open` may be called often, and begins anew each time
 };
+
+class FeedInput;
 
 class Feed {
  public:
@@ -54,7 +56,7 @@ class Feed {
   /// A camera that does not wait for its reader: `arrived` is asked, not `next`. Where it is not connected yet, the rig's size and
   /// rate are believed. Throws Error where its pictures do not fit the rig.
   static Feed live(const RigCamera& camera, CameraId id, std::unique_ptr<LiveSource> source);
-  bool is_live() const { return live_ != nullptr; }
+  bool is_live() const;
 
   /// The feed looks for things itself from now on, in the frames' order.
   void find(std::unique_ptr<detect::Detector> detector);
@@ -71,11 +73,13 @@ class Feed {
   /// Looks for things in a frame of this camera, where that has not been done.
   void search(CameraFrame& given);
   /// Of a live camera: whether it is there, and what became of its frames.
-  bool is_connected() const { return live_ == nullptr || live_->connected(); }
-  LiveReport report() const { return live_ != nullptr ? live_->report() : LiveReport{}; }
+  bool is_connected() const;
+  CameraHealth health() const;
+  /// The same with its state as it is now; `begin` is when the run began.
+  CameraHealth health(Timestamp begin, const source::LivePolicy& policy) const;
 
   FeedState state() const { return state_; }
-  bool has_ended() const { return live_ != nullptr ? live_->ended() : state_ == FeedState::ended; }
+  bool has_ended() const;
   /// Of a live camera, as it is now; `begin` is when the run began.
   FeedState state(Timestamp begin, const source::LivePolicy& policy) const;
 
@@ -97,17 +101,10 @@ class Feed {
   std::vector<std::string> warnings() const;
 
  private:
-  class Input;
-  class Pictures;
-  template <typename Reader>
-  class Detected;
-  class Observations;
-  class Nothing;
   class Life;
   friend std::vector<Feed> open_observations(const std::string& path, const Rig& rig, std::optional<double> rate_hz);
 
-  Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<Input> input);
-  static std::unique_ptr<Input> open_detections(const std::string& path, std::optional<double> rate_hz);
+  Feed(const RigCamera& camera, CameraId id, const FeedOptions& options, std::unique_ptr<FeedInput> input);
   double steady(double time);
   CameraFrame by_rig_clock(CameraFrame frame) const;
 
@@ -115,10 +112,7 @@ class Feed {
   CameraId id_;
   FeedOptions options_;
   std::unique_ptr<Life> life_;
-  std::unique_ptr<Input> input_;
-  std::unique_ptr<LiveSource> live_;  // then there is no input
-  SourceInfo live_info_;
-  source::FeedHealth health_;
+  std::unique_ptr<FeedInput> input_;
   std::unique_ptr<detect::Detector> detector_;
   std::shared_ptr<const MarkerTuning> tuning_;
   std::optional<double> first_s_;
@@ -128,6 +122,9 @@ class Feed {
 /// Every camera of the rig, opened side by side. With `allow_absent`, cameras without source and detections give nothing, and only
 /// a rig without any other is refused.
 std::vector<Feed> open_feeds(const Rig& rig, const FeedOptions& options, bool allow_absent = false);
+
+/// The rig with its cameras as their feeds are.
+Rig rig_as_fed(const Rig& rig, const std::vector<Feed>& feeds);
 
 /// What another program saw of markers, from a file or folder that format/observations.h reads: a feed for each of the rig's
 /// cameras. `rate_hz` counts where the rig does not say; without either it is 100 Hz.

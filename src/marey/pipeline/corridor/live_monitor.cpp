@@ -71,7 +71,7 @@ void LiveMonitor::measure_rates(Timestamp now) {
   const double elapsed = measured_ ? seconds(now - *measured_) : 0;
   measured_ = now;
   for (std::size_t i = 0; i < rates_.size(); ++i) {
-    const std::int64_t frames = clock_->feeds()[i].report().received;
+    const std::int64_t frames = clock_->feeds()[i].health().frames;
     if (elapsed > 0) rates_[i] = static_cast<double>(frames - frames_[i]) / elapsed;
     frames_[i] = frames;
   }
@@ -82,18 +82,11 @@ LiveStatus LiveMonitor::status() const {
   status.seconds = seconds(time_->now() - begin_);
   const std::vector<FeedState> states = clock_->states();
   for (std::size_t i = 0; i < rates_.size(); ++i) {
-    const Feed& feed = clock_->feeds()[i];
-    LiveReport report = feed.report();
-    status.cameras.push_back({.name = feed.camera().name,
-                              .state = states[i],
-                              .trouble = std::move(report.trouble),
-                              .rate_hz = rates_[i],
-                              .frames = report.received,
-                              .lost = report.lost,
-                              .damaged = report.damaged,
-                              .overrun = report.overrun,
-                              .detections = detections_[i],
-                              .connections = report.connections});
+    CameraHealth& camera = status.cameras.emplace_back(clock_->feeds()[i].health());
+    camera.state = states[i];
+    camera.rate_hz = rates_[i] > 0 ? std::optional(rates_[i]) : std::nullopt;
+    camera.missed = clock_->missed(i);
+    camera.detections = detections_[i];
   }
   status.drops = clock_->drops().value_or(LiveDrops{});
   status.instants = instants_;

@@ -15,20 +15,8 @@
 namespace marey::pipeline::corridor {
 
 struct LiveStatus {
-  struct Camera {
-    std::string name;
-    FeedState state = FeedState::connecting;
-    std::string trouble;          ///< what went wrong last, one sentence; empty where nothing did
-    double rate_hz = 0;           ///< of the frames that came in the last second or two
-    std::int64_t frames = 0;      ///< that came
-    std::int64_t lost = 0;        ///< that the camera took and that never came
-    std::int64_t damaged = 0;     ///< that came in part, or could not be decoded
-    std::int64_t overrun = 0;     ///< that came and were let go before anybody asked for them
-    std::int64_t detections = 0;  ///< in its last frame
-    std::int64_t connections = 0;
-  };
   double seconds = 0;  ///< since the run began
-  std::vector<Camera> cameras;
+  std::vector<CameraHealth> cameras;
   LiveDrops drops;
   std::int64_t instants = 0;                              ///< so far
   std::int64_t targets = 0;                               ///< in the last one

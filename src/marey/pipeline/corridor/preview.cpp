@@ -16,11 +16,10 @@ class Preview final : public Stage {
     header_.time_base.kind = TimeBase::Kind::rig;
     header_.made_by.program = "marey live";
     header_.rate_hz = rate_hz;
-    header_.rig = rig;
+    header_.rig = rig_as_fed(rig, feeds);
     for (std::size_t i = 0; i < feeds.size(); ++i) {
-      header_.rig->cameras[i] = feeds[i].camera();
       detectors_.push_back(feeds[i].detector() == nullptr ? detect::make_detector(detector) : nullptr);
-      counts_.push_back({.name = rig.cameras[i].name});
+      counts_.emplace_back().name = rig.cameras[i].name;
     }
     found_.resize(feeds.size());
   }

@@ -166,6 +166,11 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   Counter counter(summary);
   sinks.begin(signed_header(stage.header(), clock, hooks));
   if (sinks.want_boxes()) stage.want_boxes();
+  if (sinks.need_foregrounds()) {
+    stage.need_foregrounds([&](FrameForeground foreground) {
+      if (!sinks.write(std::move(foreground))) summary.stopped = true;
+    });
+  }
   first_pass(stage, clock, sinks, counter, hooks, summary);
   if (summary.frames == 0 && !summary.stopped) throw Error("{}: not one frame could be read", stage.header().name);
   if (const auto rest = stage.finish(hooks)) replay(*rest, clock, sinks, counter, hooks, summary);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,24 +12,23 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/camera_health.h"
 #include "marey/core/hooks.h"
 #include "marey/core/instant.h"
 #include "marey/core/recording.h"
 #include "marey/core/sink.h"
 #include "marey/pipeline/corridor/clock.h"
+#include "marey/pipeline/corridor/foreground_sink.h"
 
 namespace marey::pipeline::corridor {
 
 /// What came of a run: what is in its results, what was lost on the way and why.
 struct Summary {
-  struct Camera {
-    std::string name;
-    std::int64_t frames = 0;      ///< looked at
-    std::int64_t missed = 0;      ///< moments without a frame
-    std::int64_t detections = 0;  ///< handed to the tracker
-    std::int64_t outside = 0;     ///< detections where nothing counts: beyond the area, above the horizon
-    std::int64_t noise = 0;       ///< regions too small to be a part of a person
-    std::int64_t misfits = 0;     ///< regions that no body explains
+  /// Its frames are those that were searched, its detections those that the tracker was given.
+  struct Camera : CameraHealth {
+    std::int64_t outside = 0;  ///< detections where nothing counts: beyond the area, above the horizon
+    std::int64_t noise = 0;    ///< regions too small to be a part of a person
+    std::int64_t misfits = 0;  ///< regions that no body explains
   };
   /// How long one step took, s.
   struct StepTime {
@@ -73,6 +73,8 @@ class Stage {
   virtual RecordingHeader header() const = 0;
   /// Sinks want `Instant::boxes`. Before the first step.
   virtual void want_boxes() {}
+  /// Sinks want the foreground of each frame that is searched, in `step` and in `finish`: `give` takes it. Before the first step.
+  virtual void need_foregrounds(std::function<void(FrameForeground)> /*give*/) {}
   /// What is known after this moment, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
   /// second pass keeps all for that.
   virtual std::span<const Instant> step(const FrameSet& frames) = 0;
@@ -103,7 +105,10 @@ class Sinks {
   void begin(const RecordingHeader& header);
   bool want_pictures() const;
   bool want_boxes() const;
-  /// Whether the run may go on: that all still take what they are given, where they are waited for.
+  bool need_foregrounds() const;
+  /// To those that want foregrounds; false as for `write`.
+  bool write(FrameForeground foreground);
+  /// To all others. Whether the run may go on: that all still take what they are given, where they are waited for.
   bool write(Instant instant);
   /// Of sinks that are passed over: what they missed, and which of them failed, one sentence each.
   std::vector<std::string> troubles() const;
@@ -115,6 +120,9 @@ class Sinks {
 
  private:
   class Lane;
+  template <typename Work>
+  bool hand_to(Lane& lane, const Work& work) const;
+
   Slow slow_;
   std::vector<std::unique_ptr<Lane>> lanes_;
 };

@@ -25,12 +25,21 @@ constexpr int kWaitingLive = 256;  // without them: what is live is not held up 
 /// A sink, written on a thread of its own.
 class Sinks::Lane {
  public:
-  explicit Lane(std::unique_ptr<Sink> sink) : sink_(std::move(sink)), name_(sink_->name()) { queue_.set_capacity(kWaiting); }
+  /// One of both.
+  struct Work {
+    std::shared_ptr<const Instant> instant = {};
+    std::shared_ptr<const FrameForeground> foreground = {};
+  };
+
+  explicit Lane(std::unique_ptr<Sink> sink)
+      : sink_(std::move(sink)), foregrounds_(dynamic_cast<ForegroundSink*>(sink_.get())), name_(sink_->name()) {
+    queue_.set_capacity(kWaiting);
+  }
 
   ~Lane() {
     if (!writer_.joinable()) return;
     given_up_ = true;
-    queue_.push(nullptr);
+    queue_.push({});
     writer_.join();
   }
 
@@ -47,9 +56,10 @@ class Sinks::Lane {
   /// Called where the run ends because it failed.
   void end_run() { ended_run_ = true; }
   bool ended_run() const { return ended_run_; }
-  void give(const std::shared_ptr<const Instant>& instant) { queue_.push(instant); }
+  bool needs_foregrounds() const { return foregrounds_ != nullptr && !failed_; }
+  void give(const Work& work) { queue_.push(work); }
   /// Only where there is room.
-  void offer(const std::shared_ptr<const Instant>& instant) { passed_over_ += failed_ || queue_.try_push(instant) ? 0 : 1; }
+  void offer(const Work& work) { passed_over_ += failed_ || queue_.try_push(work) ? 0 : 1; }
 
   /// Nothing where there is none.
   std::string trouble() const {
@@ -59,7 +69,7 @@ class Sinks::Lane {
 
   /// Waits until all that was given is written.
   void drain() {
-    queue_.push(nullptr);
+    queue_.push({});
     writer_.join();
     if (!failed_) commit();
   }
@@ -72,10 +82,12 @@ class Sinks::Lane {
  private:
   void write_all() {
     for (;;) {
-      std::shared_ptr<const Instant> instant;
-      queue_.pop(instant);
-      if (instant == nullptr) return;
-      if (!failed_ && !given_up_) attempt([&] { sink_->write(*instant); });
+      Work work;
+      queue_.pop(work);
+      if (work.instant == nullptr && work.foreground == nullptr) return;
+      if (failed_ || given_up_) continue;
+      if (work.instant != nullptr) attempt([&] { sink_->write(*work.instant); });
+      if (work.foreground != nullptr) attempt([&] { foregrounds_->write_foreground(*work.foreground); });
     }
   }
 
@@ -104,9 +116,10 @@ class Sinks::Lane {
   }
 
   std::unique_ptr<Sink> sink_;
+  ForegroundSink* foregrounds_;  // the sink, if it is one for foregrounds
   std::string name_;
   Sink::Wants wants_;
-  tbb::concurrent_bounded_queue<std::shared_ptr<const Instant>> queue_;  // null: the end
+  tbb::concurrent_bounded_queue<Work> queue_;  // without either: the end
   std::atomic<bool> failed_ = false, given_up_ = false;
   std::exception_ptr failure_;  // before failed_
   bool ended_run_ = false;
@@ -135,20 +148,34 @@ bool Sinks::want_boxes() const {
   return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().boxes && !lane->failed(); });
 }
 
+bool Sinks::need_foregrounds() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->needs_foregrounds(); });
+}
+
 bool Sinks::write(Instant instant) {
-  const auto shared = std::make_shared<const Instant>(std::move(instant));
+  const Lane::Work work{.instant = std::make_shared<const Instant>(std::move(instant))};
   bool all = true;
-  for (const auto& lane : lanes_) {
-    if (slow_ == Slow::passed_over) {
-      lane->offer(shared);
-    } else {
-      lane->give(shared);
-      if (!lane->failed()) continue;
-      lane->end_run();
-      all = false;
-    }
-  }
+  for (const auto& lane : lanes_) all = hand_to(*lane, work) && all;
   return all;
+}
+
+bool Sinks::write(FrameForeground foreground) {
+  const Lane::Work work{.foreground = std::make_shared<const FrameForeground>(std::move(foreground))};
+  bool all = true;
+  for (const auto& lane : lanes_) all = (!lane->needs_foregrounds() || hand_to(*lane, work)) && all;
+  return all;
+}
+
+template <typename Work>
+bool Sinks::hand_to(Lane& lane, const Work& work) const {
+  if (slow_ == Slow::passed_over) {
+    lane.offer(work);
+    return true;
+  }
+  lane.give(work);
+  if (!lane.failed()) return true;
+  lane.end_run();
+  return false;
 }
 
 std::vector<std::string> Sinks::troubles() const {

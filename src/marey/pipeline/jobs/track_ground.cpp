@@ -10,8 +10,14 @@ namespace {
 
 using Association = track::ground::GroundAssociation;
 
+constexpr std::string_view kBramble = "bramble";  // no association of observations, but a stage of its own
+
+void check_association(const std::string& name) {
+  if (name != kBramble) track::ground::ground_association_named(name);
+}
+
 void check_ground(const TrackGround& job) {
-  if (job.ground.association == "bramble" && (!job.detection.network.empty() || !job.filter.empty() || !job.ground.teams.empty()))
+  if (job.ground.association == kBramble && (!job.detection.network.empty() || !job.filter.empty() || !job.ground.teams.empty()))
     throw WrongOption("--associate bramble has its own likelihood and motion model and no appearance; leave out --{}",
                       !job.detection.network.empty() ? "detector"
                       : !job.filter.empty()          ? "filter"
@@ -38,8 +44,10 @@ void set_part(const TrackGround& job, const Rig& rig, people::PeopleOnGroundOpti
 }
 
 void set_association(const TrackGround& job, const Rig& rig, people::PeopleOnGroundOptions& options) {
+  const bool bramble = job.ground.association == kBramble;
+  if (bramble) options.bramble.emplace();
   const bool chosen = !job.ground.association.empty();
-  if (chosen) {
+  if (chosen && !bramble) {
     options.tracker.associate = track::ground::ground_association_named(job.ground.association);
   } else {
     options.tracker.associate = options.live ? Association::gnn : Association::mht;
@@ -73,10 +81,10 @@ void add_ground_rows(Table& table, GroundPart& ground) {
       .checked(analyse::parse_teams)
       .needing("ground");
   table
-      .choice("associate", ground.association, {"gnn", "jpda", "mht", "bramble"},
+      .choice("associate", ground.association, {"gnn", "jpda", "mht", std::string(kBramble)},
               "data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks "
               "by particles in the images, without detections")
-      .checked(track::ground::ground_association_named)
+      .checked(check_association)
       .needing("ground")
       .depending_on({"live", "filter"});
 }

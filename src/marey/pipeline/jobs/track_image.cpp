@@ -61,7 +61,7 @@ void check(const TrackPeople& job) {
                       *job.delay);
   if (job.options.steady && !job.input.camera.detections.empty())
     throw WrongOption("{}", "--steady steadies images, and --detections has none; leave it out");
-  if (!job.options.masks.empty() && job.detection.without_background)
+  if (!job.masks.empty() && job.detection.without_background)
     throw WrongOption("{}", "--masks shows the output of the background model; leave out --without-background");
 }
 
@@ -71,7 +71,7 @@ Table table_of(TrackPeople& job) {
   Table table;
   if (job.keypoints) table.always("targets", "keypoints");
   add_image_rows(table, job.input);
-  table.output_folder("masks", job.options.masks,
+  table.output_folder("masks", job.masks,
                       "a new folder for the output of the background model: bin000001.png of the first frame, white on black");
   add_filter_row(table, job.input.filter);
   table.flag("live", job.options.live, "write each frame's tracks at once; nothing is corrected by later frames");

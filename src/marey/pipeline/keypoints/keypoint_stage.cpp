@@ -65,6 +65,7 @@ class KeypointStage final : public corridor::Stage {
     return header;
   }
   void want_boxes() override { stage_->want_boxes(); }
+  void need_foregrounds(std::function<void(corridor::FrameForeground)> give) override { stage_->need_foregrounds(std::move(give)); }
   std::vector<std::string> news() override { return stage_->news(); }
 
   std::span<const Instant> step(const FrameSet& frames) override {

@@ -165,16 +165,8 @@ std::vector<NodeSummary::Camera> cameras_of(const std::vector<corridor::Feed>& f
                                             const std::vector<std::unique_ptr<Outgoing>>& outgoing,
                                             const source::LivePolicy& policy) {
   std::vector<NodeSummary::Camera> cameras;
-  for (std::size_t i = 0; i < feeds.size(); ++i) {
-    const LiveReport report = feeds[i].report();
-    cameras.push_back({.name = feeds[i].camera().name,
-                       .state = feeds[i].state(Timestamp{}, policy),
-                       .sent = outgoing[i]->sent(),
-                       .lost = report.lost,
-                       .damaged = report.damaged,
-                       .overrun = report.overrun,
-                       .trouble = report.trouble});
-  }
+  for (std::size_t i = 0; i < feeds.size(); ++i)
+    cameras.push_back({.health = feeds[i].health(Timestamp{}, policy), .sent = outgoing[i]->sent()});
   return cameras;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "marey/core/frame_set.h"
+#include "marey/core/camera_health.h"
 #include "marey/core/hooks.h"
 #include "marey/core/rig.h"
 #include "marey/detect/markers/marker_detector.h"
@@ -29,10 +29,8 @@ struct NodeOptions {
 
 struct NodeSummary {
   struct Camera {
-    std::string name;
-    FeedState state = FeedState::connecting;
-    std::int64_t sent = 0, lost = 0, damaged = 0, overrun = 0;  ///< frames: as LiveReport counts them, beside those sent
-    std::string trouble;                                        ///< what went wrong last; empty where nothing did
+    CameraHealth health;
+    std::int64_t sent = 0;  ///< frames
   };
   std::vector<Camera> cameras;
   double seconds = 0;

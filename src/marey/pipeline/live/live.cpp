@@ -28,6 +28,7 @@ class Watched final : public corridor::Stage {
     return header;
   }
   void want_boxes() override { stage_->want_boxes(); }
+  void need_foregrounds(std::function<void(corridor::FrameForeground)> give) override { stage_->need_foregrounds(std::move(give)); }
   std::span<const Instant> step(const FrameSet& frames) override {
     const Timestamp given = time_.now();
     const std::span<const Instant> known = stage_->step(frames);
@@ -43,12 +44,6 @@ class Watched final : public corridor::Stage {
   corridor::LiveMonitor& monitor_;
   source::LiveTime& time_;
 };
-
-Rig rig_as_fed(const Rig& rig, const std::vector<corridor::Feed>& feeds) {
-  Rig fed = rig;
-  for (std::size_t i = 0; i < feeds.size(); ++i) fed.cameras[i] = feeds[i].camera();
-  return fed;
-}
 
 bool feeds_find(LiveJob job, LiveTargets targets) {
   return job == LiveJob::markers_in_space || (job == LiveJob::preview && targets == LiveTargets::markers);
@@ -98,7 +93,7 @@ corridor::Sinks sinks_of(LiveOptions& options) {
 /// Why there is nothing, by what the cameras say.
 std::string nothing_came(const corridor::LiveStatus& status) {
   std::string why = "no camera gave a frame";
-  for (const corridor::LiveStatus::Camera& camera : status.cameras) {
+  for (const CameraHealth& camera : status.cameras) {
     if (!camera.trouble.empty()) why += fmt::format("\n  camera \"{}\": {}", camera.name, camera.trouble);
   }
   return why;
@@ -107,8 +102,8 @@ std::string nothing_came(const corridor::LiveStatus& status) {
 /// What a user would not like to find out later: that much of what cameras saw was never looked at.
 void warn_of_losses(LiveSummary& summary) {
   constexpr double kMuch = 0.2;
-  for (const corridor::LiveStatus::Camera& camera : summary.last.cameras) {
-    const std::int64_t gone = camera.lost + camera.damaged + camera.overrun, all = camera.frames + camera.lost + camera.damaged;
+  for (const CameraHealth& camera : summary.last.cameras) {
+    const std::int64_t gone = camera.dropped(), all = camera.frames + camera.lost + camera.damaged;
     if (static_cast<double>(gone) <= kMuch * static_cast<double>(all)) continue;
     summary.warnings.push_back(fmt::format(
         "camera \"{}\" lost {:.0f} % of its frames, or there was no time for them; try a smaller picture, a lower rate or "
@@ -125,8 +120,12 @@ void warn_of_losses(LiveSummary& summary) {
 void report_cameras_live(LiveSummary& summary, const corridor::Clock& clock, const corridor::LiveMonitor& monitor) {
   summary.last = monitor.status();
   if (summary.cameras.empty()) {
-    for (std::size_t i = 0; i < clock.feeds().size(); ++i)
-      summary.cameras.push_back({.name = clock.feeds()[i].camera().name, .frames = clock.frames(i), .missed = clock.missed(i)});
+    for (std::size_t i = 0; i < clock.feeds().size(); ++i) {
+      corridor::Summary::Camera& camera = summary.cameras.emplace_back();
+      camera.name = clock.feeds()[i].camera().name;
+      camera.frames = clock.frames(i);
+      camera.missed = clock.missed(i);
+    }
   }
   const auto step = [](const char* name, const StageTimes& times) {
     return corridor::Summary::StepTime{name, times.count(), times.quantile(0.5), times.quantile(0.99)};
@@ -177,7 +176,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   if (options.desk == nullptr) options.desk = std::make_shared<CameraDesk>(rig, options.space.markers.threshold);
   std::vector<corridor::Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s, options.desk.get());
-  const Rig fed = rig_as_fed(rig, feeds);
+  const Rig fed = corridor::rig_as_fed(rig, feeds);
   LiveSummary summary;
   summary.job = live_job(fed, options.targets, options.ground);
   if (options.space.set.labels.empty() && options.space.learned_set == nullptr) options.space.set = names_of_played(fed);

@@ -48,7 +48,10 @@ corridor::Clock clock_of(const Rig& rig, const std::string& observations, const 
 void report_cameras(const corridor::Clock& clock, const Rig& rig, corridor::Summary& summary) {
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const std::string& name = rig.cameras[c].name;
-    summary.cameras.push_back({.name = name, .frames = clock.frames(c), .missed = clock.missed(c)});
+    corridor::Summary::Camera& camera = summary.cameras.emplace_back();
+    camera.name = name;
+    camera.frames = clock.frames(c);
+    camera.missed = clock.missed(c);
     if (rig.cameras[c].camera() && clock.frames(c) == 0) {
       summary.warnings.push_back(fmt::format("camera \"{}\" gave not one frame", name));
     } else if (clock.missed(c) > 0) {
@@ -69,8 +72,7 @@ corridor::Summary reconstruct(const Rig& rig, const std::string& observations, c
   const StopScope scope(hooks.stop);
   corridor::Clock clock = clock_of(rig, observations, options);
   if (clock.rate_hz() <= 0) throw Error("{}", "not one frame could be read from any camera");
-  Rig fitted = rig;
-  for (std::size_t i = 0; i < fitted.cameras.size(); ++i) fitted.cameras[i] = clock.feeds()[i].camera();
+  const Rig fitted = corridor::rig_as_fed(rig, clock.feeds());
   MarkersInSpaceOptions named = options;
   if (named.set.labels.empty() && named.learned_set == nullptr) named.set = named_in_take(observations);
   const auto stage = markers_in_space(fitted, clock.rate_hz(), named);

@@ -1,9 +1,6 @@
 #include "marey/pipeline/markers/set_in_space.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,26 +8,15 @@
 
 #include "marey/assign/no_index.h"
 #include "marey/core/error.h"
-#include "marey/geometry/median.h"
 #include "marey/pipeline/corridor/stopwatch.h"
-#include "marey/pipeline/markers/labels_in_space.h"
 
 namespace marey::pipeline::markers {
 namespace {
 
 using assign::kNoIndex;
-using solve::labels::TrackedPoint;
 
-constexpr double kFewestSeen = 0.4;    // of the set's markers, below which nothing is looked for; as label_recording has it
-constexpr double kRememberedHz = 100;  // that points are remembered at, about
-constexpr double kAgainS = 2;          // after a search, where many names are missing
-constexpr double kStillFirstS = 1;     // of points, that names are looked for in first by such a set
-constexpr int kStillSearches = 5;      // so many follow each other, where the set is of one who stood still
-constexpr double kMostAgainS = 5;      // after a search that found nothing, at most
-constexpr double kManyHeld = 0.7;      // of the names that could be
-constexpr double kFewNamed = 0.6;      // of the set, on average: a doubtful set
-constexpr std::size_t kFewestMarkers = 4;
-constexpr std::size_t kSearchesToReport = 2;  // that found names, before a misfit is reported while cameras see
+constexpr double kMinLabelled = 0.6;  // of the set, on average, below which it is doubtful
+constexpr std::size_t kMinMarkers = 4;
 
 class NamedReader final : public RecordingReader {
  public:
@@ -60,34 +46,29 @@ class NamedReader final : public RecordingReader {
 
 }  // namespace
 
-solve::labels::LabelOptions live_label_options() {
-  solve::labels::LabelOptions options;
-  options.boots = 2;
-  options.boot.answers = 250;
-  return options;
-}
-
 SetInSpace::SetInSpace(std::shared_ptr<const LearnedMarkers> set, double rate_hz, const SetInSpaceOptions& options)
     : set_(std::move(set)),
-      options_(options),
-      rate_hz_(rate_hz),
-      undecided_(set_->size(), 0),
-      decided_(set_->size(), 0),
-      id_of_name_(set_->size()),
-      seen_(set_->size(), 0) {
-  if (set_->size() < kFewestMarkers) throw Error("the set has {} markers; names are told from four on", set_->size());
+      names_hold_(options.names_hold),
+      search_(set_, rate_hz, options),
+      check_(set_->size()),
+      ids_(set_->size()),
+      counts_{.observed = std::vector<std::int64_t>(set_->size(), 0), .found_at_s = {}} {
+  if (set_->size() < kMinMarkers) throw Error("the set has {} markers; names are told from four on", set_->size());
   for (std::size_t name = 0; name < set_->size(); ++name) name_of_label_[set_->labels[name]] = static_cast<int>(name);
-  if (!set_->moves) options_.first_after_s = std::max(options_.first_after_s, kStillFirstS);
-  every_ = std::max<std::int64_t>(1, std::llround(rate_hz / kRememberedHz));
-}
-
-SetInSpace::~SetInSpace() {
-  stop_.request_stop();
-  if (searching_.valid()) searching_.wait();
 }
 
 void SetInSpace::add_to(Instant& instant) {
   const corridor::Stopwatch taken;
+  note_points(instant);
+  search_.remember(instant.index, instant.time, points_now_);
+  take_answer(instant.time);
+  label_points(instant.time);
+  relabel(instant);
+  search_.begin_if_due(instant.time, points_now_.size(), follower_ == nullptr ? std::nullopt : std::optional(follower_->held()));
+  times_.add(taken.seconds());
+}
+
+void SetInSpace::note_points(const Instant& instant) {
   for (const TrackName& track : instant.named) name(track);
   points_now_.clear();
   for (const Sample& sample : instant.samples) {
@@ -95,228 +76,117 @@ void SetInSpace::add_to(Instant& instant) {
       continue;
     points_now_.push_back({sample.track, sample.position, fixed_name(sample.track)});
   }
-  most_points_ = std::max(most_points_, points_now_.size());
-  remember(instant);
-  take_answer(instant.time);
-  given_.clear();
-  if (follower_ != nullptr) {
-    const auto names = follower_->step(instant.time, points_now_);
-    for (std::size_t p = 0; p < names.size(); ++p) {
-      if (names[p] == kNoIndex) continue;
-      if (points_now_[p].fixed == kNoIndex && undecided_[static_cast<std::size_t>(names[p])]) continue;
-      given_[points_now_[p].track] = names[p];
-      ++seen_[static_cast<std::size_t>(names[p])];
-      ++named_;
-    }
-    points_ += std::ssize(points_now_);
-  }
-  tell(instant);
-  search(instant.time);
-  times_.add(taken.seconds());
+  counts_.most_points = std::max(counts_.most_points, points_now_.size());
 }
 
 int SetInSpace::fixed_name(TrackId track) const {
-  if (!options_.names_hold) return kNoIndex;
+  if (!names_hold_) return kNoIndex;
   const auto named = names_before_.find(track);
   if (named == names_before_.end()) return kNoIndex;
   const auto found = name_of_label_.find(named->second.label);
   return found == name_of_label_.end() ? kNoIndex : found->second;
 }
 
-void SetInSpace::remember(const Instant& instant) {
-  if (count_++ % every_ != 0) return;
-  auto moment = std::make_shared<Moment>();
-  moment->index = instant.index;
-  moment->time = instant.time;
-  moment->points = points_now_;
-  recent_.push_back(std::move(moment));
-  while (seconds(instant.time - recent_.front()->time) > options_.remembered_s) recent_.pop_front();
-}
-
-/// Begins to look for names, where there is a reason to and nobody looks.
-void SetInSpace::search(Timestamp now) {
-  const double least = std::max(4.0, kFewestSeen * static_cast<double>(set_->size()));
-  if (static_cast<double>(points_now_.size()) < least) {
-    enough_since_.reset();
-    return;
-  }
-  if (!enough_since_) enough_since_ = now;
-  if (searching_.valid() || seconds(now - *enough_since_) < options_.first_after_s) return;
-  if (searches_ > 0) {
-    double pause = options_.looked_anew_s;
-    const std::size_t could = std::min(points_now_.size(), set_->size());
-    if (follower_ == nullptr) {
-      pause = std::min<double>(failures_, kMostAgainS);
-    } else if (searches_ - failures_ <= (set_->moves ? 1 : kStillSearches) ||
-               static_cast<double>(follower_->held()) < kManyHeld * static_cast<double>(could)) {
-      pause = set_->moves ? kAgainS : 0;
-    }
-    if (seconds(now - searched_at_) < options_.answer_after_s + pause) return;
-  }
-  ++searches_;
-  searched_at_ = now;
-  searching_ = std::async(std::launch::async,
-                          [recent = recent_, rate = rate_hz_ / static_cast<double>(every_), set = set_, options = options_,
-                           stop = stop_.get_token()] { return search_in(recent, rate, *set, options, stop); });
-}
-
-SetInSpace::Searched SetInSpace::search_in(const std::deque<std::shared_ptr<const Moment>>& recent, double rate_hz,
-                                           const LearnedMarkers& set, const SetInSpaceOptions& options,
-                                           const std::stop_token& stop) {
-  const corridor::Stopwatch taken;
-  Searched searched;
-  Recording recording;
-  recording.header.name = "the markers seen";
-  recording.header.rate_hz = rate_hz;
-  Instant instant;
-  for (const auto& moment : recent) {
-    instant.index = moment->index;
-    instant.time = moment->time;
-    instant.samples.clear();
-    for (const TrackedPoint& point : moment->points) {
-      Sample& sample = instant.samples.emplace_back();
-      sample.track = point.track;
-      sample.position = point.place;
-    }
-    recording.add(instant);
-  }
-  try {
-    const Hooks hooks{.progress = {}, .stop = stop, .options = {}};
-    searched.found = solve::labels::find_names(recording, set, options.find, options.follow, hooks);
-  } catch (const std::exception& error) {
-    searched.trouble = error.what();
-  }
-  searched.seconds = taken.seconds();
-  return searched;
-}
-
 void SetInSpace::take_answer(Timestamp now) {
-  if (!searching_.valid() || seconds(now - searched_at_) < options_.answer_after_s) return;
-  if (!options_.wait && searching_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  Searched searched = searching_.get();
-  searched_s_ = std::max(searched_s_, searched.seconds);
-  if (searched.found.follower == nullptr) {
-    ++failures_;
-    trouble_ = searched.trouble;
-    return;
+  auto found = search_.answer(now);
+  if (!found) return;
+  if (!counts_.found_at_s) counts_.found_at_s = seconds(now);
+  // With a set of a person who stood still, rigid distances are known the better the longer they were observed.
+  if (follower_ == nullptr || !set_->moves ||
+      static_cast<double>(follower_->held()) < SetSearch::kMinObserved * static_cast<double>(set_->size())) {
+    if (follower_ != nullptr) found->follower->take(follower_->borne());
+    follower_ = std::move(found->follower);
   }
-  if (!found_at_s_) found_at_s_ = seconds(now);
-  const double names = static_cast<double>(set_->size());
-  // Of a set of one who stood still, what is rigid is known the better the longer it was looked at.
-  if (follower_ == nullptr || !set_->moves || static_cast<double>(follower_->held()) < kFewestSeen * names) {
-    if (follower_ != nullptr) searched.found.follower->take(follower_->borne());
-    follower_ = std::move(searched.found.follower);
-  }
-  follower_->take(searched.found.name_of);
-  take_check(searched.found);
+  follower_->take(found->name_of);
+  check_.add(*found);
 }
 
-/// What the search's final check says of each name that it could tell something of, and of the set.
-void SetInSpace::take_check(const solve::labels::FoundNames& found) {
-  for (std::size_t name = 0; name < set_->size(); ++name) {
-    decided_[name] = decided_[name] || (found.decided[name] && !found.undecided[name]);
-    undecided_[name] = !decided_[name] && (undecided_[name] || found.undecided[name]);
+void SetInSpace::label_points(Timestamp now) {
+  given_.clear();
+  if (follower_ == nullptr) return;
+  const auto names = follower_->step(now, points_now_);
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    if (names[p] == kNoIndex) continue;
+    const auto name = static_cast<std::size_t>(names[p]);
+    if (points_now_[p].fixed == kNoIndex && check_.is_ambiguous(name)) continue;
+    given_[points_now_[p].track] = names[p];
+    ++counts_.observed[name];
+    ++counts_.named;
   }
-  misfits_.push_back(found.misfit);
-  misfits_m_.push_back(found.misfit_m);
+  counts_.points += std::ssize(points_now_);
 }
 
-TrackId SetInSpace::fresh_id() {
-  const TrackId id{used_.empty() ? 1 : number(*used_.rbegin()) + 1};
-  used_.insert(id);
-  return id;
+/// Under which ID and label a track is reported.
+TrackName SetInSpace::reported_name(TrackId track) {
+  const auto given = given_.find(track);
+  const int name = given == given_.end() ? kNoIndex : given->second;
+  TrackName reported{ids_.id_of(track, name), {}, {}};
+  if (const auto before = names_before_.find(track); before != names_before_.end()) {
+    reported.team = before->second.team;
+    reported.colour = before->second.colour;
+    if (names_hold_ || !name_of_label_.contains(before->second.label)) reported.label = before->second.label;
+  }
+  if (name != kNoIndex) reported.label = set_->labels[static_cast<std::size_t>(name)];
+  return reported;
 }
 
-/// Under what number a track is told: its own as far as nobody else has it.
-TrackId SetInSpace::told_id(TrackId track, int name) {
-  const auto own = told_of_.find(track);
-  if (name == kNoIndex) {
-    if (own != told_of_.end()) return own->second;
-    const TrackId id = used_.insert(track).second ? track : fresh_id();
-    told_of_.emplace(track, id);
-    return id;
-  }
-  auto& id = id_of_name_[static_cast<std::size_t>(name)];
-  if (!id && own != told_of_.end()) {  // the track's number is the name's from now on
-    id = own->second;
-    told_of_.erase(own);
-  } else if (!id) {
-    id = used_.insert(track).second ? track : fresh_id();
-  }
-  return *id;
-}
-
-void SetInSpace::tell(Instant& instant) {
+void SetInSpace::relabel(Instant& instant) {
   instant.named.clear();
-  std::map<TrackId, TrackId> told;
-  const auto is_idle = [&](const Sample& sample) {  // the name that it had is another's
+  std::map<TrackId, TrackId> id_of;
+  const auto is_idle = [&](const Sample& sample) {  // the label that it had is another track's
     if (sample.provenance != Provenance::predicted || given_.contains(sample.track)) return false;
-    return follower_ != nullptr && !told_of_.contains(sample.track);
+    return follower_ != nullptr && !ids_.is_unlabelled(sample.track);
   };
   std::erase_if(instant.samples, is_idle);
   for (Sample& sample : instant.samples) {
-    const auto given = given_.find(sample.track);
-    const int name = given == given_.end() ? kNoIndex : given->second;
-    TrackName wanted{told_id(sample.track, name), {}, {}};
-    if (const auto before = names_before_.find(sample.track); before != names_before_.end()) {
-      wanted.team = before->second.team;
-      wanted.colour = before->second.colour;
-      if (options_.names_hold || !name_of_label_.contains(before->second.label)) wanted.label = before->second.label;
-    }
-    if (name != kNoIndex) wanted.label = set_->labels[static_cast<std::size_t>(name)];
-    told[sample.track] = wanted.id;
-    sample.track = wanted.id;
-    const auto [known, is_new] = told_names_.try_emplace(wanted.id, wanted);
-    if (is_new || !(known->second == wanted)) {
-      known->second = wanted;
-      instant.named.push_back(std::move(wanted));
-    }
+    TrackName reported = reported_name(sample.track);
+    id_of[sample.track] = reported.id;
+    sample.track = reported.id;
+    if (ids_.report(reported)) instant.named.push_back(std::move(reported));
   }
   std::sort(instant.samples.begin(), instant.samples.end(), [](const Sample& a, const Sample& b) { return a.track < b.track; });
   for (SeenPoint& seen : instant.seen) {
-    if (seen.track) seen.track = told.contains(*seen.track) ? std::optional(told.at(*seen.track)) : std::nullopt;
+    if (seen.track) seen.track = id_of.contains(*seen.track) ? std::optional(id_of.at(*seen.track)) : std::nullopt;
   }
   for (BoxInView& box : instant.boxes) {
-    if (const auto found = told.find(box.track); found != told.end()) box.track = found->second;
+    if (const auto found = id_of.find(box.track); found != id_of.end()) box.track = found->second;
   }
 }
 
-/// By the median over all searches: a short one alone may be off.
-std::optional<std::string> SetInSpace::misfit() const {
-  const auto found = std::count_if(seen_.begin(), seen_.end(), [](std::int64_t points) { return points > 0; });
-  return set_misfit("the set", geometry::median(std::vector(misfits_)), geometry::median(std::vector(misfits_m_)),
-                    static_cast<std::size_t>(found), seen_.size());
+/// How many of the set's markers were observed.
+std::size_t SetInSpace::found() const {
+  const auto& observed = counts_.observed;
+  return static_cast<std::size_t>(std::count_if(observed.begin(), observed.end(), [](std::int64_t points) { return points > 0; }));
 }
 
 std::vector<std::string> SetInSpace::news() {
-  if (misfit_reported_ || misfits_.size() < kSearchesToReport) return {};
-  auto sentence = misfit();
+  auto sentence = check_.new_misfit(found(), set_->size());
   if (!sentence) return {};
-  misfit_reported_ = true;
   return {std::move(*sentence)};
 }
 
 std::vector<std::string> SetInSpace::warnings() const {
   const double size = static_cast<double>(set_->size());
-  if (!found_at_s_) {
-    if (static_cast<double>(most_points_) < std::max(4.0, kFewestSeen * size))
-      return {fmt::format("nothing was named: never more than {} markers were seen at once, of the set's {}", most_points_,
+  if (!counts_.found_at_s) {
+    if (static_cast<double>(counts_.most_points) < SetSearch::min_points(*set_))
+      return {fmt::format("nothing was named: never more than {} markers were seen at once, of the set's {}", counts_.most_points,
                           set_->size())};
-    return {"nothing was named: " + (trouble_.empty() ? std::string("the recording ended before names were found") : trouble_)};
+    const std::string& failure = search_.failure();
+    return {"nothing was named: " + (failure.empty() ? std::string("the recording ended before names were found") : failure)};
   }
   std::vector<std::string> said, missing;
-  for (std::size_t name = 0; name < seen_.size(); ++name) {
-    if (seen_[name] == 0) missing.push_back(set_->labels[name]);
+  for (std::size_t name = 0; name < set_->size(); ++name) {
+    if (counts_.observed[name] == 0) missing.push_back(set_->labels[name]);
   }
   if (!missing.empty()) said.push_back(fmt::format("the set's markers {} were not found", fmt::join(missing, ", ")));
-  if (auto sentence = misfit()) {
+  if (auto sentence = check_.misfit(found(), set_->size())) {
     said.push_back(std::move(*sentence));
     return said;
   }
-  const double frames = static_cast<double>(*std::max_element(seen_.begin(), seen_.end()));
-  if (static_cast<double>(named_) < kFewNamed * size * frames)
+  const double frames = static_cast<double>(*std::max_element(counts_.observed.begin(), counts_.observed.end()));
+  if (static_cast<double>(counts_.named) < kMinLabelled * size * frames)
     said.push_back(fmt::format("of the set's {} markers only {:.0f} had names at a time; is it this subject's?", set_->size(),
-                               static_cast<double>(named_) / std::max(frames, 1.0)));
+                               static_cast<double>(counts_.named) / std::max(frames, 1.0)));
   return said;
 }
 

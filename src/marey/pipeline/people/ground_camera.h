@@ -9,16 +9,15 @@
 
 #include "marey/core/ground_views.h"
 #include "marey/core/turning_camera.h"
-#include "marey/detect/ball/ball_detector.h"
 #include "marey/detect/detectors.h"
 #include "marey/detect/people/people_size.h"
 #include "marey/pipeline/corridor/beside.h"
 #include "marey/pipeline/corridor/feed.h"
 #include "marey/pipeline/corridor/run.h"
+#include "marey/pipeline/people/ball_in_view.h"
 #include "marey/pipeline/people/standing_people.h"
 #include "marey/pipeline/people/view_doubts.h"
 #include "marey/reconstruct/ground_area.h"
-#include "marey/track/ball/ball_moment.h"
 #include "marey/track/ground/ground_tracker.h"
 
 namespace marey::pipeline::people {
@@ -51,7 +50,7 @@ class GroundCamera {
   track::ground::CameraObservations observe(const CameraFrame& given, std::span<const Track<2>> expected);
 
   /// What of the last frame may be the ball; nothing where it is not looked for.
-  const std::optional<track::ball::BallView>& ball() const { return ball_view_; }
+  std::optional<track::ball::BallView> ball() const { return ball_ ? ball_->candidates() : std::nullopt; }
 
   /// The box of a person at `ground` (m, world) in the camera's picture, px; nothing where that is not known.
   std::optional<Box> box_at(const Vector<2>& ground, Timestamp time) const;
@@ -71,7 +70,6 @@ class GroundCamera {
   detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected, corridor::Beside& beside);
   void learn_sizes(const std::vector<Detection>& detections, const cv::Size& size);
   void place(const Frame& frame, detect::Detections& found);
-  void look_for_ball(const Frame& frame, const std::vector<Detection>& people);
 
   RigCamera camera_;
   CameraId id_;
@@ -81,8 +79,7 @@ class GroundCamera {
   std::optional<cv::Rect> part_;                            // px, that is looked at; nothing: the whole picture
   std::unique_ptr<detect::Detector> detector_;              // none where another program's detections come
   std::optional<detect::people::PersonSizeModel> learned_;  // where neither a camera nor a detector knows how tall people are
-  std::optional<detect::ball::BallDetector> ball_;
-  std::optional<track::ball::BallView> ball_view_;
+  std::optional<BallInView> ball_;
   std::shared_ptr<StandingPeople> standing_;
   std::vector<Track<2>> in_picture_;  // who is expected, in the part that is looked at
   std::vector<Expected> expected_;

@@ -29,7 +29,6 @@ struct PeopleInPictureOptions {
   std::string beside;       ///< outlines that wait for the second pass lie in a nameless file beside this path
   bool steady = false;      ///< the camera shakes: pictures are steadied first, and results are in the pixels of its rest
   bool with_lines = false;  ///< keep their measurement lines too, for an overlay
-  std::string masks = {};   ///< a folder for what the background model sees in each frame (draw/mask_folder.h); empty: none
 };
 
 /// Detections are the feed's where it brings some (another program's, or those of a detector it was given), else of background

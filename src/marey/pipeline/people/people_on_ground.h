@@ -16,6 +16,7 @@
 #include "marey/pipeline/people/ground_camera.h"
 #include "marey/pipeline/people/turned_views.h"
 #include "marey/reconstruct/ground_area.h"
+#include "marey/track/bramble/bramble_options.h"
 #include "marey/track/ground/ground_run.h"
 #include "marey/track/ground/ground_tracker.h"
 #include "marey/track/ground/offline/ground_recorder.h"
@@ -25,6 +26,7 @@ namespace marey::pipeline::people {
 struct PeopleOnGroundOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give pictures
   track::ground::GroundTrackerOptions tracker;
+  std::optional<track::bramble::BrambleOptions> bramble = {};  ///< in place of detector and tracker: bramble_on_ground.h
   track::ground::offline::GroundJoinOptions join;
   track::ground::GroundLearnOptions learn;   ///< from the recording; not where `live`
   analyse::TeamOptions teams;                ///< `pitch` is taken from below

@@ -7,12 +7,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/core/error.h"
-#include "marey/draw/mask_folder.h"
 #include "marey/draw/overlay_film.h"
 #include "marey/draw/plot_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/pipeline/corridor/steady_camera.h"
 #include "marey/pipeline/keypoints/keypoint_recording.h"
+#include "marey/pipeline/people/mask_sink.h"
 #include "marey/source/open_source.h"
 
 namespace marey::pipeline::people {
@@ -36,6 +36,11 @@ corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<
     sinks.add(format::create_recording(output.tracks, format));
   }
   if (!output.plot.empty()) sinks.add(std::make_unique<draw::PlotFile>(output.plot));
+  if (!output.masks.empty()) {
+    if (!feed.has_pictures() || feed.detector() != nullptr)
+      throw Error("{}: masks are of the background model, and detections are given", output.masks);
+    sinks.add(std::make_unique<MaskSink>(output.masks));
+  }
   if (output.overlay.empty()) return sinks;
   if (!feed.has_pictures()) throw Error("{}: an overlay needs pictures to draw into", output.overlay);
   const draw::OverlayFilm::View view{
@@ -61,7 +66,7 @@ corridor::Summary track_people(const RigCamera& camera, const TrackOutput& outpu
 corridor::Summary track_people(const ImageFeed& given, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
                                const PeopleInPictureOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
-  if (!options.masks.empty()) draw::MaskFolder::require_free(options.masks);  // before anything that takes long
+  if (!output.masks.empty()) draw::MaskFolder::require_free(output.masks);  // before anything that takes long
   std::optional<corridor::SteadyCamera> steady;
   if (options.steady) steady.emplace(given.camera, given.how, options.live);
   corridor::Feed feed = open(given, steady ? steady->feed_options() : given.how);

@@ -22,6 +22,7 @@ struct TrackOutput {
   std::string format = {};   ///< by name; empty: the ending of `tracks` says it
   std::string overlay = {};  ///< a film with the tracks drawn into the pictures
   std::string plot = {};     ///< an SVG picture of the trajectories, in the coordinates of the image
+  std::string masks = {};    ///< of people: a folder for the foreground of each frame (draw/mask_folder.h)
 };
 
 /// Follows people through what one camera saw: its `source`, or its `detections` by another program. Its name may be empty. The

@@ -38,15 +38,15 @@ class LiveCamera final : public LiveSource {
   }
   bool connected() const override {
     const std::lock_guard lock(mutex_);
-    return report_.connected;
+    return health_.gives_frames();
   }
   bool ended() const override {
     const std::lock_guard lock(mutex_);
     return ended_;
   }
-  LiveReport report() const override {
+  CameraHealth health() const override {
     const std::lock_guard lock(mutex_);
-    return report_;
+    return health_;
   }
   void take_only(cv::Size size) override {
     const std::lock_guard lock(mutex_);
@@ -86,16 +86,16 @@ class LiveCamera final : public LiveSource {
     const std::lock_guard lock(mutex_);
     if (info_.size.empty()) info_.size = now.size;
     if (!info_.rate_hz) info_.rate_hz = now.rate_hz;
-    report_.connected = true;
-    ++report_.connections;
+    health_.state = FeedState::live;
+    ++health_.connections;
     sequence_.reset();
     clock_.reset();
   }
 
   void disconnect(const std::string& why) {
     const std::lock_guard lock(mutex_);
-    report_.connected = false;
-    report_.trouble = why;
+    health_.state = FeedState::stalled;
+    health_.trouble = why;
   }
 
   void read(Connection& connection, const std::stop_token& stop) {
@@ -114,11 +114,11 @@ class LiveCamera final : public LiveSource {
       const std::lock_guard lock(mutex_);
       if (came == Came::end) {
         ended_ = true;
-        report_.connected = false;
+        health_.state = FeedState::ended;
         break;
       }
       if (came == Came::damaged) {
-        ++report_.damaged;
+        ++health_.damaged;
         if (sequence_) ++*sequence_;  // it had a number too
       } else {
         take(std::move(shot), now);
@@ -130,14 +130,14 @@ class LiveCamera final : public LiveSource {
   /// With the mutex held.
   void take(Shot shot, Timestamp arrival) {
     if (shot.sequence) {
-      if (sequence_ && *shot.sequence > *sequence_ + 1) report_.lost += *shot.sequence - *sequence_ - 1;
+      if (sequence_ && *shot.sequence > *sequence_ + 1) health_.lost += *shot.sequence - *sequence_ - 1;
       sequence_ = shot.sequence;
     }
     const cv::Size size = shot.given.frame.picture.size();
     if (info_.size.empty()) info_.size = size;
     if (!shot.given.frame.picture.empty() && size != info_.size) {
-      ++report_.damaged;
-      report_.trouble = fmt::format("{}: its pictures have {} × {} px now, not {} × {}; set it back, or begin anew", info_.name,
+      ++health_.damaged;
+      health_.trouble = fmt::format("{}: its pictures have {} × {} px now, not {} × {}; set it back, or begin anew", info_.name,
                                     size.width, size.height, info_.size.width, info_.size.height);
       return;
     }
@@ -146,12 +146,12 @@ class LiveCamera final : public LiveSource {
     if (shot.taken) taken = std::min(arrival, *shot.taken);
     if (last_ && taken <= *last_) taken = *last_ + Duration(1000);
     last_ = taken;
-    shot.given.frame.index = report_.received++;
+    shot.given.frame.index = health_.frames++;
     shot.given.frame.time = taken;
     waiting_.push_back(std::move(shot.given));
     if (std::ssize(waiting_) > options_.keep) {
       waiting_.pop_front();
-      ++report_.overrun;
+      ++health_.overrun;
     }
     time_->wake();
   }
@@ -161,7 +161,7 @@ class LiveCamera final : public LiveSource {
   std::shared_ptr<LiveTime> time_;
   mutable std::mutex mutex_;  // guards what follows
   SourceInfo info_;
-  LiveReport report_;
+  CameraHealth health_;
   std::deque<CameraFrame> waiting_;
   DeviceClock clock_;
   std::optional<std::int64_t> sequence_;

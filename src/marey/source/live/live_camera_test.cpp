@@ -67,8 +67,8 @@ TEST(LiveCamera, KeepsTheLastFewAndCountsTheRest) {
   ASSERT_EQ(frames.size(), 4u);
   EXPECT_EQ(frames.front().frame.index, 6);
   for (std::size_t i = 1; i < frames.size(); ++i) EXPECT_GT(frames[i].frame.time, frames[i - 1].frame.time);
-  EXPECT_EQ(camera->report().received, 10);
-  EXPECT_EQ(camera->report().overrun, 6);
+  EXPECT_EQ(camera->health().frames, 10);
+  EXPECT_EQ(camera->health().overrun, 6);
   EXPECT_TRUE(camera->arrived().empty());
 }
 
@@ -77,11 +77,11 @@ TEST(LiveCamera, GapsAndDamageAreCounted) {
                                                  {Came::frame, shot(9)}, {Came::frame, shot(10, {4, 3})}, {Came::frame, shot(11)}};
   const auto camera = keep_connected("cam", always(shots, Came::end), steady_time(), {.keep = 10});
   ASSERT_TRUE(soon([&] { return camera->ended(); }));
-  const LiveReport report = camera->report();
-  EXPECT_EQ(report.received, 4);
-  EXPECT_EQ(report.lost, 1) << "of 7 and 8 one came damaged";
-  EXPECT_EQ(report.damaged, 2) << "one said so, one had another size";
-  EXPECT_NE(report.trouble.find("4 × 3"), std::string::npos) << report.trouble;
+  const CameraHealth health = camera->health();
+  EXPECT_EQ(health.frames, 4);
+  EXPECT_EQ(health.lost, 1) << "of 7 and 8 one came damaged";
+  EXPECT_EQ(health.damaged, 2) << "one said so, one had another size";
+  EXPECT_NE(health.trouble.find("4 × 3"), std::string::npos) << health.trouble;
 }
 
 TEST(LiveCamera, IsTriedAgainFromTheFirstAttemptOn) {
@@ -91,8 +91,8 @@ TEST(LiveCamera, IsTriedAgainFromTheFirstAttemptOn) {
     return std::make_unique<Scripted>(std::vector<std::pair<Came, Shot>>{{Came::frame, shot(0)}}, Came::nothing);
   };
   const auto camera = keep_connected("cam", connect, steady_time(), {.first_retry_s = 0.01, .longest_retry_s = 0.02});
-  EXPECT_TRUE(soon([&] { return camera->report().trouble == "no such device" || camera->connected(); }));
-  EXPECT_TRUE(soon([&] { return camera->connected() && camera->report().received == 1; }));
+  EXPECT_TRUE(soon([&] { return camera->health().trouble == "no such device" || camera->connected(); }));
+  EXPECT_TRUE(soon([&] { return camera->connected() && camera->health().frames == 1; }));
   EXPECT_EQ(attempts, 4);
 }
 
@@ -103,17 +103,17 @@ TEST(LiveCamera, ComesBackAfterItWasUnplugged) {
     return std::make_unique<Scripted>(std::vector<std::pair<Came, Shot>>{{Came::frame, shot(0)}}, Came::damaged);
   };
   const auto camera = keep_connected("cam", connect, steady_time(), {.keep = 100, .first_retry_s = 0.01, .longest_retry_s = 0.02});
-  ASSERT_TRUE(soon([&] { return camera->report().connections >= 3; }));
-  const LiveReport report = camera->report();
-  EXPECT_EQ(report.trouble, "unplugged");
-  EXPECT_EQ(report.lost, 0) << "its numbers begin anew";
+  ASSERT_TRUE(soon([&] { return camera->health().connections >= 3; }));
+  const CameraHealth health = camera->health();
+  EXPECT_EQ(health.trouble, "unplugged");
+  EXPECT_EQ(health.lost, 0) << "its numbers begin anew";
   EXPECT_FALSE(camera->ended());
 }
 
 TEST(LiveCamera, OneThatFallsSilentIsOpenedAgain) {
   const auto camera = keep_connected("cam", always({{Came::frame, shot(0)}}, Came::nothing), steady_time(),
                                      {.keep = 4, .first_retry_s = 0.01, .longest_retry_s = 0.02, .silent_s = 0.1});
-  EXPECT_TRUE(soon([&] { return camera->report().connections >= 2; }));
+  EXPECT_TRUE(soon([&] { return camera->health().connections >= 2; }));
 }
 
 TEST(Address, SaysWhatItIsAndRefusesTheRest) {

@@ -77,7 +77,7 @@ TEST(Node, FramesArriveWithTimesByTheHostsClock) {
   }));
   EXPECT_EQ(camera->info().rate_hz, 50);
   EXPECT_EQ(camera->info().size, cv::Size(64, 48));
-  EXPECT_EQ(camera->report().lost, 0);
+  EXPECT_EQ(camera->health().lost, 0);
   ASSERT_TRUE(came.back().detections);
   EXPECT_GT(came.back().detections->front().centre.x(), 0);
   const double old = seconds(time->now() - came.back().frame.time);
@@ -91,10 +91,10 @@ TEST(Node, WhatIsMissingIsCounted) {
   std::int64_t sequence = 0;
   ASSERT_TRUE(becomes_true([&] {
     node.send(sequence++);
-    return camera->report().received > 0;
+    return camera->health().frames > 0;
   }));
   node.send(sequence + 5);
-  ASSERT_TRUE(becomes_true([&] { return camera->report().lost == 5; })) << camera->report().lost;
+  ASSERT_TRUE(becomes_true([&] { return camera->health().lost == 5; })) << camera->health().lost;
 }
 
 TEST(Node, OneThatIsStartedAnewIsFoundAgain) {
@@ -103,10 +103,10 @@ TEST(Node, OneThatIsStartedAnewIsFoundAgain) {
   const auto camera = keep_connected("left", connect_node(node->place("left")), steady_time(), {.silent_s = 0.5});
   std::int64_t sequence = 0;
   const auto gives = [&] {
-    const std::int64_t before = camera->report().received;
+    const std::int64_t before = camera->health().frames;
     return becomes_true([&] {
       node->send(sequence++);
-      return camera->report().received > before;
+      return camera->health().frames > before;
     });
   };
   ASSERT_TRUE(gives());
@@ -115,7 +115,7 @@ TEST(Node, OneThatIsStartedAnewIsFoundAgain) {
   node = std::make_unique<Node>(2, port);
   sequence = 0;
   ASSERT_TRUE(gives());
-  EXPECT_EQ(camera->report().connections, 2);
+  EXPECT_EQ(camera->health().connections, 2);
 }
 
 /// How the only camera of a node is set, which takes exposures up to 10 ms, after it was asked three times.
@@ -190,8 +190,8 @@ TEST(Node, OneOfAnOlderVersionIsNotSetAndThatIsSaid) {
 TEST(Node, WhatIsNotThereIsSaid) {
   Node node(1);
   const auto nobody = keep_connected("nobody", connect_node(node.place("nobody")), steady_time());
-  ASSERT_TRUE(becomes_true([&] { return !nobody->report().trouble.empty(); }));
-  EXPECT_NE(nobody->report().trouble.find("has no camera \"nobody\"; it has left"), std::string::npos) << nobody->report().trouble;
+  ASSERT_TRUE(becomes_true([&] { return !nobody->health().trouble.empty(); }));
+  EXPECT_NE(nobody->health().trouble.find("has no camera \"nobody\"; it has left"), std::string::npos) << nobody->health().trouble;
   EXPECT_THROW(Node(2, node.port()), Error) << "the ports are taken";
   NodePlace elsewhere = node.place("");
   elsewhere.port = 1;

@@ -41,9 +41,11 @@ double settled(double value, double mean, double spread, double memory, double n
   return mean + memory * (value - mean) + spread * std::sqrt(1 - memory * memory) * normal;
 }
 
-class BrambleTracker final : public Tracker<2> {
+}  // namespace
+
+class BrambleTracker::Impl {
  public:
-  BrambleTracker(const BrambleOptions& options, std::shared_ptr<const GroundViews> views)
+  Impl(const BrambleOptions& options, std::shared_ptr<const GroundViews> views)
       : options_(options), views_(std::move(views)), particles_(options.particles, options.seed) {
     if (options.particles < 1) throw Error("{} particles; 1 is the least", options.particles);
     for (int i = 0; i < views_->cameras(); ++i) {
@@ -53,8 +55,7 @@ class BrambleTracker final : public Tracker<2> {
     }
   }
 
-  using Tracker<2>::step;
-  std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations<2>> views) override {
+  std::span<const Track<2>> step(Timestamp now, std::span<const CameraEvidence> views) {
     if (now_ && now <= *now_) throw Error("{}", "instants must follow each other");
     dt_ = now_ ? seconds(now - *now_) : 0.04;
     now_ = now;
@@ -68,15 +69,8 @@ class BrambleTracker final : public Tracker<2> {
     return tracks_;
   }
 
-  std::span<const ObservationMatch> matches() const override { return {}; }
-
-  std::span<const Decision<2>> decided() override {
-    if (!now_) return {};
-    decision_ = {*now_, tracks_, matches_, told_};
-    return {&decision_, 1};
-  }
-  std::span<const Decision<2>> decide_all() override { return {}; }
-  std::span<const Track<2>> expected(Timestamp /*now*/) override { return {}; }
+  std::span<const CameraObservations<2>> observations() const { return told_; }
+  std::span<const ObservationMatch> matches() const { return matches_; }
 
  private:
   struct Known {
@@ -84,9 +78,9 @@ class BrambleTracker final : public Tracker<2> {
     bool confirmed = false;
   };
 
-  void look_at(std::span<const CameraObservations<2>> views) {
+  void look_at(std::span<const CameraEvidence> views) {
     seen_.assign(static_cast<std::size_t>(views_->cameras()), {});
-    for (const CameraObservations<2>& one : views) {
+    for (const CameraEvidence& one : views) {
       EvidenceView& seen = seen_.at(static_cast<std::size_t>(number(one.camera)));
       seen.view = &views_->view_at(one.camera, one.time);
       seen.late = seconds(one.time - *now_);
@@ -327,13 +321,23 @@ class BrambleTracker final : public Tracker<2> {
   std::vector<std::vector<Observation<2>>> observations_;  // of each camera
   std::vector<CameraObservations<2>> told_;
   std::vector<ObservationMatch> matches_;
-  Decision<2> decision_;
 };
 
-}  // namespace
+BrambleTracker::BrambleTracker(const BrambleOptions& options, std::shared_ptr<const GroundViews> views)
+    : impl_(std::make_unique<Impl>(options, std::move(views))) {}
+BrambleTracker::~BrambleTracker() = default;
+BrambleTracker::BrambleTracker(BrambleTracker&&) noexcept = default;
 
-std::unique_ptr<Tracker<2>> make_bramble_tracker(const BrambleOptions& options, std::shared_ptr<const GroundViews> views) {
-  return std::make_unique<BrambleTracker>(options, std::move(views));
+std::span<const Track<2>> BrambleTracker::step(Timestamp now, std::span<const CameraEvidence> views) {
+  return impl_->step(now, views);
+}
+
+std::span<const CameraObservations<2>> BrambleTracker::observations() const {
+  return impl_->observations();
+}
+
+std::span<const ObservationMatch> BrambleTracker::matches() const {
+  return impl_->matches();
 }
 
 }  // namespace marey::track::bramble

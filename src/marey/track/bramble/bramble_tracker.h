@@ -1,4 +1,4 @@
-// BraMBLe beside our trackers: no detections, no association. Every particle says how many people there are and where; what it is
+// BraMBLe: no detections, no association. Every particle says how many people there are and where; what it is
 // worth is how much better it explains the pictures than an empty scene does.
 //
 // Source: Isard, MacCormick, "BraMBLe: A Bayesian Multiple-Blob Tracker", ICCV 2001. Neither that paper nor a copy was at hand:
@@ -19,17 +19,43 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
+#include "marey/core/blob_evidence.h"
 #include "marey/core/ground_views.h"
 #include "marey/track/bramble/bramble_options.h"
 #include "marey/track/tracker.h"
 
 namespace marey::track::bramble {
 
-/// Follows people by what `CameraObservations::evidence` says; `seen` is not looked at. What it decides has observations of its
-/// own: where the particles have each person. `matches` of a step are empty. The same seed gives the same tracks, however many
-/// threads there are. Throws Error where an option is out of its domain or a view is known by its homography alone: a person's
-/// height in it must be known.
-std::unique_ptr<Tracker<2>> make_bramble_tracker(const BrambleOptions& options, std::shared_ptr<const GroundViews> views);
+/// What one camera's image says at an instant.
+struct CameraEvidence {
+  CameraId camera{};
+  Timestamp time{};                              ///< of the frame, by the rig's clock
+  std::shared_ptr<const BlobEvidence> evidence;  ///< null: none yet
+};
+
+/// Tracks people on the ground. The same seed gives the same tracks, however many threads there are.
+class BrambleTracker {
+ public:
+  /// Throws Error if an option is out of its domain or a view is known by its homography alone: a person's height in it must be
+  /// known.
+  BrambleTracker(const BrambleOptions& options, std::shared_ptr<const GroundViews> views);
+  ~BrambleTracker();
+  BrambleTracker(BrambleTracker&&) noexcept;
+
+  /// The people at an instant, those not yet confirmed marked so. `views`: of the cameras that have a frame. Valid until the next
+  /// call. Throws Error if `now` is not later than the last call's.
+  std::span<const Track<2>> step(Timestamp now, std::span<const CameraEvidence> views);
+
+  /// As if the cameras had observed people where the particles have them, each that sees a person with an equal share of what is
+  /// known of them. Of the last step.
+  std::span<const CameraObservations<2>> observations() const;
+  std::span<const ObservationMatch> matches() const;  ///< of `observations`
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace marey::track::bramble

@@ -60,16 +60,16 @@ void run(int frames, int cameras, const BrambleOptions& options, const std::func
          const std::function<void(int, const std::vector<Vector<2>>&, const Seen&)>& look) {
   std::vector<GroundView> views{view_from(false)};
   if (cameras == 2) views.push_back(view_from(true));
-  const auto tracker = make_bramble_tracker(options, ground_views(views));
+  BrambleTracker tracker(options, ground_views(views));
   filter::RandomStream random(5);
   for (int frame = 0; frame < frames; ++frame) {
     const std::vector<Vector<2>> truth = people(frame / kRate);
     const Timestamp now = timestamp_from_seconds(frame / kRate);
-    std::vector<CameraObservations<2>> seen;
+    std::vector<CameraEvidence> seen;
     for (int i = 0; i < cameras; ++i)
-      seen.push_back({CameraId{i}, now, {}, evidence_of(views[static_cast<std::size_t>(i)], truth, random)});
+      seen.push_back({CameraId{i}, now, evidence_of(views[static_cast<std::size_t>(i)], truth, random)});
     Seen told;
-    for (const Track<2>& track : tracker->step(now, seen)) {
+    for (const Track<2>& track : tracker.step(now, seen)) {
       if (track.confirmed) told[number(track.id)] = track.position;
     }
     look(frame, truth, told);
@@ -144,10 +144,10 @@ TEST(BrambleTracker, TheSameSeedGivesTheSame) {
 TEST(BrambleTracker, RefusesWhatItCannotLookThrough) {
   Matrix<3> ground_from_image;
   ground_from_image << 0.1, 0, 0, 0, -0.1, 10, 0, 0, 1;
-  EXPECT_THROW(make_bramble_tracker({}, ground_views({GroundView(ground_from_image, {100, 100})})), Error);
+  EXPECT_THROW(BrambleTracker({}, ground_views({GroundView(ground_from_image, {100, 100})})), Error);
   BrambleOptions none;
   none.particles = 0;
-  EXPECT_THROW(make_bramble_tracker(none, ground_views({view_from(false)})), Error);
+  EXPECT_THROW(BrambleTracker(none, ground_views({view_from(false)})), Error);
 }
 
 }  // namespace

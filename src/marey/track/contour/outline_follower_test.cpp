@@ -10,10 +10,8 @@
 #include "marey/core/error.h"
 #include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/box_filter.h"
 #include "marey/track/contour/line_search.h"
 #include "marey/track/contour/motion_filter.h"
-#include "marey/track/contour/published_outline.h"
 #include "marey/track/contour/shape_filter.h"
 
 namespace marey::track::contour {
@@ -268,51 +266,6 @@ TEST(ShapeFilter, LinesAreTakenInAsTheTextbooksUpdateDoes) {
   const geometry::ClosedSpline before = filter.spline();
   EXPECT_FALSE(filter.correct(geometry::spline_weights(4, 8, 1), {1, 0}, 1000, 0.4, 3)) << "an outlier";
   EXPECT_EQ(filter.spline().control_points()[1], before.control_points()[1]);
-}
-
-TEST(PublishedOutline, ABrightDiscOnDarkGroundIsFollowed) {
-  const auto disc = [](double x) {
-    std::vector<Vector<2>> corners;
-    for (int i = 0; i < 40; ++i) {
-      const double angle = 2 * std::numbers::pi * i / 40;
-      corners.emplace_back(x + 15 * std::cos(angle), 60 + 15 * std::sin(angle));
-    }
-    return corners;
-  };
-  PublishedOutline outline({}, disc(30), disc(31));
-  for (int k = 2; k < 60; ++k) {
-    const auto truth = disc(30 + k);
-    cv::Mat picture = drawn(std::span(&truth, 1));
-    cv::GaussianBlur(picture, picture, {}, 0.8);
-    Frame frame = frame_at(k);
-    frame.picture = Picture(picture);
-    outline.step(frame);
-    EXPECT_GT(overlap(polygon_of(outline.outline()), truth), 0.85) << k;
-  }
-  EXPECT_NEAR(outline.outline().velocity.x(), kRate, 5);
-  PublishedOptions few, none;
-  few.control_points = 3;
-  none.lines = 0;
-  EXPECT_THROW(PublishedOutline(few, disc(30), disc(31)), Error);
-  EXPECT_THROW(PublishedOutline(none, disc(30), disc(31)), Error);
-  EXPECT_THROW(PublishedOutline({}, {}, disc(31)), Error);
-}
-
-TEST(BoxFilter, FollowsABoxAndFreezesWhileItJumps) {
-  const auto box = [](int k) { return Box{10.0 + 2 * k, 20.0 + k, 12, 30}; };
-  BoxFilter filter({}, box(0), box(0).centre());
-  for (int k = 1; k < 40; ++k) {
-    const bool merged = k >= 20 && k < 25;
-    const Box seen = merged ? Box{box(k).left, box(k).top, 40, 33} : box(k);
-    filter.step(seen, seen.centre());
-    EXPECT_EQ(filter.frozen(), merged) << k;
-    if (k < 10) continue;
-    EXPECT_GT(geometry::iou(filter.box(), box(k)), 0.85) << k;
-    EXPECT_NEAR(filter.velocity().x(), 2, 0.3) << k;
-  }
-  filter.step(std::nullopt, std::nullopt);
-  EXPECT_TRUE(filter.frozen());
-  EXPECT_NEAR(filter.centre().x(), box(40).centre().x(), 0.5);
 }
 
 TEST(Footprint, CoversThePixelsWhoseCentreIsInside) {

@@ -128,7 +128,6 @@ void GroundRun::follow(const GroundInstant& instant) {
 void GroundRun::record(std::span<const GroundDecision> decisions) {
   for (const GroundDecision& decision : decisions) {
     GroundInstant& instant = kept_.front();
-    if (!decision.seen.empty()) instant = GroundInstant(instant.frame, instant.time, decision.seen);
     recorder_.add(instant.frame, decision.now, decision.tracks, instant.cameras, decision.matches);
     if (on_decided_) on_decided_(instant, decision.matches);
     kept_.pop_front();

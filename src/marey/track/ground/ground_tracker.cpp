@@ -1,7 +1,6 @@
 #include "marey/track/ground/ground_tracker.h"
 
 #include "marey/core/error.h"
-#include "marey/track/bramble/bramble_tracker.h"
 #include "marey/track/ground/ground_gnn.h"
 #include "marey/track/ground/ground_jpda.h"
 #include "marey/track/ground/mht/ground_mht.h"
@@ -31,8 +30,7 @@ GroundAssociation ground_association_named(std::string_view name) {
   if (name == "gnn") return GroundAssociation::gnn;
   if (name == "jpda") return GroundAssociation::jpda;
   if (name == "mht") return GroundAssociation::mht;
-  if (name == "bramble") return GroundAssociation::bramble;
-  throw Error("association \"{}\" is not known; choose one of gnn, jpda, mht, bramble", name);
+  throw Error("association \"{}\" is not known; choose one of gnn, jpda, mht", name);
 }
 
 std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views) {
@@ -43,8 +41,6 @@ std::unique_ptr<GroundTracker> make_ground_tracker(const GroundTrackerOptions& o
       return mht::make_ground_mht(options, std::move(views));
     case GroundAssociation::jpda:
       return make_ground_jpda(options, std::move(views));
-    case GroundAssociation::bramble:
-      return bramble::make_bramble_tracker(options.bramble, std::move(views));
     case GroundAssociation::gnn:
       break;
   }

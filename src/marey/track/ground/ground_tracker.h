@@ -9,8 +9,7 @@
 //         (Fortmann, Bar-Shalom, Scheffe 1983), enumerated in clusters;
 //   mht   several assignments are kept as hypotheses until what comes later decides between them (Reid 1979; Cox & Hingorani 1996:
 //         the k best by Murty's method, clusters, N-scan pruning).
-// All three share motion models, gates, costs, birth and death (ground_target.h), so that they can be compared. A fourth has
-// nothing to associate: bramble looks at what pictures say, point by point (track/bramble).
+// All three share motion models, gates, costs, birth and death (ground_target.h), so that they can be compared.
 #pragma once
 
 #include <memory>
@@ -19,7 +18,6 @@
 
 #include "marey/core/ground_views.h"
 #include "marey/filter/filters.h"
-#include "marey/track/bramble/bramble_options.h"
 #include "marey/track/ground/ground_teams.h"
 #include "marey/track/tracker.h"
 
@@ -32,9 +30,9 @@ using GroundTracker = track::Tracker<2>;
 using track::ObservationMatch;
 
 /// How observations find their targets.
-enum class GroundAssociation { gnn, jpda, mht, bramble };
+enum class GroundAssociation { gnn, jpda, mht };
 
-/// "gnn", "jpda", "mht", "bramble". Throws Error, listing these, for another.
+/// "gnn", "jpda", "mht". Throws Error, listing these, for another.
 GroundAssociation ground_association_named(std::string_view name);
 
 /// Lengths in m, times in s. What is not said of a person's motion comes from football and athletics.
@@ -51,9 +49,8 @@ struct GroundTrackerOptions {
   std::optional<GroundTeams> teams = {};  ///< what the two teams wear, where that is known: evidence at every assignment
   double patience = 3;                    ///< a target that should be seen and is not is given up after this
   // For mht.
-  int hypotheses = 50;                   ///< kept for each cluster, at most
-  double window = 1.0;                   ///< N-scan: what is older than this is decided
-  bramble::BrambleOptions bramble = {};  ///< all that counts for bramble
+  int hypotheses = 50;  ///< kept for each cluster, at most
+  double window = 1.0;  ///< N-scan: what is older than this is decided
 };
 
 /// `views`: how the cameras of the rig see the ground, asked for at the time of each frame; a target outside a picture is not

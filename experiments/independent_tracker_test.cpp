@@ -1,8 +1,8 @@
-#include "marey/track/image/independent_tracker.h"
+#include "experiments/independent_tracker.h"
 
 #include <gtest/gtest.h>
 
-namespace marey::track::image {
+namespace marey::experiments {
 namespace {
 
 std::vector<Observation<2>> at(std::initializer_list<Vector<2>> places) {
@@ -43,4 +43,4 @@ TEST(IndependentTracker, WithNothingInTheCircleItCoasts) {
 }
 
 }  // namespace
-}  // namespace marey::track::image
+}  // namespace marey::experiments

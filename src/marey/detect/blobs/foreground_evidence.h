@@ -1,18 +1,19 @@
 // Foreground as evidence, point by point: no detections, but how much likelier each point of a grid is if something stands there.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <optional>
-#include <string_view>
+#include <span>
 #include <vector>
 
+#include "marey/core/blob_evidence.h"
+#include "marey/core/frame.h"
 #include "marey/detect/blobs/response_mixture.h"
-#include "marey/detect/detector.h"
 
 namespace marey::detect::blobs {
 
-struct BlobDetectorOptions {
-  static constexpr std::string_view name = "blobs";
-
+struct ForegroundEvidenceOptions {
   std::optional<int> step;  ///< px between the grid's points; nothing: 5
   int foreground_kinds = 16;
   /// Nats, of one point, at most and at least: neither model knows everything. Ours; the paper is not remembered to have a limit.
@@ -22,20 +23,21 @@ struct BlobDetectorOptions {
 };
 
 /// Learns background and foreground from the samples it is primed with, and from then on neither changes.
-class BlobDetector final : public Detector {
+class ForegroundEvidence {
  public:
   /// Throws Error where an option is out of its domain.
-  explicit BlobDetector(const BlobDetectorOptions& options);
+  explicit ForegroundEvidence(const ForegroundEvidenceOptions& options);
 
-  void prime(std::span<const Frame> samples) override;
-  /// Detects nothing: `Detections::evidence` is what it says.
-  Detections detect(const Frame& frame, std::span<const Expected> expected) override;
+  /// Frames sampled from the recording, before the first `of`; fewer than three are not enough.
+  void prime(std::span<const Frame> samples);
+  /// Of a frame; null while the scene is being learned. Throws Error if the size of frames changes.
+  std::shared_ptr<const BlobEvidence> of(const Frame& frame);
 
  private:
   void learn(const std::vector<cv::Mat>& seen);
   std::vector<Response> outliers(const std::vector<cv::Mat>& seen) const;
 
-  BlobDetectorOptions options_;
+  ForegroundEvidenceOptions options_;
   std::vector<cv::Mat> waiting_;  // responses of frames that will be learned from
   cv::Size grid_;
   std::vector<PointBackground> background_;  // row by row

@@ -1,12 +1,12 @@
 // Xu et al.'s filter, in frames: the centre moves at constant velocity, the edges keep their distance from it. The measurement is
 // linear in the state, r₁ = r_c + Δr₁ and so on, so that one Kalman step takes in centre and edges together.
-#include "marey/track/contour/box_filter.h"
+#include "experiments/box_filter.h"
 
 #include <cmath>
 
 #include <Eigen/LU>
 
-namespace marey::track::contour {
+namespace marey::experiments {
 namespace {
 
 using Measurement = Eigen::Matrix<double, 6, 1>;
@@ -72,4 +72,4 @@ Vector<2> BoxFilter::velocity() const {
   return {x_[3], x_[2]};
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::experiments

@@ -1,11 +1,11 @@
-#include "marey/track/image/independent_tracker.h"
+#include "experiments/independent_tracker.h"
 
 #include <cassert>
 #include <limits>
 
-namespace marey::track::image {
+namespace marey::experiments {
 
-std::span<const Track<2>> IndependentTracker::step(Timestamp now, std::span<const CameraObservations<2>> views) {
+std::span<const Track<2>> IndependentTracker::step(Timestamp now, std::span<const track::CameraObservations<2>> views) {
   assert(views.size() == 1 && "an image is one camera's");
   assert((targets_.empty() || now > *now_) && "frames come in the order of their time");
   const std::span<const Observation<2>> seen = views.front().seen;
@@ -58,4 +58,4 @@ std::span<const Track<2>> IndependentTracker::report(std::span<const Target> tar
   return tracks_;
 }
 
-}  // namespace marey::track::image
+}  // namespace marey::experiments

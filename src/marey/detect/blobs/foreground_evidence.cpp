@@ -1,4 +1,4 @@
-#include "marey/detect/blobs/blob_detector.h"
+#include "marey/detect/blobs/foreground_evidence.h"
 
 #include <algorithm>
 #include <memory>
@@ -15,25 +15,25 @@ constexpr std::size_t kFewestFrames = 3;  // frames that a median can be taken o
 
 }  // namespace
 
-BlobDetector::BlobDetector(const BlobDetectorOptions& options) : options_(options) {
+ForegroundEvidence::ForegroundEvidence(const ForegroundEvidenceOptions& options) : options_(options) {
   if (options.step && *options.step < 1) throw Error("the grid's points are {} px apart; 1 is the least", *options.step);
   if (options.foreground_kinds < 1) throw Error("{} kinds of foreground; 1 is the least", options.foreground_kinds);
   if (!(options.most_evidence > 0)) throw Error("a point tells {} nats at most; it must be positive", options.most_evidence);
 }
 
-void BlobDetector::prime(std::span<const Frame> samples) {
+void ForegroundEvidence::prime(std::span<const Frame> samples) {
   std::vector<cv::Mat> seen;
   for (const Frame& frame : samples) seen.push_back(filter_responses(frame.picture, options_.step.value_or(kUsualStep)));
   if (seen.size() >= kFewestFrames) learn(seen);
 }
 
-Detections BlobDetector::detect(const Frame& frame, std::span<const Expected> /*expected*/) {
+std::shared_ptr<const BlobEvidence> ForegroundEvidence::of(const Frame& frame) {
   const int step = options_.step.value_or(kUsualStep);
   const cv::Mat responses = filter_responses(frame.picture, step);
   if (background_.empty()) {
     waiting_.push_back(responses);
     if (std::ssize(waiting_) >= options_.learning_frames) learn(std::exchange(waiting_, {}));
-    return {};
+    return nullptr;
   }
   if (responses.size() != grid_) throw Error("{}", "the pictures of a camera change their size within the recording");
   auto evidence = std::make_shared<BlobEvidence>();
@@ -50,12 +50,10 @@ Detections BlobDetector::detect(const Frame& frame, std::span<const Expected> /*
           std::clamp(log_density(foreground_, response[column]) - background[column].log_density(response[column]), -most, most);
     }
   }
-  Detections found;
-  found.evidence = std::move(evidence);
-  return found;
+  return evidence;
 }
 
-void BlobDetector::learn(const std::vector<cv::Mat>& seen) {
+void ForegroundEvidence::learn(const std::vector<cv::Mat>& seen) {
   grid_ = seen.front().size();
   const Response noise = response_noise(seen);
   std::vector<Response> of_point;
@@ -69,7 +67,7 @@ void BlobDetector::learn(const std::vector<cv::Mat>& seen) {
   foreground_ = learn_foreground(outliers(seen), options_.foreground_kinds, options_.seed);
 }
 
-std::vector<Response> BlobDetector::outliers(const std::vector<cv::Mat>& seen) const {
+std::vector<Response> ForegroundEvidence::outliers(const std::vector<cv::Mat>& seen) const {
   std::vector<Response> found;
   for (const cv::Mat& grid : seen) {
     for (int at = 0; at < grid_.area(); ++at) {

@@ -14,14 +14,14 @@
 #include "marey/filter/any_filter.h"
 #include "marey/track/immediate_tracker.h"
 
-namespace marey::track::image {
+namespace marey::experiments {
 
-class IndependentTracker final : public ImmediateTracker<2> {
+class IndependentTracker final : public track::ImmediateTracker<2> {
  public:
   explicit IndependentTracker(const filter::FilterOptions& options) : options_(options) {}
 
   using ImmediateTracker<2>::step;
-  std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations<2>> views) override;
+  std::span<const Track<2>> step(Timestamp now, std::span<const track::CameraObservations<2>> views) override;
   std::span<const Track<2>> expected(Timestamp now) override;
 
  private:
@@ -37,4 +37,4 @@ class IndependentTracker final : public ImmediateTracker<2> {
   std::vector<Target> targets_;
 };
 
-}  // namespace marey::track::image
+}  // namespace marey::experiments

@@ -7,7 +7,7 @@
 //                of the motion filter: the centre's shift, and d_k / d_{k−1} − 1, d from the centre to one control point
 // What the paper leaves open is in PublishedOptions. The change of light taken is the largest along the line; every line has one,
 // and every one is believed, so that a line that meets a neighbour pulls the outline there: Figure 6.
-#include "marey/track/contour/published_outline.h"
+#include "experiments/published_outline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@
 
 #include "marey/core/error.h"
 
-namespace marey::track::contour {
+namespace marey::experiments {
 namespace {
 
 constexpr double kNoGate = 1e12;
@@ -138,4 +138,4 @@ void PublishedOutline::report() {
   outline_.scale_rate_deviation = rate * std::sqrt(growth_variance_);
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::experiments

@@ -1,4 +1,4 @@
-#include "marey/detect/blobs/blob_detector.h"
+#include "marey/detect/blobs/foreground_evidence.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -60,39 +60,38 @@ TEST(FilterBank, TellsLevelAndContrastOfASquare) {
   EXPECT_EQ(responses.at<Response>(5, 5)[1], 128);
 }
 
-TEST(BlobDetector, SaysWherePeopleAreAndWhereNobodyIs) {
-  BlobDetector detector({.step = 5});
+TEST(ForegroundEvidence, SaysWherePeopleAreAndWhereNobodyIs) {
+  ForegroundEvidence detector({.step = 5});
   const std::vector<Frame> samples = beginning();
   detector.prime(samples);
   const cv::Rect white(60, 30, 14, 40), blue(150, 90, 14, 40);
-  const Detections found = detector.detect(lawn(99, {white, {100, 60, 14, 40}, blue}), {});
-  ASSERT_NE(found.evidence, nullptr);
-  EXPECT_TRUE(found.detections.empty());
-  EXPECT_GT(mean_within(*found.evidence, white), 2);
-  EXPECT_GT(mean_within(*found.evidence, blue), 2);
-  EXPECT_LT(mean_within(*found.evidence, {180, 20, 40, 40}), -2);
+  const auto found = detector.of(lawn(99, {white, {100, 60, 14, 40}, blue}));
+  ASSERT_NE(found, nullptr);
+  EXPECT_GT(mean_within(*found, white), 2);
+  EXPECT_GT(mean_within(*found, blue), 2);
+  EXPECT_LT(mean_within(*found, {180, 20, 40, 40}), -2);
 }
 
-TEST(BlobDetector, AShadowIsNobody) {
-  BlobDetector detector({.step = 5});
+TEST(ForegroundEvidence, AShadowIsNobody) {
+  ForegroundEvidence detector({.step = 5});
   const std::vector<Frame> samples = beginning();
   detector.prime(samples);
-  const Detections found = detector.detect(lawn(99, {}, 0.65), {});
-  ASSERT_NE(found.evidence, nullptr);
-  EXPECT_LT(mean_within(*found.evidence, {0, 0, 240, 160}), 0);
+  const auto found = detector.of(lawn(99, {}, 0.65));
+  ASSERT_NE(found, nullptr);
+  EXPECT_LT(mean_within(*found, {0, 0, 240, 160}), 0);
 }
 
-TEST(BlobDetector, LearnsFromItsFirstFramesWhereNothingCanBeReadAhead) {
-  BlobDetector detector({.step = 5, .learning_frames = 20});
-  for (const Frame& frame : beginning()) EXPECT_EQ(detector.detect(frame, {}).evidence, nullptr);
+TEST(ForegroundEvidence, LearnsFromItsFirstFramesWhereNothingCanBeReadAhead) {
+  ForegroundEvidence detector({.step = 5, .learning_frames = 20});
+  for (const Frame& frame : beginning()) EXPECT_EQ(detector.of(frame), nullptr);
   const cv::Rect there(60, 30, 14, 40);
-  const auto evidence = detector.detect(lawn(99, {there}), {}).evidence;
+  const auto evidence = detector.of(lawn(99, {there}));
   ASSERT_NE(evidence, nullptr);
   EXPECT_GT(mean_within(*evidence, there), 2);
 }
 
-TEST(BlobDetector, RefusesAGridOfNothing) {
-  EXPECT_THROW(BlobDetector({.step = 0}), Error);
+TEST(ForegroundEvidence, RefusesAGridOfNothing) {
+  EXPECT_THROW(ForegroundEvidence({.step = 0}), Error);
 }
 
 }  // namespace

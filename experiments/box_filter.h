@@ -6,7 +6,7 @@
 
 #include "marey/core/geometry.h"
 
-namespace marey::track::contour {
+namespace marey::experiments {
 
 struct BoxFilterOptions {
   double place_noise = 1;        ///< px, of a measured centre and of a measured edge
@@ -38,4 +38,4 @@ class BoxFilter {
   bool frozen_ = false;
 };
 
-}  // namespace marey::track::contour
+}  // namespace marey::experiments

@@ -10,7 +10,7 @@
 #include "marey/core/time.h"
 #include "marey/track/contour/shape_filter.h"
 
-namespace marey::track::contour {
+namespace marey::experiments {
 
 /// The parameters that the paper leaves open.
 struct PublishedOptions {
@@ -43,7 +43,7 @@ class PublishedOutline {
   void report();
 
   PublishedOptions options_;
-  ShapeFilter shape_;
+  track::contour::ShapeFilter shape_;
   // The motion filter: velocity in px a frame, growth a frame; variances. The three do not mix, since nothing couples them.
   Vector<2> velocity_;
   double growth_;
@@ -57,4 +57,4 @@ class PublishedOutline {
   Outline outline_;
 };
 
-}  // namespace marey::track::contour
+}  // namespace marey::experiments

@@ -1,0 +1,123 @@
+#include "marey/pipeline/people/image_tracking.h"
+
+#include <utility>
+#include <variant>
+
+#include "marey/core/error.h"
+#include "marey/detect/appearance.h"
+
+namespace marey::pipeline::people {
+namespace {
+
+std::vector<Expected> expected_of(std::span<const Track<2>> tracks) {
+  std::vector<Expected> result;
+  for (const Track<2>& track : tracks) {
+    if (track.box) result.push_back({*track.box});
+  }
+  return result;
+}
+
+std::vector<Observation<2>> observations_of(const std::vector<Detection>& detections, CameraId camera) {
+  std::vector<Observation<2>> result;
+  result.reserve(detections.size());
+  for (const Detection& detection : detections) {
+    result.push_back({.value = detection.box.centre(),
+                      .covariance = detection.covariance.value_or(Matrix<2>::Identity()),
+                      .camera = camera,
+                      .score = detection.score,
+                      .box = detection.box,
+                      .shared = detection.group.has_value()});
+  }
+  return result;
+}
+
+/// Whether only images of a static camera can be searched.
+bool needs_static_camera(const detect::DetectorOptions& detector) {
+  const auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&detector);
+  return network == nullptr || network->background;
+}
+
+/// Background subtraction needs a static camera; of another program's detections, and of what a network alone searches, nothing is
+/// known.
+track::TrackerOptions image_tracker_options(const corridor::Feed& feed, const PeopleInPictureOptions& options) {
+  track::TrackerOptions tracker = feed.has_pictures() ? options.tracker : track::box_tracker_options(options.tracker);
+  tracker.steady_camera = feed.has_pictures() && needs_static_camera(options.detector);
+  tracker.reidentify = tracker.steady_camera && options.live;
+  tracker.learn_clutter = tracker.learn_noise && options.live;
+  return tracker;
+}
+
+}  // namespace
+
+ObservedFrame observed_in(const Frame& frame, const detect::Detections& found) {
+  ObservedFrame observed{.observations = observations_of(found.detections, frame.camera), .clothes = {}};
+  if (!frame.picture.is_colour() || found.foreground.mask.empty()) return observed;
+  for (std::size_t i = 0; i < found.detections.size(); ++i) {
+    observed.clothes.push_back({detect::upper_body(frame.picture, found.foreground, found.detections, i),
+                                detect::lower_body(frame.picture, found.foreground, found.detections, i),
+                                detect::shanks(frame.picture, found.foreground, found.detections, i)});
+  }
+  return observed;
+}
+
+ImageTracking::ImageTracking(const corridor::Feed& feed, const PeopleInPictureOptions& options)
+    : detector_options_(options.detector),
+      tracker_options_(image_tracker_options(feed, options)),
+      contour_options_(options.outlines),
+      tracker_(track::make_tracker(tracker_options_)) {
+  if (feed.has_pictures() && feed.detector() == nullptr) detector_ = detect::make_detector(options.detector);
+  if (!contour_options_) return;
+  if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
+  contours_.emplace(*contour_options_);
+}
+
+detect::Detections ImageTracking::detect(const CameraFrame& given) {
+  if (given.detections) {
+    for (const Detection& one : *given.detections) border_.see(one.box);
+    return {.detections = *given.detections, .foreground = {}};
+  }
+  if (!detector_) return {.detections = {}, .foreground = {}, .searched = false};
+  detect::Detections found = detector_->detect(given.frame, expected_of(tracker_->expected(given.frame.time)));
+  if (give_)
+    give_({.camera = given.frame.camera,
+           .frame = given.frame.index,
+           .size = given.frame.picture.size(),
+           .foreground = {.mask = found.foreground.mask.clone(), .covered = found.foreground.covered.clone()}});
+  return found;
+}
+
+/// Contours are searched before and corrected after, so that each informs the other.
+std::span<const Track<2>> ImageTracking::track(const Frame& frame, const detect::Detections& found) {
+  std::vector<Observation<2>> observations = observations_of(found.detections, frame.camera);
+  if (!contours_) return count(tracker_->step(frame.time, observations), found.detections.size());
+  const auto hints = contours_->observe(frame, found.foreground, found.detections);
+  observations.insert(observations.end(), hints.begin(), hints.end());
+  return count(contours_->attach(tracker_->step(frame.time, observations), found.detections), found.detections.size());
+}
+
+std::span<const Track<2>> ImageTracking::track(Timestamp now, const ObservedFrame& observed) {
+  return count(tracker_->step(now, observed.observations), observed.observations.size());
+}
+
+std::span<const Track<2>> ImageTracking::count(std::span<const Track<2>> tracks, std::size_t detections) {
+  for (const Track<2>& track : tracks) (track.confirmed ? counts_.confirmed : counts_.begun).insert(track.id);
+  counts_.detections += static_cast<std::int64_t>(detections);
+  return tracks;
+}
+
+void ImageTracking::restart(std::span<const Frame> samples) {
+  counts_ = {};
+  tracker_ = track::make_tracker(tracker_options_);
+  if (contours_) contours_.emplace(*contour_options_);
+  detector_ = detect::make_detector(detector_options_);
+  detector_->prime(samples);
+}
+
+void ImageTracking::report(corridor::Summary& summary) const {
+  summary.detections = counts_.detections;
+  std::int64_t too_brief = 0;
+  for (const TrackId id : counts_.begun) too_brief += !counts_.confirmed.contains(id);
+  summary.left_out["too_brief"] = too_brief;
+}
+
+}  // namespace marey::pipeline::people

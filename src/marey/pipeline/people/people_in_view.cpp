@@ -1,0 +1,52 @@
+#include "marey/pipeline/people/people_in_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "marey/reconstruct/person_view.h"
+
+namespace marey::pipeline::people {
+
+std::optional<Box> person_at(const GroundView& view, const Vector<2>& place) {
+  return reconstruct::person_box(*view.camera(), {place.x(), place.y(), view.surface().height(place)});
+}
+
+detect::people::PersonSizeMap sizes_over(const GroundView& view, const reconstruct::GroundArea& area, const cv::Rect& part) {
+  return {part.size(), [&](double x, double y) -> std::optional<detect::people::PersonSize> {
+            const auto place = view.place({x + part.x, y + part.y});
+            if (!place || !area.holds(place->ground, kBeyondArea)) return std::nullopt;
+            const auto box = person_at(view, place->ground);
+            if (!box || box->height < kMinBodyHeight) return std::nullopt;
+            return detect::people::PersonSize{box->height, box->width};
+          }};
+}
+
+cv::Rect part_with_people(const GroundView& view, const reconstruct::GroundArea& area) {
+  const cv::Size size = view.size();
+  const cv::Rect whole({}, size);
+  if (!area.bounded()) return whole;
+  constexpr int step = 32;
+  std::optional<Box> all;
+  // Feet may be below the picture while the head is in it.
+  for (int y = 0; y < 3 * size.height / 2; y += step) {
+    for (int x = -step; x <= size.width + step; x += step) {
+      const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
+      if (!place || !area.holds(place->ground, kBeyondArea)) continue;
+      const auto box = person_at(view, place->ground);
+      if (!box || box->height < kMinBodyHeight) continue;
+      all = all ? geometry::hull(*all, *box) : *box;
+    }
+  }
+  if (!all) return whole;
+  const auto down = [](double value) { return static_cast<int>(std::floor(value / step)) * step; };
+  const cv::Rect found(cv::Point(down(all->left), down(all->top)),
+                       cv::Point(down(all->right()) + step, down(all->bottom()) + step));
+  const cv::Rect part = found & whole;
+  return part.area() > 0 ? part : whole;
+}
+
+Box moved(const Box& box, const cv::Point& by) {
+  return {box.left + by.x, box.top + by.y, box.width, box.height};
+}
+
+}  // namespace marey::pipeline::people
