@@ -2,7 +2,7 @@
 """Who is who across cameras: simulated people a metre apart, four cameras, as `marey reconstruct --targets keypoints` and Pose2Sim place them from the same points.
 
 A swap: a person's nearest true person is another one than in the frame before. A wrong limb: an elbow, wrist, knee or ankle more than 0.2 m from where the person's own truly is.
-Pose2Sim (BSD-3) is left out where PYTHON cannot import it: pip install --no-deps pose2sim rtoml anytree c3d, and its requirements.
+Without PYTHON, which imports Pose2Sim (BSD-3), only Marey runs: pip install --no-deps pose2sim rtoml anytree c3d, and its requirements.
 
 Usage: bench/keypoint_association.py MAREY [PYTHON]
 """

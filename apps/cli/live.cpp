@@ -105,7 +105,8 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
              drops.empty, drops.late_frames);
   if (summary.job == LiveJob::keypoints_in_space)
     fmt::print(stderr,
-               "keypoints: {:.0f} people; {:.0f} of {:.0f} in images are placed; {:.0f} regions were searched for points, {:.0f} images for people\n",
+               "keypoints: {:.0f} people; {:.0f} of {:.0f} in images are placed; {:.0f} regions were searched for points, {:.0f} "
+               "images for people\n",
                figure_of(summary, "people"), figure_of(summary, "people_placed"), figure_of(summary, "people_in_images"),
                figure_of(summary, "regions"), figure_of(summary, "person_searches"));
   print_set_figures(summary);

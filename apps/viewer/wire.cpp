@@ -115,9 +115,8 @@ std::string columns_of(std::span<const Instant> instants, WireHeader header, con
     row_end.push_back(rows += static_cast<std::uint32_t>(instant.samples.size()));
     pose_end.push_back(poses += static_cast<std::uint32_t>(instant.bodies.size()));
   }
-  header.flags =
-      static_cast<std::uint16_t>((columns.z ? kHasZ : 0) | (columns.boxes ? kHasBoxes : 0) | (columns.cameras ? kHasCameras : 0) |
-                                 (columns.sigma ? kHasSigma : 0));
+  header.flags = static_cast<std::uint16_t>((columns.z ? kHasZ : 0) | (columns.boxes ? kHasBoxes : 0) |
+                                            (columns.cameras ? kHasCameras : 0) | (columns.sigma ? kHasSigma : 0));
   header.counts = {static_cast<std::uint32_t>(instants.size()), rows, poses, static_cast<std::uint32_t>(columns.keypoints)};
   ByteWriter out;
   out.reserve(40 + 20 * instants.size() + rows * (41 + 9 * columns.keypoints) + poses * std::size_t{33});

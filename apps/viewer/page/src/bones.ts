@@ -4,7 +4,7 @@ import type { Scene, Track } from "./scene";
 import type { Stretch } from "./wire";
 
 const CERTAIN_M = 0.01; // standard deviation of a keypoint in space that is drawn opaque
-const VAGUE_M = 0.08; // and of one that is hardly drawn
+const VAGUE_M = 0.08; // and of one that is drawn faintest
 const FAINTEST = 0.15;
 
 /** Ids of the tracks at both ends of each bone. */
@@ -36,8 +36,8 @@ function parts_of(track: Track): [string, string] {
 export function certainty(stretch: Stretch, row: number): number {
   const sigma = stretch.sigma ? stretch.sigma[row] : NaN;
   if (Number.isNaN(sigma)) return 1;
-  const share = Math.log(sigma / CERTAIN_M) / Math.log(VAGUE_M / CERTAIN_M);
-  return Math.max(FAINTEST, Math.min(1, 1 - (1 - FAINTEST) * share));
+  const vagueness = Math.log(sigma / CERTAIN_M) / Math.log(VAGUE_M / CERTAIN_M);
+  return Math.max(FAINTEST, Math.min(1, 1 - (1 - FAINTEST) * vagueness));
 }
 
 /** A row's keypoints and the bones between them, on a canvas: the less they are visible, the fainter. */

@@ -248,8 +248,9 @@ Format coco_format() {
           .title = "COCO keypoints",
           .endings = ".json",
           .holds = Content::image,
-          .detail = "px; annotations with `track_id`, images and a category that names the points; a point's third number is its "
-                    "visibility × presence. `marey reconstruct --targets keypoints` reads it",
+          .detail =
+              "px; annotations with `track_id`, images and a category that names the points; a point's third number is its "
+              "visibility × presence. `marey reconstruct --targets keypoints` reads it",
           .create = create_export<CocoExport>,
           .while_recording = true};
 }
@@ -259,8 +260,9 @@ Format openpose_format() {
           .title = "OpenPose's folder of keypoints",
           .endings = "_json",
           .holds = Content::image,
-          .detail = "px; a new folder, a JSON file per frame with BODY_25: the neck is midway between the shoulders, small toes are "
-                    "absent. `marey reconstruct --targets keypoints` reads it",
+          .detail =
+              "px; a new folder, a JSON file per frame with BODY_25: the neck is midway between the shoulders, small toes are "
+              "absent. `marey reconstruct --targets keypoints` reads it",
           .create = create_export<OpenPoseExport>,
           .while_recording = true};
 }

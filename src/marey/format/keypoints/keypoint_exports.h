@@ -1,5 +1,5 @@
-// Keypoints as other programs read them, written as they come: COCO keypoints JSON in one file, and OpenPose's folder of a JSON file
-// per frame.
+// Keypoints as other programs read them, written as they come: COCO keypoints JSON in one file, and OpenPose's folder of a JSON
+// file per frame.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +22,14 @@ struct ExportedPerson {
 };
 
 /// COCO annotations with images and a category that names all points: the third number of a point is its visibility × presence, 0
-/// for one that is absent. The file is there whole or not at all.
+/// for one that is absent. The file is written atomically.
 class CocoWriter {
  public:
   /// Throws Error where nothing can be written there.
   explicit CocoWriter(const std::string& path) : file_(path) {}
 
   void begin(const KeypointSet& set, std::optional<double> rate_hz, std::optional<cv::Size> size);
-  /// Frames come in growing order; those that are passed over have nobody in them.
+  /// Frames come in growing order; missing ones have no people.
   void add(std::int64_t frame, const std::vector<ExportedPerson>& people);
   void finish();
 
@@ -48,8 +48,8 @@ class OpenPoseBody {
 
  private:
   struct From {
-    std::optional<int> point;          // itself, ...
-    std::optional<int> left, right;    // ... or midway between these
+    std::optional<int> point;        // itself, ...
+    std::optional<int> left, right;  // ... or midway between these
   };
   std::vector<From> from_;
 };
@@ -63,7 +63,7 @@ class OpenPoseFolder {
   OpenPoseFolder(const OpenPoseFolder&) = delete;
   OpenPoseFolder& operator=(const OpenPoseFolder&) = delete;
 
-  /// Frames come in growing order; those that are passed over have nobody in them. `people` are of BODY_25.
+  /// Frames come in growing order; missing ones have no people. `people` are of BODY_25.
   void add(std::int64_t frame, const std::vector<ExportedPerson>& people);
   void finish() { finished_ = true; }
 

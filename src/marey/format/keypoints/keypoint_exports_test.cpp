@@ -42,7 +42,7 @@ std::shared_ptr<Keypoints<2>> person_of(int person, std::size_t points) {
   return body;
 }
 
-/// Two people in frame 0, nobody in frame 1, frame 2 is left out, one in frame 3; one box has no keypoints.
+/// Two people in frame 0, none in frame 1, no frame 2, one person in frame 3; one box has no keypoints.
 void write_through_register(const std::string& path, std::string_view name, const KeypointSet& set, bool finish = true) {
   const Format& format = format_to_write(path, name, Content::image);
   const auto sink = create_recording(path, format);
@@ -115,7 +115,9 @@ TEST(KeypointExports, OpenPoseIsReadBackWithTheSamePoints) {
   const auto hips = point_of(read.set, read.frames[0][1], "mid_hip"), left = point_of(set, *written, "left_hip"),
              right = point_of(set, *written, "right_hip");
   ASSERT_EQ(hips.has_value(), left && right);
-  if (hips) EXPECT_LT((hips->position - (left->position + right->position) / 2).norm(), 1e-3);
+  if (hips) {
+    EXPECT_LT((hips->position - (left->position + right->position) / 2).norm(), 1e-3);
+  }
   EXPECT_FALSE(point_of(read.set, read.frames[0][1], "left_small_toe"));
 }
 

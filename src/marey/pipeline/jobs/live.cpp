@@ -22,7 +22,8 @@ Table table_of(Live& job) {
 live::LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::string>& warnings) {
   live::LiveOptions options;
   if (job.ground && job.targets == live::LiveTargets::keypoints)
-    throw WrongOption("{}", "--ground localises people by their boxes, --targets keypoints by their body points; leave out one of the two");
+    throw WrongOption("{}",
+                      "--ground localises people by their boxes, --targets keypoints by their body points; remove one of the two");
   options.targets = job.ground ? live::LiveTargets::people : job.targets;
   options.ground = job.ground;
   options.space.markers = options.markers.markers = job.markers;

@@ -9,13 +9,6 @@ namespace {
 using detect::keypoints::Body;
 using detect::keypoints::PersonRegion;
 
-constexpr double kSameRegion = 0.2;   // of the larger side: two whose centres lie so near each other are of one person, unswept
-constexpr double kSameSide = 0.5;     // and whose sides differ by no more than this factor, unswept
-constexpr double kSamePerson = 0.06;  // of the height: two whose points lie so near each other on average are one
-constexpr double kLargestStep = 0.5;  // of a region's side: farther off, the next region is of another person, unswept
-constexpr double kLargestGrowth = 2;  // of a region's side from image to image, unswept
-constexpr int kLeastLooks = 2;        // the first one's region is only a box, which makes its points worse
-
 bool is_complete(const Keypoints<2>& body) {
   return std::all_of(body.points.begin(), body.points.end(), [](const auto& point) { return point.has_value(); });
 }
@@ -39,14 +32,14 @@ double distance_of(const Keypoints<2>& a, const Keypoints<2>& b) {
   return count > 0 ? sum / count : 1e9;
 }
 
-bool is_same(const PersonRegion& a, const PersonRegion& b) {
-  return (a.centre - b.centre).norm() < kSameRegion * std::max(a.side, b.side) &&
-         std::min(a.side, b.side) > kSameSide * std::max(a.side, b.side);
+bool is_same(const PersonRegion& a, const PersonRegion& b, const CameraPeopleOptions& how) {
+  return (a.centre - b.centre).norm() < how.same_centre * std::max(a.side, b.side) &&
+         how.max_growth * std::min(a.side, b.side) > std::max(a.side, b.side);
 }
 
-bool continues(const PersonRegion& from, const PersonRegion& to) {
-  return (to.centre - from.centre).norm() < kLargestStep * from.side && to.side < kLargestGrowth * from.side &&
-         from.side < kLargestGrowth * to.side;
+bool continues(const PersonRegion& from, const PersonRegion& to, const CameraPeopleOptions& how) {
+  return (to.centre - from.centre).norm() < how.max_step * from.side && to.side < how.max_growth * from.side &&
+         from.side < how.max_growth * to.side;
 }
 
 }  // namespace
@@ -77,11 +70,11 @@ void CameraPeople::expect(const PersonRegion& region, Timestamp now) {
 }
 
 bool CameraPeople::covered(const PersonRegion& region) const {
-  return std::any_of(known_.begin(), known_.end(), [&](const Known& known) { return is_same(known.region, region); });
+  return std::any_of(known_.begin(), known_.end(), [&](const Known& known) { return is_same(known.region, region, options_); });
 }
 
 void CameraPeople::propose(const PersonRegion& region) {
-  if (known_.size() < options_.most && !covered(region)) known_.emplace_back(region, set_);
+  if (known_.size() < options_.max_regions && !covered(region)) known_.emplace_back(region, set_);
 }
 
 std::span<const PersonRegion> CameraPeople::regions() {
@@ -96,7 +89,7 @@ void CameraPeople::take(std::span<const Body> bodies, Timestamp now) {
     const Body& body = bodies[i];
     if (known.looks++ == 0) known.confirmed = now;
     const bool first = !known.seen.has_value();
-    if (body.keypoints.presence < options_.presence || (!first && !continues(known.region, body.next))) {
+    if (body.keypoints.presence < options_.presence || (!first && !continues(known.region, body.next, options_))) {
       known.ended = true;
       continue;
     }
@@ -116,18 +109,18 @@ void CameraPeople::take(std::span<const Body> bodies, Timestamp now) {
   people_.clear();
   of_people_.clear();
   for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (known_[i].looks < kLeastLooks) continue;
+    if (known_[i].looks < options_.min_looks) continue;
     people_.push_back(known_[i].body);
     of_people_.push_back(i);
   }
 }
 
-/// Nobody is found twice: the region that began later ends.
+/// Of two regions that show the same body the one that began later ends.
 void CameraPeople::end_doubles() {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     for (std::size_t k = 0; k < i && !known_[i].ended; ++k) {
       if (known_[k].ended) continue;
-      known_[i].ended = distance_of(known_[i].body, known_[k].body) < kSamePerson * extent_of(known_[k].body);
+      known_[i].ended = distance_of(known_[i].body, known_[k].body) < options_.same_points * extent_of(known_[k].body);
     }
   }
 }

@@ -15,24 +15,29 @@
 namespace marey::pipeline::keypoints {
 
 struct CameraPeopleOptions {
-  double presence = 0.5;    ///< from which on there is a person, unswept
-  double unplaced_s = 2;    ///< a region whose person no other camera confirms ends after this, unswept
-  double search_s = 2;      ///< the detector runs at least this often while people may come, unswept
-  double retry_s = 0.5;     ///< and at most this often when a region has ended or there is none, unswept
-  double expect_s = 0.2;    ///< between two looks for people whom other cameras see here, unswept
-  std::size_t most = 12;    ///< regions of an image; further ones wait
+  double presence = 0.5;         ///< from which on there is a person, unswept
+  double unplaced_s = 2;         ///< a region whose person no other camera confirms ends after this, unswept
+  double search_s = 2;           ///< the detector runs at least this often while people may come, unswept
+  double retry_s = 0.5;          ///< and at most this often when a region has ended or there is none, unswept
+  double expect_s = 0.2;         ///< between two searches for people that only other cameras see, unswept
+  std::size_t max_regions = 12;  ///< of an image; further people wait, unswept
+  int min_looks = 2;             ///< after which a person is reported: the first region is only a box, which makes points worse
+  double same_centre = 0.2;      ///< distance of the centres of regions of one person, of the larger side, unswept
+  double same_points = 0.06;     ///< mean distance between the points of bodies that are the same, of the height
+  double max_step = 0.5;         ///< of a region's centre from image to image, of its side, unswept
+  double max_growth = 2;         ///< factor of a region's side from image to image, unswept
 };
 
 class CameraPeople {
  public:
   explicit CameraPeople(const KeypointSet& set, const CameraPeopleOptions& options = {});
 
-  /// How urgently the detector should run in the image of `now`: seconds overdue; nothing where it need not. `full`: everybody who
-  /// is wanted is in the image.
+  /// How urgently the detector should run in the image of `now`: seconds overdue; nothing if it need not. `full`: all people that
+  /// are wanted are in the image.
   std::optional<double> search_due(Timestamp now, bool full) const;
   /// The detector ran: regions of people who are in none yet are looked at from the next `regions` on.
   void searched(std::span<const Box> boxes, Timestamp now);
-  /// A person whom other cameras see should be here. Looked for at most every `expect_s`, as long as they are not seen.
+  /// A person that other cameras see should be here. Searched at most every `expect_s` until they are seen.
   void expect(const detect::keypoints::PersonRegion& region, Timestamp now);
 
   /// Where to look in the next image. Valid until the next call of anything.
@@ -40,7 +45,8 @@ class CameraPeople {
   /// What the network saw in each of them.
   void take(std::span<const detect::keypoints::Body> bodies, Timestamp now);
 
-  /// The people of the last image, those whom the network saw twice at least; `placed` says which of them other cameras confirm.
+  /// The people of the last image, those that the network saw in `min_looks` images at least; `placed` says which of them other
+  /// cameras confirm.
   const std::vector<Keypoints<2>>& people() const { return people_; }
   void placed(std::size_t index, Timestamp now);
 

@@ -41,7 +41,8 @@ FollowedPeople follow_some(const CalibratedCameras& cameras, const KeypointFrame
     }
     followed.times_ms.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     if (most >= frames.size())
-      hooks.advance({.step = "placing", .done = static_cast<std::int64_t>(t) + 1, .total = static_cast<std::int64_t>(frames.size())});
+      hooks.advance(
+          {.step = "placing", .done = static_cast<std::int64_t>(t) + 1, .total = static_cast<std::int64_t>(frames.size())});
   }
   followed.seen = people.views_seen();
   followed.placed = people.views_placed();
@@ -79,7 +80,7 @@ FollowedPeople follow_on_floor(const CalibratedCameras& cameras, const KeypointF
 }
 
 double keypoint_noise(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set) {
-  constexpr std::size_t kLearnsFrom = 300;  // instants
+  constexpr std::size_t kLearnsFrom = 300;  // instants, numerical: enough for a median
   constexpr double kMuchMore = 1.2;
   double best = 1, best_placed = 0;
   for (const double noise : {1.3, 2.6, 5.2}) {

@@ -55,7 +55,9 @@ class KeypointJob {
   Recording run();
 
  private:
-  bool one_camera() const { return std::count_if(files_.begin(), files_.end(), [](const auto& file) { return file.has_value(); }) == 1; }
+  bool one_camera() const {
+    return std::count_if(files_.begin(), files_.end(), [](const auto& file) { return file.has_value(); }) == 1;
+  }
   void find_offsets();
   std::vector<rk::PersonTrack> people_kept(std::map<int, rk::PersonTrack> tracks) const;
   rk::PersonPath smooth(rk::PersonTrack& track, double noise) const;

@@ -26,11 +26,8 @@ using detect::keypoints::Body;
 using detect::keypoints::Look;
 using detect::keypoints::PersonRegion;
 
-constexpr double kLiveGateSlack = 1.3;         // times the noise, for the question who is who: as for recordings
-constexpr double kFewestPlaced = 0.75;       // share of people in images below which it is asked why
-constexpr std::size_t kMostKept = 120;     // instants that are kept for that
-constexpr double kLeastVisible = 0.5;      // of a point that is told as seen, unswept
-constexpr std::size_t kLeastInImage = 12;  // points of a person that is looked for in another camera, unswept
+constexpr double kFewestPlaced = 0.75;  // fraction of people in images below which the reasons are searched: as for recordings
+constexpr std::size_t kMostKept = 120;  // numerical: instants that are kept for that
 
 class Stopwatch {
  public:
@@ -80,7 +77,7 @@ class KeypointsLive final : public corridor::Stage {
         find_bodies_(options.find_bodies ? options.find_bodies : network_of(options.model)),
         views_(set_, static_cast<int>(rig.cameras.size())),
         people_(set_, options.people),
-        most_people_(options.people.most) {
+        options_(options) {
     for (const RigCamera& camera : rig.cameras) {
       cameras_.push_back(camera.camera());
       counts_.push_back({.name = camera.name});
@@ -120,7 +117,7 @@ class KeypointsLive final : public corridor::Stage {
   rk::PeopleInViews views_;
   LiveNoise noise_;
   PlacedPeople people_;
-  int most_people_;
+  KeypointsLiveOptions options_;
   std::vector<rk::PlacedPerson> placed_;
   std::vector<Look> looks_;
   std::vector<std::size_t> looked_in_;  // camera of each look
@@ -128,7 +125,7 @@ class KeypointsLive final : public corridor::Stage {
   std::optional<Timestamp> before_;
   Instant instant_;
   std::vector<corridor::Summary::Camera> counts_;
-  std::vector<std::optional<KeypointCamera>> kept_;  // of the first instants in which two cameras saw somebody
+  std::vector<std::optional<KeypointCamera>> kept_;  // of the first instants in which two cameras saw people
   StageTimes searching_, looking_, placing_;
   std::int64_t searches_ = 0, looks_count_ = 0, with_people_ = 0;
   bool told_misfit_ = false;
@@ -146,12 +143,12 @@ RecordingHeader KeypointsLive::header() const {
   return header;
 }
 
-/// Everybody who is wanted is known in this camera: no detector is needed.
+/// All people that are wanted are known in this camera: no detector is needed.
 bool KeypointsLive::is_full(std::size_t camera) const {
-  if (most_people_ == 0) return false;
+  if (options_.people.most == 0) return false;
   std::int64_t here = 0;
   for (const rk::PlacedPerson& person : placed_) here += person.views[camera] >= 0 && people_.track_of(person.id, 0) ? 1 : 0;
-  return here >= most_people_;
+  return here >= options_.people.most;
 }
 
 /// The person detector, in the image that has waited for it longest.
@@ -202,11 +199,11 @@ void KeypointsLive::place(const FrameSet& frames, double step_s) {
     if (!has_frame_[c]) continue;
     const std::vector<Keypoints<2>>& people = in_images_[c].people();
     for (std::size_t i = 0; i < people.size(); ++i)
-      views.push_back(
-          rk::view_of(*cameras_[c], static_cast<int>(c), static_cast<int>(i), people[i], kLiveGateSlack * noise_.times_stated()));
+      views.push_back(rk::view_of(*cameras_[c], static_cast<int>(c), static_cast<int>(i), people[i],
+                                  options_.gate_slack * noise_.times_stated()));
   }
   placed_ = views_.step(step_s, views);
-  noise_.learn(placed_, kLiveGateSlack);
+  noise_.learn(placed_, options_.gate_slack);
   for (const rk::PlacedPerson& person : placed_) {
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       if (person.views[c] >= 0) in_images_[c].placed(static_cast<std::size_t>(person.views[c]), frames.time);
@@ -215,8 +212,7 @@ void KeypointsLive::place(const FrameSet& frames, double step_s) {
 }
 
 /// Where a person whose points are known in space is in a camera's image, with enough of the body in it.
-std::optional<PersonRegion> KeypointsLive::region_in(const Camera& camera,
-                                                     std::span<const std::optional<Vector<3>>> points) const {
+std::optional<PersonRegion> KeypointsLive::region_in(const Camera& camera, std::span<const std::optional<Vector<3>>> points) const {
   std::vector<std::optional<Vector<2>>> pixels(points.size());
   std::size_t inside = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -230,7 +226,7 @@ std::optional<PersonRegion> KeypointsLive::region_in(const Camera& camera,
     if (trunk_.points[i]) trunk[i] = pixels[static_cast<std::size_t>(*trunk_.points[i])];
     if (!trunk[i]) return std::nullopt;
   }
-  if (inside < std::min(kLeastInImage, points.size() / 2)) return std::nullopt;
+  if (inside < std::min(options_.min_points_in_image, points.size() / 2)) return std::nullopt;
   const Vector<2> hips = (*trunk[0] + *trunk[1]) / 2, shoulders = (*trunk[2] + *trunk[3]) / 2;
   double reach = 0;
   for (const auto& pixel : pixels) {
@@ -259,7 +255,7 @@ void KeypointsLive::tell_seen(Instant& instant) const {
       if (person.views[c] < 0) continue;
       const Keypoints<2>& body = in_images_[c].people()[static_cast<std::size_t>(person.views[c])];
       for (std::size_t i = 0; i < body.points.size(); ++i) {
-        if (!body.points[i] || body.points[i]->visibility < kLeastVisible) continue;
+        if (!body.points[i] || body.points[i]->visibility < options_.min_visibility) continue;
         SeenPoint& seen = instant.seen.emplace_back();
         seen.camera = CameraId{static_cast<int>(c)};
         seen.pixel = body.points[i]->position;
@@ -276,8 +272,7 @@ void KeypointsLive::keep() {
   for (std::size_t c = 0; c < cameras_.size(); ++c) cameras += has_frame_[c] && !in_images_[c].people().empty() ? 1 : 0;
   if (cameras < 2 || with_people_++ >= static_cast<std::int64_t>(kMostKept)) return;
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
-    if (kept_[c])
-      kept_[c]->sequence.frames.push_back(has_frame_[c] ? in_images_[c].people() : std::vector<Keypoints<2>>{});
+    if (kept_[c]) kept_[c]->sequence.frames.push_back(has_frame_[c] ? in_images_[c].people() : std::vector<Keypoints<2>>{});
   }
 }
 
@@ -311,9 +306,10 @@ std::vector<std::string> KeypointsLive::news() {
   if (!told_misfit_ && with_people_ >= static_cast<std::int64_t>(kMostKept)) {
     told_misfit_ = true;
     if (static_cast<double>(views_.views_placed()) < kFewestPlaced / 2 * static_cast<double>(views_.views_seen()))
-      news.push_back(fmt::format("only {} of {} people in images are placed: two cameras must see the same person, and stand where "
-                                 "they were calibrated",
-                                 views_.views_placed(), views_.views_seen()));
+      news.push_back(
+          fmt::format("only {} of {} people in images are placed: two cameras must see the same person, and stand where "
+                      "they were calibrated",
+                      views_.views_placed(), views_.views_seen()));
   }
   return news;
 }
@@ -333,11 +329,12 @@ void KeypointsLive::report(corridor::Summary& summary) const {
   summary.figures["people_placed"] = static_cast<double>(views_.views_placed());
   summary.figures["noise"] = noise_.times_stated();
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
-    if (!cameras_[c]) summary.warnings.push_back(fmt::format("camera \"{}\" is not calibrated: it is left out", rig_.cameras[c].name));
+    if (!cameras_[c])
+      summary.warnings.push_back(fmt::format("camera \"{}\" is not calibrated: its images are not used", rig_.cameras[c].name));
   }
   const double seen = static_cast<double>(views_.views_seen()), placed = static_cast<double>(views_.views_placed());
   if (seen == 0) {
-    summary.warnings.push_back("nobody was seen in any image");
+    summary.warnings.push_back("no person was seen in any image");
   } else if (placed < kFewestPlaced * seen) {
     summary.warnings.push_back(fmt::format("only {:.0f} of {:.0f} people in images are placed", placed, seen));
     if (with_people_ > 0) {

@@ -51,7 +51,7 @@ struct Body2D {
   Vector<2> hips, rim;
 };
 
-/// A room of people whose networks make the errors of `errors`; hidden are those times at which no camera sees anybody.
+/// A room of people whose networks make the errors of `errors`; hidden are the frames in which no camera sees a person.
 struct LiveRoom {
   RoomScene scene;
   KeypointErrors errors;
@@ -66,8 +66,8 @@ struct LiveRoom {
     const std::int64_t frame = image.luma().at<std::uint16_t>(0, 1);
     std::vector<Body2D> bodies;
     if (frame >= hidden_from && frame < hidden_to) return bodies;
-    for (Keypoints<2>& person : keypoints_seen(scene, camera, static_cast<double>(frame) / kRate,
-                                               static_cast<std::uint64_t>(frame), errors)) {
+    for (Keypoints<2>& person :
+         keypoints_seen(scene, camera, static_cast<double>(frame) / kRate, static_cast<std::uint64_t>(frame), errors)) {
       Vector<2> low = Vector<2>::Constant(1e9), high = -low, hips = Vector<2>::Zero();
       for (const auto& point : person.points) {
         if (point) low = low.cwiseMin(point->position), high = high.cwiseMax(point->position);
@@ -79,7 +79,9 @@ struct LiveRoom {
       }
       if (count == 0) continue;
       hips /= count;
-      bodies.push_back({std::move(person), {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()}, hips,
+      bodies.push_back({std::move(person),
+                        {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()},
+                        hips,
                         Vector<2>(hips.x(), hips.y() - (high.y() - low.y()) / 2)});
     }
     return bodies;
@@ -143,7 +145,8 @@ std::map<std::string, std::vector<std::pair<std::size_t, Vector<3>>>> people_of(
   for (const Sample& sample : instant.samples) {
     const std::string& label = labels.at(sample.track);
     const std::size_t colon = label.find(':');
-    people[label.substr(0, colon)].emplace_back(static_cast<std::size_t>(*point_named(set, label.substr(colon + 1))), sample.position);
+    people[label.substr(0, colon)].emplace_back(static_cast<std::size_t>(*point_named(set, label.substr(colon + 1))),
+                                                sample.position);
   }
   return people;
 }
@@ -196,10 +199,10 @@ TEST(KeypointsLive, LooksForAPersonWhereOtherCamerasSeeThem) {
   for (std::int64_t k = 0; k < 50; ++k) {
     for (const Sample& sample : stage->step(room.frames(k))[0].samples) cameras |= sample.cameras;
   }
-  EXPECT_EQ(cameras, 0b1111U) << "the detector found nobody in cameras 3 and 4";
+  EXPECT_EQ(cameras, 0b1111U) << "the detector found no person in cameras 3 and 4";
 }
 
-TEST(KeypointsLive, WhoComesBackHasTheirNumber) {
+TEST(KeypointsLive, KeepsTheNumberOfAPersonThatReturns) {
   LiveRoom room(small_room(1, 200, 3), {});
   room.hidden_from = 60, room.hidden_to = 120;
   const auto stage = keypoints_live(room.scene.rig(), kRate, room.options());
@@ -250,7 +253,7 @@ TEST(KeypointsLive, SaysThatCamerasAreExchanged) {
   EXPECT_TRUE(said) << summary.warnings.size();
 }
 
-TEST(KeypointsLive, SaysThatNobodyWasSeen) {
+TEST(KeypointsLive, SaysThatNoPersonWasSeen) {
   LiveRoom room(small_room(1, 20, 6), {});
   room.hidden_from = 0, room.hidden_to = 20;
   const auto stage = keypoints_live(room.scene.rig(), kRate, room.options());
@@ -258,7 +261,7 @@ TEST(KeypointsLive, SaysThatNobodyWasSeen) {
   corridor::Summary summary;
   stage->report(summary);
   ASSERT_EQ(summary.warnings.size(), 1U);
-  EXPECT_NE(summary.warnings[0].find("nobody"), std::string::npos);
+  EXPECT_NE(summary.warnings[0].find("no person"), std::string::npos);
 }
 
 TEST(KeypointsLive, NeedsTwoCalibratedCameras) {

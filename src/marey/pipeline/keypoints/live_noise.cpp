@@ -6,10 +6,10 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
-constexpr std::size_t kBlock = 1000;            // points: those of a person in a second or two, unswept
-constexpr int kMostBlocks = 10;                 // then it is known, unswept
-constexpr double kLeast = 0.5, kMost = 5.2;     // as far as recordings are searched
-constexpr double kMedianOfMean = 0.9;           // the median of a sum of squares is a little below its mean
+constexpr std::size_t kBlock = 1000;         // points, numerical: enough for a median
+constexpr int kMostBlocks = 10;              // numerical: then the median is known
+constexpr double kLeast = 0.5, kMost = 5.2;  // numerical: as far as recordings are searched
+constexpr double kMedianOfMean = 0.9;        // by definition: the median of a sum of squares is a little below its mean
 
 }  // namespace
 

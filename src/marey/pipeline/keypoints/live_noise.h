@@ -7,8 +7,8 @@
 
 namespace marey::pipeline::keypoints {
 
-/// How many times the deviations that a network states its points' errors are, by how well several cameras' half-lines meet. Learned
-/// from the first seconds of a live run, block by block; recordings are searched for it as a whole (keypoints_in_space.h).
+/// How many times the deviations that a network states its points' errors are, by how well several cameras' half-lines meet.
+/// Learned from the first seconds of a live run, block by block; recordings are searched for it as a whole (keypoints_in_space.h).
 class LiveNoise {
  public:
   double times_stated() const { return noise_; }

@@ -10,9 +10,6 @@ namespace {
 
 using reconstruct::keypoints::PlacedPerson;
 
-constexpr int kMostRefused = 3;          // measurements outside the gate after which the point begins anew, unswept
-constexpr double kVague_m = 0.15;  // a point known no better is none
-
 std::optional<Vector<3>> mean_place(const PlacedPerson& person) {
   Vector<3> sum = Vector<3>::Zero();
   double count = 0;
@@ -64,9 +61,9 @@ void PlacedPeople::correct(Slot& slot, const PlacedPerson& person) const {
   for (std::size_t i = 0; i < slot.points.size(); ++i) {
     auto& point = slot.points[i];
     const auto& seen = person.points[i];
-    if (!seen || seen->covariance.trace() > 3 * kVague_m * kVague_m) continue;
+    if (!seen || seen->covariance.trace() > 3 * options_.max_sigma_m * options_.max_sigma_m) continue;
     const bool outside = point && point->filter.gate_distance(seen->position, seen->covariance) > 1;
-    if (outside && ++point->refused < kMostRefused) continue;
+    if (outside && ++point->refused < options_.max_refused) continue;
     if (!point || outside) {
       point.emplace(Point{filter::Kalman<3>(options_.filter, seen->position, seen->covariance)});
     } else {

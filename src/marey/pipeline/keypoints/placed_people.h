@@ -2,9 +2,9 @@
 // which carries it over instants in which it is not seen.
 //
 // Every point is a Kalman filter of constant velocity, with the noise density that the paths over whole recordings have
-// (reconstruct/keypoints/trajectory.h). Numbers are reused: who is placed after another one has gone for longer than people are
-// searched (PeopleOptions::lost_s) takes the number of the one that was nearest, so that a skeleton or a client of a stream goes on
-// with the person who comes back. Cost: one filter step a point.
+// (reconstruct/keypoints/trajectory.h). Numbers are reused: a person that is placed after another one has been absent for longer
+// than people are searched (PeopleOptions::lost_s) gets the number of the nearest such one, so that a skeleton or a client of a
+// stream continues with a person that returns. Cost: one filter step per point.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,12 @@
 namespace marey::pipeline::keypoints {
 
 struct PlacedPeopleOptions {
-  int most = 0;          ///< people who get a number; 0: all
-  int settle = 3;        ///< instants in which a person is placed before they get one, unswept
-  double free_s = 1;     ///< after which a number is given to another person, unswept
-  double predict_s = 0.2;  ///< that a point which is not seen is carried on, unswept
+  int most = 0;               ///< people who get a number; 0: all
+  int settle = 3;             ///< instants in which a person is placed before they get one, unswept
+  int max_refused = 3;        ///< measurements outside the gate, one after the other, after which a point starts again, unswept
+  double max_sigma_m = 0.15;  ///< standard deviation of a triangulated point that is used, as for recordings
+  double free_s = 1;          ///< after which a number is given to another person, unswept
+  double predict_s = 0.2;     ///< that a point which is not seen is carried on, unswept
   filter::KalmanOptions filter{.acceleration_noise = 3.46, .initial_speed = 1.5, .gate_sigmas = 4};  ///< m; the gate unswept
 };
 

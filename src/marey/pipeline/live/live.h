@@ -9,8 +9,8 @@
 #include "marey/core/rig.h"
 #include "marey/pipeline/corridor/live_monitor.h"
 #include "marey/pipeline/corridor/recorder.h"
-#include "marey/pipeline/live/camera_desk.h"
 #include "marey/pipeline/keypoints/keypoints_live.h"
+#include "marey/pipeline/live/camera_desk.h"
 #include "marey/pipeline/markers/markers_in_picture.h"
 #include "marey/pipeline/markers/markers_in_space.h"
 #include "marey/pipeline/markers/track_naming.h"
@@ -56,8 +56,8 @@ struct LiveSummary : corridor::Summary {
   bool recorded = false;
 };
 
-/// One camera: in its image. Several: markers or keypoints in space if two or more are calibrated, people if `ground` is set, else a
-/// preview.
+/// One camera: in its image. Several: markers or keypoints in space if two or more are calibrated, people if `ground` is set, else
+/// a preview.
 LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground);
 
 /// Runs until `hooks.stop` says so, or all that is played has ended; what was recorded is whole then. Throws Error where a source

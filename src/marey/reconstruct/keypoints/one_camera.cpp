@@ -12,11 +12,10 @@
 namespace marey::reconstruct::keypoints {
 namespace {
 
-constexpr double kLeastConfidence = 0.3;  // visibility × presence of a foot's point, unswept
-constexpr double kFarthest_m = 200;       // from the camera: rays beyond are near the horizon
-constexpr double kLeastSlope = 0.02;      // of a ray towards the ground, and of one towards the plane
+constexpr double kFarthest_m = 200;   // numerical: from the camera; rays beyond are near the horizon
+constexpr double kLeastSlope = 0.02;  // numerical: of a ray towards the ground, and of one towards the plane
 
-/// How high points of a foot are when it stands: parts of names and m.
+/// Physical: how high points of a foot are when it stands; parts of names and m.
 constexpr std::array<std::pair<std::string_view, double>, 5> kStandingHeights{
     {{"ankle", 0.08}, {"heel", 0.03}, {"big_toe", 0.02}, {"small_toe", 0.02}, {"foot_index", 0.02}}};
 
@@ -38,7 +37,7 @@ std::optional<Vector<3>> PeopleBeforeCamera::foot_at(const Keypoints<2>& person,
   double count = 0;
   for (const FootPoint& one : foot) {
     const auto& point = person.points[one.point];
-    if (!point || point->visibility * point->presence < kLeastConfidence) continue;
+    if (!point || point->visibility * point->presence < options_.min_confidence) continue;
     const auto ray = camera_.ray(point->position);
     if (!ray || ray->direction.z() > -kLeastSlope) continue;
     const double distance = (one.height_m - ray->origin.z()) / ray->direction.z();
@@ -77,7 +76,8 @@ std::vector<std::optional<SpacePoint>> PeopleBeforeCamera::points_at(const Keypo
     const auto seen = camera_.project_with_jacobian(point.position);
     if (!seen) continue;
     // Across the view as the image says, along it as people are deep.
-    const double scale = std::sqrt(seen->by_world.squaredNorm() / 2), sigma_px = std::sqrt(person.points[i]->covariance.trace() / 2);
+    const double scale = std::sqrt(seen->by_world.squaredNorm() / 2),
+                 sigma_px = std::sqrt(person.points[i]->covariance.trace() / 2);
     const double across = sigma_px / std::max(1e-6, scale);
     point.covariance = across * across * Matrix<3>::Identity() +
                        options_.depth_sigma_m * options_.depth_sigma_m * ray->direction * ray->direction.transpose();

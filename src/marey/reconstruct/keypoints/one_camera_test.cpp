@@ -49,7 +49,8 @@ Keypoints<2> seen_by(const Camera& camera, const std::vector<Vector<3>>& points)
   Keypoints<2> body;
   for (const Vector<3>& point : points) {
     const auto pixel = camera.project(point);
-    body.points.push_back(pixel ? std::optional(Keypoint<2>{.position = *pixel, .covariance = 4 * Matrix<2>::Identity()}) : std::nullopt);
+    body.points.push_back(pixel ? std::optional(Keypoint<2>{.position = *pixel, .covariance = 4 * Matrix<2>::Identity()})
+                                : std::nullopt);
   }
   return body;
 }
@@ -74,7 +75,7 @@ TEST(PeopleBeforeCamera, PlacesAFlatBodyWhereItIs) {
   }
 }
 
-TEST(PeopleBeforeCamera, AFootInTheAirIsNotBelieved) {
+TEST(PeopleBeforeCamera, RejectsAFootInTheAir) {
   const Camera camera = camera_above_floor();
   const PeopleBeforeCamera people(set(), camera, 0, 1);
   const Vector<3> place(0, 5, 0);
@@ -99,7 +100,7 @@ TEST(PeopleBeforeCamera, KeepsTheNumbersOfPeopleWhoPassEachOther) {
   }
 }
 
-TEST(PeopleBeforeCamera, PlacesNobodyWhoseFeetAreAboveTheHorizonOrUnseen) {
+TEST(PeopleBeforeCamera, RejectsPeopleWhoseFeetAreAboveTheHorizonOrHidden) {
   const Camera camera = camera_above_floor();
   PeopleBeforeCamera people(set(), camera, 0, 1);
   std::vector<Keypoints<2>> seen{seen_by(camera, flat_body({0, 5, 0})), seen_by(camera, flat_body({0, 5, 3}))};
