@@ -26,8 +26,9 @@ using detect::keypoints::Body;
 using detect::keypoints::Look;
 using detect::keypoints::PersonRegion;
 
-constexpr double kFewestPlaced = 0.75;  // fraction of people in images below which the reasons are searched: as for recordings
-constexpr std::size_t kMostKept = 120;  // numerical: instants that are kept for that
+constexpr double kFewestPlaced = 0.75;   // fraction of people in images below which the reasons are searched: as for recordings
+constexpr double kWorstLiveNoise = 2.5;  // factor of the stated deviations, numerical: just below where learning begins and ends
+constexpr std::size_t kMostKept = 120;   // numerical: instants that are kept for that
 
 class Stopwatch {
  public:
@@ -335,13 +336,17 @@ void KeypointsLive::report(corridor::Summary& summary) const {
   const double seen = static_cast<double>(views_.views_seen()), placed = static_cast<double>(views_.views_placed());
   if (seen == 0) {
     summary.warnings.push_back("no person was seen in any image");
-  } else if (placed < kFewestPlaced * seen) {
-    summary.warnings.push_back(fmt::format("only {:.0f} of {:.0f} people in images are placed", placed, seen));
-    if (with_people_ > 0) {
-      const KeypointFrames frames(kept_);
-      for (std::string& sentence : reasons_of_misfit(rig_, frames, set_)) summary.warnings.push_back(std::move(sentence));
-    }
+    return;
   }
+  const bool few = placed < kFewestPlaced * seen, noisy = noise_.is_learned() && noise_.times_stated() > kWorstLiveNoise;
+  if (few) summary.warnings.push_back(fmt::format("only {:.0f} of {:.0f} people in images are placed", placed, seen));
+  if (noisy)
+    summary.warnings.push_back(
+        fmt::format("the rig does not fit these keypoints: they are off {:.1f} times as far as keypoints of their confidence",
+                    noise_.times_stated()));
+  if ((!few && !noisy) || with_people_ == 0) return;
+  const KeypointFrames frames(kept_);
+  for (std::string& sentence : reasons_of_misfit(rig_, frames, set_)) summary.warnings.push_back(std::move(sentence));
 }
 
 }  // namespace

@@ -6,10 +6,11 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
-constexpr std::size_t kBlock = 1000;         // points, numerical: enough for a median
-constexpr int kMostBlocks = 10;              // numerical: then the median is known
-constexpr double kLeast = 0.5, kMost = 5.2;  // numerical: as far as recordings are searched
-constexpr double kMedianOfMean = 0.9;        // by definition: the median of a sum of squares is a little below its mean
+constexpr std::size_t kBlock = 1000;  // points, numerical: enough for a median
+constexpr int kMostBlocks = 10;       // numerical: then the median is known
+// Numerical: never above the start, so that a rig that does not fit cannot widen the gates by its own errors.
+constexpr double kLeast = 0.5, kMost = 2.6;
+constexpr double kMedianOfMean = 0.9;  // by definition: the median of a sum of squares is a little below its mean
 
 }  // namespace
 

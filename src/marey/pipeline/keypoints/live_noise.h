@@ -12,6 +12,7 @@ namespace marey::pipeline::keypoints {
 class LiveNoise {
  public:
   double times_stated() const { return noise_; }
+  bool is_learned() const { return blocks_ > 0; }
 
   /// The people of one instant, placed with `slack` times the present noise.
   void learn(std::span<const reconstruct::keypoints::PlacedPerson> people, double slack);
