@@ -145,14 +145,17 @@ nb::tuple live(nb::dict given) {
   const auto cameras = options.get<std::vector<std::string>>("cameras", {});
   const Rig rig = cameras.empty() ? rig_of(options) : pipeline::live::rig_of_sources(cameras);
   pipeline::jobs::Live job{.rig_name = options.get<std::string>("rig", "the rig")};
-  if (options.get("people", false)) job.targets = pipeline::live::LiveTargets::people;
+  const auto targets = options.get<std::string>("targets", "markers");
+  if (targets == "people") job.targets = pipeline::live::LiveTargets::people;
+  if (targets == "keypoints") job.targets = pipeline::live::LiveTargets::keypoints;
   const Rows rows(table_of(job), options);
   std::vector<std::string> warnings;
   pipeline::live::LiveOptions how = rows.resolved([&] { return resolved(job, rig, warnings); });
   how.take = options.get<std::string>("take", {});
   const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
   Listening listening = rows.listening(options);
-  if (how.targets == pipeline::live::LiveTargets::people) listening.options["targets"] = "people";
+  if (how.targets != pipeline::live::LiveTargets::markers)
+    listening.options["targets"] = how.targets == pipeline::live::LiveTargets::people ? "people" : "keypoints";
   return tuple_of(run_job(listening, [&](const Hooks& hooks) {
     Result result;
     how.sinks = outputs.open(result.recording);

@@ -36,9 +36,20 @@ namespace {
 enum class Kept { solved, raw };
 constexpr std::array<std::pair<const char*, Kept>, 2> kKept{{{"solved", Kept::solved}, {"raw", Kept::raw}}};
 
+using pipeline::live::LiveJob;
 using pipeline::live::LiveTargets;
-constexpr std::array<std::pair<const char*, LiveTargets>, 2> kLiveTargets{
-    {{"markers", LiveTargets::markers}, {"people", LiveTargets::people}}};
+constexpr std::array<std::pair<const char*, LiveTargets>, 3> kLiveTargets{
+    {{"markers", LiveTargets::markers}, {"people", LiveTargets::people}, {"keypoints", LiveTargets::keypoints}}};
+
+std::string name_of(LiveTargets targets) {
+  for (const auto& [name, value] : kLiveTargets) {
+    if (value == targets) return name;
+  }
+  return {};
+}
+
+/// Of keypoints in space: what the stage counted.
+constexpr std::array kKeypointFigures{"people", "people_in_images", "people_placed", "regions", "person_searches", "noise"};
 
 struct LiveCommand {
   std::vector<std::string> sources;
@@ -73,6 +84,9 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
     told["connections"] = camera.connections;
     if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
   }
+  if (summary.job == LiveJob::keypoints_in_space) {
+    for (const char* figure : kKeypointFigures) json[figure] = figure_of(summary, figure);
+  }
   add_set_figures(summary, json);
   add_skeleton_figures(summary, json);
   if (!summary.steps.empty()) json["stages"] = stages_of(summary);
@@ -89,6 +103,12 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
   const pipeline::corridor::LiveDrops& drops = summary.last.drops;
   fmt::print(stderr, "let go: {} moments overtaken, {} incomplete, {} empty; {} frames late\n", drops.overtaken, drops.incomplete,
              drops.empty, drops.late_frames);
+  if (summary.job == LiveJob::keypoints_in_space)
+    fmt::print(stderr,
+               "keypoints: {:.0f} people; {:.0f} of {:.0f} in images are placed; {:.0f} regions were searched for points, {:.0f} "
+               "images for people\n",
+               figure_of(summary, "people"), figure_of(summary, "people_placed"), figure_of(summary, "people_in_images"),
+               figure_of(summary, "regions"), figure_of(summary, "person_searches"));
   print_set_figures(summary);
   print_skeleton_figures(summary);
   print_stages(summary);
@@ -209,7 +229,7 @@ void add_live(Command& program) {
   const pipeline::jobs::Table& rows = command.rows(table_of(options->job));
   command.records([&rows, options = options.get()] {
     auto given = rows.given();
-    if (options->job.targets == LiveTargets::people) given["targets"] = "people";
+    if (options->job.targets != LiveTargets::markers) given["targets"] = name_of(options->job.targets);
     return given;
   });
   add_live_outputs(command, options->outputs);
@@ -218,7 +238,7 @@ void add_live(Command& program) {
     options->outputs.take = options->out;
     if (is_rig_file(options->sources.front())) options->outputs.rig = options->sources.front();
     options->job.rig_name = options->sources.front();
-    if (options->job.ground) options->job.targets = LiveTargets::people;
+    if (options->job.ground && options->job.targets == LiveTargets::markers) options->job.targets = LiveTargets::people;
     options->outputs.streams.unlabelled_slots =
         std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->job.markers.most_markers));
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");

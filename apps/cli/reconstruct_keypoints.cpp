@@ -32,6 +32,7 @@ Json keypoints_json(const pipeline::keypoints::KeypointsSummary& summary, const 
           {"residual_px", summary.residual_px},
           {"noise", summary.noise},
           {"place_ms", summary.place_ms},
+          {"one_camera", summary.one_camera},
           {"stopped", summary.stopped},
           {"warnings", summary.warnings},
           {"take", out}};
@@ -47,6 +48,10 @@ void print_keypoints_summary(const pipeline::keypoints::KeypointsSummary& summar
   }
   fmt::print(stderr, "points: {} measured, {} filled; {} of {} people in images are placed\n", summary.measured, summary.filled,
              summary.placed, summary.views);
+  if (summary.one_camera) {
+    fmt::print(stderr, "take: {}\n", out);
+    return;
+  }
   fmt::print(stderr, "reprojection: {:.1f} px median; noise {:.2f} times what the files state\n", summary.residual_px,
              summary.noise);
   for (const auto& camera : summary.cameras) {

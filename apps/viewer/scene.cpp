@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
+#include <utility>
 
+#include "marey/core/keypoint_sets.h"
 #include "marey/core/other_ground.h"
 #include "marey/geometry/camera.h"
 
@@ -67,6 +71,18 @@ Json json_of(const RigCamera& camera) {
   return json;
 }
 
+/// Of all keypoint sets, by the points' names: which of them there will be is not known before a live run's first person.
+Json named_bones() {
+  std::set<std::pair<std::string, std::string>> bones;
+  for (const KeypointSet& set : keypoint_sets()) {
+    for (const auto& [from, to] : set.bones)
+      bones.emplace(set.points[static_cast<std::size_t>(from)], set.points[static_cast<std::size_t>(to)]);
+  }
+  Json list = Json::array();
+  for (const auto& [from, to] : bones) list.push_back(Json(std::array{from, to}));
+  return list;
+}
+
 const char* frame_name(FrameOfReference::Kind kind) {
   switch (kind) {
     case FrameOfReference::Kind::image:
@@ -85,6 +101,13 @@ Json header_json(const RecordingHeader& header) {
              {"rate", header.rate_hz},   {"made_by", header.made_by.program},
              {"cameras", Json::array()}, {"bodies", Json::array()}};
   for (const Body& body : header.bodies) scene["bodies"].push_back(json_of(body));
+  if (header.keypoints) {
+    scene["keypoints"] = Json(header.keypoints->points);
+    scene["bones"] = Json::array();
+    for (const auto& [from, to] : header.keypoints->bones) scene["bones"].push_back(Json(std::array{from, to}));
+  } else if (header.track_kind == TrackKind::keypoint) {
+    scene["named_bones"] = named_bones();
+  }
   if (!header.rig) return scene;
   for (const RigCamera& camera : header.rig->cameras) scene["cameras"].push_back(json_of(camera));
   if (header.frame.kind == FrameOfReference::Kind::image) {

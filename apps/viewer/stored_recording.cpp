@@ -52,7 +52,7 @@ void StoredRecording::add(const Instant& instant) {
                    .named = {},
                    .boxes = {},
                    .frames = {}});
-  for (Sample& row : open_.back().samples) row.outline = nullptr, row.keypoints = nullptr;
+  for (Sample& row : open_.back().samples) row.outline = nullptr;
   if (std::ssize(open_) >= kStretchInstants || open_rows_ >= kStretchRows) close_stretch();
 }
 

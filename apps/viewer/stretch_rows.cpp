@@ -1,7 +1,9 @@
 #include "stretch_rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <memory>
 #include <set>
 #include <unordered_map>
 
@@ -32,13 +34,37 @@ struct StretchLayout {
         positions(tracks + 4 * rows),
         boxes(positions + 4 * axes * rows),
         cameras(boxes + (columns.boxes ? 16 * rows : 0)),
-        bodies(cameras + (columns.cameras ? 4 * rows : 0)),
-        states(bodies + 32 * poses),
-        tracked(states + rows) {}
+        sigmas(cameras + (columns.cameras ? 4 * rows : 0)),
+        bodies(sigmas + (columns.sigma ? 4 * rows : 0)),
+        keypoints(columns.keypoints),
+        points(bodies + 32 * poses),
+        states(points + 8 * keypoints * rows),
+        confidences(states + rows),
+        tracked(confidences + keypoints * rows) {}
 
   std::size_t instants, rows, poses, axes;
-  std::size_t index, row_end, pose_end, tracks, positions, boxes, cameras, bodies, states, tracked;
+  std::size_t index, row_end, pose_end, tracks, positions, boxes, cameras, sigmas, bodies, keypoints, points, states, confidences,
+      tracked;
 };
+
+/// Null for a row without.
+std::shared_ptr<const Keypoints<2>> keypoints_of(const std::string& bytes, const StretchLayout& at, std::size_t row) {
+  auto body = std::make_shared<Keypoints<2>>();
+  body->points.resize(at.keypoints);
+  bool any = false;
+  for (std::size_t i = 0; i < at.keypoints; ++i) {
+    const std::size_t place = row * at.keypoints + i;
+    const auto confidence = number_at<std::uint8_t>(bytes, at.confidences + place);
+    if (confidence == 0) continue;
+    any = true;
+    Keypoint<2>& point = body->points[i].emplace();
+    point.position = {number_at<float>(bytes, at.points + 4 * place),
+                      number_at<float>(bytes, at.points + 4 * (at.rows * at.keypoints + place))};
+    point.visibility = confidence / 255.0;
+  }
+  if (!any) return nullptr;
+  return body;
+}
 
 Sample row_of(const std::string& bytes, const StretchLayout& at, std::size_t row) {
   const auto column = [&](std::size_t begin, std::size_t which) {
@@ -50,7 +76,12 @@ Sample row_of(const std::string& bytes, const StretchLayout& at, std::size_t row
   const auto state = number_at<std::uint8_t>(bytes, at.states + row);
   sample.provenance = static_cast<Provenance>(state & kProvenanceBits);
   if (state & kBoxBit) sample.box = Box{column(at.boxes, 0), column(at.boxes, 1), column(at.boxes, 2), column(at.boxes, 3)};
-  if (at.bodies > at.cameras) sample.cameras = number_at<std::uint32_t>(bytes, at.cameras + 4 * row);
+  if (at.sigmas > at.cameras) sample.cameras = number_at<std::uint32_t>(bytes, at.cameras + 4 * row);
+  if (at.bodies > at.sigmas) {
+    const double sigma = column(at.sigmas, 0);
+    if (std::isfinite(sigma)) sample.covariance = sigma * sigma * Matrix<3>::Identity();
+  }
+  if (at.keypoints > 0) sample.keypoints = keypoints_of(bytes, at, row);
   return sample;
 }
 

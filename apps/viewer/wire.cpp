@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -12,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "columns are written as they lie in memory");
 
-constexpr std::uint16_t kHasZ = 1, kHasBoxes = 2, kHasCameras = 4;
+constexpr std::uint16_t kHasZ = 1, kHasBoxes = 2, kHasCameras = 4, kHasSigma = 8;
 constexpr std::uint8_t kRowHasBox = 8;
 
 class ByteWriter {
@@ -69,6 +71,29 @@ void write_rows(ByteWriter& out, std::span<const Instant> instants, const WireCo
       write_column<float>(out, instants, rows, [part](const Sample& row) { return row.box ? (*row.box).*part : 0; });
   }
   if (columns.cameras) write_column<std::uint32_t>(out, instants, rows, [](const Sample& row) { return row.cameras; });
+  if (columns.sigma) {
+    write_column<float>(out, instants, rows, [](const Sample& row) {
+      return row.covariance ? std::sqrt(row.covariance->trace() / 3) : std::numeric_limits<double>::quiet_NaN();
+    });
+  }
+}
+
+/// `value` of each of a row's keypoints; 0 where it has none.
+template <typename T, typename Value>
+void write_keypoints(ByteWriter& out, std::span<const Instant> instants, std::size_t count, Value&& value) {
+  for (const Instant& instant : instants) {
+    for (const Sample& row : instant.samples) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool known = row.keypoints && i < row.keypoints->points.size() && row.keypoints->points[i];
+        out.number<T>(known ? static_cast<T>(value(*row.keypoints->points[i])) : T{0});
+      }
+    }
+  }
+}
+
+/// At least 1: 0 is a keypoint that is absent.
+double confidence_byte(const Keypoint<2>& point) {
+  return std::clamp(std::round(255 * point.visibility * point.presence), 1.0, 255.0);
 }
 
 void write_poses(ByteWriter& out, std::span<const Instant> instants) {
@@ -90,11 +115,11 @@ std::string columns_of(std::span<const Instant> instants, WireHeader header, con
     row_end.push_back(rows += static_cast<std::uint32_t>(instant.samples.size()));
     pose_end.push_back(poses += static_cast<std::uint32_t>(instant.bodies.size()));
   }
-  header.flags =
-      static_cast<std::uint16_t>((columns.z ? kHasZ : 0) | (columns.boxes ? kHasBoxes : 0) | (columns.cameras ? kHasCameras : 0));
-  header.counts = {static_cast<std::uint32_t>(instants.size()), rows, poses, 0};
+  header.flags = static_cast<std::uint16_t>((columns.z ? kHasZ : 0) | (columns.boxes ? kHasBoxes : 0) |
+                                            (columns.cameras ? kHasCameras : 0) | (columns.sigma ? kHasSigma : 0));
+  header.counts = {static_cast<std::uint32_t>(instants.size()), rows, poses, static_cast<std::uint32_t>(columns.keypoints)};
   ByteWriter out;
-  out.reserve(40 + 20 * instants.size() + rows * std::size_t{37} + poses * std::size_t{33});
+  out.reserve(40 + 20 * instants.size() + rows * (41 + 9 * columns.keypoints) + poses * std::size_t{33});
   write_header(out, header);
   out.column<double>(instants, [](const Instant& instant) { return seconds(instant.time); });
   out.column<std::uint32_t>(instants, [](const Instant& instant) { return instant.index; });
@@ -102,9 +127,12 @@ std::string columns_of(std::span<const Instant> instants, WireHeader header, con
   for (const std::uint32_t end : pose_end) out.number<std::uint32_t>(end);
   write_rows(out, instants, columns);
   write_poses(out, instants);
+  for (int axis = 0; axis < 2; ++axis)
+    write_keypoints<float>(out, instants, columns.keypoints, [axis](const Keypoint<2>& point) { return point.position[axis]; });
   write_column<std::uint8_t>(out, instants, &Instant::samples, [&](const Sample& row) {
     return static_cast<std::uint8_t>(row.provenance) | (columns.boxes && row.box ? kRowHasBox : 0);
   });
+  write_keypoints<std::uint8_t>(out, instants, columns.keypoints, confidence_byte);
   write_column<std::uint8_t>(out, instants, &Instant::bodies, [](const BodyPose& pose) { return pose.tracked ? 1 : 0; });
   return out.take();
 }
@@ -122,7 +150,9 @@ WireColumns wire_columns(const RecordingHeader& header) {
   const bool space = header.frame.dimensions() == 3;
   return {.z = space,
           .boxes = header.frame.kind == FrameOfReference::Kind::image,
-          .cameras = space && header.rig && !header.rig->cameras.empty()};
+          .cameras = space && header.rig && !header.rig->cameras.empty(),
+          .sigma = space && header.track_kind == TrackKind::keypoint,
+          .keypoints = header.keypoints ? header.keypoints->points.size() : 0};
 }
 
 std::string wire_of(std::span<const Instant> instants, std::uint32_t first, const WireColumns& columns) {

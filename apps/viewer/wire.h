@@ -4,12 +4,14 @@
 // clock), uint64 send time (ns, by the server's steady clock; 0 in what is stored), then four uint32.
 //
 // Kinds 1 (a stretch of a recording; sequence is its first instant's place, from 0) and 2 (one live instant; sequence counts them).
-// The four are the numbers of instants n, rows r, poses p, and 0. Then the columns
+// The four are the numbers of instants n, rows r, poses p, and of keypoints of a row k. Then the columns
 //   float64 time[n] (s);  uint32 index[n], row_end[n], pose_end[n];  int32 track[r];  float32 x[r], y[r], with flag 1 z[r];
 //   with flag 2 float32 left[r], top[r], width[r], height[r];  with flag 4 uint32 cameras[r] (who saw it, a bit each: the first 32
-//   of them);  int32 body[p];  float32 px[p], py[p], pz[p], qx[p], qy[p], qz[p],
-//   qw[p]; uint8 state[r]: provenance (0 measured, 1 filled, 2 predicted, 3 solved), and 8 where the row has a box;  uint8
-//   tracked[p].
+//   of them);  with flag 8 float32 sigma[r] (standard deviation of the position along an axis, m; NaN where unknown);
+//   int32 body[p];  float32 px[p], py[p], pz[p], qx[p], qy[p], qz[p], qw[p];
+//   float32 keypoint x[r * k], y[r * k] (px, row by row);
+//   uint8 state[r]: provenance (0 measured, 1 filled, 2 predicted, 3 solved), and 8 where the row has a box;
+//   uint8 keypoint confidence[r * k] (visibility times presence, of 255; 0: the keypoint is absent);  uint8 tracked[p].
 //
 // Kind 3 is a camera's picture; sequence is its frame. The four are camera, the numbers of points n and of boxes b, and
 // width | height << 16 of the camera's pictures (px; 0 where unknown). Then float32 x[n], y[n], int32 track[n] (0: nobody's),
@@ -34,6 +36,8 @@ struct WireColumns {
   bool z = false;
   bool boxes = false;
   bool cameras = false;
+  bool sigma = false;
+  std::size_t keypoints = 0;  ///< of a row
 };
 /// Those of a recording with this header.
 WireColumns wire_columns(const RecordingHeader& header);

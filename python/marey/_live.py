@@ -37,7 +37,7 @@ def live(
     source: a rig file or Rig whose cameras are live, or live sources alone, each a camera ("v4l2:/dev/video0", "rtsp://…",
         "sim://room?cameras=4"): `marey live`. If the loop is slow, instants are left out, as their `index` shows.
         Or one video, or Frames: `track` with `live=True`, and its options; there nothing is left out, the run waits for the loop.
-    targets: "markers" or "people"; default: markers of live cameras, people of one video. take: NAME.marey, written as it grows.
+    targets: "markers", "people" or "keypoints" (body points; of several calibrated cameras in space); default: markers of live cameras, people of one video. take: NAME.marey, written as it grows.
     sinks: functions or objects, as in `track`; of live cameras no files: name a take. One that raises is closed, which a `marey.Warning` states at
         the end, and the run continues.
 
@@ -50,9 +50,9 @@ def live(
         if targets is not None:
             options["targets"] = targets
         return _moments(lambda put, ends: _follow_film(source, put, sinks, options), waits=True)
-    if targets not in (None, "markers", "people"):
-        raise Error(f'targets is "{targets}"; use one of people, markers')
-    given = _rows("live", options) | {"people": targets == "people", "take": None if take is None else os.fspath(take), "keep": False}
+    if targets not in (None, "markers", "people", "keypoints"):
+        raise Error(f'targets is "{targets}"; use one of people, markers, keypoints')
+    given = _rows("live", options) | {"targets": targets or "markers", "take": None if take is None else os.fspath(take), "keep": False}
     return _moments(lambda put, ends: _follow_cameras(cameras | given, put, ends, sinks), waits=False)
 
 

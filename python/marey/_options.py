@@ -205,3 +205,7 @@ class LiveOptions(TypedDict, total=False):
     r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
     without_background: bool | None
     r"""the network alone"""
+    model: str | None
+    r"""the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx (default: lite)"""
+    people: int | None
+    r"""N in [0, 1000]: of several cameras: track at most N people; 0: all (default: 0)"""

@@ -47,6 +47,35 @@ class Keypoints(unittest.TestCase):
         if not (MODELS / "pose_landmark_lite.onnx").is_file():
             self.skipTest("script/model has not made the networks")
 
+    def test_live_in_space_with_a_skeleton(self):
+        self.need_models()
+        data = pathlib.Path(os.environ.get("MAREY_DATA", pathlib.Path(__file__).resolve().parents[3] / "shared" / "data")) / "markerless"
+        if not data.is_dir():
+            self.skipTest(f"{data} is not here")
+        cameras = [f"cam0{number}" for number in (1, 2, 3, 4)]
+        for camera in cameras:  # small and slow enough for any machine
+            subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-i", data / "videos" / f"{camera}.mp4", "-vf", "scale=iw/4:ih/4", "-r", "10",
+                            self.folder / f"{camera}.mp4"], check=True)
+        done = marey(["convert", data / "calibration" / "Calib.qca.txt", "rig.toml"], self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        files = [f"{camera}={camera}.mp4" for camera in cameras]
+        said = marey(["reconstruct", "rig.toml", *files, "--targets", "keypoints", "--model", "lite", "-o", "dance.marey", "--quiet"], self.folder)
+        self.assertEqual(said.returncode, 0, said.stderr)
+        said = marey(["solve", "dance.marey", "-o", "dance.bvh", "--write-skeleton", "person.toml", "--quiet"], self.folder)
+        self.assertEqual(said.returncode, 0, said.stderr)
+        live = ["live", "rig.toml", *(f"{camera}=play:{camera}.mp4?loop" for camera in cameras), "--targets", "keypoints", "--people", "1", "--skeleton",
+                "person.toml", "--for", "8", "-o", "live.marey", "--json"]
+        said = marey(live, self.folder)
+        self.assertEqual(said.returncode, 0, said.stderr)
+        summary = json.loads(said.stdout)
+        self.assertEqual(summary["job"], "keypoints in space")
+        self.assertEqual(summary["people"], 1)
+        self.assertGreater(summary["samples"], 15 * summary["instants"])
+        self.assertLess(summary["person_searches"], summary["instants"])
+        self.assertIn("keypoints", summary["stages"])
+        info = marey(["info", "live.marey"], self.folder).stdout
+        self.assertIn("P1:left_knee", info + marey(["info", "live.marey", "--json"], self.folder).stdout)
+
     def refused(self, code, says, *arguments, models=None):
         before = sorted(self.folder.iterdir())
         done = marey(arguments, self.folder, models)
@@ -85,6 +114,15 @@ class Keypoints(unittest.TestCase):
         self.assertEqual(len(rows), 33 * len(bodies))
         self.assertGreater(len(bodies), 80)
         self.assertTrue(all(0 <= float(row[name]) <= 1 for row in rows for name in ("visibility", "presence")))
+        noses = sorted((int(row["frame"]), round(float(row["x"]), 1)) for row in rows if row["point"] == "nose")
+        coco = json.loads((self.folder / "people.json").read_text())
+        self.assertEqual(len(coco["categories"][0]["keypoints"]), 33)
+        self.assertEqual(sorted((one["image_id"], round(one["keypoints"][0], 1)) for one in coco["annotations"]), noses)
+        openpose = []
+        for path in sorted((self.folder / "people_json").iterdir()):
+            frame = int(path.stem.split("_")[1])
+            openpose += [(frame, round(person["pose_keypoints_2d"][0], 1)) for person in json.loads(path.read_text())["people"]]
+        self.assertEqual(sorted(openpose), noses)
         self.assertTrue(all(float(row["sd"]) > 0 for row in rows))
         objects = [json.loads(line) for line in (self.folder / "people.jsonl").read_text().splitlines()]
         with_points = [one for one in objects if "keypoints" in one]

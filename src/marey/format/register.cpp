@@ -24,6 +24,8 @@
   row(format::tracks, blobs) \
   row(format::tracks, image_csv) \
   row(format::tracks, jsonl) \
+  row(format::keypoints, coco) \
+  row(format::keypoints, openpose) \
   row(format::match, ground) \
   row(format::match, soccernet) \
   row(format::match, sportec) \

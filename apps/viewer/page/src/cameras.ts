@@ -3,6 +3,7 @@
 import type { Colours } from "./colours";
 import { Controls, SaveBar, type Changeable } from "./controls";
 import { Coverage } from "./coverage";
+import { bones_of } from "./bones";
 import type { Scene } from "./scene";
 import type { State } from "./state";
 import type { Picture } from "./wire";
@@ -30,6 +31,9 @@ class Tile {
   private controls: Controls | null = null;
   private over: Adorn | null = null;
   private covered = new Coverage();
+
+  /** Between keypoints, by their tracks' ids. */
+  bones: [number, number][] = [];
 
   constructor(readonly number: number, private name: string, private size: [number, number] | undefined, private colours: Colours, private drawn: (picture: Picture) => void) {
     this.element.className = "camera";
@@ -93,6 +97,23 @@ class Tile {
     this.decoding = false;
   }
 
+  private draw_bones(draw: CanvasRenderingContext2D, picture: Picture, scale: number): void {
+    if (this.bones.length === 0) return;
+    const { x, y, track } = picture.points;
+    const at = new Map<number, number>();
+    track.forEach((id, i) => at.set(id, i));
+    for (const [from, to] of this.bones) {
+      const a = at.get(from);
+      const b = at.get(to);
+      if (a === undefined || b === undefined) continue;
+      draw.strokeStyle = this.colours.css(from, 0.8);
+      draw.beginPath();
+      draw.moveTo(scale * (x[a] + 0.5), scale * (y[a] + 0.5));
+      draw.lineTo(scale * (x[b] + 0.5), scale * (y[b] + 0.5));
+      draw.stroke();
+    }
+  }
+
   draw(): void {
     if (!this.shown) return;
     const { picture, image } = this.shown;
@@ -118,6 +139,7 @@ class Tile {
     else if (this.element.classList.contains("large")) this.covered.draw(draw, wide, tall);
     draw.lineWidth = 1.25 * ratio;
     const { points, boxes } = picture;
+    this.draw_bones(draw, picture, scale);
     for (let i = 0; i < points.x.length; ++i) {
       draw.strokeStyle = points.track[i] ? this.colours.css(points.track[i]) : "#ff5d5d";
       draw.beginPath();
@@ -157,11 +179,14 @@ export class Cameras {
 
   take(scene: Scene): void {
     this.scene = scene;
+    const bones = bones_of(scene);
+    for (const tile of this.tiles) tile.bones = bones;
     if (this.tiles.length === scene.cameras.length && scene.cameras.length > 0) return;
     this.watcher.disconnect();
     this.tiles = scene.cameras.map((camera, i) => new Tile(i, camera.name, camera.size, this.colours, this.drawn));
     this.grid.replaceChildren(...this.tiles.map((tile) => tile.element));
     for (const tile of this.tiles) {
+      tile.bones = bones;
       if (scene.can_change) tile.let_change(this.say);
       this.watcher.observe(tile.element);
     }

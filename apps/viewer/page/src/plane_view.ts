@@ -1,5 +1,6 @@
 // What lies in a plane: people on a pitch or another ground, seen from above; tracks in a picture. Dragged and zoomed with the
 // pointer, two fingers or the wheel.
+import { draw_body } from "./bones";
 import type { Colours } from "./colours";
 import { time_of, type Moment, type Motion } from "./motion";
 import { Overlay, type Mark } from "./overlay";
@@ -294,6 +295,7 @@ export class PlaneView implements View {
       const seen = stretch.provenance(row) === 0;
       const alpha = this.dimmed(id) ? 0.35 : 1;
       const name = name_of(this.tracks.get(id), id);
+      draw_body(draw, stretch, row, this.scene?.bones ?? [], (x, y) => [this.x(x), this.y(y)], (opacity) => this.colours.css(id, opacity), alpha, selected ? 3.5 : 2);
       draw.strokeStyle = this.colours.css(id, alpha);
       if (!stretch.box || !stretch.has_box(row)) {
         const [x, y] = [this.x(stretch.x[row]), this.y(stretch.y[row])];

@@ -51,6 +51,11 @@ export interface Scene {
   cameras: Camera[];
   bodies: Body[];
   tracks: Track[];
+  /** Of tracks in a picture that have body keypoints: their names, and the bones between them. */
+  keypoints?: string[];
+  bones?: [number, number][];
+  /** Of keypoints in space: the bones between points of these names. */
+  named_bones?: [string, string][];
   /** Of tracks in a picture: whose, and its size (px). */
   camera?: number;
   size?: [number, number];

@@ -4,6 +4,7 @@ import {
   InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, MeshLambertMaterial, PerspectiveCamera, Quaternion, Scene as World, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { bones_of, certainty } from "./bones";
 import type { Colours } from "./colours";
 import { time_of, type Moment, type Motion } from "./motion";
 import { Overlay, type Mark } from "./overlay";
@@ -65,6 +66,7 @@ export class SpaceView implements View {
   private markers: InstancedMesh;
   private trails = new Lines(MOST_TRAIL_SEGMENTS);
   private bones: Sticks;
+  private keypoint_bones: [number, number][] = [];
   private rays = new Lines(8000);
   private floor = new Group();
   private rig = new Group();
@@ -99,6 +101,7 @@ export class SpaceView implements View {
   take(scene: Scene): void {
     this.scene = scene;
     this.tracks = new Map(scene.tracks.map((track) => [track.id, track]));
+    this.keypoint_bones = bones_of(scene);
     if (scene.low && scene.high) {
       this.low.set(...scene.low);
       this.high.set(...scene.high);
@@ -177,6 +180,7 @@ export class SpaceView implements View {
       this.markers.setMatrixAt(count, matrix);
       colour.setRGB(...this.colours.rgb(id), "srgb");
       const how = stretch.provenance(row);
+      if (stretch.sigma) colour.lerp(this.background, 1 - certainty(stretch, row));
       if (how === FILLED || how === PREDICTED) colour.lerp(this.background, 0.6); // not seen at this moment
       if (this.state.selected.size > 0 && !selected) colour.lerp(this.background, 0.35);
       this.markers.setColorAt(count++, colour);
@@ -250,7 +254,26 @@ export class SpaceView implements View {
           this.bones.add(origin(p), turned(p, new Vector3().setComponent(axis, AXIS_M)), 0.6 * radius, stretch.tracked[p] ? axes[axis] : axes[axis].clone().lerp(this.background, 0.6));
       }
     }
+    if (moment) this.place_keypoint_bones(moment);
     this.bones.end();
+  }
+
+  /** Between keypoints that are both here: as faint as the less certain of them. */
+  private place_keypoint_bones(moment: Moment): void {
+    if (this.keypoint_bones.length === 0) return;
+    const { stretch, k } = moment;
+    const rows = new Map<number, number>();
+    for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) rows.set(stretch.track[row], row);
+    const at = (row: number) => new Vector3(stretch.x[row], stretch.y[row], stretch.z ? stretch.z[row] : 0);
+    const radius = 0.6 * this.room() * BONE_M;
+    for (const [from, to] of this.keypoint_bones) {
+      const a = rows.get(from);
+      const b = rows.get(to);
+      if (a === undefined || b === undefined || this.state.hidden.has(from) || this.state.hidden.has(to)) continue;
+      const colour = new Color().setRGB(...this.colours.rgb(from), "srgb");
+      colour.lerp(this.background, 1 - Math.min(certainty(stretch, a), certainty(stretch, b)));
+      this.bones.add(at(a), at(b), radius, colour);
+    }
   }
 
   /** From each camera that saw a marker to it: of those that are selected, or of all. */

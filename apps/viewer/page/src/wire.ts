@@ -8,6 +8,7 @@ const HEADER = 40;
 const HAS_Z = 1;
 const HAS_BOXES = 2;
 const HAS_CAMERAS = 4;
+const HAS_SIGMA = 8;
 const ROW_HAS_BOX = 8;
 
 /** Instants one after the other, in columns. Rows of instant k are those from `begin(k)` to before `row_end[k]`. */
@@ -23,11 +24,18 @@ export class Stretch {
   readonly box: [Float32Array, Float32Array, Float32Array, Float32Array] | null;
   /** Who saw it, a bit for each of the first 32 cameras. */
   readonly cameras: Uint32Array | null;
+  /** Standard deviation of a position, m; NaN where it is not known. */
+  readonly sigma: Float32Array | null;
   readonly body: Int32Array;
   /** Position, then a quaternion with its real part last. */
   readonly pose: Float32Array[];
   readonly state: Uint8Array;
   readonly tracked: Uint8Array;
+  /** Of each row; keypoint i of a row is at row * keypoints + i. Its confidence is 0 where it is absent, else to 255. */
+  readonly keypoints: number;
+  readonly keypoint_x: Float32Array;
+  readonly keypoint_y: Float32Array;
+  readonly confidence: Uint8Array;
   readonly sequence: number;
   readonly sent_ms: number;
 
@@ -39,6 +47,7 @@ export class Stretch {
     const n = head.getUint32(24, true);
     const rows = head.getUint32(28, true);
     const poses = head.getUint32(32, true);
+    this.keypoints = head.getUint32(36, true);
     let at = HEADER;
     const take = <T>(make: new (bytes: ArrayBuffer, at: number, count: number) => T, count: number, size: number): T => {
       const column = new make(bytes, at, count);
@@ -56,9 +65,13 @@ export class Stretch {
     this.z = flags & HAS_Z ? floats() : null;
     this.box = flags & HAS_BOXES ? [floats(), floats(), floats(), floats()] : null;
     this.cameras = flags & HAS_CAMERAS ? take(Uint32Array, rows, 4) : null;
+    this.sigma = flags & HAS_SIGMA ? floats() : null;
     this.body = take(Int32Array, poses, 4);
     this.pose = Array.from({ length: 7 }, () => take(Float32Array, poses, 4));
+    this.keypoint_x = take(Float32Array, rows * this.keypoints, 4);
+    this.keypoint_y = take(Float32Array, rows * this.keypoints, 4);
     this.state = take(Uint8Array, rows, 1);
+    this.confidence = take(Uint8Array, rows * this.keypoints, 1);
     this.tracked = take(Uint8Array, poses, 1);
   }
 

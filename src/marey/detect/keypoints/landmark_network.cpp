@@ -73,6 +73,14 @@ std::vector<Body> LandmarkNetwork::find(const cv::Mat& bgr, std::span<const Pers
   return bodies;
 }
 
+std::vector<Body> LandmarkNetwork::find(std::span<const Look> looks) {
+  std::vector<Body> bodies(looks.size());
+  inference_.each(looks.size(), [&](network::Inference::Engine& engine, std::size_t i) {
+    bodies[i] = body_of(run(engine, crop_of(looks[i].image, looks[i].region)), looks[i].region);
+  });
+  return bodies;
+}
+
 Body body_of(std::span<const network::Tensor> outputs, const PersonRegion& region) {
   const std::vector<float>& numbers = outputs[0].values;
   const auto given = [&](std::size_t point) { return Vector<2>(numbers[kNumbers * point], numbers[kNumbers * point + 1]); };

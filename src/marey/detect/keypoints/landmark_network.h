@@ -7,6 +7,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "marey/core/keypoints.h"
+#include "marey/core/picture.h"
 #include "marey/detect/keypoints/person_region.h"
 #include "marey/detect/network/inference.h"
 
@@ -18,6 +19,12 @@ struct Body {
   PersonRegion next;       ///< where the person is to be looked for in the next picture
 };
 
+/// A region of one of several cameras' images.
+struct Look {
+  Picture image;  ///< colour or grey
+  PersonRegion region;
+};
+
 /// One of MediaPipe's landmark networks (script/model). Regions are shared out among as many threads as OpenCV has (--threads).
 class LandmarkNetwork {
  public:
@@ -26,6 +33,8 @@ class LandmarkNetwork {
 
   /// Who is in each region of a picture, CV_8UC3, blue first. `Keypoints::presence` says whether that is anybody.
   std::vector<Body> find(const cv::Mat& bgr, std::span<const PersonRegion> regions);
+  /// The same in regions of several images, which share the threads. Only the pixels in a region are converted.
+  std::vector<Body> find(std::span<const Look> looks);
 
   /// What the network says of one crop: "landmarks" (39 × x, y, depth, visibility, presence), "presence", "heatmaps".
   std::vector<network::Tensor> raw(const cv::Mat& crop);

@@ -12,6 +12,16 @@ constexpr double kRoom = 1.25;   // a region's side over a person's extent: as t
 constexpr double kSmallest = 8;  // px; a region's side
 constexpr double kCoarse = 2;    // a picture that shrinks by more is averaged first, so that no detail turns into noise
 
+/// The part of an image that a region's crop is made of, px.
+cv::Rect part_of(const PersonRegion& region, cv::Size image) {
+  const double reach = region.side / std::sqrt(2.0) + 2;
+  return cv::Rect(cv::Point(static_cast<int>(std::floor(region.centre.x() - reach)),
+                            static_cast<int>(std::floor(region.centre.y() - reach))),
+                  cv::Point(static_cast<int>(std::ceil(region.centre.x() + reach)),
+                            static_cast<int>(std::ceil(region.centre.y() + reach)))) &
+         cv::Rect(cv::Point(), image);
+}
+
 }  // namespace
 
 Matrix<2> PersonRegion::turn() const {
@@ -35,13 +45,7 @@ PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim) {
 }
 
 cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
-  // Of the picture, px, and the part of it that is read.
-  const double reach = region.side / std::sqrt(2.0) + 2;
-  const cv::Rect part = cv::Rect(cv::Point(static_cast<int>(std::floor(region.centre.x() - reach)),
-                                           static_cast<int>(std::floor(region.centre.y() - reach))),
-                                 cv::Point(static_cast<int>(std::ceil(region.centre.x() + reach)),
-                                           static_cast<int>(std::ceil(region.centre.y() + reach)))) &
-                        cv::Rect(cv::Point(), bgr.size());
+  const cv::Rect part = part_of(region, bgr.size());
   if (part.empty()) return cv::Mat::zeros(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3);
   cv::Mat from = bgr(part);
   double shrunk_x = 1, shrunk_y = 1;
@@ -62,6 +66,17 @@ cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
   cv::warpAffine(from, crop, map, {PersonRegion::kCrop, PersonRegion::kCrop}, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
                  cv::BORDER_REPLICATE);
   return crop;
+}
+
+cv::Mat crop_of(const Picture& image, const PersonRegion& region) {
+  cv::Rect part = part_of(region, image.size());
+  if (part.empty()) return cv::Mat::zeros(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3);
+  // Chroma has half the size: a part that begins at even pixels shares it.
+  const cv::Point corner(part.x - part.x % 2, part.y - part.y % 2);
+  part = cv::Rect(corner, part.br());
+  PersonRegion in_part = region;
+  in_part.centre -= Vector<2>(corner.x, corner.y);
+  return crop_of(image.part(part).bgr(), in_part);
 }
 
 }  // namespace marey::detect::keypoints

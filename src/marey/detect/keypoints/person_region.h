@@ -3,6 +3,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "marey/core/geometry.h"
+#include "marey/core/picture.h"
 
 namespace marey::detect::keypoints {
 
@@ -30,5 +31,7 @@ PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim);
 
 /// What a landmark network is shown: CV_8UC3 like `bgr`, kCrop × kCrop. Beyond the picture's border its last pixels go on.
 cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region);
+/// The same of an image as cameras deliver it: only the part that is needed is converted to colours.
+cv::Mat crop_of(const Picture& image, const PersonRegion& region);
 
 }  // namespace marey::detect::keypoints

@@ -13,17 +13,28 @@ Table table_of(Live& job) {
   add_blob_rows(table, job.markers);
   table.group("Options for --targets people");
   add_people_rows(table, job.detection);
+  table.group("Options for --targets keypoints, in addition to --detector and --skeleton");
+  add_model_row(table, job.model);
+  table.whole("people", job.people, "N", 0, 1000, "of several cameras: track at most N people; 0: all");
   return table;
 }
 
 live::LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::string>& warnings) {
   live::LiveOptions options;
+  if (job.ground && job.targets == live::LiveTargets::keypoints)
+    throw WrongOption("{}",
+                      "--ground localises people by their boxes, --targets keypoints by their body points; remove one of the two");
   options.targets = job.ground ? live::LiveTargets::people : job.targets;
   options.ground = job.ground;
   options.space.markers = options.markers.markers = job.markers;
   options.space.predict_s = 0.1;  // unswept
   set_names(job.names, options.space, warnings);
-  options.people.detector = detector_of(job.detection, false, "");
+  const bool keypoints = options.targets == live::LiveTargets::keypoints;
+  options.people.detector = detector_of(job.detection, keypoints, "");
+  if (keypoints) options.people.keypoints = keypoints::KeypointOptions{.model = job.model, .every = job.detection.every};
+  options.keypoints.model = job.model;
+  options.keypoints.detector = job.detection.network;
+  options.keypoints.people.most = job.people;
   options.people.live = true;
   TrackGround ground{.rig_name = job.rig_name, .detection = job.detection, .ground = job.part};
   ground.options.live = true;

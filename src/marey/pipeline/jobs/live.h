@@ -18,6 +18,8 @@ struct Live {
   SpaceNames names = {};
   detect::markers::MarkerOptions markers = {};
   PeopleDetection detection = {};
+  std::string model = "lite";  ///< the network for keypoints
+  int people = 0;              ///< who get keypoints in space; 0: all
   GroundPart part = {};
   double late_s = 0.05, patience_s = 3, preroll_s = 5;
 };

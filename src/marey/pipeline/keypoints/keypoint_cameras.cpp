@@ -40,8 +40,8 @@ void read_camera(RigCamera& camera, const std::string& set, std::optional<double
 }
 
 /// Throws Error where they cannot be of one recording; warns where frames are missing.
-void check_together(const std::vector<const KeypointSequence*>& read, std::vector<std::string>& warnings) {
-  if (read.size() < 2)
+void check_together(const std::vector<const KeypointSequence*>& read, bool one_camera, std::vector<std::string>& warnings) {
+  if (read.empty() || (read.size() < 2 && !one_camera))
     throw Error("{} with keypoints; two are needed: CAMERA=FOLDER for each",
                 read.empty() ? "no calibrated camera" : "only one calibrated camera");
   for (const KeypointSequence* one : read) {
@@ -72,7 +72,9 @@ std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const
     read_camera(rig.cameras[c], set, rate_hz, find, hooks, cameras[c], warnings, assumed);
     if (cameras[c] && !cameras[c]->sequence.frames.empty()) read.push_back(&cameras[c]->sequence);
   }
-  check_together(read, warnings);
+  const auto calibrated =
+      std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
+  check_together(read, calibrated == 1, warnings);
   if (assumed)
     warnings.push_back(fmt::format(
         "neither the rig nor the keypoints say how many frames there are in a second: {:g} are assumed; give --rate", kUsualRate));

@@ -82,14 +82,15 @@ KeypointFrames::KeypointFrames(const std::vector<std::optional<KeypointCamera>>&
     firsts.push_back(camera->first_s());
     lasts.push_back(camera->last_s());
   }
-  if (firsts.size() < 2) return;
+  if (firsts.empty()) return;
+  const std::size_t second = std::min<std::size_t>(1, firsts.size() - 1);  // a single camera is by itself
   std::sort(firsts.begin(), firsts.end());
   std::sort(lasts.rbegin(), lasts.rend());
   // On the first camera's frames, from the second camera's beginning to the last but one's end.
   const auto first =
       std::find_if(cameras.begin(), cameras.end(), [](const auto& camera) { return camera && !camera->sequence.frames.empty(); });
-  first_s_ = (*first)->first_s() + std::ceil((firsts[1] - (*first)->first_s()) * rate_hz_ - kSameMoment) / rate_hz_;
-  const double count = std::floor((lasts[1] - first_s_) * rate_hz_ + kSameMoment) + 1;
+  first_s_ = (*first)->first_s() + std::ceil((firsts[second] - (*first)->first_s()) * rate_hz_ - kSameMoment) / rate_hz_;
+  const double count = std::floor((lasts[second] - first_s_) * rate_hz_ + kSameMoment) + 1;
   size_ = count > 0 ? static_cast<std::size_t>(count) : 0;
   people_.assign(size_ * cameras_, &nobody);
   for (std::size_t instant = 0; instant < size_; ++instant) {

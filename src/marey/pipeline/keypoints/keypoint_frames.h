@@ -29,7 +29,8 @@ std::vector<Keypoints<2>> between_frames(const std::vector<Keypoints<2>>& earlie
 /// All cameras' people at even moments.
 class KeypointFrames {
  public:
-  /// The moments follow each other by the first camera's rate while two cameras at least have frames. The cameras must outlive it.
+  /// The moments follow each other by the first camera's rate while two cameras at least have frames, or the only one has. The
+  /// cameras must outlive it.
   explicit KeypointFrames(const std::vector<std::optional<KeypointCamera>>& cameras);
 
   std::size_t size() const { return size_; }

@@ -2,6 +2,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
+#include "marey/core/keypoint_sets.h"
 #include "marey/format/recording_file.h"
 
 namespace marey::pipeline::keypoints {
@@ -10,6 +11,8 @@ Sink::Wants KeypointCollector::begin(const RecordingHeader& header) {
   if (!header.keypoints || header.frame.kind != FrameOfReference::Kind::image)
     throw Error("{}: contains no body keypoints in an image; make it with marey track --targets keypoints", into_.from);
   into_.set = *header.keypoints;
+  // Programs differ in what they call a toe; in space a point has the same name whichever network found it.
+  for (std::string& point : into_.set.points) point = common_keypoint_name(point);
   into_.rate_hz = header.rate_hz;
   if (header.rig && !header.rig->cameras.empty()) into_.size = header.rig->cameras.front().size;
   return {};

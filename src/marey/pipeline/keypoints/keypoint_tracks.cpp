@@ -48,7 +48,7 @@ void add_instants(const reconstruct::keypoints::PersonTrack& person, std::size_t
     sample.position = points[point]->position;
     sample.covariance = points[point]->covariance;
     sample.cameras = points[point]->used;
-    sample.residual_px = points[point]->residual_px;
+    if (points[point]->rays > 1) sample.residual_px = points[point]->residual_px;
     track.add(static_cast<std::int32_t>(person.first + k), sample);
   }
 }

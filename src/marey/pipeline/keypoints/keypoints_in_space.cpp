@@ -1,7 +1,6 @@
 #include "marey/pipeline/keypoints/keypoints_in_space.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -17,11 +16,11 @@
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/geometry/median.h"
+#include "marey/pipeline/keypoints/followed_people.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
 #include "marey/pipeline/keypoints/keypoint_tracks.h"
 #include "marey/reconstruct/keypoints/clock_offsets.h"
-#include "marey/reconstruct/keypoints/people_in_views.h"
 #include "marey/reconstruct/keypoints/person_path.h"
 
 namespace marey::pipeline::keypoints {
@@ -57,15 +56,9 @@ class KeypointJob {
   Recording run();
 
  private:
-  struct Followed {
-    std::map<int, rk::PersonTrack> tracks;
-    std::int64_t seen = 0, placed = 0;
-    std::vector<double> squares;  // of the triangulated points, a degree of freedom
-    std::vector<double> times_ms;
-  };
-
-  Followed follow(double noise, std::size_t most) const;
-  double learn_noise() const;
+  bool one_camera() const {
+    return std::count_if(files_.begin(), files_.end(), [](const auto& file) { return file.has_value(); }) == 1;
+  }
   void find_offsets();
   std::vector<rk::PersonTrack> people_kept(std::map<int, rk::PersonTrack> tracks) const;
   rk::PersonPath smooth(rk::PersonTrack& track, double noise) const;
@@ -73,7 +66,7 @@ class KeypointJob {
                   Recording& recording);
   void count(const rk::PersonTrack& track, const rk::PersonPath* path);
   void count_cameras();
-  void report(const Followed& followed);
+  void report(const FollowedPeople& followed);
   void warn_of_misfit();
   RecordingHeader header() const;
 
@@ -88,53 +81,6 @@ class KeypointJob {
   std::vector<std::vector<double>> residuals_;  // by camera, px
   std::vector<std::vector<double>> ratios_;     // of each of them to the deviation that the keypoint states
 };
-
-KeypointJob::Followed KeypointJob::follow(double noise, std::size_t most) const {
-  Followed followed;
-  rk::PeopleInViews people(set_, static_cast<int>(cameras_.size()));
-  std::vector<rk::PersonView> views;
-  for (std::size_t t = 0; t < std::min(most, frames_->size()); ++t) {
-    const auto begin = std::chrono::steady_clock::now();
-    views.clear();
-    for (std::size_t c = 0; c < cameras_.size(); ++c) {
-      const auto& seen = frames_->at(t, c);
-      for (std::size_t i = 0; i < seen.size(); ++i)
-        views.push_back(rk::view_of(*cameras_[c], static_cast<int>(c), static_cast<int>(i), seen[i], noise));
-    }
-    for (const rk::PlacedPerson& person : people.step(t == 0 ? 0 : 1 / frames_->rate_hz(), views)) {
-      rk::PersonTrack& track = followed.tracks[person.id];
-      if (track.instants.empty()) track = {.id = person.id, .first = t, .instants = {}};
-      track.instants.resize(t - track.first + 1);
-      track.instants.back() = person;
-      for (const auto& point : person.points) {
-        if (point) followed.squares.push_back(point->chi_square / (2 * point->rays - 3));
-      }
-    }
-    followed.times_ms.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    if (most >= frames_->size())
-      hooks_.advance(
-          {.step = "placing", .done = static_cast<std::int64_t>(t) + 1, .total = static_cast<std::int64_t>(frames_->size())});
-  }
-  followed.seen = people.views_seen();
-  followed.placed = people.views_placed();
-  return followed;
-}
-
-/// How many times the stated deviations the errors are, by how well rays meet: at the least noise with which most views are placed.
-double KeypointJob::learn_noise() const {
-  constexpr std::size_t kLearnsFrom = 300;  // instants
-  constexpr double kMuchMore = 1.2;
-  double best = 1, best_placed = 0;
-  for (const double noise : {1.3, 2.6, 5.2}) {
-    Followed followed = follow(noise, kLearnsFrom);
-    const double placed = static_cast<double>(followed.placed);
-    if (placed <= kMuchMore * best_placed) continue;
-    best_placed = placed;
-    // The median of a sum of squares is a little below its mean.
-    best = noise * std::sqrt(geometry::median_or(followed.squares, 0) / 0.9);
-  }
-  return std::clamp(best, 0.1, 10.0);
-}
 
 void KeypointJob::find_offsets() {
   std::vector<rk::CameraFrames> frames(files_.size());
@@ -241,10 +187,12 @@ RecordingHeader KeypointJob::header() const {
   header.rate_hz = frames_->rate_hz();
   header.rig = rig_;
   for (RigCamera& camera : header.rig->cameras) camera.source = shown_source(camera.source);
-  header.smoothed = options_.smooth;
+  header.smoothed = options_.smooth && !summary_.one_camera;
   header.made_by.program = "marey reconstruct";
   header.made_by.options = hooks_.options;
   header.made_by.options["keypoint set"] = set_.name;
+  if (summary_.one_camera)
+    header.made_by.options["positions"] = "one camera: feet on the floor, bodies in vertical planes that face the camera";
   for (std::size_t c = 0; c < files_.size(); ++c) {
     if (files_[c]) header.made_by.inputs.push_back(format::input_of(shown_source(keypoint_file_of(rig_.cameras[c]))));
   }
@@ -274,7 +222,7 @@ KeypointsSummary::Person person_of(const rk::PersonTrack& track, std::string lab
   return said;
 }
 
-void KeypointJob::report(const Followed& followed) {
+void KeypointJob::report(const FollowedPeople& followed) {
   summary_.set = set_.name;
   summary_.points = static_cast<int>(set_.points.size());
   summary_.frames = static_cast<std::int64_t>(frames_->size());
@@ -296,6 +244,12 @@ void KeypointJob::report(const Followed& followed) {
 }
 
 void KeypointJob::warn_of_misfit() {
+  if (summary_.one_camera) {
+    summary_.warnings.push_back(
+        "one camera: people stand where their feet meet the floor (z = 0), and their bodies lie in vertical planes that face the "
+        "camera; how far a limb is in front of its plane or behind it is not known");
+    return;
+  }
   const bool few = static_cast<double>(summary_.placed) < kFewPlaced * static_cast<double>(summary_.views);
   if (few)
     summary_.warnings.push_back(fmt::format("only {} of {} people in images are placed: two cameras must see the same person",
@@ -321,16 +275,21 @@ void KeypointJob::warn_of_misfit() {
 
 Recording KeypointJob::run() {
   count_cameras();
-  if (options_.find_offsets) find_offsets();
+  summary_.one_camera = one_camera();
+  if (options_.find_offsets && !summary_.one_camera) find_offsets();
   frames_ = std::make_unique<KeypointFrames>(files_);
   if (frames_->size() == 0)
     throw Error(
         "no two cameras have frames at the same time: the offsets in the rig are wrong, or the files are of other recordings");
   residuals_.resize(cameras_.size());
   ratios_.resize(cameras_.size());
-  const double noise = learn_noise();
-  Followed followed = follow(kGateSlack * noise, frames_->size());
+  const double noise = summary_.one_camera ? 1 : keypoint_noise(cameras_, *frames_, set_);
+  FollowedPeople followed = summary_.one_camera ? follow_on_floor(cameras_, *frames_, set_)
+                                                : follow_in_views(cameras_, *frames_, set_, kGateSlack * noise, hooks_);
   std::vector<rk::PersonTrack> people = people_kept(std::move(followed.tracks));
+  if (people.empty() && summary_.one_camera)
+    throw Error("nobody is placed: of {} people in the images none stands on the floor; is z = 0 the floor in the rig?",
+                followed.seen);
   if (people.empty()) {
     const std::vector<std::string> reasons = reasons_of_misfit(rig_, *frames_, set_);
     throw Error("nobody is placed: no two cameras see the same person among {} people in their images; {}", followed.seen,
@@ -341,7 +300,7 @@ Recording KeypointJob::run() {
     recording.add_moment({static_cast<std::int64_t>(t), timestamp_from_seconds(static_cast<double>(t) / frames_->rate_hz())});
   for (std::size_t p = 0; p < people.size(); ++p) {
     std::optional<rk::PersonPath> path;
-    if (options_.smooth) path = smooth(people[p], noise);
+    if (options_.smooth && !summary_.one_camera) path = smooth(people[p], noise);
     add_person(people[p], path ? &*path : nullptr, p, people.size(), recording);
     count(people[p], path ? &*path : nullptr);
     summary_.people.push_back(person_of(people[p], people.size() > 1 ? fmt::format("P{}", p + 1) : ""));

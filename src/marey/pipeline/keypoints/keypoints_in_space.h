@@ -48,16 +48,19 @@ struct KeypointsSummary {
   std::vector<Camera> cameras;
   std::int64_t measured = 0, filled = 0;
   std::int64_t views = 0, placed = 0;
-  double residual_px = 0;  ///< median
-  double noise = 0;        ///< how many times the deviation that the files state
-  double place_ms = 0;     ///< of association and triangulation, a frame, median
+  double residual_px = 0;   ///< median
+  double noise = 0;         ///< how many times the deviation that the files state
+  double place_ms = 0;      ///< of association and triangulation, a frame, median
+  bool one_camera = false;  ///< feet on the floor, bodies in a plane that faces the camera
   std::vector<std::string> warnings;
   bool stopped = false;
 };
 
 /// The keypoints of the rig's cameras: each camera's `detections` or `source` names a file or folder of them
-/// (format/keypoints/keypoint_file.h), a take, or with `find` a video. Labels are the points' names, of several people "P1:left_knee". Throws Error where a file
-/// cannot be read, fewer than two calibrated cameras have keypoints, sets differ, or nobody is seen by two cameras.
+/// (format/keypoints/keypoint_file.h), a take, or with `find` a video. If the rig's only calibrated camera has them, its people
+/// stand on the floor, z = 0 (reconstruct/keypoints/one_camera.h), and warnings and `made_by` state that. Labels are the points'
+/// names, of several people "P1:left_knee". Throws Error where a file cannot be read, fewer than two calibrated cameras have
+/// keypoints, sets differ, or nobody is seen by two cameras.
 Recording keypoints_in_space(const Rig& rig, const KeypointsInSpaceOptions& options, KeypointsSummary& summary,
                              const Hooks& hooks = {});
 

@@ -8,6 +8,7 @@
 #include "marey/core/error.h"
 #include "marey/format/keypoints/keypoint_file.h"
 #include "marey/format/rig/imported_rig.h"
+#include "marey/pipeline/corridor/feed.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/simulate/room/room_keypoints.h"
 
@@ -86,6 +87,78 @@ TEST_F(KeypointsInSpace, AreTracksUnderTheirNames) {
   }
   EXPECT_GT(count, 0.95 * 25 * 150);
   EXPECT_LT(sum / count, 0.022);
+}
+
+TEST_F(KeypointsInSpace, AreFoundInVideosByTheGivenSearch) {
+  RoomOptions small = filmed_room(1);
+  small.picture = {108, 192};
+  const RoomScene scene(small);
+  const KeypointErrors errors{.noise_px = 0.8, .outlier_px = 6};
+  Rig rig = scene.rig();
+  for (RigCamera& camera : rig.cameras) {
+    camera.source = folder_ / (camera.name + ".mp4");
+    test::ffmpeg("-f lavfi -i color=size=108x192:rate=50:duration=2 -pix_fmt yuv420p " + camera.source);
+  }
+  std::vector<std::string> searched;
+  KeypointsInSpaceOptions options;
+  options.find = [&](const RigCamera& camera, const Hooks&) {
+    searched.push_back(camera.name);
+    corridor::Feed feed(camera, CameraId{});
+    std::size_t frames = 0;
+    while (feed.next()) ++frames;
+    const auto number = static_cast<int>(
+        std::find_if(rig.cameras.begin(), rig.cameras.end(), [&](const RigCamera& one) { return one.name == camera.name; }) -
+        rig.cameras.begin());
+    KeypointSequence sequence = marey::simulate::room::keypoints_of_camera(scene, number, errors);
+    sequence.frames.resize(frames);
+    sequence.from = camera.source;
+    sequence.size = feed.info().size;
+    sequence.rate_hz = feed.rate_hz();
+    return sequence;
+  };
+  KeypointsSummary summary;
+  const Recording recording = keypoints_in_space(rig, options, summary);
+  EXPECT_EQ(searched, (std::vector<std::string>{"cam1", "cam2", "cam3", "cam4"}));
+  EXPECT_EQ(summary.frames, 100);
+  EXPECT_EQ(summary.rate_hz, 50);
+  ASSERT_EQ(summary.people.size(), 1U);
+  EXPECT_GT(summary.measured, 20 * 100);
+
+  KeypointsInSpaceOptions none;
+  none.find = [&](const RigCamera& camera, const Hooks&) {
+    KeypointSequence nobody;
+    nobody.set = marey::simulate::room::room_keypoint_set();
+    nobody.frames.resize(10);
+    nobody.from = camera.source;
+    return nobody;
+  };
+  EXPECT_NE(error_of(rig, none).find("nobody is placed"), std::string::npos) << "videos without people";
+}
+
+TEST_F(KeypointsInSpace, OfOneCameraStandOnTheFloorAndSaySo) {
+  const RoomScene scene(filmed_room(1));
+  Rig rig = rig_of(scene);
+  rig.cameras.resize(1);
+  KeypointsSummary summary;
+  const Recording recording = keypoints_in_space(rig, {}, summary);
+  EXPECT_TRUE(summary.one_camera);
+  ASSERT_EQ(summary.warnings.size(), 1U);
+  EXPECT_NE(summary.warnings[0].find("feet meet the floor"), std::string::npos);
+  EXPECT_TRUE(recording.header.made_by.options.contains("positions"));
+  double sum = 0, count = 0;
+  for (const TrackColumns& track : recording.tracks()) {
+    if (!track.name.label.ends_with("_hip")) continue;
+    const auto& set = marey::simulate::room::room_keypoint_set();
+    const auto point = std::find(set.points.begin(), set.points.end(), track.name.label) - set.points.begin();
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      const auto truth =
+          marey::simulate::room::true_keypoints(scene, recording.seconds_at(static_cast<std::size_t>(track.at()[row])))[0];
+      sum += (track.position(row) - truth[static_cast<std::size_t>(point)]).norm();
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 150);
+  EXPECT_LT(sum / count, 0.3) << "m";
 }
 
 TEST_F(KeypointsInSpace, OfSeveralPeopleBearTheirNumber) {

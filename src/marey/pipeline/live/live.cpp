@@ -12,6 +12,8 @@
 #include "marey/pipeline/live/camera_films.h"
 #include "marey/pipeline/live/live_feeds.h"
 #include "marey/pipeline/markers/named_in_take.h"
+#include "marey/pipeline/markers/skeleton_in_space.h"
+#include "marey/pipeline/markers/skeleton_stage.h"
 
 namespace marey::pipeline::live {
 namespace {
@@ -75,11 +77,16 @@ std::unique_ptr<corridor::Stage> stage_of(LiveJob job, const std::vector<corrido
     case LiveJob::people_on_ground:
       options.on_ground.live = true;
       return markers::with_naming(people::people_on_ground(feeds, rig, options.on_ground), options.naming);
+    case LiveJob::keypoints_in_space: {
+      auto stage = markers::with_naming(keypoints::keypoints_live(rig, rate_hz, options.keypoints), options.naming);
+      if (options.space.skeleton == nullptr) return stage;
+      return markers::with_skeleton(std::move(stage), options.space.skeleton, markers::live_pose_options());
+    }
     case LiveJob::preview:
       break;
   }
   const detect::DetectorOptions people = options.people.detector, markers = options.space.markers;
-  return corridor::preview(feeds, rig, rate_hz, options.targets == LiveTargets::people ? people : markers);
+  return corridor::preview(feeds, rig, rate_hz, options.targets == LiveTargets::markers ? markers : people);
 }
 
 corridor::Sinks sinks_of(LiveOptions& options) {
@@ -156,6 +163,8 @@ std::string_view to_string(LiveJob job) {
       return "people in a picture";
     case LiveJob::people_on_ground:
       return "people on the ground";
+    case LiveJob::keypoints_in_space:
+      return "keypoints in space";
     case LiveJob::preview:
       break;
   }
@@ -164,10 +173,11 @@ std::string_view to_string(LiveJob job) {
 
 LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground) {
   if (ground) return LiveJob::people_on_ground;
-  if (rig.cameras.size() == 1) return targets == LiveTargets::people ? LiveJob::people_in_picture : LiveJob::markers_in_picture;
+  if (rig.cameras.size() == 1) return targets == LiveTargets::markers ? LiveJob::markers_in_picture : LiveJob::people_in_picture;
   const auto calibrated =
       std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
-  return targets == LiveTargets::markers && calibrated >= 2 ? LiveJob::markers_in_space : LiveJob::preview;
+  if (targets == LiveTargets::people || calibrated < 2) return LiveJob::preview;
+  return targets == LiveTargets::keypoints ? LiveJob::keypoints_in_space : LiveJob::markers_in_space;
 }
 
 LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
@@ -180,8 +190,8 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   LiveSummary summary;
   summary.job = live_job(fed, options.targets, options.ground);
   if (options.space.set.labels.empty() && options.space.learned_set == nullptr) options.space.set = names_of_played(fed);
-  if (options.space.skeleton != nullptr && summary.job != LiveJob::markers_in_space)
-    throw Error("a skeleton is solved from markers in space, of two calibrated cameras or more; these cameras give {}",
+  if (options.space.skeleton != nullptr && summary.job != LiveJob::markers_in_space && summary.job != LiveJob::keypoints_in_space)
+    throw Error("a skeleton is solved from markers or keypoints in space, of two calibrated cameras or more; these cameras give {}",
                 to_string(summary.job));
   if (options.space.learned_set != nullptr && summary.job != LiveJob::markers_in_space)
     throw Error("a set names markers in space, of two calibrated cameras or more; these cameras give {}", to_string(summary.job));

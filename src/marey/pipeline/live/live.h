@@ -9,6 +9,7 @@
 #include "marey/core/rig.h"
 #include "marey/pipeline/corridor/live_monitor.h"
 #include "marey/pipeline/corridor/recorder.h"
+#include "marey/pipeline/keypoints/keypoints_live.h"
 #include "marey/pipeline/live/camera_desk.h"
 #include "marey/pipeline/markers/markers_in_picture.h"
 #include "marey/pipeline/markers/markers_in_space.h"
@@ -18,10 +19,10 @@
 
 namespace marey::pipeline::live {
 
-enum class LiveTargets { markers, people };
+enum class LiveTargets { markers, people, keypoints };
 
 /// What runs, by what is asked for and what is known of the rig.
-enum class LiveJob { preview, markers_in_picture, markers_in_space, people_in_picture, people_on_ground };
+enum class LiveJob { preview, markers_in_picture, markers_in_space, people_in_picture, people_on_ground, keypoints_in_space };
 
 /// "a preview", "markers in space", …
 std::string_view to_string(LiveJob job);
@@ -33,6 +34,7 @@ struct LiveOptions {
   markers::MarkersInPictureOptions markers;
   people::PeopleInPictureOptions people;
   people::PeopleOnGroundOptions on_ground;
+  keypoints::KeypointsLiveOptions keypoints;  ///< of several cameras; of one: `people.keypoints`
   source::LivePolicy policy = {.time = nullptr, .late_s = 0.05, .stalled_s = 0.5, .lost_s = 5};  ///< without a time: the steady one
   std::shared_ptr<CameraDesk> desk = {};  ///< what of the cameras is changed while they run; null: they are as the rig says
   std::shared_ptr<markers::TrackNaming> naming = {};  ///< names that tracks are given by hand; null: none
@@ -54,7 +56,7 @@ struct LiveSummary : corridor::Summary {
   bool recorded = false;
 };
 
-/// One camera: in its picture. Several: markers in space where two or more are calibrated, people where `ground` asks for it, else
+/// One camera: in its image. Several: markers or keypoints in space if two or more are calibrated, people if `ground` is set, else
 /// a preview.
 LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground);
 

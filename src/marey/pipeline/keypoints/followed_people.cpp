@@ -1,0 +1,91 @@
+#include "marey/pipeline/keypoints/followed_people.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "marey/geometry/median.h"
+#include "marey/reconstruct/keypoints/one_camera.h"
+#include "marey/reconstruct/keypoints/people_in_views.h"
+
+namespace marey::pipeline::keypoints {
+namespace {
+
+namespace rk = reconstruct::keypoints;
+
+void add_to_tracks(const rk::PlacedPerson& person, std::size_t instant, FollowedPeople& followed) {
+  rk::PersonTrack& track = followed.tracks[person.id];
+  if (track.instants.empty()) track = {.id = person.id, .first = instant, .instants = {}};
+  track.instants.resize(instant - track.first + 1);
+  track.instants.back() = person;
+}
+
+/// The first `most` instants.
+FollowedPeople follow_some(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
+                           std::size_t most, const Hooks& hooks) {
+  FollowedPeople followed;
+  rk::PeopleInViews people(set, static_cast<int>(cameras.size()));
+  std::vector<rk::PersonView> views;
+  for (std::size_t t = 0; t < std::min(most, frames.size()); ++t) {
+    const auto begin = std::chrono::steady_clock::now();
+    views.clear();
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      const auto& seen = frames.at(t, c);
+      for (std::size_t i = 0; i < seen.size(); ++i)
+        views.push_back(rk::view_of(*cameras[c], static_cast<int>(c), static_cast<int>(i), seen[i], noise));
+    }
+    for (const rk::PlacedPerson& person : people.step(t == 0 ? 0 : 1 / frames.rate_hz(), views)) {
+      add_to_tracks(person, t, followed);
+      for (const auto& point : person.points) {
+        if (point) followed.squares.push_back(point->chi_square / (2 * point->rays - 3));
+      }
+    }
+    followed.times_ms.push_back(1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    if (most >= frames.size())
+      hooks.advance(
+          {.step = "placing", .done = static_cast<std::int64_t>(t) + 1, .total = static_cast<std::int64_t>(frames.size())});
+  }
+  followed.seen = people.views_seen();
+  followed.placed = people.views_placed();
+  return followed;
+}
+
+}  // namespace
+
+FollowedPeople follow_in_views(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
+                               const Hooks& hooks) {
+  return follow_some(cameras, frames, set, noise, frames.size(), hooks);
+}
+
+FollowedPeople follow_on_floor(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set) {
+  FollowedPeople followed;
+  const auto only = std::find_if(cameras.begin(), cameras.end(), [](const auto& camera) { return camera.has_value(); });
+  const auto c = static_cast<std::size_t>(only - cameras.begin());
+  rk::PeopleBeforeCamera people(set, **only, static_cast<int>(c), static_cast<int>(cameras.size()));
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    const std::vector<Keypoints<2>>& seen = frames.at(t, c);
+    followed.seen += std::ssize(seen);
+    for (const rk::PlacedPerson& person : people.step(t == 0 ? 0 : 1 / frames.rate_hz(), seen)) {
+      ++followed.placed;
+      add_to_tracks(person, t, followed);
+    }
+  }
+  return followed;
+}
+
+double keypoint_noise(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set) {
+  constexpr std::size_t kLearnsFrom = 300;  // instants, numerical: enough for a median
+  constexpr double kMuchMore = 1.2;
+  double best = 1, best_placed = 0;
+  for (const double noise : {1.3, 2.6, 5.2}) {
+    FollowedPeople followed = follow_some(cameras, frames, set, noise, std::min(kLearnsFrom, frames.size()), {});
+    const double placed = static_cast<double>(followed.placed);
+    if (placed <= kMuchMore * best_placed) continue;
+    best_placed = placed;
+    // The median of a sum of squares is a little below its mean.
+    best = noise * std::sqrt(geometry::median_or(followed.squares, 0) / 0.9);
+  }
+  return std::clamp(best, 0.1, 10.0);
+}
+
+}  // namespace marey::pipeline::keypoints
