@@ -52,7 +52,8 @@ void run(const ExperimentContours& command) {
 void add_experiment_contours(Command& experiment) {
   auto options = std::make_shared<ExperimentContours>();
   Command command = experiment.subcommand(
-      "contours", "Contours against true silhouettes: alone, behind a board, overlapping, after occlusions; next to a naive method");
+      "contours",
+      "Contours against true silhouettes: alone, behind a board, overlapping, after occlusions; next to a naive method");
   command.whole("--videos", options->options.videos, "N", 1, 10'000, "per case");
   command.seed(options->options.seed, "of the first video; the others follow");
   command.text("--only", options->options.only, "cases whose name contains this text");

@@ -24,6 +24,8 @@
   row(format::tracks, blobs) \
   row(format::tracks, image_csv) \
   row(format::tracks, jsonl) \
+  row(format::tracks, mots) \
+  row(format::tracks, coco) \
   row(format::match, ground) \
   row(format::match, soccernet) \
   row(format::match, sportec) \
