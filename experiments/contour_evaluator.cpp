@@ -1,7 +1,7 @@
 // The measures of `marey experiment contours`, all from true silhouettes on a lattice of 4 × 4 points per pixel. The bias is the
 // difference of the areas of contour and silhouette over the silhouette's perimeter, which is how much its area grows per pixel
 // of dilation. Second differences are taken of what each method itself reports, of a person alone, over three frames in a row.
-#include "experiments/contour_judge.h"
+#include "experiments/contour_evaluator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +24,9 @@ constexpr double kNotVisible = 0.02;  // of a person, up to which they are hidde
 constexpr double kFoundIou = 0.5;
 constexpr double kMinShared = 0.2, kMaxShared = 0.7;  // of the smaller of two who overlap
 constexpr double kMaxOversize = 1.5;
-constexpr double kMinWidth = 0.4;   // heights: a person this wide at least, for the size that a contour may have
+constexpr double kMinWidth = 0.4;  // heights: a person this wide at least, for the size that a contour may have
 constexpr int kMinHiddenFrames = 3;
-constexpr int kNameFrames = 25;     // after an occlusion, in which the name must be the one before
+constexpr int kNameFrames = 25;  // after an occlusion, in which the name must be the one before
 
 evaluate::SilhouetteMask mask_of(const Silhouette& silhouette) {
   return {silhouette.mask, silhouette.lattice.tl(), silhouette.samples};
@@ -56,7 +56,8 @@ double perimeter_of(const Silhouette& silhouette) {
   return (cv::countNonZero(wide) - cv::countNonZero(narrow)) / static_cast<double>(silhouette.samples * silhouette.samples);
 }
 
-double visible_iou(const FollowedShape& shape, std::span<const FollowedShape> all, const TrueFigure& person, const cv::Size& image) {
+double visible_iou(const FollowedShape& shape, std::span<const FollowedShape> all, const TrueFigure& person,
+                   const cv::Size& image) {
   std::vector<std::vector<Vector<2>>> hiding;
   for (const FollowedShape& other : all) {
     if (std::find(shape.behind.begin(), shape.behind.end(), other.name) != shape.behind.end()) hiding.push_back(other.polygon);
@@ -92,9 +93,8 @@ bool crosses_itself(const std::vector<Vector<2>>& polygon) {
 }  // namespace
 
 void ContourTally::add(const ContourTally& other) {
-  for (Mean ContourTally::*const mean :
-       {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind, &ContourTally::found,
-        &ContourTally::bias, &ContourTally::back, &ContourTally::swapped}) {
+  for (Mean ContourTally::* const mean : {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind,
+                                          &ContourTally::found, &ContourTally::bias, &ContourTally::back, &ContourTally::swapped}) {
     (this->*mean).add(other.*mean);
   }
   for (std::size_t i = 0; i < bends.size(); ++i) bends[i].add(other.bends[i]);
@@ -103,7 +103,7 @@ void ContourTally::add(const ContourTally& other) {
   oversized += other.oversized;
 }
 
-void ContourJudge::match(std::span<const TrueFigure> truth, std::span<const FollowedShape> shapes) {
+void ContourEvaluator::match(std::span<const TrueFigure> truth, std::span<const FollowedShape> shapes) {
   struct Pair {
     double iou;
     std::size_t person, shape;
@@ -130,7 +130,7 @@ void ContourJudge::match(std::span<const TrueFigure> truth, std::span<const Foll
   }
 }
 
-void ContourJudge::see(int frame, std::span<const TrueFigure> truth, std::span<const FollowedShape> shapes) {
+void ContourEvaluator::observe(int frame, std::span<const TrueFigure> truth, std::span<const FollowedShape> shapes) {
   match(truth, shapes);
   for (const FollowedShape& shape : shapes) {
     if (!shape.is_curve) continue;
@@ -141,17 +141,17 @@ void ContourJudge::see(int frame, std::span<const TrueFigure> truth, std::span<c
     const FollowedShape* const shape = matched_[p] >= 0 ? &shapes[static_cast<std::size_t>(matched_[p])] : nullptr;
     // A person counts from the first frame with a contour on.
     if (shape == nullptr && !people_.contains(truth[p].id)) continue;
-    follow_occlusion(frame, truth[p], shape, visible_iou_[p]);
+    update_occlusion(frame, truth[p], shape, visible_iou_[p]);
     if (truth[p].visible_share >= kHalfVisible) score(truth, p, shape);
     const bool touched = std::any_of(truth.begin(), truth.end(), [&](const TrueFigure& other) {
       return other.id != truth[p].id && shared_fraction(truth[p].whole, other.whole) > 0;
     });
     if (truth[p].visible_share < 1 || touched || !is_within(truth[p].whole, image_)) continue;
-    follow_shape(frame, truth[p], shape);
+    update_motion(frame, truth[p], shape);
   }
 }
 
-void ContourJudge::score(std::span<const TrueFigure> truth, std::size_t index, const FollowedShape* shape) {
+void ContourEvaluator::score(std::span<const TrueFigure> truth, std::size_t index, const FollowedShape* shape) {
   const TrueFigure& person = truth[index];
   const evaluate::OutlineOverlap with_whole =
       shape != nullptr ? evaluate::overlap(shape->polygon, mask_of(person.whole), &image_) : evaluate::OutlineOverlap{};
@@ -182,7 +182,7 @@ void ContourJudge::score(std::span<const TrueFigure> truth, std::size_t index, c
   tally_.bias.add((with_whole.outline - with_whole.silhouette) / perimeter_of(person.whole));
 }
 
-void ContourJudge::follow_occlusion(int frame, const TrueFigure& person, const FollowedShape* shape, double iou) {
+void ContourEvaluator::update_occlusion(int frame, const TrueFigure& person, const FollowedShape* shape, double iou) {
   Person& known = people_[person.id];
   if (person.visible_share <= kNotVisible) {
     if (++known.hidden == kMinHiddenFrames) known.before = known.name;
@@ -201,7 +201,7 @@ void ContourJudge::follow_occlusion(int frame, const TrueFigure& person, const F
   }
 }
 
-void ContourJudge::follow_shape(int frame, const TrueFigure& person, const FollowedShape* shape) {
+void ContourEvaluator::update_motion(int frame, const TrueFigure& person, const FollowedShape* shape) {
   if (shape == nullptr) return;
   Person& known = people_[person.id];
   const auto [low, high] = bounds_of(shape->polygon);

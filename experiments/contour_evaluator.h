@@ -10,8 +10,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "experiments/outline_methods.h"
 #include "marey/simulate/people/people_renderer.h"
+
+#include "experiments/outline_methods.h"
 
 namespace marey::experiments {
 
@@ -47,13 +48,13 @@ struct ContourTally {
   void add(const ContourTally& other);
 };
 
-/// Evaluates one method on one video. In `whole`, `alone`, `front`, `behind` and `bias` a person has the contour that overlaps their
-/// visible part most, whatever its name; a contour serves one person.
-class ContourJudge {
+/// Evaluates one method on one video. In `whole`, `alone`, `front`, `behind` and `bias` a person has the contour that overlaps
+/// their visible part most, whatever its name; a contour serves one person.
+class ContourEvaluator {
  public:
-  explicit ContourJudge(cv::Size image) : image_(image) {}
+  explicit ContourEvaluator(cv::Size image) : image_(image) {}
 
-  void see(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes);
+  void observe(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes);
   const ContourTally& tally() const { return tally_; }
 
  private:
@@ -68,8 +69,8 @@ class ContourJudge {
 
   void match(std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes);
   void score(std::span<const simulate::people::TrueFigure> truth, std::size_t index, const FollowedShape* shape);
-  void follow_occlusion(int frame, const simulate::people::TrueFigure& person, const FollowedShape* shape, double iou);
-  void follow_shape(int frame, const simulate::people::TrueFigure& person, const FollowedShape* shape);
+  void update_occlusion(int frame, const simulate::people::TrueFigure& person, const FollowedShape* shape, double iou);
+  void update_motion(int frame, const simulate::people::TrueFigure& person, const FollowedShape* shape);
 
   cv::Size image_;
   std::map<int, Person> people_;

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/contour_judge.h"
 #include "marey/core/hooks.h"
 #include "marey/simulate/people/people_film.h"
 #include "marey/track/contour/outline_follower.h"
+
+#include "experiments/contour_evaluator.h"
 
 namespace marey::experiments {
 
@@ -21,10 +22,11 @@ struct ContourCase {
   std::string name;
   simulate::people::PeopleSituation situation{};
   double height_px = 60;
-  bool filmed = false;             ///< halo, blur, colour fringe and blocks, as a broadcast camera gives it
-  bool same_shirts = false;        ///< both people of one team
-  std::optional<int> crf = {};     ///< encoded by x264 and decoded
+  bool degraded = false;                ///< halo, blur, colour fringe and blocks, as a broadcast camera gives it
+  bool same_shirts = false;             ///< both people of one team
+  std::optional<int> crf = {};          ///< encoded by x264 and decoded
   std::optional<double> hidden_s = {};  ///< longest full occlusion behind a board
+  std::optional<int> frames = {};       ///< of each video; the default of the situation without
   int videos = 1;
 };
 
@@ -50,8 +52,9 @@ struct ContourExperimentOptions {
   track::contour::OutlineOptions outlines;
 };
 
-/// Contours against true silhouettes in simulated videos: people alone, behind a board, two who overlap, full occlusions. All methods
-/// run with the past alone and settings that are the same for all cases; the detector is primed with earlier images of the scene.
+/// Contours against true silhouettes in simulated videos: people alone, behind a board, two who overlap, full occlusions. All
+/// methods run with the past alone and settings that are the same for all cases; the detector is primed with earlier images of the
+/// scene.
 ContourExperiment run_contour_experiment(const ContourExperimentOptions& options, const Hooks& hooks = {});
 
 std::string to_text(const ContourExperiment& experiment);

@@ -60,7 +60,8 @@ class NaiveMethod final : public OutlineMethod {
     if (box.empty()) return std::nullopt;
     const cv::Mat part = mask(box).clone();
     const std::vector<detect::Region> regions = detect::find_regions(part, {.min_area = kMinPixels});
-    const auto largest = std::max_element(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.area < b.area; });
+    const auto largest =
+        std::max_element(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.area < b.area; });
     if (largest == regions.end()) return std::nullopt;
     FollowedShape shape;
     shape.name = tracked.name;
