@@ -47,6 +47,7 @@ void add_calibrate_board(Command& calibrate);
 
 void add_experiment(Command& program);
 void add_experiment_trackers(Command& experiment);  ///< below `experiment`
+void add_experiment_contours(Command& experiment);
 void add_experiment_outlines(Command& experiment);
 void add_experiment_hypotheses(Command& experiment);
 void add_experiment_markers(Command& experiment);

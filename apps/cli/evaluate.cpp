@@ -9,7 +9,9 @@
 
 #include "marey/core/error.h"
 #include "marey/evaluate/evaluation.h"
+#include "marey/evaluate/mask_evaluation.h"
 #include "marey/format/tracks/boxes.h"
+#include "marey/format/tracks/coco_instances.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -108,8 +110,56 @@ void print_table(const evaluate::Evaluation& result, double iou) {
   fmt::print("\n{}\n", verdict(result));
 }
 
+std::string figure(const std::optional<double>& value) {
+  return value ? fmt::format("{:.3f}", *value) : "none";
+}
+
+/// Masks of one image size.
+void check_sizes(const EvaluateOptions& options, const format::tracks::MaskTable& truth, const format::tracks::MaskTable& tracks) {
+  const RunMask* first = nullptr;
+  for (const auto* masks : {&truth.masks, &truth.ignored, &tracks.masks}) {
+    for (const LabelledMask& one : *masks) {
+      if (first == nullptr) first = &one.mask;
+      if (one.mask.width == first->width && one.mask.height == first->height) continue;
+      throw Error("{} and {}: masks of images of {} x {} and of {} x {} px; expected one size", options.truth, options.tracks,
+                  first->width, first->height, one.mask.width, one.mask.height);
+    }
+  }
+}
+
+void evaluate_mask_files(const EvaluateOptions& options) {
+  const format::tracks::MaskTable truth = format::tracks::read_masks(options.truth);
+  format::tracks::MaskTable tracks = format::tracks::read_masks(options.tracks);
+  check_sizes(options, truth, tracks);
+  evaluate::remove_ignored(truth.masks, truth.ignored, options.iou, tracks.masks);
+  const evaluate::MaskEvaluation result = evaluate::evaluate_masks(truth.masks, tracks.masks, options.iou);
+  std::vector<std::string> warnings = truth.warnings;
+  warnings.insert(warnings.end(), tracks.warnings.begin(), tracks.warnings.end());
+  if (truth.masks.empty()) warnings.push_back(fmt::format("{}: contains no mask that is evaluated", options.truth));
+  if (tracks.masks.empty()) warnings.push_back(fmt::format("{}: contains no mask", options.tracks));
+  warn(warnings);
+  if (options.json) {
+    Json json = cli::as_json(result.scores);
+    json["iou"] = options.iou;
+    json["true_masks"] = result.scores.true_boxes;
+    json["track_masks"] = result.scores.track_boxes;
+    json["smotsa"] = or_null(result.smotsa);
+    json["motsp"] = or_null(result.motsp);
+    json["warnings"] = warnings;
+    print(json);
+  } else if (!options.quiet) {
+    fmt::print("Masks\n");
+    print_box_row("sMOTSA", percent(result.smotsa), "(sum of the overlaps - FP - IDSW) / true masks");
+    print_box_row("MOTSP", figure(result.motsp), "mean overlap (IoU) of the masks found; 1 is perfect");
+    print_table(result.scores, options.iou);
+  }
+}
+
 void run(const EvaluateOptions& options) {
   if (options.truth == "-" && options.tracks == "-") throw WrongUsage("only one of --truth and --tracks can be standard input");
+  if (!options.distance && format::tracks::has_masks(options.truth) && format::tracks::has_masks(options.tracks)) {
+    return evaluate_mask_files(options);
+  }
   if (options.distance) return evaluate_places(options.truth, options.tracks, *options.distance, options.json, options.quiet);
   format::tracks::MotTable truth = format::tracks::read_boxes(options.truth, format::tracks::MotKind::truth);
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
@@ -133,7 +183,7 @@ void add_evaluate(Command& program) {
       .input_file(
           "--truth", options->truth,
           "the truth: MOTChallenge text, or any file of tracks in a picture (with --distance, of people on the ground or of "
-          "markers in space); - for standard input")
+          "markers in space), or masks (MOTS text, COCO instances: then masks are evaluated); - for standard input")
       .required();
   command.input_file("--tracks", options->tracks, "the tracks to judge, likewise; - for standard input").required();
   const Option iou = command.number("--iou", options->iou, "overlap", above(0, 1), "(IoU) from which a box counts as found");

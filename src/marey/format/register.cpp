@@ -26,6 +26,8 @@
   row(format::tracks, jsonl) \
   row(format::keypoints, coco) \
   row(format::keypoints, openpose) \
+  row(format::tracks, mots) \
+  row(format::tracks, coco_instances) \
   row(format::match, ground) \
   row(format::match, soccernet) \
   row(format::match, sportec) \

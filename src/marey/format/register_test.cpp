@@ -57,7 +57,8 @@ std::string refusal(const std::string& path, const std::string& name, Content co
 
 TEST(Register, WhatCannotBeWrittenIsRefusedWithWhatCan) {
   EXPECT_EQ(refusal("b.xyz", "", Content::image),
-            "b.xyz: unknown ending; these can be written: .marey (take), .csv (csv), .jsonl (jsonl), .txt (mot); or name a format "
+            "b.xyz: unknown ending; these can be written: .marey (take), .csv (csv), .jsonl (jsonl), --format mots, "
+            "--format coco, .txt (mot); or name a format "
             "with --format");
   EXPECT_EQ(refusal("b.c3d", "", Content::ground),
             "b.c3d: a C3D file holds points in space, and not people on the ground; these can be written: .marey (take), .mcap "

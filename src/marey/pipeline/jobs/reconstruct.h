@@ -7,6 +7,7 @@
 
 #include "marey/pipeline/jobs/detection_rows.h"
 #include "marey/pipeline/jobs/space_names.h"
+#include "marey/pipeline/keypoints/body_keypoints.h"
 #include "marey/pipeline/keypoints/keypoints_in_space.h"
 #include "marey/pipeline/markers/markers_in_space.h"
 

@@ -24,6 +24,7 @@ constexpr float kClearContrast = 32;                        // from which on it 
 constexpr double kSpread = 0.5;                             // cells by which that varies along the edge
 constexpr float kPlainGround = 12;                          // levels from the ground below which a cell deep inside is ground
 constexpr float kHalo = 0.25F;                              // square of a halo's strength, of the step from ground to body
+constexpr float kLightChange = 40;                          // levels; a cell farther from the scene is shadow or a target
 constexpr double kSmooth = 0.6;                             // cells
 
 int odd_kernel(double radius) {
@@ -62,6 +63,29 @@ cv::Mat weighted_mean(const cv::Mat& colour, const cv::Mat& weights, int size, c
   return mean;
 }
 
+/// Puts the scene in place of the colours beside where it is known, in the light of this frame: the mean difference of the cells
+/// that nothing takes.
+void use_scene(const ColourPatch& patch, const cv::Mat& free, cv::Mat& ground) {
+  cv::Vec3f drift(0, 0, 0);
+  float count = 0;
+  for (int y = 0; y < free.rows; ++y) {
+    for (int x = 0; x < free.cols; ++x) {
+      if (free.at<float>(y, x) < 1 || patch.known.at<float>(y, x) < 1) continue;
+      const cv::Vec3f off = patch.colour.at<cv::Vec3f>(y, x) - patch.scene.at<cv::Vec3f>(y, x);
+      if (off.dot(off) > kLightChange * kLightChange) continue;
+      drift += off;
+      count += 1;
+    }
+  }
+  if (count > 0) drift /= count;
+  for (int y = 0; y < free.rows; ++y) {
+    for (int x = 0; x < free.cols; ++x) {
+      if (patch.known.at<float>(y, x) < 1) continue;
+      ground.at<cv::Vec3f>(y, x) = patch.scene.at<cv::Vec3f>(y, x) + drift;
+    }
+  }
+}
+
 }  // namespace
 
 cv::Mat ground_beside(const ColourPatch& patch, const cv::Mat& taken, double height) {
@@ -70,7 +94,9 @@ cv::Mat ground_beside(const ColourPatch& patch, const cv::Mat& taken, double hei
   cv::Mat somewhere;
   free.convertTo(somewhere, CV_8U, 255);
   const cv::Scalar everywhere = cv::mean(patch.colour, cv::countNonZero(somewhere) > 0 ? somewhere : cv::Mat());
-  return weighted_mean(patch.colour, free, odd_kernel(kGroundReach * height / patch.step), everywhere);
+  cv::Mat beside = weighted_mean(patch.colour, free, odd_kernel(kGroundReach * height / patch.step), everywhere);
+  if (!patch.scene.empty()) use_scene(patch, free, beside);
+  return beside;
 }
 
 namespace {

@@ -107,7 +107,7 @@ class LevelCurves {
 
 }  // namespace
 
-ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& box, int step) {
+ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene) {
   const int unit = std::max(2, step);
   const auto down = [&](double value) { return static_cast<int>(std::floor(value / unit)) * unit; };
   const cv::Rect all({0, 0}, cv::Size(picture.size().width / unit * unit, picture.size().height / unit * unit));
@@ -127,6 +127,12 @@ ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& bo
   }
   cv::merge(planes.data(), planes.size(), patch.colour);
   patch.mask = in_cells(mask(area), cells) / 255;
+  if (scene != nullptr && scene->has(picture.size())) {
+    std::array<cv::Mat, 3> empty{in_cells(scene->luma(area), cells), {}, {}};
+    for (int i = 1; i < 3; ++i) empty[i] = in_cells(scene->chroma(i - 1, half), cells);
+    cv::merge(empty.data(), empty.size(), patch.scene);
+    patch.known = in_cells(scene->known(area), cells);
+  }
   return patch;
 }
 

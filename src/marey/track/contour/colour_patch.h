@@ -7,6 +7,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/picture.h"
+#include "marey/track/contour/scene_image.h"
 
 namespace marey::track::contour {
 
@@ -16,6 +17,8 @@ struct ColourPatch {
   int step = 1;      ///< 1, 2 or 4 px
   cv::Mat colour;    ///< CV_32FC3: luma, Cb, Cr in levels; Cb = Cr = 128 where the picture is grey
   cv::Mat mask;      ///< CV_32FC1: share of the cell that is foreground, 0 … 1
+  cv::Mat scene;     ///< CV_32FC3: the scene without targets, in the same levels; empty if it is not known
+  cv::Mat known;     ///< CV_32FC1: share of the cell in which it is, 0 … 1; empty likewise
 
   cv::Size size() const { return colour.size(); }
   /// px of a place in cells, and the other way round; (0, 0) is the first cell's centre.
@@ -33,7 +36,8 @@ inline Box grown(const Box& box, double by) {
 }
 
 /// The part of the picture (8 bits) within `box`, px; empty where they do not meet. `mask` is CV_8UC1, of the picture's size.
-ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& box, int step);
+/// `scene`, if given and of that size too, is cut along.
+ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene = nullptr);
 
 /// The cells whose centre lies within a polygon (px, even-odd): CV_32FC1, 1 or 0, of the patch's size.
 cv::Mat cells_within(std::span<const Vector<2>> polygon, const ColourPatch& patch);

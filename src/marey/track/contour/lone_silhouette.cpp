@@ -34,8 +34,9 @@ Box bounds(std::span<const Vector<2>> polygon) {
 
 }  // namespace
 
-void LoneSilhouettes::look_at(const Picture& picture, const cv::Mat& mask) {
+void LoneSilhouettes::look_at(const Picture& picture, const cv::Mat& mask, const SceneImage* scene) {
   picture_ = picture;
+  scene_ = scene;
   mask_ = mask;
 }
 
@@ -47,7 +48,7 @@ std::optional<geometry::ClosedSpline> LoneSilhouettes::fitted(const Detection& s
   share_.release();
   if (!has_colours() || seen.outline.size() < 4) return fit_silhouette(seen, picture_.luma(), options);
   const double height = seen.box.height;
-  patch_ = cut_patch(picture_, mask_, grown(bounds(seen.outline), 2 + kBeside * height), cell_step(height));
+  patch_ = cut_patch(picture_, mask_, grown(bounds(seen.outline), 2 + kBeside * height), cell_step(height), scene_);
   if (patch_.colour.empty()) return fit_silhouette(seen, picture_.luma(), options);
   share_ = body_share(patch_, cells_within(seen.outline, patch_), height);
   const std::vector<Vector<2>> edge = half_level_curve(share_, patch_);

@@ -20,7 +20,8 @@ class LoneSilhouettes {
   explicit LoneSilhouettes(const geometry::SplineFitOptions& fit) : fit_(fit) {}
 
   /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
-  void look_at(const Picture& picture, const cv::Mat& mask);
+  /// `scene` stays with its owner; it may be null.
+  void look_at(const Picture& picture, const cv::Mat& mask, const SceneImage* scene = nullptr);
   bool has_colours() const;  ///< whether the frame's picture can tell where a body ends
 
   /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
@@ -36,6 +37,7 @@ class LoneSilhouettes {
   geometry::SplineFitOptions fit_;
   Picture picture_;
   cv::Mat mask_;
+  const SceneImage* scene_ = nullptr;
   ColourPatch patch_;  // of the silhouette last fitted, and what of it is body; empty where colours were not used
   cv::Mat share_;
 };

@@ -40,7 +40,8 @@ class OutlineFollower::Implementation {
     now_ = frame.time;
     picture_ = frame.picture;
     mask_ = foreground.mask;
-    lone_.look_at(picture_, mask_);
+    scene_.observe(picture_, mask_);
+    lone_.look_at(picture_, mask_, &scene_);
     hints_.clear();
     for (FollowedTarget& target : targets_) {
       lines_.predict(target, dt);
@@ -161,7 +162,7 @@ class OutlineFollower::Implementation {
       std::sort(members.begin(), members.end());
       std::vector<SharedTarget> targets;
       for (const std::size_t k : members) targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed});
-      outline_shared_region(picture_, mask_, targets);
+      outline_shared_region(picture_, mask_, &scene_, targets);
     }
   }
 
@@ -222,6 +223,7 @@ class OutlineFollower::Implementation {
   std::vector<Shared> shared_;
   LineCorrection lines_;
   LoneSilhouettes lone_;
+  SceneImage scene_;
   Timestamp before_{};  // of the last frame attached
   std::vector<FollowedTarget> targets_;
   std::map<TrackId, Silhouette> first_seen_;  // targets seen once, in the last frame

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <opencv2/imgproc.hpp>
+
 #include "marey/track/contour/body_share.h"
 #include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/edge_matting.h"
 #include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
 
@@ -35,7 +38,8 @@ double expected_area(const FollowedTarget& target, const Box& box) {
   return target.usual_area * growth * growth;
 }
 
-ColourPatch patch_about(const Picture& picture, const cv::Mat& mask, std::span<const SharedTarget> targets) {
+ColourPatch patch_about(const Picture& picture, const cv::Mat& mask, const SceneImage* scene,
+                        std::span<const SharedTarget> targets) {
   Box all;
   double height = 0;
   for (const SharedTarget& one : targets) {
@@ -43,7 +47,8 @@ ColourPatch patch_about(const Picture& picture, const cv::Mat& mask, std::span<c
     all = all.empty() ? own : geometry::hull(all, own);
     height = std::max(height, one.target->height);
   }
-  return cut_patch(picture, mask, grown(all, kMargin * height), height <= kFine ? 1 : cell_step(std::max(height, 120.0)));
+  const int step = height <= kFine ? 1 : cell_step(std::max(height, 120.0));
+  return cut_patch(picture, mask, grown(all, kMargin * height), step, scene);
 }
 
 RegionMember member_of(const SharedTarget& shared) {
@@ -130,21 +135,34 @@ void take_part(FollowedTarget& target, const Box& box, const RegionMember& membe
   target.knotted = false;
 }
 
+/// Where a member borders on ground, its edge is where its colours end.
+void refine_edges(const ColourPatch& patch, const cv::Mat& ground, std::span<RegionMember> members) {
+  for (RegionMember& member : members) {
+    cv::Mat blocked = member.whole - member.seen;
+    for (const RegionMember& other : members) {
+      if (&other != &member) cv::max(blocked, other.seen, blocked);
+    }
+    cv::dilate(blocked, blocked, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+    member.whole = matted_edge(patch, member.whole, blocked, ground, member.height);
+  }
+}
+
 }  // namespace
 
 int cell_step(double height) {
   return height <= 100 ? 1 : height <= 220 ? 2 : 4;
 }
 
-void outline_shared_region(const Picture& picture, const cv::Mat& mask, std::span<SharedTarget> targets) {
-  const ColourPatch patch = patch_about(picture, mask, targets);
+void outline_shared_region(const Picture& picture, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets) {
+  const ColourPatch patch = patch_about(picture, mask, scene, targets);
   if (patch.colour.empty()) return;
   std::vector<RegionMember> members;
   for (const SharedTarget& one : targets) members.push_back(member_of(one));
   for (std::size_t k = 0; k < members.size(); ++k) {
     if (!targets[k].target->body.knows_colours()) guess_colours(patch, members, k, targets[k].target->body);
   }
-  divide_region(patch, members);
+  const cv::Mat ground = divide_region(patch, members);
+  refine_edges(patch, ground, members);
   for (std::size_t k = 0; k < members.size(); ++k) {
     FollowedTarget& target = *targets[k].target;
     target.lines.clear();

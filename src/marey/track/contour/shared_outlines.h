@@ -4,6 +4,7 @@
 
 #include "marey/core/picture.h"
 #include "marey/track/contour/followed_target.h"
+#include "marey/track/contour/scene_image.h"
 
 namespace marey::track::contour {
 
@@ -16,7 +17,8 @@ struct SharedTarget {
 
 /// Divides the region that `targets` share among them by their colours and predicted shapes, and gives each the outline of its own
 /// part, the rest of it shaped as it was; of one of whom too little is seen the whole shape is held. `mask` is CV_8UC1.
-void outline_shared_region(const Picture& picture, const cv::Mat& mask, std::span<SharedTarget> targets);
+/// `scene` may be null.
+void outline_shared_region(const Picture& picture, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets);
 
 /// The size of a patch's cells for a target, px.
 int cell_step(double height);

@@ -60,7 +60,7 @@ struct Scene {
 
   void divide() {
     std::vector<SharedTarget> targets{{&target, {48, 20, 24, kStature}, true}};
-    outline_shared_region(picture, mask, targets);
+    outline_shared_region(picture, mask, nullptr, targets);
   }
 };
 

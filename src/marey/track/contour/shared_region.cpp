@@ -92,6 +92,8 @@ class RegionDivision {
     hand_out(shares);
   }
 
+  const cv::Mat& ground_colours() const { return ground_colours_; }
+
  private:
   static float log_likelihood(float value) { return static_cast<float>(kTempered) * std::log(value); }
 
@@ -102,7 +104,7 @@ class RegionDivision {
       cv::max(taken, cells_within(member.polygon, patch_), taken);
       height = std::max(height, member.height);
     }
-    const cv::Mat ground = ground_beside(patch_, taken, height);
+    const cv::Mat ground = ground_colours_ = ground_beside(patch_, taken, height);
     ground_.create(patch_.size(), CV_32FC1);
     const double scale = std::pow(2 * std::numbers::pi, -1.5) / (kGroundLuma * kGroundChroma * kGroundChroma);
     for (int y = 0; y < ground.rows; ++y) {
@@ -257,6 +259,7 @@ class RegionDivision {
 
   const ColourPatch& patch_;
   std::span<RegionMember> members_;
+  cv::Mat ground_colours_;                      // CV_32FC3
   cv::Mat ground_;                              // likelihood of each cell's colour, if it is ground
   std::vector<cv::Mat> chances_, likelihoods_;  // by member
   std::vector<int> order_;                      // nearest first
@@ -265,11 +268,12 @@ class RegionDivision {
 
 }  // namespace
 
-void divide_region(const ColourPatch& patch, std::span<RegionMember> members) {
-  if (members.empty() || patch.colour.empty()) return;
+cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members) {
+  if (members.empty() || patch.colour.empty()) return {};
   RegionDivision division(patch, members);
   division.find_places();
   division.divide();
+  return division.ground_colours();
 }
 
 }  // namespace marey::track::contour

@@ -28,7 +28,8 @@ struct RegionMember {
   std::vector<int> behind;              ///< indices of members that hide a part of it
 };
 
-/// Divides the patch among the members and the ground, and says where each is.
-void divide_region(const ColourPatch& patch, std::span<RegionMember> members);
+/// Divides the patch among the members and the ground, and says where each is. Returns the ground's colours (CV_32FC3), empty if
+/// there is nothing to divide.
+cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members);
 
 }  // namespace marey::track::contour

@@ -1,0 +1,274 @@
+#include "experiments/contours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "experiments/codec_round_trip.h"
+#include "experiments/naive_contours.h"
+
+namespace marey::experiments {
+namespace {
+
+using simulate::people::PeopleFilm;
+using Situation = simulate::people::PeopleSituation;
+
+constexpr std::size_t kMethodCount = kContourMethods.size();
+constexpr std::size_t kSilhouettes = 1, kMarey = 2;
+using Tallies = std::array<ContourTally, kMethodCount>;
+
+std::vector<ContourCase> all_cases(int videos) {
+  std::vector<ContourCase> cases;
+  for (const int height : {25, 60, 120}) {
+    cases.push_back({.name = fmt::format("filmed, alone, {} px", height),
+                     .situation = Situation::apart,
+                     .height_px = static_cast<double>(height),
+                     .degraded = true,
+                     .videos = videos});
+  }
+  for (const int height : {25, 60}) {
+    cases.push_back({.name = fmt::format("behind a board, {} px", height),
+                     .situation = Situation::post,
+                     .height_px = static_cast<double>(height),
+                     .videos = videos});
+  }
+  for (const int height : {60, 120}) {
+    for (const bool same : {false, true}) {
+      cases.push_back({.name = fmt::format("filmed, overlapping, {} px{}", height, same ? ", same shirts" : ""),
+                       .situation = Situation::overlap,
+                       .height_px = static_cast<double>(height),
+                       .degraded = true,
+                       .same_shirts = same,
+                       .videos = videos});
+    }
+  }
+  for (const int height : {25, 60, 200}) {
+    for (const int crf : {18, 35}) {
+      cases.push_back({.name = fmt::format("edge, {} px, crf {}", height, crf),
+                       .situation = Situation::apart,
+                       .height_px = static_cast<double>(height),
+                       .crf = crf,
+                       .frames = 80,
+                       .videos = std::max(1, videos / 4)});
+    }
+  }
+  for (const int height : {25, 60}) {
+    cases.push_back({.name = fmt::format("hidden for up to 0.5 s, {} px", height),
+                     .situation = Situation::post,
+                     .height_px = static_cast<double>(height),
+                     .hidden_s = 0.5,
+                     .videos = 2 * videos});
+  }
+  return cases;
+}
+
+/// The images of a video that are shown before it, then its own; and the truth of its own.
+struct Video {
+  std::vector<Picture> earlier, images;
+  std::vector<std::vector<simulate::people::TrueFigure>> truth;
+};
+
+Video render(const PeopleFilm& film, const std::optional<int>& crf) {
+  Video video;
+  for (int i = 0; i < PeopleFilm::kEarlier; ++i) video.earlier.push_back(film.render_earlier(i));
+  for (int i = 0; i < film.frames(); ++i) {
+    simulate::people::RenderedFrame rendered = film.render(i);
+    video.images.push_back(std::move(rendered.picture));
+    video.truth.push_back(std::move(rendered.people));
+  }
+  if (!crf) return video;
+  video.earlier = codec_round_trip(video.earlier, *crf);
+  video.images = codec_round_trip(video.images, *crf);
+  return video;
+}
+
+Frame frame_of(const Picture& image, int index, double rate_hz) {
+  Frame frame;
+  frame.index = index;
+  frame.time = timestamp_from_seconds(index / rate_hz);
+  frame.picture = image;
+  return frame;
+}
+
+Tallies evaluate(const ContourCase& what, std::uint64_t seed, const ContourExperimentOptions& options) {
+  simulate::people::PeopleFilmOptions scene;
+  scene.height_px = what.height_px;
+  scene.same_shirts = what.same_shirts;
+  scene.frames = what.frames;
+  if (what.hidden_s) scene.hidden_s = *what.hidden_s;
+  if (what.degraded) scene.look = simulate::people::CameraLook::filmed();
+  const PeopleFilm film(what.situation, seed, scene);
+  const Video video = render(film, what.crf);
+  const std::array<std::unique_ptr<OutlineMethod>, kMethodCount> methods{naive_method(), silhouette_method(),
+                                                                         marey_method(options.outlines)};
+  std::vector<Frame> samples;
+  for (std::size_t i = 0; i < video.earlier.size(); ++i) {
+    samples.push_back(frame_of(video.earlier[i], static_cast<int>(i), scene.rate_hz));
+  }
+  for (const auto& method : methods) method->prime(samples);
+  std::vector<ContourEvaluator> evaluators(kMethodCount, ContourEvaluator(scene.size));
+  for (std::size_t i = 0; i < video.images.size(); ++i) {
+    const Frame frame = frame_of(video.images[i], static_cast<int>(i), scene.rate_hz);
+    for (std::size_t m = 0; m < kMethodCount; ++m) {
+      evaluators[m].observe(static_cast<int>(i), video.truth[i],
+                            methods[m]->step(frame, methods[kSilhouettes]->detections(), video.truth[i]));
+    }
+  }
+  Tallies tallies;
+  for (std::size_t m = 0; m < kMethodCount; ++m) tallies[m] = evaluators[m].tally();
+  return tallies;
+}
+
+/// What every case came to, and the rows made of it.
+class Rows {
+ public:
+  Rows(std::vector<ContourCase> cases, std::vector<Tallies> tallies) : cases_(std::move(cases)), tallies_(std::move(tallies)) {}
+
+  std::vector<ContourRow> all() {
+    alone();
+    board();
+    overlapping();
+    edge();
+    jitter();
+    occlusion();
+    shape();
+    return std::move(rows_);
+  }
+
+ private:
+  template <typename Value>
+  void add(const std::string& name, const std::string& must, const Tallies& tallies, const Value& value, int digits = 2) {
+    ContourRow row{.name = name, .must = must, .values = {}, .digits = digits};
+    for (std::size_t m = 0; m < kMethodCount; ++m) {
+      const Mean mean = value(tallies[m]);
+      row.values[m] = mean.value();
+      row.samples = mean.count;
+    }
+    if (row.samples > 0) rows_.push_back(std::move(row));
+  }
+
+  template <typename Chosen>
+  Tallies sum_where(const Chosen& chosen) const {
+    Tallies sum;
+    for (std::size_t c = 0; c < cases_.size(); ++c) {
+      for (std::size_t m = 0; m < kMethodCount && chosen(cases_[c]); ++m) sum[m].add(tallies_[c][m]);
+    }
+    return sum;
+  }
+
+  void alone() {
+    for (std::size_t c = 0; c < cases_.size(); ++c) {
+      if (cases_[c].situation != Situation::apart || !cases_[c].degraded) continue;
+      const double height = cases_[c].height_px;
+      add(
+          "IoU, " + cases_[c].name,
+          height < 40   ? "≥ 0.72"
+          : height < 90 ? "≥ 0.86"
+                        : "≥ 0.92",
+          tallies_[c], [](const ContourTally& one) { return one.alone; }, 3);
+    }
+  }
+
+  void board() {
+    for (std::size_t c = 0; c < cases_.size(); ++c) {
+      if (cases_[c].situation != Situation::post || cases_[c].hidden_s) continue;
+      add(
+          "IoU, " + cases_[c].name, cases_[c].height_px < 40 ? "≥ 0.70" : "≥ 0.83", tallies_[c],
+          [](const ContourTally& one) { return one.whole; }, 3);
+    }
+  }
+
+  void overlapping() {
+    for (std::size_t c = 0; c < cases_.size(); ++c) {
+      if (cases_[c].situation != Situation::overlap) continue;
+      add(
+          "IoU of the front person, " + cases_[c].name, "≥ 0.80", tallies_[c], [](const ContourTally& one) { return one.front; },
+          3);
+      add("IoU of the one behind, " + cases_[c].name, "≥ 0.70", tallies_[c], [](const ContourTally& one) { return one.behind; }, 3);
+    }
+    const Tallies sum = sum_where([](const ContourCase& one) { return one.situation == Situation::overlap; });
+    add(
+        "found at IoU 0.5, all who overlap or are alone there", "≥ 0.90", sum, [](const ContourTally& one) { return one.found; },
+        3);
+  }
+
+  void edge() {
+    for (std::size_t c = 0; c < cases_.size(); ++c) {
+      if (!cases_[c].crf) continue;
+      add("edge bias, px, " + cases_[c].name, "± 0.5", tallies_[c], [](const ContourTally& one) { return one.bias; });
+    }
+    const Tallies degraded = sum_where([](const ContourCase& one) { return one.degraded && one.situation == Situation::apart; });
+    add("edge bias, px, filmed", "± 0.5", degraded, [](const ContourTally& one) { return one.bias; });
+  }
+
+  /// Root mean squares of second differences against those of the silhouettes.
+  void jitter() {
+    const Tallies sum = sum_where([](const ContourCase& one) { return one.situation == Situation::apart; });
+    const std::array<const char*, 3> names{"jitter of the centre", "jitter of √area", "jitter of the width"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::optional<double> base = sum[kSilhouettes].bends[i].value();
+      ContourRow row{.name = fmt::format("{}, × the silhouettes'", names[i]), .must = "≤ 0.5", .values = {}};
+      for (std::size_t m = 0; m < kMethodCount && base; ++m) {
+        if (const auto own = sum[m].bends[i].value()) row.values[m] = std::sqrt(*own / *base);
+      }
+      row.samples = sum[kMarey].bends[i].count;
+      if (base) rows_.push_back(std::move(row));
+    }
+  }
+
+  void occlusion() {
+    const Tallies sum = sum_where([](const ContourCase& one) { return one.hidden_s.has_value(); });
+    add(
+        "IoU of the first frame after a full occlusion of up to 0.5 s", "≥ 0.60", sum,
+        [](const ContourTally& one) { return one.back; }, 3);
+    add(
+        "identities lost there, of 100", "≤ 2", sum,
+        [](const ContourTally& one) { return Mean{100 * one.swapped.sum, one.swapped.count}; }, 0);
+  }
+
+  void shape() {
+    const Tallies sum = sum_where([](const ContourCase&) { return true; });
+    add("contours that cross themselves, of 1000", "0", sum,
+        [](const ContourTally& one) { return Mean{1000.0 * static_cast<double>(one.crossed), one.curves}; });
+    add("contours that exceed 1.5 × their person's size, of 1000", "0", sum,
+        [](const ContourTally& one) { return Mean{1000.0 * static_cast<double>(one.oversized), one.curves}; });
+  }
+
+  std::vector<ContourCase> cases_;
+  std::vector<Tallies> tallies_;
+  std::vector<ContourRow> rows_;
+};
+
+}  // namespace
+
+ContourExperiment run_contour_experiment(const ContourExperimentOptions& options, const Hooks& hooks) {
+  std::vector<ContourCase> cases;
+  for (ContourCase& one : all_cases(options.videos)) {
+    if (one.name.find(options.only) != std::string::npos) cases.push_back(std::move(one));
+  }
+  int all = 0, done = 0;
+  for (const ContourCase& what : cases) all += what.videos;
+  std::mutex reporting;
+  std::vector<Tallies> tallies(cases.size());
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    // Videos are independent; their results are added in their order.
+    std::vector<Tallies> results(static_cast<std::size_t>(cases[c].videos));
+    tbb::parallel_for(0, cases[c].videos, [&](int v) {
+      results[static_cast<std::size_t>(v)] = evaluate(cases[c], options.seed + static_cast<std::uint64_t>(v), options);
+      const std::lock_guard lock(reporting);
+      ++done;
+      hooks.advance({"videos", done, all});
+    });
+    for (const Tallies& result : results) {
+      for (std::size_t m = 0; m < kMethodCount; ++m) tallies[c][m].add(result[m]);
+    }
+  }
+  return {options.seed, options.videos, Rows(std::move(cases), std::move(tallies)).all()};
+}
+
+}  // namespace marey::experiments

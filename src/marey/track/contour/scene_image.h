@@ -1,0 +1,34 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "marey/core/picture.h"
+
+namespace marey::track::contour {
+
+/// The image of the scene without the targets, learned from the pixels that are not foreground: what a contour's outside looks
+/// like.
+class SceneImage {
+ public:
+  /// A frame and its foreground (CV_8UC1, of the image's size; other sizes are ignored). Every fourth row is learned per frame, all
+  /// of them in the first. Cost: a pass over a quarter of the pixels.
+  void observe(const Picture& image, const cv::Mat& foreground);
+
+  /// Whether the scene has this size and has been learned from at least one frame.
+  bool has(const cv::Size& size) const { return !frames_.empty() && frames_.size() == size; }
+
+  /// Luma, Cb, Cr (CV_32FC1, levels) of `area` (px, even corners and sides), chroma at half the size; and of each pixel 1 if it was
+  /// ever seen without foreground, else 0.
+  cv::Mat luma(const cv::Rect& area) const;
+  cv::Mat chroma(int which, const cv::Rect& half_area) const;
+  cv::Mat known(const cv::Rect& area) const;
+
+ private:
+  void learn_row(const Picture& image, const cv::Mat& foreground, int row);
+
+  int next_ = -1;           // rows of this remainder are learned next; −1: all
+  cv::Mat frames_;          // CV_8UC1: frames that a pixel was learned from, at most 255
+  cv::Mat luma_, cb_, cr_;  // CV_16UC1: levels × 128
+};
+
+}  // namespace marey::track::contour
