@@ -36,8 +36,8 @@ const Clip& clip(int width, int height) {
     auto frame = source->next();
     if (!frame) break;
     cv::Mat resized;
-    cv::resize(frame->picture.bgr(), resized, {width, height}, 0, 0, cv::INTER_LINEAR);
-    frame->picture = Picture::from_bgr(resized);
+    cv::resize(frame->image.bgr(), resized, {width, height}, 0, 0, cv::INTER_LINEAR);
+    frame->image = Image::from_bgr(resized);
     made.bgr.push_back(resized);
     made.frames.push_back(*frame);
   }
@@ -47,17 +47,17 @@ const Clip& clip(int width, int height) {
 using Step = std::function<void(const Clip&, std::size_t)>;
 
 /// ms a frame, the least of a few rounds over the clip: other programs only ever add to it.
-double least_time(const Clip& clip, const Step& step) {
-  double least = 1e9;
+double min_time(const Clip& clip, const Step& step) {
+  double minimum = 1e9;
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
       const double begin = static_cast<double>(cv::getTickCount());
       step(clip, i);
       const double time = (static_cast<double>(cv::getTickCount()) - begin) / cv::getTickFrequency() * 1e3;
-      if (round > 0) least = std::min(least, time);
+      if (round > 0) minimum = std::min(minimum, time);
     }
   }
-  return least;
+  return minimum;
 }
 
 Step opencv(const cv::Ptr<cv::BackgroundSubtractor>& model) {
@@ -68,12 +68,12 @@ void run(benchmark::State& state, const Step& step) {
   const Clip& shown = clip(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   static std::map<std::int64_t, double> mog2_ms;
   double& mog2 = mog2_ms[state.range(0)];
-  if (mog2 == 0) mog2 = least_time(shown, opencv(cv::createBackgroundSubtractorMOG2()));
-  const double least = least_time(shown, step);
+  if (mog2 == 0) mog2 = min_time(shown, opencv(cv::createBackgroundSubtractorMOG2()));
+  const double minimum = min_time(shown, step);
   std::size_t i = 0;
   for (auto _ : state) step(shown, i++ % shown.frames.size());
-  state.counters["least_ms"] = least;
-  state.counters["against_mog2"] = mog2 / least;
+  state.counters["least_ms"] = minimum;
+  state.counters["against_mog2"] = mog2 / minimum;
 }
 
 void marey_model(benchmark::State& state) {
@@ -93,7 +93,7 @@ void cnt_model(benchmark::State& state) {
   run(state, opencv(cv::bgsegm::createBackgroundSubtractorCNT()));
 }
 
-/// The colour of one upper body; `against_convert` is what converting the same part of the picture to L*a*b* takes, over that.
+/// The colour of one upper body; `against_convert` is what converting the same part of the image to L*a*b* takes, over that.
 void upper_body_colour(benchmark::State& state) {
   const Clip& shown = clip(3072, 1728);
   const double height = static_cast<double>(state.range(0));
@@ -101,15 +101,15 @@ void upper_body_colour(benchmark::State& state) {
   Detection person;
   person.box = {1500, 800, height * 0.4, height};
   const cv::Rect part(1500, 800 + static_cast<int>(0.2 * height), static_cast<int>(0.4 * height), static_cast<int>(0.3 * height));
-  const double ours = least_time(shown, [&](const Clip& clip, std::size_t i) {
-    benchmark::DoNotOptimize(detect::upper_body(clip.frames[i].picture, {.mask = mask}, {&person, 1}, 0));
+  const double ours = min_time(shown, [&](const Clip& clip, std::size_t i) {
+    benchmark::DoNotOptimize(detect::upper_body(clip.frames[i].image, {.mask = mask}, {&person, 1}, 0));
   });
-  const double theirs = least_time(shown, [&](const Clip& clip, std::size_t i) {
+  const double theirs = min_time(shown, [&](const Clip& clip, std::size_t i) {
     cv::Mat lab;
     cv::cvtColor(clip.bgr[i](part), lab, cv::COLOR_BGR2Lab);
     benchmark::DoNotOptimize(cv::mean(lab));
   });
-  for (auto _ : state) benchmark::DoNotOptimize(detect::upper_body(shown.frames[0].picture, {.mask = mask}, {&person, 1}, 0));
+  for (auto _ : state) benchmark::DoNotOptimize(detect::upper_body(shown.frames[0].image, {.mask = mask}, {&person, 1}, 0));
   state.counters["us"] = ours * 1e3;
   state.counters["against_convert"] = theirs / ours;
 }

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""How well the ball is found in simulated matches: `marey track --ground --ball`, judged by the truth, beside a naive peer.
+"""How well the ball is found in simulated matches: `marey track --ground --ball`, evaluated by the truth, beside a naive peer.
 
     bench/ball.py build/release/marey [--seeds 21,22,23] [--stands 1,2,4] [--seconds 20] [--size 1920x1080] [--work FOLDER] [--without]
 
-For each match: `marey simulate match --render --ball`, then the track named "ball". `F1` counts pictures, by the published rule (a
-hit is within 4 px of the true centre): the place that is told for a picture whose camera is said to have seen the ball, projected
+For each match: `marey simulate match --render --ball`, then the track named "ball". `F1` counts images, by the published rule (a
+hit is within 4 px of the true centre): the place that is reported for an image whose camera is said to have seen the ball, projected
 into it, against the true one where half of the ball's disc or more is to be seen. `place` is how far the place told is from the true
 one in space, m, over all instants with both, in play; p50 and p90. `told` is the share of instants in play with a place.
-`--without` plays without a ball, and tells how many instants of one were told nevertheless. A stand of 2 is the football stand; of 1 or 4, cameras round the pitch. The peer (`--peer`, which needs OpenCV's Python) takes the
-brightest small spot of each picture nearest to its last one.
+`--without` plays without a ball, and tells how many instants of one were reported nevertheless. A stand of 2 is the football stand; of 1 or 4, cameras round the pitch. The peer (`--peer`, which needs OpenCV's Python) takes the
+brightest small spot of each image nearest to its last one.
 """
 
 import argparse
@@ -58,24 +58,24 @@ def world_from(rig):
     a, b, c, d = g[0][0], g[0][1], g[1][0], g[1][1]
     det = a * d - b * c
 
-    def turned(x, y, z):
+    def rotated(x, y, z):
         x, y = x - g[0][2], y - g[1][2]
         return (d * x - b * y) / det, (a * y - c * x) / det, z
-    return turned
+    return rotated
 
 
 def simulate(program, folder, stand, seed, options):
-    where = ["--stand", "football"] if stand == 2 else ["--cameras", stand]
+    where = ["--layout", "football"] if stand == 2 else ["--cameras", stand]
     width, height = options.size.split("x")
     ball = [] if options.without else ["--ball"]
     run(program, "simulate", "match", "-o", folder, "--render", *ball, "--no-boxes", "--seconds", options.seconds, "--seed", seed,
         "--size", width, height, "--quiet", *where)
 
 
-def judge(folder, told):
+def assess(folder, told):
     """`told`: by frame (x, y, z in m on the pitch, names of cameras)."""
     rig = tomllib.loads((folder / "rig.toml").read_text())
-    turned = world_from(rig)
+    rotated = world_from(rig)
     hits = false = missed = 0
     for table in rig["camera"]:
         camera = Camera(table)
@@ -83,7 +83,7 @@ def judge(folder, told):
         for frame in sorted(truth.keys() | told.keys()):
             true, one = truth.get(frame), told.get(frame)
             seen = true is not None and float(true["visible"]) > 0
-            at = camera.pixel(turned(*one[:3])) if one and camera.name in one[3] else None
+            at = camera.pixel(rotated(*one[:3])) if one and camera.name in one[3] else None
             hit = seen and at is not None and math.dist(at, (float(true["x"]), float(true["y"]))) <= NEAR
             hits += hit
             false += at is not None and not hit
@@ -137,7 +137,7 @@ def f1(hits, false, missed):
     return 2 * hits / max(1, 2 * hits + false + missed)
 
 
-def at_share(values, share):
+def at_fraction(values, share):
     return sorted(values)[min(len(values) - 1, int(share * len(values)))] if values else math.nan
 
 
@@ -163,7 +163,7 @@ def main():
             if options.without:
                 print(f"{stand:>7} {seed:>5} {len(ours(options.program, folder))} instants told of a ball that is not there", flush=True)
                 continue
-            hits, false, missed, off, held = judge(folder, ours(options.program, folder))
+            hits, false, missed, off, held = assess(folder, ours(options.program, folder))
             beside = f"{f1(*peer(folder)):.3f}" if options.peer else "-"
             line(stand, seed, hits, false, missed, off, held, beside)
             sums = [a + b for a, b in zip(sums, (hits, false, missed))]
@@ -174,7 +174,7 @@ def main():
 
 def line(stand, seed, hits, false, missed, errors, playing, beside):
     print(f"{stand:>7} {seed:>5} {f1(hits, false, missed):6.3f} {hits / max(1, hits + false):9.3f} {hits / max(1, hits + missed):6.3f} "
-          f"{at_share(errors, 0.5):9.2f} {at_share(errors, 0.9):7.2f} {len(errors) / max(1, playing):5.2f} {beside:>7}", flush=True)
+          f"{at_fraction(errors, 0.5):9.2f} {at_fraction(errors, 0.9):7.2f} {len(errors) / max(1, playing):5.2f} {beside:>7}", flush=True)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,11 @@
 
 Usage: batch.py MAREY engines [--films 200] [--rounds 2] | finished [--tasks 10000] | memory   [--work FOLDER]
 
-engines   a loop, GNU parallel and a real Slurm of two nodes of a core each (root; Debian's packages) over short simulated films, against
-          `marey track` of the same films by xargs, as many at a time; "slurm 1000" makes each film a job of the array, "slurm" as many jobs as `submit` chooses. Wall, CPU (of all processes but Slurm's daemons), and the
+engines   a loop, GNU parallel and a real Slurm of two nodes of a core each (root; Debian's packages) over short simulated videos, against
+          `marey track` of the same videos by xargs, as many at a time; "slurm 1000" makes each video a job of the array, "slurm" as many jobs as `submit` chooses. Wall, CPU (of all processes but Slurm's daemons), and the
           overhead a task: how much longer one of those at work is busy with it. All results are compared byte by byte.
 finished  the second run of a plan whose tasks are all done: by `marey batch run`, each of them, on recordings that differ.
-memory    what `plan` says of a task beside the peak of its resident memory, for each --do and for pictures of several sizes. None of
+memory    what `plan` says of a task beside the peak of its resident memory, for each --job and for images of several sizes. None of
           these recordings is one that the figures in apps/cli/batch_costs.cpp were fitted to.
 """
 import argparse
@@ -28,7 +28,7 @@ import time
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "cli"))
 import slurm_nodes  # noqa: E402
 
-DISTINCT = 4  # films that are simulated; the others are these with other bytes behind their pictures
+DISTINCT = 4  # videos that are simulated; the others are these with other bytes behind their images
 
 
 def run(words, **more):
@@ -37,7 +37,7 @@ def run(words, **more):
 
 # ---- engines
 
-def make_films(marey, folder, count):
+def make_videos(marey, folder, count):
     """Each has bytes of its own: a box "free" at its end, which players pass over, holds its number."""
     folder.mkdir()
     for number in range(DISTINCT):
@@ -65,7 +65,7 @@ def adopt():
 
 
 class Engines:
-    """Ways to do the films of a folder; each leaves its results in a folder."""
+    """Ways to do the videos of a folder; each leaves its results in a folder."""
 
     def __init__(self, marey, work, slurm):
         self.marey, self.work, self.slurm = marey, work, slurm
@@ -83,12 +83,12 @@ class Engines:
         if how == "loop":
             run([self.marey, "batch", "run", plan, "-q", "--task-threads", 1])
         elif how == "parallel":
-            line = run([self.marey, "batch", "submit", plan, "--to", "parallel", "--dry"]).strip()
+            line = run([self.marey, "batch", "submit", plan, "--engine", "parallel", "--dry-run"]).strip()
             pathlib.Path(f"{plan}.results").mkdir()
-            run(["sh", "-c", line.replace("parallel ", "parallel --jobs 2 ", 1)], stderr=subprocess.DEVNULL)
+            run(["sh", "-c", line.replace("parallel ", "parallel --max-jobs 2 ", 1)], stderr=subprocess.DEVNULL)
         else:
-            jobs = ["--jobs", how.partition(" ")[2]] if " " in how else []
-            run([self.marey, "batch", "submit", plan, "--to", "slurm", *jobs, "-q"], env=self.slurm.environment)
+            jobs = ["--max-jobs", how.partition(" ")[2]] if " " in how else []
+            run([self.marey, "batch", "submit", plan, "--engine", "slurm", *jobs, "-q"], env=self.slurm.environment)
             self.slurm.wait_until_empty(1200)
         took = time.monotonic() - began, cpu_of_children() - used
         for result in pathlib.Path(f"{plan}.results").glob("*.csv"):
@@ -112,7 +112,7 @@ def same_bytes(folder, other):
 
 def engines(marey, work, films, rounds):
     adopt()
-    make_films(marey, work / "films", films)
+    make_videos(marey, work / "films", films)
     ways = {"bare 1": 1, "loop": 1, "bare 2": 2, "parallel": 2, "slurm": 2, "slurm 1000": 2}
     best = dict.fromkeys(ways, (float("inf"), float("inf")))
     equal = dict.fromkeys(ways, True)
@@ -133,7 +133,7 @@ def engines(marey, work, films, rounds):
                 if how != "bare 1":
                     shutil.rmtree(out)
             shutil.rmtree(work / "out_bare_1")
-    print(f"{films} films, the best of {rounds} rounds in turns\n{'':10}{'at once':>8}{'wall s':>9}{'CPU s':>9}{'overhead s a task':>19}{'equal bytes':>13}")
+    print(f"{films} videos, the best of {rounds} rounds in turns\n{'':10}{'at once':>8}{'wall s':>9}{'CPU s':>9}{'overhead s a task':>19}{'equal bytes':>13}")
     for how, at_once in ways.items():
         wall, cpu = best[how]
         overhead = at_once * (wall - best[f"bare {at_once}"][0]) / films
@@ -147,7 +147,7 @@ def finished(marey, work, tasks):
     for number in range(tasks):
         rows = "".join(f"{i},{i / 25},1,{i / 10 + number / 1000:.3f},20\n" for i in range(50))
         (work / "matches" / f"{number:05}.csv").write_text("frame,time,id,x,y\n" + rows)
-    plan = ["batch", "plan", "matches", "--do", "measure", "-o", "plan.tsv", "-q"]
+    plan = ["batch", "plan", "matches", "--job", "measure", "-o", "plan.tsv", "-q"]
     again = ["batch", "run", "plan.tsv", "--json"]
     for name, words in (("plan", plan), ("first run", again), ("second run", again), ("third run", again), ("plan again", plan),
                         ("reduce", ["batch", "reduce", "plan.tsv", "-o", "season.csv", "-q"])):
@@ -170,17 +170,17 @@ def recordings(marey, work):
     for cameras, width, height in ((2, 960, 540), (3, 1600, 900), (4, 960, 540)):
         yield "ground", simulate("match", "--render", "--seconds", 1, "--cameras", cameras, "--size", width, height) / "rig.toml"
     for cameras, width, height in ((3, 960, 540), (6, 800, 600)):
-        yield "reconstruct", simulate("room", "--videos", "--frames", 20, "--cameras", cameras, "--size", width, height) / "rig.toml"
+        yield "reconstruct", simulate("room", "--render", "--frames", 20, "--cameras", cameras, "--size", width, height) / "rig.toml"
     for seconds in (30, 200):
         yield "measure", simulate("match", "--no-boxes", "--cameras", 2, "--seconds", seconds) / "truth.csv"
 
 
 def memory(marey, work):
-    print(f"{'--do':12}{'of':60}{'said MB':>8}{'taken MB':>9}{'off':>7}")
+    print(f"{'--job':12}{'of':60}{'said MB':>8}{'taken MB':>9}{'off':>7}")
     for number, (job, path) in enumerate(recordings(marey, work)):
         plan, table = work / f"{number}.tsv", work / f"{number}.csv"
         table.write_text(f"input,name\n{path},one\n")
-        run([marey, "batch", "plan", table, "--do", job, "-o", plan, "-q"])
+        run([marey, "batch", "plan", table, "--job", job, "-o", plan, "-q"])
         run([marey, "batch", "run", plan, "-q", "--task-threads", 1])
         with open(plan) as rows:
             said = int(next(csv.DictReader(rows, delimiter="\t"))["memory_mb"])

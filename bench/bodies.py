@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""`marey body follow` on the true paths of BROAD (rigid_bodies/broad), with simulated markers hung on them.
+"""`marey body tracking` on the true paths of BROAD (rigid_bodies/broad), with simulated markers hung on them.
 
 Usage: bodies.py MAREY DATA [--seconds 20] [--sigma 0.2] [--missing 0.05] [--seed 1] [--work FOLDER]
 
 DATA is the folder that tests call MAREY_DATA. Needs numpy and scipy (PyPI, or Debian's python3-scipy), which reads MATLAB's files. Printed:
   noise      RMS error of the pose where three markers or more are seen, against the Cramer-Rao bound of those very markers
   flips      of an asymmetric body: instants that are more than 5 degrees off; losses: instants with three markers or more without a pose
-  symmetric  the same path with a body that looks the same after half a turn, all hidden for 0.05 to 0.5 s: gaps after which it is turned
+  symmetric  the same path with a body that appears the same after half a turn, all hidden for 0.05 to 0.5 s: gaps after which it is turned
   identical  four bodies alike on four paths through each other: instants at which one bears another's name
 """
 import argparse
@@ -75,10 +75,10 @@ def poses_of(take):
     return {body: tuple(np.concatenate(part) for part in zip(*parts)) for body, parts in rows.items()}
 
 
-def follow(marey, work, frames, layouts):
+def tracking(marey, work, frames, layouts):
     write_points(work / "points.csv", frames)
     write_bodies(work / "bodies.toml", layouts)
-    subprocess.run([marey, "body", "follow", work / "points.csv", work / "bodies.toml", "-o", work / "out.marey", "-q"], check=True)
+    subprocess.run([marey, "body", "track", work / "points.csv", work / "bodies.toml", "-o", work / "out.marey", "-q"], check=True)
     return poses_of(work / "out.marey")
 
 
@@ -92,7 +92,7 @@ def noise(marey, work, position, rotation, sigma, missing, random):
     truth = np.einsum("nij,mj->nmi", rotation, ASYMMETRIC) + position[:, None]
     visible = random.random(truth.shape[:2]) >= missing
     seen = truth + random.normal(0, sigma, truth.shape)
-    found = follow(marey, work, [seen[i][visible[i]] for i in range(len(seen))], [ASYMMETRIC]).get(1)
+    found = tracking(marey, work, [seen[i][visible[i]] for i in range(len(seen))], [ASYMMETRIC]).get(1)
     enough = visible.sum(1) >= 3
     at, pose, tracked = found
     at, pose = at[tracked], pose[tracked]
@@ -125,7 +125,7 @@ def symmetric(marey, work, position, rotation, sigma, random):
         gaps.append((at, at + length))
         at += length + int(random.uniform(0.4, 0.8) * RATE)
     seen = truth + random.normal(0, sigma, truth.shape)
-    at, pose, tracked = follow(marey, work, [seen[i] if visible[i] else [] for i in range(len(seen))], [SYMMETRIC])[1]
+    at, pose, tracked = tracking(marey, work, [seen[i] if visible[i] else [] for i in range(len(seen))], [SYMMETRIC])[1]
     turned = np.full(len(truth), -1)
     turned[at[tracked]] = angle(pose[tracked, :, :3], rotation[at[tracked]]) > np.pi / 2
     flips = 0
@@ -149,7 +149,7 @@ def identical(marey, work, stretches, sigma, missing, random):
         points = [r[i] @ place + p[i] + apart[b] + random.normal(0, sigma, 3) for b, (p, r) in enumerate(truths) for place in layout
                   if random.random() >= missing]
         frames.append([points[k] for k in random.permutation(len(points))])
-    found = follow(marey, work, frames, [layout] * 4)
+    found = tracking(marey, work, frames, [layout] * 4)
     names, swaps, total = {}, 0, 0
     for body, (at, pose, tracked) in found.items():
         for i, where in zip(np.flatnonzero(tracked), at[tracked]):

@@ -38,8 +38,8 @@ struct Room {
     for (int p = 5 * count; p < points; ++p) others.emplace_back(random, random.in_box(3));
   }
 
-  std::vector<FollowedPoint> seen(double time, moving::Random& random) const {
-    std::vector<FollowedPoint> points;
+  std::vector<BodyTrackPoint> detected(double time, moving::Random& random) const {
+    std::vector<BodyTrackPoint> points;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       for (const BodyMarker& marker : bodies[b].markers)
         points.push_back({paths[b].at(time) * marker.position + random.gaussian(kNoiseM), {}});
@@ -56,70 +56,70 @@ void report(benchmark::State& state, std::vector<double>& times) {
   state.counters["p99_ms"] = 1e3 * times[times.size() * 99 / 100];
 }
 
-void follow_fifty(benchmark::State& state) {
+void track_fifty(benchmark::State& state) {
   moving::Random random(1);
   const Room room(50, 300, random);
-  BodyFollower follower(room.bodies);
+  BodyTracker tracker(room.bodies);
   std::vector<double> times;
-  std::int64_t told = 0, instants = 0;
+  std::int64_t reported = 0, instants = 0;
   for (auto _ : state) {
     const double time = static_cast<double>(instants) / kRateHz;
     state.PauseTiming();
-    const auto points = room.seen(time, random);
+    const auto points = room.detected(time, random);
     state.ResumeTiming();
     const double begin = cpu_seconds();
-    const auto poses = follower.step(timestamp_from_seconds(time), points);
+    const auto poses = tracker.step(timestamp_from_seconds(time), points);
     if (instants > 20) times.push_back(cpu_seconds() - begin);  // all are found by then
-    told += std::count_if(poses.begin(), poses.end(), [](const BodyPose& pose) { return pose.tracked; });
+    reported += std::count_if(poses.begin(), poses.end(), [](const BodyPose& pose) { return pose.tracked; });
     ++instants;
   }
   report(state, times);
-  state.counters["tracked"] = static_cast<double>(told) / static_cast<double>(50 * instants);
+  state.counters["tracked"] = static_cast<double>(reported) / static_cast<double>(50 * instants);
 }
-BENCHMARK(follow_fifty)->Unit(benchmark::kMillisecond)->Iterations(1000);
+BENCHMARK(track_fifty)->Unit(benchmark::kMillisecond)->Iterations(1000);
 
 /// From nothing: each time a follower that knows no body.
-void boot_ten(benchmark::State& state) {
+void initialise_ten(benchmark::State& state) {
   moving::Random random(2);
   const Room room(10, 100, random);
   std::vector<double> times;
-  std::int64_t told = 0, instants = 0;
+  std::int64_t reported = 0, instants = 0;
   for (auto _ : state) {
     state.PauseTiming();
-    const auto points = room.seen(static_cast<double>(instants++) / kRateHz, random);
-    BodyFollower follower(room.bodies);
+    const auto points = room.detected(static_cast<double>(instants++) / kRateHz, random);
+    BodyTracker tracker(room.bodies);
     state.ResumeTiming();
     const double begin = cpu_seconds();
-    told += std::ssize(follower.step(timestamp_from_seconds(0), points));
+    reported += std::ssize(tracker.step(timestamp_from_seconds(0), points));
     times.push_back(cpu_seconds() - begin);
   }
   report(state, times);
-  state.counters["found"] = static_cast<double>(told) / static_cast<double>(10 * instants);
+  state.counters["found"] = static_cast<double>(reported) / static_cast<double>(10 * instants);
 }
-BENCHMARK(boot_ten)->Unit(benchmark::kMillisecond)->Iterations(500);
+BENCHMARK(initialise_ten)->Unit(benchmark::kMillisecond)->Iterations(500);
 
-/// So many points, and nine bodies of three, four and five markers that are not among them.
-void look_for_absent(benchmark::State& state) {
+/// This many points, and nine bodies of three, four and five markers that are not among them.
+void inspect_for_absent(benchmark::State& state) {
   moving::Random random(3);
   const Room room(0, static_cast<int>(state.range(0)), random);
   std::vector<Body> absent;
   for (int b = 0; b < 9; ++b) absent.push_back(moving::body_of(b + 1, moving::scattered(random, 3 + b / 3, 0.12, 0.04)));
-  BodyFollower follower(absent);
+  BodyTracker tracker(absent);
   std::vector<double> times;
-  std::int64_t told = 0, instants = 0;
+  std::int64_t reported = 0, instants = 0;
   for (auto _ : state) {
     const double time = static_cast<double>(instants++) / kRateHz;
     state.PauseTiming();
-    const auto points = room.seen(time, random);
+    const auto points = room.detected(time, random);
     state.ResumeTiming();
     const double begin = cpu_seconds();
-    const auto poses = follower.step(timestamp_from_seconds(time), points);
+    const auto poses = tracker.step(timestamp_from_seconds(time), points);
     times.push_back(cpu_seconds() - begin);
-    told += std::count_if(poses.begin(), poses.end(), [](const BodyPose& pose) { return pose.tracked; });
+    reported += std::count_if(poses.begin(), poses.end(), [](const BodyPose& pose) { return pose.tracked; });
   }
   report(state, times);
-  state.counters["found_absent"] = static_cast<double>(told) / static_cast<double>(9 * instants);
+  state.counters["found_absent"] = static_cast<double>(reported) / static_cast<double>(9 * instants);
 }
-BENCHMARK(look_for_absent)->Arg(60)->Arg(100)->Arg(300)->Unit(benchmark::kMillisecond)->Iterations(1000);
+BENCHMARK(inspect_for_absent)->Arg(60)->Arg(100)->Arg(300)->Unit(benchmark::kMillisecond)->Iterations(1000);
 
 }  // namespace

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""BraMBLe beside ours on the same simulated films: people who go anywhere before one fixed camera, whose number nobody told.
+"""BraMBLe beside ours on the same simulated videos: people who go anywhere before one fixed camera, whose number no person told.
 
     bench/bramble.py build/release/marey [--people 2,4,6,8,10] [--seeds 1,2,3] [--frames 250] [--work FOLDER]
 
-For each number of people the films of all seeds (`marey simulate people --situation crowd`) are followed by `marey track --ground` at its
-defaults, by the same with `--associate gnn --live`, by `--associate bramble` and by that with `--live`: the first and third with the
-second pass that joins and smooths, the others as each instant came. Judged on the ground by `marey evaluate --distance 1` with hidden
+For each number of people the videos of all seeds (`marey simulate people --situation crowd`) are followed by `marey track --background-image` at its
+defaults, by the same with `--association gnn --live`, by `--association bramble` and by that with `--live`: the first and third with the
+second pass that joins and smooths, the others as each instant came. Evaluated on the ground by `marey evaluate --distance 1` with hidden
 people counted as missed; figures are means over the seeds. Frames a second are of the whole run, decoding included, on this machine.
 """
 
@@ -16,11 +16,11 @@ import subprocess
 import tempfile
 import time
 
-WAYS = {
+METHODS = {
     "ours": [],
-    "ours, live": ["--associate", "gnn", "--live"],
-    "bramble": ["--associate", "bramble"],
-    "bramble, live": ["--associate", "bramble", "--live"],
+    "ours, live": ["--association", "gnn", "--live"],
+    "bramble": ["--association", "bramble"],
+    "bramble, live": ["--association", "bramble", "--live"],
 }
 FIGURES = {"MOTA": "mota", "IDF1": "idf1", "HOTA": "hota"}
 
@@ -51,13 +51,13 @@ def main():
     work = options.work or pathlib.Path(tempfile.mkdtemp(prefix="marey_bramble_"))
     print("| people | way | " + " | ".join(FIGURES) + " | frames/s |\n| --- " * 1 + "| --- " * (len(FIGURES) + 2) + "|")
     for people in map(int, options.people.split(",")):
-        sums = {way: [0.0] * (len(FIGURES) + 1) for way in WAYS}
+        sums = {way: [0.0] * (len(FIGURES) + 1) for way in METHODS}
         seeds = options.seeds.split(",")
         for seed in seeds:
             folder = work / f"{people}_{seed}"
             run(marey, "simulate", "people", "--situation", "crowd", "--people", people, "--frames", options.frames, "--seed", seed,
                 "-o", folder, "-q")
-            for way, more in WAYS.items():
+            for way, more in METHODS.items():
                 tracks = folder / (way.replace(", ", "_") + ".csv")
                 begin = time.monotonic()
                 run(marey, "track", folder / "rig.toml", "--targets", "people", "--ground", "-o", tracks, "-q", *more)

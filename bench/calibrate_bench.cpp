@@ -22,12 +22,12 @@ std::vector<calibrate::LensView> views(int count) {
     const auto tilt = [&] { return random.uniform(-0.6, 0.6); };
     const Matrix<3> turn = geometry::rotation_from({tilt(), tilt(), tilt()});
     const double far = random.uniform(0.35, 0.9);
-    const Vector<3> place(random.uniform(-0.5, 0.5) * far, random.uniform(-0.4, 0.4) * far, far);
-    const Rigid3 pose{turn, place - turn * Vector<3>(0.12, 0.075, 0)};
+    const Vector<3> location(random.uniform(-0.5, 0.5) * far, random.uniform(-0.4, 0.4) * far, far);
+    const Rigid3 pose{turn, location - turn * Vector<3>(0.12, 0.075, 0)};
     calibrate::LensView view;
     for (int id = 0; id < kBoard.corner_count(); ++id) {
       const auto pixel = camera.project(pose * kBoard.corner(id));
-      if (!pixel || !camera.in_picture(*pixel)) break;
+      if (!pixel || !camera.in_image(*pixel)) break;
       view.board.corners.push_back({id, *pixel + Vector<2>(random.gaussian(0, 0.2), random.gaussian(0, 0.2))});
     }
     if (static_cast<int>(view.board.corners.size()) == kBoard.corner_count()) all.push_back(std::move(view));
@@ -36,21 +36,21 @@ std::vector<calibrate::LensView> views(int count) {
 }
 
 void lens_marey(benchmark::State& state) {
-  const auto seen = views(static_cast<int>(state.range(0)));
+  const auto detected = views(static_cast<int>(state.range(0)));
   double rms = 0;
-  for (auto _ : state) rms = calibrate::calibrate_lens(kBoard, kSize, seen).rms_px;
+  for (auto _ : state) rms = calibrate::calibrate_lens(kBoard, kSize, detected).rms_px;
   state.counters["rms_px"] = rms;
 }
 
 void lens_opencv(benchmark::State& state) {
-  std::vector<std::vector<cv::Point3f>> places;
+  std::vector<std::vector<cv::Point3f>> locations;
   std::vector<std::vector<cv::Point2f>> pixels;
   for (const calibrate::LensView& view : views(static_cast<int>(state.range(0)))) {
-    places.emplace_back();
+    locations.emplace_back();
     pixels.emplace_back();
     for (const calibrate::board::BoardCorner& corner : view.board.corners) {
       const Vector<3> at = kBoard.corner(corner.id);
-      places.back().emplace_back(static_cast<float>(at.x()), static_cast<float>(at.y()), 0.F);
+      locations.back().emplace_back(static_cast<float>(at.x()), static_cast<float>(at.y()), 0.F);
       pixels.back().emplace_back(static_cast<float>(corner.pixel.x()), static_cast<float>(corner.pixel.y()));
     }
   }
@@ -58,7 +58,7 @@ void lens_opencv(benchmark::State& state) {
   for (auto _ : state) {
     cv::Mat K, distortion;
     std::vector<cv::Mat> rotations, translations;
-    rms = cv::calibrateCamera(places, pixels, kSize, K, distortion, rotations, translations);
+    rms = cv::calibrateCamera(locations, pixels, kSize, K, distortion, rotations, translations);
   }
   state.counters["rms_px"] = rms;
 }

@@ -6,7 +6,7 @@ Usage: editing.py MAREY [--minutes 30] [--markers 15] [--edits 10000] [--kills 5
 Makes a take of `minutes` at 100 Hz with gaps, and prints:
   one edit    seconds of a command with one edit (rename, swap over a second) before and after `fill all`; the program's start is in it
   a script    milliseconds an edit of a script of 200 swaps and renames
-  undone      `edits` random edits in scripts of 500, then `--to 0`: whether what is exported has the bytes of before
+  undone      `edits` random edits in scripts of 500, then `--undo-to 0`: whether what is exported has the bytes of before
   killed      commands with two edits each, killed (SIGKILL) after a random time: takes that lost an edit or have half a command
 """
 import argparse
@@ -83,7 +83,7 @@ def print_costs(marey, take, chance, markers, frames):
 
 
 def print_undone(marey, take, chance, markers, frames, count):
-    before = exported(marey, take, "--as-recorded")
+    before = exported(marey, take, "--without-edits")
     done, spent, script = 0, 0.0, take.with_suffix(".txt")
     while done < count:
         some = list(edits_of(markers, frames, chance, min(500, count - done)))
@@ -91,7 +91,7 @@ def print_undone(marey, take, chance, markers, frames, count):
         spent += seconds_of(marey, take, "--script", script)
         done += len(some)
     changed = exported(marey, take) != before
-    subprocess.run([marey, "edit", take, "--to", "0", "-q"], check=True)
+    subprocess.run([marey, "edit", take, "--undo-to", "0", "-q"], check=True)
     same = exported(marey, take) == before
     print(f"{done} random edits, {1e3 * spent / max(done, 1):.2f} ms each: {'changed it' if changed else 'CHANGED NOTHING'}; undone: "
           f"{'the same bytes' if same else 'OTHER BYTES'}")

@@ -1,4 +1,4 @@
-// Whole runs on a street video, decode to written tracks, against what others pay before they have found anybody: decoding by
+// Whole runs on a street video, decode to written tracks, against what others pay before they have found any person: decoding by
 // cv::VideoCapture and OpenCV's MOG2, and decoding alone. All in one process on the same cores; the counters give ratios of
 // frames per second, from the rounds' minimum time, rounds taken in turn so that a busy machine slows all alike.
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include <opencv2/videoio.hpp>
 #include <unistd.h>
 
-#include "marey/pipeline/people/track_in_picture.h"
+#include "marey/pipeline/people/track_in_image.h"
 #include "marey/source/open_source.h"
 
 namespace {
@@ -43,7 +43,7 @@ void marey_decode(const std::string& video) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Options of Google Benchmark, which script/bench hands to every benchmark, are none of a video.
+  // Options of Google Benchmark, which script/bench hands to every benchmark, are not any of a video.
   const bool named = argc > 1 && argv[1][0] != '-';
   const std::string video = named ? argv[1] : "/usr/share/doc/opencv-doc/examples/data/vtest.avi";
   if (!std::filesystem::exists(video)) {

@@ -25,15 +25,15 @@ Scene walkers(int people, int frames) {
   const double side = 150 * std::sqrt(static_cast<double>(people));
   std::uniform_real_distribution<double> anywhere(0, side);
   std::normal_distribution<double> noise;
-  std::vector<std::pair<double, double>> places(people);
-  for (auto& [x, y] : places) x = anywhere(random), y = anywhere(random);
+  std::vector<std::pair<double, double>> locations(people);
+  for (auto& [x, y] : locations) x = anywhere(random), y = anywhere(random);
   std::vector<int> names(people);
   for (int i = 0; i < people; ++i) names[i] = i + 1;
   Scene scene;
   for (int frame = 0; frame < frames; ++frame) {
     if (frame % 20 == 0) std::swap(names[random() % people], names[random() % people]);
     for (int i = 0; i < people; ++i) {
-      auto& [x, y] = places[i];
+      auto& [x, y] = locations[i];
       x = std::clamp(x + 3 * noise(random), 0.0, side);
       y = std::clamp(y + 3 * noise(random), 0.0, side);
       scene.truth.push_back({frame, i + 1, {x, y, 50, 120}, 1});

@@ -25,7 +25,7 @@
 namespace marey {
 namespace {
 
-using Place = std::function<Vector<2>(double)>;
+using Location = std::function<Vector<2>(double)>;
 constexpr double kDuration = 4;  // s
 
 struct Draw {
@@ -44,7 +44,7 @@ struct Leg {
   Vector<2> from, velocity, acceleration;
 };
 
-Place along(std::vector<Leg> legs) {
+Location along(std::vector<Leg> legs) {
   for (std::size_t k = 1; k < legs.size(); ++k) {
     const double t = legs[k].start - legs[k - 1].start;
     legs[k].from = legs[k - 1].from + t * legs[k - 1].velocity + 0.5 * t * t * legs[k - 1].acceleration;
@@ -57,7 +57,7 @@ Place along(std::vector<Leg> legs) {
   };
 }
 
-Place zigzag(Draw& draw) {
+Location zigzag(Draw& draw) {
   const double speed = draw.uniform(100, 900);
   double course = draw.angle();
   std::vector<Leg> legs;
@@ -68,7 +68,7 @@ Place zigzag(Draw& draw) {
   return along(std::move(legs));
 }
 
-Place accelerating(Draw& draw) {
+Location accelerating(Draw& draw) {
   std::vector<Leg> legs;
   double course = draw.angle();
   double length = 0;
@@ -81,8 +81,8 @@ Place accelerating(Draw& draw) {
   return along(std::move(legs));
 }
 
-/// Goes, stands still, goes on, all at once.
-Place stopping(Draw& draw) {
+/// Goes, stands still, continues, all at once.
+Location stopping(Draw& draw) {
   std::vector<Leg> legs;
   for (double t = 0; t < kDuration; t += draw.uniform(0.3, 0.8)) {
     const double speed = legs.size() % 2 == 0 ? draw.uniform(100, 700) : 0;
@@ -91,7 +91,7 @@ Place stopping(Draw& draw) {
   return along(std::move(legs));
 }
 
-Place circling(Draw& draw) {
+Location circling(Draw& draw) {
   const double speed = draw.uniform(100, 900);
   const double rate = draw.uniform(1, 8);
   const double phase = draw.angle();
@@ -99,7 +99,7 @@ Place circling(Draw& draw) {
 }
 
 /// A limb: a few sine waves of 0.4 to 3 Hz in each axis.
-Place swinging(Draw& draw) {
+Location swinging(Draw& draw) {
   struct Wave {
     double size, rate, phase;
   };
@@ -109,14 +109,14 @@ Place swinging(Draw& draw) {
     waves.push_back({draw.uniform(10, 60) / hertz, 2 * std::numbers::pi * hertz, draw.angle()});
   }
   return [waves](double t) {
-    Vector<2> place = Vector<2>::Zero();
+    Vector<2> location = Vector<2>::Zero();
     for (std::size_t k = 0; k < waves.size(); ++k)
-      place[static_cast<int>(k % 2)] += waves[k].size * std::sin(waves[k].rate * t + waves[k].phase);
-    return place;
+      location[static_cast<int>(k % 2)] += waves[k].size * std::sin(waves[k].rate * t + waves[k].phase);
+    return location;
   };
 }
 
-Place straight(Draw& draw) {
+Location straight(Draw& draw) {
   return along({{0, Vector<2>::Zero(), draw.uniform(0, 900) * heading(draw.angle()), Vector<2>::Zero()}});
 }
 
@@ -126,8 +126,8 @@ struct Result {
   std::size_t outside = 0;
 };
 
-struct Follow {
-  const Place& place;
+struct TrackFunction {
+  const Location& location;
   double rate;
   double noise;
   unsigned seed;
@@ -138,14 +138,14 @@ struct Follow {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, noise);
     const Matrix<2> R = noise * noise * Matrix<2>::Identity();
-    const auto seen = [&](double t) { return Vector<2>(place(t) + Vector<2>(normal(random), normal(random))); };
-    F filter(options, seen(0), R);
+    const auto detected = [&](double t) { return Vector<2>(location(t) + Vector<2>(normal(random), normal(random))); };
+    F filter(options, detected(0), R);
     for (int k = 1; k < kDuration * rate; ++k) {
       const double t = k / rate;
       filter.predict(1 / rate);
-      const Vector<2> z = seen(t);
+      const Vector<2> z = detected(t);
       if (k > 3) {
-        result.errors.push_back((filter.position() - place(t)).norm());
+        result.errors.push_back((filter.position() - location(t)).norm());
         result.outside += filter.gate_distance(z, R) > 1;
         // By bisection along one axis: the area may be of any shape.
         double low = 0;
@@ -181,9 +181,9 @@ int main(int count, char** words) {
   app.add_option("--rate", rate, "Hz")->capture_default_str();
   app.add_option("--noise", noise, "px, standard deviation along each axis")->capture_default_str();
   CLI11_PARSE(app, count, words);
-  const std::vector<std::pair<std::string, Place (*)(Draw&)>> kinds = {{"straight", straight},         {"zigzag", zigzag},
-                                                                       {"acceleration", accelerating}, {"stops", stopping},
-                                                                       {"circle", circling},           {"limb", swinging}};
+  const std::vector<std::pair<std::string, Location (*)(Draw&)>> kinds = {{"straight", straight},         {"zigzag", zigzag},
+                                                                          {"acceleration", accelerating}, {"stops", stopping},
+                                                                          {"circle", circling},           {"limb", swinging}};
   std::vector<std::string> titles{"filter"};
   for (const auto& [name, make] : kinds) titles.push_back(name);
   fmt::print("{}", experiments::markdown_header(titles));
@@ -193,8 +193,8 @@ int main(int count, char** words) {
       Result result;
       for (int i = 0; i < targets; ++i) {
         Draw draw{std::mt19937(seed * 1000 + static_cast<unsigned>(i))};
-        const Place place = make(draw);
-        filter::with_filter<2>(filter.options, Follow{place, rate, noise, seed + static_cast<unsigned>(i), result});
+        const Location location = make(draw);
+        filter::with_filter<2>(filter.options, TrackFunction{location, rate, noise, seed + static_cast<unsigned>(i), result});
       }
       cells.push_back(fmt::format("{:.2f} · {:.1f} % · {:.0f}", root_mean_square(result.errors),
                                   100.0 * static_cast<double>(result.outside) / static_cast<double>(result.errors.size()),

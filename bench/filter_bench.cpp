@@ -18,7 +18,7 @@ constexpr double kStep = 1.0 / 30;
 
 /// Where target `i` is seen in frame `k`: wavy lines.
 template <int D>
-Vector<D> place(int i, int k) {
+Vector<D> location(int i, int k) {
   const double t = kStep * k;
   Vector<D> p = Vector<D>::Constant(10.0 * i + 100 * t);
   p[0] += 20 * std::sin(3 * t + i);
@@ -48,18 +48,18 @@ double opencv_cost(int order) {
   std::vector<cv::KalmanFilter> filters;
   for (int i = 0; i < kTargets; ++i) filters.push_back(opencv_filter<D>(order));
   cv::Mat z(D, 1, CV_64F);
-  double least = 1e9;
+  double minimum = 1e9;
   for (int k = 1; k < 30; ++k) {
     const auto start = std::chrono::steady_clock::now();
     for (int i = 0; i < kTargets; ++i) {
-      const Vector<D> p = place<D>(i, k);
+      const Vector<D> p = location<D>(i, k);
       std::copy(p.data(), p.data() + D, z.ptr<double>());
       filters[static_cast<std::size_t>(i)].predict();
       benchmark::DoNotOptimize(filters[static_cast<std::size_t>(i)].correct(z));
     }
-    least = std::min(least, seconds_since(start) / kTargets);
+    minimum = std::min(minimum, seconds_since(start) / kTargets);
   }
-  return least;
+  return minimum;
 }
 
 /// How many derivatives OpenCV's filter needs to hold a state of the same size (the next larger, where none is).
@@ -77,25 +77,25 @@ struct Run {
   void operator()(const typename F::Options& options) const {
     const Matrix<D> R = 0.01 * Matrix<D>::Identity();
     std::vector<F> filters;
-    for (int i = 0; i < kTargets; ++i) filters.emplace_back(options, place<D>(i, 0), R);
-    std::vector<Vector<D>> seen(kTargets);
-    double least = 1e9;
+    for (int i = 0; i < kTargets; ++i) filters.emplace_back(options, location<D>(i, 0), R);
+    std::vector<Vector<D>> detected(kTargets);
+    double minimum = 1e9;
     int k = 0;
     for (auto _ : state) {
       ++k;
-      for (int i = 0; i < kTargets; ++i) seen[static_cast<std::size_t>(i)] = place<D>(i, k);
+      for (int i = 0; i < kTargets; ++i) detected[static_cast<std::size_t>(i)] = location<D>(i, k);
       const auto start = std::chrono::steady_clock::now();
       for (int i = 0; i < kTargets; ++i) {
         filters[static_cast<std::size_t>(i)].predict(kStep);
-        filters[static_cast<std::size_t>(i)].correct(seen[static_cast<std::size_t>(i)], R);
+        filters[static_cast<std::size_t>(i)].correct(detected[static_cast<std::size_t>(i)], R);
       }
       benchmark::ClobberMemory();
-      least = std::min(least, seconds_since(start) / kTargets);
+      minimum = std::min(minimum, seconds_since(start) / kTargets);
     }
-    state.counters["ns_per_target"] = 1e9 * least;
+    state.counters["ns_per_target"] = 1e9 * minimum;
     const double opencv = opencv_cost<D>(order);
     state.counters["opencv_ns"] = 1e9 * opencv;
-    state.counters["ratio"] = opencv / least;
+    state.counters["ratio"] = opencv / minimum;
     state.SetItemsProcessed(state.iterations() * kTargets);
   }
 };

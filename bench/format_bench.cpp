@@ -17,7 +17,7 @@ namespace {
 constexpr int kMarkers = 50;
 constexpr int kFrames = 2000;
 
-std::string place(const char* name) {
+std::string location(const char* name) {
   return (std::filesystem::temp_directory_path() / name).string();
 }
 
@@ -36,7 +36,7 @@ Instant instant_of(std::int64_t index, int cameras = 0) {
   for (int c = 0; c < cameras; ++c) {
     for (int m = 1; m <= kMarkers; ++m) {
       const Vector<2> pixel(10.3 * m + 1e-3 * static_cast<double>(index), 500.7 - 7.1 * c);
-      instant.seen.push_back({CameraId(c), pixel, 0.1, 12.5, TrackId(m)});
+      instant.detected.push_back({CameraId(c), pixel, 0.1, 12.5, TrackId(m)});
     }
   }
   return instant;
@@ -54,7 +54,7 @@ format::WritePlan plan() {
   for (int m = 1; m <= kMarkers; ++m) plan.info.tracks.push_back({TrackId(m), fmt::format("M{}", m), {}});
   plan.last_frame = kFrames - 1;
   plan.farthest_m = 5;
-  plan.tells_measured = true;
+  plan.reports_measured = true;
   return plan;
 }
 
@@ -80,7 +80,7 @@ std::vector<Instant> all_instants(int cameras = 0) {
 }
 
 void write_format(benchmark::State& state, const char* format, const char* name) {
-  const std::string path = place(name);
+  const std::string path = location(name);
   const auto instants = all_instants();
   for (auto _ : state) write_all(path, format, instants);
   per_frame(state, std::filesystem::file_size(path));
@@ -88,7 +88,7 @@ void write_format(benchmark::State& state, const char* format, const char* name)
 }
 
 void read_format(benchmark::State& state, const char* format, const char* name) {
-  const std::string path = place(name);
+  const std::string path = location(name);
   write_all(path, format, all_instants());
   for (auto _ : state) {
     const auto reader = format::open_recording(path);
@@ -100,7 +100,7 @@ void read_format(benchmark::State& state, const char* format, const char* name) 
 
 /// A take with what 8 cameras saw: 50 markers each.
 void write_take_of_cameras(benchmark::State& state) {
-  const std::string path = place("bench_cameras.marey");
+  const std::string path = location("bench_cameras.marey");
   const auto instants = all_instants(8);
   for (auto _ : state) {
     format::take::TakeWriter writer(path);
@@ -113,7 +113,7 @@ void write_take_of_cameras(benchmark::State& state) {
 /// One marker of 50 out of 30 minutes at 100 Hz, the file in the page cache. `flush_every` frames a chunk is written, as a live
 /// recording does; 0: as fast as it comes.
 void read_one_track(benchmark::State& state, int flush_every, bool finished) {
-  const std::string path = place("bench_long.marey");
+  const std::string path = location("bench_long.marey");
   {
     format::take::TakeWriter writer(path);
     writer.begin(header());
@@ -139,7 +139,7 @@ void read_one_track(benchmark::State& state, int flush_every, bool finished) {
 
 /// 90 minutes of 25 people at 25 Hz on the ground, with velocities and covariances: how large, and how fast.
 void write_match(benchmark::State& state) {
-  const std::string path = place("bench_match.marey");
+  const std::string path = location("bench_match.marey");
   RecordingHeader ground = header();
   ground.frame.kind = FrameOfReference::Kind::ground;
   ground.rate_hz = 25;
@@ -170,8 +170,8 @@ void write_match(benchmark::State& state) {
 }
 
 /// The bytes of a C3D file of this length, written and read with one call a frame and nothing else.
-void write_plainly(benchmark::State& state) {
-  const std::string path = place("bound.bin");
+void write_unambiguously(benchmark::State& state) {
+  const std::string path = location("bound.bin");
   const std::vector<float> row(4 * kMarkers, 1.0F);
   for (auto _ : state) {
     std::FILE* file = std::fopen(path.c_str(), "wb");
@@ -182,8 +182,8 @@ void write_plainly(benchmark::State& state) {
   std::filesystem::remove(path);
 }
 
-void read_plainly(benchmark::State& state) {
-  const std::string path = place("bound.bin");
+void read_unambiguously(benchmark::State& state) {
+  const std::string path = location("bound.bin");
   std::vector<float> row(4 * kMarkers, 1.0F);
   std::FILE* out = std::fopen(path.c_str(), "wb");
   for (int i = 0; i < kFrames; ++i) std::fwrite(row.data(), sizeof(float), row.size(), out);
@@ -197,7 +197,7 @@ void read_plainly(benchmark::State& state) {
   std::filesystem::remove(path);
 }
 
-BENCHMARK(write_plainly)->Unit(benchmark::kMillisecond);
+BENCHMARK(write_unambiguously)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_format, c3d, "c3d", "bench.c3d")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_format, take, "take", "bench.marey")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_format, trc, "trc", "bench.trc")->Unit(benchmark::kMillisecond);
@@ -207,7 +207,7 @@ BENCHMARK(write_match)->Unit(benchmark::kMillisecond)->Iterations(1);
 BENCHMARK_CAPTURE(read_one_track, whole, 0, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_one_track, joined, 1000, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_one_track, cut_off, 1000, false)->Unit(benchmark::kMillisecond);
-BENCHMARK(read_plainly)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_unambiguously)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_format, c3d, "c3d", "bench.c3d")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_format, take, "take", "bench.marey")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_format, trc, "trc", "bench.trc")->Unit(benchmark::kMillisecond);

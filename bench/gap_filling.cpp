@@ -1,11 +1,11 @@
 // How well gaps in markers' paths are filled: holes cut into what was seen of real walks, filled with the method that is chosen by
 // itself, with a polynomial alone and with rigid neighbours alone; medians over holes of the RMS error, of what it was expected to
-// be in the middle, how much of the truth lies within two of the deviations that were told, and how many holes the limits of
+// be in the middle, how much of the truth lies within two of the deviations that were reported, and how many holes the limits of
 // "fill all" leave open.
 //
 //   gap_filling FILE ... [--labels A,B,C|all] [--holes N] [--seconds S]
 //
-// N holes of each length in each file; seeded, the same every time. With --seconds only so much of each file, out of its middle.
+// N holes of each length in each file; seeded, the same every time. With --seconds only this much of each file, out of its middle.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -38,7 +38,7 @@ constexpr double kLengths_s[] = {0.1, 0.25, 0.5, 1.0, 2.0};
 
 struct Score {
   std::vector<double> rms, expected;  // of each hole, m
-  int covered = 0, places = 0, open = 0, holes = 0;
+  int covered = 0, locations = 0, open = 0, holes = 0;
 };
 
 bool is_marker(const std::string& label, const std::set<std::string>& labels) {
@@ -85,19 +85,19 @@ void try_hole(const Recording& recording, const std::set<std::string>& labels, T
     const double error = (row.sample.position - truth.position(*truth.row_at(row.at))).norm();
     squares += error * error;
     score.covered += error * error <= 4 * row.sample.covariance->trace();
-    ++score.places;
+    ++score.locations;
   }
   score.rms.push_back(std::sqrt(squares / static_cast<double>(rows.size())));
 }
 
-struct Place {
+struct Location {
   TrackId marker{};
   edit::FrameRange hole;
 };
 
 /// Somewhere in a marker's path that is seen throughout, two frames beyond included.
-std::optional<Place> somewhere(const Recording& recording, const std::set<std::string>& labels, std::size_t length,
-                               std::mt19937& random) {
+std::optional<Location> somewhere(const Recording& recording, const std::set<std::string>& labels, std::size_t length,
+                                  std::mt19937& random) {
   std::vector<const TrackColumns*> tracks;
   for (const TrackColumns& track : recording.tracks()) {
     if (is_marker(track.name.label, labels) && track.size() > length + 20) tracks.push_back(&track);
@@ -107,7 +107,7 @@ std::optional<Place> somewhere(const Recording& recording, const std::set<std::s
     const std::size_t first = 8 + random() % (track.size() - length - 16);
     if (track.at()[first + length + 1] - track.at()[first - 2] != static_cast<std::int32_t>(length) + 3) continue;
     const auto index = [&](std::size_t row) { return recording.instants()[static_cast<std::size_t>(track.at()[row])].index; };
-    return Place{track.id(), {index(first), index(first + length - 1)}};
+    return Location{track.id(), {index(first), index(first + length - 1)}};
   }
   return std::nullopt;
 }
@@ -124,10 +124,10 @@ int run(const std::vector<std::string>& files, const std::set<std::string>& labe
       const Recording recording = middle_of(read_all(*format::open_recording(file)), seconds);
       const auto length = static_cast<std::size_t>(std::lround(length_s * recording.header.rate_hz));
       for (int i = 0; i < holes; ++i) {
-        const auto place = somewhere(recording, labels, length, random);
-        if (!place) continue;
+        const auto location = somewhere(recording, labels, length, random);
+        if (!location) continue;
         for (std::size_t method = 0; method < 4; ++method)
-          try_hole(recording, labels, place->marker, place->hole, kMethods[method].second, scores[method]);
+          try_hole(recording, labels, location->marker, location->hole, kMethods[method].second, scores[method]);
       }
     }
     for (std::size_t method = 0; method < 4; ++method) {
@@ -136,7 +136,8 @@ int run(const std::vector<std::string>& files, const std::set<std::string>& labe
       if (score.rms.empty()) continue;
       std::printf("%-8g %-8s %8d %10.2f %10.2f %12.2f %7.1f%% %7.1f%%\n", length_s, kMethods[method].first, score.holes,
                   1e3 * geometry::median(std::vector(score.rms)), 1e3 * score.rms[score.rms.size() * 9 / 10],
-                  1e3 * geometry::median(score.expected), 100.0 * score.covered / score.places, 100.0 * score.open / score.holes);
+                  1e3 * geometry::median(score.expected), 100.0 * score.covered / score.locations,
+                  100.0 * score.open / score.holes);
     }
   }
   return 0;

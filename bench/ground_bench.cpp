@@ -48,13 +48,13 @@ struct Match {
         stances[i] = simulate::match::match_stance(motion.people()[i], Matrix<3>::Identity());
       auto& boxes = instants.emplace_back();
       for (const Camera& camera : cameras) {
-        auto& seen = boxes.emplace_back();
+        auto& detected = boxes.emplace_back();
         for (const LabelledBox& one :
              simulate::match::detect_match(simulate::match::people_in_view(GroundView(camera), figures, stances),
                                            GroundView(camera), Matrix<3>::Identity(), {}, frame, {}, random)) {
-          seen.emplace_back();
-          seen.back().box = one.box;
-          seen.back().score = one.score;
+          detected.emplace_back();
+          detected.back().box = one.box;
+          detected.back().score = one.score;
         }
       }
     }
@@ -78,19 +78,19 @@ void instant_of_a_match(benchmark::State& state) {
     for (std::size_t frame = 0; frame < match.instants.size(); ++frame) {
       const Timestamp now = timestamp_from_seconds(static_cast<double>(frame) / rate);
       auto begin = std::chrono::steady_clock::now();
-      std::vector<reconstruct::PlacedPeople> placed;
-      std::vector<track::ground::CameraObservations> looks;
+      std::vector<reconstruct::LocatedPeople> located;
+      std::vector<track::ground::CameraObservations> appearances;
       for (int c = 0; c < static_cast<int>(views.size()); ++c)
-        placed.push_back(reconstruct::place_people(match.instants[frame][c], views[c], CameraId{c}));
-      for (int c = 0; c < static_cast<int>(views.size()); ++c) looks.push_back({CameraId{c}, now, placed[c].seen});
-      benchmark::DoNotOptimize(tracker->step(now, looks));
+        located.push_back(reconstruct::localise_people(match.instants[frame][c], views[c], CameraId{c}));
+      for (int c = 0; c < static_cast<int>(views.size()); ++c) appearances.push_back({CameraId{c}, now, located[c].detected});
+      benchmark::DoNotOptimize(tracker->step(now, appearances));
       here += seconds_since(begin);
       begin = std::chrono::steady_clock::now();
       for (filter::Kalman<2>& one : known) one.predict(1 / rate);
-      for (const reconstruct::PlacedPeople& look : placed) {
-        for (std::size_t i = 0; i < look.seen.size(); ++i)
-          known[i % known.size()].correct(look.seen[i].value, *look.seen[i].covariance);
-        observations += look.seen.size();
+      for (const reconstruct::LocatedPeople& inspect : located) {
+        for (std::size_t i = 0; i < inspect.detected.size(); ++i)
+          known[i % known.size()].correct(inspect.detected[i].value, *inspect.detected[i].covariance);
+        observations += inspect.detected.size();
       }
       benchmark::DoNotOptimize(known.data());
       bound += seconds_since(begin);
@@ -118,40 +118,40 @@ void tracker_alone(benchmark::State& state) {
   const GroundView view(ground_from_image, cv::Size(static_cast<int>(10 * side), static_cast<int>(10 * side)));
   const auto tracker = track::ground::make_ground_tracker({.associate = association(state.range(1))}, ground_views({view}));
   simulate::Random random(1);
-  std::vector<Vector<2>> places, velocities;
+  std::vector<Vector<2>> locations, velocities;
   std::vector<filter::Kalman<2>> known;
   for (int i = 0; i < count; ++i) {
-    places.emplace_back(random.uniform(0, side), random.uniform(0, side));
+    locations.emplace_back(random.uniform(0, side), random.uniform(0, side));
     velocities.emplace_back(random.gaussian(0, 2), random.gaussian(0, 2));
-    known.emplace_back(filter::KalmanOptions{2, 3, 3}, places.back(), Matrix<2>::Identity());
+    known.emplace_back(filter::KalmanOptions{2, 3, 3}, locations.back(), Matrix<2>::Identity());
   }
   double spent = 0, bound = 0;
   int frame = 0;
-  std::vector<Observation<2>> seen;
+  std::vector<Observation<2>> detected;
   for (auto _ : state) {
-    seen.clear();
+    detected.clear();
     for (int i = 0; i < count; ++i) {
-      places[i] += velocities[i] / rate;
+      locations[i] += velocities[i] / rate;
       for (int axis = 0; axis < 2; ++axis) {
-        if (places[i][axis] < 0 || places[i][axis] > side) velocities[i][axis] *= -1;
+        if (locations[i][axis] < 0 || locations[i][axis] > side) velocities[i][axis] *= -1;
       }
       if (random.chance(0.1)) continue;
-      auto& one = seen.emplace_back();
-      one.value = places[i] + Vector<2>(random.gaussian(0, 0.2), random.gaussian(0, 0.2));
+      auto& one = detected.emplace_back();
+      one.value = locations[i] + Vector<2>(random.gaussian(0, 0.2), random.gaussian(0, 0.2));
       one.covariance = 0.04 * Matrix<2>::Identity();
       one.score = 0.9;
       one.box = Box{10 * one.value.x() - 3, 10 * (side - one.value.y()) - 18, 6, 18};
     }
     const Timestamp now = timestamp_from_seconds(frame++ / rate);
-    const track::ground::CameraObservations look{CameraId{0}, now, seen};
+    const track::ground::CameraObservations inspect{CameraId{0}, now, detected};
     auto begin = std::chrono::steady_clock::now();
-    benchmark::DoNotOptimize(tracker->step(now, {&look, 1}));
+    benchmark::DoNotOptimize(tracker->step(now, {&inspect, 1}));
     const double here = seconds_since(begin);
     state.SetIterationTime(here);
     spent += here;
     begin = std::chrono::steady_clock::now();
     for (filter::Kalman<2>& one : known) one.predict(1 / rate);
-    for (std::size_t i = 0; i < seen.size(); ++i) known[i].correct(seen[i].value, *seen[i].covariance);
+    for (std::size_t i = 0; i < detected.size(); ++i) known[i].correct(detected[i].value, *detected[i].covariance);
     benchmark::DoNotOptimize(known.data());
     bound += seconds_since(begin);
   }

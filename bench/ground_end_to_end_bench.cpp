@@ -1,7 +1,7 @@
-// Pictures to places on the ground, decode to written tracks, over a simulated match seen by one camera at 1920 × 1080 and at
-// 3072 × 1728, against what others pay before they have found anybody: decoding by cv::VideoCapture and OpenCV's MOG2, and decoding
-// alone. All in one process on the same cores; counters are ratios of frames per second, from the rounds' minimum time, rounds
-// taken in turn so that a busy machine slows all alike. Rendering the films comes first and takes a minute.
+// Images to places on the ground, decode to written tracks, over a simulated match seen by one camera at 1920 × 1080 and at
+// 3072 × 1728, against what others pay before they have found any person: decoding by cv::VideoCapture and OpenCV's MOG2, and
+// decoding alone. All in one process on the same cores; counters are ratios of frames per second, from the rounds' minimum time,
+// rounds taken in turn so that a busy machine slows all alike. Rendering the videos comes first and takes a minute.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -22,7 +22,7 @@
 namespace {
 
 constexpr int kRounds = 3;
-constexpr double kSeconds = 4;  // of film
+constexpr double kSeconds = 4;  // of video
 
 template <typename Work>
 double seconds_of(Work work) {
@@ -47,7 +47,7 @@ void marey_decode(const std::string& video) {
 void compare(const std::string& folder, cv::Size size) {
   marey::pipeline::simulate::MatchFilesOptions match;
   match.cameras.cameras = 1, match.cameras.size = size;
-  match.seconds = kSeconds, match.boxes = false, match.films = true;
+  match.seconds = kSeconds, match.boxes = false, match.videos = true;
   marey::pipeline::simulate::write_match(match, folder);
   const marey::Rig rig = marey::format::rig::read_rig(folder + "/rig.toml");
   marey::pipeline::people::GroundOutput output;

@@ -28,7 +28,7 @@
 namespace {
 
 using namespace marey;
-using solve::skeleton::SeenMarkers;
+using solve::skeleton::ObservedMarkers;
 using solve::skeleton::SolvedSequence;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
@@ -46,7 +46,7 @@ std::vector<Case> cases(const std::string& data) {
            data + "/arnold_synthetic/" + subject + "/scaled.osim",
            {}};
     for (const char side : {'R', 'L'}) {
-      for (const char* joint : {"HJC", "KJC", "AJC", "SJC", "EJC"}) c.options.leave_out.push_back(side + std::string(joint));
+      for (const char* joint : {"HJC", "KJC", "AJC", "SJC", "EJC"}) c.options.exclude.push_back(side + std::string(joint));
     }
     all.push_back(std::move(c));
   }
@@ -98,15 +98,15 @@ std::vector<Case> cases(const std::string& data) {
   return all;
 }
 
-std::vector<SeenMarkers> read_frames(const Case& c, const Skeleton& skeleton, double& rate_hz) {
+std::vector<ObservedMarkers> read_frames(const Case& c, const Skeleton& skeleton, double& rate_hz) {
   const format::Format& format = format::format_to_read(c.recording, format::Content::space);
   format::ReadOptions how;
   how.up = c.options.up.value_or(format.name == "trc" && c.skeleton.ends_with(".osim") ? format::UpAxis::y : format::UpAxis::z);
   const auto reader = format::open_recording(c.recording, format, how);
   rate_hz = reader->header().rate_hz;
-  pipeline::markers::SkeletonMarkers labels(skeleton, c.options.leave_out);
+  pipeline::markers::SkeletonMarkers labels(skeleton, c.options.exclude);
   labels.name(reader->tracks());
-  std::vector<SeenMarkers> frames;
+  std::vector<ObservedMarkers> frames;
   while (const auto instant = reader->next()) {
     labels.name(instant->named);
     labels.take(*instant, frames.emplace_back());
@@ -118,20 +118,20 @@ struct Hidden {
   std::size_t begin = 0, end = 0;  ///< frames
 };
 
-std::vector<Hidden> hide(std::vector<SeenMarkers>& frames, double rate_hz, std::uint32_t seed) {
+std::vector<Hidden> hide(std::vector<ObservedMarkers>& frames, double rate_hz, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::vector<Hidden> windows;
   const auto at = [&](double seconds) { return static_cast<std::size_t>(std::lround(seconds * rate_hz)); };
   for (std::size_t begin = at(0.3); begin + at(0.5) < frames.size(); begin += at(1.0)) {
     const Hidden window{begin, begin + at(0.5)};
-    std::vector<std::size_t> seen;
+    std::vector<std::size_t> detected;
     for (std::size_t j = 0; j < frames[begin].size(); ++j) {
-      if (frames[begin][j]) seen.push_back(j);
+      if (frames[begin][j]) detected.push_back(j);
     }
-    std::shuffle(seen.begin(), seen.end(), random);
-    seen.resize(seen.size() * 3 / 10);
+    std::shuffle(detected.begin(), detected.end(), random);
+    detected.resize(detected.size() * 3 / 10);
     for (std::size_t f = window.begin; f < window.end; ++f) {
-      for (const std::size_t j : seen) frames[f][j].reset();
+      for (const std::size_t j : detected) frames[f][j].reset();
     }
     windows.push_back(window);
   }
@@ -139,11 +139,11 @@ std::vector<Hidden> hide(std::vector<SeenMarkers>& frames, double rate_hz, std::
 }
 
 struct Found {
-  int windows = 0, jumps = 0, off = 0, unseen = 0, angles = 0;
+  int windows = 0, jumps = 0, off = 0, unobserved = 0, angles = 0;
   double worst_jump = 0, worst_off = 0;
 };
 
-void compare(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, const SolvedSequence& all,
+void compare(const Skeleton& skeleton, const std::vector<ObservedMarkers>& frames, const SolvedSequence& all,
              const SolvedSequence& hidden, const std::vector<Hidden>& windows, double rate_hz, bool verbose, Found& found) {
   const auto after = static_cast<std::size_t>(std::lround(0.1 * rate_hz));
   for (const Hidden& window : windows) {
@@ -152,9 +152,9 @@ void compare(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, c
     std::size_t off_at = 0;
     const std::size_t until = std::min(all.rows.size(), window.end + 3 * after);
     for (std::size_t c = 0; c < skeleton.coordinates.size(); ++c) {
-      if (!skeleton.coordinates[c].turns || !skeleton.coordinates[c].free()) continue;
+      if (!skeleton.coordinates[c].rotations || !skeleton.coordinates[c].free()) continue;
       for (std::size_t f = window.begin; f < until; ++f) {
-        found.unseen += all.observed[f][c] && !hidden.observed[f][c] ? 1 : 0;
+        found.unobserved += all.observed[f][c] && !hidden.observed[f][c] ? 1 : 0;
         found.angles += all.observed[f][c] ? 1 : 0;
         if (all.observed[f][c] && hidden.observed[f][c] && hidden.observed[f - 1][c] && all.observed[f - 1][c]) {
           const double step =
@@ -217,21 +217,21 @@ int main(int argc, char** argv) {
     options.up = c.options.up;
     const Skeleton skeleton = pipeline::bodies::solve_with_skeleton(c.recording, c.skeleton, options).skeleton;
     double rate_hz = 0;
-    const std::vector<SeenMarkers> frames = read_frames(c, skeleton, rate_hz);
-    for (const std::string way : {"in turn", "offline", "smooth"}) {
-      const auto solve = [&](const std::vector<SeenMarkers>& seen) {
-        return solve::skeleton::solve_sequence(skeleton, seen, rate_hz,
-                                               {.pose = {}, .whole = way != "in turn", .smooth = way == "smooth"});
+    const std::vector<ObservedMarkers> frames = read_frames(c, skeleton, rate_hz);
+    for (const std::string method : {"in turn", "offline", "smooth"}) {
+      const auto solve = [&](const std::vector<ObservedMarkers>& detected) {
+        return solve::skeleton::solve_sequence(skeleton, detected, rate_hz,
+                                               {.pose = {}, .whole = method != "in turn", .smooth = method == "smooth"});
       };
       const SolvedSequence all = solve(frames);
       Found found;
       for (int seed = 1; seed <= seeds; ++seed) {
-        std::vector<SeenMarkers> seen = frames;
-        const std::vector<Hidden> windows = hide(seen, rate_hz, static_cast<std::uint32_t>(seed));
-        compare(skeleton, frames, all, solve(seen), windows, rate_hz, verbose, found);
+        std::vector<ObservedMarkers> detected = frames;
+        const std::vector<Hidden> windows = hide(detected, rate_hz, static_cast<std::uint32_t>(seed));
+        compare(skeleton, frames, all, solve(detected), windows, rate_hz, verbose, found);
       }
-      fmt::print(std::cout, "{}, {}, {:.2f}, {}, {}, {:.1f}, {}, {:.2f}, {:.1f}\n", c.name, way, rms_mm(all), found.windows,
-                 found.jumps, found.worst_jump, found.off, found.worst_off, 100.0 * found.unseen / std::max(1, found.angles));
+      fmt::print(std::cout, "{}, {}, {:.2f}, {}, {}, {:.1f}, {}, {:.2f}, {:.1f}\n", c.name, method, rms_mm(all), found.windows,
+                 found.jumps, found.worst_jump, found.off, found.worst_off, 100.0 * found.unobserved / std::max(1, found.angles));
       std::cout.flush();
     }
   }

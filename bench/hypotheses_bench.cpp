@@ -63,8 +63,8 @@ BENCHMARK(k_best)->ArgsProduct({{5, 25, 100}, {1, 50}})->UseManualTime()->Unit(b
 /// People who run about a pitch and meet, as each of some cameras sees them.
 class Game {
  public:
-  Game(int people, int cameras) : random_(1), places_(people), velocities_(people), cameras_(cameras) {
-    for (Vector<2>& place : places_) place = {random_.uniform(0, 105), random_.uniform(0, 68)};
+  Game(int people, int cameras) : random_(1), locations_(people), velocities_(people), cameras_(cameras) {
+    for (Vector<2>& location : locations_) location = {random_.uniform(0, 105), random_.uniform(0, 68)};
   }
 
   std::vector<GroundView> views() const {
@@ -74,34 +74,34 @@ class Game {
   }
 
   std::span<const track::ground::CameraObservations> next(Timestamp now) {
-    for (std::size_t i = 0; i < places_.size(); ++i) {
+    for (std::size_t i = 0; i < locations_.size(); ++i) {
       velocities_[i] += Vector<2>(random_.gaussian(0, 0.4), random_.gaussian(0, 0.4)) - 0.02 * velocities_[i] -
-                        0.001 * (places_[i] - Vector<2>(52.5, 34));
-      places_[i] += velocities_[i] / 25;
+                        0.001 * (locations_[i] - Vector<2>(52.5, 34));
+      locations_[i] += velocities_[i] / 25;
     }
-    seen_.assign(static_cast<std::size_t>(cameras_), {});
-    looks_.clear();
+    detected_.assign(static_cast<std::size_t>(cameras_), {});
+    appearances_.clear();
     for (int camera = 0; camera < cameras_; ++camera) {
-      auto& seen = seen_[static_cast<std::size_t>(camera)];
-      for (const Vector<2>& place : places_) {
+      auto& detected = detected_[static_cast<std::size_t>(camera)];
+      for (const Vector<2>& location : locations_) {
         if (random_.chance(0.1)) continue;
-        Observation<2>& one = seen.emplace_back();
-        one.value = place + Vector<2>(random_.gaussian(0, 0.2), random_.gaussian(0, 0.2));
+        Observation<2>& one = detected.emplace_back();
+        one.value = location + Vector<2>(random_.gaussian(0, 0.2), random_.gaussian(0, 0.2));
         one.covariance = 0.04 * Matrix<2>::Identity();
         one.camera = CameraId{camera};
         one.score = 0.9;
       }
-      looks_.push_back({CameraId{camera}, now, seen});
+      appearances_.push_back({CameraId{camera}, now, detected});
     }
-    return looks_;
+    return appearances_;
   }
 
  private:
   simulate::Random random_;
-  std::vector<Vector<2>> places_, velocities_;
+  std::vector<Vector<2>> locations_, velocities_;
   int cameras_;
-  std::vector<std::vector<Observation<2>>> seen_;
-  std::vector<track::ground::CameraObservations> looks_;
+  std::vector<std::vector<Observation<2>>> detected_;
+  std::vector<track::ground::CameraObservations> appearances_;
 };
 
 void ground_step(benchmark::State& state) {
@@ -115,11 +115,11 @@ void ground_step(benchmark::State& state) {
   double of_mht = 0;
   const auto step = [&] {
     const Timestamp now = timestamp_from_seconds(frame++ / 25.0);
-    const auto looks = game.next(now);
+    const auto appearances = game.next(now);
     const double begin = now_s();
-    benchmark::DoNotOptimize(gnn->step(now, looks));
+    benchmark::DoNotOptimize(gnn->step(now, appearances));
     const double middle = now_s();
-    benchmark::DoNotOptimize(mht->step(now, looks));
+    benchmark::DoNotOptimize(mht->step(now, appearances));
     const double end = now_s();
     of_gnn += middle - begin;
     of_mht += end - middle;

@@ -17,16 +17,16 @@ using namespace marey::detect;
 constexpr int kWidth = 1920;
 
 template <typename Value>
-std::vector<Value> random_values(std::size_t count, unsigned least, unsigned most, unsigned seed) {
+std::vector<Value> random_values(std::size_t count, unsigned minimum, unsigned maximum, unsigned seed) {
   std::mt19937 random(seed);
-  std::uniform_int_distribution<unsigned> level(least, most);
+  std::uniform_int_distribution<unsigned> level(minimum, maximum);
   std::vector<Value> values(count);
   for (Value& value : values) value = static_cast<Value>(level(random));
   return values;
 }
 
-std::vector<std::uint8_t> bytes(unsigned least = 0, unsigned most = 255, unsigned seed = 1) {
-  return random_values<std::uint8_t>(kWidth + 2, least, most, seed);
+std::vector<std::uint8_t> bytes(unsigned minimum = 0, unsigned maximum = 255, unsigned seed = 1) {
+  return random_values<std::uint8_t>(kWidth + 2, minimum, maximum, seed);
 }
 
 void classify(benchmark::State& state) {
@@ -151,8 +151,8 @@ void linearise_disc(benchmark::State& state) {
 
 void linearise_discs(benchmark::State& state) {
   const Window window;
-  const std::array<float, markers::kMostParameters> parameters{1.0f, 0.05f, 0.7f, 0.2f, -0.1f, 3.0f,  4.0f, 1.0f,
-                                                               2.0f, -3.0f, 2.0f, 2.5f, 1.0f,  -4.0f, 2.0f};
+  const std::array<float, markers::kMaxParameters> parameters{1.0f, 0.05f, 0.7f, 0.2f, -0.1f, 3.0f,  4.0f, 1.0f,
+                                                              2.0f, -3.0f, 2.0f, 2.5f, 1.0f,  -4.0f, 2.0f};
   const markers::DiscsAt at{parameters.data(), static_cast<int>(state.range(0)), state.range(1) != 0, false, 0};
   markers::DiscsSums sums;
   const auto& kernels = markers::marker_kernels();

@@ -45,7 +45,7 @@ def rows_of(path):
     return people
 
 
-def judged(placed, truth):
+def evaluated(placed, truth):
     swaps = wrong = limbs = there = 0
     for frames in placed.values():
         before = None
@@ -158,7 +158,7 @@ def main():
                     if found is None:
                         continue
                     entry = sums.setdefault(program, [0] * 5)
-                    for i, value in enumerate((*judged(found, truth), len(found))):
+                    for i, value in enumerate((*evaluated(found, truth), len(found))):
                         entry[i] += value
         minutes = 2 * FRAMES / RATE / 60
         for program, (swaps, wrong, limbs, there, tracks) in sums.items():

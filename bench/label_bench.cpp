@@ -1,4 +1,4 @@
-// Names for markers while cameras see them, on one core, CPU time: how long names are looked for from nothing in the first half
+// Names for markers while cameras see them, on one core, CPU time: how long names are searched for from nothing in the first half
 // second of a simulated walk (a task of its own does that), and how long a frame takes from then on: points hidden and back, their
 // tracks broken. The set was learned from another stretch of the walk. Counters: the share of markers found; what 99 of 100 frames
 // keep; the share of points with the right name.
@@ -70,8 +70,8 @@ struct Walker {
 
 solve::labels::LabelOptions live_options() {
   solve::labels::LabelOptions options;
-  options.boots = 2;
-  options.boot.answers = 250;
+  options.initialises = 2;
+  options.initialise.answers = 250;
   return options;
 }
 
@@ -91,14 +91,14 @@ void find_names(benchmark::State& state) {
 }
 BENCHMARK(find_names)->ArgName("markers")->Arg(40)->Arg(60)->Unit(benchmark::kMillisecond);
 
-void follow_names(benchmark::State& state) {
+void track_names(benchmark::State& state) {
   const Walker walker(static_cast<int>(state.range(0)));
   const auto count = static_cast<std::size_t>(state.range(0));
   std::vector<double> times;
   std::int64_t right = 0, all = 0;
   for (auto _ : state) {
     auto found = solve::labels::find_names(walker.recording(2, 50), walker.learned, live_options(), {});
-    found.follower->take(found.name_of);
+    found.tracker->take(found.name_of);
     simulate::Random random(9);
     std::vector<int> track(count), hidden(count, 0);
     for (std::size_t m = 0; m < count; ++m) track[m] = static_cast<int>(m) + 1;
@@ -106,16 +106,16 @@ void follow_names(benchmark::State& state) {
     std::vector<solve::labels::TrackedPoint> points;
     std::vector<std::size_t> marker;
     for (int i = 50; i < 1000; ++i) {
-      const auto places = walker.scene.points(2 + i / kBenchRate);
+      const auto locations = walker.scene.points(2 + i / kBenchRate);
       points.clear(), marker.clear();
       for (std::size_t m = 0; m < count; ++m) {
         if (hidden[m] == 0 && random.chance(0.005)) hidden[m] = random.integer(1, 19), track[m] = next++;
         if (hidden[m] > 0 && hidden[m]-- > 0) continue;
-        points.push_back({TrackId{track[m]}, places[m]});
+        points.push_back({TrackId{track[m]}, locations[m]});
         marker.push_back(m);
       }
       const double begin = thread_seconds();
-      const auto names = found.follower->step(timestamp_from_seconds(i / kBenchRate), points);
+      const auto names = found.tracker->step(timestamp_from_seconds(i / kBenchRate), points);
       times.push_back(thread_seconds() - begin);
       for (std::size_t p = 0; p < points.size(); ++p)
         right += names[p] >= 0 && walker.learned.labels[static_cast<std::size_t>(names[p])] == walker.scene.labels()[marker[p]];
@@ -127,6 +127,6 @@ void follow_names(benchmark::State& state) {
   state.counters["p99_ms"] = 1000 * times[times.size() * 99 / 100];
   state.counters["right"] = static_cast<double>(right) / static_cast<double>(all);
 }
-BENCHMARK(follow_names)->ArgName("markers")->Arg(40)->Arg(60)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(track_names)->ArgName("markers")->Arg(40)->Arg(60)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace

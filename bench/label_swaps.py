@@ -5,7 +5,7 @@ Usage: label_swaps.py MAREY DATA [--subjects HC002D,...] [--swaps 20] [--seed 1]
 
 DATA is the folder that tests call MAREY_DATA. In each child's walk straight on, two markers within 0.4 m of each other exchange names, `swaps` times:
 both are hidden for 0.03 to 0.15 s where they are nearest within a random second, and come back under each other's name, for 0.1 to 0.5 s or to the end. A
-set learned from the child's turn (or static trial) then names the walk anew. A swap is put right where no point of the two bears the other's name any
+set learned from the child's turn (or static trial) then names the walk again. A swap is corrected where no point of the two bears the other's name any
 more; false is a stretch of points that had the right name before and has another after. Beside it a naive peer: a name belongs to the point nearest to
 where its constant velocity leads, from the first frame on, which knows no bodies.
 """
@@ -55,8 +55,8 @@ def inject(points, count, chance):
     return names, swaps
 
 
-def judge(named, points, before, swaps):
-    """Swaps put right; stretches that were right before and are not now; share of points right."""
+def assess(named, points, before, swaps):
+    """Swaps corrected; stretches that were right before and are not now; share of points right."""
     truth = {key(frame, place): label for label, places in points.items() for frame, place in places.items()}
     had = {key(frame, place): label for label, places in before.items() for frame, place in places.items()}
     now = {key(frame, place): label for frame, label, place in named}
@@ -80,7 +80,7 @@ def by_marey(marey, teacher, before, work):
     write(work / "teacher.csv", sorted(teacher.items()), 100)
     write(work / "swapped.csv", sorted(before.items()), 100)
     subprocess.run([marey, "label", "learn", work / "teacher.csv", "-o", work / "set.toml", "-q"], check=True)
-    subprocess.run([marey, "label", work / "swapped.csv", "--set", work / "set.toml", "-o", work / "named.csv", "-q"], check=True)
+    subprocess.run([marey, "label", work / "swapped.csv", "--marker-set", work / "set.toml", "-o", work / "named.csv", "-q"], check=True)
     return rows_of(work / "named.csv")
 
 
@@ -120,7 +120,7 @@ def main():
     parser.add_argument("--from", dest="teacher", choices=["turn", "static"], default="turn")
     options = parser.parse_args()
     work = pathlib.Path(tempfile.mkdtemp(prefix="marey_swaps_"))
-    print_row(["subject", "seconds", "marey label: put right", "spoilt", "points right, %", "naive peer: put right", "spoilt", "points right, %"])
+    print_row(["subject", "seconds", "marey label: corrected", "spoilt", "points right, %", "naive peer: corrected", "spoilt", "points right, %"])
     print_row(["---"] * 8)
     for subject in options.subjects.split(","):
         folder = options.data / "gait_children" / subject
@@ -128,7 +128,7 @@ def main():
         before, swaps = inject(points, options.swaps, random.Random(f"{options.seed} {subject}"))
         cells = [subject, f"{len({f for places in points.values() for f in places}) / 100:.1f}"]
         for named in (by_marey(options.marey, teacher, before, work), by_velocity(before)):
-            right, false, share = judge(named, points, before, swaps)
+            right, false, share = assess(named, points, before, swaps)
             cells += [f"{right} of {len(swaps)}", str(false), f"{100 * share:.2f}"]
         print_row(cells)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`marey label` on recordings whose names are known: taken away, 5 % hidden in gaps, tracks broken there, 5 % ghosts.
 
-Usage: labels.py MAREY DATA [--subjects HC002D,...] [--hidden 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live]
+Usage: labels.py MAREY DATA [--subjects HC002D,...] [--max-occlusion 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live]
 
 DATA is the folder that tests call MAREY_DATA. For each child of gait_children the walk straight on is named by a set learned from its turn, and
 by one from its static trial; with --unseen also by one from the other children's walks and turns, scaled. Prints a Markdown table: right and wrong (ghosts
@@ -77,7 +77,7 @@ def key(frame, place):
     return frame, *(round(value, 6) for value in place)
 
 
-def judge(named, truth, known):
+def assess(named, truth, known):
     right = wrong = 0
     for frame, label, place in named:
         true = truth.get(key(frame, place), "")
@@ -94,11 +94,11 @@ def label(marey, train, tracks, truth, work, scaled=False):
         write(names[-1], sorted(points.items()), 100)
     known = sorted({name for points in train for name in points})
     write(work / "bare.csv", tracks, 100)
-    subprocess.run([marey, "label", "learn", *names, "--markers", ",".join(known), "-o", work / "set.toml", "-q"] + ["--scaled"] * scaled, check=True)
-    done = subprocess.run([marey, "label", work / "bare.csv", "--set", work / "set.toml", "-o", work / "named.csv", "-q"], capture_output=True, text=True)
+    subprocess.run([marey, "label", "learn", *names, "--markers", ",".join(known), "-o", work / "set.toml", "-q"] + ["--scale-invariant"] * scaled, check=True)
+    done = subprocess.run([marey, "label", work / "bare.csv", "--marker-set", work / "set.toml", "-o", work / "named.csv", "-q"], capture_output=True, text=True)
     if done.returncode != 0:
         return "none: " + done.stderr.strip().splitlines()[-1].rpartition(": ")[2]
-    return judge(rows_of(work / "named.csv"), truth, known)
+    return assess(rows_of(work / "named.csv"), truth, known)
 
 
 def rows_of(file):
@@ -108,17 +108,17 @@ def rows_of(file):
 
 def live(truth, work):
     """The last recording that was named, within the frame, by the set that was learned for it."""
-    subprocess.run([LIVE, work / "bare.csv", "--set", work / "set.toml", "-o", work / "live.csv"], check=True)
+    subprocess.run([LIVE, work / "bare.csv", "--marker-set", work / "set.toml", "-o", work / "live.csv"], check=True)
     named = rows_of(work / "live.csv")
     if not named:
         return "none"
     first = min(frame for frame, _, _ in named)
     after = {of: label for of, label in truth.items() if of[0] >= first}
-    return judge(named, after, set(after.values()))
+    return assess(named, after, set(after.values()))
 
 
 def naive(tracks, truth):
-    """Names of the first frame, handed on to the nearest point."""
+    """Names of the first frame, forwarded to the nearest point."""
     frames = {}
     for _, places in tracks:
         for frame, place in places.items():
@@ -137,7 +137,7 @@ def naive(tracks, truth):
             given.add(name)
             last[name] = frames[frame][i]
             named.append((frame, name, frames[frame][i]))
-    return judge(named, truth, set(truth.values()))
+    return assess(named, truth, set(truth.values()))
 
 
 def main():
@@ -145,7 +145,7 @@ def main():
     parser.add_argument("marey")
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("--subjects", default="HC002D,HC030A,HC031A,HC033A,HC038A,HC044A")
-    parser.add_argument("--hidden", type=float, default=0.05)
+    parser.add_argument("--max-occlusion", type=float, default=0.05)
     parser.add_argument("--ghosts", type=float, default=0.05)
     parser.add_argument("--gap", type=int, default=10, help="frames, on average")
     parser.add_argument("--seed", type=int, default=1)

@@ -28,7 +28,7 @@ struct Errors {
 /// The centroid of the pixels above a threshold round a place; weighted by what they are above it, or not.
 Vector<2> centroid(const cv::Mat& image, const Vector<2>& near, double reach, bool weighted) {
   double sum = 0;
-  Vector<2> moment = Vector<2>::Zero();
+  Vector<2> time_step = Vector<2>::Zero();
   const int r = static_cast<int>(std::ceil(reach));
   const int cx = static_cast<int>(std::lround(near.x())), cy = static_cast<int>(std::lround(near.y()));
   for (int y = cy - r; y <= cy + r; ++y) {
@@ -37,10 +37,10 @@ Vector<2> centroid(const cv::Mat& image, const Vector<2>& near, double reach, bo
       if (height <= 0) continue;
       const double weight = weighted ? height : 1;
       sum += weight;
-      moment += weight * Vector<2>(x, y);
+      time_step += weight * Vector<2>(x, y);
     }
   }
-  return moment / sum;
+  return time_step / sum;
 }
 
 struct Row {
@@ -70,7 +70,7 @@ void measure(const Row& row, int samples) {
     const cv::Mat image = simulate::markers::expose(clean, row.noise, 1000 + image_index);
     Frame frame;
     frame.index = image_index;
-    frame.picture = Picture(image);
+    frame.image = Image(image);
     const auto found = detector.detect(frame, {}).detections;
     extra += static_cast<int>(found.size());
     for (const simulate::markers::Disc& disc : discs) {

@@ -43,7 +43,7 @@ const cv::Mat& scene(const benchmark::State& state) {
 
 void marey_detector(benchmark::State& state) {
   Frame frame;
-  frame.picture = Picture(scene(state));
+  frame.image = Image(scene(state));
   detect::markers::MarkerDetector detector;
   std::size_t found = 0;
   for (auto _ : state) found = detector.detect(frame, {}).detections.size();
@@ -106,7 +106,7 @@ BENCHMARK(opencv_blob_detector)->Apply(sizes);
 /// 5,000 spots of glare, and a frame of nothing but noise about the threshold.
 void glare(benchmark::State& state) {
   Frame frame;
-  frame.picture = Picture(scene(1280, 1024, CV_8U, 5000));
+  frame.image = Image(scene(1280, 1024, CV_8U, 5000));
   detect::markers::MarkerDetector detector;
   for (auto _ : state) benchmark::DoNotOptimize(detector.detect(frame, {}));
 }

@@ -22,7 +22,8 @@ const format::match::GroundMatch& match() {
     format::match::GroundMatch one;
     one.recording.header.rig.emplace();
     for (const char* camera : {"left", "right"}) one.recording.header.rig->cameras.emplace_back().name = camera;
-    for (std::int32_t frame = 0; frame < kFrames; ++frame) one.recording.add_moment({frame, timestamp_from_seconds(frame / 25.0)});
+    for (std::int32_t frame = 0; frame < kFrames; ++frame)
+      one.recording.add_time_step({frame, timestamp_from_seconds(frame / 25.0)});
     for (int id = 1; id <= kPeople; ++id) {
       TrackColumns track({TrackId{id}, std::to_string(id), id <= 11 ? "white" : id <= 22 ? "blue" : "referee"}, 2);
       track.reserve(kFrames);
@@ -41,12 +42,12 @@ const format::match::GroundMatch& match() {
   return all;
 }
 
-struct Place {
-  explicit Place(const char* name)
+struct Location {
+  explicit Location(const char* name)
       : folder(std::filesystem::temp_directory_path() / "marey_match_bench"), path((folder / name).string()) {
     std::filesystem::create_directories(folder);
   }
-  ~Place() { std::filesystem::remove_all(folder); }
+  ~Location() { std::filesystem::remove_all(folder); }
   std::filesystem::path folder;
   std::string path;
 };
@@ -58,26 +59,26 @@ void count_bytes(benchmark::State& state, std::size_t bytes) {
 }
 
 void write_match(benchmark::State& state, const char* format, const char* name) {
-  const Place place(name);
+  const Location location(name);
   const format::match::GroundMatch& all = match();
-  for (auto _ : state) format::write_whole(place.path, *format::format_named(format, format::Content::ground), all);
-  count_bytes(state, std::filesystem::file_size(place.path));
+  for (auto _ : state) format::write_whole(location.path, *format::format_named(format, format::Content::ground), all);
+  count_bytes(state, std::filesystem::file_size(location.path));
 }
 
 void read_match(benchmark::State& state, const char* format, const char* name) {
-  const Place place(name);
-  format::write_whole(place.path, *format::format_named(format, format::Content::ground), match());
-  for (auto _ : state) benchmark::DoNotOptimize(format::read_match(place.path).recording.samples());
-  count_bytes(state, std::filesystem::file_size(place.path));
+  const Location location(name);
+  format::write_whole(location.path, *format::format_named(format, format::Content::ground), match());
+  for (auto _ : state) benchmark::DoNotOptimize(format::read_match(location.path).recording.samples());
+  count_bytes(state, std::filesystem::file_size(location.path));
 }
 
 constexpr std::size_t kPlainBytes = std::size_t{75} * kPeople * kFrames;  // about those of the CSV
 
 void write_bytes(benchmark::State& state) {
-  const Place place("plain.bin");
+  const Location location("plain.bin");
   const std::string piece(std::size_t{1} << 20, 'x');
   for (auto _ : state) {
-    std::FILE* file = std::fopen(place.path.c_str(), "wb");
+    std::FILE* file = std::fopen(location.path.c_str(), "wb");
     for (std::size_t done = 0; done < kPlainBytes; done += piece.size()) std::fwrite(piece.data(), 1, piece.size(), file);
     std::fclose(file);
   }
@@ -85,13 +86,13 @@ void write_bytes(benchmark::State& state) {
 }
 
 void read_bytes(benchmark::State& state) {
-  const Place place("plain.bin");
+  const Location location("plain.bin");
   std::string piece(std::size_t{1} << 20, 'x');
-  std::FILE* out = std::fopen(place.path.c_str(), "wb");
+  std::FILE* out = std::fopen(location.path.c_str(), "wb");
   for (std::size_t done = 0; done < kPlainBytes; done += piece.size()) std::fwrite(piece.data(), 1, piece.size(), out);
   std::fclose(out);
   for (auto _ : state) {
-    std::FILE* file = std::fopen(place.path.c_str(), "rb");
+    std::FILE* file = std::fopen(location.path.c_str(), "rb");
     while (std::fread(piece.data(), 1, piece.size(), file) == piece.size()) benchmark::DoNotOptimize(piece.data());
     std::fclose(file);
   }

@@ -1,4 +1,4 @@
-// A camera node over loopback: from when a frame is handed over to when the host has it, and what its time is off, beside a
+// A camera node over loopback: from when a frame is passed  to when the host has it, and what its time is off, beside a
 // WebSocket alone with the same bytes. The two clocks begin at different times; how far apart they are is known here, and not to
 // them.
 //
@@ -26,18 +26,18 @@ namespace {
 using namespace marey;
 using marey::source::steady_time;
 using namespace marey::source::live;
-using Steady = std::chrono::steady_clock;
+using Stabilise = std::chrono::steady_clock;
 
 constexpr int kPort = 27'780;
 
-double quantile(std::vector<double> values, double share) {
+double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
-double seconds_since(Steady::time_point begin) {
-  return std::chrono::duration<double>(Steady::now() - begin).count();
+double seconds_since(Stabilise::time_point begin) {
+  return std::chrono::duration<double>(Stabilise::now() - begin).count();
 }
 
 std::string frame_of(std::int64_t sequence, Timestamp taken, int markers) {
@@ -54,9 +54,10 @@ void print(const char* name, const std::vector<double>& took_s) {
 /// A loop of `frames` at `rate_hz`.
 template <typename Send>
 void send_all(int frames, double rate_hz, Send send) {
-  const auto begin = Steady::now();
+  const auto begin = Stabilise::now();
   for (int i = 0; i < frames; ++i) {
-    std::this_thread::sleep_until(begin + std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(i / rate_hz)));
+    std::this_thread::sleep_until(begin +
+                                  std::chrono::duration_cast<Stabilise::duration>(std::chrono::duration<double>(i / rate_hz)));
     send(i);
   }
 }
@@ -118,7 +119,7 @@ void measure_websocket(int frames, double rate_hz, int markers) {
   loop.start();
   net::WebSocketClient in("127.0.0.1", server.address().port, {}, {});
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  const auto begin = Steady::now();
+  const auto begin = Stabilise::now();
   std::vector<double> took_s;
   std::jthread host([&] {
     for (int i = 0; i < frames; ++i) {

@@ -23,21 +23,21 @@ def ffmpeg(*arguments, **more):
     subprocess.run(["ffmpeg", "-v", "error", "-y", *map(str, arguments)], check=True, **more)
 
 
-def encode(path, rate, pictures, quality=23):
-    """Grey pictures, all of one size."""
-    first = next(pictures)
+def encode(path, rate, images, quality=23):
+    """Grey images, all of one size."""
+    first = next(images)
     command = ["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "gray", "-s", f"{first.shape[1]}x{first.shape[0]}", "-r", str(rate), "-i", "-",
                "-pix_fmt", "yuv420p", "-c:v", "libx264", "-preset", "veryfast", "-crf", str(quality), str(path)]
     writer = subprocess.Popen(command, stdin=subprocess.PIPE)
     writer.stdin.write(first.tobytes())
-    for picture in pictures:
+    for picture in images:
         writer.stdin.write(picture.tobytes())
     writer.stdin.close()
     assert writer.wait() == 0
 
 
 def grey(path, size, seconds=None, filters=""):
-    """A video's pictures, as an array."""
+    """A video's images, as an array."""
     more = ["-t", str(seconds)] if seconds else []
     raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(path), *more, "-vf", f"{filters}scale={size[0]}:{size[1]}", "-pix_fmt", "gray", "-f",
                           "rawvideo", "-"], capture_output=True, check=True).stdout
@@ -78,16 +78,16 @@ def screen(path, given):
 
 
 def lapse(path, given):
-    """A simulated street, a picture every five seconds, played at 25: 40 minutes in 20 seconds, while the light goes up and down."""
+    """A simulated street, an image every five seconds, played at 25: 40 minutes in 20 seconds, while the light goes up and down."""
     street = given.folder / "street"
     if not (street / "video.mp4").exists():
-        subprocess.run([given.marey, "simulate", "people", "-o", street, "--frames", "500", "--rate", "1", "--pace", "5", "--people", "8", "--seed", "7", "-q"],
+        subprocess.run([given.marey, "simulate", "people", "-o", street, "--frames", "500", "--rate", "1", "--speed-factor", "5", "--people", "8", "--seed", "7", "-q"],
                        check=True)
     ffmpeg("-r", "25", "-i", street / "video.mp4", "-vf", "eq=brightness='0.12*sin(t*0.7)':eval=frame", "-c:v", "libx264", "-preset", "veryfast", path)
 
 
 def lapse_of_street(path, given):
-    """The real street, every twentieth picture."""
+    """The real street, every twentieth image."""
     ffmpeg("-i", EXAMPLES / "vtest.avi", "-vf", "select='not(mod(n,20))',setpts=N/25/TB", "-r", "25", "-c:v", "libx264", path)
 
 
@@ -100,7 +100,7 @@ def rain(path, given):
     lamp = np.exp(-((x - 384) ** 2 + (y - 330) ** 2) / 300.0**2)
     dark = 16 + empty * (0.08 + 0.3 * lamp)
 
-    def pictures():
+    def images():
         for _ in range(15 * 20):
             picture = dark + random_of.normal(0, 5, dark.shape)
             for _ in range(45):
@@ -112,7 +112,7 @@ def rain(path, given):
                         picture[row:row + 2, left + i // 12:left + i // 12 + width] += 25 + 70 * lamp[row, left]
             yield np.clip(picture, 0, 255).astype(np.uint8)
 
-    encode(path, 15, pictures())
+    encode(path, 15, images())
 
 
 def security(path, given):
@@ -122,7 +122,7 @@ def security(path, given):
 
 
 def empty_security(path, given):
-    """The same street without anybody, and noise."""
+    """The same street without any person, and noise."""
     size = (704, 528)
     empty = np.median(grey(EXAMPLES / "vtest.avi", size, filters="select='not(mod(n,40))',setpts=N/TB,"), axis=0)
     random_of = np.random.default_rng(3)
@@ -151,7 +151,7 @@ def panning(path, given):
 
 VIDEOS = {"panning": panning, "zoom": zoom, "late_pan": late_pan, "music": music, "screen": screen, "lapse": lapse, "lapse_of_street": lapse_of_street,
           "rain": rain, "security": security, "empty_security": empty_security}
-NOBODY = {"screen", "rain", "empty_security"}
+NO_PERSON = {"screen", "rain", "empty_security"}
 
 
 def main():
@@ -184,7 +184,7 @@ def main():
                 people.add(row["id"])
                 at_once[row["frame"]] = at_once.get(row["frame"], 0) + 1
         said = f"{len(people)} tracks, {max(at_once.values(), default=0)} at once, {report['seconds']:.1f} s"
-        if name in NOBODY:
+        if name in NO_PERSON:
             said += f", {10 * len(people) / max(report['seconds'], 1):.1f} false in 10 s"
         print(f"{name:16} {said}", *(f"\n    warning: {warning}" for warning in report["warnings"]), *(f"\n    note: {note}" for note in report["notes"]), flush=True)
 

@@ -10,7 +10,7 @@
 
 #include "marey/detect/silhouette.h"
 #include "marey/geometry/bspline.h"
-#include "marey/simulate/people/people_film.h"
+#include "marey/simulate/people/people_video.h"
 #include "marey/track/contour/outline_follower.h"
 
 namespace marey {
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kTargets = 25, kFrames = 40, kLines = 24, kPoints = 24, kLinePixels = 24;
 
-/// True silhouettes of a film, 60 px tall, each person's in a tile of its own: nothing but the outlines is measured.
+/// True silhouettes of a video, 60 px tall, each person's in a tile of its own: nothing but the outlines is measured.
 struct Scene {
   std::vector<cv::Mat> masks;
   std::vector<std::vector<Detection>> detections;
@@ -27,20 +27,20 @@ struct Scene {
 const Scene& scene() {
   static const Scene made = [] {
     Scene result;
-    simulate::people::PeopleFilmOptions options;
+    simulate::people::PeopleVideoOptions options;
     options.frames = kFrames;
     options.people = 1;
-    const simulate::people::PeopleFilm film(simulate::people::PeopleSituation::apart, 1, options);
+    const simulate::people::PeopleVideo video(simulate::people::PeopleSituation::apart, 1, options);
     for (int k = 0; k < kFrames; ++k) {
-      const simulate::people::RenderedFrame rendered = film.render(k);
+      const simulate::people::RenderedFrame rendered = video.render(k);
       cv::Mat mask = cv::Mat::zeros(720, 1280, CV_8UC1);
       std::vector<Detection> detections;
       if (!rendered.people.empty()) {
-        const cv::Mat person = rendered.people[0].visible.pixel_mask(film.options().size);
+        const cv::Mat person = rendered.people[0].visible.pixel_mask(video.options().size);
         const cv::Rect box = cv::boundingRect(person);
         for (int i = 0; i < kTargets; ++i) {
-          const cv::Point place(60 + i % 5 * 240 + 2 * k, 20 + i / 5 * 140);
-          person(box).copyTo(mask(cv::Rect(place, box.size())));
+          const cv::Point location(60 + i % 5 * 240 + 2 * k, 20 + i / 5 * 140);
+          person(box).copyTo(mask(cv::Rect(location, box.size())));
         }
       }
       for (const detect::Region& region : detect::find_regions(mask, {.min_area = 100})) {
@@ -58,19 +58,19 @@ const Scene& scene() {
 }
 
 /// With silhouettes, every target is seen by the detector and its outline taken from there; without, lines alone follow it.
-void follow_outlines(benchmark::State& state) {
+void track_outlines(benchmark::State& state) {
   const bool detected = state.range(0) != 0;
   track::contour::OutlineOptions options;
   options.control_points = kPoints;
   options.lines = kLines;
-  track::contour::OutlineFollower follower(options);
+  track::contour::ContourTracker tracker(options);
   std::vector<Track<2>> tracks;
   int frame = 0;
   const auto step = [&](bool all) {
     const auto k = static_cast<std::size_t>(frame) % kFrames;
-    const std::vector<Detection>& seen = scene().detections[k];
-    tracks.resize(seen.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+    const std::vector<Detection>& detected = scene().detections[k];
+    tracks.resize(detected.size());
+    for (std::size_t i = 0; i < detected.size(); ++i) {
       tracks[i].id = TrackId{static_cast<int>(i) + 1};
       tracks[i].observation = all ? std::optional<int>(static_cast<int>(i)) : std::nullopt;
     }
@@ -78,13 +78,13 @@ void follow_outlines(benchmark::State& state) {
     now.index = frame;
     now.time = timestamp_from_seconds(frame / 25.0);
     ++frame;
-    follower.observe(now, Foreground{scene().masks[k], {}}, seen);
-    benchmark::DoNotOptimize(follower.attach(tracks, seen));
+    tracker.observe(now, Foreground{scene().masks[k], {}}, detected);
+    benchmark::DoNotOptimize(tracker.attach(tracks, detected));
   };
   for (int k = 0; k < 4; ++k) step(true);
   for (auto _ : state) step(detected || frame % kFrames < 3);
 }
-BENCHMARK(follow_outlines)->ArgName("silhouettes")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(track_outlines)->ArgName("silhouettes")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 void opencv_contours(benchmark::State& state) {
   std::size_t k = 0;

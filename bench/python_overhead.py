@@ -1,6 +1,6 @@
-"""What Python costs: `marey.track` against `marey track` on one film, by turns, CPU and wall.
+"""What Python costs: `marey.track` against `marey track` on one video, by turns, CPU and wall.
 
-    python3 bench/python_overhead.py MAREY FILM [--runs N]      `import marey` must work: docs/install.md
+    python3 bench/python_overhead.py MAREY VIDEO [--runs N]      `import marey` must work: docs/install.md
 """
 
 import argparse

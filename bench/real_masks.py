@@ -5,9 +5,9 @@ Usage: real_masks.py MAREY [--masks masks/people.json] [--videos TEXT] [--median
 
 MAREY_DATA names the folder of the recordings; vtest.avi is taken from it or from Debian's opencv-doc. What is not there is
 skipped, and said. The truth is people drawn by hand as polygons in pixels (bench/masks/people.json), contour by contour, a second
-contour of one person being a hole; frames are counted from 0, and every pixel of `region` (left, top, width, height) is judged.
+contour of one person being a hole; frames are counted from 0, and every pixel of `region` (left, top, width, height) is evaluated.
 What people carry belongs to them where it was drawn: bags and papers on vtest, but no papers in the room; shadows do not. Peers
-see the video from its first frame, on BGR, with OpenCV's defaults, what they call shadow left out. Needs OpenCV for Python.
+see the video from its first frame, on BGR, with OpenCV's defaults, what they call shadow omitted. Needs OpenCV for Python.
 """
 import argparse
 import collections
@@ -45,7 +45,7 @@ def drawn(mask):
 def marey_masks(marey, video, frames, more):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
-        subprocess.run([marey, "track", video, "-o", out / "tracks.txt", "--masks", out / "masks", "-q", *more], check=True,
+        subprocess.run([marey, "track", video, "-o", out / "tracks.txt", "--foreground-masks", out / "masks", "-q", *more], check=True,
                        stderr=subprocess.DEVNULL)
         return {f: cv2.imread(str(out / "masks" / f"bin{f + 1:06}.png"), cv2.IMREAD_GRAYSCALE) for f in frames}
 

@@ -23,7 +23,7 @@ using namespace marey;
 /// Frames of a room, as a corresponder is given them, and whose every blob is.
 struct Recording {
   std::vector<Camera> cameras;
-  std::vector<std::vector<Observation<2>>> seen;
+  std::vector<std::vector<Observation<2>>> detected;
   std::vector<std::vector<int>> owner;
   int markers = 0;
 };
@@ -34,16 +34,16 @@ Recording record(const simulate::room::RoomOptions& options) {
   recording.markers = options.markers;
   for (const RigCamera& camera : scene.rig().cameras) recording.cameras.push_back(*camera.camera());
   for (std::int64_t i = 0; i < options.frames; ++i) {
-    auto& seen = recording.seen.emplace_back();
+    auto& detected = recording.detected.emplace_back();
     auto& owner = recording.owner.emplace_back();
     const simulate::room::RoomFrame frame = scene.frame(i);
-    for (int c = 0; c < std::ssize(frame.seen); ++c) {
-      for (const simulate::room::RoomBlob& blob : frame.seen[static_cast<std::size_t>(c)]) {
+    for (int c = 0; c < std::ssize(frame.detected); ++c) {
+      for (const simulate::room::RoomBlob& blob : frame.detected[static_cast<std::size_t>(c)]) {
         Observation<2> one;
         one.value = blob.pixel;
         one.covariance.reset();
         one.camera = CameraId{c};
-        seen.push_back(one);
+        detected.push_back(one);
         owner.push_back(blob.marker.value_or(-1));
       }
     }
@@ -111,14 +111,14 @@ void correspondence(benchmark::State& state) {
                                            static_cast<double>(state.range(2)) / 100, static_cast<double>(state.range(3)) / 100));
   reconstruct::Corresponder corresponder(recording.cameras);
   double groups = 0, pure = 0, found = 0, to_find = 0;
-  for (std::size_t i = 0; i < recording.seen.size(); ++i) {
+  for (std::size_t i = 0; i < recording.detected.size(); ++i) {
     std::map<int, int> views;
     for (const int owner : recording.owner[i]) ++views[owner];
     std::set<int> right;
-    for (const reconstruct::Placed& placed : corresponder.match(recording.seen[i]).points) {
-      const int owner = recording.owner[i][static_cast<std::size_t>(placed.seen.front())];
+    for (const reconstruct::Located& located : corresponder.match(recording.detected[i]).points) {
+      const int owner = recording.owner[i][static_cast<std::size_t>(located.detected.front())];
       bool same = owner >= 0;
-      for (const int s : placed.seen) same &= recording.owner[i][static_cast<std::size_t>(s)] == owner;
+      for (const int s : located.detected) same &= recording.owner[i][static_cast<std::size_t>(s)] == owner;
       ++groups;
       pure += same;
       if (same) right.insert(owner);
@@ -130,7 +130,8 @@ void correspondence(benchmark::State& state) {
     }
   }
   std::size_t next = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(corresponder.match(recording.seen[next++ % recording.seen.size()]).points.size());
+  for (auto _ : state)
+    benchmark::DoNotOptimize(corresponder.match(recording.detected[next++ % recording.detected.size()]).points.size());
   state.counters["pure_%"] = 100 * pure / groups;
   state.counters["found_%"] = 100 * found / to_find;
 }
@@ -154,16 +155,16 @@ void chain(benchmark::State& state) {
   bool forward = true;  // there and back, so that the markers never jump
   for (auto _ : state) {
     const Timestamp now = timestamp_from_seconds(static_cast<double>(frame++) / options.rate_hz);
-    const auto& found = corresponder.match(recording.seen[next], tracker->expected(now));
+    const auto& found = corresponder.match(recording.detected[next], tracker->expected(now));
     points.clear();
-    for (const reconstruct::Placed& placed : found.points) {
+    for (const reconstruct::Located& located : found.points) {
       Observation<3> point;
-      point.value = placed.point.position;
-      point.covariance = placed.point.covariance;
+      point.value = located.point.position;
+      point.covariance = located.point.covariance;
       points.push_back(point);
     }
     benchmark::DoNotOptimize(tracker->step(now, points).data());
-    if (forward ? next + 1 == recording.seen.size() : next == 0) forward = !forward;
+    if (forward ? next + 1 == recording.detected.size() : next == 0) forward = !forward;
     forward ? ++next : --next;
   }
 }
@@ -179,9 +180,9 @@ void tracking(benchmark::State& state) {
   simulate::Random random(1);
   for (int i = 0; i < 300; ++i) {
     auto& points = frames.emplace_back();
-    for (const Vector<3>& place : scene.points(i / options.rate_hz)) {
+    for (const Vector<3>& location : scene.points(i / options.rate_hz)) {
       Observation<3> point;
-      point.value = place + Vector<3>(random.gaussian(0, 3e-4), random.gaussian(0, 3e-4), random.gaussian(0, 3e-4));
+      point.value = location + Vector<3>(random.gaussian(0, 3e-4), random.gaussian(0, 3e-4), random.gaussian(0, 3e-4));
       point.covariance = Matrix<3>::Identity() * 9e-8;
       points.push_back(point);
     }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Simulated matches through the whole of `marey track --ground` with their exact rigs, judged against their truth, as a Markdown table.
+"""Simulated matches through the whole of `marey track --ground` with their exact rigs, evaluated against their truth, as a Markdown table.
 
 Usage: simulated_match.py MAREY [--distance 1.5] --scene "OPTIONS --seed N" [--scene ...]
 

@@ -28,7 +28,7 @@ double cpu_seconds() {
 /// The model and its walk, σ m of noise on every marker: by angles of the file, so that the truth is known.
 struct Walk {
   Skeleton skeleton;
-  std::vector<std::vector<std::optional<Vector<3>>>> seen;
+  std::vector<std::vector<std::optional<Vector<3>>>> detected;
 };
 
 Walk walk(double sigma_m) {
@@ -50,16 +50,17 @@ Walk walk(double sigma_m) {
   for (std::vector<double> row : motion.rows) {
     result.skeleton.couple(row);
     const auto pose = pose_of(result.skeleton, row);
-    auto& seen = result.seen.emplace_back();
+    auto& detected = result.detected.emplace_back();
     for (const SkeletonMarker& marker : result.skeleton.markers)
-      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position + Vector<3>(noise(), noise(), noise()));
+      detected.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position +
+                            Vector<3>(noise(), noise(), noise()));
   }
   return result;
 }
 
 void solve_frames(benchmark::State& state) {
   const Walk walked = walk(static_cast<double>(state.range(0)) * 1e-3);
-  if (walked.seen.empty()) {
+  if (walked.detected.empty()) {
     state.SkipWithError("arnold_synthetic is not here; MAREY_DATA says where");
     return;
   }
@@ -67,9 +68,9 @@ void solve_frames(benchmark::State& state) {
   double rms = 0;
   for (auto _ : state) {
     solve::skeleton::PoseSolver solver(walked.skeleton);
-    for (std::size_t f = 0; f < walked.seen.size(); ++f) {
+    for (std::size_t f = 0; f < walked.detected.size(); ++f) {
       const double begin = cpu_seconds();
-      const auto& pose = solver.step(1 / 200.0, walked.seen[f]);
+      const auto& pose = solver.step(1 / 200.0, walked.detected[f]);
       if (f > 0) times.push_back(cpu_seconds() - begin);  // the first starts from nothing
       rms = pose.rms_m;
     }
@@ -80,7 +81,7 @@ void solve_frames(benchmark::State& state) {
   state.counters["rms_mm"] = 1000 * rms;
   state.counters["coordinates"] = static_cast<double>(walked.skeleton.coordinates.size());
   state.counters["markers"] = static_cast<double>(walked.skeleton.markers.size());
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(walked.seen.size()));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(walked.detected.size()));
 }
 BENCHMARK(solve_frames)->ArgName("noise_mm")->Arg(0)->Arg(1)->Arg(5)->Unit(benchmark::kMillisecond);
 

@@ -55,7 +55,7 @@ def quietly(folder):
 
 
 def opensim_rms(model, trc, folder):
-    """mm, and nothing where the package is not here."""
+    """mm, and nothing if the package is not here."""
     try:
         import opensim
     except ImportError:

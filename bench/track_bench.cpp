@@ -1,5 +1,5 @@
 // Tracker step with growing numbers of targets, gated assignment beside a dense one. What to look at: the time a target, which
-// should hardly grow with the number of targets.
+// should barely grow with the number of targets.
 #include <cmath>
 #include <vector>
 
@@ -21,43 +21,43 @@ class Crowd {
  public:
   explicit Crowd(int count) : random_(1), side_(60 * std::sqrt(count)) {
     for (int i = 0; i < count; ++i) {
-      places_.push_back({random_.uniform(0, side_), random_.uniform(0, side_)});
+      locations_.push_back({random_.uniform(0, side_), random_.uniform(0, side_)});
       velocities_.push_back({random_.gaussian(0, 1.5), random_.gaussian(0, 0.5)});
     }
   }
 
   const std::vector<Observation<2>>& next() {
-    seen_.clear();
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      places_[i] += velocities_[i];
+    detected_.clear();
+    for (std::size_t i = 0; i < locations_.size(); ++i) {
+      locations_[i] += velocities_[i];
       if (random_.chance(0.1)) continue;
       Observation<2> one;
-      one.value = places_[i] + Vector<2>(random_.gaussian(), random_.gaussian());
+      one.value = locations_[i] + Vector<2>(random_.gaussian(), random_.gaussian());
       one.box = Box::from_centre(one.value, 32, 80);
       one.score = 0.9;
-      seen_.push_back(one);
+      detected_.push_back(one);
     }
-    return seen_;
+    return detected_;
   }
 
  private:
   simulate::Random random_;
   double side_;
-  std::vector<Vector<2>> places_, velocities_;
-  std::vector<Observation<2>> seen_;
+  std::vector<Vector<2>> locations_, velocities_;
+  std::vector<Observation<2>> detected_;
 };
 
 void tracker_step(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
   Crowd crowd(count);
-  const auto tracker = track::make_tracker({.steady_camera = true});
+  const auto tracker = track::make_tracker({.stabilised_camera = true});
   int frame = 0;
   for (; frame < 10; ++frame) tracker->step(timestamp_from_seconds(frame / rate), crowd.next());
   for (auto _ : state) {
     state.PauseTiming();
-    const auto& seen = crowd.next();
+    const auto& detected = crowd.next();
     state.ResumeTiming();
-    benchmark::DoNotOptimize(tracker->step(timestamp_from_seconds(frame++ / rate), seen));
+    benchmark::DoNotOptimize(tracker->step(timestamp_from_seconds(frame++ / rate), detected));
   }
   state.counters["a_target"] =
       benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -70,19 +70,19 @@ void marker_step(benchmark::State& state) {
   constexpr double kRate = 30;
   simulate::Random random(3);
   const double side = 60 * std::sqrt(static_cast<double>(count));
-  std::vector<Vector<2>> places, steps;
+  std::vector<Vector<2>> locations, steps;
   for (int i = 0; i < count; ++i) {
-    places.emplace_back(random.uniform(0, side), random.uniform(0, side));
+    locations.emplace_back(random.uniform(0, side), random.uniform(0, side));
     steps.emplace_back(random.uniform(-2, 2), random.uniform(-2, 2));
   }
-  std::vector<Observation<2>> seen;
-  const auto look = [&] {
-    seen.clear();
+  std::vector<Observation<2>> detected;
+  const auto inspect = [&] {
+    detected.clear();
     for (int i = 0; i < count; ++i) {
-      places[i] += steps[i];
+      locations[i] += steps[i];
       if (random.chance(0.02)) continue;
-      auto& point = seen.emplace_back();
-      point.value = places[i] + Vector<2>(random.gaussian(0, 0.05), random.gaussian(0, 0.05));
+      auto& point = detected.emplace_back();
+      point.value = locations[i] + Vector<2>(random.gaussian(0, 0.05), random.gaussian(0, 0.05));
       point.covariance = 0.0025 * Matrix<2>::Identity();
       point.box = Box::from_centre(point.value, 8, 8);
     }
@@ -90,14 +90,14 @@ void marker_step(benchmark::State& state) {
   const auto tracker = track::roster::make_roster_tracker<2>({});
   int frame = 0;
   for (; frame < 5; ++frame) {
-    look();
-    tracker->step(timestamp_from_seconds(frame / kRate), seen);
+    inspect();
+    tracker->step(timestamp_from_seconds(frame / kRate), detected);
   }
   for (auto _ : state) {
     state.PauseTiming();
-    look();
+    inspect();
     state.ResumeTiming();
-    benchmark::DoNotOptimize(tracker->step(timestamp_from_seconds(frame++ / kRate), seen));
+    benchmark::DoNotOptimize(tracker->step(timestamp_from_seconds(frame++ / kRate), detected));
   }
 }
 BENCHMARK(marker_step)->Arg(1)->Arg(30)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond)->MinTime(0.2);

@@ -24,13 +24,13 @@ calibrate::wand::WandInput waved(int cameras, std::int64_t frames) {
   input.rig = scene.rig();
   input.wand.distances = room.wand;
   for (RigCamera& camera : input.rig.cameras) camera.camera_from_world.reset();
-  input.seen.resize(input.rig.cameras.size());
+  input.detected.resize(input.rig.cameras.size());
   for (std::int64_t i = 0; i < frames; ++i) {
     const simulate::room::RoomFrame frame = scene.frame(i);
-    for (std::size_t c = 0; c < frame.seen.size(); ++c) {
+    for (std::size_t c = 0; c < frame.detected.size(); ++c) {
       calibrate::wand::BlobFrame blobs{frame.time_s, {}};
-      for (const simulate::room::RoomBlob& blob : frame.seen[c]) blobs.blobs.push_back(blob.pixel);
-      input.seen[c].push_back(std::move(blobs));
+      for (const simulate::room::RoomBlob& blob : frame.detected[c]) blobs.blobs.push_back(blob.pixel);
+      input.detected[c].push_back(std::move(blobs));
     }
   }
   return input;
@@ -68,10 +68,10 @@ calibrate::bundle::Bundle board_before_two_cameras() {
         Rigid3{geometry::rotation_from(turn), {random.uniform(-0.4, 0.1), random.uniform(-0.3, 0.1), random.uniform(1.5, 2.5)}});
     for (int c = 0; c < 2; ++c) {
       for (int m = 0; m < 54; ++m) {
-        calibrate::bundle::BundleObservation seen{c, v, m};
-        seen.pixel =
-            calibrate::bundle::predicted_pixel(bundle, seen).value() + Vector<2>(random.gaussian(0, 0.1), random.gaussian(0, 0.1));
-        bundle.observations.push_back(seen);
+        calibrate::bundle::BundleObservation detected{c, v, m};
+        detected.pixel = calibrate::bundle::predicted_pixel(bundle, detected).value() +
+                         Vector<2>(random.gaussian(0, 0.1), random.gaussian(0, 0.1));
+        bundle.observations.push_back(detected);
       }
     }
   }
@@ -93,20 +93,20 @@ BENCHMARK(two_cameras_by_a_board_bundle)->Unit(benchmark::kMillisecond);
 void two_cameras_by_a_board_opencv(benchmark::State& state) {
   const calibrate::bundle::Bundle truth = board_before_two_cameras();
   std::vector<std::vector<cv::Point3f>> board(kViews);
-  std::array<std::vector<std::vector<cv::Point2f>>, 2> seen = {std::vector<std::vector<cv::Point2f>>(kViews),
-                                                               std::vector<std::vector<cv::Point2f>>(kViews)};
+  std::array<std::vector<std::vector<cv::Point2f>>, 2> detected = {std::vector<std::vector<cv::Point2f>>(kViews),
+                                                                   std::vector<std::vector<cv::Point2f>>(kViews)};
   for (auto& view : board) {
     for (const auto& p : truth.board) view.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()), 0.0F);
   }
   for (const calibrate::bundle::BundleObservation& one : truth.observations) {
-    seen[static_cast<std::size_t>(one.camera)][static_cast<std::size_t>(one.body)].emplace_back(static_cast<float>(one.pixel.x()),
-                                                                                                static_cast<float>(one.pixel.y()));
+    detected[static_cast<std::size_t>(one.camera)][static_cast<std::size_t>(one.body)].emplace_back(
+        static_cast<float>(one.pixel.x()), static_cast<float>(one.pixel.y()));
   }
   double rms = 0;
   for (auto _ : state) {
     cv::Mat K1 = (cv::Mat_<double>(3, 3) << 1000, 0, 639.5, 0, 1000, 511.5, 0, 0, 1), K2 = K1.clone();
     cv::Mat d1 = (cv::Mat_<double>(1, 4) << -0.1, 0.02, 0, 0), d2 = d1.clone(), R, T, E, F;
-    rms = cv::stereoCalibrate(board, seen[0], seen[1], K1, d1, K2, d2, {1280, 1024}, R, T, E, F, cv::CALIB_FIX_INTRINSIC);
+    rms = cv::stereoCalibrate(board, detected[0], detected[1], K1, d1, K2, d2, {1280, 1024}, R, T, E, F, cv::CALIB_FIX_INTRINSIC);
   }
   state.counters["rms_px"] = rms;
 }

@@ -29,7 +29,7 @@ int main() try {
                                                                    {88.5, 54.16},
                                                                    {52.5, 34}}) {
     const auto pixel = truth.project({x, y, 0});
-    if (pixel && truth.in_picture(*pixel)) view.points.push_back({{x, y}, *pixel, "clicked"});
+    if (pixel && truth.in_image(*pixel)) view.points.push_back({{x, y}, *pixel, "clicked"});
   }
   const auto found = marey::calibrate::pitch::calibrate_pitch({view});
   const marey::Camera& camera = found.views.front().camera;

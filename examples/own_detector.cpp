@@ -8,13 +8,13 @@
 
 #include "marey/core/error.h"
 #include "marey/format/tracks/track_file.h"
-#include "marey/pipeline/people/people_in_picture.h"
+#include "marey/pipeline/people/image_stage.h"
 
 class BrightThings final : public marey::detect::Detector {
  public:
   marey::detect::Detections detect(const marey::Frame& frame, std::span<const marey::Expected>) override {
     cv::Mat labels, stats, centres;
-    const int count = cv::connectedComponentsWithStats(frame.picture.luma() > 200, labels, stats, centres);
+    const int count = cv::connectedComponentsWithStats(frame.image.luma() > 200, labels, stats, centres);
     marey::detect::Detections found;
     for (int i = 1; i < count; ++i) {
       const auto at = [&](int what) { return static_cast<double>(stats.at<int>(i, what)); };
@@ -34,7 +34,7 @@ int main(int argc, char** argv) try {
   std::vector<marey::pipeline::corridor::Feed> feeds;
   feeds.emplace_back(camera, marey::CameraId{});
   feeds.front().find(std::make_unique<BrightThings>());
-  const auto stage = marey::pipeline::people::people_in_picture(feeds.front(), {});
+  const auto stage = marey::pipeline::people::people_in_image(feeds.front(), {});
   marey::pipeline::corridor::Sinks sinks;
   sinks.add(std::make_unique<marey::format::tracks::TrackFile>(argv[2], marey::format::tracks::TrackText::csv));
   marey::pipeline::corridor::Clock clock(std::move(feeds));

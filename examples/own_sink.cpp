@@ -1,4 +1,4 @@
-// A sink of one's own: says when somebody enters the left half of the picture.
+// A sink of one's own: says when a person enters the left half of the image.
 //   own_sink boxes.txt 25
 #include <cstdio>
 #include <cstdlib>
@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "marey/core/error.h"
-#include "marey/pipeline/people/people_in_picture.h"
+#include "marey/pipeline/people/image_stage.h"
 
 class LeftHalf final : public marey::Sink {
  public:
   explicit LeftHalf(double middle) : middle_(middle) {}
   std::string name() const override { return "the left half"; }
-  Wants begin(const marey::RecordingHeader&) override { return {}; }
+  SinkRequirements begin(const marey::RecordingHeader&) override { return {}; }
   void write(const marey::Instant& instant) override {
     for (const marey::Sample& sample : instant.samples) {
       const bool left = sample.position.x() < middle_;
@@ -36,9 +36,9 @@ int main(int argc, char** argv) try {
   camera.rate_hz = std::atof(argv[2]);
   std::vector<marey::pipeline::corridor::Feed> feeds;
   feeds.emplace_back(camera, marey::CameraId{});
-  marey::pipeline::people::PeopleInPictureOptions options;
+  marey::pipeline::people::ImagePeopleOptions options;
   options.live = true;  // each instant as it comes
-  const auto stage = marey::pipeline::people::people_in_picture(feeds.front(), options);
+  const auto stage = marey::pipeline::people::people_in_image(feeds.front(), options);
   marey::pipeline::corridor::Sinks sinks;
   sinks.add(std::make_unique<LeftHalf>(320));
   marey::pipeline::corridor::Clock clock(std::move(feeds));

@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) try {
   if (argc != 3) return std::puts("usage: read_a_take TAKE PICTURE.svg"), 2;
-  marey::format::take::TakeReader reader(argv[1], {.seen = false, .limits = {}});
+  marey::format::take::TakeReader reader(argv[1], {.detected = false, .limits = {}});
   std::printf("%s, %g Hz, made by %s\n", marey::to_string(reader.header().frame).c_str(), reader.header().rate_hz,
               reader.header().made_by.program.c_str());
   for (const marey::TrackName& track : reader.tracks()) {

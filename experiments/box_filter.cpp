@@ -34,8 +34,8 @@ MeasurementMatrix measurement_matrix() {
 BoxFilter::BoxFilter(const BoxFilterOptions& options, const Box& first, const Vector<2>& centre) : options_(options) {
   const Measurement z = measurement_of(first, centre);
   x_ << z[0], z[1], 0, 0, z[2] - z[0], z[3] - z[1], z[4] - z[0], z[5] - z[1];
-  const double place = options.place_noise * options.place_noise;
-  P_ = place * Eigen::Matrix<double, 8, 8>::Identity();
+  const double location = options.position_noise * options.position_noise;
+  P_ = location * Eigen::Matrix<double, 8, 8>::Identity();
   P_.bottomRightCorner<4, 4>() *= 2;
   P_(2, 2) = P_(3, 3) = options.initial_velocity * options.initial_velocity;
 }
@@ -55,7 +55,7 @@ void BoxFilter::step(const std::optional<Box>& box, const std::optional<Vector<2
   if (frozen_) return;
   const MeasurementMatrix H = measurement_matrix();
   const Eigen::Matrix<double, 6, 6> S =
-      H * P_ * H.transpose() + options_.place_noise * options_.place_noise * Eigen::Matrix<double, 6, 6>::Identity();
+      H * P_ * H.transpose() + options_.position_noise * options_.position_noise * Eigen::Matrix<double, 6, 6>::Identity();
   const Eigen::Matrix<double, 8, 6> K = P_ * H.transpose() * S.inverse();
   x_ += K * (measurement_of(*box, *centre) - H * x_);
   P_ -= K * S * K.transpose();

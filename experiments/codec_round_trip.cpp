@@ -6,8 +6,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
+#include "marey/files/c_deleter.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -73,11 +73,11 @@ class RoundTrip {
     check(avcodec_send_packet(decoder_.get(), packet));
     while (avcodec_receive_frame(decoder_.get(), frame_.get()) >= 0) {
       const cv::Size size(frame_->width, frame_->height), half(size.width / 2, size.height / 2);
-      images.emplace_back(plane(0, size), plane(1, half), plane(2, half), Picture::Range::limited);
+      images.emplace_back(plane(0, size), plane(1, half), plane(2, half), Image::Range::limited);
     }
   }
 
-  std::vector<Picture> images;
+  std::vector<Image> images;
 
  private:
   cv::Mat plane(int index, const cv::Size& size) const {
@@ -91,7 +91,7 @@ class RoundTrip {
 
 }  // namespace
 
-std::vector<Picture> codec_round_trip(const std::vector<Picture>& images, int crf) {
+std::vector<Image> codec_round_trip(const std::vector<Image>& images, int crf) {
   if (images.empty()) return {};
   RoundTrip codec(images.front().size(), crf);
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -56,10 +56,9 @@ double perimeter_of(const Silhouette& silhouette) {
   return (cv::countNonZero(wide) - cv::countNonZero(narrow)) / static_cast<double>(silhouette.samples * silhouette.samples);
 }
 
-double visible_iou(const FollowedShape& shape, std::span<const FollowedShape> all, const TrueFigure& person,
-                   const cv::Size& image) {
+double visible_iou(const TrackedShape& shape, std::span<const TrackedShape> all, const TrueFigure& person, const cv::Size& image) {
   std::vector<std::vector<Vector<2>>> hiding;
-  for (const FollowedShape& other : all) {
+  for (const TrackedShape& other : all) {
     if (std::find(shape.behind.begin(), shape.behind.end(), other.name) != shape.behind.end()) hiding.push_back(other.polygon);
   }
   return evaluate::visible_overlap(shape.polygon, hiding, mask_of(person.visible), image).iou();
@@ -103,14 +102,14 @@ void ContourTally::add(const ContourTally& other) {
   oversized += other.oversized;
 }
 
-void ContourEvaluator::match(std::span<const TrueFigure> truth, std::span<const FollowedShape> shapes) {
+void ContourEvaluator::match(std::span<const TrueFigure> truth, std::span<const TrackedShape> shapes) {
   struct Pair {
     double iou;
     std::size_t person, shape;
   };
   std::vector<Pair> pairs;
   for (std::size_t p = 0; p < truth.size(); ++p) {
-    if (truth[p].visible_share < kNotVisible) continue;
+    if (truth[p].visible_fraction < kNotVisible) continue;
     const Box box = truth[p].visible.box();
     for (std::size_t s = 0; s < shapes.size(); ++s) {
       const auto [low, high] = bounds_of(shapes[s].polygon);
@@ -130,28 +129,28 @@ void ContourEvaluator::match(std::span<const TrueFigure> truth, std::span<const 
   }
 }
 
-void ContourEvaluator::observe(int frame, std::span<const TrueFigure> truth, std::span<const FollowedShape> shapes) {
+void ContourEvaluator::observe(int frame, std::span<const TrueFigure> truth, std::span<const TrackedShape> shapes) {
   match(truth, shapes);
-  for (const FollowedShape& shape : shapes) {
+  for (const TrackedShape& shape : shapes) {
     if (!shape.is_curve) continue;
     ++tally_.curves;
     tally_.crossed += crosses_itself(shape.polygon) ? 1 : 0;
   }
   for (std::size_t p = 0; p < truth.size(); ++p) {
-    const FollowedShape* const shape = matched_[p] >= 0 ? &shapes[static_cast<std::size_t>(matched_[p])] : nullptr;
+    const TrackedShape* const shape = matched_[p] >= 0 ? &shapes[static_cast<std::size_t>(matched_[p])] : nullptr;
     // A person counts from the first frame with a contour on.
     if (shape == nullptr && !people_.contains(truth[p].id)) continue;
     update_occlusion(frame, truth[p], shape, visible_iou_[p]);
-    if (truth[p].visible_share >= kHalfVisible) score(truth, p, shape);
+    if (truth[p].visible_fraction >= kHalfVisible) score(truth, p, shape);
     const bool touched = std::any_of(truth.begin(), truth.end(), [&](const TrueFigure& other) {
       return other.id != truth[p].id && shared_fraction(truth[p].whole, other.whole) > 0;
     });
-    if (truth[p].visible_share < 1 || touched || !is_within(truth[p].whole, image_)) continue;
+    if (truth[p].visible_fraction < 1 || touched || !is_within(truth[p].whole, image_)) continue;
     update_motion(frame, truth[p], shape);
   }
 }
 
-void ContourEvaluator::score(std::span<const TrueFigure> truth, std::size_t index, const FollowedShape* shape) {
+void ContourEvaluator::score(std::span<const TrueFigure> truth, std::size_t index, const TrackedShape* shape) {
   const TrueFigure& person = truth[index];
   const evaluate::OutlineOverlap with_whole =
       shape != nullptr ? evaluate::overlap(shape->polygon, mask_of(person.whole), &image_) : evaluate::OutlineOverlap{};
@@ -164,44 +163,44 @@ void ContourEvaluator::score(std::span<const TrueFigure> truth, std::size_t inde
     tally_.oversized += large ? 1 : 0;
   }
   if (!is_within(person.whole, image_)) return;
-  double most = 0;
+  double maximum = 0;
   bool nearer = false;
   for (const TrueFigure& other : truth) {
     if (other.id == person.id) continue;
     const double part = shared_fraction(person.whole, other.whole);
-    if (part <= most) continue;
-    most = part;
+    if (part <= maximum) continue;
+    maximum = part;
     nearer = person.foot.y() > other.foot.y();
   }
-  if (most > 0 && (most < kMinShared || most > kMaxShared)) return;
-  if (most <= 0 && person.visible_share < 1) return;
-  Mean& kind = most <= 0 ? tally_.alone : nearer ? tally_.front : tally_.behind;
+  if (maximum > 0 && (maximum < kMinShared || maximum > kMaxShared)) return;
+  if (maximum <= 0 && person.visible_fraction < 1) return;
+  Mean& kind = maximum <= 0 ? tally_.alone : nearer ? tally_.front : tally_.behind;
   kind.add(visible_iou_[index]);
   tally_.found.add(visible_iou_[index] >= kFoundIou ? 1 : 0);
-  if (most > 0 || shape == nullptr || visible_iou_[index] < 0.3) return;
+  if (maximum > 0 || shape == nullptr || visible_iou_[index] < 0.3) return;
   tally_.bias.add((with_whole.outline - with_whole.silhouette) / perimeter_of(person.whole));
 }
 
-void ContourEvaluator::update_occlusion(int frame, const TrueFigure& person, const FollowedShape* shape, double iou) {
+void ContourEvaluator::update_occlusion(int frame, const TrueFigure& person, const TrackedShape* shape, double iou) {
   Person& known = people_[person.id];
-  if (person.visible_share <= kNotVisible) {
+  if (person.visible_fraction <= kNotVisible) {
     if (++known.hidden == kMinHiddenFrames) known.before = known.name;
     return;
   }
   const std::string name = shape != nullptr ? shape->name : "";
-  if (person.visible_share >= kHalfVisible && known.hidden >= kMinHiddenFrames && !known.before.empty()) {
+  if (person.visible_fraction >= kHalfVisible && known.hidden >= kMinHiddenFrames && !known.before.empty()) {
     tally_.back.add(iou);
     known.watched_until = frame + kNameFrames;
     known.hidden = 0;
   }
   if (frame == known.watched_until) tally_.swapped.add(name == known.before ? 0 : 1);
-  if (person.visible_share >= kHalfVisible && known.hidden < kMinHiddenFrames) {
+  if (person.visible_fraction >= kHalfVisible && known.hidden < kMinHiddenFrames) {
     known.hidden = 0;
     if (!name.empty()) known.name = name;
   }
 }
 
-void ContourEvaluator::update_motion(int frame, const TrueFigure& person, const FollowedShape* shape) {
+void ContourEvaluator::update_motion(int frame, const TrueFigure& person, const TrackedShape* shape) {
   if (shape == nullptr) return;
   Person& known = people_[person.id];
   const auto [low, high] = bounds_of(shape->polygon);

@@ -35,7 +35,7 @@ struct Mean {
 /// What one method made of one or more videos. IoU is of areas within the image, on the lattice of the true silhouettes.
 struct ContourTally {
   Mean whole;               ///< IoU with the whole body, of people of whom half or more is visible
-  Mean alone;               ///< IoU of people whom nobody touches
+  Mean alone;               ///< IoU of people whom no person touches
   Mean front, behind;       ///< IoU of the visible part of two who overlap by 20 to 70 %: the nearer and the farther one
   Mean found;               ///< 1 where the IoU of the visible part is 0.5 or more, else 0; of all people in the last three
   Mean bias;                ///< px by which the contour of a person alone is wider than the true edge, on average along it
@@ -54,7 +54,7 @@ class ContourEvaluator {
  public:
   explicit ContourEvaluator(cv::Size image) : image_(image) {}
 
-  void observe(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes);
+  void observe(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const TrackedShape> shapes);
   const ContourTally& tally() const { return tally_; }
 
  private:
@@ -67,10 +67,10 @@ class ContourEvaluator {
     std::array<std::array<double, 4>, 2> path{};
   };
 
-  void match(std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes);
-  void score(std::span<const simulate::people::TrueFigure> truth, std::size_t index, const FollowedShape* shape);
-  void update_occlusion(int frame, const simulate::people::TrueFigure& person, const FollowedShape* shape, double iou);
-  void update_motion(int frame, const simulate::people::TrueFigure& person, const FollowedShape* shape);
+  void match(std::span<const simulate::people::TrueFigure> truth, std::span<const TrackedShape> shapes);
+  void score(std::span<const simulate::people::TrueFigure> truth, std::size_t index, const TrackedShape* shape);
+  void update_occlusion(int frame, const simulate::people::TrueFigure& person, const TrackedShape* shape, double iou);
+  void update_motion(int frame, const simulate::people::TrueFigure& person, const TrackedShape* shape);
 
   cv::Size image_;
   std::map<int, Person> people_;

@@ -15,7 +15,7 @@
 namespace marey::experiments {
 namespace {
 
-using simulate::people::PeopleFilm;
+using simulate::people::PeopleVideo;
 using Situation = simulate::people::PeopleSituation;
 
 constexpr std::size_t kMethodCount = kContourMethods.size();
@@ -25,7 +25,7 @@ using Tallies = std::array<ContourTally, kMethodCount>;
 std::vector<ContourCase> all_cases(int videos) {
   std::vector<ContourCase> cases;
   for (const int height : {25, 60, 120}) {
-    cases.push_back({.name = fmt::format("filmed, alone, {} px", height),
+    cases.push_back({.name = fmt::format("recorded, alone, {} px", height),
                      .situation = Situation::apart,
                      .height_px = static_cast<double>(height),
                      .degraded = true,
@@ -39,7 +39,7 @@ std::vector<ContourCase> all_cases(int videos) {
   }
   for (const int height : {60, 120}) {
     for (const bool same : {false, true}) {
-      cases.push_back({.name = fmt::format("filmed, overlapping, {} px{}", height, same ? ", same shirts" : ""),
+      cases.push_back({.name = fmt::format("recorded, overlapping, {} px{}", height, same ? ", same shirts" : ""),
                        .situation = Situation::overlap,
                        .height_px = static_cast<double>(height),
                        .degraded = true,
@@ -69,16 +69,16 @@ std::vector<ContourCase> all_cases(int videos) {
 
 /// The images of a video that are shown before it, then its own; and the truth of its own.
 struct Video {
-  std::vector<Picture> earlier, images;
+  std::vector<Image> earlier, images;
   std::vector<std::vector<simulate::people::TrueFigure>> truth;
 };
 
-Video render(const PeopleFilm& film, const std::optional<int>& crf) {
+Video render(const PeopleVideo& video, const std::optional<int>& crf) {
   Video video;
-  for (int i = 0; i < PeopleFilm::kEarlier; ++i) video.earlier.push_back(film.render_earlier(i));
-  for (int i = 0; i < film.frames(); ++i) {
-    simulate::people::RenderedFrame rendered = film.render(i);
-    video.images.push_back(std::move(rendered.picture));
+  for (int i = 0; i < PeopleVideo::kEarlier; ++i) video.earlier.push_back(video.render_earlier(i));
+  for (int i = 0; i < video.frames(); ++i) {
+    simulate::people::RenderedFrame rendered = video.render(i);
+    video.images.push_back(std::move(rendered.image));
     video.truth.push_back(std::move(rendered.people));
   }
   if (!crf) return video;
@@ -87,23 +87,23 @@ Video render(const PeopleFilm& film, const std::optional<int>& crf) {
   return video;
 }
 
-Frame frame_of(const Picture& image, int index, double rate_hz) {
+Frame frame_of(const Image& image, int index, double rate_hz) {
   Frame frame;
   frame.index = index;
   frame.time = timestamp_from_seconds(index / rate_hz);
-  frame.picture = image;
+  frame.image = image;
   return frame;
 }
 
 Tallies evaluate(const ContourCase& what, std::uint64_t seed, const ContourExperimentOptions& options) {
-  simulate::people::PeopleFilmOptions scene;
+  simulate::people::PeopleVideoOptions scene;
   scene.height_px = what.height_px;
   scene.same_shirts = what.same_shirts;
   scene.frames = what.frames;
   if (what.hidden_s) scene.hidden_s = *what.hidden_s;
-  if (what.degraded) scene.look = simulate::people::CameraLook::filmed();
-  const PeopleFilm film(what.situation, seed, scene);
-  const Video video = render(film, what.crf);
+  if (what.degraded) scene.degradation = simulate::people::ImageDegradation::recorded();
+  const PeopleVideo video(what.situation, seed, scene);
+  const Video video = render(video, what.crf);
   const std::array<std::unique_ptr<OutlineMethod>, kMethodCount> methods{naive_method(), silhouette_method(),
                                                                          marey_method(options.outlines)};
   std::vector<Frame> samples;
@@ -203,7 +203,7 @@ class Rows {
       add("edge bias, px, " + cases_[c].name, "± 0.5", tallies_[c], [](const ContourTally& one) { return one.bias; });
     }
     const Tallies degraded = sum_where([](const ContourCase& one) { return one.degraded && one.situation == Situation::apart; });
-    add("edge bias, px, filmed", "± 0.5", degraded, [](const ContourTally& one) { return one.bias; });
+    add("edge bias, px, recorded", "± 0.5", degraded, [](const ContourTally& one) { return one.bias; });
   }
 
   /// Root mean squares of second differences against those of the silhouettes.

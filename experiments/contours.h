@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "marey/core/hooks.h"
-#include "marey/simulate/people/people_film.h"
+#include "marey/simulate/people/people_video.h"
 #include "marey/track/contour/outline_follower.h"
 
 #include "experiments/contour_evaluator.h"

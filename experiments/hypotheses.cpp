@@ -18,7 +18,7 @@
 namespace marey::experiments {
 namespace {
 
-constexpr double same_place = 1;  // m
+constexpr double same_position = 1;  // m
 
 struct Kind {
   const char* name;
@@ -30,28 +30,28 @@ constexpr std::array kKinds{Kind{"cross", simulate::Encounter::cross}, Kind{"sid
 struct Association {
   const char* name;
   track::ground::GroundAssociation association;
-  bool live;  ///< judged is what is said at once
+  bool live;  ///< evaluated is what is said at once
 };
 constexpr std::array kAssociations{Association{"gnn", track::ground::GroundAssociation::gnn, false},
                                    Association{"jpda", track::ground::GroundAssociation::jpda, false},
                                    Association{"mht", track::ground::GroundAssociation::mht, false},
                                    Association{"mht, live", track::ground::GroundAssociation::mht, true}};
 
-void add(std::vector<evaluate::TargetPlace>& places, std::int32_t frame, std::span<const Track<2>> tracks) {
+void add(std::vector<evaluate::TargetPosition>& locations, std::int32_t frame, std::span<const Track<2>> tracks) {
   for (const Track<2>& track : tracks) {
     if (track.confirmed)
-      places.push_back({frame, number(track.id), evaluate::on_ground(track.position), evaluate::on_ground(track.velocity)});
+      locations.push_back({frame, number(track.id), evaluate::on_ground(track.position), evaluate::on_ground(track.velocity)});
   }
 }
 
-std::vector<evaluate::TargetPlace> truth_of(const simulate::EncounterScene& scene) {
-  std::vector<evaluate::TargetPlace> places;
+std::vector<evaluate::TargetPosition> truth_of(const simulate::EncounterScene& scene) {
+  std::vector<evaluate::TargetPosition> locations;
   for (std::size_t frame = 0; frame < scene.truth.size(); ++frame) {
     for (std::size_t i = 0; i < scene.truth[frame].size(); ++i)
-      places.push_back(
+      locations.push_back(
           {static_cast<std::int32_t>(frame), static_cast<std::int32_t>(i), evaluate::on_ground(scene.truth[frame][i]), {}});
   }
-  return places;
+  return locations;
 }
 
 /// A camera high above that sees all of the ground, 10 px a metre.
@@ -63,49 +63,49 @@ GroundView view_of(const simulate::EncounterOptions& options) {
   return GroundView(ground_from_image, cv::Size(pixels, pixels));
 }
 
-struct Followed {
+struct Tracked {
   HypothesesExperiment::Score score;
   double seconds = 0;
   std::int64_t steps = 0;
 };
 
-Followed follow(const simulate::EncounterScene& scene, std::span<const evaluate::TargetPlace> truth, const Association& method,
-                track::ground::GroundTrackerOptions options) {
+Tracked run_tracker(const simulate::EncounterScene& scene, std::span<const evaluate::TargetPosition> truth,
+                    const Association& method, track::ground::GroundTrackerOptions options) {
   options.associate = method.association;
   const auto tracker = track::ground::make_ground_tracker(options, ground_views({view_of(scene.options)}));
-  std::vector<evaluate::TargetPlace> said;
+  std::vector<evaluate::TargetPosition> stated;
   std::int32_t decided = 0;
-  Followed outcome;
-  for (std::size_t frame = 0; frame < scene.seen.size(); ++frame) {
+  Tracked outcome;
+  for (std::size_t frame = 0; frame < scene.detected.size(); ++frame) {
     const Timestamp now = timestamp_from_seconds(static_cast<double>(frame) / scene.options.rate_hz);
-    const track::ground::CameraObservations look{CameraId{0}, now, scene.seen[frame]};
+    const track::ground::CameraObservations inspect{CameraId{0}, now, scene.detected[frame]};
     const auto begin = std::chrono::steady_clock::now();
-    const auto tracks = tracker->step(now, {&look, 1});
+    const auto tracks = tracker->step(now, {&inspect, 1});
     outcome.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (method.live) {
-      add(said, static_cast<std::int32_t>(frame), tracks);
+      add(stated, static_cast<std::int32_t>(frame), tracks);
     } else {
-      for (const track::ground::GroundDecision& decision : tracker->decided()) add(said, decided++, decision.tracks);
+      for (const track::ground::GroundDecision& decision : tracker->decided()) add(stated, decided++, decision.tracks);
     }
   }
   if (!method.live) {
-    for (const track::ground::GroundDecision& decision : tracker->decide_all()) add(said, decided++, decision.tracks);
+    for (const track::ground::GroundDecision& decision : tracker->decide_all()) add(stated, decided++, decision.tracks);
   }
-  outcome.steps = static_cast<std::int64_t>(scene.seen.size());
-  const evaluate::Evaluation judged = evaluate::evaluate_ground(truth, said, same_place).scores;
-  outcome.score = {judged.clear.switches, judged.true_boxes, judged.clear.misses, judged.clear.false_positives, 0};
+  outcome.steps = static_cast<std::int64_t>(scene.detected.size());
+  const evaluate::Evaluation evaluated = evaluate::evaluate_ground(truth, stated, same_position).scores;
+  outcome.score = {evaluated.clear.switches, evaluated.true_boxes, evaluated.clear.misses, evaluated.clear.false_positives, 0};
   return outcome;
 }
 
 }  // namespace
 
 HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options, const Hooks& hooks) {
-  HypothesesExperiment experiment{.scenes = options.scenes, .seed = options.seed, .kinds = {}, .meetings = {}, .rows = {}};
+  HypothesesExperiment experiment{.scenes = options.scenes, .seed = options.seed, .kinds = {}, .close_encounters = {}, .rows = {}};
   for (const Kind& kind : kKinds) {
     experiment.kinds.emplace_back(kind.name);
-    experiment.meetings.push_back(options.scenes * options.encounters.pairs * options.encounters.meetings);
+    experiment.close_encounters.push_back(options.scenes * options.encounters.pairs * options.encounters.close_encounters);
   }
-  std::vector<std::vector<Followed>> sums(kAssociations.size(), std::vector<Followed>(kKinds.size()));
+  std::vector<std::vector<Tracked>> sums(kAssociations.size(), std::vector<Tracked>(kKinds.size()));
   std::mutex mutex;
   int done = 0;
   const int all = options.scenes * static_cast<int>(kKinds.size());
@@ -115,15 +115,15 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
     encounters.kind = kKinds[kind].encounter;
     const simulate::EncounterScene scene =
         simulate::simulate_encounters(options.seed + static_cast<std::uint64_t>(index) / kKinds.size(), encounters);
-    const std::vector<evaluate::TargetPlace> truth = truth_of(scene);
+    const std::vector<evaluate::TargetPosition> truth = truth_of(scene);
     for (std::size_t m = 0; m < kAssociations.size(); ++m) {
-      const Followed outcome = follow(scene, truth, kAssociations[m], options.tracker);
+      const Tracked outcome = run_tracker(scene, truth, kAssociations[m], options.tracker);
       const std::lock_guard lock(mutex);
-      Followed& sum = sums[m][kind];
+      Tracked& sum = sums[m][kind];
       sum.score.switches += outcome.score.switches;
       sum.score.people += outcome.score.people;
       sum.score.misses += outcome.score.misses;
-      sum.score.strangers += outcome.score.strangers;
+      sum.score.untrusted += outcome.score.untrusted;
       sum.seconds += outcome.seconds;
       sum.steps += outcome.steps;
     }
@@ -134,7 +134,7 @@ HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions
   for (std::size_t m = 0; m < kAssociations.size(); ++m) {
     auto& row = experiment.rows.emplace_back();
     row.method = kAssociations[m].name;
-    for (Followed& sum : sums[m]) {
+    for (Tracked& sum : sums[m]) {
       row.scores.push_back(sum.score);
       if (sum.steps > 0) row.scores.back().step_us = 1e6 * sum.seconds / static_cast<double>(sum.steps);
     }
@@ -152,7 +152,7 @@ std::string to_text(const HypothesesExperiment& experiment) {
   };
   columns("");
   fmt::format_to(out, "{:<12}", "meetings");
-  for (const int meetings : experiment.meetings) fmt::format_to(out, "{:>16}", meetings);
+  for (const int close_encounters : experiment.close_encounters) fmt::format_to(out, "{:>16}", close_encounters);
   fmt::format_to(out, "\n");
   const auto& first = experiment.rows.front();
   for (const auto& row : experiment.rows) {
@@ -172,7 +172,7 @@ std::string to_text(const HypothesesExperiment& experiment) {
       const double percent = 100.0 / static_cast<double>(std::max<std::int64_t>(1, score.people));
       fmt::format_to(out, "{:>16}",
                      fmt::format("{:.2f} / {:.2f}", percent * static_cast<double>(score.misses),
-                                 percent * static_cast<double>(score.strangers)));
+                                 percent * static_cast<double>(score.untrusted)));
     }
     fmt::format_to(out, "\n");
   }
@@ -187,11 +187,11 @@ std::string to_text(const HypothesesExperiment& experiment) {
 }
 
 std::string to_markdown(const HypothesesExperiment& experiment) {
-  std::vector<std::string> titles{""}, meetings{"encounters"};
+  std::vector<std::string> titles{""}, close_encounters{"encounters"};
   for (const std::string& kind : experiment.kinds) titles.push_back(kind);
-  for (const int of_kind : experiment.meetings) meetings.push_back(std::to_string(of_kind));
-  std::string text = markdown_header(titles) + markdown_row(meetings);
-  const auto share = [](std::int64_t part, std::int64_t all) {
+  for (const int of_kind : experiment.close_encounters) close_encounters.push_back(std::to_string(of_kind));
+  std::string text = markdown_header(titles) + markdown_row(close_encounters);
+  const auto fraction = [](std::int64_t part, std::int64_t all) {
     return static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(1, all));
   };
   for (const auto& row : experiment.rows) {
@@ -199,8 +199,8 @@ std::string to_markdown(const HypothesesExperiment& experiment) {
     for (std::size_t kind = 0; kind < row.scores.size(); ++kind) {
       const auto& score = row.scores[kind];
       cells.push_back(fmt::format("{} ({:.2f}); {:.2f} / {:.2f}", score.switches,
-                                  share(score.switches, experiment.rows.front().scores[kind].switches),
-                                  100 * share(score.misses, score.people), 100 * share(score.strangers, score.people)));
+                                  fraction(score.switches, experiment.rows.front().scores[kind].switches),
+                                  100 * fraction(score.misses, score.people), 100 * fraction(score.untrusted, score.people)));
     }
     text += markdown_row(cells);
   }

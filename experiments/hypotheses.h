@@ -15,7 +15,7 @@ struct HypothesesExperimentOptions {
   int scenes = 100;  ///< of each kind of meeting
   std::uint64_t seed = 1;
   simulate::EncounterOptions encounters;
-  track::ground::GroundTrackerOptions tracker;  ///< for all methods; `associate` is not looked at
+  track::ground::GroundTrackerOptions tracker;  ///< for all methods; `associate` is not inspected
 };
 
 struct HypothesesExperiment {
@@ -24,7 +24,7 @@ struct HypothesesExperiment {
     std::int64_t switches = 0;   ///< of identity, as CLEAR counts
     std::int64_t people = 0;     ///< people times frames
     std::int64_t misses = 0;     ///< of these
-    std::int64_t strangers = 0;  ///< reported where nobody is
+    std::int64_t untrusted = 0;  ///< reported where no person is
     double step_us = 0;          ///< mean time of a tracker's step
   };
   struct Row {
@@ -33,14 +33,14 @@ struct HypothesesExperiment {
   };
   int scenes = 0;
   std::uint64_t seed = 0;
-  std::vector<std::string> kinds;  ///< of meetings
-  std::vector<int> meetings;       ///< of each kind
+  std::vector<std::string> kinds;     ///< of meetings
+  std::vector<int> close_encounters;  ///< of each kind
   std::vector<Row> rows;
 };
 
-/// The same scenes of people who meet and part, told apart by place alone, followed by each association with the same filter,
-/// gates, costs, birth and death. Judged is what the tracker has decided (GroundTracker::decided); "mht, live" is what mht guessed
-/// in the step itself. A track and a person may match within 1 m.
+/// The same scenes of people who meet and part, distinguished by place alone, followed by each association with the same filter,
+/// gates, costs, birth and death. Evaluated is what the tracker has decided (GroundTracker::decided); "mht, live" is what mht
+/// guessed in the step itself. A track and a person may match within 1 m.
 HypothesesExperiment run_hypotheses_experiment(const HypothesesExperimentOptions& options, const Hooks& hooks = {});
 
 /// As text: a table of switches and one of times.

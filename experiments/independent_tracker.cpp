@@ -8,11 +8,11 @@ namespace marey::experiments {
 std::span<const Track<2>> IndependentTracker::step(Timestamp now, std::span<const track::CameraObservations<2>> views) {
   assert(views.size() == 1 && "an image is one camera's");
   assert((targets_.empty() || now > *now_) && "frames come in the order of their time");
-  const std::span<const Observation<2>> seen = views.front().seen;
+  const std::span<const Observation<2>> detected = views.front().detected;
   if (targets_.empty()) {
-    for (int i = 0; i < std::ssize(seen); ++i) targets_.push_back({{options_, seen[i].value, *seen[i].covariance}, i});
+    for (int i = 0; i < std::ssize(detected); ++i) targets_.push_back({{options_, detected[i].value, *detected[i].covariance}, i});
   } else {
-    for (Target& target : targets_) follow(target, seconds_to(now), seen);
+    for (Target& target : targets_) run_tracker(target, seconds_to(now), detected);
   }
   now_ = now;
   return report(targets_);
@@ -27,20 +27,20 @@ std::span<const Track<2>> IndependentTracker::expected(Timestamp now) {
   return report(ahead);
 }
 
-void IndependentTracker::follow(Target& target, double dt, std::span<const Observation<2>> seen) {
+void IndependentTracker::run_tracker(Target& target, double dt, std::span<const Observation<2>> detected) {
   target.filter.predict(dt);
   const Observation<2>* nearest = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Observation<2>& point : seen) {
+  double minimum = std::numeric_limits<double>::infinity();
+  for (const Observation<2>& point : detected) {
     const double distance = (point.value - target.filter.position()).norm();
-    if (distance < least && target.filter.gate_distance(point.value, *point.covariance) <= 1) {
-      least = distance;
+    if (distance < minimum && target.filter.gate_distance(point.value, *point.covariance) <= 1) {
+      minimum = distance;
       nearest = &point;
     }
   }
   target.observation.reset();
   if (nearest == nullptr) return;
-  target.observation = static_cast<int>(nearest - seen.data());
+  target.observation = static_cast<int>(nearest - detected.data());
   target.filter.correct(nearest->value, *nearest->covariance);
 }
 

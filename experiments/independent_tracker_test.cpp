@@ -5,10 +5,10 @@
 namespace marey::experiments {
 namespace {
 
-std::vector<Observation<2>> at(std::initializer_list<Vector<2>> places) {
-  std::vector<Observation<2>> seen;
-  for (const Vector<2>& place : places) seen.emplace_back().value = place;
-  return seen;
+std::vector<Observation<2>> at(std::initializer_list<Vector<2>> locations) {
+  std::vector<Observation<2>> detected;
+  for (const Vector<2>& location : locations) detected.emplace_back().value = location;
+  return detected;
 }
 
 Timestamp frame(int index) {

@@ -21,8 +21,8 @@ namespace {
 
 using simulate::markers::MarkerScene;
 using simulate::markers::MarkerSituation;
-using Seen = std::vector<Observation<2>>;
-using Named = std::vector<std::vector<evaluate::NamedPlace>>;
+using Detected = std::vector<Observation<2>>;
+using Named = std::vector<std::vector<evaluate::NamedPosition>>;
 
 struct SceneKind {
   std::string name;
@@ -41,26 +41,26 @@ std::vector<SceneKind> scene_kinds(const std::string& only) {
 }
 
 bool any_lost(const MarkerScene& scene, const Named& named) {
-  std::vector<std::vector<evaluate::NamedPlace>> truth(scene.frames.size());
+  std::vector<std::vector<evaluate::NamedPosition>> truth(scene.frames.size());
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     for (const auto& marker : scene.frames[i]) {
       if (marker.visible) truth[i].push_back({std::to_string(marker.marker), marker.position});
     }
   }
-  const auto fates = evaluate::judge_labels(truth, named, 1.5 * scene.options.radius_px);
+  const auto fates = evaluate::evaluate_labels(truth, named, 1.5 * scene.options.radius_px);
   return std::any_of(fates.begin(), fates.end(), [](const evaluate::LabelFate& fate) { return fate.lost(); });
 }
 
 /// The true places, off by a tenth of a pixel, and the false lights.
-std::vector<Seen> exact_points(const MarkerScene& scene) {
+std::vector<Detected> exact_points(const MarkerScene& scene) {
   constexpr double kOff = 0.1;  // px
   simulate::Random random(scene.seed);
-  std::vector<Seen> frames(scene.frames.size());
-  const auto add = [&](Seen& seen, const Vector<2>& place) {
+  std::vector<Detected> frames(scene.frames.size());
+  const auto add = [&](Detected& detected, const Vector<2>& location) {
     Observation<2> point;
-    point.value = place + kOff * Vector<2>(random.gaussian(), random.gaussian());
+    point.value = location + kOff * Vector<2>(random.gaussian(), random.gaussian());
     point.covariance = kOff * kOff * Matrix<2>::Identity();
-    seen.push_back(point);
+    detected.push_back(point);
   };
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     for (const auto& marker : scene.frames[i]) {
@@ -71,33 +71,34 @@ std::vector<Seen> exact_points(const MarkerScene& scene) {
   return frames;
 }
 
-bool peer_loses(const MarkerScene& scene, const std::vector<Seen>& frames) {
+bool peer_loses(const MarkerScene& scene, const std::vector<Detected>& frames) {
   PlainTracker tracker;
   Named named;
-  for (const Seen& seen : frames) named.push_back(tracker.step(seen));
+  for (const Detected& detected : frames) named.push_back(tracker.step(detected));
   return any_lost(scene, named);
 }
 
-/// Tracks `frames`, or with no frames the pictures themselves through the detector.
-bool marey_loses(const MarkerScene& scene, const std::vector<Seen>& frames) {
+/// Tracks `frames`, or with no frames the images themselves through the detector.
+bool marey_loses(const MarkerScene& scene, const std::vector<Detected>& frames) {
   const auto tracker = track::roster::make_roster_tracker<2>({});
   detect::markers::MarkerDetector detector{detect::markers::MarkerOptions{}};
   Named named(scene.frames.size());
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     const Timestamp now = timestamp_from_seconds(static_cast<double>(i) / scene.options.rate_hz);
-    Seen seen;
+    Detected detected;
     if (frames.empty()) {
       std::vector<Expected> expected;
       for (const Track<2>& track : tracker->expected(now)) expected.push_back({*track.box});
       const int index = static_cast<int>(i);
-      const Frame frame{CameraId{}, index, now, Picture(render_frame(scene, index))};
-      for (const Detection& detection : detector.detect(frame, expected).detections) seen.push_back(observation_of(detection));
+      const Frame frame{CameraId{}, index, now, Image(render_frame(scene, index))};
+      for (const Detection& detection : detector.detect(frame, expected).detections) detected.push_back(observation_of(detection));
     } else {
-      seen = frames[i];
+      detected = frames[i];
     }
-    for (const Track<2>& track : tracker->step(now, seen)) {
+    for (const Track<2>& track : tracker->step(now, detected)) {
       if (track.confirmed)
-        named[i].push_back({std::to_string(number(track.id)), track.observation ? seen[*track.observation].value : track.position});
+        named[i].push_back(
+            {std::to_string(number(track.id)), track.observation ? detected[*track.observation].value : track.position});
     }
   }
   return any_lost(scene, named);
@@ -107,8 +108,8 @@ std::array<bool, 4> losses(const SceneKind& kind, std::uint64_t seed) {
   simulate::markers::MarkerSceneOptions options;
   options.clutter = kind.clutter;
   const MarkerScene scene = simulate_markers(kind.situation, seed, options);
-  const std::vector<Seen> exact = exact_points(scene);
-  std::vector<Seen> plain;
+  const std::vector<Detected> exact = exact_points(scene);
+  std::vector<Detected> plain;
   for (int i = 0; i < static_cast<int>(scene.frames.size()); ++i) plain.push_back(plain_detections(render_frame(scene, i)));
   return {marey_loses(scene, {}), marey_loses(scene, exact), peer_loses(scene, plain), peer_loses(scene, exact)};
 }
@@ -138,8 +139,8 @@ std::vector<MarkerNamesRow> run_marker_names(const MarkerNamesOptions& options) 
 }
 
 std::string to_text(const std::vector<MarkerNamesRow>& rows) {
-  std::string text = fmt::format("{:30} {:>7} {:>15} {:>13}   peer: {:>15} {:>13}\n", "names lost", "videos", "from pictures",
-                                 "exact points", "from pictures", "exact points");
+  std::string text = fmt::format("{:30} {:>7} {:>15} {:>13}   peer: {:>15} {:>13}\n", "names lost", "videos", "from images",
+                                 "exact points", "from images", "exact points");
   for (const MarkerNamesRow& row : rows) {
     text += fmt::format("{:30} {:7} {:15} {:13}         {:15} {:13}\n", row.scene, row.videos, row.lost, row.lost_exact,
                         row.peer_lost, row.peer_lost_exact);

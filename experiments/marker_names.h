@@ -7,7 +7,7 @@
 
 namespace marey::experiments {
 
-/// One scene's row: videos in which a marker loses its name, by the rule of judge_labels.
+/// One scene's row: videos in which a marker loses its name, by the rule of evaluate_labels.
 struct MarkerNamesRow {
   std::string scene;
   int videos = 0;
@@ -24,7 +24,7 @@ struct MarkerNamesOptions {
   std::function<void(int done, int all)> progress;
 };
 
-/// Names of markers where they are hard to keep: behind bars, from one side and from two, and among false lights. Pictures are
+/// Names of markers where they are hard to keep: behind bars, from one side and from two, and among false lights. Images are
 /// rendered and seen as they are, without a codec.
 std::vector<MarkerNamesRow> run_marker_names(const MarkerNamesOptions& options);
 

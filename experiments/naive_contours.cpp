@@ -29,26 +29,26 @@ class NaiveMethod final : public OutlineMethod {
   void prime(std::span<const Frame> samples) override {
     tracked_->prime(samples);
     cv::Mat mask;
-    for (const Frame& sample : samples) background_->apply(sample.picture.bgr(), mask, kLearnOnce);
+    for (const Frame& sample : samples) background_->apply(sample.image.bgr(), mask, kLearnOnce);
   }
 
-  std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
-                                  std::span<const simulate::people::TrueFigure> truth) override {
+  std::vector<TrackedShape> step(const Frame& frame, std::span<const Detection> detections,
+                                 std::span<const simulate::people::TrueFigure> truth) override {
     cv::Mat mask;
-    background_->apply(frame.picture.bgr(), mask, kLearnOnce);
+    background_->apply(frame.image.bgr(), mask, kLearnOnce);
     mask = mask > kShadow;
     const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
     cv::morphologyEx(mask, mask, cv::MORPH_OPEN, kernel);
     cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, kernel);
-    std::vector<FollowedShape> shapes;
-    for (const FollowedShape& tracked : tracked_->step(frame, detections, truth)) {
+    std::vector<TrackedShape> shapes;
+    for (const TrackedShape& tracked : tracked_->step(frame, detections, truth)) {
       if (auto shape = cut(tracked, mask)) shapes.push_back(std::move(*shape));
     }
     return shapes;
   }
 
  private:
-  static std::optional<FollowedShape> cut(const FollowedShape& tracked, const cv::Mat& mask) {
+  static std::optional<TrackedShape> cut(const TrackedShape& tracked, const cv::Mat& mask) {
     Vector<2> low = tracked.polygon[0], high = tracked.polygon[0];
     for (const Vector<2>& corner : tracked.polygon) {
       low = low.cwiseMin(corner);
@@ -63,7 +63,7 @@ class NaiveMethod final : public OutlineMethod {
     const auto largest =
         std::max_element(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.area < b.area; });
     if (largest == regions.end()) return std::nullopt;
-    FollowedShape shape;
+    TrackedShape shape;
     shape.name = tracked.name;
     shape.polygon = detect::outline_of(largest->runs);
     for (Vector<2>& corner : shape.polygon) corner += Vector<2>(box.x, box.y);

@@ -48,7 +48,7 @@ Frame frame_with_disc(int index, double x) {
   Frame frame;
   frame.index = index;
   frame.time = timestamp_from_seconds(index / kRate);
-  frame.picture = Picture(image);
+  frame.image = Image(image);
   return frame;
 }
 
@@ -73,8 +73,8 @@ TEST(BoxFilter, FollowsABoxAndFreezesWhileItJumps) {
   BoxFilter filter({}, box(0), box(0).centre());
   for (int k = 1; k < 40; ++k) {
     const bool merged = k >= 20 && k < 25;
-    const Box seen = merged ? Box{box(k).left, box(k).top, 40, 33} : box(k);
-    filter.step(seen, seen.centre());
+    const Box detected = merged ? Box{box(k).left, box(k).top, 40, 33} : box(k);
+    filter.step(detected, detected.centre());
     EXPECT_EQ(filter.frozen(), merged) << k;
     if (k < 10) continue;
     EXPECT_GT(geometry::iou(filter.box(), box(k)), 0.85) << k;

@@ -55,13 +55,13 @@ std::vector<Vector<2>> corners(const Box& box) {
   return {{left, top}, {left + box.width, top}, {left + box.width, top + box.height}, {left, top + box.height}};
 }
 
-/// Marey's detector and tracker, with or without OutlineFollower.
+/// Marey's detector and tracker, with or without ContourTracker.
 class TrackedMethod final : public OutlineMethod {
  public:
   explicit TrackedMethod(const std::optional<track::contour::OutlineOptions>& options)
       : detector_(detect::background::make_background()) {
     track::TrackerOptions tracker;
-    tracker.steady_camera = true;
+    tracker.stabilised_camera = true;
     tracker.reidentify = true;  // nothing is joined afterwards
     tracker_ = track::make_tracker(tracker);
     if (options) outlines_.emplace(*options);
@@ -69,26 +69,26 @@ class TrackedMethod final : public OutlineMethod {
 
   void prime(std::span<const Frame> samples) override { detector_.prime(samples); }
 
-  std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> /*detections*/,
-                                  std::span<const simulate::people::TrueFigure> /*truth*/) override {
+  std::vector<TrackedShape> step(const Frame& frame, std::span<const Detection> /*detections*/,
+                                 std::span<const simulate::people::TrueFigure> /*truth*/) override {
     std::vector<Expected> expected;
     for (const Track<2>& track : tracker_->expected(frame.time)) {
       if (track.box) expected.push_back({*track.box});
     }
-    detect::Detections seen = detector_.detect(frame, expected);
-    std::vector<Observation<2>> observations = observations_of(seen.detections);
+    detect::Detections detected = detector_.detect(frame, expected);
+    std::vector<Observation<2>> observations = observations_of(detected.detections);
     if (outlines_) {
       const Stopwatch watch(seconds_);
-      const auto hints = outlines_->observe(frame, seen.foreground, seen.detections);
+      const auto hints = outlines_->observe(frame, detected.foreground, detected.detections);
       observations.insert(observations.end(), hints.begin(), hints.end());
     }
     std::span<const Track<2>> tracks = tracker_->step(frame.time, observations);
     if (outlines_) {
       const Stopwatch watch(seconds_);
-      tracks = outlines_->attach(tracks, seen.detections);
+      tracks = outlines_->attach(tracks, detected.detections);
     }
-    detections_ = std::move(seen.detections);
-    std::vector<FollowedShape> shapes;
+    detections_ = std::move(detected.detections);
+    std::vector<TrackedShape> shapes;
     for (const Track<2>& track : tracks) {
       if (auto shape = track.confirmed ? shape_of(track) : std::nullopt) shapes.push_back(std::move(*shape));
     }
@@ -98,12 +98,12 @@ class TrackedMethod final : public OutlineMethod {
   std::span<const Detection> detections() const override { return detections_; }
 
  private:
-  std::optional<FollowedShape> shape_of(const Track<2>& track) {
+  std::optional<TrackedShape> shape_of(const Track<2>& track) {
     const std::string name = std::to_string(number(track.id));
     if (track.outline) {
       ++targets_;
       const Outline& outline = *track.outline;
-      FollowedShape shape{name, outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon(), {}};
+      TrackedShape shape{name, outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon(), {}};
       for (const TrackId id : outline.behind) shape.behind.push_back(std::to_string(number(id)));
       shape.is_curve = true;
       if (track.box) shape.box_width = track.box->width, shape.box_height = track.box->height;
@@ -112,21 +112,21 @@ class TrackedMethod final : public OutlineMethod {
     const bool detected = track.observation && *track.observation < std::ssize(detections_);
     if (detected && !detections_[static_cast<std::size_t>(*track.observation)].outline.empty()) {
       const auto& polygon = detections_[static_cast<std::size_t>(*track.observation)].outline;
-      return FollowedShape{name, geometry::polygon_centroid(polygon).value_or(track.position), polygon, {}};
+      return TrackedShape{name, geometry::polygon_centroid(polygon).value_or(track.position), polygon, {}};
     }
     if (!track.box) return std::nullopt;
-    return FollowedShape{name, track.box->centre(), corners(*track.box), {}};
+    return TrackedShape{name, track.box->centre(), corners(*track.box), {}};
   }
 
   detect::people::PeopleDetector detector_;
   std::unique_ptr<track::Tracker<2>> tracker_;
-  std::optional<track::contour::OutlineFollower> outlines_;
+  std::optional<track::contour::ContourTracker> outlines_;
   std::vector<Detection> detections_;
 };
 
 /// The detection on a person who can be seen wholly, where there is one.
 const Detection* detection_of(const simulate::people::TrueFigure& person, std::span<const Detection> detections) {
-  if (person.visible_share < 0.9) return nullptr;
+  if (person.visible_fraction < 0.9) return nullptr;
   const Box box = person.visible.box();
   for (const Detection& detection : detections) {
     if (!detection.group && iou(box, detection.box) > 0.5 && detection.outline.size() > 3) return &detection;
@@ -138,25 +138,25 @@ const Detection* detection_of(const simulate::people::TrueFigure& person, std::s
 template <typename Filter>
 class LoneFilters : public OutlineMethod {
  public:
-  std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
-                                  std::span<const simulate::people::TrueFigure> truth) override {
+  std::vector<TrackedShape> step(const Frame& frame, std::span<const Detection> detections,
+                                 std::span<const simulate::people::TrueFigure> truth) override {
     {
       const Stopwatch watch(seconds_);
       for (auto& [id, filter] : filters_) advance(filter, frame, detections);
     }
     targets_ += std::ssize(filters_);
-    std::map<int, Detection> seen;
+    std::map<int, Detection> detected;
     for (const simulate::people::TrueFigure& person : truth) {
       if (filters_.contains(person.id)) continue;
       const Detection* now = detection_of(person, detections);
       if (now == nullptr) continue;
       if (const auto before = before_.find(person.id); before != before_.end()) begin(person.id, before->second, *now);
-      seen.emplace(person.id, *now);
+      detected.emplace(person.id, *now);
     }
-    before_ = std::move(seen);
-    std::vector<FollowedShape> shapes;
+    before_ = std::move(detected);
+    std::vector<TrackedShape> shapes;
     for (const auto& [id, filter] : filters_) {
-      FollowedShape shape = shape_of(filter);
+      TrackedShape shape = shape_of(filter);
       shape.name = std::to_string(id);
       const auto sane = [](const Vector<2>& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < 1e6; };
       if (std::all_of(shape.polygon.begin(), shape.polygon.end(), sane)) shapes.push_back(std::move(shape));
@@ -167,7 +167,7 @@ class LoneFilters : public OutlineMethod {
  protected:
   virtual void advance(Filter& filter, const Frame& frame, std::span<const Detection> detections) = 0;
   virtual Filter make(const Detection& before, const Detection& now) const = 0;
-  virtual FollowedShape shape_of(const Filter& filter) const = 0;
+  virtual TrackedShape shape_of(const Filter& filter) const = 0;
 
  private:
   void begin(int id, const Detection& before, const Detection& now) {
@@ -193,7 +193,7 @@ class PublishedMethod final : public LoneFilters<PublishedOutline> {
   PublishedOutline make(const Detection& before, const Detection& now) const override {
     return {options_, before.outline, now.outline};
   }
-  FollowedShape shape_of(const PublishedOutline& filter) const override {
+  TrackedShape shape_of(const PublishedOutline& filter) const override {
     const Outline& outline = filter.outline();
     return {"", outline.centre, geometry::ClosedSpline(outline.order, outline.control_points).polygon(), {}};
   }
@@ -220,7 +220,7 @@ class BoxMethod final : public LoneFilters<BoxFilter> {
     }
   }
   BoxFilter make(const Detection& /*before*/, const Detection& now) const override { return {{}, now.box, now.centre}; }
-  FollowedShape shape_of(const BoxFilter& filter) const override { return {"", filter.centre(), corners(filter.box()), {}}; }
+  TrackedShape shape_of(const BoxFilter& filter) const override { return {"", filter.centre(), corners(filter.box()), {}}; }
 };
 
 }  // namespace

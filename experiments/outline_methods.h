@@ -16,7 +16,7 @@
 namespace marey::experiments {
 
 /// Where a method says that a person is.
-struct FollowedShape {
+struct TrackedShape {
   std::string name;
   Vector<2> centre = Vector<2>::Zero();  ///< px
   std::vector<Vector<2>> polygon;        ///< px
@@ -30,18 +30,18 @@ class OutlineMethod {
  public:
   virtual ~OutlineMethod() = default;
 
-  /// Pictures of the scene from before the first frame: what a detector is primed with.
+  /// Images of the scene from before the first frame: what a detector is primed with.
   virtual void prime(std::span<const Frame> /*samples*/) {}
 
   /// What the method says of a frame. `detections` are those of the first method, for methods that have no detector of their own;
   /// `truth` serves to begin those that have no birth.
-  virtual std::vector<FollowedShape> step(const Frame& frame, std::span<const Detection> detections,
-                                          std::span<const simulate::people::TrueFigure> truth) = 0;
+  virtual std::vector<TrackedShape> step(const Frame& frame, std::span<const Detection> detections,
+                                         std::span<const simulate::people::TrueFigure> truth) = 0;
 
   /// Of the last frame, where the method has a detector of its own.
   virtual std::span<const Detection> detections() const { return {}; }
 
-  double seconds() const { return seconds_; }        ///< spent on following, detection and association left out
+  double seconds() const { return seconds_; }        ///< spent on following, detection and association omitted
   std::int64_t targets() const { return targets_; }  ///< times frames that it was spent on
 
  protected:

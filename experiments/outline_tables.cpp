@@ -25,7 +25,7 @@ std::string to_text(const OutlineExperiment& experiment) {
       const OutlineScore& score = row.scores[c];
       fmt::format_to(std::back_inserter(text), "{:<28}{:>8.3f}{:>8}{:>8}{:>8}{:>12}{:>8}{:>11.1f}%{:>10}{:>8}{:>12}\n", row.method,
                      score.iou, number(score.alone, 3), number(score.front, 3), number(score.behind, 3),
-                     number(score.centre_error, 2), score.lost, 100 * score.followed, number(score.jitter, 2), score.wild,
+                     number(score.centre_error, 2), score.lost, 100 * score.tracked, number(score.jitter, 2), score.wild,
                      number(score.target_us, 1));
     }
   }

@@ -20,15 +20,15 @@
 namespace marey::experiments {
 namespace {
 
-constexpr double kSeen = 0.5;          // share of a person that must be visible for him to count
-constexpr int kLeastFrames = 25;       // who can be seen for less does not count at all
+constexpr double kObserved = 0.5;      // share of a person that must be visible for him to count
+constexpr int kMinFrames = 25;         // who can be seen for less does not count at all
 constexpr double kReachHeights = 0.5;  // a name farther than this from the person is not on him
 constexpr std::array<const char*, 4> kMethods{"silhouettes", "boxes (Xu et al.)", "published (Arnaut & Costa)", "Marey"};
 
-/// Sums of one method over one or more films; what OutlineScore tells as means.
+/// Sums of one method over one or more videos; what OutlineScore tells as means.
 struct Tally {
   int people = 0, lost = 0;
-  std::int64_t frames = 0, followed = 0;
+  std::int64_t frames = 0, tracked = 0;
   double iou = 0;
   std::int64_t errors = 0, bends = 0;
   double error = 0, bend = 0;
@@ -42,7 +42,7 @@ struct Tally {
     people += other.people;
     lost += other.lost;
     frames += other.frames;
-    followed += other.followed;
+    tracked += other.tracked;
     iou += other.iou;
     errors += other.errors;
     error += other.error;
@@ -70,7 +70,7 @@ struct Tally {
     result.curves = curves;
     result.wild = wild;
     if (frames > 0) {
-      result.followed = static_cast<double>(followed) / static_cast<double>(frames);
+      result.tracked = static_cast<double>(tracked) / static_cast<double>(frames);
       result.iou = iou / static_cast<double>(frames);
     }
     if (errors > 0) result.centre_error = error / static_cast<double>(errors);
@@ -83,14 +83,14 @@ struct Tally {
 /// The second difference of a path, where three frames in a row are known.
 class Bends {
  public:
-  void add(int frame, const Vector<2>& place, Tally& tally) {
+  void add(int frame, const Vector<2>& location, Tally& tally) {
     if (frame == last_ + 1 && run_ >= 2) {
-      tally.bend += (place - 2 * path_[1] + path_[0]).squaredNorm();
+      tally.bend += (location - 2 * path_[1] + path_[0]).squaredNorm();
       ++tally.bends;
     }
     run_ = frame == last_ + 1 ? run_ + 1 : 1;
     last_ = frame;
-    path_ = {path_[1], place};
+    path_ = {path_[1], location};
   }
 
  private:
@@ -99,13 +99,13 @@ class Bends {
 };
 
 /// Crosses itself, or is more than twice as wide or 1.6 times as high as its target.
-bool is_wild(const FollowedShape& shape) {
-  Vector<2> least = shape.polygon[0], most = shape.polygon[0];
+bool is_wild(const TrackedShape& shape) {
+  Vector<2> minimum = shape.polygon[0], maximum = shape.polygon[0];
   for (const Vector<2>& corner : shape.polygon) {
-    least = least.cwiseMin(corner);
-    most = most.cwiseMax(corner);
+    minimum = minimum.cwiseMin(corner);
+    maximum = maximum.cwiseMax(corner);
   }
-  const Vector<2> size = most - least;
+  const Vector<2> size = maximum - minimum;
   if (shape.box_width > 0 && (size.x() > 2 * shape.box_width || size.y() > 1.6 * shape.box_height)) return true;
   const auto side = [](const Vector<2>& a, const Vector<2>& b, const Vector<2>& p) {
     return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
@@ -122,27 +122,27 @@ bool is_wild(const FollowedShape& shape) {
   return false;
 }
 
-bool lies_within(const simulate::people::Silhouette& silhouette, cv::Size picture) {
-  return (silhouette.pixels() & cv::Rect({0, 0}, picture)) == silhouette.pixels();
+bool lies_within(const simulate::people::Silhouette& silhouette, cv::Size image) {
+  return (silhouette.pixels() & cv::Rect({0, 0}, image)) == silhouette.pixels();
 }
 
-/// Judges one method on one film.
-class Judge {
+/// Evaluates one method on one video.
+class Assessor {
  public:
-  Judge(cv::Size picture, double reach) : picture_(picture), reach_(reach) {}
+  Assessor(cv::Size image, double reach) : image_(image), reach_(reach) {}
 
-  void see(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const FollowedShape> shapes) {
+  void observe_frame(int frame, std::span<const simulate::people::TrueFigure> truth, std::span<const TrackedShape> shapes) {
     auto& true_places = truth_.emplace_back();
-    auto& places = named_.emplace_back();
-    for (const FollowedShape& shape : shapes) {
-      places.push_back({shape.name, shape.centre});
+    auto& locations = named_.emplace_back();
+    for (const TrackedShape& shape : shapes) {
+      locations.push_back({shape.name, shape.centre});
       if (!shape.is_curve) continue;
       ++tally_.curves;
       tally_.wild += is_wild(shape) ? 1 : 0;
     }
     for (const simulate::people::TrueFigure& person : truth) {
-      if (person.visible_share < kSeen) continue;
-      ++seen_[person.id];
+      if (person.visible_fraction < kObserved) continue;
+      ++detected_[person.id];
       const Vector<2> centre = person.whole.centre();
       Target& target = targets_[person.id];
       if (target.name.empty()) target.name = name_on(centre, shapes);
@@ -155,9 +155,9 @@ class Judge {
 
   Tally finish() {
     std::map<std::string, bool> lost;
-    for (const evaluate::LabelFate& fate : evaluate::judge_labels(truth_, named_, reach_)) lost[fate.marker] = fate.lost();
-    for (const auto& [id, frames] : seen_) {
-      if (frames < kLeastFrames) continue;
+    for (const evaluate::LabelFate& fate : evaluate::evaluate_labels(truth_, named_, reach_)) lost[fate.marker] = fate.lost();
+    for (const auto& [id, frames] : detected_) {
+      if (frames < kMinFrames) continue;
       ++tally_.people;
       const auto fate = lost.find(std::to_string(id));
       tally_.lost += fate == lost.end() || fate->second ? 1 : 0;
@@ -171,10 +171,10 @@ class Judge {
     Bends bends;
   };
 
-  std::string name_on(const Vector<2>& centre, std::span<const FollowedShape> shapes) const {
+  std::string name_on(const Vector<2>& centre, std::span<const TrackedShape> shapes) const {
     std::string name;
     double reach = reach_;
-    for (const FollowedShape& shape : shapes) {
+    for (const TrackedShape& shape : shapes) {
       const double distance = (shape.centre - centre).norm();
       if (distance > reach) continue;
       reach = distance;
@@ -193,67 +193,67 @@ class Judge {
   }
 
   void score_visible(const simulate::people::TrueFigure& person, std::span<const simulate::people::TrueFigure> truth,
-                     const Target& target, std::span<const FollowedShape> shapes) {
-    if (!lies_within(person.whole, picture_)) return;
-    double most = 0;
+                     const Target& target, std::span<const TrackedShape> shapes) {
+    if (!lies_within(person.whole, image_)) return;
+    double maximum = 0;
     bool nearer = false;
     for (const simulate::people::TrueFigure& other : truth) {
       if (other.id == person.id) continue;
       const double part = shared_part(person.whole, other.whole);
-      if (part <= most) continue;
-      most = part;
+      if (part <= maximum) continue;
+      maximum = part;
       nearer = person.foot.y() > other.foot.y();
     }
-    if (most > 0 && (most < 0.2 || most > 0.7)) return;
-    const std::size_t kind = most <= 0 ? 0 : nearer ? 1 : 2;
-    if (kind == 0 && person.visible_share < 1) return;
+    if (maximum > 0 && (maximum < 0.2 || maximum > 0.7)) return;
+    const std::size_t kind = maximum <= 0 ? 0 : nearer ? 1 : 2;
+    if (kind == 0 && person.visible_fraction < 1) return;
     ++tally_.visibles[kind];
     const auto own = std::find_if(shapes.begin(), shapes.end(), [&](const auto& shape) { return shape.name == target.name; });
     if (own == shapes.end()) return;
     std::vector<std::vector<Vector<2>>> hiding;
-    for (const FollowedShape& shape : shapes) {
+    for (const TrackedShape& shape : shapes) {
       if (std::find(own->behind.begin(), own->behind.end(), shape.name) != own->behind.end()) hiding.push_back(shape.polygon);
     }
     const evaluate::SilhouetteMask mask{person.visible.mask, person.visible.lattice.tl(), person.visible.samples};
-    tally_.visible[kind] += evaluate::visible_overlap(own->polygon, hiding, mask, picture_).iou();
+    tally_.visible[kind] += evaluate::visible_overlap(own->polygon, hiding, mask, image_).iou();
   }
 
   void score(int frame, const simulate::people::TrueFigure& person, const Vector<2>& centre, Target& target,
-             std::span<const FollowedShape> shapes) {
+             std::span<const TrackedShape> shapes) {
     ++tally_.frames;
     const auto own = std::find_if(shapes.begin(), shapes.end(), [&](const auto& shape) { return shape.name == target.name; });
     if (own == shapes.end()) return;
     const evaluate::SilhouetteMask mask{person.whole.mask, person.whole.lattice.tl(), person.whole.samples};
-    const double share = evaluate::overlap(own->polygon, mask, &picture_).iou();
-    tally_.iou += share;
-    if (share <= 0) return;
-    ++tally_.followed;
-    if (!lies_within(person.whole, picture_)) return;
+    const double fraction = evaluate::overlap(own->polygon, mask, &image_).iou();
+    tally_.iou += fraction;
+    if (fraction <= 0) return;
+    ++tally_.tracked;
+    if (!lies_within(person.whole, image_)) return;
     tally_.error += (own->centre - centre).norm();
     ++tally_.errors;
     target.bends.add(frame, own->centre, tally_);
   }
 
-  cv::Size picture_;
+  cv::Size image_;
   double reach_;
-  std::map<int, int> seen_;
+  std::map<int, int> detected_;
   std::map<int, Target> targets_;
-  std::vector<std::vector<evaluate::NamedPlace>> truth_, named_;
+  std::vector<std::vector<evaluate::NamedPosition>> truth_, named_;
   Tally tally_;
 };
 
 std::vector<OutlineCase> cases(int videos) {
   const int few = std::max(1, videos / 10), half = std::max(1, videos * 2 / 5);
   using S = simulate::people::PeopleSituation;
-  const auto steady = simulate::people::LightChange::steady;
-  return {{.name = "apart, 25 px", .situation = S::apart, .height_px = 25, .light = steady, .videos = few},
-          {.name = "apart, 60 px", .situation = S::apart, .height_px = 60, .light = steady, .videos = few},
-          {.name = "partly hidden, 25 px", .situation = S::crossing, .height_px = 25, .light = steady, .videos = videos},
-          {.name = "partly hidden, 60 px", .situation = S::crossing, .height_px = 60, .light = steady, .videos = videos},
-          {.name = "behind a board, 25 px", .situation = S::post, .height_px = 25, .light = steady, .videos = videos},
-          {.name = "behind a board, 60 px", .situation = S::post, .height_px = 60, .light = steady, .videos = videos},
-          {.name = "abrupt changes, 60 px", .situation = S::abrupt, .height_px = 60, .light = steady, .videos = few},
-          {.name = "border, 60 px", .situation = S::border, .height_px = 60, .light = steady, .videos = few},
+  const auto stabilise = simulate::people::LightChange::stabilise;
+  return {{.name = "apart, 25 px", .situation = S::apart, .height_px = 25, .light = stabilise, .videos = few},
+          {.name = "apart, 60 px", .situation = S::apart, .height_px = 60, .light = stabilise, .videos = few},
+          {.name = "partly hidden, 25 px", .situation = S::crossing, .height_px = 25, .light = stabilise, .videos = videos},
+          {.name = "partly hidden, 60 px", .situation = S::crossing, .height_px = 60, .light = stabilise, .videos = videos},
+          {.name = "behind a board, 25 px", .situation = S::post, .height_px = 25, .light = stabilise, .videos = videos},
+          {.name = "behind a board, 60 px", .situation = S::post, .height_px = 60, .light = stabilise, .videos = videos},
+          {.name = "abrupt changes, 60 px", .situation = S::abrupt, .height_px = 60, .light = stabilise, .videos = few},
+          {.name = "border, 60 px", .situation = S::border, .height_px = 60, .light = stabilise, .videos = few},
           {.name = "gradual light, 60 px",
            .situation = S::apart,
            .height_px = 60,
@@ -264,54 +264,54 @@ std::vector<OutlineCase> cases(int videos) {
            .height_px = 60,
            .light = simulate::people::LightChange::sudden,
            .videos = few},
-          {.name = "filmed, apart, 60 px", .situation = S::apart, .height_px = 60, .filmed = true, .videos = few},
-          {.name = "filmed, apart, 150 px", .situation = S::apart, .height_px = 150, .filmed = true, .videos = few},
-          {.name = "filmed, overlapping, 60 px", .situation = S::overlap, .height_px = 60, .filmed = true, .videos = half},
-          {.name = "filmed, overlapping, same shirts, 60 px",
+          {.name = "recorded, apart, 60 px", .situation = S::apart, .height_px = 60, .recorded = true, .videos = few},
+          {.name = "recorded, apart, 150 px", .situation = S::apart, .height_px = 150, .recorded = true, .videos = few},
+          {.name = "recorded, overlapping, 60 px", .situation = S::overlap, .height_px = 60, .recorded = true, .videos = half},
+          {.name = "recorded, overlapping, same shirts, 60 px",
            .situation = S::overlap,
            .height_px = 60,
-           .filmed = true,
+           .recorded = true,
            .same_shirts = true,
            .videos = half},
-          {.name = "filmed, overlapping, 150 px", .situation = S::overlap, .height_px = 150, .filmed = true, .videos = few}};
+          {.name = "recorded, overlapping, 150 px", .situation = S::overlap, .height_px = 150, .recorded = true, .videos = few}};
 }
 
-Frame frame_of(const simulate::people::PeopleFilm& film, int index, const Picture& picture) {
+Frame frame_of(const simulate::people::PeopleVideo& video, int index, const Image& image) {
   Frame frame;
   frame.index = index;
-  frame.time = timestamp_from_seconds(index / film.options().rate_hz);
-  frame.picture = picture;
+  frame.time = timestamp_from_seconds(index / video.options().rate_hz);
+  frame.image = image;
   return frame;
 }
 
-/// What came of one film: every method's tally, and the truth's.
-struct FilmResult {
+/// What results from one film: every method's tally, and the truth's.
+struct VideoResult {
   std::array<Tally, kMethods.size()> methods;
   Tally truth;
 };
 
-FilmResult follow(const OutlineCase& what, std::uint64_t seed, const OutlineExperimentOptions& options) {
-  simulate::people::PeopleFilmOptions scene;
+VideoResult run_tracker(const OutlineCase& what, std::uint64_t seed, const OutlineExperimentOptions& options) {
+  simulate::people::PeopleVideoOptions scene;
   scene.height_px = what.height_px;
   scene.light = what.light;
   scene.same_shirts = what.same_shirts;
-  if (what.filmed) scene.look = simulate::people::CameraLook::filmed();
-  const simulate::people::PeopleFilm film(what.situation, seed, scene);
+  if (what.recorded) scene.degradation = simulate::people::ImageDegradation::recorded();
+  const simulate::people::PeopleVideo video(what.situation, seed, scene);
   std::array<std::unique_ptr<OutlineMethod>, kMethods.size()> methods{
       silhouette_method(), box_method(), published_method(options.published), marey_method(options.outlines)};
   std::vector<Frame> samples;
-  for (int i = 0; i < simulate::people::PeopleFilm::kEarlier; ++i) samples.push_back(frame_of(film, i, film.render_earlier(i)));
+  for (int i = 0; i < simulate::people::PeopleVideo::kEarlier; ++i) samples.push_back(frame_of(video, i, video.render_earlier(i)));
   for (const auto& method : methods) method->prime(samples);
   samples.clear();
 
-  std::vector<Judge> judges(kMethods.size(), Judge(scene.size, kReachHeights * what.height_px));
+  std::vector<Assessor> judges(kMethods.size(), Assessor(scene.size, kReachHeights * what.height_px));
   std::map<int, Bends> true_paths;
-  FilmResult result;
-  for (int i = 0; i < film.frames(); ++i) {
-    const simulate::people::RenderedFrame rendered = film.render(i);
-    const Frame frame = frame_of(film, i, rendered.picture);
+  VideoResult result;
+  for (int i = 0; i < video.frames(); ++i) {
+    const simulate::people::RenderedFrame rendered = video.render(i);
+    const Frame frame = frame_of(video, i, rendered.image);
     for (std::size_t m = 0; m < methods.size(); ++m) {
-      judges[m].see(i, rendered.people, methods[m]->step(frame, methods.front()->detections(), rendered.people));
+      judges[m].observe_frame(i, rendered.people, methods[m]->step(frame, methods.front()->detections(), rendered.people));
     }
     for (const simulate::people::TrueFigure& person : rendered.people) {
       if (lies_within(person.whole, scene.size)) true_paths[person.id].add(i, person.whole.centre(), result.truth);
@@ -338,16 +338,16 @@ OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options
   for (const OutlineCase& what : experiment.cases) all += what.videos;
   std::mutex telling;
   for (OutlineCase& what : experiment.cases) {
-    // Films are independent; what came of each is put together in their order.
-    std::vector<FilmResult> results(static_cast<std::size_t>(what.videos));
+    // Videos are independent; what results from each is put together in their order.
+    std::vector<VideoResult> results(static_cast<std::size_t>(what.videos));
     tbb::parallel_for(0, what.videos, [&](int v) {
-      results[static_cast<std::size_t>(v)] = follow(what, options.seed + static_cast<std::uint64_t>(v), options);
+      results[static_cast<std::size_t>(v)] = run_tracker(what, options.seed + static_cast<std::uint64_t>(v), options);
       const std::lock_guard lock(telling);
       ++done;
       hooks.advance({"films", done, all});
     });
-    FilmResult total;
-    for (const FilmResult& result : results) {
+    VideoResult total;
+    for (const VideoResult& result : results) {
       for (std::size_t m = 0; m < kMethods.size(); ++m) total.methods[m].add(result.methods[m]);
       total.truth.add(result.truth);
     }

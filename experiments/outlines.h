@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "marey/core/hooks.h"
-#include "marey/simulate/people/people_film.h"
+#include "marey/simulate/people/people_video.h"
 #include "marey/track/contour/outline_follower.h"
 
 #include "experiments/published_outline.h"
@@ -17,10 +17,10 @@ namespace marey::experiments {
 /// which the method first has an outline on him; an outline that is missing then overlaps nothing.
 struct OutlineScore {
   int people = 0;
-  int lost = 0;                        ///< whose name was lost: see judge_labels; or never given
+  int lost = 0;                        ///< whose name was lost: see evaluate_labels; or never given
   std::int64_t frames = 0;             ///< people times the frames that count
-  double followed = 0;                 ///< share of these with an outline of the right name on the person
-  double iou = 0;                      ///< mean, with the true silhouette, hidden parts included, within the picture
+  double tracked = 0;                  ///< share of these with an outline of the right name on the person
+  double iou = 0;                      ///< mean, with the true silhouette, hidden parts included, within the image
   std::optional<double> centre_error;  ///< px, mean distance to the true silhouette's centre, where the outline is on the person
   std::optional<double> jitter;        ///< px, RMS of the second difference of the centre from frame to frame
   /// Mean IoU of what is visible: of people alone; of the nearer and the farther of two who overlap by 20 to 70 %.
@@ -34,9 +34,9 @@ struct OutlineCase {
   std::string name;
   simulate::people::PeopleSituation situation{};
   double height_px = 60;
-  bool filmed = false;       ///< as a camera with sharpening and a codec gives it
+  bool recorded = false;     ///< as a camera with sharpening and a codec gives it
   bool same_shirts = false;  ///
-  simulate::people::LightChange light = simulate::people::LightChange::steady;
+  simulate::people::LightChange light = simulate::people::LightChange::stabilise;
   int videos = 1;
   int people = 0;
   std::optional<double> true_jitter = {};  ///< px, as in OutlineScore, of the true silhouettes' centres
@@ -60,13 +60,13 @@ struct OutlineExperimentOptions {
   PublishedOptions published;
 };
 
-/// The same films, seen once by Marey's detector, followed in four ways with settings that are the same for all cases:
+/// The same videos, seen once by Marey's detector, followed in four ways with settings that are the same for all cases:
 ///   silhouettes  the detector's own outlines under the tracker's names: what there is without any outline filter
 ///   boxes        the box filter of Xu et al., fed with the nearest detection
 ///   published    the coupled filters of Arnaut & Costa, after De Bem
-///   Marey        the tracker with OutlineFollower
+///   Marey        the tracker with ContourTracker
 /// Boxes and published filters have no birth of their own: each begins with the first two detections in a row that are on its
-/// person, and is then alone. Everybody knows the past alone; the detector has seen the scene before,
+/// person, and is then alone. Every person knows the past alone; the detector has seen the scene before,
 /// with other people in it, as one that has run for a while.
 OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options, const Hooks& hooks = {});
 

@@ -1,4 +1,4 @@
-// What anybody would write first, to compare with: pixels above half of the picture's brightest are markers, their centroids are
+// What any person would write first, to compare with: pixels above half of the image's brightest are markers, their centroids are
 // followed by constant-velocity Kalman filters that never stop coasting, and the Hungarian method pairs both.
 #pragma once
 
@@ -14,13 +14,13 @@
 namespace marey::experiments {
 
 /// Centroids of the connected components above half of the brightest pixel, of at least 2 px. `picture`: CV_8UC1.
-std::vector<Observation<2>> plain_detections(const cv::Mat& picture);
+std::vector<Observation<2>> plain_detections(const cv::Mat& image);
 
 /// Follows the points of its first frame, and no others.
 class PlainTracker {
  public:
   /// The places of all targets after this frame's points, 1/30 s after the last.
-  std::vector<evaluate::NamedPlace> step(std::span<const Observation<2>> seen);
+  std::vector<evaluate::NamedPosition> step(std::span<const Observation<2>> detected);
 
  private:
   struct Target {

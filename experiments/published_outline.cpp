@@ -6,7 +6,7 @@
 //   measurement  along lines normal to the curve, evenly spread: the variation of light that parts the target from the ground;
 //                of the motion filter: the centre's shift, and d_k / d_{k−1} − 1, d from the centre to one control point
 // What the paper leaves open is in PublishedOptions. The change of light taken is the largest along the line; every line has one,
-// and every one is believed, so that a line that meets a neighbour pulls the outline there: Figure 6.
+// and every one is trusted, so that a line that meets a neighbour pulls the outline there: Figure 6.
 #include "experiments/published_outline.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kNoGate = 1e12;
 constexpr double kInitialDeviation = 1;  // px, of control points from a silhouette
-constexpr double kMostGrowth = 0.5;      // a frame: beyond it the outline is lost, and would only overflow
+constexpr double kMaxGrowth = 0.5;       // a frame: beyond it the outline is lost, and would only overflow
 
 geometry::ClosedSpline fitted(std::span<const Vector<2>> polygon, const PublishedOptions& options) {
   if (options.order < 2 || options.order > geometry::SplineWeights::max_order ||
@@ -32,7 +32,7 @@ geometry::ClosedSpline fitted(std::span<const Vector<2>> polygon, const Publishe
   }
   if (options.lines < 1) throw Error("{} measurement lines an outline; give 1 or more", options.lines);
   auto spline =
-      geometry::fit_spline(polygon, {.order = options.order, .least = options.control_points, .most = options.control_points});
+      geometry::fit_spline(polygon, {.order = options.order, .minimum = options.control_points, .maximum = options.control_points});
   if (!spline) throw Error("a silhouette of {} corners is too small for an outline", polygon.size());
   return std::move(*spline);
 }
@@ -52,14 +52,14 @@ double light(const cv::Mat& luma, const Vector<2>& at) {
 
 PublishedOutline::PublishedOutline(const PublishedOptions& options, std::span<const Vector<2>> before,
                                    std::span<const Vector<2>> now)
-    : options_(options), shape_(fitted(now, options), kInitialDeviation), places_(options.lines) {
+    : options_(options), shape_(fitted(now, options), kInitialDeviation), locations_(options.lines) {
   const geometry::ClosedSpline earlier = fitted(before, options);
   const geometry::ClosedSpline& spline = shape_.spline();
   centre_ = spline.centroid();
   velocity_ = centre_ - earlier.centroid();
   arm_ = (spline.control_points()[0] - centre_).norm();
   const double arm_before = (earlier.control_points()[0] - earlier.centroid()).norm();
-  growth_ = arm_before > 0 ? std::clamp(arm_ / arm_before - 1, -kMostGrowth, kMostGrowth) : 0;
+  growth_ = arm_before > 0 ? std::clamp(arm_ / arm_before - 1, -kMaxGrowth, kMaxGrowth) : 0;
   velocity_variance_ = 2 * kInitialDeviation * kInitialDeviation;
   growth_variance_ = options.scale_noise * options.scale_noise;
   report();
@@ -71,7 +71,7 @@ const Outline& PublishedOutline::step(const Frame& frame) {
   shape_.predict(velocity_, growth_, centre_, {.bend = options_.shape_noise});
   velocity_variance_ += options_.velocity_noise * options_.velocity_noise;
   growth_variance_ += options_.scale_noise * options_.scale_noise;
-  search(frame.picture.luma());
+  search(frame.image.luma());
   correct();
   report();
   return outline_;
@@ -79,13 +79,13 @@ const Outline& PublishedOutline::step(const Frame& frame) {
 
 void PublishedOutline::search(const cv::Mat& luma) {
   const geometry::ClosedSpline& spline = shape_.spline();
-  spline.evenly_spaced(places_);
+  spline.evenly_spaced(locations_);
   outline_.lines.clear();
   weights_.clear();
-  for (const double place : places_) {
-    const auto normal = spline.normal(place);
+  for (const double location : locations_) {
+    const auto normal = spline.normal(location);
     if (!normal) continue;
-    MeasurementLine line{.foot = spline.at(place), .normal = *normal, .reach = options_.reach};
+    MeasurementLine line{.foot = spline.at(location), .normal = *normal, .reach = options_.reach};
     double largest = 0;
     for (double offset = -options_.reach; offset <= options_.reach; offset += 0.5) {
       const double change =
@@ -97,7 +97,7 @@ void PublishedOutline::search(const cv::Mat& luma) {
     }
     line.variance = options_.measurement_noise * options_.measurement_noise;
     outline_.lines.push_back(line);
-    weights_.push_back(geometry::spline_weights(spline.order(), spline.count(), place));
+    weights_.push_back(geometry::spline_weights(spline.order(), spline.count(), location));
   }
 }
 
@@ -116,7 +116,7 @@ void PublishedOutline::correct() {
   if (arm_ > 1) {
     const double growth_noise = 2 * noise / (arm_ * arm_);
     const double Ks = growth_variance_ / (growth_variance_ + growth_noise);
-    growth_ = std::clamp(growth_ + Ks * (arm / arm_ - 1 - growth_), -kMostGrowth, kMostGrowth);
+    growth_ = std::clamp(growth_ + Ks * (arm / arm_ - 1 - growth_), -kMaxGrowth, kMaxGrowth);
     growth_variance_ *= 1 - Ks;
   }
   centre_ = centre;

@@ -25,14 +25,14 @@ struct PublishedOptions {
 };
 
 /// One target followed as Arnaut & Costa (after De Bem) publish it: two coupled Kalman filters, measurement lines searched for
-/// the strongest change of light, every line believed, no reasoning about occlusion. For comparison: OutlineFollower is Marey's.
+/// the strongest change of light, every line trusted, no reasoning about occlusion. For comparison: ContourTracker is Marey's.
 class PublishedOutline {
  public:
   /// Begins with the silhouettes (closed polygons along pixel edges) of two consecutive frames, `now` being the later. Throws
   /// Error where an option is out of its domain or no spline fits a silhouette.
   PublishedOutline(const PublishedOptions& options, std::span<const Vector<2>> before, std::span<const Vector<2>> now);
 
-  /// The next frame, which has a picture. In the outline it returns, velocities are px/s and rates 1/s by the frames' times, from
+  /// The next frame, which has an image. In the outline it returns, velocities are px/s and rates 1/s by the frames' times, from
   /// the second call on; before, a frame counts as a second.
   const Outline& step(const Frame& frame);
   const Outline& outline() const { return outline_; }
@@ -51,7 +51,7 @@ class PublishedOutline {
   Vector<2> centre_;
   double arm_;  // px, from the centre to the first control point
   std::vector<geometry::SplineWeights> weights_;
-  std::vector<double> places_;
+  std::vector<double> locations_;
   std::optional<Timestamp> time_;
   std::optional<double> frame_seconds_;
   Outline outline_;

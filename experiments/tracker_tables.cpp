@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
 #include "marey/draw/chart.h"
 #include "marey/draw/svg.h"
+#include "marey/files/whole_file.h"
 #include "marey/filter/filters.h"
 #include "marey/simulate/markers/marker_scene.h"
 
@@ -110,7 +110,7 @@ draw::LineChart time_chart(const TrackerExperiment& experiment) {
 }
 
 /// Like the paper's Figure 3: the way of a rapid zigzag, dashed; the marker; the alpha-beta filter's prediction and search area.
-std::string search_picture(std::uint64_t seed) {
+std::string search_image(std::uint64_t seed) {
   const simulate::markers::MarkerScene scene =
       simulate::markers::simulate_markers(simulate::markers::MarkerSituation::rapid_zigzag, seed);
   const filter::AlphaBetaOptions options;
@@ -118,11 +118,11 @@ std::string search_picture(std::uint64_t seed) {
   const std::size_t shown = scene.frames.size() / 2;
   std::vector<Vector<2>> path;
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
-    const Vector<2>& place = scene.frames[i][0].position;
-    path.push_back(place);
+    const Vector<2>& location = scene.frames[i][0].position;
+    path.push_back(location);
     if (i == 0 || i > shown) continue;
     filter.predict(1 / scene.options.rate_hz);
-    if (i < shown) filter.correct(place, Matrix<2>::Zero());
+    if (i < shown) filter.correct(location, Matrix<2>::Zero());
   }
   const Vector<2>& marker = scene.frames[shown][0].position;
   const Vector<2> predicted = filter.position();
@@ -177,7 +177,7 @@ std::vector<std::string> draw_experiment(const TrackerExperiment& experiment, co
     save(fmt::format("table_{}_error_{}.svg", motion + 2, kNames[motion]), draw::to_svg(error_chart(experiment, motion)));
   }
   save("tables_5_7_time.svg", draw::to_svg(time_chart(experiment)));
-  save("figure_3_search.svg", search_picture(experiment.seed));
+  save("figure_3_search.svg", search_image(experiment.seed));
   return names;
 }
 

@@ -72,34 +72,34 @@ std::vector<TrackerMethod> tracker_methods() {
 }
 
 /// What the detector finds in a video, frame by frame.
-struct SeenMarkers {
+struct ObservedMarkers {
   std::vector<Timestamp> times;
   std::vector<std::vector<Observation<2>>> frames;
 };
 
-/// Decodes a video and looks for markers in each frame. Throws Error where it cannot be read.
-SeenMarkers see_markers(const std::string& path) {
-  SeenMarkers seen;
+/// Decodes a video and searches for markers in each frame. Throws Error if it cannot be read.
+ObservedMarkers observe_markers(const std::string& path) {
+  ObservedMarkers detected;
   const std::unique_ptr<Source> source = source::open_video(path);
   detect::markers::MarkerDetector detector{detect::markers::MarkerOptions{}};
   while (const auto frame = source->next()) {
-    seen.times.push_back(frame->time);
-    auto& observations = seen.frames.emplace_back();
+    detected.times.push_back(frame->time);
+    auto& observations = detected.frames.emplace_back();
     for (const Detection& detection : detector.detect(*frame, {}).detections) observations.push_back(observation_of(detection));
   }
-  return seen;
+  return detected;
 }
 
 struct Video {
   simulate::markers::MarkerScene scene;
-  SeenMarkers seen;
+  ObservedMarkers detected;
 };
 
 Video make_video(simulate::markers::MarkerSituation situation, std::uint64_t seed,
                  const simulate::markers::MarkerSceneOptions& options, const std::string& path) {
   Video video{simulate::markers::simulate_markers(situation, seed, options), {}};
-  pipeline::corridor::film_markers(video.scene, path);
-  video.seen = see_markers(path);
+  pipeline::corridor::video_markers(video.scene, path);
+  video.detected = observe_markers(path);
   return video;
 }
 
@@ -110,31 +110,32 @@ struct TrackOutcome {
 };
 
 TrackOutcome track(const Video& video, track::Tracker<2>& tracker) {
-  std::vector<std::vector<evaluate::NamedPlace>> truth(video.seen.frames.size()), named(video.seen.frames.size());
+  std::vector<std::vector<evaluate::NamedPosition>> truth(video.detected.frames.size()), named(video.detected.frames.size());
   TrackOutcome outcome;
-  for (std::size_t i = 0; i < video.seen.frames.size(); ++i) {
+  for (std::size_t i = 0; i < video.detected.frames.size(); ++i) {
     for (const simulate::markers::MarkerTruth& marker : video.scene.frames[i]) {
       if (marker.visible) truth[i].push_back({std::to_string(marker.marker), marker.position});
     }
-    const auto& seen = video.seen.frames[i];
+    const auto& detected = video.detected.frames[i];
     Vector<2> predicted = Vector<2>::Zero();
     bool is_predicted = false;
     if (i > 0) {
-      const auto ahead = tracker.expected(video.seen.times[i]);
+      const auto ahead = tracker.expected(video.detected.times[i]);
       is_predicted = !ahead.empty();
       if (is_predicted) predicted = ahead.front().position;
     }
-    const auto tracks = tracker.step(video.seen.times[i], seen);
+    const auto tracks = tracker.step(video.detected.times[i], detected);
     for (const Track<2>& track : tracks) {
       if (track.confirmed)
-        named[i].push_back({std::to_string(number(track.id)), track.observation ? seen[*track.observation].value : track.position});
+        named[i].push_back(
+            {std::to_string(number(track.id)), track.observation ? detected[*track.observation].value : track.position});
     }
     if (is_predicted && !tracks.empty() && tracks.front().observation) {
-      outcome.errors.push_back((seen[*tracks.front().observation].value - predicted).norm());
+      outcome.errors.push_back((detected[*tracks.front().observation].value - predicted).norm());
     }
   }
   const double reach = 1.5 * video.scene.options.radius_px;
-  for (const evaluate::LabelFate& fate : evaluate::judge_labels(truth, named, reach)) outcome.lost = outcome.lost || fate.lost();
+  for (const evaluate::LabelFate& fate : evaluate::evaluate_labels(truth, named, reach)) outcome.lost = outcome.lost || fate.lost();
   return outcome;
 }
 
@@ -155,14 +156,14 @@ PredictionError summarise(const std::vector<double>& errors) {
 
 StepTime time_steps(const Video& video, track::Tracker<2>& tracker) {
   std::vector<double> times;
-  for (std::size_t i = 0; i < video.seen.frames.size(); ++i) {
+  for (std::size_t i = 0; i < video.detected.frames.size(); ++i) {
     const auto before = std::chrono::steady_clock::now();
-    tracker.step(video.seen.times[i], video.seen.frames[i]);
+    tracker.step(video.detected.times[i], video.detected.frames[i]);
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count());
   }
   std::sort(times.begin(), times.end());
-  const auto at = [&](double share) {
-    return times[static_cast<std::size_t>(std::lround(share * static_cast<double>(times.size() - 1)))];
+  const auto at = [&](double fraction) {
+    return times[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(times.size() - 1)))];
   };
   return {static_cast<int>(video.scene.frames.front().size()), at(0.05), at(0.5), at(0.95), times.back()};
 }
@@ -219,13 +220,13 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
   const TemporaryFolder folder;
   const int all = options.videos * static_cast<int>(kSituations.size()) + static_cast<int>(options.timed_markers.size());
   int done = 0;
-  const auto tell = [&] {
+  const auto notify = [&] {
     ++done;
     hooks.advance({"videos", done, all});
   };
 
   for (std::size_t s = 0; s < kSituations.size(); ++s) {
-    // Videos are independent; what came of each is put together in their order.
+    // Videos are independent; what results from each is put together in their order.
     std::vector<std::vector<TrackOutcome>> outcomes(static_cast<std::size_t>(options.videos));
     std::mutex telling;
     tbb::parallel_for(0, options.videos, [&](int v) {
@@ -233,7 +234,7 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
       const Video video = make_video(kSituations[s], seed, {}, folder.file(fmt::format("{}_{}.mp4", s, seed)));
       for (const TrackerMethod& method : all_methods) outcomes[static_cast<std::size_t>(v)].push_back(track(video, *method.make()));
       const std::lock_guard lock(telling);
-      tell();
+      notify();
     });
     for (std::size_t m = 0; m < all_methods.size(); ++m) {
       int losses = 0;
@@ -253,7 +254,7 @@ TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options
     for (std::size_t m = 0; m < all_methods.size(); ++m) {
       experiment.ours[m].times.push_back(time_steps(video, *all_methods[m].make()));
     }
-    tell();
+    notify();
   }
   return experiment;
 }

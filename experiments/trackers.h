@@ -22,7 +22,7 @@ struct StepTime {
   double percentile_5 = 0, median = 0, percentile_95 = 0, maximum = 0;
 };
 
-/// One row of the tables: a way to track, and what came of it. What is not known is missing.
+/// One row of the tables: a way to track, and the result. What is not known is missing.
 struct TrackerRow {
   static constexpr std::size_t kSituations = 5;  ///< slow, rapid, acceleration, occlusion, crossing
   static constexpr std::size_t kMotions = 3;     ///< the first three, in which the paper measures errors
@@ -48,8 +48,8 @@ struct TrackerExperimentOptions {
 
 /// Tables I–VII of Queiroz, Gomide, de Albuquerque Araujo, "Evaluation of Real Time Tracking Methods for an Open Source Motion
 /// Capture System". Every video is rendered, encoded, decoded and seen through the marker detector, once; every method then tracks
-/// what was seen, with the past alone. Losses follow judge_labels; an error is the distance from the prediction made before
-/// a frame to the point then measured, in videos without a loss. Throws Error where videos cannot be written to the temporary
+/// what was seen, with the past alone. Losses follow evaluate_labels; an error is the distance from the prediction made before
+/// a frame to the point then measured, in videos without a loss. Throws Error if videos cannot be written to the temporary
 /// folder.
 TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options, const Hooks& hooks = {});
 
@@ -59,8 +59,8 @@ std::string to_text(const TrackerExperiment& experiment);
 /// One table in Markdown: losses and mean prediction errors.
 std::string to_markdown(const TrackerExperiment& experiment);
 
-/// Writes a plot of each table and a picture like the paper's Figure 3 into `folder`, as SVG. Returns their names.
-/// Throws Error where it cannot.
+/// Writes a plot of each table and an image like the paper's Figure 3 into `folder`, as SVG. Returns their names.
+/// Throws Error if it cannot.
 std::vector<std::string> draw_experiment(const TrackerExperiment& experiment, const std::string& folder);
 
 }  // namespace marey::experiments

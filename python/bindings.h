@@ -27,7 +27,7 @@ namespace marey::python {
 
 namespace nb = nanobind;
 
-/// A Python object that any thread may let go of.
+/// A Python object that any thread may release.
 class Held {
  public:
   explicit Held(nb::object object) : object_(std::move(object)) {}
@@ -44,21 +44,21 @@ class Held {
   nb::object object_;
 };
 
-/// Frames that an object of python/marey/_frames.py gives: `open()` begins anew, and `next()` of what it returns is
+/// Frames that an object of python/marey/_frames.py gives: `open()` begins again, and `next()` of what it returns is
 /// (time in s or None, C-contiguous uint8 array H×W or H×W×3, blue first), or None at the end.
 std::unique_ptr<Source> open_frames(std::shared_ptr<Held> frames);
 
-/// A function from a picture (H×W×3 uint8, blue first) to float64 rows x1, y1, x2, y2, score, px.
+/// A function from an image (H×W×3 uint8, blue first) to float64 rows x1, y1, x2, y2, score, px.
 std::unique_ptr<detect::Detector> detector_of(std::shared_ptr<Held> function);
 
 /// An object with `begin(header: dict)`, `write(instant: tuple)` and `finish()`.
-std::unique_ptr<Sink> sink_of(std::shared_ptr<Held> object, bool pictures);
+std::unique_ptr<Sink> sink_of(std::shared_ptr<Held> object, bool images);
 
 /// A `Maker` of python/marey/_filters.py.
 filter::CustomFilterOptions filter_of(const std::shared_ptr<Held>& make);
 
 /// What python/marey/_instant.py takes apart.
-nb::tuple tuple_of(const Instant& instant, int dimensions, bool pictures);
+nb::tuple tuple_of(const Instant& instant, int dimensions, bool images);
 
 /// Writes the file in the format of that name, else of the path's ending; what was lost, one sentence each. Without Python's lock.
 std::vector<std::string> write_recording(const Recording& recording, const std::string& path, const std::string& format);

@@ -13,16 +13,16 @@ namespace {
 using Pixels = nb::ndarray<const std::uint8_t, nb::c_contig, nb::device::cpu>;
 
 /// A copy: Python may write into its array again as soon as it is asked for the next one.
-Picture picture_of(const Pixels& pixels) {
+Image image_of(const Pixels& pixels) {
   const cv::Size size(static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)));
   auto* data = const_cast<std::uint8_t*>(pixels.data());
-  if (pixels.ndim() == 2) return Picture(cv::Mat(size, CV_8UC1, data).clone());
-  return Picture::from_bgr(cv::Mat(size, CV_8UC3, data));
+  if (pixels.ndim() == 2) return Image(cv::Mat(size, CV_8UC1, data).clone());
+  return Image::from_bgr(cv::Mat(size, CV_8UC3, data));
 }
 
 /// An array that owns its pixels.
-nb::object array_of(const cv::Mat& picture) {
-  auto* copy = new cv::Mat(picture.clone());
+nb::object array_of(const cv::Mat& image) {
+  auto* copy = new cv::Mat(image.clone());
   const nb::capsule owner(copy, [](void* mat) noexcept { delete static_cast<cv::Mat*>(mat); });
   const auto rows = static_cast<std::size_t>(copy->rows), columns = static_cast<std::size_t>(copy->cols);
   return nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(copy->data, {rows, columns, 3}, owner));
@@ -51,7 +51,7 @@ class FrameSource final : public Source {
     frame.index = next_++;
     frame.time = given[0].is_none() ? timestamp_from_seconds(static_cast<double>(frame.index) / *info_.rate_hz)
                                     : timestamp_from_seconds(nb::cast<double>(given[0]));
-    frame.picture = picture_of(nb::cast<Pixels>(given[1]));
+    frame.image = image_of(nb::cast<Pixels>(given[1]));
     return frame;
   }
 
@@ -66,7 +66,7 @@ class FunctionDetector final : public detect::Detector {
   explicit FunctionDetector(std::shared_ptr<Held> function) : function_(std::move(function)) {}
 
   detect::Detections detect(const Frame& frame, std::span<const Expected>) override {
-    const cv::Mat bgr = frame.picture.bgr();
+    const cv::Mat bgr = frame.image.bgr();
     const nb::gil_scoped_acquire gil;
     const auto rows = nb::cast<nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig>>(function_->get()(array_of(bgr)));
     detect::Detections found;
@@ -96,21 +96,21 @@ nb::dict dict_of(const RecordingHeader& header) {
 
 class ObjectSink final : public Sink {
  public:
-  ObjectSink(std::shared_ptr<Held> object, bool pictures) : object_(std::move(object)), pictures_(pictures) {
+  ObjectSink(std::shared_ptr<Held> object, bool images) : object_(std::move(object)), images_(images) {
     const nb::gil_scoped_acquire gil;
     name_ = nb::cast<std::string>(nb::repr(object_->get()));
   }
 
   std::string name() const override { return name_; }
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     dimensions_ = header.frame.dimensions();
     const nb::gil_scoped_acquire gil;
     object_->get().attr("begin")(dict_of(header));
-    return {.pictures = pictures_};
+    return {.images = images_};
   }
   void write(const Instant& instant) override {
     const nb::gil_scoped_acquire gil;
-    object_->get().attr("write")(tuple_of(instant, dimensions_, pictures_));
+    object_->get().attr("write")(tuple_of(instant, dimensions_, images_));
   }
   void finish() override {
     const nb::gil_scoped_acquire gil;
@@ -119,12 +119,12 @@ class ObjectSink final : public Sink {
 
  private:
   std::shared_ptr<Held> object_;
-  bool pictures_;
+  bool images_;
   std::string name_;
   int dimensions_ = 2;
 };
 
-/// A new array of so many rows, of `width` numbers each (1: one dimension).
+/// A new array of this many rows, of `width` numbers each (1: one dimension).
 template <typename T>
 std::pair<nb::object, T*> new_array(std::size_t rows, std::size_t width) {
   auto* data = new T[std::max<std::size_t>(rows * width, 1)];
@@ -143,11 +143,11 @@ std::unique_ptr<detect::Detector> detector_of(std::shared_ptr<Held> function) {
   return std::make_unique<FunctionDetector>(std::move(function));
 }
 
-std::unique_ptr<Sink> sink_of(std::shared_ptr<Held> object, bool pictures) {
-  return std::make_unique<ObjectSink>(std::move(object), pictures);
+std::unique_ptr<Sink> sink_of(std::shared_ptr<Held> object, bool images) {
+  return std::make_unique<ObjectSink>(std::move(object), images);
 }
 
-nb::tuple tuple_of(const Instant& instant, int dimensions, bool pictures) {
+nb::tuple tuple_of(const Instant& instant, int dimensions, bool images) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const std::size_t rows = instant.samples.size();
   const auto width = static_cast<std::size_t>(dimensions);
@@ -167,8 +167,8 @@ nb::tuple tuple_of(const Instant& instant, int dimensions, bool pictures) {
   }
   nb::list named, frames;
   for (const TrackName& name : instant.named) named.append(nb::make_tuple(number(name.id), name.label, name.team));
-  if (pictures) {
-    for (const Frame& frame : instant.frames) frames.append(array_of(frame.picture.bgr()));
+  if (images) {
+    for (const Frame& frame : instant.frames) frames.append(array_of(frame.image.bgr()));
   }
   return nb::make_tuple(instant.index, seconds(instant.time), ids, positions, provenances, scores, boxes, named, frames);
 }

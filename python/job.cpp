@@ -3,11 +3,11 @@
 #include <array>
 
 #include "marey/core/error.h"
-#include "marey/core/overwriting.h"
 #include "marey/core/recording_reader.h"
 #include "marey/core/recording_sink.h"
 #include "marey/core/rig_sources.h"
-#include "marey/core/source_name.h"
+#include "marey/files/overwriting.h"
+#include "marey/files/source_name.h"
 #include "marey/format/observations.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
@@ -28,10 +28,10 @@ nb::dict dict_of(const pipeline::corridor::Summary& summary) {
   dict["filled"] = summary.filled;
   dict["predicted"] = summary.predicted;
   dict["detections"] = summary.detections;
-  nb::dict left_out, figures;
-  for (const auto& [name, count] : summary.left_out) left_out[name.c_str()] = count;
+  nb::dict excluded, figures;
+  for (const auto& [name, count] : summary.excluded) excluded[name.c_str()] = count;
   for (const auto& [name, value] : summary.figures) figures[name.c_str()] = value;
-  dict["left_out"] = left_out;
+  dict["left_out"] = excluded;
   dict["figures"] = figures;
   dict["notes"] = summary.notes;
   dict["warnings"] = summary.warnings;
@@ -69,16 +69,16 @@ Listening Rows::listening(const Options& options) const {
   return listening;
 }
 
-std::string Rows::in_python(const std::string& sentence) {
+std::string Rows::in_python(const std::string& message_text) {
   const auto is_of_name = [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; };
   std::string text;
-  for (std::size_t at = 0; at < sentence.size();) {
-    const bool starts = sentence.compare(at, 2, "--") == 0 && at + 2 < sentence.size() && is_of_name(sentence[at + 2]);
+  for (std::size_t at = 0; at < message_text.size();) {
+    const bool starts = message_text.compare(at, 2, "--") == 0 && at + 2 < message_text.size() && is_of_name(message_text[at + 2]);
     if (starts) at += 2;
     do {
-      text += starts && sentence[at] == '-' ? '_' : sentence[at];
+      text += starts && message_text[at] == '-' ? '_' : message_text[at];
       ++at;
-    } while (starts && at < sentence.size() && is_of_name(sentence[at]));
+    } while (starts && at < message_text.size() && is_of_name(message_text[at]));
   }
   return text;
 }
@@ -110,8 +110,8 @@ Outputs::Outputs(const Options& options, format::Content content, std::span<cons
     : content_(content),
       files_(options.get<std::vector<std::pair<std::string, std::string>>>("files", {})),
       keep_(options.get("keep", true)) {
-  for (const auto& [object, pictures] : options.get<std::vector<std::pair<nb::object, bool>>>("sinks", {}))
-    objects_.push_back({std::make_shared<Held>(object), pictures});
+  for (const auto& [object, images] : options.get<std::vector<std::pair<nb::object, bool>>>("sinks", {}))
+    objects_.push_back({std::make_shared<Held>(object), images});
   std::vector<std::string> inputs{options.path("rig"), options.path("observations"), options.path("labels")};
   for (const RigCamera& camera : cameras) inputs.insert(inputs.end(), {path_of_source(camera.source), camera.detections});
   std::vector<std::string> outputs = also;
@@ -138,7 +138,7 @@ std::vector<std::unique_ptr<Sink>> Outputs::open(Recording& recording) const {
   if (keep_) sinks.push_back(std::make_unique<RecordingSink>(recording));
   for (const auto& [path, name] : files_)
     sinks.push_back(format::create_recording(path, format::format_to_write(path, name, content_)));
-  for (const auto& [held, pictures] : objects_) sinks.push_back(sink_of(held, pictures));
+  for (const auto& [held, images] : objects_) sinks.push_back(sink_of(held, images));
   return sinks;
 }
 
@@ -146,7 +146,7 @@ void Outputs::write(const Recording& recording) const {
   for (const auto& [path, name] : files_) write_recording(recording, path, name);
   for (const Object& object : objects_) {
     MemoryReader reader(recording);
-    replay(reader, *sink_of(object.held, object.pictures));
+    replay(reader, *sink_of(object.held, object.images));
   }
 }
 

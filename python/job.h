@@ -33,8 +33,8 @@ class Options {
 
   bool has(const char* name) const { return given_.contains(name) && !nb::object(given_[name]).is_none(); }
   template <typename T>
-  T get(const char* name, T usual) const {
-    return has(name) ? nb::cast<T>(given_[name]) : usual;
+  T get(const char* name, T typical) const {
+    return has(name) ? nb::cast<T>(given_[name]) : typical;
   }
   template <typename T>
   std::optional<T> find(const char* name) const {
@@ -52,7 +52,7 @@ class Options {
   nb::dict given_;
 };
 
-/// How a job is told about, and what Python hears of it.
+/// How a job is reported about, and what Python receives of it.
 struct Listening {
   std::shared_ptr<Held> progress;  ///< called with (step, done, total)
   std::shared_ptr<Held> ends;      ///< asked now and then whether the job is to end
@@ -81,8 +81,8 @@ class Rows {
   std::vector<std::string> files(bool outputs) const { return table_.files(outputs); }
 
  private:
-  /// "--seen-only" → "seen_only".
-  static std::string in_python(const std::string& sentence);
+  /// "--measured-only" → "measured_only".
+  static std::string in_python(const std::string& message_text);
 
   pipeline::jobs::Table table_;
 };
@@ -90,7 +90,7 @@ class Rows {
 /// One dict per row: what the documentation and the signatures of python/marey are made from.
 nb::list rows_of_job(const std::string& job);
 
-/// `work(hooks)` on another thread: the one that called waits, so that Ctrl-C ends it, and lets others have Python meanwhile.
+/// `work(hooks)` on another thread: the one that called waits, so that Ctrl-C ends it, and lets others have Python in the meantime.
 /// Throws what it threw: an exception of Python's with its own traceback.
 template <typename Work>
 auto run_job(const Listening& listening, Work work) {
@@ -155,7 +155,7 @@ nb::tuple tuple_of(Result result);
 /// Files by name, and objects of Python's; the recording in memory, unless it is not wanted.
 class Outputs {
  public:
-  /// `also`: files that are written besides. Throws Error where a file that is written is one that is read: one of the options', or
+  /// `also`: files that are written besides. Throws Error if a file that is written is one that is read: one of the options', or
   /// what one of the cameras shows.
   Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras, const Rows* rows = nullptr,
           const std::vector<std::string>& also = {});
@@ -170,7 +170,7 @@ class Outputs {
 
   struct Object {
     std::shared_ptr<Held> held;
-    bool pictures = false;
+    bool images = false;
   };
 
   format::Content content_;

@@ -5,7 +5,7 @@
 #include <tbb/global_control.h>
 
 #include "marey/core/error.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/format/rig/rig_turns.h"
 #include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"
@@ -52,8 +52,8 @@ nb::tuple track_people(nb::dict given) {
   pipeline::jobs::TrackPeople job{.keypoints = options.get("keypoints", false)};
   const Rows rows(table_of(job), options);
   job.input.own_filter = own_filter(options);
-  pipeline::people::PeopleInPictureOptions how = rows.resolved([&] { return resolved(job); });
-  how.beside = (std::filesystem::temp_directory_path() / "marey").string();
+  pipeline::people::ImagePeopleOptions how = rows.resolved([&] { return resolved(job); });
+  how.next_to = (std::filesystem::temp_directory_path() / "marey").string();
   return in_image(options, job.input, rows, [&](const auto& feed, auto output, auto sinks, const Hooks& hooks) {
     output.masks = job.masks;
     return pipeline::people::track_people(feed, output, std::move(sinks), how, hooks);
@@ -65,7 +65,7 @@ nb::tuple track_markers(nb::dict given) {
   pipeline::jobs::TrackMarkers job;
   const Rows rows(table_of(job), options);
   job.input.own_filter = own_filter(options);
-  pipeline::markers::MarkersInPictureOptions how = rows.resolved([&] { return resolved(job); });
+  pipeline::markers::ImageMarkerOptions how = rows.resolved([&] { return resolved(job); });
   if (const auto names = options.find<std::vector<std::string>>("label_names")) how.tracker.labels = *names;
   return in_image(options, job.input, rows, [&](const auto& feed, const auto& output, auto sinks, const Hooks& hooks) {
     return pipeline::people::track_markers(feed, output, std::move(sinks), how, hooks);
@@ -79,7 +79,7 @@ nb::tuple track_ground(nb::dict given) {
   const Rows rows(table_of(job), options);
   job.own_filter = own_filter(options);
   pipeline::people::PeopleOnGroundOptions how = rows.resolved([&] { return resolved(job, rig); });
-  if (const auto path = options.path("rig"); !path.empty()) how.turning = format::rig::read_turning(path);
+  if (const auto path = options.path("rig"); !path.empty()) how.ptz = format::rig::read_ptz(path);
   const Outputs outputs(options, format::Content::ground, rig.cameras, &rows, pipeline::people::overlays_of(rig, job.output));
   return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;

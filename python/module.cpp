@@ -12,7 +12,7 @@ extern "C" {
 NB_MODULE(_core, module) {
   using namespace marey::python;
 #if MAREY_FFMPEG
-  av_log_set_level(AV_LOG_QUIET);  // what went wrong in a film is told in our own sentences
+  av_log_set_level(AV_LOG_QUIET);  // what went wrong in a video is reported in our own sentences
 #endif
   module.doc() = "What the package marey is built on; use that.";
   module.attr("version") = MAREY_VERSION;

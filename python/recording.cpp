@@ -11,7 +11,7 @@
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/tracks/boxes.h"
-#include "marey/pipeline/take/judge_match.h"
+#include "marey/pipeline/take/evaluate_match.h"
 
 #include "bindings.h"
 
@@ -73,12 +73,12 @@ nb::object column_of(nb::handle self, std::size_t index, const std::string& name
   throw nb::key_error(name.c_str());
 }
 
-nb::object moments_of(nb::handle self) {
-  static_assert(sizeof(Recording::Moment) == 2 * sizeof(std::int64_t) && sizeof(Timestamp) == sizeof(std::int64_t));
-  const auto& moments = nb::cast<const Recording&>(self).instants();
-  const auto* numbers = reinterpret_cast<const std::int64_t*>(moments.data());
-  return nb::make_tuple(view(self, numbers, moments.size(), 1, 2),
-                        view(self, numbers == nullptr ? nullptr : numbers + 1, moments.size(), 1, 2));
+nb::object time_steps_of(nb::handle self) {
+  static_assert(sizeof(Recording::TimeStep) == 2 * sizeof(std::int64_t) && sizeof(Timestamp) == sizeof(std::int64_t));
+  const auto& time_steps = nb::cast<const Recording&>(self).instants();
+  const auto* numbers = reinterpret_cast<const std::int64_t*>(time_steps.data());
+  return nb::make_tuple(view(self, numbers, time_steps.size(), 1, 2),
+                        view(self, numbers == nullptr ? nullptr : numbers + 1, time_steps.size(), 1, 2));
 }
 
 nb::list tracks_of(const Recording& recording) {
@@ -121,7 +121,7 @@ FrameOfReference frame_named(const std::string& name) {
   if (name == "ground") return {Kind::ground, {}};
   if (name == "user_ground") return {Kind::user_ground, {}};
   if (name == "space") return {Kind::space, {}};
-  throw Error("\"{}\" is no frame of reference; known are image, ground, user_ground, space", name);
+  throw Error("\"{}\" is not a frame of reference; supported: image, ground, user_ground, space", name);
 }
 
 std::vector<std::string> write(const Recording& recording, const std::string& path, const std::string& name) {
@@ -137,7 +137,7 @@ std::pair<Recording, std::vector<std::string>> read(const std::string& path, con
   options.metadata = metadata;
   const format::Format* named = format.empty() ? nullptr : format::format_named(format, format::kRecordings);
   if (!format.empty() && named == nullptr)
-    throw Error("\"{}\" is no format that is read; known are {}", format, format::names_of_read(format::kRecordings));
+    throw Error("\"{}\" is not a format that is read; supported: {}", format, format::names_of_read(format::kRecordings));
   auto match = format::read_whole(path, named != nullptr ? *named : format::format_to_read(path, format::kRecordings), options);
   return {std::move(match.recording), std::move(match.warnings)};
 }
@@ -161,11 +161,11 @@ Recording from_arrays(const Numbers& position, const Times& times, const std::st
     instant.index = static_cast<std::int64_t>(i);
     instant.time = timestamp_from_seconds(times.data()[i]);
     for (std::size_t track = 0; track < tracks; ++track) {
-      const double* place = position.data() + (i * tracks + track) * axes;
-      if (std::isnan(place[0])) continue;
+      const double* location = position.data() + (i * tracks + track) * axes;
+      if (std::isnan(location[0])) continue;
       Sample& sample = instant.samples.emplace_back();
       sample.track = TrackId{static_cast<int>(track) + 1};
-      for (std::size_t axis = 0; axis < axes; ++axis) sample.position[static_cast<Eigen::Index>(axis)] = place[axis];
+      for (std::size_t axis = 0; axis < axes; ++axis) sample.position[static_cast<Eigen::Index>(axis)] = location[axis];
     }
     recording.add(instant);
   }
@@ -238,16 +238,16 @@ nb::dict evaluate_box_files(const std::string& truth, const std::string& tracks,
   return scores_of(result);
 }
 
-nb::dict evaluate_places(const Recording& truth, const Recording& tracks, double distance) {
-  pipeline::take::MatchJudgement judged;
+nb::dict evaluate_positions(const Recording& truth, const Recording& tracks, double distance) {
+  pipeline::take::MatchEvaluation evaluated;
   {
     const nb::gil_scoped_release free;
-    judged = pipeline::take::judge_match(truth, tracks, distance);
+    evaluated = pipeline::take::evaluate_match(truth, tracks, distance);
   }
-  nb::dict dict = scores_of(judged.evaluation.scores);
-  const auto& position = judged.evaluation.position;
+  nb::dict dict = scores_of(evaluated.evaluation.scores);
+  const auto& position = evaluated.evaluation.position;
   dict["position_rms_m"] = position ? nb::cast(position->rms) : nb::none();
-  dict["distance_error"] = number_or_none(judged.distance_error);
+  dict["distance_error"] = number_or_none(evaluated.distance_error);
   return dict;
 }
 
@@ -296,7 +296,7 @@ void bind_recording(nb::module_& module) {
       .def_prop_ro("samples", &Recording::samples)
       .def_prop_ro("tracks", &tracks_of)
       .def_prop_ro("rig", [](const Recording& self) -> std::optional<Rig> { return self.header.rig; })
-      .def("moments", [](nb::handle_t<Recording> self) { return moments_of(self); })
+      .def("moments", [](nb::handle_t<Recording> self) { return time_steps_of(self); })
       .def("column",
            [](nb::handle_t<Recording> self, std::size_t track, const std::string& name) { return column_of(self, track, name); })
       .def("write", &write, nb::arg("path"), nb::arg("format"));
@@ -308,7 +308,7 @@ void bind_recording(nb::module_& module) {
   module.def("from_arrays", &from_arrays);
   module.def("evaluate_boxes", &evaluate_boxes);
   module.def("evaluate_box_files", &evaluate_box_files);
-  module.def("evaluate_places", &evaluate_places);
+  module.def("evaluate_places", &evaluate_positions);
   module.def("formats", [] {
     return nb::make_tuple(format::names_of_read(format::kRecordings), format::names_of_written(format::kRecordings));
   });

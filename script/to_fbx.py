@@ -23,7 +23,7 @@ def rate_of_glb(path):
     """From the times of its first animation."""
     data = path.read_bytes()
     if data[:4] != b"glTF":
-        fail(f"{path}: is no GLB file")
+        fail(f"{path}: is not a GLB file")
     length, = struct.unpack("<I", data[12:16])
     scene = json.loads(data[20:20 + length])
     if not scene.get("animations"):

@@ -9,7 +9,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/stop.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 
 #include "batch_page.h"
 #include "batch_plan.h"
@@ -44,7 +44,7 @@ std::string program_name() {
 }
 
 void print_lines(const BatchPlan& plan) {
-  const BatchLines lines = lines_of(plan, program_name(), 1, usual_array_jobs(plan));
+  const BatchLines lines = lines_of(plan, program_name(), 1, default_array_jobs(plan));
   fmt::print(
       "here, one after the other:\n  {}\nhere, side by side (GNU parallel):\n  {}\non a cluster (Slurm), ARRAY is what the first "
       "line prints:\n  {}\n  {}\n",
@@ -70,7 +70,7 @@ void plan_batch(const PlanCommand& command) {
   int memory = 0;
   for (const BatchTask& task : plan.tasks) memory = std::max(memory, task.costs.memory_mb);
   if (command.json) {
-    const BatchLines lines = lines_of(plan, program_name(), 1, usual_array_jobs(plan));
+    const BatchLines lines = lines_of(plan, program_name(), 1, default_array_jobs(plan));
     print({{"plan", plan.path},
            {"tasks", plan.tasks.size()},
            {"memory_mb", memory},
@@ -93,22 +93,22 @@ struct RunCommand : Reporting {
 };
 
 /// Which tasks are to be run: one, a share of them, or all.
-struct Share {
+struct Fraction {
   int first = 1, step = 1, last = 0;
 };
 
-Share share_of(const RunCommand& command, int count) {
+Fraction fraction_of(const RunCommand& command, int count) {
   if (command.task && !command.part.empty())
-    throw WrongUsage("{}", "--task names one task, --part a share of them: leave out one of the two");
+    throw WrongUsage("{}", "--task names one task, --shard a share of them: omit one of the two");
   if (command.task) {
     if (*command.task > count) throw WrongUsage("--task {}: {} has {} tasks", *command.task, command.plan, count);
     return {*command.task, 1, *command.task};
   }
   if (command.part.empty()) return {1, 1, count};
   const std::size_t slash = command.part.find('/');
-  constexpr int kMost = 1'000'000'000;
-  if (slash == std::string::npos) throw WrongUsage("--part {}: write PART/PARTS, as 3/8", command.part);
-  const auto parts = static_cast<int>(whole_number_in(command.part.substr(slash + 1), "PARTS", 1, kMost));
+  constexpr int kMaxCount = 1'000'000'000;
+  if (slash == std::string::npos) throw WrongUsage("--shard {}: write PART/PARTS, as 3/8", command.part);
+  const auto parts = static_cast<int>(whole_number_in(command.part.substr(slash + 1), "PARTS", 1, kMaxCount));
   const auto part = static_cast<int>(whole_number_in(command.part.substr(0, slash), "PART", 1, parts));
   return {part, parts, count};
 }
@@ -133,19 +133,19 @@ void run_one(const BatchPlan& plan, const BatchTask& task, const RunCommand& com
       break;
     case TaskOutcome::Kind::failed:
       ++counts.failed;
-      fmt::print(stderr, "marey: task {} ({}): {}\n", task.number, task.name, outcome.sentence);
+      fmt::print(stderr, "marey: task {} ({}): {}\n", task.number, task.name, outcome.message_text);
       break;
   }
 }
 
 void run_batch(const RunCommand& command) {
   const BatchPlan plan = read_plan(command.plan);
-  const Share share = share_of(command, static_cast<int>(plan.tasks.size()));
+  const Fraction fraction = fraction_of(command, static_cast<int>(plan.tasks.size()));
   Counts counts;
   with_progress(command.quiet, [&](const Hooks& hooks) {
-    int seen = 0;
-    for (int number = share.first; number <= share.last; number += share.step) {
-      hooks.advance({"tasks", seen++, (share.last - share.first) / share.step + 1});
+    int detected = 0;
+    for (int number = fraction.first; number <= fraction.last; number += fraction.step) {
+      hooks.advance({"tasks", detected++, (fraction.last - fraction.first) / fraction.step + 1});
       run_one(plan, plan.tasks[static_cast<std::size_t>(number) - 1], command, counts);
     }
     return 0;
@@ -218,7 +218,7 @@ struct SubmitCommand : Reporting {
   bool dry = false;
 };
 
-/// What the line printed, without its last newline. Throws Error where it failed.
+/// What the line printed, without its last newline. Throws Error if it failed.
 std::string shell(const std::string& line) {
   std::FILE* output = popen(line.c_str(), "re");
   if (output == nullptr) throw Error("no shell can be started for: {}", line);
@@ -231,7 +231,7 @@ std::string shell(const std::string& line) {
 
 void submit_batch(const SubmitCommand& command) {
   const BatchPlan plan = read_plan(command.plan);
-  BatchLines lines = lines_of(plan, program_name(), command.threads, command.jobs.value_or(usual_array_jobs(plan)));
+  BatchLines lines = lines_of(plan, program_name(), command.threads, command.jobs.value_or(default_array_jobs(plan)));
   const auto give_job = [&](const std::string& job) {
     const std::string before = "afterany:ARRAY";
     lines.slurm_reduce.replace(lines.slurm_reduce.find(before), before.size(), "afterany:" + job);
@@ -268,14 +268,14 @@ void add_plan(Command& batch) {
       .required();
   command.output_file("-o,--output", options->request.plan, "the plan; results go to PLAN.results").required().ends_in({".tsv"});
   command.also_reads([options] { return std::vector{options->request.from}; });
-  command.text("--do", options->request.job, "what: track, ground (a rig's cameras), reconstruct, measure")
+  command.text("--job", options->request.job, "what: track, ground (a rig's cameras), reconstruct, measure")
       .check([](const std::string& job) {
         const auto& jobs = batch_jobs();
         if (std::find(jobs.begin(), jobs.end(), job) == jobs.end())
-          throw Error("\"{}\" is none of track, ground, reconstruct, measure", job);
+          throw Error("\"{}\" is not one of track, ground, reconstruct, measure", job);
       });
-  command.text("--options", options->options, "further options of that command, as one text: '--filter imm --seen-only'");
-  command.text("--ending", options->request.ending,
+  command.text("--job-options", options->options, "further options of that command, as one text: '--filter imm --measured-only'");
+  command.text("--extension", options->request.ending,
                "of the results, which says their format (default: .csv, of reconstruct .marey)");
   command.reports(options->json, options->quiet, "lines to run it");
   command.runs([options] { plan_batch(*options); });
@@ -286,7 +286,7 @@ void add_run(Command& batch) {
   Command command = batch.subcommand("run", "Do a plan's tasks that are not done yet: all, one, or a share");
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
   command.whole("--task", options->task, "N", 1, 1'000'000'000, "this one alone");
-  command.text("--part", options->part, "PART/PARTS: every PARTS-th task from the PART-th on");
+  command.text("--shard", options->part, "PART/PARTS: every PARTS-th task from the PART-th on");
   command.reports(options->json, options->quiet, "counts");
   command.whole("--task-threads", options->threads, "N", 1, 1024, "that each task computes with (default: one a core)");
   command.runs([options] { run_batch(*options); });
@@ -294,7 +294,7 @@ void add_run(Command& batch) {
 
 void add_reduce(Command& batch) {
   auto options = std::make_shared<ReduceCommand>();
-  Command command = batch.subcommand("reduce", "One table of everybody in every recording, and what is missing and why");
+  Command command = batch.subcommand("reduce", "One table of every person in every recording, and what is missing and why");
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
   command.output_file("-o,--output", options->out, "CSV with a row a person and recording").required().ends_in({".csv"});
   command.output_folder("--report", options->report, "folder for a page with totals, curves over the season and the tables");
@@ -309,11 +309,11 @@ void add_submit(Command& batch) {
   auto options = std::make_shared<SubmitCommand>();
   Command command = batch.subcommand("submit", "Hand a plan to Slurm or GNU parallel, by the lines that `plan` prints");
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
-  command.choice("--to", options->to, kEngines, "who runs it");
+  command.choice("--engine", options->to, kEngines, "who runs it");
   command.whole("--cpus", options->threads, "N", 1, 1024, "of each task");
-  command.whole("--jobs", options->jobs, "N", 1, kMostArrayJobs,
+  command.whole("--max-jobs", options->jobs, "N", 1, kMaxArrayJobs,
                 "of Slurm's array at most (default: so many that each works a minute, because it takes seconds to start one)");
-  command.flag("--dry", options->dry, "print the lines alone");
+  command.flag("--dry-run", options->dry, "print the lines alone");
   command.reports(options->json, options->quiet, "jobs");
   command.runs([options] { submit_batch(*options); });
 }

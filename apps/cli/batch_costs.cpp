@@ -25,12 +25,12 @@ constexpr double kMega = 1e6;
 struct CostModel {
   double program_mb;     ///< the program twice: the one that works, and the one that waits for it
   double camera_mb;      ///< a decoder, a queue
-  double pixel_bytes;    ///< of a camera's picture: eight frames that are read ahead, the background, the detector's own
+  double pixel_bytes;    ///< of a camera's image: eight frames that are read ahead, the background, the detector's own
   double learned_bytes;  ///< of a pixel of each frame that the background is learned from
   double frame_bytes;    ///< that stay until the end of the recording
   double input_bytes;    ///< of a byte of a text that is read as a whole
   double pixel_ns;       ///< to decode a pixel and look at it
-  double frame_ns;       ///< of an instant, whatever its pictures
+  double frame_ns;       ///< of an instant, whatever its images
   double input_ns;       ///< of a byte of a text
 };
 
@@ -42,17 +42,17 @@ CostModel model_of(const std::string& job) {
   return {94, 3, 23, 3.2, 0, 0, 5, 1e6, 0};
 }
 
-/// How many frames of a film the background is learned from (pipeline::corridor::Feed::sample_beginning): up to 30, evenly out of the first
-/// 30 seconds, of which 300 frames are read at most.
-double learned_frames(const SourceInfo& film) {
+/// How many frames of a video the background is learned from (pipeline::corridor::Feed::sample_beginning): up to 30, evenly out of
+/// the first 30 seconds, of which 300 frames are read at most.
+double learned_frames(const SourceInfo& video) {
   constexpr double kLearned = 30, kSeconds = 30, kRead = 300;
-  if (!film.frame_count) return kLearned;
-  const double span = std::min(kSeconds * film.rate_hz.value_or(kUsualRate), kRead);
+  if (!video.frame_count) return kLearned;
+  const double span = std::min(kSeconds * video.rate_hz.value_or(kDefaultRate), kRead);
   const double step = std::max(1.0, std::floor(span / kLearned));
-  return std::min(kLearned, std::ceil(static_cast<double>(*film.frame_count) / step));
+  return std::min(kLearned, std::ceil(static_cast<double>(*video.frame_count) / step));
 }
 
-/// The last frame of detections, a text in which each line begins with its frame; 0 where it is none.
+/// The last frame of detections, a text in which each line begins with its frame; 0 where it is not one.
 double frames_of_boxes(const std::string& path) {
   constexpr std::streamoff kTail = 400;  // bytes: more than a line
   std::ifstream file(path, std::ios::binary);
@@ -74,7 +74,7 @@ void add_input(const std::string& path, const CostModel& model, double& mb, doub
   std::error_code error;
   const auto bytes = static_cast<double>(fs::file_size(path, error));
   if (!error) mb += model.input_bytes * bytes / kMega, ns += model.input_ns * bytes;
-  if (is_film(path)) {
+  if (is_video(path)) {
     const SourceInfo info = source::open_source(path)->info();
     const auto count = static_cast<double>(info.frame_count.value_or(0));
     frames = std::max(frames, count);
@@ -87,7 +87,7 @@ void add_input(const std::string& path, const CostModel& model, double& mb, doub
 
 }  // namespace
 
-bool is_film(const fs::path& path) {
+bool is_video(const fs::path& path) {
   static const std::set<std::string> endings{".mp4",  ".avi",  ".mov", ".mkv", ".m4v", ".mpg",
                                              ".mpeg", ".webm", ".ts",  ".mts", ".wmv", ".mxf"};
   std::string ending = path.extension().string();
@@ -109,7 +109,7 @@ TaskCosts expected_costs(const std::string& job, const std::vector<std::string>&
 }
 
 int memory_with_threads(int mb, int threads) {
-  constexpr double kFurtherThread = 0.06;  // pictures that a decoder has in work, and each thread's own
+  constexpr double kFurtherThread = 0.06;  // images that a decoder has in work, and each thread's own
   return static_cast<int>(mb * (1 + kFurtherThread * (threads - 1)));
 }
 

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/input_file.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/input_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 
 #include "batch_fields.h"
 #include "batch_plan.h"
@@ -79,15 +79,15 @@ std::vector<std::string> parts_of(const std::string& field) {
 std::int64_t whole_of(const std::string& text) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) throw Error("\"{}\" is no whole number", text);
+  if (error != std::errc{} || end != text.data() + text.size()) throw Error("\"{}\" is not a whole number", text);
   return value;
 }
 
 /// A number that is small, and not below 0.
 int count_of(const std::string& text) {
-  constexpr std::int64_t kMost = 1'000'000'000;
+  constexpr std::int64_t kMaxCount = 1'000'000'000;
   const std::int64_t value = whole_of(text);
-  if (value < 0 || value > kMost) throw Error("{} is not within 0 and {}", text, kMost);
+  if (value < 0 || value > kMaxCount) throw Error("{} is not within 0 and {}", text, kMaxCount);
   return static_cast<int>(value);
 }
 
@@ -100,7 +100,7 @@ std::string fnv(std::string_view text) {
 double seconds_of(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0)) throw Error("\"{}\" are no seconds", text);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0)) throw Error("\"{}\" are not seconds", text);
   return value;
 }
 
@@ -112,12 +112,12 @@ BatchTask task_of(const std::string& line) {
   task.name = out_of_field(fields[1]);
   task.job = fields[2];
   if (std::find(batch_jobs().begin(), batch_jobs().end(), task.job) == batch_jobs().end())
-    throw Error("\"{}\" is no job", plain_text(task.job));
+    throw Error("\"{}\" is not a job", plain_text(task.job));
   const std::vector<std::string> paths = parts_of(fields[3]), states = parts_of(fields[4]);
   if (paths.empty() || paths.size() != states.size()) throw Error("{}", "inputs and states do not belong together");
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const std::vector<std::string> state = split_fields(states[i], ':');
-    if (state.size() != 3) throw Error("\"{}\" is no SIZE:TIME:HASH", states[i]);
+    if (state.size() != 3) throw Error("\"{}\" is not a SIZE:TIME:HASH", states[i]);
     task.inputs.push_back({paths[i], whole_of(state[0]), whole_of(state[1]), state[2]});
   }
   task.options = parts_of(fields[5]);
@@ -137,7 +137,7 @@ void take_in(const std::string& line, TaskRecord& record) {
   if (key == "seconds") record.seconds = seconds_of(value);
   if (key == "peak_mb") record.peak_mb = static_cast<int>(whole_of(value));
   if (key == "host") record.host = value;
-  if (key == "said") record.sentence = value;
+  if (key == "said") record.message_text = value;
 }
 
 }  // namespace
@@ -200,14 +200,14 @@ BatchPlan read_plan(const std::string& path) {
   BatchPlan plan{path, {}};
   OutputCheck outputs(plan.results());
   std::string line;
-  if (!std::getline(file, line) || line != kPlanHead) throw Error("{}:1: this is no plan; `marey batch plan` makes one", path);
+  if (!std::getline(file, line) || line != kPlanHead) throw Error("{}:1: this is not a plan; `marey batch plan` makes one", path);
   for (int number = 2; std::getline(file, line); ++number) {
     try {
       plan.tasks.push_back(task_of(line));
       if (plan.tasks.back().number != std::ssize(plan.tasks)) throw Error("{}", "tasks are numbered from 1, one a line");
       outputs.check(plan.tasks.back());
     } catch (const Error& error) {
-      throw Error("{}:{}: {}; make the plan anew with `marey batch plan`", path, number, error.what());
+      throw Error("{}:{}: {}; make the plan again with `marey batch plan`", path, number, error.what());
     }
   }
   return plan;
@@ -237,7 +237,7 @@ std::optional<TaskRecord> read_record(const std::string& path) {
     try {
       take_in(line, record);
     } catch (const Error& error) {
-      throw Error("{}: is no record of a task ({}); remove it, and the task is done again", path, error.what());
+      throw Error("{}: is not a record of a task ({}); remove it, and the task is done again", path, error.what());
     }
   }
   return record;
@@ -247,7 +247,7 @@ void write_record(const std::string& path, const TaskRecord& record) {
   WholeFile file(path);
   file.write(fmt::format("hash\t{}\nstate\t{}\nexit\t{}\nseconds\t{:.3f}\npeak_mb\t{}\nhost\t{}\nsaid\t{}\n", record.hash,
                          record.done ? "done" : "failed", record.exit_code, record.seconds, record.peak_mb, record.host,
-                         in_field(record.sentence)));
+                         in_field(record.message_text)));
   file.finish();
 }
 

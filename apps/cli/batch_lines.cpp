@@ -21,12 +21,12 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-int usual_array_jobs(const BatchPlan& plan) {
-  constexpr double kWorth = 60;  // s of work: Slurm starts jobs every 3 s
-  constexpr int kFewest = 8;
+int default_array_jobs(const BatchPlan& plan) {
+  constexpr double kScoreWeight = 60;  // s of work: Slurm starts jobs every 3 s
+  constexpr int kMinCount = 8;
   double seconds = 0;
   for (const BatchTask& task : plan.tasks) seconds += task.costs.seconds;
-  return static_cast<int>(std::clamp(seconds / kWorth, double{kFewest}, double{kMostArrayJobs}));
+  return static_cast<int>(std::clamp(seconds / kScoreWeight, double{kMinCount}, double{kMaxArrayJobs}));
 }
 
 BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads, int jobs) {
@@ -40,12 +40,12 @@ BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threa
   const std::string log = quoted(plan.results() + "/log/%a.txt");
   BatchLines lines;
   lines.loop = run;
-  lines.parallel = fmt::format("parallel --joblog {} --resume-failed {} --part {{}}/{} ::: $(seq {})",
+  lines.parallel = fmt::format("parallel --joblog {} --resume-failed {} --shard {{}}/{} ::: $(seq {})",
                                quoted(plan.results() + "/jobs.log"), run, plan.tasks.size(), plan.tasks.size());
   lines.slurm_array =
       fmt::format("sbatch --parsable --job-name=marey --array=1-{} --requeue --cpus-per-task={} --mem={}M --output={} --wrap={}",
                   parts, threads, static_cast<int>(kSpare * memory_with_threads(memory, threads)), log,
-                  quoted(fmt::format("exec {} --part $SLURM_ARRAY_TASK_ID/{}", run, parts)));
+                  quoted(fmt::format("exec {} --shard $SLURM_ARRAY_TASK_ID/{}", run, parts)));
   lines.slurm_reduce = fmt::format("sbatch --parsable --job-name=marey-reduce --dependency=afterany:ARRAY --output={} --wrap={}",
                                    quoted(plan.results() + "/log/reduce.txt"), quoted("exec " + reduce));
   return lines;

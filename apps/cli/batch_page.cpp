@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/natural_order.h"
 #include "marey/draw/page.h"
+#include "marey/files/natural_order.h"
 
 namespace marey::cli {
 namespace {
 
-constexpr std::size_t kMostLines = 8;  // of a chart, so that they can be told apart
+constexpr std::size_t kMaxLines = 8;  // of a chart, so that they can be distinguished
 
 /// The season's rows by what their columns are called.
 class SeasonTable {
@@ -43,9 +43,9 @@ class SeasonTable {
   }
 
   /// Who it is in every recording: the name, else the team; a number alone is another's in the next recording.
-  std::string who(const std::vector<std::string>& row) const {
+  std::string identity(const std::vector<std::string>& row) const {
     const std::string label = text(row, "label"), team = text(row, "team");
-    if (label.empty()) return team.empty() ? "nobody by name" : team + ", without a name";
+    if (label.empty()) return team.empty() ? "no person by name" : team + ", without a name";
     return team.empty() ? label : label + ", " + team;
   }
 
@@ -65,7 +65,7 @@ using Totals = std::map<std::string, Total, NaturalOrder>;
 Totals totals_of(const Season& season, const SeasonTable& table) {
   Totals totals;
   for (const auto& row : season.rows) {
-    Total& total = totals[table.who(row)];
+    Total& total = totals[table.identity(row)];
     total.recordings.insert(row.front());
     total.distance_m += table.number(row, "distance_m");
     total.seconds += table.number(row, "seconds");
@@ -78,9 +78,9 @@ Totals totals_of(const Season& season, const SeasonTable& table) {
 draw::PageTable table_of(const Totals& totals) {
   draw::PageTable table{
       .title = "Totals", .head = {"who", "recordings", "distance, km", "minutes", "m a minute", "sprints", "top, m/s"}, .rows = {}};
-  for (const auto& [who, total] : totals) {
+  for (const auto& [identity, total] : totals) {
     const double minutes = total.seconds / 60;
-    table.rows.push_back({who, std::to_string(total.recordings.size()), fmt::format("{:.2f}", total.distance_m / 1000),
+    table.rows.push_back({identity, std::to_string(total.recordings.size()), fmt::format("{:.2f}", total.distance_m / 1000),
                           fmt::format("{:.1f}", minutes), fmt::format("{:.0f}", minutes > 0 ? total.distance_m / minutes : 0),
                           fmt::format("{:.0f}", total.sprints), fmt::format("{:.1f}", total.top_mps)});
   }
@@ -100,7 +100,7 @@ void add_chart(std::string title, std::string y, const std::map<std::string, std
   std::sort(by_size.begin(), by_size.end());
   draw::LineChart& chart = charts.emplace_back();
   chart.title = std::move(title), chart.y_label = std::move(y), chart.x_label = "recording";
-  for (std::size_t i = 0; i < std::min(by_size.size(), kMostLines); ++i) {
+  for (std::size_t i = 0; i < std::min(by_size.size(), kMaxLines); ++i) {
     draw::LineChart::Line& line = chart.lines.emplace_back();
     line.name = by_size[i].second;
     for (const auto& [x, value] : values.at(line.name)) line.points.emplace_back(static_cast<double>(x + 1), value);
@@ -168,7 +168,7 @@ draw::PageTable recordings_of(const SeasonTable& table) {
   return all;
 }
 
-draw::PageTable everybody_of(const Season& season, const SeasonTable& table) {
+draw::PageTable all_people_of(const Season& season, const SeasonTable& table) {
   draw::PageTable all{.title = "Everybody", .head = {}, .rows = {}, .bars_from = 4};
   const std::vector<ShownColumn> shown = shown_columns(season);
   const bool numbered = by_number(table.recordings());
@@ -189,7 +189,7 @@ draw::PageTable everybody_of(const Season& season, const SeasonTable& table) {
 
 void add_measured(draw::Page& page, const Season& season, const SeasonTable& table) {
   page.add(table_of(totals_of(season, table)));
-  const auto who = [&](const std::vector<std::string>& row) { return table.who(row); };
+  const auto identity = [&](const std::vector<std::string>& row) { return table.identity(row); };
   const auto sum = [&](double before, const std::vector<std::string>& row) {
     return before + table.number(row, "distance_m") / 1000;
   };
@@ -197,12 +197,13 @@ void add_measured(draw::Page& page, const Season& season, const SeasonTable& tab
     return std::max(before, table.number(row, "top_mps"));
   };
   std::vector<draw::LineChart> charts;
-  add_chart("Distance from recording to recording", "km", by_recording(season, table, who, sum), table.recordings().size(), charts);
-  add_chart("Top speed from recording to recording", "m/s", by_recording(season, table, who, top), table.recordings().size(),
+  add_chart("Distance from recording to recording", "km", by_recording(season, table, identity, sum), table.recordings().size(),
+            charts);
+  add_chart("Top speed from recording to recording", "m/s", by_recording(season, table, identity, top), table.recordings().size(),
             charts);
   page.add(charts);
   page.add(recordings_of(table));
-  page.add(everybody_of(season, table));
+  page.add(all_people_of(season, table));
 }
 
 void add_counted(draw::Page& page, const Season& season, const SeasonTable& table) {
@@ -223,8 +224,8 @@ void add_counted(draw::Page& page, const Season& season, const SeasonTable& tabl
 
 std::string season_page(const Season& season, const std::string& title, std::size_t planned) {
   draw::Page page(title);
-  page.add_sentence(fmt::format("{} of {} recordings are done, in {:.1f} s of work; the largest took {} MB.", season.done, planned,
-                                season.seconds, season.peak_mb));
+  page.add_message(fmt::format("{} of {} recordings are done, in {:.1f} s of work; the largest took {} MB.", season.done, planned,
+                               season.seconds, season.peak_mb));
   if (!season.failures.empty()) {
     draw::PageTable failures{.title = "What is missing, and why", .head = {"task", "recording", "why"}, .rows = {}};
     failures.bars_end = 0;

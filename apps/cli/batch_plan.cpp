@@ -10,9 +10,9 @@
 #include <sys/stat.h>
 
 #include "marey/core/error.h"
-#include "marey/core/input_file.h"
-#include "marey/core/natural_order.h"
 #include "marey/core/stop.h"
+#include "marey/files/input_file.h"
+#include "marey/files/natural_order.h"
 #include "marey/format/input_hash.h"
 #include "marey/format/register.h"
 
@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without its hash; nothing where there is no such file.
+/// Without its hash; nothing if there is no such file.
 std::optional<PlannedInput> state_of(const std::string& path) {
   struct stat status{};
   if (stat(path.c_str(), &status) != 0) return std::nullopt;
@@ -34,7 +34,7 @@ std::optional<PlannedInput> state_of(const std::string& path) {
 
 /// Whether the job is done with such a file.
 bool is_input_of(const std::string& job, const fs::path& path) {
-  if (job == "track") return is_film(path);
+  if (job == "track") return is_video(path);
   if (job == "ground" || job == "reconstruct") return path.extension() == ".toml";
   const format::Format* format = format::format_of_content(path.string());
   return format != nullptr && format->holds.has(format::Content::ground) && format->is_read();
@@ -104,7 +104,7 @@ std::vector<Found> in_table(const PlanRequest& request) {
   return found;
 }
 
-std::string usual_ending(const std::string& job) {
+std::string default_extension(const std::string& job) {
   return job == "reconstruct" ? ".marey" : ".csv";
 }
 
@@ -143,7 +143,7 @@ std::vector<std::string> words_of_job(const std::string& job) {
 BatchPlan make_plan(const PlanRequest& request) {
   BatchPlan plan{request.plan, {}};
   std::map<std::string, PlannedInput> before;
-  std::map<std::string, TaskCosts> costs_before;  // by the input's hash and the job: to ask a film for its size takes a while
+  std::map<std::string, TaskCosts> costs_before;  // by the input's hash and the job: to ask a video for its size takes a while
   std::error_code error;
   if (fs::is_regular_file(request.plan, error)) {
     for (const BatchTask& task : read_plan(request.plan).tasks) {
@@ -151,7 +151,7 @@ BatchPlan make_plan(const PlanRequest& request) {
       costs_before[task.job + task.inputs.front().hash] = task.costs;
     }
   }
-  const std::string ending = request.ending.empty() ? usual_ending(request.job) : request.ending;
+  const std::string ending = request.ending.empty() ? default_extension(request.job) : request.ending;
   std::set<std::string> names;
   OutputCheck outputs(plan.results());
   for (const Found& found : fs::is_directory(request.from, error) ? in_folder(request, plan.results()) : in_table(request)) {
@@ -178,10 +178,10 @@ BatchPlan make_plan(const PlanRequest& request) {
 std::string changed_input(const BatchTask& task) {
   for (const PlannedInput& input : task.inputs) {
     const auto now = state_of(input.path);
-    if (!now) return fmt::format("{}: is not there any more; put it back, or make the plan anew", input.path);
+    if (!now) return fmt::format("{}: is not there any more; put it back, or make the plan again", input.path);
     if (now->size == input.size && now->mtime_ns == input.mtime_ns) continue;
     if (now->size != input.size || format::input_of(input.path).hash != input.hash)
-      return fmt::format("{}: is another file than when the plan was made; make the plan anew", input.path);
+      return fmt::format("{}: is another file than when the plan was made; make the plan again", input.path);
   }
   return {};
 }

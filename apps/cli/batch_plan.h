@@ -1,6 +1,6 @@
-// What is to be done with many recordings, and what came of it: a table with a row a task, and beside it, in a folder of results, a
-// record a task. Whoever runs a task needs nothing else, so that tasks run anywhere, in any order, twice, or again after a node was
-// lost.
+// What is to be done with many recordings, and the result: a table with a row a task, and beside it, in a folder of results, a
+// record a task. The one who runs a task needs nothing else, so that tasks run anywhere, in any order, twice, or again after a node
+// was lost.
 #pragma once
 
 #include <cstdint>
@@ -51,8 +51,8 @@ struct BatchPlan {
   std::vector<std::string> files() const;
 };
 
-/// Keeps tasks from writing outside of a folder of results: plans and tables may come from strangers. It follows the links of each
-/// folder once, which takes longer than all else that a plan of thousands is looked through for.
+/// Keeps tasks from writing outside of a folder of results: plans and tables may come from untrusted clients. It follows the links
+/// of each folder once, which takes longer than all else that a plan of thousands is looked through for.
 class OutputCheck {
  public:
   explicit OutputCheck(std::string results);
@@ -66,7 +66,7 @@ class OutputCheck {
   std::map<std::string, bool> folders_;  // whether they are within
 };
 
-/// What came of a task that was run.
+/// What results from a task that was run.
 struct TaskRecord {
   std::string hash;  ///< the task's, when it was run
   bool done = false;
@@ -74,7 +74,7 @@ struct TaskRecord {
   double seconds = 0;
   int peak_mb = 0;
   std::string host;
-  std::string sentence;  ///< why it failed; what the run warned of
+  std::string message_text;  ///< why it failed; what the run warned of
 };
 
 /// The jobs that `--do` names.
@@ -82,12 +82,12 @@ const std::vector<std::string>& batch_jobs();
 /// The words of the command that does a job; its input follows.
 std::vector<std::string> words_of_job(const std::string& job);
 
-/// Throws Error with the line where it is no plan.
+/// Throws Error with the line where it is not a plan.
 BatchPlan read_plan(const std::string& path);
-/// Whole or not at all.
+/// Atomically.
 void write_plan(const BatchPlan& plan);
 
-/// Nothing where the task was never run to an end. Throws Error where there is something else in its place.
+/// Nothing if the task was never run to an end. Throws Error if there is something else in its place.
 std::optional<TaskRecord> read_record(const std::string& path);
 void write_record(const std::string& path, const TaskRecord& record);
 
@@ -95,24 +95,24 @@ struct PlanRequest {
   std::string from;  ///< a folder, or a table with a column `input`
   std::string job = "track";
   std::vector<std::string> options;
-  std::string ending;  ///< of the results; empty: the job's usual one
+  std::string ending;  ///< of the results; empty: the job's typical one
   std::string plan;    ///< the file that is written; what it says of inputs that are as they were is kept
 };
 
-/// Finds the recordings, in the order of their names. Throws Error where there is none, or where two would have one name.
+/// Finds the recordings, in the order of their names. Throws Error if there is none, or where two would have one name.
 BatchPlan make_plan(const PlanRequest& request);
 
 /// What differs from the plan, one sentence: the input is gone, or its bytes are others. Looks at size and time of change, and
-/// reads only where they differ. Empty where all is as planned.
+/// reads only where they differ. Empty if all is as planned.
 std::string changed_input(const BatchTask& task);
 
-bool is_film(const std::filesystem::path& path);
+bool is_video(const std::filesystem::path& path);
 
 /// What the job will take with such inputs, from what was measured (docs/batch.md).
 TaskCosts expected_costs(const std::string& job, const std::vector<std::string>& inputs);
 int memory_with_threads(int mb, int threads);
 
-constexpr int kMostArrayJobs = 1000;  // Slurm takes 1001 of them where nobody has changed it
+constexpr int kMaxArrayJobs = 1000;  // Slurm takes 1001 of them where no person has changed it
 
 /// The command lines that do all of a plan.
 struct BatchLines {
@@ -120,7 +120,7 @@ struct BatchLines {
 };
 /// `jobs`: of the array; each does as many of the tasks as it takes.
 BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads, int jobs);
-/// So many jobs that each works a minute or more, because a cluster takes seconds to start one; but not fewer than eight.
-int usual_array_jobs(const BatchPlan& plan);
+/// This many jobs that each works a minute or more, because a cluster takes seconds to start one; but not fewer than eight.
+int default_array_jobs(const BatchPlan& plan);
 
 }  // namespace marey::cli

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/input_file.h"
 #include "marey/core/stop.h"
+#include "marey/files/input_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/text_rows.h"
 
@@ -76,11 +76,12 @@ void add_counted(const BatchTask& task, Table& table) {
   }
 }
 
-/// Empty where it is done.
+/// Empty if it is done.
 std::string why_not(const std::optional<TaskRecord>& record, const BatchTask& task) {
   std::error_code error;
   if (!record) return "was not run to its end: not begun, stopped, or its machine was lost; run it again";
-  if (!record->done) return record->sentence.empty() ? fmt::format("ended with exit code {}", record->exit_code) : record->sentence;
+  if (!record->done)
+    return record->message_text.empty() ? fmt::format("ended with exit code {}", record->exit_code) : record->message_text;
   if (record->hash != task.hash()) return "was done with other options or another input; run it again";
   if (!std::filesystem::exists(task.output, error)) return task.output + ": is not there any more; run it again";
   return {};

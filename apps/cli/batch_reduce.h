@@ -7,7 +7,7 @@
 
 namespace marey::cli {
 
-/// One table of everybody in every recording, and why there is less than planned.
+/// One table of every person in every recording, and why there is less than planned.
 struct Season {
   struct Failure {
     int number = 0;

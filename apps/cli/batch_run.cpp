@@ -17,8 +17,8 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
-#include "marey/core/file_lock.h"
 #include "marey/core/stop.h"
+#include "marey/files/file_lock.h"
 
 #include "commands.h"
 #include "run_hooks.h"
@@ -42,21 +42,21 @@ std::vector<std::string> command_of(const BatchTask& task, std::optional<int> th
 struct Ended {
   int status = 0;
   rusage used{};
-  std::string said;
+  std::string stated;
 };
 
 /// What the process that was forked off does: this program once more, without the time that loading it takes.
-[[noreturn]] void run_words(std::vector<std::string> words, int said, const sigset_t& signals) {
+[[noreturn]] void run_words(std::vector<std::string> words, int stated, const sigset_t& signals) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-    // Until it catches them itself: the other's handlers would ask nobody here to end. What nohup set stays.
+    // Until it catches them itself: the other's handlers would ask no person here to end. What nohup set stays.
     if (std::signal(number, SIG_DFL) == SIG_IGN) std::signal(number, SIG_IGN);
   }
   pthread_sigmask(SIG_SETMASK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // it takes its unfinished files away also when nobody reads what it says any more
+  std::signal(SIGPIPE, SIG_IGN);  // it takes its unfinished files away also when no person reads what it says any more
   const int nowhere = open("/dev/null", O_RDWR);
-  dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(said, STDERR_FILENO);
-  close(said);
+  dup2(nowhere, STDIN_FILENO), dup2(nowhere, STDOUT_FILENO), dup2(stated, STDERR_FILENO);
+  close(stated);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -93,8 +93,8 @@ Ended run_process(const std::vector<std::string>& words) {
     const ssize_t count = read(ends[0], bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
-    ended.said.append(bytes.data(), static_cast<std::size_t>(count));
-    if (ended.said.size() > 2 * kMostSaid) ended.said.erase(0, ended.said.size() - kMostSaid);
+    ended.stated.append(bytes.data(), static_cast<std::size_t>(count));
+    if (ended.stated.size() > 2 * kMostSaid) ended.stated.erase(0, ended.stated.size() - kMostSaid);
   }
   close(ends[0]);
   while (wait4(process, &ended.status, 0, &ended.used) < 0 && errno == EINTR) continue;
@@ -102,12 +102,12 @@ Ended run_process(const std::vector<std::string>& words) {
 }
 
 /// The last line that says what is wrong, without the program's name.
-std::string sentence_of(const Ended& ended) {
+std::string message_of(const Ended& ended) {
   if (WIFSIGNALED(ended.status)) {
     const int number = WTERMSIG(ended.status);
     return fmt::format("was ended by signal {} ({}){}", number, strsignal(number), number == SIGKILL ? "; was memory short?" : "");
   }
-  std::string text = ended.said;
+  std::string text = ended.stated;
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
   if (const std::size_t line = text.rfind('\n'); line != std::string::npos) text.erase(0, line + 1);
   if (text.starts_with("marey: ")) text.erase(0, 7);
@@ -130,7 +130,7 @@ TaskOutcome do_task(const BatchPlan& plan, const BatchTask& task, std::optional<
   if (StopScope::current().stop_requested())
     throw Stopped("stopped; the task that ran is not done, and is done again by the next run");
   rusage own{};
-  getrusage(RUSAGE_SELF, &own);  // whoever counts a job's memory counts who waits too
+  getrusage(RUSAGE_SELF, &own);  // the one who counts a job's memory counts who waits too
   TaskRecord record;
   record.hash = task.hash();
   record.exit_code = WIFEXITED(ended.status) ? WEXITSTATUS(ended.status) : 128 + WTERMSIG(ended.status);
@@ -139,9 +139,9 @@ TaskOutcome do_task(const BatchPlan& plan, const BatchTask& task, std::optional<
   constexpr double kKibi = 1024, kMegabyte = 1e6;  // the kernel counts KiB, a plan MB
   record.peak_mb = static_cast<int>(kKibi * static_cast<double>(ended.used.ru_maxrss + own.ru_maxrss) / kMegabyte);
   record.host = host_name();
-  record.sentence = sentence_of(ended);
+  record.message_text = message_of(ended);
   write_record(plan.record_of(task), record);
-  return {record.done ? TaskOutcome::Kind::done : TaskOutcome::Kind::failed, record.done ? "" : record.sentence};
+  return {record.done ? TaskOutcome::Kind::done : TaskOutcome::Kind::failed, record.done ? "" : record.message_text};
 }
 
 }  // namespace
@@ -157,10 +157,10 @@ TaskOutcome run_task(const BatchPlan& plan, const BatchTask& task, std::optional
   }
   const FileLock lock(record + ".run");
   if (!changed.empty()) {
-    TaskRecord said;
-    said.exit_code = 1;
-    said.sentence = changed;
-    write_record(record, said);
+    TaskRecord stated;
+    stated.exit_code = 1;
+    stated.message_text = changed;
+    write_record(record, stated);
     return {TaskOutcome::Kind::failed, changed};
   }
   if (is_done(read_record(record), task)) return {TaskOutcome::Kind::was_done, {}};  // by another run, while this one waited

@@ -26,9 +26,9 @@ struct DefineCommand {
   bool add = false, json = false, quiet = false;
 };
 
-struct FollowCommand {
+struct BodyTrackCommand {
   std::string recording, bodies, out;
-  pipeline::bodies::FollowBodiesOptions options;
+  pipeline::bodies::TrackBodiesOptions options;
   std::optional<double> noise_mm;
   double tolerance_mm = 4;
   bool json = false, quiet = false;
@@ -39,9 +39,9 @@ void print_defined(const DefineCommand& command, const solve::bodies::DefinedBod
              defined.instants);
   for (const auto& marker : defined.markers)
     fmt::print(stderr, "  {:<16} varies by {:.2f} mm{}\n", marker.label, 1000 * marker.deviation,
-               marker.loose ? ": loose, left out" : "");
-  if (defined.symmetries.empty()) fmt::print(stderr, "no turn makes it look the same\n");
-  warn(pipeline::bodies::doubts_of(defined));
+               marker.loose ? ": loose, omitted" : "");
+  if (defined.symmetries.empty()) fmt::print(stderr, "no turn makes it appear the same\n");
+  warn(pipeline::bodies::review_items_of(defined));
   fmt::print(stderr, "bodies: {}\n", command.out);
 }
 
@@ -56,7 +56,7 @@ Json defined_json(const DefineCommand& command, const solve::bodies::DefinedBody
   json["symmetries"] = Json::array();
   for (const auto& symmetry : defined.symmetries)
     json["symmetries"].push_back({{"turn", words_of(symmetry)}, {"worst_m", symmetry.worst}});
-  json["warnings"] = Json(pipeline::bodies::doubts_of(defined));
+  json["warnings"] = Json(pipeline::bodies::review_items_of(defined));
   return json;
 }
 
@@ -75,7 +75,7 @@ void run(DefineCommand& command) {
   }
 }
 
-void print_followed(const FollowCommand& command, const pipeline::bodies::FollowBodiesSummary& summary) {
+void print_tracked(const BodyTrackCommand& command, const pipeline::bodies::TrackBodiesSummary& summary) {
   for (const auto& one : summary.bodies) {
     if (one.counts.measured + one.counts.predicted == 0) {
       fmt::print(stderr, "{}: not found in any of {} frames\n", one.body.label, summary.instants);
@@ -84,13 +84,13 @@ void print_followed(const FollowCommand& command, const pipeline::bodies::Follow
     fmt::print(stderr, "{}: measured in {} of {} frames, predicted in {}, lost {} times; markers {:.2f} mm from their places\n",
                one.body.label, one.counts.measured, summary.instants, one.counts.predicted, one.counts.lost, 1000 * one.error_m);
     if (one.counts.corrected > 0)
-      fmt::print(stderr, "  found to be turned, {} times, and put right; it looks the same {}\n", one.counts.corrected,
+      fmt::print(stderr, "  found to be turned, {} times, and corrected; it appears the same {}\n", one.counts.corrected,
                  words_of(one.symmetries.front()));
   }
   fmt::print(stderr, "noise of a point {:.2f} mm\n{}\n", 1000 * summary.noise_m, command.out);
 }
 
-Json followed_json(const FollowCommand& command, const pipeline::bodies::FollowBodiesSummary& summary) {
+Json tracked_json(const BodyTrackCommand& command, const pipeline::bodies::TrackBodiesSummary& summary) {
   Json json{{"frames", summary.instants}, {"noise_m", summary.noise_m}, {"recording", command.out}, {"warnings", summary.warnings}};
   json["bodies"] = Json::array();
   for (const auto& one : summary.bodies)
@@ -104,11 +104,11 @@ Json followed_json(const FollowCommand& command, const pipeline::bodies::FollowB
   return json;
 }
 
-void run(FollowCommand& command) {
-  command.options.follow.tolerance = command.tolerance_mm / 1000;
-  if (command.noise_mm) command.options.follow.noise = *command.noise_mm / 1000;
+void run(BodyTrackCommand& command) {
+  command.options.tracking.tolerance = command.tolerance_mm / 1000;
+  if (command.noise_mm) command.options.tracking.noise = *command.noise_mm / 1000;
   const auto summary = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::bodies::follow_bodies(command.recording, command.bodies, command.out, command.options, hooks);
+    return pipeline::bodies::track_bodies(command.recording, command.bodies, command.out, command.options, hooks);
   });
   warn(summary.warnings);
   if (summary.stopped) {
@@ -116,9 +116,9 @@ void run(FollowCommand& command) {
     throw EndWith{kInterrupted};
   }
   if (command.json) {
-    print(followed_json(command, summary));
+    print(tracked_json(command, summary));
   } else if (!command.quiet) {
-    print_followed(command, summary);
+    print_tracked(command, summary);
   }
 }
 
@@ -142,15 +142,15 @@ void add_define(Command& body) {
       .check([](const std::string& text) {
         if (labels_in(text).size() != 3) throw Error("axes take three markers, commas between");
       });
-  command.number("--loose", options->options.loose, "times", closed(1, 100),
-                 "a marker that varies so many times as much as the others is left out");
+  command.number("--outlier-factor", options->options.loose, "times", closed(1, 100),
+                 "a marker that varies this many times as much as the others is omitted");
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }
 
-void add_follow(Command& body) {
-  auto options = std::make_shared<FollowCommand>();
-  Command command = body.subcommand("follow", "Follow rigid bodies through a recording, with six degrees of freedom each");
+void add_body_track(Command& body) {
+  auto options = std::make_shared<BodyTrackCommand>();
+  Command command = body.subcommand("track", "Follow rigid bodies through a recording, with six degrees of freedom each");
   command
       .input_file("RECORDING", options->recording,
                   "points in space, with names or without: " + format::names_of_read(format::Content::space))
@@ -158,14 +158,14 @@ void add_follow(Command& body) {
   command.input_file("BODIES", options->bodies, "bodies.toml, or a table label,x,y,z (m) of one body").required();
   command.output_file("-o,--output", options->out, "the recording with the bodies: a take").required();
   command.text("--format", options->options.format, "in place of the output's ending").check(format::check_written_name);
-  auto& follow = options->options.follow;
+  auto& tracking = options->options.tracking;
   command.number("--tolerance", options->tolerance_mm, "mm", closed(0.01, 100), "farther from its place no marker is the body's");
   command.number("--noise", options->noise_mm, "mm", closed(1e-4, 100),
                  "standard deviation of a point's coordinates (default: learned)");
-  command.number("--predict", follow.predict_s, "s", closed(0, 10),
-                 "so long a body is told of which fewer than three markers are seen");
-  command.number("--acceleration", follow.acceleration, "m/s²", closed(0.1, 1e4), "standard deviation of a body's acceleration");
-  command.number("--angular-acceleration", follow.angular_acceleration, "rad/s²", closed(0.1, 1e5), "and of its turning's");
+  command.number("--max-prediction", tracking.predict_s, "s", closed(0, 10),
+                 "this long a body is reported of which fewer than three markers are seen");
+  command.number("--acceleration", tracking.acceleration, "m/s²", closed(0.1, 1e4), "standard deviation of a body's acceleration");
+  command.number("--angular-acceleration", tracking.angular_acceleration, "rad/s²", closed(0.1, 1e5), "and of its turning's");
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }
@@ -175,7 +175,7 @@ void add_follow(Command& body) {
 void add_body(Command& program) {
   Command body = program.subcommand("body", "Rigid bodies: define them by their markers, follow them");
   add_define(body);
-  add_follow(body);
+  add_body_track(body);
 }
 
 }  // namespace marey::cli

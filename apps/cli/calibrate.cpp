@@ -1,4 +1,4 @@
-#include "calibrate_turning.h"
+#include "calibrate_ptz.h"
 #include "command_line.h"
 #include "commands.h"
 
@@ -11,7 +11,7 @@ void add_calibrate(Command& program) {
   add_calibrate_ground(calibrate);
   add_calibrate_board(calibrate);
   add_calibrate_pitch(calibrate);
-  add_calibrate_turning(calibrate);
+  add_calibrate_ptz(calibrate);
 }
 
 }  // namespace marey::cli

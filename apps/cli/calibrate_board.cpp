@@ -80,16 +80,16 @@ void run(const CalibrateBoard& command) {
 
 void add_calibrate_board(Command& calibrate) {
   auto options = std::make_shared<CalibrateBoard>();
-  Command command =
-      calibrate.subcommand("board", "Where the cameras stand, and how far they are out of step, from a board carried before them");
+  Command command = calibrate.subcommand(
+      "board", "Where the cameras stand, and how far they are unsynchronised, from a board carried before them");
   Option rig = add_rig(command, options->inputs, "rig file: the cameras, their lenses where they are known").required();
   add_board(command, options->board).required();
   command.output_file("-o,--output", options->out, "rig file with what was found").required().ends_in({".toml"}).may_replace(rig);
   command.flag("--refine", options->run.refine, "refine the lenses too");
-  command.flag("--synced", options->run.synced, "the cameras are in step: keep the rig's offsets");
+  command.flag("--synced", options->run.synced, "the cameras are synchronised: keep the rig's offsets");
   command.flag("--rolling-shutter", options->run.rolling_shutter,
                "find out how long each shutter takes from the top row to the bottom row");
-  command.number("--most-offset", options->run.most_offset_s, "s", closed(0, 3600), "how far the films may be out of step");
+  command.number("--max-offset", options->run.max_offset_s, "s", closed(0, 3600), "how far the videos may be unsynchronised");
   command.reports(options->json, options->quiet, "table");
   command.runs([options] { run(*options); });
 }

@@ -23,7 +23,7 @@ namespace {
 
 struct CalibrateGround {
   RigInputs inputs;
-  std::string frame = kUsualGroundFrame;
+  std::string frame = kDefaultGroundFrame;
   std::string board, out;
   pipeline::calibrate::CalibrateGroundOptions options;
   bool json = false;
@@ -42,11 +42,11 @@ void run(const CalibrateGround& command) {
   warn(result.warnings);
   format::rig::write_rig(result.rig, command.out);
   if (command.json) {
-    print({{"rms_mm", found.rms_mm}, {"scale", found.scale}, {"seen_by", found.seen_by}});
+    print({{"rms_mm", found.rms_mm}, {"scale", found.scale}, {"seen_by", found.observed_by}});
   } else if (!command.quiet) {
-    const auto [least, most] = std::minmax_element(found.seen_by.begin(), found.seen_by.end());
+    const auto [minimum, maximum] = std::minmax_element(found.observed_by.begin(), found.observed_by.end());
     fmt::print("the ground fits to {:.2f} mm rms; its {} seen by {} to {} cameras\n", found.rms_mm,
-               command.board.empty() ? "markers are" : "board is", *least, *most);
+               command.board.empty() ? "markers are" : "board is", *minimum, *maximum);
     if (options.scale) fmt::print("the rig is {:.4f} times as large as it was\n", found.scale);
     fmt::print("rig: {}\n", command.out);
   }

@@ -8,8 +8,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
-#include "marey/core/whole_file.h"
 #include "marey/draw/coverage_plot.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/rig/rig_file.h"
 
 #include "board_option.h"
@@ -22,7 +22,7 @@ namespace marey::cli {
 namespace {
 
 struct CalibrateLens {
-  std::string input, board, out, picture;
+  std::string input, board, out, image;
   std::string name = "camera";
   pipeline::calibrate::LensRunOptions run;
   bool json = false;
@@ -59,7 +59,7 @@ void print_table(const pipeline::calibrate::LensRun& run) {
   const Vector<2>& principal = geometry::principal_of(found.lens);
   int used = 0;
   for (const calibrate::LensCalibration::View& view : found.views) used += view.refused.empty() ? 1 : 0;
-  fmt::print("{} pictures, {} show the board, {} used; corners cover {:.0f} % of the picture\n", run.frames, run.sightings, used,
+  fmt::print("{} images, {} show the board, {} used; corners cover {:.0f} % of the image\n", run.frames, run.sightings, used,
              100 * found.covered);
   fmt::print("  error       {:8.3f} px RMS, {:.3f} px mean over {} of {} corners\n", found.rms_px, found.mean_px, found.inliers,
              found.observations);
@@ -100,7 +100,7 @@ void draw(const CalibrateLens& command, const calibrate::LensCalibration& found)
     for (std::size_t i = 0; i < view.pixels.size(); ++i)
       plot.marks.push_back({view.pixels[i], i < view.errors.size() ? view.errors[i] : Vector<2>::Zero(), view.refused.empty()});
   }
-  WholeFile file(command.picture);
+  WholeFile file(command.image);
   file.write(draw::to_svg(plot));
   file.finish();
 }
@@ -111,7 +111,7 @@ void run(const CalibrateLens& command) {
     return pipeline::calibrate::calibrate_lens(command.input, board, command.run, hooks);
   });
   if (!command.out.empty()) format::rig::write_rig(rig_of(command, found.calibration), command.out);
-  if (!command.picture.empty()) draw(command, found.calibration);
+  if (!command.image.empty()) draw(command, found.calibration);
   warn(found.calibration.warnings);
   if (command.json) {
     print(as_json(command, found));
@@ -125,8 +125,8 @@ void run(const CalibrateLens& command) {
 
 void add_calibrate_lens(Command& calibrate) {
   auto options = std::make_shared<CalibrateLens>();
-  Command command = calibrate.subcommand("lens", "One camera's lens, from pictures of a board");
-  command.input_file("INPUT", options->input, "a video, a folder of pictures or a pattern such as 'shot_%02d.jpg'").required();
+  Command command = calibrate.subcommand("lens", "One camera's lens, from images of a board");
+  command.input_file("INPUT", options->input, "a video, a folder of images or a pattern such as 'shot_%02d.jpg'").required();
   add_board(command, options->board).required();
   command.output_file("-o,--output", options->out, "rig file for the camera").ends_in({".toml"});
   std::vector<std::pair<std::string, std::string>> models;
@@ -136,8 +136,8 @@ void add_calibrate_lens(Command& calibrate) {
                 "how many of the model's distortion coefficients are sought");
   command.flag("--square-pixels", options->run.lens.square_pixels, "one focal length for both axes");
   command.text("--camera", options->name, "the camera's name in the rig");
-  command.whole("--views", options->run.most_views, "N", 3, 1000, "pictures that the solution rests on, at most");
-  command.output_file("--picture", options->picture, "SVG of where corners were seen, with their errors").ends_in({".svg"});
+  command.whole("--max-views", options->run.max_views, "N", 3, 1000, "images that the solution rests on, at most");
+  command.output_file("--plot", options->image, "SVG of where corners were seen, with their errors").ends_in({".svg"});
   command.reports(options->json, options->quiet, "table");
   command.runs([options] { run(*options); });
 }

@@ -25,7 +25,7 @@ namespace {
 
 struct CalibratePitch {
   RigAndSources inputs;
-  std::string out, pictures;
+  std::string out, images;
   std::vector<std::string> points;
   PitchElements elements;
   std::string size = "105x68";
@@ -36,9 +36,9 @@ struct CalibratePitch {
 };
 
 void run_elements(const CalibratePitch& command) {
-  if (!command.inputs.rig.empty()) throw WrongUsage("--elements makes a rig: leave out {}", command.inputs.rig);
+  if (!command.inputs.rig.empty()) throw WrongUsage("--elements makes a rig: omit {}", command.inputs.rig);
   if (command.out.empty() && command.elements.cameras.empty())
-    throw WrongUsage("--elements: -o FILE.toml, --cameras FOLDER or both are needed");
+    throw WrongUsage("--elements: -o FILE.toml, --soccernet-cameras FOLDER or both are needed");
   PitchElements elements = command.elements;
   elements.out = command.out, elements.size = command.size, elements.json = command.json, elements.quiet = command.quiet;
   run_pitch_elements(elements);
@@ -151,9 +151,9 @@ void print_report(const pipeline::calibrate::PitchRun& run) {
     const calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     const Vector<3>& centre = found.camera.centre();
     const auto used = std::count(found.inlier.begin(), found.inlier.end(), 1);
-    const Vector<2> place = (run.calibration.ground_from_world * centre.head<2>().homogeneous()).hnormalized();
+    const Vector<2> location = (run.calibration.ground_from_world * centre.head<2>().homogeneous()).hnormalized();
     fmt::print("{}: {} of {} clicks used; the camera stands at ({:.1f}, {:.1f}), {:.1f} m up\n", run.cameras[i], used,
-               found.inlier.size(), place.x(), place.y(), centre.z());
+               found.inlier.size(), location.x(), location.y(), centre.z());
     fmt::print("  focal length  {:.1f} px (± {:.1f}), {} terms of distortion\n", geometry::focal_of(found.camera.lens()).x(),
                focal_deviation(run.calibration.fit, i), run.calibration.fit.lens_terms);
     if (!found.lines.empty())
@@ -161,14 +161,14 @@ void print_report(const pipeline::calibrate::PitchRun& run) {
                  found.lines.size(), found.line_median_px, found.line_median_m, found.line_95_px, found.line_95_m);
     for (std::size_t k = 0; k < found.inlier.size(); ++k) {
       if (found.inlier[k]) continue;
-      fmt::print("  left out      the click on {} is {:.0f} px off", run.views[i].points[k].name, found.error_px[k]);
+      fmt::print("  omitted      the click on {} is {:.0f} px off", run.views[i].points[k].name, found.error_px[k]);
       if (found.error_m[k]) fmt::print(", {:.1f} m", *found.error_m[k]);
       if (found.better_name[k]) fmt::print("; it would fit ({:g},{:g})", found.better_name[k]->x(), found.better_name[k]->y());
       fmt::print("\n");
     }
   }
   print_ground(run.calibration.fit);
-  for (const std::string& sentence : run.offsets.notes) fmt::print("{}\n", sentence);
+  for (const std::string& message_text : run.offsets.notes) fmt::print("{}\n", message_text);
   if (run.calibration.ground_from_world(1, 1) < 0)
     fmt::print("the clicks' y grows to the right of x: the rig keeps a right-handed world, and turns results back\n");
 }
@@ -181,7 +181,7 @@ void run(const CalibratePitch& command) {
   pipeline::calibrate::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);
   options.pitch.known = command.ground;
-  options.pictures = command.pictures;
+  options.images = command.images;
   options.synced = command.synced;
   const pipeline::calibrate::PitchRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
     return pipeline::calibrate::calibrate_pitch(rig, parse_points(command.points), options, hooks);
@@ -193,17 +193,17 @@ void run(const CalibratePitch& command) {
   } else if (!command.quiet) {
     print_report(found);
     fmt::print("rig: {}\n", command.out);
-    if (!command.pictures.empty()) fmt::print("pictures: {}\n", command.pictures);
+    if (!command.images.empty()) fmt::print("images: {}\n", command.images);
   }
 }
 
-/// What goes into the folder of pictures.
-std::vector<std::string> pictures_of(const CalibratePitch& command) {
-  if (command.pictures.empty()) return {};
+/// What goes into the folder of images.
+std::vector<std::string> images_of(const CalibratePitch& command) {
+  if (command.images.empty()) return {};
   std::vector<std::string> files;
   for (const RigCamera& camera : rig_of(command.inputs).cameras) {
-    const pipeline::calibrate::PitchPictures pictures(command.pictures, camera.name);
-    files.insert(files.end(), {pictures.overlay, pictures.accuracy});
+    const pipeline::calibrate::PitchImages images(command.images, camera.name);
+    files.insert(files.end(), {images.overlay, images.accuracy});
   }
   return files;
 }
@@ -221,9 +221,9 @@ void add_calibrate_pitch(Command& calibrate) {
       .input_files("--elements", options->elements.files,
                    "labelled elements of the pitch, JSON as SoccerNet's calibration names them; in place of a rig and clicks")
       .excludes(points);
-  command.text("--resolution", options->elements.resolution, "of the labelled pictures, WIDTHxHEIGHT in px")
-      .check(check_resolution);
-  command.output_folder("--cameras", options->elements.cameras, "folder for SoccerNet's camera_NAME.json of each labelled picture");
+  command.text("--resolution", options->elements.resolution, "of the labelled images, WIDTHxHEIGHT in px").check(check_resolution);
+  command.output_folder("--soccernet-cameras", options->elements.cameras,
+                        "folder for SoccerNet's camera_NAME.json of each labelled image");
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
   using calibrate::pitch::GroundKnown;
   constexpr std::array<std::pair<const char*, GroundKnown>, 3> kGrounds{
@@ -231,12 +231,12 @@ void add_calibrate_pitch(Command& calibrate) {
   command.choice("--ground", options->ground, kGrounds,
                  "how high the pitch is in the middle: found, as far as clicks and lines tell; level; or as the rig file says");
   command.output_file("-o,--output", options->out, "rig file to write").ends_in({".toml"}).may_replace(rig);
-  command.output_folder("--pictures", options->pictures,
-                        "folder for the pitch drawn over each camera's picture, and maps of the accuracy");
-  command.also_writes([options] { return pictures_of(*options); });
+  command.output_folder("--plots", options->images,
+                        "folder for the pitch drawn over each camera's image, and maps of the accuracy");
+  command.also_writes([options] { return images_of(*options); });
   command.flag(
       "--synced", options->synced,
-      "the cameras run on one clock; else when each was started is found from how people move, where the rig does not say");
+      "the cameras run on one clock; else when each was started is found from how people move, where the rig does not specify");
   command.reports(options->json, options->quiet, "report");
   command.runs([options] { run(*options); });
 }

@@ -30,10 +30,10 @@ namespace {
 struct CalibrateWand {
   RigInputs inputs;
   std::string wand, distance, out;
-  std::string frame = kUsualGroundFrame;
+  std::string frame = kDefaultGroundFrame;
   pipeline::calibrate::CalibrateWandOptions options;
   bool view = false, allow_control = false;
-  viewer::WebPlace web;
+  viewer::ListenAddress web;
   bool json = false;
   bool quiet = false;
 };
@@ -76,8 +76,8 @@ Json as_json(const calibrate::wand::WandResult& result) {
   }
   json["volume"] = {{"median_mm", report.volume.median_mm},
                     {"worst_tenth_mm", report.volume.worst_tenth_mm},
-                    {"seen_by_two", report.volume.seen_by_two},
-                    {"seen_by_three", report.volume.seen_by_three}};
+                    {"seen_by_two", report.volume.observed_by_two},
+                    {"seen_by_three", report.volume.observed_by_three}};
   if (report.held_out) {
     json["held_out"] = as_json(report.held_out->fit);
     json["held_out"]["frames"] = report.held_out->frames;
@@ -112,7 +112,7 @@ void print_table(const calibrate::wand::WandResult& result) {
                report.held_out->length_rms_mm);
   }
   fmt::print("volume: a marker's place is known to {:.2f} mm (median), {:.2f} mm (worst tenth); three cameras see {:.0f} % of it\n",
-             report.volume.median_mm, report.volume.worst_tenth_mm, 100 * report.volume.seen_by_three);
+             report.volume.median_mm, report.volume.worst_tenth_mm, 100 * report.volume.observed_by_three);
   fmt::print("grade: {} ({})\n", report.grade, report.meaning);
   for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
 }
@@ -143,21 +143,21 @@ pipeline::calibrate::GroundCalibration ground_by_l_frame(const Rig& rig, const p
 void calibrate_live(const Rig& rig, pipeline::calibrate::CalibrateWandOptions options, const CalibrateWand& command) {
   std::atomic<bool> will_do = false;
   std::optional<WandPage> page;
-  const auto desk = std::make_shared<pipeline::live::CameraDesk>(rig, options.markers.threshold);
-  options.desk = desk.get();
+  const auto camera_settings = std::make_shared<pipeline::live::CameraSettings>(rig, options.markers.threshold);
+  options.camera_settings = camera_settings.get();
   if (command.view) {
-    page.emplace(WandPage::Options{.place = command.web,
+    page.emplace(WandPage::Options{.location = command.web,
                                    .allow_control = command.allow_control,
                                    .ground = [&](const Rig& found) { return ground_by_l_frame(found, options, command.frame); },
                                    .enough = [&] { will_do = true; }},
-                 rig, desk);
+                 rig, camera_settings);
   }
   WandScreen screen(command.quiet);
   const Keys keys([&](char key) { will_do = will_do || key == 'q'; });
   screen.begun(keys.listens());
-  options.waving = [&](const pipeline::calibrate::WandSeen& seen) {
-    screen.show(seen);
-    if (page) page->show(seen);
+  options.waving = [&](const pipeline::calibrate::WandObserved& detected) {
+    screen.show(detected);
+    if (page) page->show(detected);
     return !will_do;
   };
   options.waved = [&] {
@@ -204,10 +204,10 @@ void add_calibrate_wand(Command& calibrate) {
   command.output_file("-o,--output", options->out, "the rig file that is written").required().ends_in({".toml"}).may_replace(rig);
   command.choice("--lens", options->options.how.lens, kLensUses,
                  "refined where that explains more, and estimated where not given (auto); kept; refined");
-  command.flag("--synced", options->options.synced, "the cameras' clocks are right: look for no time offsets");
+  command.flag("--synced", options->options.synced, "the cameras' clocks are right: search for no time offsets");
   command.seed(options->options.how.seed, "of the random draws");
-  command.number("--for", options->options.wave_s, "s", closed(1, 36'000),
-                 "live cameras: the wand is waved until all have seen enough of it, at most so long");
+  command.number("--duration", options->options.wave_s, "s", closed(1, 36'000),
+                 "live cameras: the wand is waved until all have seen enough of it, at most this long");
   pipeline::jobs::Table rows;
   add_threshold_row(rows, options->options.markers.threshold);
   command.rows(std::move(rows));
@@ -215,7 +215,7 @@ void add_calibrate_wand(Command& calibrate) {
   command.group("To be watched");
   command.flag("--view", options->view,
                "live cameras: a page that shows them and what they saw of the wand; its address is printed");
-  add_web_place(command, options->web);
+  add_listen_address(command, options->web);
   add_ground_frame(command, options->frame,
                    "on the page: where the markers of an L-frame lie by which it sets the ground: X,Y;X,Y;… in m");
   command.flag("--allow-control", options->allow_control, "a page that others can open (--listen) may change cameras");

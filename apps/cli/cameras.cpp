@@ -39,7 +39,7 @@ Json as_json(const FoundCamera& camera) {
         {{"format", mode.format}, {"width", mode.size.width}, {"height", mode.size.height}, {"rates_hz", mode.rates_hz}});
   json["controls"] = Json::object();
   for (const FoundCamera::Control& control : camera.controls)
-    json["controls"][control.name] = {{"least", control.least}, {"most", control.most}, {"now", control.now}};
+    json["controls"][control.name] = {{"least", control.minimum}, {"most", control.maximum}, {"now", control.now}};
   return json;
 }
 
@@ -48,10 +48,10 @@ void print_camera(const FoundCamera& camera) {
   for (const FoundCamera::Mode& mode : camera.modes)
     fmt::print("  {} {}x{}{}\n", mode.format, mode.size.width, mode.size.height, rates_text(mode));
   for (const FoundCamera::Control& control : camera.controls)
-    fmt::print("  {}: {:g} to {:g}, now {:g}\n", control.name, control.least, control.most, control.now);
+    fmt::print("  {}: {:g} to {:g}, now {:g}\n", control.name, control.minimum, control.maximum, control.now);
 }
 
-/// Its first mode is what it gives when nobody asks for another.
+/// Its first mode is what it gives when no person asks for another.
 Rig rig_of(const std::vector<FoundCamera>& found) {
   Rig rig;
   for (const FoundCamera& each : found) {

@@ -38,13 +38,13 @@ format::match::GroundPeriod parse_period(const std::string& text, int number) {
   const auto first = whole_number_of(std::string_view(text).substr(0, dash));
   const auto last = whole_number_of(dash == std::string::npos ? std::string_view() : std::string_view(text).substr(dash + 1));
   if (!first || !last || *first < 0 || *last < *first || *last > 1'000'000'000)
-    throw Error("\"{}\" is no period; give its first and last frame, counted from 0, as 0-67499", text);
+    throw Error("\"{}\" is not a period; give its first and last frame, counted from 0, as 0-67499", text);
   return {number, static_cast<std::int32_t>(*first), static_cast<std::int32_t>(*last)};
 }
 
 edit::FrameRange parse_frames(const std::string& text) {
   const auto frames = edit::parse_range(text);
-  if (!frames) throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0, as 120:480, 120: or :480", text);
+  if (!frames) throw Error("\"{}\" are not frames; write FIRST:LAST, counted from 0, as 120:480, 120: or :480", text);
   return *frames;
 }
 
@@ -68,8 +68,8 @@ void run(ConvertCommand& command) {
 }
 
 /// What is read or written beside a file of a pair.
-std::vector<std::string> beside(const std::string& path) {
-  const std::string other = format::file_beside(path);
+std::vector<std::string> next_to(const std::string& path) {
+  const std::string other = format::file_next_to(path);
   return other.empty() ? std::vector<std::string>{} : std::vector{other};
 }
 
@@ -78,12 +78,12 @@ void add_reading_options(Command& command, ConvertCommand& options) {
   command.group("A skeleton's motion");
   command.number("--unit", how.read.skeleton_unit_m, "m", above(0, 1000),
                  "one unit of a BVH file that is read, in metres: 0.01 is cm, 0.0254 inches");
-  command.number("--amc-rate", how.read.amc_rate_hz, "Hz", kRates, "frames a second of an AMC file, which does not say");
+  command.number("--amc-rate", how.read.amc_rate_hz, "Hz", kRates, "frames a second of an AMC file, which does not specify");
   command.input_file("--metadata", how.read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside A under a like name");
   command.group("People on the ground");
-  command.text("--size", options.size, "of the pitch, LENGTHxWIDTH in m, where A does not say").check(parse_pitch_size);
-  command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where A does not say");
+  command.text("--size", options.size, "of the pitch, LENGTHxWIDTH in m, where A does not specify").check(parse_pitch_size);
+  command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where A does not specify");
   command.text("--home", how.home, "the team that is at home; else of the two largest the one whose people come first");
   command.text("--away", how.away, "the guests");
   command.texts("--period", options.periods, "first and last frame of a half, counted from 0, as 0-67499; once for each")
@@ -111,7 +111,7 @@ void add_convert(Command& program) {
       .output_file(
           "B", options->to,
           fmt::format("what to write; its ending names the format. Points in space: {}; people on the ground: {}; tracks in a "
-                      "picture: {}; calibrations: {}",
+                      "image: {}; calibrations: {}",
                       format::endings_of_written(Content::space), format::endings_of_written(Content::ground),
                       format::endings_of_written(Content::image), format::endings_of_written(Content::rig)))
       .required();
@@ -119,21 +119,21 @@ void add_convert(Command& program) {
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", how.up, kAxes,
-                 "the axis that is up in B, z where it is left out (in A, where B is a take); coordinates are turned accordingly");
+                 "the axis that is up in B, z where it is omitted (in A, where B is a take); coordinates are turned accordingly");
   command.choice("--from-up", how.from_up, kAxes,
-                 "the axis that is up in A; as A says where it is left out, else z; y of a skeleton's motion (.bvh, .asf)");
-  command.flag("--as-recorded", how.read.as_recorded, "of a take: without what was edited afterwards");
+                 "the axis that is up in A; as A says where it is omitted, else z; y of a skeleton's motion (.bvh, .asf)");
+  command.flag("--without-edits", how.read.as_recorded, "of a take: without what was edited afterwards");
   command
       .text("--frames", options->frames,
             "FIRST:LAST, counted from 0, both included: these alone, with their numbers and times as they were")
       .check(parse_frames);
-  command.flag("--labelled", how.labelled, "leave out tracks that have no label");
+  command.flag("--labelled-only", how.labelled, "omit tracks that have no label");
   command.input_file("--analog", how.analog,
                      "a C3D file whose analog channels, force plates and events go along into B, a C3D file too: the one that A, a "
                      "take, was made of");
   add_reading_options(command, *options);
-  command.also_reads([options] { return beside(options->from); });
-  command.also_writes([options] { return beside(options->to); });
+  command.also_reads([options] { return next_to(options->from); });
+  command.also_writes([options] { return next_to(options->to); });
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

@@ -16,8 +16,8 @@ extern "C" {
 
 #include "command_line.h"
 #include "commands.h"
+#include "completion.h"
 #include "json_value.h"
-#include "words.h"
 
 namespace marey::cli {
 namespace {
@@ -70,7 +70,7 @@ std::vector<Finding> cameras() {
     found.push_back({"cameras", device, readable, readable ? name : name + ": may not be read; add yourself to the group video"});
   }
   if (found.empty())
-    found.push_back({"cameras", "video devices", false, "none is connected; files and folders of pictures need none"});
+    found.push_back({"cameras", "video devices", false, "none is connected; files and folders of images need none"});
   return found;
 }
 
@@ -82,10 +82,10 @@ std::vector<Finding> examine() {
       decoder(AV_CODEC_ID_H264, "H.264"),
       decoder(AV_CODEC_ID_HEVC, "HEVC"),
       decoder(AV_CODEC_ID_AV1, "AV1"),
-      encoder("libx264", "films of overlays are written"),
-      program("ffmpeg", "the wheel of Python reads films by it", "ffmpeg"),
-      program("parallel", "marey batch submit --to parallel", "parallel"),
-      program("sbatch", "marey batch submit --to slurm", "slurm-client"),
+      encoder("libx264", "videos of overlays are written"),
+      program("ffmpeg", "the wheel of Python reads videos by it", "ffmpeg"),
+      program("parallel", "marey batch submit --engine parallel", "parallel"),
+      program("sbatch", "marey batch submit --engine slurm", "slurm-client"),
   };
   for (Finding& camera : cameras()) found.push_back(std::move(camera));
   return found;

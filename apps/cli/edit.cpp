@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 
 #include "marey/core/error.h"
+#include "marey/pipeline/take/describe_edits.h"
 #include "marey/pipeline/take/edit_take.h"
-#include "marey/pipeline/take/edit_words.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -51,7 +51,7 @@ void list(const EditCommand& command) {
   }
 }
 
-void say_head(const EditCommand& command) {
+void report_head(const EditCommand& command) {
   const std::size_t count = pipeline::take::edit_history(command.take).counting.size();
   if (command.json) {
     print({{"take", command.take}, {"counting", static_cast<std::int64_t>(count)}});
@@ -87,11 +87,11 @@ void do_edits(const EditCommand& command) {
   for (const std::string& note : notes) {
     if (!command.quiet) fmt::print(stderr, "{}\n", note);
   }
-  say_head(command);
+  report_head(command);
 }
 
 /// The edits that `other` has counting and `history` has not, in words.
-void say_without(const pipeline::take::EditHistory& history, const pipeline::take::EditHistory& other, std::string_view what) {
+void report_without(const pipeline::take::EditHistory& history, const pipeline::take::EditHistory& other, std::string_view what) {
   constexpr std::size_t kMostSaid = 12;
   std::vector<EditLine> lines = pipeline::take::lines_of(other);
   const auto& counting = history.counting;
@@ -103,7 +103,7 @@ void say_without(const pipeline::take::EditHistory& history, const pipeline::tak
   if (lines.size() > kMostSaid) fmt::print(stderr, "{}: {} more\n", what, lines.size() - kMostSaid);
 }
 
-/// --undo, --redo, --to.
+/// --undo, --redo, --undo-to.
 void move(const EditCommand& command) {
   const pipeline::take::EditHistory before = pipeline::take::edit_history(command.take);
   if (command.to) {
@@ -113,17 +113,17 @@ void move(const EditCommand& command) {
   }
   if (!command.json && !command.quiet) {
     const pipeline::take::EditHistory now = pipeline::take::edit_history(command.take);
-    say_without(now, before, "undone");
-    say_without(before, now, "done again");
+    report_without(now, before, "undone");
+    report_without(before, now, "done again");
   }
-  say_head(command);
+  report_head(command);
 }
 
 void run(const EditCommand& command) {
   const bool moves = command.undo || command.redo || command.to;
   const bool edits = !command.edits.empty() || !command.script.empty();
   if (int{command.undo} + int{command.redo} + int{command.to.has_value()} + int{command.list} + int{edits} > 1)
-    throw WrongUsage("--undo, --redo, --to and --list stand alone, without edits");
+    throw WrongUsage("--undo, --redo, --undo-to and --list stand alone, without edits");
   if (edits) return do_edits(command);
   if (!moves) return list(command);
   move(command);
@@ -146,7 +146,7 @@ void add_edit(Command& program) {
       "edits, one a line, done before those on the command line; # at a line's beginning or between blanks begins a remark");
   command.flag("--undo", options->undo, "let the last edit not count");
   command.flag("--redo", options->redo, "let it count again");
-  command.whole("--to", options->to, "ID", 0, 1'000'000'000,
+  command.whole("--undo-to", options->to, "ID", 0, 1'000'000'000,
                 "let the edits up to this one count, 0: none; --list shows their numbers");
   command.flag("--list", options->list, "show the edits; without any other option this is done");
   command.reports(options->json, options->quiet);

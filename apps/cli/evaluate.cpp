@@ -38,11 +38,11 @@ std::string frames_of(const std::vector<LabelledBox>& boxes) {
 }
 
 /// What a user should know before believing the figures.
-std::vector<std::string> doubts(const EvaluateOptions& options, const format::tracks::MotTable& truth,
-                                const format::tracks::MotTable& tracks, const evaluate::Evaluation& result) {
+std::vector<std::string> review_items(const EvaluateOptions& options, const format::tracks::MotTable& truth,
+                                      const format::tracks::MotTable& tracks, const evaluate::Evaluation& result) {
   std::vector<std::string> sentences = truth.warnings;
   sentences.insert(sentences.end(), tracks.warnings.begin(), tracks.warnings.end());
-  if (truth.boxes.empty()) sentences.push_back(fmt::format("{}: holds no box that is to be judged", options.truth));
+  if (truth.boxes.empty()) sentences.push_back(fmt::format("{}: holds no box that is to be evaluated", options.truth));
   if (tracks.boxes.empty()) sentences.push_back(fmt::format("{}: holds no box", options.tracks));
   if (truth.boxes.empty() || tracks.boxes.empty()) return sentences;
   const bool apart = truth.boxes.back().frame < tracks.boxes.front().frame || tracks.boxes.back().frame < truth.boxes.front().frame;
@@ -160,12 +160,12 @@ void run(const EvaluateOptions& options) {
   if (!options.distance && format::tracks::has_masks(options.truth) && format::tracks::has_masks(options.tracks)) {
     return evaluate_mask_files(options);
   }
-  if (options.distance) return evaluate_places(options.truth, options.tracks, *options.distance, options.json, options.quiet);
+  if (options.distance) return evaluate_positions(options.truth, options.tracks, *options.distance, options.json, options.quiet);
   format::tracks::MotTable truth = format::tracks::read_boxes(options.truth, format::tracks::MotKind::truth);
   if (options.motchallenge) std::erase_if(truth.boxes, [](const LabelledBox& box) { return box.score == 0; });
   const format::tracks::MotTable tracks = format::tracks::read_boxes(options.tracks, format::tracks::MotKind::tracks);
   const evaluate::Evaluation result = evaluate::evaluate(truth.boxes, tracks.boxes, options.iou);
-  const std::vector<std::string> warnings = doubts(options, truth, tracks, result);
+  const std::vector<std::string> warnings = review_items(options, truth, tracks, result);
   warn(warnings);
   if (options.json) {
     print(as_json(result, options.iou, warnings));
@@ -178,20 +178,20 @@ void run(const EvaluateOptions& options) {
 
 void add_evaluate(Command& program) {
   auto options = std::make_shared<EvaluateOptions>();
-  Command command = program.subcommand("evaluate", "Judge tracks against the truth");
+  Command command = program.subcommand("evaluate", "Evaluate tracks against the truth");
   command
-      .input_file(
-          "--truth", options->truth,
-          "the truth: MOTChallenge text, or any file of tracks in a picture (with --distance, of people on the ground or of "
-          "markers in space), or masks (MOTS text, COCO instances: then masks are evaluated); - for standard input")
+      .input_file("--truth", options->truth,
+                  "the truth: MOTChallenge text, or any file of tracks in an image (with --distance, of people on the ground or of "
+                  "markers in space), or masks (MOTS text, COCO instances: then masks are evaluated); - for standard input")
       .required();
-  command.input_file("--tracks", options->tracks, "the tracks to judge, likewise; - for standard input").required();
+  command.input_file("--tracks", options->tracks, "the tracks to evaluate, likewise; - for standard input").required();
   const Option iou = command.number("--iou", options->iou, "overlap", above(0, 1), "(IoU) from which a box counts as found");
-  const Option motchallenge = command.flag("--motchallenge", options->motchallenge,
-                                           "do not judge lines of the truth whose seventh column is 0, as MOTChallenge marks them");
+  const Option motchallenge =
+      command.flag("--motchallenge", options->motchallenge,
+                   "do not evaluate lines of the truth whose seventh column is 0, as MOTChallenge marks them");
   command
       .number("--distance", options->distance, "m", closed(1e-6, 1e3),
-              "judge people on the ground, or markers in space: from how near one counts as found")
+              "evaluate people on the ground, or markers in space: from how near one counts as found")
       .excludes(iou)
       .excludes(motchallenge);
   command.reports(options->json, options->quiet, "figures");

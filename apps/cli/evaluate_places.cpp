@@ -11,7 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
-#include "marey/pipeline/take/judge_match.h"
+#include "marey/pipeline/take/evaluate_match.h"
 
 #include "command_line.h"
 #include "json_value.h"
@@ -28,37 +28,37 @@ void add_spread(Json& json, const char* name, const char* unit, const std::optio
   json[key("p95")] = spread ? Json(spread->p95) : Json();
 }
 
-std::optional<double> share_kept(const std::vector<evaluate::TargetFate>& people) {
+std::optional<double> fraction_kept(const std::vector<evaluate::TargetFate>& people) {
   if (people.empty()) return std::nullopt;
   const auto kept = std::count_if(people.begin(), people.end(), [](const evaluate::TargetFate& person) { return person.kept(); });
   return static_cast<double>(kept) / static_cast<double>(people.size());
 }
 
-/// Of the reported places, those where nobody is.
-std::optional<double> share_false(const evaluate::ClearScores& clear) {
+/// Of the reported places, those where no person is.
+std::optional<double> fraction_false(const evaluate::ClearScores& clear) {
   if (!clear.precision) return std::nullopt;
   return 1 - *clear.precision;
 }
 
-Json people_json(const pipeline::take::MatchJudgement& judgement) {
-  std::map<int, pipeline::take::PathLengths> ways;
-  for (const pipeline::take::PathLengths& way : judgement.ways) ways[way.id] = way;
+Json people_json(const pipeline::take::MatchEvaluation& judgement) {
+  std::map<int, pipeline::take::PathLengths> methods;
+  for (const pipeline::take::PathLengths& method : judgement.methods) methods[method.id] = method;
   Json people = Json::array();
   for (const evaluate::TargetFate& person : judgement.evaluation.people) {
     Json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
                {"found", person.found}, {"own", person.agreeing}, {"switches", person.switches},
                {"kept", person.kept()}};
     if (person.track) entry["track"] = *person.track;
-    if (const auto way = ways.find(person.id); way != ways.end()) {
-      entry["true_distance_m"] = way->second.true_m;
-      entry["track_distance_m"] = way->second.track_m;
+    if (const auto method = methods.find(person.id); method != methods.end()) {
+      entry["true_distance_m"] = method->second.true_m;
+      entry["track_distance_m"] = method->second.track_m;
     }
     people.push_back(std::move(entry));
   }
   return people;
 }
 
-Json as_json(const pipeline::take::MatchJudgement& judgement, double distance, const std::vector<std::string>& warnings) {
+Json as_json(const pipeline::take::MatchEvaluation& judgement, double distance, const std::vector<std::string>& warnings) {
   const evaluate::Evaluation& scores = judgement.evaluation.scores;
   Json json = cli::as_json(scores);
   json["distance"] = distance;
@@ -66,8 +66,8 @@ Json as_json(const pipeline::take::MatchJudgement& judgement, double distance, c
   json["true_places"] = scores.true_boxes;
   json["track_places"] = scores.track_boxes;
   json["found"] = or_null(scores.clear.recall);
-  json["false"] = or_null(share_false(scores.clear));
-  json["kept"] = or_null(share_kept(judgement.evaluation.people));
+  json["false"] = or_null(fraction_false(scores.clear));
+  json["kept"] = or_null(fraction_kept(judgement.evaluation.people));
   json["distance_error"] = or_null(judgement.distance_error);
   json["people"] = people_json(judgement);
   json["warnings"] = warnings;
@@ -86,7 +86,7 @@ std::string words_of(const std::optional<evaluate::ErrorSpread>& spread, int dig
   return spread ? fmt::format("{0:.{3}f} / {1:.{3}f} / {2:.{3}f}", spread->rms, spread->median, spread->p95, digits) : "none";
 }
 
-void print_table(const pipeline::take::MatchJudgement& judgement, double distance, bool in_space) {
+void print_table(const pipeline::take::MatchEvaluation& judgement, double distance, bool in_space) {
   const evaluate::Evaluation& scores = judgement.evaluation.scores;
   const evaluate::ClearScores& clear = scores.clear;
   fmt::print("{} instants; truth: {} {}, {} places; tracks: {}, {} places. {} counts as found within {} m.\n\n", scores.frames,
@@ -94,11 +94,11 @@ void print_table(const pipeline::take::MatchJudgement& judgement, double distanc
              in_space ? "A marker" : "Someone", distance);
   fmt::print("Finding\n");
   print_ground_row("found", percent(clear.recall), fmt::format("of the true places; {} missed", clear.misses).c_str());
-  print_ground_row("false", percent(share_false(clear)),
-                   fmt::format("of the reported places: {} where nobody is", clear.false_positives).c_str());
+  print_ground_row("false", percent(fraction_false(clear)),
+                   fmt::format("of the reported places: {} where no person is", clear.false_positives).c_str());
   print_ground_row("MOTA", percent(clear.mota), "1 - (FP + FN + IDSW) / true places");
   fmt::print("Naming\n");
-  print_ground_row("kept", percent(share_kept(judgement.evaluation.people)),
+  print_ground_row("kept", percent(fraction_kept(judgement.evaluation.people)),
                    in_space ? "of the markers: one track in 80 % of their instants and no switch"
                             : "of the people: one track in 80 % of their instants and no switch");
   print_ground_row("IDSW", fmt::format("{}", clear.switches),
@@ -117,12 +117,12 @@ void print_table(const pipeline::take::MatchJudgement& judgement, double distanc
 }
 
 /// What a user should know before believing the figures.
-std::vector<std::string> doubts(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
-                                const Recording& tracks, const pipeline::take::MatchJudgement& judgement) {
+std::vector<std::string> review_items(const std::string& truth_name, const std::string& tracks_name, const Recording& truth,
+                                      const Recording& tracks, const pipeline::take::MatchEvaluation& judgement) {
   std::vector<std::string> sentences = judgement.warnings;
   const bool truth_is_empty = truth.samples() == 0, tracks_are_empty = tracks.samples() == 0;
-  if (truth_is_empty) sentences.push_back(fmt::format("{}: nobody is in it", truth_name));
-  if (tracks_are_empty) sentences.push_back(fmt::format("{}: nobody is in it", tracks_name));
+  if (truth_is_empty) sentences.push_back(fmt::format("{}: no person is in it", truth_name));
+  if (tracks_are_empty) sentences.push_back(fmt::format("{}: no person is in it", tracks_name));
   if (truth_is_empty || tracks_are_empty) return sentences;
   if (judgement.evaluation.scores.common_frames == 0) sentences.push_back("truth and tracks have no instant in common");
   const double true_first = truth.seconds_at(0), true_last = truth.seconds_at(truth.instants().size() - 1);
@@ -135,7 +135,7 @@ std::vector<std::string> doubts(const std::string& truth_name, const std::string
 }
 
 /// People on the ground, or markers in space, whatever the file.
-Recording places_in(const std::string& path, const format::ReadOptions& options = {}) {
+Recording positions_in(const std::string& path, const format::ReadOptions& options = {}) {
   const format::Format* format = path == "-" ? nullptr : format::format_of_content(path);
   const bool may_be_space = format != nullptr && format->holds.has(format::Content::space);
   if (!may_be_space || format::content_of(format::open_recording(path, *format, options)->header().frame) != format::Content::space)
@@ -145,14 +145,14 @@ Recording places_in(const std::string& path, const format::ReadOptions& options 
 
 }  // namespace
 
-void evaluate_places(const std::string& truth_name, const std::string& tracks_name, double distance, bool json, bool quiet) {
-  const Recording tracks = places_in(tracks_name);
+void evaluate_positions(const std::string& truth_name, const std::string& tracks_name, double distance, bool json, bool quiet) {
+  const Recording tracks = positions_in(tracks_name);
   // A truth that has frames and no times has the tracks'.
   format::ReadOptions as_tracks;
   as_tracks.rate_hz = tracks.header.rate_hz;
-  const Recording truth = places_in(truth_name, as_tracks);
-  const pipeline::take::MatchJudgement judgement = pipeline::take::judge_match(truth, tracks, distance);
-  const std::vector<std::string> warnings = doubts(truth_name, tracks_name, truth, tracks, judgement);
+  const Recording truth = positions_in(truth_name, as_tracks);
+  const pipeline::take::MatchEvaluation judgement = pipeline::take::evaluate_match(truth, tracks, distance);
+  const std::vector<std::string> warnings = review_items(truth_name, tracks_name, truth, tracks, judgement);
   warn(warnings);
   if (json) {
     print(as_json(judgement, distance, warnings));

@@ -4,8 +4,8 @@
 
 namespace marey::cli {
 
-/// `marey evaluate --distance`: judges places on the ground, or in space, and prints what came out, as JSON on request. Throws
+/// `marey evaluate --distance`: evaluates places on the ground, or in space, and prints what came out, as JSON on request. Throws
 /// Error.
-void evaluate_places(const std::string& truth, const std::string& tracks, double distance, bool json, bool quiet);
+void evaluate_positions(const std::string& truth, const std::string& tracks, double distance, bool json, bool quiet);
 
 }  // namespace marey::cli

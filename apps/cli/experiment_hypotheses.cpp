@@ -23,13 +23,13 @@ struct ExperimentHypotheses {
 Json as_json(const experiments::HypothesesExperiment& experiment) {
   Json list = Json::array();
   for (std::size_t kind = 0; kind < experiment.kinds.size(); ++kind) {
-    Json entry = {{"meeting", experiment.kinds[kind]}, {"meetings", experiment.meetings[kind]}};
+    Json entry = {{"meeting", experiment.kinds[kind]}, {"meetings", experiment.close_encounters[kind]}};
     for (const auto& row : experiment.rows) {
       const auto& score = row.scores[kind];
       entry["methods"][row.method] = {{"switches", score.switches},
                                       {"people", score.people},
                                       {"misses", score.misses},
-                                      {"false", score.strangers},
+                                      {"false", score.untrusted},
                                       {"step_us", score.step_us}};
     }
     list.push_back(std::move(entry));
@@ -59,7 +59,7 @@ void add_experiment_hypotheses(Command& experiment) {
   track::ground::GroundTrackerOptions& tracker = options->options.tracker;
   command.whole("--scenes", options->options.scenes, "N", 1, 10'000, "of each kind of meeting");
   command.seed(options->options.seed, "of the first scene; the others follow");
-  command.number("--missed", encounters.missed, "probability", closed(0, 0.9), "that a person is not seen in a frame");
+  command.number("--miss-rate", encounters.missed, "probability", closed(0, 0.9), "that a person is not seen in a frame");
   command.number("--clutter", encounters.clutter, "a frame", closed(0, 100), "false observations");
   command.number("--merged", encounters.merged, "m", closed(0, 5), "two nearer than this are seen as one");
   command.whole("--hypotheses", tracker.hypotheses, "N", 1, 10'000, "kept for each cluster, at most");

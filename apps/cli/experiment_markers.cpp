@@ -54,8 +54,8 @@ void run(const ExperimentMarkers& command) {
 
 void add_experiment_markers(Command& experiment) {
   auto options = std::make_shared<ExperimentMarkers>();
-  Command command =
-      experiment.subcommand("markers", "Markers where they are hard to find and to tell apart, beside what a plain threshold does");
+  Command command = experiment.subcommand(
+      "markers", "Markers where they are hard to find and to distinguish, beside what a plain threshold does");
   command.whole("--videos", options->options.videos, "N", 1, 10'000, "of each scene");
   command.seed(options->options.seed, "of the first video; the others follow");
   command.text("--only", options->options.only, "scenes whose names contain this");

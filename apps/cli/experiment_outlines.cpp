@@ -31,7 +31,7 @@ Json as_json(const experiments::OutlineExperiment& experiment) {
     for (const auto& row : experiment.rows) {
       const experiments::OutlineScore& score = row.scores[c];
       Json& method = entry["methods"][row.method];
-      method = {{"iou", score.iou}, {"lost", score.lost}, {"followed", score.followed}, {"frames", score.frames}};
+      method = {{"iou", score.iou}, {"lost", score.lost}, {"followed", score.tracked}, {"frames", score.frames}};
       if (score.centre_error) method["centre_error_px"] = *score.centre_error;
       if (score.jitter) method["jitter_px"] = *score.jitter;
       if (score.target_us) method["target_us"] = *score.target_us;

@@ -77,7 +77,7 @@ void add_experiment_trackers(Command& experiment) {
   Command command = experiment.subcommand("trackers", "Tables I-VII of the OpenMoCap paper: every filter, in five situations");
   command.whole("--videos", options->options.videos, "N", 1, 10'000, "in each situation");
   command.seed(options->options.seed, "of the first video; the others follow");
-  command.output_folder("-o,--output", options->out, "folder for a plot of each table and a picture like Figure 3, as SVG");
+  command.output_folder("-o,--output", options->out, "folder for a plot of each table and an image like Figure 3, as SVG");
   command.reports(options->json, options->quiet, "tables", &options->markdown);
   command.runs([options] { run(*options); });
 }

@@ -80,7 +80,7 @@ void add_gait(Command& program) {
   Command command = program.subcommand("gait", "Joint angles, steps and gait cycles of a walk, from Plug-in Gait's markers");
   command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
       .required();
-  command.input_file("--static", options->options.static_trial,
+  command.input_file("--static-trial", options->options.static_trial,
                      "the same person, standing: for the feet's neutral position and the legs' lengths");
   command.output_file("-o,--output", options->output.cycles, "CSV: every angle at 101 points of the cycle, mean and deviation")
       .ends_in({".csv"});
@@ -95,8 +95,8 @@ void add_gait(Command& program) {
       .ends_in({".c3d"});
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  command.choice("--up", options->options.up, kAxes, "the axis that is up in RECORDING; as it says where this is left out, else z");
-  command.group("The person, where the files do not say");
+  command.choice("--up", options->options.up, kAxes, "the axis that is up in RECORDING; as it says where this is omitted, else z");
+  command.group("The person, where the files do not specify");
   command.number("--leg-length", options->leg_length, "m", above(0, 2), "from the hip's front spine to the inner ankle");
   command.number("--knee-width", options->knee_width, "m", above(0, 0.5), "across its sides");
   command.number("--ankle-width", options->ankle_width, "m", above(0, 0.5), "across its sides");

@@ -3,7 +3,7 @@
 namespace marey::cli {
 
 Option add_ground_frame(Command& command, std::string& text, const std::string& meaning) {
-  return command.text("--frame", text, meaning).check([](const std::string& given) { ground_frame_of(given); });
+  return command.text("--l-frame", text, meaning).check([](const std::string& given) { ground_frame_of(given); });
 }
 
 std::vector<Vector<3>> ground_frame_of(const std::string& text) {

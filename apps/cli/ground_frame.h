@@ -9,9 +9,9 @@
 
 namespace marey::cli {
 
-inline constexpr const char* kUsualGroundFrame = "0,0;0.2,0;0.6,0;0,0.4";
+inline constexpr const char* kDefaultGroundFrame = "0,0;0.2,0;0.6,0;0,0.4";
 
-/// --frame of an L-frame on the floor, checked.
+/// --l-frame of an L-frame on the floor, checked.
 Option add_ground_frame(Command& command, std::string& text, const std::string& meaning);
 
 /// Its markers, m, on the ground.

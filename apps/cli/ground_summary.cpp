@@ -35,7 +35,7 @@ void print_json(const pipeline::people::GroundSummary& summary, const pipeline::
                      {"people", summary.tracks},
                      {"rows", summary.samples},
                      {"predicted", summary.samples - summary.measured},
-                     {"off_pitch", left_out_of(summary, "off_pitch")},
+                     {"off_pitch", excluded_of(summary, "off_pitch")},
                      {"cameras", cameras},
                      {"teams", teams},
                      {"elapsed", elapsed},
@@ -53,7 +53,7 @@ void print_json(const pipeline::people::GroundSummary& summary, const pipeline::
 }
 
 void print_summary(const pipeline::people::GroundSummary& summary, const pipeline::people::GroundOutput& output, double elapsed) {
-  for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
+  for (const std::string& message_text : summary.notes) fmt::print(stderr, "{}\n", message_text);
   const std::size_t count = summary.cameras.size();
   fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.tracks,
              summary.tracks == 1 ? "person" : "people", summary.frames, summary.seconds, count, count == 1 ? "camera" : "cameras",
@@ -61,14 +61,14 @@ void print_summary(const pipeline::people::GroundSummary& summary, const pipelin
   for (const analyse::Teams::Team& team : summary.teams) fmt::print(stderr, "team {}: {} people\n", team.name, team.people);
   const std::int64_t predicted = summary.samples - summary.measured;
   if (predicted > 0)
-    fmt::print(stderr, "{:.1f} % of their places were not seen but told from before and after\n",
+    fmt::print(stderr, "{:.1f} % of their places were not seen but distinguished from before and after\n",
                percent_of(predicted, summary.samples));
-  if (const auto off = left_out_of(summary, "off_pitch")) fmt::print(stderr, "left out: {} who were never on the pitch\n", off);
+  if (const auto off = excluded_of(summary, "off_pitch")) fmt::print(stderr, "omitted: {} who were never on the pitch\n", off);
   for (const pipeline::corridor::Summary::Camera& camera : summary.cameras) {
     fmt::print(stderr, "{}: {} frames, {:.1f} people in each", camera.name, camera.frames,
                static_cast<double>(camera.detections) / static_cast<double>(std::max<std::int64_t>(1, camera.frames)));
     if (camera.missed > 0) fmt::print(stderr, "; no frame for {} instants", camera.missed);
-    if (camera.outside > 0) fmt::print(stderr, "; left out: {} seen beyond the pitch", camera.outside);
+    if (camera.outside > 0) fmt::print(stderr, "; omitted: {} seen beyond the pitch", camera.outside);
     if (camera.misfits > 0) fmt::print(stderr, "; {} moving regions that no body explains", camera.misfits);
     fmt::print(stderr, "\n");
   }

@@ -33,7 +33,7 @@ struct InfoOptions {
 /// What the edits that count have left of a take; what cameras saw they do not touch.
 RecordingSummary edited_summary(const InfoOptions& options, const format::Format& format, const RecordingSummary& recorded) {
   RecordingSummary summary = format::open_recording(options.file, format, {})->summary();
-  summary.seen = recorded.seen;
+  summary.detected = recorded.detected;
   summary.complete = recorded.complete;
   return summary;
 }
@@ -103,8 +103,8 @@ void report_facts(const InfoOptions& options, std::string_view format, std::stri
   if (options.json) print(json);
 }
 
-/// A film or pictures; nothing where it is neither.
-std::unique_ptr<Source> film_at(const std::string& path) {
+/// A video or images; nothing if it is neither.
+std::unique_ptr<Source> video_at(const std::string& path) {
   try {
     return source::open_source(path);
   } catch (const Error&) {
@@ -112,8 +112,8 @@ std::unique_ptr<Source> film_at(const std::string& path) {
   }
 }
 
-void report_film(const InfoOptions& options, const Source& film) {
-  const SourceInfo& info = film.info();
+void report_video(const InfoOptions& options, const Source& video) {
+  const SourceInfo& info = video.info();
   std::vector<format::Fact> facts{{"size", fmt::format("{}x{}", info.size.width, info.size.height),
                                    fmt::format("{} x {} px", info.size.width, info.size.height)}};
   if (info.rate_hz) facts.push_back({"rate_hz", *info.rate_hz, fmt::format("{:g} frames a second", *info.rate_hz)});
@@ -122,15 +122,15 @@ void report_film(const InfoOptions& options, const Source& film) {
     const double length_s = info.rate_hz ? static_cast<double>(*info.frame_count) / *info.rate_hz : 0;
     if (info.rate_hz) facts.push_back({"duration_s", length_s, duration_words(length_s)});
   }
-  print_warnings(film.warnings());
-  report_facts(options, "film", "a film, or pictures", facts);
+  print_warnings(video.warnings());
+  report_facts(options, "film", "a video, or images", facts);
 }
 
 void run(const InfoOptions& options) {
   const format::Format* format = format::format_of_content(options.file);
   if (format == nullptr) {
-    if (const auto film = film_at(options.file)) return report_film(options, *film);
-    throw Error("{}: is none of the files that Marey knows: films, pictures; {}", options.file, files_that_are_known());
+    if (const auto video = video_at(options.file)) return report_video(options, *video);
+    throw Error("{}: is not one of the files that Marey knows: videos, images; {}", options.file, files_that_are_known());
   }
   if (format->read != nullptr) return report_match(options, *format);
   if (format->open != nullptr) return report_recording(options, *format);
@@ -143,7 +143,7 @@ void run(const InfoOptions& options) {
 void add_info(Command& program) {
   auto options = std::make_shared<InfoOptions>();
   Command command = program.subcommand("info", "Say what is in a file");
-  command.input_file("FILE", options->file, "a film, pictures, or a file of: " + files_that_are_known()).required();
+  command.input_file("FILE", options->file, "a video, images, or a file of: " + files_that_are_known()).required();
   command.input_file("--metadata", options->metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside FILE under a like name");
   command.reports(options->json, options->quiet, "contents");

@@ -7,7 +7,7 @@
 #include "marey/core/recording_reader.h"
 #include "marey/format/format.h"
 #include "marey/format/match/ground_match.h"
-#include "marey/pipeline/take/edit_words.h"
+#include "marey/pipeline/take/describe_edits.h"
 
 #include "json_value.h"
 

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "marey/core/other_ground.h"
-#include "marey/core/text_safety.h"
+#include "marey/core/ground_transform.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/match/line_ups.h"
 #include "marey/format/register.h"
 
@@ -27,7 +27,7 @@ std::string names_of(const std::vector<Body>& bodies) {
   return bodies.size() > kNamed ? names + ", …" : names;
 }
 
-/// All frames between the first and the last, those that are left out too.
+/// All frames between the first and the last, those that are omitted too.
 std::int64_t span_of(const RecordingSummary& summary) {
   return summary.first_index ? *summary.last_index - *summary.first_index + 1 : 0;
 }
@@ -86,9 +86,9 @@ Extent extent_of(const Recording& recording) {
   bool any = false;
   for (const TrackColumns& track : recording.tracks()) {
     for (std::size_t row = 0; row < track.size(); ++row) {
-      const Vector<2> place = track.place(row);
-      extent.low = any ? Vector<2>(extent.low.cwiseMin(place)) : place;
-      extent.high = any ? Vector<2>(extent.high.cwiseMax(place)) : place;
+      const Vector<2> location = track.location(row);
+      extent.low = any ? Vector<2>(extent.low.cwiseMin(location)) : location;
+      extent.high = any ? Vector<2>(extent.high.cwiseMax(location)) : location;
       any = true;
     }
   }
@@ -145,7 +145,7 @@ void print_rig(const Rig& rig) {
 void print_recording(const std::string& path, const format::Format& format, const format::FileInfo& info,
                      const RecordingSummary& summary, const std::vector<pipeline::take::EditLine>& edits) {
   fmt::print("{}: {}{}\n", path, format.title,
-             summary.complete ? "" : "; its recording was cut off or still goes on, what follows is what there is");
+             summary.complete ? "" : "; its recording was cut off or still continues, what follows is what there is");
   print_row("name", info.header.name);
   print_row("made by", info.header.made_by.program);
   print_row("recorded", info.header.recorded_at);
@@ -153,7 +153,7 @@ void print_recording(const std::string& path, const format::Format& format, cons
   const double length_s = summary.first_time ? seconds(*summary.last_time - *summary.first_time) + 1 / info.header.rate_hz : 0;
   print_row("length",
             fmt::format("{}: {} frames at {:g} Hz{}", duration_words(length_s), counted(frames), info.header.rate_hz,
-                        summary.instants < frames ? fmt::format(", {} of them left out", counted(frames - summary.instants)) : ""));
+                        summary.instants < frames ? fmt::format(", {} of them omitted", counted(frames - summary.instants)) : ""));
   if (summary.first_index) print_row("frames", fmt::format("{} to {}, counted from 0", *summary.first_index, *summary.last_index));
   const auto labelled =
       std::count_if(summary.tracks.begin(), summary.tracks.end(), [](const auto& count) { return !count.name.label.empty(); });
@@ -166,10 +166,10 @@ void print_recording(const std::string& path, const format::Format& format, cons
   print_row("points", fmt::format("{}: {} measured, {} filled, {} predicted", counted(summary.samples),
                                   percent(summary.samples - filled - predicted, summary.samples), percent(filled, summary.samples),
                                   percent(predicted, summary.samples)));
-  if (format.name == "take") print_row("observations", counted(summary.seen));
+  if (format.name == "take") print_row("observations", counted(summary.detected));
   if (!info.header.bodies.empty()) print_row("bodies", names_of(info.header.bodies));
-  if (info.beside.channels > 0) print_row("analog", fmt::format("{} channels", info.beside.channels));
-  if (info.beside.events > 0) print_row("events", fmt::format("{}", info.beside.events));
+  if (info.next_to.channels > 0) print_row("analog", fmt::format("{} channels", info.next_to.channels));
+  if (info.next_to.events > 0) print_row("events", fmt::format("{}", info.next_to.events));
   print_row("positions", to_string(info.header.frame) + (y_grows_down(info.header) ? "; y grows downwards" : ""));
   if (info.header.rig && info.header.time_base.kind != TimeBase::Kind::unspecified)
     print_row("times", to_string(info.header.time_base, *info.header.rig));
@@ -217,7 +217,7 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
   Json result{{"format", format.name},          {"complete", summary.complete},
               {"name", info.header.name},       {"made_by", info.header.made_by.program},
               {"rate_hz", info.header.rate_hz}, {"frames", summary.instants},
-              {"points", summary.samples},      {"observations", summary.seen},
+              {"points", summary.samples},      {"observations", summary.detected},
               {"tracks", std::move(tracks)}};
   if (summary.first_index) {
     result["first_frame"] = *summary.first_index;
@@ -230,21 +230,21 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
   if (info.header.track_kind != TrackKind::unspecified) result["track_kind"] = to_string(info.header.track_kind);
   for (const Body& body : info.header.bodies)
     result["bodies"].push_back({{"name", body.label}, {"skeleton", body.skeleton}, {"markers", body.markers.size()}});
-  if (info.beside.channels > 0) result["analog_channels"] = info.beside.channels;
-  if (info.beside.events > 0) result["events"] = info.beside.events;
+  if (info.next_to.channels > 0) result["analog_channels"] = info.next_to.channels;
+  if (info.next_to.events > 0) result["events"] = info.next_to.events;
   if (!info.header.recorded_at.empty()) result["recorded_at"] = info.header.recorded_at;
   if (info.up) result["up"] = *info.up == format::UpAxis::y ? "y" : "z";
   if (info.header.rig && !info.header.rig->cameras.empty()) result["cameras"] = info_json(*info.header.rig);
   if (y_grows_down(info.header)) result["y_down"] = true;
-  Json told = Json::array();
+  Json reported = Json::array();
   for (const Edit& edit : info.edits) {
     Json entry{{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}};
     const auto line =
         std::find_if(edits.begin(), edits.end(), [&](const pipeline::take::EditLine& each) { return each.id == edit.id; });
     if (line != edits.end()) entry["words"] = line->words, entry["counts"] = line->counts;
-    told.push_back(std::move(entry));
+    reported.push_back(std::move(entry));
   }
-  if (!told.empty()) result["edits"] = std::move(told);
+  if (!reported.empty()) result["edits"] = std::move(reported);
   return result;
 }
 
@@ -282,7 +282,7 @@ Json info_json(const format::Format& format, const format::match::GroundMatch& m
 void print_match(const std::string& path, const format::Format& format, const format::match::GroundMatch& match) {
   const Recording& recording = match.recording;
   fmt::print("{}: {}\n", path, format.title);
-  if (recording.samples() == 0) return print_row("people", "nobody is in it");
+  if (recording.samples() == 0) return print_row("people", "no person is in it");
   const auto &first = recording.instants().front(), &last = recording.instants().back();
   const double rate_hz = recording.header.rate_hz;
   print_row("length",

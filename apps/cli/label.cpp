@@ -24,14 +24,14 @@ namespace {
 struct LearnLabelsCommand {
   std::vector<std::string> recordings;
   std::string out, markers;
-  std::vector<std::string> leave_out;
+  std::vector<std::string> exclude;
   solve::labels::LearnOptions options;
   bool json = false, quiet = false;
 };
 
 struct LabelCommand {
   std::string recording, set, out;
-  std::vector<std::string> leave_out, accept;
+  std::vector<std::string> exclude, accept;
   solve::labels::LabelOptions options;
   bool json = false, quiet = false;
 };
@@ -62,7 +62,7 @@ void run(LearnLabelsCommand& command) {
   }
   std::vector<std::string> warnings;
   const LearnedMarkers learned =
-      pipeline::markers::learn_labels(command.recordings, command.out, command.options, patterns_in(command.leave_out), &warnings);
+      pipeline::markers::learn_labels(command.recordings, command.out, command.options, patterns_in(command.exclude), &warnings);
   for (std::string& warning : pipeline::markers::warnings_of(learned)) warnings.push_back(std::move(warning));
   warn(warnings);
   if (command.json) {
@@ -83,27 +83,27 @@ void print_labelled(const LabelCommand& command, const pipeline::markers::LabelS
              summary.instants);
   fmt::print(stderr, "  {:<16} {:>8} {:>6} {:>9} {:>9}\n", "marker", "seen", "gaps", "renamed", "outliers");
   for (const auto& marker : summary.health) {
-    if (marker.seen == 0) {
+    if (marker.detected == 0) {
       fmt::print(stderr, "  {:<16}    never: no points lie as far from the others as it should\n", marker.label);
       continue;
     }
-    fmt::print(stderr, "  {:<16} {:>6.1f} % {:>6} {:>9} {:>9}\n", marker.label, percent_of(marker.seen, summary.instants),
+    fmt::print(stderr, "  {:<16} {:>6.1f} % {:>6} {:>9} {:>9}\n", marker.label, percent_of(marker.detected, summary.instants),
                marker.gaps, marker.renamed, marker.outliers);
   }
   fmt::print(stderr,
              "  (seen: of the frames; gaps: times that it is missing in between; renamed: frames in which its track had another "
              "name of the set before; outliers: frames in which its distances to the others are off)\n");
-  if (summary.renamed > 0) fmt::print(stderr, "put right: {} stretches of tracks had another name of the set\n", summary.renamed);
+  if (summary.renamed > 0) fmt::print(stderr, "corrected: {} stretches of tracks had another name of the set\n", summary.renamed);
   if (summary.accepted > 0)
     fmt::print(stderr, "accepted: {} {} the name that fits best\n", summary.accepted,
                summary.accepted == 1 ? "piece got" : "pieces got");
-  int told = 0;
+  int reported = 0;
   for (const auto& piece : summary.unnamed) {
-    if (piece.best.empty() || piece.last - piece.first < 10 || told++ >= 10) continue;
+    if (piece.best.empty() || piece.last - piece.first < 10 || reported++ >= 10) continue;
     fmt::print(stderr, "  frames {}-{} of track {} have no name: {}{}{}?\n", piece.first, piece.last, number(piece.track),
                piece.best, piece.next.empty() ? "" : " or ", piece.next);
   }
-  if (told > 0 && command.accept.empty())
+  if (reported > 0 && command.accept.empty())
     fmt::print(stderr, "  --accept all, or --accept with some of these names, gives pieces the first name\n");
   fmt::print(stderr, "{}\n", command.out);
 }
@@ -115,7 +115,7 @@ Json labelled_json(const LabelCommand& command, const pipeline::markers::LabelSu
   json["markers"] = Json::array();
   for (const auto& marker : summary.health)
     json["markers"].push_back({{"label", marker.label},
-                               {"seen", marker.seen},
+                               {"seen", marker.detected},
                                {"gaps", marker.gaps},
                                {"renamed", marker.renamed},
                                {"outliers", marker.outliers}});
@@ -129,7 +129,7 @@ Json labelled_json(const LabelCommand& command, const pipeline::markers::LabelSu
 void run(const LabelCommand& command) {
   const auto summary = with_progress(command.quiet, [&](const Hooks& hooks) {
     return pipeline::markers::label_recording(command.recording, command.set, command.out, command.options, hooks,
-                                              patterns_in(command.leave_out), patterns_in(command.accept));
+                                              patterns_in(command.exclude), patterns_in(command.accept));
   });
   warn(summary.warnings);
   if (command.json) {
@@ -139,8 +139,8 @@ void run(const LabelCommand& command) {
   }
 }
 
-void add_leave_out(Command& command, std::vector<std::string>& patterns) {
-  command.texts("--leave-out", patterns, "points that are no markers, by their labels: LHJC,RHJC or *JC; may be given often");
+void add_exclude(Command& command, std::vector<std::string>& patterns) {
+  command.texts("--exclude", patterns, "points that are not markers, by their labels: LHJC,RHJC or *JC; may be given often");
 }
 
 void add_learn(Command& label) {
@@ -154,8 +154,8 @@ void add_learn(Command& label) {
       "those that belong to it: commas between, a file with one a line, or a set of the field as far as they have its markers: " +
           marker_set_names() + " (default: all with names)");
   command.also_reads([options] { return std::vector{options->markers}; });  // it may be a file
-  add_leave_out(command, options->leave_out);
-  command.flag("--scaled", options->options.scaled,
+  add_exclude(command, options->exclude);
+  command.flag("--scale-invariant", options->options.scaled,
                "the recordings are of subjects of several sizes, and the set is for others still");
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
@@ -170,21 +170,22 @@ void add_label(Command& program) {
   // None of these is required by the parser, which would ask "label learn" for them too.
   command.input_file("RECORDING", options->recording,
                      "points in space; names that it has count nothing: " + format::names_of_read(format::Content::space));
-  command.input_file("--set", options->set, "set.toml, by \"marey label learn\"");
+  command.input_file("--marker-set", options->set, "set.toml, by \"marey label learn\"");
   command.output_file("-o,--output", options->out,
                       "the recording with names: " + format::endings_of_written(format::Content::space));
-  add_leave_out(command, options->leave_out);
+  add_exclude(command, options->exclude);
   command.texts(
       "--accept", options->accept,
-      "what stays without a name gets the one that fits it best, where nobody else bears it: all, or C7,T10; may be given "
+      "what stays without a name gets the one that fits it best, where no other person bears it: all, or C7,T10; may be given "
       "often");
   auto& how = options->options;
-  command.number("--least-fit", how.least_fit, "nats", closed(0, 100), "what fits no name better stays without one");
-  command.number("--least-margin", how.least_margin, "nats", closed(0, 100), "by so much a name must be better than the next");
+  command.number("--min-fit", how.min_fit, "nats", closed(0, 100), "what fits no name better stays without one");
+  command.number("--min-margin", how.min_margin, "nats", closed(0, 100), "by this much a name must be better than the next");
   command.reports(options->json, options->quiet);
   command.runs([options] {
-    if (options->recording.empty()) throw WrongUsage("RECORDING is missing; \"marey label RECORDING --set set.toml -o OUTPUT\"");
-    if (options->set.empty()) throw WrongUsage("--set is missing; \"marey label learn\" makes one");
+    if (options->recording.empty())
+      throw WrongUsage("RECORDING is missing; \"marey label RECORDING --marker-set set.toml -o OUTPUT\"");
+    if (options->set.empty()) throw WrongUsage("--marker-set is missing; \"marey label learn\" makes one");
     if (options->out.empty()) throw WrongUsage("-o is missing; name the file to write");
     run(*options);
   });

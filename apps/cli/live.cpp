@@ -13,9 +13,9 @@
 #include <fmt/core.h>
 
 #include "marey/core/rig_sources.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/pipeline/jobs/live.h"
-#include "marey/pipeline/live/camera_films.h"
+#include "marey/pipeline/live/camera_videos.h"
 #include "marey/pipeline/live/live_feeds.h"
 
 #include "camera_health.h"
@@ -72,17 +72,17 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
                {"samples", summary.samples},
                {"take", summary.recorded ? Json(command.out) : Json()},
                {"warnings", summary.warnings}};
-  json["dropped"] = {{"overtaken", drops.overtaken},
+  json["dropped"] = {{"overtaken", drops.superseded},
                      {"incomplete", drops.incomplete},
                      {"empty", drops.empty},
                      {"late_frames", drops.late_frames},
                      {"overrun", drops.overrun}};
   for (std::size_t i = 0; i < summary.last.cameras.size(); ++i) {
     const CameraHealth& camera = summary.last.cameras[i];
-    Json& told = json["cameras"][camera.name];
-    told = health_json_of(camera, "frames", camera.frames);
-    told["connections"] = camera.connections;
-    if (i < summary.cameras.size()) told["missed"] = summary.cameras[i].missed;
+    Json& reported = json["cameras"][camera.name];
+    reported = health_json_of(camera, "frames", camera.frames);
+    reported["connections"] = camera.connections;
+    if (i < summary.cameras.size()) reported["missed"] = summary.cameras[i].missed;
   }
   if (summary.job == LiveJob::keypoints_in_space) {
     for (const char* figure : kKeypointFigures) json[figure] = figure_of(summary, figure);
@@ -101,7 +101,7 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
                camera.connections > 1 ? fmt::format("; connected {} times", camera.connections) : "");
   }
   const pipeline::corridor::LiveDrops& drops = summary.last.drops;
-  fmt::print(stderr, "let go: {} moments overtaken, {} incomplete, {} empty; {} frames late\n", drops.overtaken, drops.incomplete,
+  fmt::print(stderr, "drop: {} instants overtaken, {} incomplete, {} empty; {} frames late\n", drops.superseded, drops.incomplete,
              drops.empty, drops.late_frames);
   if (summary.job == LiveJob::keypoints_in_space)
     fmt::print(stderr,
@@ -115,8 +115,8 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
   if (!command.out.empty()) fmt::print(stderr, "{}\n", summary.recorded ? "take: " + command.out : "nothing was recorded");
 }
 
-/// The folder of the pictures beside a take.
-std::string pictures_of(const std::string& take) {
+/// The folder of the images beside a take.
+std::string images_of(const std::string& take) {
   return take.substr(0, take.rfind(".marey")) + "_pictures";
 }
 
@@ -126,9 +126,9 @@ std::vector<std::string> played_files(const LiveCommand& command) {
   return files;
 }
 
-std::vector<std::string> files_beside_take(const LiveCommand& command) {
+std::vector<std::string> files_next_to_take(const LiveCommand& command) {
   if (command.record != Kept::raw) return {};
-  return pipeline::live::CameraFilms::files_of(pictures_of(command.out), rig_of_live_sources(command.sources));
+  return pipeline::live::CameraVideos::files_of(images_of(command.out), rig_of_live_sources(command.sources));
 }
 
 pipeline::live::LiveOptions options_of(const LiveCommand& command, const Rig& rig) {
@@ -136,14 +136,14 @@ pipeline::live::LiveOptions options_of(const LiveCommand& command, const Rig& ri
   pipeline::live::LiveOptions options = resolved(command.job, rig, warnings);
   warn(warnings);
   options.take = command.out;
-  if (command.record == Kept::raw) options.pictures = pictures_of(command.out);
+  if (command.record == Kept::raw) options.images = images_of(command.out);
   options.recording = std::make_shared<pipeline::corridor::RecordSwitch>(!command.armed);
   options.policy.time = source::steady_time();
   return options;
 }
 
 /// LSL's channels are fixed at its first instant, when targets without given labels have none.
-void tell_of_slots(const LiveCommand& command) {
+void report_of_slots(const LiveCommand& command) {
   const bool lsl = std::any_of(command.outputs.streams.streams.begin(), command.outputs.streams.streams.end(),
                                [](const std::string& target) { return target.starts_with("lsl"); });
   if (!lsl || !command.job.names.labels.empty() || !command.job.names.skeleton.empty()) return;
@@ -169,16 +169,16 @@ struct LiveEnd {
 
 void run(const LiveCommand& command) {
   if (command.realtime) {
-    if (const auto refused = ask_for_realtime()) warn({*refused});
+    if (const auto refused = query_for_realtime()) warn({*refused});
   }
   const Rig rig = rig_of_live_sources(command.sources);
   pipeline::live::LiveOptions options = options_of(command, rig);
-  options.desk = std::make_shared<pipeline::live::CameraDesk>(rig, command.job.markers.threshold);
+  options.camera_settings = std::make_shared<pipeline::live::CameraSettings>(rig, command.job.markers.threshold);
   options.naming = std::make_shared<pipeline::markers::TrackNaming>();
-  LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.desk, options.naming},
+  LiveOutputs outputs(command.outputs, {options.policy.time, options.recording, options.camera_settings, options.naming},
                       command.job.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
   options.sinks = outputs.sinks();
-  if (!command.quiet) tell_of_slots(command);
+  if (!command.quiet) report_of_slots(command);
   LiveEnd end;
   LiveScreen screen(command.quiet);
   const auto recording = options.recording;
@@ -201,12 +201,12 @@ void run(const LiveCommand& command) {
   }();
   warn(summary.warnings);
   if (command.json) {
-    Json told = as_json(summary, command);
-    told["streams"] = json_of(outputs.streams());
-    print(told);
+    Json reported = as_json(summary, command);
+    reported["streams"] = json_of(outputs.streams());
+    print(reported);
   } else if (!command.quiet) {
     print_live(summary, command);
-    tell_streams(outputs.streams());
+    report_streams(outputs.streams());
   }
   if (summary.sink_failed) throw EndWith{1};
 }
@@ -220,12 +220,12 @@ void add_live(Command& program) {
   command.choice("--targets", options->job.targets, kLiveTargets, "what is followed");
   command.output_file("-o,--output", options->out, "a take of it, NAME.marey, written as it grows").ends_in({".marey"});
   command.also_reads([options] { return played_files(*options); });
-  command.also_writes([options] { return files_beside_take(*options); });
+  command.also_writes([options] { return files_next_to_take(*options); });
   command.choice("--record", options->record, kKept,
-                 "what is kept: the take alone, or the pictures too, a film of each camera and rig.toml in NAME_pictures");
+                 "what is kept: the take alone, or the images too, a video of each camera and rig.toml in NAME_pictures");
   command.flag("--armed", options->armed, "record only from when r is pressed on, with the seconds before it");
-  command.number("--for", options->for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C, or q)");
-  command.flag("--realtime", options->realtime, "go before other programs, where the system allows it");
+  command.number("--duration", options->for_s, "s", closed(0.1, 1e7), "end after this long (default: on Ctrl-C, or q)");
+  command.flag("--realtime-priority", options->realtime, "go before other programs, where the system allows it");
   const pipeline::jobs::Table& rows = command.rows(table_of(options->job));
   command.records([&rows, options = options.get()] {
     auto given = rows.given();
@@ -240,7 +240,7 @@ void add_live(Command& program) {
     options->job.rig_name = options->sources.front();
     if (options->job.ground && options->job.targets == LiveTargets::markers) options->job.targets = LiveTargets::people;
     options->outputs.streams.unlabelled_slots =
-        std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->job.markers.most_markers));
+        std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->job.markers.max_markers));
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
     if (options->record == Kept::raw && options->out.empty()) throw WrongUsage("{}", "--record raw: name the take with -o");
     run(*options);

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "page_changes.h"
+#include "page_commands.h"
 #include "view_options.h"
 
 namespace marey::cli {
@@ -19,7 +19,7 @@ std::function<void(bool on)> switching(const std::shared_ptr<pipeline::corridor:
 
 std::function<void(const viewer::PageCommand&)> changing(const LiveOutputOptions& options, const LiveHandles& handles) {
   if (!is_for_this_computer(options.web.listen) && !options.streams.allow_control) return {};
-  return page_changes(handles.desk, handles.naming, options.rig);
+  return page_changes(handles.camera_settings, handles.naming, options.rig);
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ std::function<void(const viewer::PageCommand&)> changing(const LiveOutputOptions
 void add_live_outputs(Command& command, LiveOutputOptions& options) {
   command.group("To be watched");
   command.flag("--view", options.view, "a page that shows the cameras and what is found in them; its address is printed");
-  add_web_place(command, options.web);
+  add_listen_address(command, options.web);
   command.group("");
   add_stream_options(command, options.streams, "; a page that others can open (--listen) may change cameras and names");
 }
@@ -43,7 +43,7 @@ LiveOutputs::LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, 
       })) {
   streams_.clock().set(handles_.time->now(), stream::steady_now_ns());
   if (!options.view) return;
-  viewer_ = std::make_unique<viewer::LiveViewer>(viewer::LiveViewOptions{.place = options.web,
+  viewer_ = std::make_unique<viewer::LiveViewer>(viewer::LiveViewOptions{.location = options.web,
                                                                          .record = switching(handles_.recording, options.take),
                                                                          .change = changing(options, handles_),
                                                                          .rig_file = options.rig,
@@ -59,17 +59,17 @@ std::vector<std::unique_ptr<Sink>> LiveOutputs::sinks() {
 }
 
 viewer::LiveReport::Camera LiveOutputs::camera_of(const CameraHealth& camera, std::size_t index) const {
-  viewer::LiveReport::Camera told{.health = camera, .finds_markers = finds_markers_};
-  tell_changeable(told, handles_.desk->camera(index));
-  return told;
+  viewer::LiveReport::Camera reported{.health = camera, .finds_markers = finds_markers_};
+  report_changeable(reported, handles_.camera_settings->camera(index));
+  return reported;
 }
 
 void LiveOutputs::report(const pipeline::corridor::LiveStatus& status) {
   if (!viewer_) return;
   viewer::LiveReport report{.cameras = {},
-                            .overtaken = status.drops.overtaken,
+                            .superseded = status.drops.superseded,
                             .steps = {},
-                            .unsaved = handles_.desk->has_changed(),
+                            .unsaved = handles_.camera_settings->has_changed(),
                             .notes = status.troubles};
   report.notes.insert(report.notes.end(), status.news.begin(), status.news.end());
   for (const CameraHealth& camera : status.cameras) {

@@ -16,7 +16,7 @@ namespace marey::cli {
 struct LiveOutputOptions {
   StreamArguments streams;
   bool view = false;
-  viewer::WebPlace web;
+  viewer::ListenAddress web;
   std::string take;  ///< what the page's record button records into; empty: it has none
   std::string rig;   ///< the rig file that the page's changes are saved in; empty: there is none
 };
@@ -25,7 +25,7 @@ struct LiveOutputOptions {
 struct LiveHandles {
   std::shared_ptr<source::LiveTime> time;                       ///< the run's
   std::shared_ptr<pipeline::corridor::RecordSwitch> recording;  ///< null: nothing is recorded
-  std::shared_ptr<pipeline::live::CameraDesk> desk;
+  std::shared_ptr<pipeline::live::CameraSettings> camera_settings;
   std::shared_ptr<pipeline::markers::TrackNaming> naming;
 };
 
@@ -34,7 +34,7 @@ void add_live_outputs(Command& command, LiveOutputOptions& options);
 /// The wires and the page of one live run. Their ports are taken, and their addresses told, from the beginning on.
 class LiveOutputs {
  public:
-  /// `finds_markers`: whether cameras' pictures are searched for markers. `ground`: of people on it, what the page shows.
+  /// `finds_markers`: whether cameras' images are searched for markers. `ground`: of people on it, what the page shows.
   LiveOutputs(const LiveOutputOptions& options, LiveHandles handles, bool finds_markers, viewer::LiveGround ground, bool quiet);
 
   std::vector<std::unique_ptr<Sink>> sinks();

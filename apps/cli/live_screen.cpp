@@ -9,7 +9,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
 #include "camera_health.h"
 
@@ -22,7 +22,7 @@ bool is_silent(FeedState state) {
   return state == FeedState::stalled || state == FeedState::lost || state == FeedState::connecting;
 }
 
-/// How wide the terminal is that standard error goes to; 120 where it is none.
+/// How wide the terminal is that standard error goes to; 120 where it is not one.
 int terminal_columns() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 120;
@@ -36,7 +36,7 @@ std::string line_of(const pipeline::corridor::LiveStatus& status) {
     if (camera.dropped() > 0) text += fmt::format(" -{}", camera.dropped());
   }
   const pipeline::corridor::LiveDrops& drops = status.drops;
-  text += fmt::format(" | {} targets | dropped {}", status.targets, drops.overtaken + drops.incomplete + drops.late_frames);
+  text += fmt::format(" | {} targets | dropped {}", status.targets, drops.superseded + drops.incomplete + drops.late_frames);
   if (status.latency_median_s)
     text += fmt::format(" | {:.1f} / {:.1f} ms", 1000 * *status.latency_median_s, 1000 * status.latency_p99_s.value_or(0));
   if (status.recording) text += " | REC";
@@ -89,9 +89,9 @@ StatusLine::~StatusLine() {
   if (shown_) fmt::print(stderr, "\r\x1b[K");
 }
 
-void StatusLine::say(const std::string& sentence) {
+void StatusLine::announce(const std::string& message_text) {
   if (quiet_) return;
-  fmt::print(stderr, "{}{}\n", shown_ ? "\r\x1b[K" : "", plain_text(sentence));
+  fmt::print(stderr, "{}{}\n", shown_ ? "\r\x1b[K" : "", plain_text(message_text));
   shown_ = false;
 }
 
@@ -103,9 +103,9 @@ void StatusLine::show(const std::string& line) {
 }
 
 void LiveScreen::begun(pipeline::live::LiveJob job, const Rig& rig, bool keys, bool records) {
-  out_.say(fmt::format("{} of {} {}{}", to_string(job), rig.cameras.size(), rig.cameras.size() == 1 ? "camera" : "cameras",
-                       job == pipeline::live::LiveJob::preview ? "; calibrate the rig to track (marey calibrate wand)" : ""));
-  if (keys) out_.say(records ? "r: record, or pause; q: end" : "q: end");
+  out_.announce(fmt::format("{} of {} {}{}", to_string(job), rig.cameras.size(), rig.cameras.size() == 1 ? "camera" : "cameras",
+                            job == pipeline::live::LiveJob::preview ? "; calibrate the rig to track (marey calibrate wand)" : ""));
+  if (keys) out_.announce(records ? "r: record, or pause; q: end" : "q: end");
 }
 
 void LiveScreen::show(const pipeline::corridor::LiveStatus& status) {
@@ -115,18 +115,19 @@ void LiveScreen::show(const pipeline::corridor::LiveStatus& status) {
     if (states_[i] == camera.state) continue;
     const bool waits = camera.state == FeedState::connecting && camera.trouble.empty();  // as every camera does at first
     if (waits) continue;
-    const bool told = is_silent(camera.state) || is_silent(states_[i]);
+    const bool reported = is_silent(camera.state) || is_silent(states_[i]);
     states_[i] = camera.state;
     const std::string why = is_silent(camera.state) && !camera.trouble.empty() ? ": " + camera.trouble : "";
-    if (told) out_.say(fmt::format("camera \"{}\" is {}{}", camera.name, to_string(camera.state), why));
+    if (reported) out_.announce(fmt::format("camera \"{}\" is {}{}", camera.name, to_string(camera.state), why));
   }
   for (const std::string& trouble : status.troubles) {
     if (std::find(troubles_.begin(), troubles_.end(), trouble.substr(0, trouble.find(':'))) != troubles_.end()) continue;
     troubles_.push_back(trouble.substr(0, trouble.find(':')));
-    out_.say("marey: warning: " + trouble);
+    out_.announce("marey: warning: " + trouble);
   }
   const auto left = std::min<std::int64_t>(status.news_count - news_, std::ssize(status.news));
-  for (auto sentence = status.news.end() - left; sentence != status.news.end(); ++sentence) out_.say(*sentence);
+  for (auto message_text = status.news.end() - left; message_text != status.news.end(); ++message_text)
+    out_.announce(*message_text);
   news_ = status.news_count;
   out_.show(line_of(status));
 }

@@ -11,7 +11,7 @@
 namespace marey::cli {
 
 /// The keys of a terminal while something live runs, read on a thread of its own: one at a time, without Enter. Where standard
-/// input is no terminal nothing is read. The terminal is as before when this is gone.
+/// input is not a terminal nothing is read. The terminal is as before when this is gone.
 class Keys {
  public:
   explicit Keys(std::function<void(char)> pressed);
@@ -36,7 +36,7 @@ class StatusLine {
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  void say(const std::string& sentence);
+  void announce(const std::string& message_text);
   /// As much of it as the terminal is wide.
   void show(const std::string& line);
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/pipeline/live/live_feeds.h"
 
 #include "rig_inputs.h"
@@ -19,7 +19,7 @@ void add_live_sources(Command& command, std::vector<std::string>& sources) {
   command
       .input_files(
           "SOURCES", sources,
-          "a rig file, with CAMERA=SOURCE in place of its own sources; or sources alone, each a camera: a film that is played; " +
+          "a rig file, with CAMERA=SOURCE in place of its own sources; or sources alone, each a camera: a video that is played; " +
               forms)
       .required();
 }

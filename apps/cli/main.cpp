@@ -8,7 +8,7 @@ extern "C" {
 namespace marey::cli {
 
 int run_program(int argc, char** argv) {
-  av_log_set_level(AV_LOG_QUIET);  // what went wrong in a film is told in our own sentences
+  av_log_set_level(AV_LOG_QUIET);  // what went wrong in a video is reported in our own sentences
   Program program("marey", "Marey turns what cameras see into motion you can measure.");
   Command root = program.root();
   add_track(root);
@@ -20,7 +20,7 @@ int run_program(int argc, char** argv) {
   add_convert(root);
   add_info(root);
   add_edit(root);
-  add_who(root);
+  add_identify(root);
   add_view(root);
   add_play(root);
   add_reconstruct(root);

@@ -61,9 +61,9 @@ Json json_or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json impossible_json(const std::vector<analyse::ImpossibleStretch>& stretches) {
+Json impossible_json(const std::vector<analyse::ImpossibleSegment>& segments) {
   Json all = Json::array();
-  for (const analyse::ImpossibleStretch& one : stretches)
+  for (const analyse::ImpossibleSegment& one : segments)
     all.push_back({{"begin_s", one.begin_s}, {"end_s", one.end_s}, {"one_person", one.one_person}});
   return all;
 }
@@ -79,7 +79,7 @@ void report_json(const analyse::Measurement& measured) {
                       {"mean_mps", person.mean_mps},
                       {"top_mps", json_or_null(person.top_mps)},
                       {"top_sigma_mps", json_or_null(person.top_sigma_mps)},
-                      {"seen_s", person.seen_s},
+                      {"seen_s", person.observed_s},
                       {"impossible", impossible_json(person.impossible)},
                       {"sprints", person.sprints},
                       {"accelerations", person.accelerations},
@@ -100,18 +100,18 @@ void report_json(const analyse::Measurement& measured) {
   print(all);
 }
 
-/// What was not believed, so that it can be looked at.
+/// What was not trusted, so that it can be inspected.
 void print_impossible(const analyse::Measurement& measured) {
-  constexpr std::size_t most = 10;
-  std::size_t told = 0;
+  constexpr std::size_t maximum = 10;
+  std::size_t reported = 0;
   for (const analyse::PersonMeasure& person : measured.people) {
-    for (const analyse::ImpossibleStretch& one : person.impossible) {
-      if (++told > most) continue;
-      fmt::print("not counted: #{} from {:.1f} s to {:.1f} s, for nobody moves like that; {}\n", person.id, one.begin_s, one.end_s,
-                 one.one_person ? "the places are wrong" : "who is there before and after are two people");
+    for (const analyse::ImpossibleSegment& one : person.impossible) {
+      if (++reported > maximum) continue;
+      fmt::print("not counted: #{} from {:.1f} s to {:.1f} s, for no person moves like that; {}\n", person.id, one.begin_s,
+                 one.end_s, one.one_person ? "the places are wrong" : "who is there before and after are two people");
     }
   }
-  if (told > most) fmt::print("not counted: {} more such stretches (--json lists all)\n", told - most);
+  if (reported > maximum) fmt::print("not counted: {} more such stretches (--json lists all)\n", reported - maximum);
 }
 
 std::string shown_speed(const std::optional<double>& value) {
@@ -160,7 +160,7 @@ void run(const MeasureCommand& command) {
 
 void add_measure(Command& program) {
   auto options = std::make_shared<MeasureCommand>();
-  Command command = program.subcommand("measure", "How far and how fast everyone ran, from places on the ground");
+  Command command = program.subcommand("measure", "How far and how fast every person ran, from places on the ground");
   command
       .input_file(
           "TRACKS", options->tracks,
@@ -174,10 +174,10 @@ void add_measure(Command& program) {
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
   command.input_file("--metadata", options->options.metadata,
                      "of TRACAB, EPTS or DFL, where it is not beside TRACKS under a like name");
-  command.number("--rate", options->options.rate_hz, "Hz", kRates, "frames a second, where TRACKS does not say");
+  command.number("--rate", options->options.rate_hz, "Hz", kRates, "frames a second, where TRACKS does not specify");
   const Option y_down =
       command.flag("--y-down", options->y_down,
-                   "y grows downwards, seen from above with x to the right, where TRACKS does not say; for the page");
+                   "y grows downwards, seen from above with x to the right, where TRACKS does not specify; for the page");
   command.input_file("--rig", options->rig, "rig whose ground_from_world says whether --y-down is so").excludes(y_down);
   command.also_writes([options] {
     if (options->output.report.empty()) return std::vector<std::string>{};

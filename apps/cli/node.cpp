@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "marey/core/rig_sources.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/pipeline/jobs/detection_rows.h"
 #include "marey/pipeline/live/camera_node.h"
 #include "marey/pipeline/live/live_feeds.h"
@@ -21,9 +21,9 @@
 namespace marey::cli {
 namespace {
 
-enum class NodeSends { markers, pictures };
+enum class NodeSends { markers, images };
 constexpr std::array<std::pair<const char*, NodeSends>, 2> kNodeSends{
-    {{"markers", NodeSends::markers}, {"pictures", NodeSends::pictures}}};
+    {{"markers", NodeSends::markers}, {"images", NodeSends::images}}};
 
 struct NodeCommand {
   std::vector<std::string> sources;
@@ -37,13 +37,13 @@ bool is_open_to_others(const std::string& address) {
   return !address.starts_with("127.") && address != "localhost" && address != "[::1]";
 }
 
-/// What the other computer is to be told.
+/// What the other computer is to be reported.
 void print_begun(const NodeCommand& command, const Rig& rig) {
   const bool everywhere = command.options.address == "0.0.0.0" || command.options.address == "[::]";
   const std::string host = everywhere ? "THIS-COMPUTER" : command.options.address;
   fmt::print(stderr, "{}: marey live node:{}:{}\n", camera_names(rig), host, command.options.port);
   if (is_open_to_others(command.options.address))
-    warn({fmt::format("whoever reaches port {} of this computer sees what its cameras see", command.options.port)});
+    warn({fmt::format("the one who reaches port {} of this computer sees what its cameras see", command.options.port)});
 }
 
 Json as_json(const pipeline::live::NodeSummary& summary, const NodeCommand& command) {
@@ -67,8 +67,8 @@ void print_node(const pipeline::live::NodeSummary& summary) {
 void run(NodeCommand& command) {
   const Rig rig = rig_of_live_sources(command.sources);
   command.options.allow_control = command.options.allow_control || !is_open_to_others(command.options.address);
-  if (command.send == NodeSends::pictures) command.options.quality = command.quality;
-  if (!command.quiet) command.options.begun = [&](const Rig& told) { print_begun(command, told); };
+  if (command.send == NodeSends::images) command.options.quality = command.quality;
+  if (!command.quiet) command.options.begun = [&](const Rig& reported) { print_begun(command, reported); };
   const pipeline::live::NodeSummary summary = with_progress(command.quiet || command.json, [&](const Hooks& hooks) {
     return pipeline::live::serve_cameras(rig, command.options, hooks);
   });
@@ -86,15 +86,14 @@ void add_node(Command& program) {
   pipeline::live::NodeOptions& how = options->options;
   Command command = program.subcommand("node", "Hand this computer's cameras to another one, where marey live runs");
   add_live_sources(command, options->sources);
-  command.choice("--send", options->send, kNodeSends,
-                 "what goes over the network: the markers that are found here, or the pictures");
-  command.whole("--quality", options->quality, "N", 1, 100, "of the pictures, which are JPEG");
+  command.choice("--send", options->send, kNodeSends, "what goes over the network: the markers that are found here, or the images");
+  command.whole("--jpeg-quality", options->quality, "N", 1, 100, "of the images, which are JPEG");
   command.text("--listen", how.address, "address of this machine at which its cameras are had; 0.0.0.0: all of them");
   command.whole("--port", how.port, "N", 1, 65535, "TCP port that it listens on");
   command.flag("--allow-control", how.allow_control,
                "hosts on other computers (--listen) may set exposure, gain and threshold, not this one's alone");
-  command.number("--for", how.for_s, "s", closed(0.1, 1e7), "end after so long (default: on Ctrl-C)");
-  command.number("--patience", how.patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
+  command.number("--duration", how.for_s, "s", closed(0.1, 1e7), "end after this long (default: on Ctrl-C)");
+  command.number("--connect-timeout", how.patience_s, "s", closed(0, 60), "that cameras are waited for at the beginning");
   pipeline::jobs::Table rows;
   add_blob_rows(rows, how.markers);
   command.rows(std::move(rows));

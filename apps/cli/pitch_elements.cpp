@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/soccernet_camera.h"
 #include "marey/pipeline/calibrate/calibrate_elements.h"
@@ -31,60 +31,60 @@ cv::Size parse_resolution(const std::string& text) {
   return {width, height};
 }
 
-Json element_picture_json(const pipeline::calibrate::ElementPicture& picture) {
-  Json entry = {{"name", picture.name},
-                {"verdict", calibrate::pitch::element_verdict_name(picture.found.verdict)},
-                {"elements", picture.labels.size()}};
-  if (!picture.found.camera) return entry;
-  const auto& p = picture.found.view.p;
-  const Vector<3>& place = picture.found.camera->centre();
-  entry["place"] = {place.x(), place.y(), place.z()};
+Json element_image_json(const pipeline::calibrate::ElementImage& image) {
+  Json entry = {{"name", image.name},
+                {"verdict", calibrate::pitch::element_verdict_name(image.found.verdict)},
+                {"elements", image.labels.size()}};
+  if (!image.found.camera) return entry;
+  const auto& p = image.found.view.p;
+  const Vector<3>& location = image.found.camera->centre();
+  entry["place"] = {location.x(), location.y(), location.z()};
   entry["pan_degrees"] = p[ElementView::pan] * kDegrees;
   entry["tilt_degrees"] = p[ElementView::tilt] * kDegrees;
   entry["roll_degrees"] = p[ElementView::roll] * kDegrees;
-  entry["focal_px"] = geometry::focal_of(picture.found.camera->lens()).x();
-  entry["jaccard_5"] = picture.score.jaccard();
+  entry["focal_px"] = geometry::focal_of(image.found.camera->lens()).x();
+  entry["jaccard_5"] = image.score.jaccard();
   const auto elements = geometry::pitch_elements({});
-  for (std::size_t i = 0; i < picture.labels.size(); ++i) {
-    entry["labels"].push_back({{"name", elements[static_cast<std::size_t>(picture.labels[i].element)].name},
-                               {"error_px", picture.found.error_px[i]},
-                               {"used", picture.found.used[i] != 0}});
+  for (std::size_t i = 0; i < image.labels.size(); ++i) {
+    entry["labels"].push_back({{"name", elements[static_cast<std::size_t>(image.labels[i].element)].name},
+                               {"error_px", image.found.error_px[i]},
+                               {"used", image.found.used[i] != 0}});
   }
   return entry;
 }
 
 Json elements_json(const pipeline::calibrate::ElementRun& run) {
-  Json pictures = Json::array();
-  for (const pipeline::calibrate::ElementPicture& picture : run.pictures) pictures.push_back(element_picture_json(picture));
-  return {{"pictures", pictures},
+  Json images = Json::array();
+  for (const pipeline::calibrate::ElementImage& image : run.images) images.push_back(element_image_json(image));
+  return {{"pictures", images},
           {"found", run.rig.cameras.size()},
-          {"complete", static_cast<double>(run.rig.cameras.size()) / static_cast<double>(run.pictures.size())},
+          {"complete", static_cast<double>(run.rig.cameras.size()) / static_cast<double>(run.images.size())},
           {"jaccard_5", run.jaccard},
           {"warnings", run.warnings}};
 }
 
 void print_elements(const pipeline::calibrate::ElementRun& run) {
-  if (run.pictures.size() == 1) {
-    const pipeline::calibrate::ElementPicture& picture = run.pictures[0];
-    const auto& p = picture.found.view.p;
-    const Vector<3>& place = picture.found.camera->centre();
+  if (run.images.size() == 1) {
+    const pipeline::calibrate::ElementImage& image = run.images[0];
+    const auto& p = image.found.view.p;
+    const Vector<3>& location = image.found.camera->centre();
     fmt::print(
         "{}: the camera stands at ({:.1f}, {:.1f}), {:.1f} m up; pan {:.2f}, tilt {:.2f}, roll {:.2f} degrees, focal length {:.0f} "
         "px\n",
-        picture.name, place.x(), place.y(), place.z(), p[ElementView::pan] * kDegrees, p[ElementView::tilt] * kDegrees,
-        p[ElementView::roll] * kDegrees, geometry::focal_of(picture.found.camera->lens()).x());
+        image.name, location.x(), location.y(), location.z(), p[ElementView::pan] * kDegrees, p[ElementView::tilt] * kDegrees,
+        p[ElementView::roll] * kDegrees, geometry::focal_of(image.found.camera->lens()).x());
   }
-  fmt::print("{} of {} pictures have a camera ({:.1f} %); JaC@5 against their labels {:.1f} %\n", run.rig.cameras.size(),
-             run.pictures.size(), 100.0 * static_cast<double>(run.rig.cameras.size()) / static_cast<double>(run.pictures.size()),
+  fmt::print("{} of {} images have a camera ({:.1f} %); JaC@5 against their labels {:.1f} %\n", run.rig.cameras.size(),
+             run.images.size(), 100.0 * static_cast<double>(run.rig.cameras.size()) / static_cast<double>(run.images.size()),
              100 * run.jaccard);
 }
 
 void write_cameras(const pipeline::calibrate::ElementRun& run, const std::string& folder, const geometry::PitchSize& size) {
   std::filesystem::create_directories(folder);
-  for (const pipeline::calibrate::ElementPicture& picture : run.pictures) {
-    if (!picture.found.camera) continue;
-    WholeFile file((std::filesystem::path(folder) / fmt::format("camera_{}.json", picture.name)).string());
-    file.write(format::rig::soccernet_camera_text(*picture.found.camera, size));
+  for (const pipeline::calibrate::ElementImage& image : run.images) {
+    if (!image.found.camera) continue;
+    WholeFile file((std::filesystem::path(folder) / fmt::format("camera_{}.json", image.name)).string());
+    file.write(format::rig::soccernet_camera_text(*image.found.camera, size));
     file.finish();
   }
 }

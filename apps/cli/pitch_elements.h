@@ -5,7 +5,7 @@
 
 namespace marey::cli {
 
-/// `marey calibrate pitch --elements`: a camera for each picture with labelled elements.
+/// `marey calibrate pitch --elements`: a camera for each image with labelled elements.
 struct PitchElements {
   std::vector<std::string> files;
   std::string resolution = "960x540";
@@ -14,7 +14,7 @@ struct PitchElements {
   bool json = false, quiet = false;
 };
 
-/// WIDTHxHEIGHT in px. Throws WrongUsage for what is none.
+/// WIDTHxHEIGHT in px. Throws WrongUsage for what is not one.
 void check_resolution(const std::string& text);
 
 void run_pitch_elements(const PitchElements& command);

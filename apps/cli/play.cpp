@@ -41,7 +41,7 @@ void report(const PlayCommand& command, const pipeline::take::PlaySummary& done,
   if (command.json) {
     print({{"recording", command.recording},
            {"instants", done.instants},
-           {"left_out", done.left_out},
+           {"left_out", done.excluded},
            {"skipped", done.skipped},
            {"rounds", done.rounds},
            {"seconds", done.seconds},
@@ -50,10 +50,10 @@ void report(const PlayCommand& command, const pipeline::take::PlaySummary& done,
   } else if (!command.quiet) {
     fmt::print(stderr, "{}: {} instants in {:.1f} s", command.recording, done.instants, done.seconds);
     if (command.how.loop) fmt::print(stderr, ", {} rounds", done.rounds);
-    if (done.left_out > 0) fmt::print(stderr, ", {} left out by --rate", done.left_out);
+    if (done.excluded > 0) fmt::print(stderr, ", {} omitted by --rate", done.excluded);
     if (done.skipped > 0) fmt::print(stderr, ", {} skipped because this machine was late", done.skipped);
     fmt::print(stderr, "\n");
-    tell_streams(streams);
+    report_streams(streams);
   }
   // To end it is the only way where it loops.
   if (done.stopped && !command.how.loop) throw EndWith{kInterrupted};
@@ -74,7 +74,7 @@ void run(PlayCommand& command) {
     return skeleton == nullptr ? std::move(reader) : pipeline::markers::with_skeleton(std::move(reader), skeleton);
   };
   command.how.name = std::filesystem::path(command.recording).filename();
-  open();  // what cannot be read is told before a port is taken
+  open();  // what cannot be read is reported before a port is taken
   const stream::Streams streams = open_streams(command.streams, command.quiet);
   const auto sinks = streams.sinks();
   const pipeline::take::PlaySummary done = with_progress(
@@ -87,12 +87,12 @@ void run(PlayCommand& command) {
 void add_play(Command& program) {
   auto options = std::make_shared<PlayCommand>();
   pipeline::take::PlayOptions& how = options->how;
-  Command command = program.subcommand("play", "Play a recording in real time, as if it were captured now, to whoever listens");
+  Command command = program.subcommand("play", "Play a recording in real time, as if it were captured now, to the one who listens");
   command.input_file("RECORDING", options->recording, "known by its content: " + format::names_of_read(format::kRecordings))
       .required();
   command.flag("--loop", how.loop, "from the beginning again, until Ctrl-C");
   command.number("--speed", how.speed, "times", closed(0.01, 100), "as fast as it was recorded");
-  command.number("--rate", how.rate_hz, "Hz", kRates, "at most so many instants a second of the recording");
+  command.number("--rate", how.rate_hz, "Hz", kRates, "at most this many instants a second of the recording");
   pipeline::jobs::Table names;
   add_set_rows(names, options->names);
   command.rows(std::move(names));
@@ -102,11 +102,11 @@ void add_play(Command& program) {
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice(
       "--from-up,--up", options->read.up, kAxes,
-      "the axis that is up in a file of points, as it says where this is left out, else z; streams have z up, or what they want");
-  command.number("--recorded-rate", options->read.rate_hz, "Hz", kRates, "frames a second, where the file does not say");
+      "the axis that is up in a file of points, as it says where this is omitted, else z; streams have z up, or what they want");
+  command.number("--recorded-rate", options->read.rate_hz, "Hz", kRates, "frames a second, where the file does not specify");
   command.input_file("--metadata", options->read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside it under a like name");
-  command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m, where a match does not say").check(parse_pitch_size);
+  command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m, where a match does not specify").check(parse_pitch_size);
   command.group("");
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });

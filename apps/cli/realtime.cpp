@@ -8,11 +8,12 @@
 
 namespace marey::cli {
 
-std::optional<std::string> ask_for_realtime() {
+std::optional<std::string> query_for_realtime() {
   const sched_param priority{.sched_priority = 10};  // below the kernel's own threads, which feed the cameras
   if (sched_setscheduler(0, SCHED_RR, &priority) == 0) return std::nullopt;
   return fmt::format(
-      "--realtime was refused ({}); it goes on at the usual priority. Run as root, or add to /etc/security/limits.conf: YOU - "
+      "--realtime-priority was refused ({}); it continues at the typical priority. Run as root, or add to "
+      "/etc/security/limits.conf: YOU - "
       "rtprio 10",
       std::strerror(errno));
 }

@@ -49,7 +49,7 @@ Json as_json(const pipeline::corridor::Summary& summary, const std::string& out)
                {"take", out}};
   json["residual_px"] = summary.figures.contains("residual_px") ? Json(figure_of(summary, "residual_px")) : Json();
   json["left_out"] = Json::object();
-  for (const auto& [reason, count] : summary.left_out) json["left_out"][reason] = count;
+  for (const auto& [reason, count] : summary.excluded) json["left_out"][reason] = count;
   for (const auto& camera : summary.cameras) json["cameras"][camera.name] = {{"frames", camera.frames}, {"missed", camera.missed}};
   add_set_figures(summary, json);
   add_skeleton_figures(summary, json);
@@ -62,7 +62,7 @@ void print_points_summary(const pipeline::corridor::Summary& summary, const std:
              summary.tracks == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
              summary.filled, summary.predicted, figure_of(summary, "unexplained"), figure_of(summary, "observations"));
-  for (const auto& [reason, count] : summary.left_out) {
+  for (const auto& [reason, count] : summary.excluded) {
     if (count > 0) fmt::print(stderr, "not placed, {} times: {}\n", count, reason);
   }
   if (summary.measured > 0)
@@ -77,7 +77,8 @@ void print_points_summary(const pipeline::corridor::Summary& summary, const std:
 void run_keypoints(const ReconstructCommand& command) {
   const pipeline::jobs::SpaceNames& names = command.markers.names;
   if (!command.inputs.observations.empty() || !names.labels.empty() || !names.set.empty() || !names.skeleton.empty())
-    throw WrongUsage("{}", "--targets keypoints: --observations, --labels, --set and --skeleton are of markers; remove them");
+    throw WrongUsage("{}",
+                     "--targets keypoints: --observations, --labels, --marker-set and --skeleton are of markers; remove them");
   run_with_progress(
       command.quiet,
       [&](const Hooks& hooks) {

@@ -13,11 +13,11 @@ Json keypoints_json(const pipeline::keypoints::KeypointsSummary& summary, const 
   for (const auto& person : summary.people)
     people.push_back({{"label", person.label}, {"instants", person.instants}, {"views", person.views}});
   for (const auto& camera : summary.cameras) {
-    Json& said = cameras[camera.name];
-    said = {{"frames", camera.frames},           {"people", camera.people}, {"placed", camera.placed},
-            {"residual_px", camera.residual_px}, {"noise", camera.noise},   {"swapped_limbs", camera.swapped}};
-    said["offset_s"] = camera.offset_s ? Json(*camera.offset_s) : Json();
-    said["offset_sigma_s"] = camera.offset_sigma_s ? Json(*camera.offset_sigma_s) : Json();
+    Json& stated = cameras[camera.name];
+    stated = {{"frames", camera.frames},           {"people", camera.people}, {"placed", camera.located},
+              {"residual_px", camera.residual_px}, {"noise", camera.noise},   {"swapped_limbs", camera.swapped}};
+    stated["offset_s"] = camera.offset_s ? Json(*camera.offset_s) : Json();
+    stated["offset_sigma_s"] = camera.offset_sigma_s ? Json(*camera.offset_sigma_s) : Json();
   }
   return {{"keypoint_set", summary.set},
           {"keypoints", summary.points},
@@ -28,10 +28,10 @@ Json keypoints_json(const pipeline::keypoints::KeypointsSummary& summary, const 
           {"cameras", cameras},
           {"points", {{"measured", summary.measured}, {"filled", summary.filled}}},
           {"people_in_images", summary.views},
-          {"people_in_images_placed", summary.placed},
+          {"people_in_images_placed", summary.located},
           {"residual_px", summary.residual_px},
           {"noise", summary.noise},
-          {"place_ms", summary.place_ms},
+          {"place_ms", summary.position_ms},
           {"one_camera", summary.one_camera},
           {"stopped", summary.stopped},
           {"warnings", summary.warnings},
@@ -47,7 +47,7 @@ void print_keypoints_summary(const pipeline::keypoints::KeypointsSummary& summar
       fmt::print(stderr, "  {}: in {} frames, by {:.1f} cameras\n", person.label, person.instants, person.views);
   }
   fmt::print(stderr, "points: {} measured, {} filled; {} of {} people in images are placed\n", summary.measured, summary.filled,
-             summary.placed, summary.views);
+             summary.located, summary.views);
   if (summary.one_camera) {
     fmt::print(stderr, "take: {}\n", out);
     return;
@@ -63,7 +63,7 @@ void print_keypoints_summary(const pipeline::keypoints::KeypointsSummary& summar
                           *camera.offset_s < 0 ? "earlier" : "later", 1000 * camera.offset_sigma_s.value_or(0));
     fmt::print(stderr, "{}\n", line);
   }
-  fmt::print(stderr, "association and triangulation: {:.2f} ms a frame\n", summary.place_ms);
+  fmt::print(stderr, "association and triangulation: {:.2f} ms a frame\n", summary.position_ms);
   fmt::print(stderr, "take: {}\n", out);
 }
 

@@ -36,7 +36,7 @@ Rig rig_of(const RigAndSources& inputs) {
 
 Option add_rig_inputs(Command& command, RigInputs& inputs) {
   const Option rig = add_rig(command, inputs.rig,
-                             "the rig file, or a take: then what its own cameras saw is used again; may be left out where "
+                             "the rig file, or a take: then what its own cameras saw is used again; may be omitted where "
                              "--observations names the cameras");
   command.input_file("--observations", inputs.observations,
                      "in place of videos, blobs that another program found: a CSV with header camera,frame,x,y[,marker], or a "

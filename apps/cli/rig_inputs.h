@@ -21,7 +21,7 @@ Option add_rig(Command& command, RigAndSources& inputs, const std::string& meani
 /// The rig that they name, its cameras' sources replaced. Throws Error.
 Rig rig_of(const RigAndSources& inputs);
 
-/// The sources and detections of a rig file's cameras; none where the rig is no file.
+/// The sources and detections of a rig file's cameras; none where the rig is not a file.
 std::vector<std::string> files_of_rig(const std::string& rig);
 
 /// The command line's `[RIG] [CAMERA=SOURCE …] [--observations FILE|FOLDER]`.

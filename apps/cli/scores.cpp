@@ -6,8 +6,8 @@
 
 namespace marey::cli {
 
-std::string percent(std::optional<double> share) {
-  return share ? fmt::format("{:.1f} %", 100 * *share) : "none";
+std::string percent(std::optional<double> fraction) {
+  return fraction ? fmt::format("{:.1f} %", 100 * *fraction) : "none";
 }
 
 Json or_null(std::optional<double> value) {

@@ -10,7 +10,7 @@
 namespace marey::cli {
 
 /// "83.7 %", or "none".
-std::string percent(std::optional<double> share);
+std::string percent(std::optional<double> fraction);
 
 Json or_null(std::optional<double> value);
 

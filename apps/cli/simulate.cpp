@@ -1,6 +1,6 @@
 #include "command_line.h"
 #include "commands.h"
-#include "simulate_turning.h"
+#include "simulate_ptz.h"
 
 namespace marey::cli {
 
@@ -11,7 +11,7 @@ void add_simulate(Command& program) {
   add_simulate_room(simulate);
   add_simulate_match(simulate);
   add_simulate_square(simulate);
-  add_simulate_turning(simulate);
+  add_simulate_ptz(simulate);
 }
 
 }  // namespace marey::cli

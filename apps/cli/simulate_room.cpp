@@ -33,7 +33,7 @@ struct SimulateRoom {
   bool quiet = false;
 };
 
-std::vector<double> marker_places_of(const std::string& text) {
+std::vector<double> marker_positions_of(const std::string& text) {
   if (text == "led") return {0};
   std::vector<double> wand = numbers_in(text, ',', closed(-100, 100), "the markers' places in m, as 0,0.12,0.30, or led");
   if (std::adjacent_find(wand.begin(), wand.end(), std::greater_equal<>()) != wand.end())
@@ -55,13 +55,13 @@ bool scene_of_people(simulate::room::RoomMotion motion) {
 
 simulate::room::RoomOptions room_of(const SimulateRoom& command) {
   simulate::room::RoomOptions room = command.room;
-  room.picture = {command.size[0], command.size[1]};
+  room.image = {command.size[0], command.size[1]};
   room.volume = {command.volume[0], command.volume[1], command.volume[2]};
-  if (!command.wand.empty()) room.wand = marker_places_of(command.wand);
+  if (!command.wand.empty()) room.wand = marker_positions_of(command.wand);
   if (!command.bump.empty()) room.bump = bump_of(command.bump);
   const bool people = scene_of_people(room.motion);
   if (!people && (room.actors > 1 || room.skin_m > 0))
-    throw WrongUsage("{}", "--actors and --skin are of people: give a --motion of theirs");
+    throw WrongUsage("{}", "--actors and --soft-tissue are of people: give a --motion of theirs");
   if (!people && command.files.keypoints) throw WrongUsage("{}", "--keypoints: of people; give a --motion of theirs");
   if (room.bump && room.bump->camera >= room.cameras)
     throw WrongUsage("--bump {}: there are {} cameras", command.bump, room.cameras);
@@ -101,14 +101,14 @@ void add_scene(Command& room, SimulateRoom& options) {
   room.whole("--cameras", scene.cameras, "N", 1, 256, "how many, round the volume");
   room.whole("--markers", scene.markers, "N", 1, 2000, "how many, on each body or free");
   room.whole("--actors", scene.actors, "N", 1, 20, "people who do the same, apart from each other");
-  room.whole("--props", scene.props, "N", 0, 200, "rigid bodies of five markers that fly through the volume");
-  room.number("--skin", scene.skin_m, "m", closed(0, 0.1),
+  room.whole("--rigid-bodies", scene.props, "N", 0, 200, "rigid bodies of five markers that fly through the volume");
+  room.number("--soft-tissue", scene.skin_m, "m", closed(0, 0.1),
               "how far a thigh's skin carries its markers at a bend of 90°; other limbs' less");
   room.text("--wand", options.wand, "the wand's markers, m along it, as 0,0.12,0.30 (default), or led: a single light")
-      .check(marker_places_of);
+      .check(marker_positions_of);
   room.whole("--frames", scene.frames, "N", 1, 100'000'000, "length");
   room.number("--rate", scene.rate_hz, "Hz", closed(1, 10000), "frames a second");
-  room.wholes("--size", options.size, "px", 64, 8192, "of the pictures: width and height");
+  room.wholes("--size", options.size, "px", 64, 8192, "of the images: width and height");
   room.number("--zoom", scene.zoom, "x", closed(0.1, 20), "times the focal length of a lens that sees 66° across");
   room.numbers("--volume", options.volume, "m", closed(0.1, 1000), "that the cameras stand round: along x, y and z");
   room.seed(scene.seed, "which of the endlessly many; the same one gives the same cameras for every motion");
@@ -117,14 +117,14 @@ void add_scene(Command& room, SimulateRoom& options) {
 void add_troubles(Command& room, SimulateRoom& options) {
   simulate::room::RoomOptions& scene = options.room;
   room.number("--noise", scene.noise_px, "px", closed(0, 100), "standard deviation of a blob's place");
-  room.number("--dropped", scene.dropped, "share", closed(0, 0.99), "of blobs that a camera misses");
+  room.number("--miss-rate", scene.dropped, "share", closed(0, 0.99), "of blobs that a camera misses");
   room.number("--ghosts", scene.ghosts, "share", closed(0, 0.99), "false blobs, of the true ones");
   room.number("--merge", scene.merge_px, "px", closed(0, 1000), "blobs nearer than this are seen as one");
-  room.number("--gaps", scene.gap_share, "share", closed(0, 0.25), "of the time that a marker is covered for all cameras");
+  room.number("--gaps", scene.gap_fraction, "share", closed(0, 0.25), "of the time that a marker is covered for all cameras");
   room.number("--gap-length", scene.gap_s, "s", closed(0.01, 60), "the longest such time");
   room.number("--offset", scene.offset_s, "s", closed(0, 60), "cameras were started up to this much before or after the first");
   room.text("--bump", options.bump,
-            "CAMERA,SECONDS,ANGLE: somebody runs into a camera (its number from 1), which turns by ANGLE rad")
+            "CAMERA,SECONDS,ANGLE: a person runs into a camera (its number from 1), which turns by ANGLE rad")
       .check(bump_of);
   room.flag("--no-occlusion", scene.occlusion, "limbs hide nothing", false);
   room.flag("--unnamed", options.files.unnamed, "the points without names too, as tracks that end at gaps, with ghosts among them");
@@ -132,7 +132,7 @@ void add_troubles(Command& room, SimulateRoom& options) {
             "people's body keypoints with a network's errors: keypoints_CAMERA.json (COCO) and keypoints_truth.csv");
   room.number("--swapped", options.files.keypoint_errors.swapped, "share", closed(0, 0.99),
               "of time during which arms, or legs, are exchanged in a camera's keypoints");
-  room.flag("--videos", options.files.videos, "render a video of each camera too");
+  room.flag("--render", options.files.videos, "render a video of each camera too");
 }
 
 }  // namespace

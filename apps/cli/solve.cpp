@@ -37,31 +37,33 @@ using pipeline::bodies::SolveSummary;
 
 constexpr std::ptrdiff_t kFreeBody = 6;  // what even one segment's markers show, if they are enough
 
-std::string joined(const std::vector<std::string>& names, std::size_t most) {
-  const auto shown = std::span(names).first(std::min(most, names.size()));
-  return fmt::format("{}{}", fmt::join(shown, ", "), names.size() > most ? fmt::format(" and {} more", names.size() - most) : "");
+std::string joined(const std::vector<std::string>& names, std::size_t maximum) {
+  const auto shown = std::span(names).first(std::min(maximum, names.size()));
+  return fmt::format("{}{}", fmt::join(shown, ", "),
+                     names.size() > maximum ? fmt::format(" and {} more", names.size() - maximum) : "");
 }
 
 /// How well markers that are right lie, in words: OpenSim's own advice is 20 mm RMS. Few markers fit any skeleton.
 std::string verdict(const SolveSummary& summary) {
-  const std::string seen =
+  const std::string detected =
       fmt::format("{:.0f} of the skeleton's {} markers are seen in a frame", summary.markers_a_frame, summary.skeleton_markers);
   const auto observed = std::count_if(summary.coordinates.begin(), summary.coordinates.end(),
                                       [](const SolveSummary::Coordinate& coordinate) { return coordinate.observed >= 0.5; });
   if (observed < std::min<std::ptrdiff_t>(kFreeBody, std::ssize(summary.coordinates)))
-    return fmt::format("that says nothing, {}, too few to show a pose", seen);
+    return fmt::format("that says nothing, {}, too few to show a pose", detected);
   if (summary.rms_m >= 0.020) return "poor: is the skeleton scaled to this person, and are the labels right?";
   const std::string word = summary.rms_m < 0.010 ? "good" : "fair";
-  return 2 * summary.markers_a_frame < summary.skeleton_markers ? fmt::format("{}, but only {}", word, seen) : word;
+  return 2 * summary.markers_a_frame < summary.skeleton_markers ? fmt::format("{}, but only {}", word, detected) : word;
 }
 
 void print_worst(const SolveSummary& summary) {
   std::vector<SolveSummary::Marker> by_rms = summary.markers;
   std::stable_sort(by_rms.begin(), by_rms.end(), [](const auto& a, const auto& b) { return a.rms_m > b.rms_m; });
   by_rms.resize(std::min<std::size_t>(3, by_rms.size()));
-  std::vector<std::string> said;
-  for (const SolveSummary::Marker& marker : by_rms) said.push_back(fmt::format("{} {:.1f} mm", marker.label, 1000 * marker.rms_m));
-  fmt::print(stderr, "worst markers: {}\n", fmt::join(said, ", "));
+  std::vector<std::string> stated;
+  for (const SolveSummary::Marker& marker : by_rms)
+    stated.push_back(fmt::format("{} {:.1f} mm", marker.label, 1000 * marker.rms_m));
+  fmt::print(stderr, "worst markers: {}\n", fmt::join(stated, ", "));
 }
 
 void print_solved(const std::string& recording, const SolveSummary& summary, const std::vector<std::string>& outputs) {
@@ -89,7 +91,7 @@ void print_solved(const std::string& recording, const SolveSummary& summary, con
       fmt::print(stderr, "sizes that the recording does not determine: {}\n", joined(summary.undetermined, 8));
   }
   if (!summary.marker_set.empty()) fmt::print(stderr, "the human skeleton, by {}\n", summary.marker_set);
-  for (const pipeline::bodies::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.said);
+  for (const pipeline::bodies::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.stated);
   if (summary.empty > 0) fmt::print(stderr, "{} frames have none of the markers; the pose is held there\n", summary.empty);
   if (summary.starts > 1) fmt::print(stderr, "lost and found again: {} times\n", summary.starts - 1);
   if (!summary.not_recorded.empty())
@@ -108,14 +110,14 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
                       {"unit", hinge ? "deg" : "mm"},
                       {"deviation", j.deviation * unit},
                       {"moved", j.moved * unit},
-                      {"said", j.said}});
+                      {"said", j.stated}});
   }
   for (const SolveSummary::Marker& m : summary.markers)
-    markers.push_back({{"label", m.label}, {"seen", m.seen}, {"rms_mm", 1000 * m.rms_m}, {"worst_mm", 1000 * m.worst_m}});
+    markers.push_back({{"label", m.label}, {"seen", m.detected}, {"rms_mm", 1000 * m.rms_m}, {"worst_mm", 1000 * m.worst_m}});
   for (const SolveSummary::Coordinate& c : summary.coordinates) {
-    const double unit = c.turns ? 180 / std::numbers::pi : 1;
+    const double unit = c.rotations ? 180 / std::numbers::pi : 1;
     coordinates.push_back({{"name", c.name},
-                           {"unit", c.turns ? "deg" : "m"},
+                           {"unit", c.rotations ? "deg" : "m"},
                            {"lowest", c.lowest * unit},
                            {"highest", c.highest * unit},
                            {"deviation", c.deviation * unit},
@@ -163,11 +165,11 @@ void run(SolveCommand& command) {
 void require_one_skeleton(const SolveCommand& command) {
   const pipeline::bodies::SolveOptions& how = command.options;
   if (!command.skeleton.empty() && !how.static_trial.empty())
-    throw WrongUsage("{}", "--static: makes a skeleton, and --skeleton is one; give one of the two");
+    throw WrongUsage("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two");
   if (!how.marker_set.empty() && !command.skeleton.empty())
     throw WrongUsage("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
   if (!how.motion.empty() && how.static_trial.empty())
-    throw WrongUsage("{}", "--motion: where the markers sit says a static trial; give --static too");
+    throw WrongUsage("{}", "--rom-trial: where the markers sit says a static trial; give --static-trial too");
 }
 
 void add_file_options(Command& command, SolveCommand& options) {
@@ -177,7 +179,7 @@ void add_file_options(Command& command, SolveCommand& options) {
   constexpr std::array<std::pair<const char*, const char*>, 6> kOrders{
       {{"ZXY", "ZXY"}, {"ZYX", "ZYX"}, {"XYZ", "XYZ"}, {"XZY", "XZY"}, {"YXZ", "YXZ"}, {"YZX", "YZX"}}};
   command.choice("--up", options.options.up, kAxes,
-                 "the axis that is up in RECORDING; left out: y for a TRC file beside an OpenSim model, else as it says, else z");
+                 "the axis that is up in RECORDING; omitted: y for a TRC file beside an OpenSim model, else as it says, else z");
   command.group("BVH");
   command.number("--unit", options.options.read_skeleton.unit_m, "m", above(0, 1000),
                  "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
@@ -185,7 +187,7 @@ void add_file_options(Command& command, SolveCommand& options) {
   command.number("--bvh-unit", options.options.bvh.unit_m, "m", above(0, 1000), "one unit of a BVH file that is written");
   command.choice("--bvh-up", options.options.bvh.up, kBvhAxes, "the axis that is up in it");
   command.choice("--bvh-order", options.options.bvh.order, kOrders, "of its turns");
-  command.text("--bvh-names", options.names, "what its joints are called: mixamo or motionbuilder; left out: as in the skeleton")
+  command.text("--bvh-names", options.names, "what its joints are called: mixamo or motionbuilder; omitted: as in the skeleton")
       .check([](const std::string& name) { format::skeleton::bvh_names(name); });
   command.group("");
 }
@@ -199,21 +201,22 @@ void add_solve(Command& program) {
       .required();
   command.input_file(
       "--skeleton", options->skeleton,
-      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); left out: the human skeleton");
-  command.input_file("--static", options->options.static_trial,
+      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); omitted: the human skeleton");
+  command.input_file("--static-trial", options->options.static_trial,
                      "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
                      "given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its "
                      "markers");
   command
-      .text("--marker-set", options->options.marker_set,
-            "whose labels --static, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left "
-            "out: known by them")
+      .text(
+          "--marker-set", options->options.marker_set,
+          "whose labels --static-trial, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left "
+          "out: known by them")
       .check([](const std::string& name) { analyse::gait::body_marker_set(name); });
   command.input_file(
-      "--motion", options->options.motion,
-      "beside --static: the same person moving hips, knees and elbows through their range; says where the joints are");
+      "--rom-trial", options->options.motion,
+      "beside --static-trial: the same person moving hips, knees and elbows through their range; says where the joints are");
   command.text("--person", options->options.person,
-               "of several people whose body keypoints RECORDING has the one to solve: P2; left out: the first");
+               "of several people whose body keypoints RECORDING has the one to solve: P2; omitted: the first");
   command.flag("--calibrate", options->options.calibrate,
                "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
   command.flag("--smooth", options->options.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");
@@ -227,7 +230,7 @@ void add_solve(Command& program) {
       .required()
       .check(pipeline::bodies::check_skeleton_output);
   command.also_writes([options] { return options->outputs; });
-  command.texts("--leave-out", options->options.leave_out, "a marker that is not used, by its label; may be given often");
+  command.texts("--exclude", options->options.exclude, "a marker that is not used, by its label; may be given often");
   add_file_options(command, *options);
   command.reports(options->json, options->quiet);
   command.runs([options] {

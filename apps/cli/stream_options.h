@@ -25,8 +25,8 @@ void add_stream_options(Command& command, StreamArguments& arguments, const std:
 /// is one to be had. Their sinks are `streams.sinks()`.
 stream::Streams open_streams(const StreamArguments& arguments, bool quiet, std::function<bool(bool on)> record = {});
 
-/// What came of them, a line each on standard error.
-void tell_streams(const stream::Streams& streams);
+/// The result, a line each on standard error.
+void report_streams(const stream::Streams& streams);
 /// The same for `--json`.
 Json json_of(const stream::Streams& streams);
 

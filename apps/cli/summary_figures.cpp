@@ -11,9 +11,9 @@ double figure_of(const pipeline::corridor::Summary& summary, std::string_view na
   return found != summary.figures.end() ? found->second : 0;
 }
 
-std::int64_t left_out_of(const pipeline::corridor::Summary& summary, std::string_view reason) {
-  const auto found = summary.left_out.find(reason);
-  return found != summary.left_out.end() ? found->second : 0;
+std::int64_t excluded_of(const pipeline::corridor::Summary& summary, std::string_view reason) {
+  const auto found = summary.excluded.find(reason);
+  return found != summary.excluded.end() ? found->second : 0;
 }
 
 double percent_of(std::int64_t part, std::int64_t whole) {

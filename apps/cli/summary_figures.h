@@ -12,8 +12,8 @@ namespace marey::cli {
 
 /// 0 where the run did not find it out.
 double figure_of(const pipeline::corridor::Summary& summary, std::string_view name);
-/// How many were left out for this reason.
-std::int64_t left_out_of(const pipeline::corridor::Summary& summary, std::string_view reason);
+/// How many were omitted for this reason.
+std::int64_t excluded_of(const pipeline::corridor::Summary& summary, std::string_view reason);
 /// In per cent; 0 of nothing.
 double percent_of(std::int64_t part, std::int64_t whole);
 

@@ -8,8 +8,8 @@
 #include <type_traits>
 
 #include "marey/core/error.h"
-#include "marey/core/overwriting.h"
 #include "marey/detect/network/network_cost.h"
+#include "marey/files/overwriting.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/jobs/track_image.h"
 #include "marey/source/open_source.h"
@@ -81,7 +81,7 @@ pipeline::people::TrackOutput output_of(const TrackCommand& command) {
   return output;
 }
 
-/// Runs `track(hooks)` and reports what came of it.
+/// Runs `track(hooks)` and reports the result.
 template <typename Track>
 void run(const TrackCommand& command, const pipeline::people::TrackOutput& output, Track&& track) {
   if (command.people.outline && (output.format == "mot" || output.format == "csv"))
@@ -109,15 +109,15 @@ GroundCommand ground_command(const TrackCommand& command) {
 
 void check_on_ground(const TrackCommand& command) {
   if (command.targets == Targets::markers)
-    throw WrongUsage("--ground tracks people; markers are not on the ground: leave out one of the two");
+    throw WrongUsage("--ground tracks people; markers are not on the ground: omit one of the two");
   if (command.targets == Targets::keypoints)
-    throw WrongUsage("--ground localises people by their boxes; keypoints are of one camera's images: leave out one of the two");
+    throw WrongUsage("--ground localises people by their boxes; keypoints are of one camera's images: omit one of the two");
   if (!command.people.input.plot.empty())
     throw WrongUsage("--plot shows trajectories in one image; with --ground there is --pitch-view");
 }
 
 /// Options that would change the output much: without effect they are refused, the others are named in a warning.
-constexpr std::array<std::string_view, 5> kRefusedElsewhere{"masks", "outline", "delay", "seen-only", "steady"};
+constexpr std::array<std::string_view, 5> kRefusedElsewhere{"foreground-masks", "contour", "lag", "measured-only", "stabilise"};
 
 /// Options that were given and that the job does not have.
 void check_of_other_jobs(const TrackCommand& command) {
@@ -127,14 +127,14 @@ void check_of_other_jobs(const TrackCommand& command) {
     for (const pipeline::jobs::Option& row : rows->options()) {
       if (!row.given || command.rows().find(row.name) != nullptr) continue;
       if (std::find(kRefusedElsewhere.begin(), kRefusedElsewhere.end(), row.name) != kRefusedElsewhere.end())
-        throw WrongUsage("--{} is not an option of {}; leave out one of the two", row.name, job);
+        throw WrongUsage("--{} is not an option of {}; omit one of the two", row.name, job);
       without_effect.insert("--" + row.name);
     }
   }
   for (const std::string& option : without_effect) warn({fmt::format("{} has no effect with {}", option, job)});
 }
 
-/// What the network costs on this computer, before a run over a video or a folder of pictures.
+/// What the network costs on this computer, before a run over a video or a folder of images.
 void print_network_cost(const detect::DetectorOptions& detector, const std::string& source) {
   const auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&detector);
   if (network == nullptr || !(std::filesystem::is_regular_file(source) || std::filesystem::is_directory(source))) return;
@@ -144,7 +144,7 @@ void print_network_cost(const detect::DetectorOptions& detector, const std::stri
   fmt::print(stderr,
              "network: {:.0f} ms per tile with {} thread{}; searching a whole frame of {}x{} px takes about {} tiles ({:.1f} s), "
              "every {:g} to {:g} s of the video; in between, a tile around each group of people\n",
-             1000 * cost.tile_s, cost.threads, cost.threads == 1 ? "" : "s", size.width, size.height, cost.tiles, cost.look_s(),
+             1000 * cost.tile_s, cost.threads, cost.threads == 1 ? "" : "s", size.width, size.height, cost.tiles, cost.inspect_s(),
              network->everywhere_s, 4 * network->everywhere_s);
 }
 
@@ -188,7 +188,7 @@ void add_outputs(Command& command, TrackCommand& options) {
   command
       .text("--format", options.format,
             "one of " + format::names_of_written(format::Content::image) +
-                " (default: by OUTPUT's ending, else mot, with --outline jsonl, for keypoints csv)")
+                " (default: by OUTPUT's ending, else mot, with --contour jsonl, for keypoints csv)")
       .check([](const std::string& name) { format::format_to_write({}, name, format::Content::image); });
   command.also_writes([&options]() -> std::vector<std::string> {
     if (options.on_ground) return ground_files(ground_command(options));

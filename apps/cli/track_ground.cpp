@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "marey/core/error.h"
-#include "marey/core/overwriting.h"
 #include "marey/core/rig_sources.h"
+#include "marey/files/overwriting.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/rig_turns.h"
 
@@ -18,8 +18,8 @@ namespace {
 pipeline::people::GroundOutput output_of(const GroundCommand& command) {
   pipeline::people::GroundOutput output = command.job.output;
   output.tracks = command.out;
-  const char* usual = command.out.ends_with(".marey") ? "take" : output.boxes_of.empty() ? "csv" : "mot";
-  const std::string format = command.format.empty() ? usual : command.format;
+  const char* typical = command.out.ends_with(".marey") ? "take" : output.boxes_of.empty() ? "csv" : "mot";
+  const std::string format = command.format.empty() ? typical : command.format;
   if (format != "csv" && format != "take" && format != "mot")
     throw WrongUsage("--format {}: places on the ground are written as csv or take, the boxes in one camera's view as mot", format);
   if (format == "mot" && output.boxes_of.empty())
@@ -57,7 +57,7 @@ void track_on_ground(GroundCommand command) {
   const pipeline::people::GroundOutput output = output_of(command);
   command.job.rig_name = command.rig;
   pipeline::people::PeopleOnGroundOptions options = resolved(command.job, rig);
-  options.turning = format::rig::read_turning(command.rig);
+  options.ptz = format::rig::read_ptz(command.rig);
   run_with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::people::track_ground(rig, output, options, hooks); },
       [&](const pipeline::people::GroundSummary& summary, double elapsed) {

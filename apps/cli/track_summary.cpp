@@ -17,13 +17,13 @@ std::string_view counted(bool markers, std::int64_t count) {
   return count == 1 ? "person" : "people";
 }
 
-void print_left_out(const pipeline::corridor::Summary& summary) {
+void print_excluded(const pipeline::corridor::Summary& summary) {
   const auto print = [&](std::string_view reason, std::string_view what) {
-    if (const auto count = left_out_of(summary, reason)) fmt::print(stderr, "left out: {} {}\n", count, what);
+    if (const auto count = excluded_of(summary, reason)) fmt::print(stderr, "omitted: {} {}\n", count, what);
   };
-  print("too_brief", "seen too briefly to be believed");
+  print("too_brief", "seen too briefly to be trusted");
   print("noise", "moving regions too small to be a part of a person");
-  print("nobody", "boxes in which the network sees nobody");
+  print("nobody", "boxes in which the network sees no person");
   print("misfits", "moving regions that no body explains");
 }
 
@@ -44,23 +44,23 @@ void print_json(const pipeline::corridor::Summary& summary, const pipeline::peop
                {"overlay", path_or_null(output.overlay)},
                {"plot", path_or_null(output.plot)}};
   if (!markers) {
-    json["dropped"] = {{"noise", left_out_of(summary, "noise")},
-                       {"misfits", left_out_of(summary, "misfits")},
-                       {"too_brief", left_out_of(summary, "too_brief")}};
+    json["dropped"] = {{"noise", excluded_of(summary, "noise")},
+                       {"misfits", excluded_of(summary, "misfits")},
+                       {"too_brief", excluded_of(summary, "too_brief")}};
   }
   for (const auto& [name, figure] : summary.figures) json["noise"][name] = figure;
   if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held_outlines}};
-  if (summary.keypoints > 0) json["keypoints"] = {{"rows", summary.keypoints}, {"nobody", left_out_of(summary, "nobody")}};
+  if (summary.keypoints > 0) json["keypoints"] = {{"rows", summary.keypoints}, {"nobody", excluded_of(summary, "nobody")}};
   print(json);
 }
 
 void print_summary(const pipeline::corridor::Summary& summary, const pipeline::people::TrackOutput& output, bool markers,
                    double elapsed) {
-  for (const std::string& sentence : summary.notes) fmt::print(stderr, "{}\n", sentence);
+  for (const std::string& message_text : summary.notes) fmt::print(stderr, "{}\n", message_text);
   fmt::print(stderr, "{} {} in {} {} ({:.1f} s), {:.0f} frames/s\n", summary.tracks, counted(markers, summary.tracks),
              summary.frames, summary.frames == 1 ? "frame" : "frames", summary.seconds,
              static_cast<double>(summary.frames) / elapsed);
-  print_left_out(summary);
+  print_excluded(summary);
   if (const auto measured = summary.figures.find("measurement_px"); measured != summary.figures.end()) {
     fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n", measured->second,
                summary.figures.at("acceleration_px_s2"));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "marey/pipeline/people/track_in_picture.h"
+#include "marey/pipeline/people/track_in_image.h"
 
 namespace marey::cli {
 

@@ -61,24 +61,24 @@ void add_view(Command& program) {
   auto options = std::make_shared<ViewCommand>();
   viewer::ViewOptions& how = options->options;
   Command command =
-      program.subcommand("view", "Show a recording in the browser: markers in space, people on a pitch, tracks in a picture");
+      program.subcommand("view", "Show a recording in the browser: markers in space, people on a pitch, tracks in an image");
   command.input_file("FILE", options->file, "a recording, known by its content: " + format::names_of_read(format::kRecordings))
       .required();
-  command.input_file("--film", how.film, "the film that was tracked, to be shown behind tracks in a picture");
+  command.input_file("--video", how.video, "the video that was tracked, to be shown behind tracks in an image");
   command.flag("--edit", how.edit, "let the page change FILE, a take: what \"marey edit\" can do, each edit to be undone");
-  add_web_place(command, how.place);
+  add_listen_address(command, how.location);
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", how.read.up, kAxes,
-                 "the axis that is up in FILE, of points in space; as FILE says where it is left out, else z");
+                 "the axis that is up in FILE, of points in space; as FILE says where it is omitted, else z");
   command.group("People on the ground");
   command.input_file("--metadata", how.read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside FILE under a like name");
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m; without it a pitch is drawn where people move on one")
       .check(parse_pitch_size);
-  command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where FILE does not say");
-  const Option y_down =
-      command.flag("--y-down", options->y_down, "y grows downwards, seen from above with x to the right, where FILE does not say");
+  command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where FILE does not specify");
+  const Option y_down = command.flag("--y-down", options->y_down,
+                                     "y grows downwards, seen from above with x to the right, where FILE does not specify");
   command.input_file("--rig", options->rig, "rig whose ground_from_world says whether --y-down is so").excludes(y_down);
   command.flag("--centred", how.ground.centred, "places count from the middle of the pitch, not from a corner");
   command.group("");

@@ -9,12 +9,12 @@
 
 namespace marey::cli {
 
-void add_web_place(Command& command, viewer::WebPlace& place) {
+void add_listen_address(Command& command, viewer::ListenAddress& location) {
   command.text(
-      "--listen", place.listen,
+      "--listen", location.listen,
       "address of this machine at which the page is had; 0.0.0.0: all of them, so that a phone in the same network may look");
-  command.whole("--port", place.port, "N", 0, 65535,
-                fmt::format("of the page; 0 takes one that is free ({}, or a free one where that is taken)", viewer::kUsualPort));
+  command.whole("--port", location.port, "N", 0, 65535,
+                fmt::format("of the page; 0 takes one that is free ({}, or a free one where that is taken)", viewer::kDefaultPort));
 }
 
 void wait_for_stop() {

@@ -6,7 +6,7 @@
 namespace marey::cli {
 
 /// --listen and --port, of every command that shows a page.
-void add_web_place(Command& command, viewer::WebPlace& place);
+void add_listen_address(Command& command, viewer::ListenAddress& location);
 
 /// Returns when the command is asked to stop.
 void wait_for_stop();

@@ -14,63 +14,63 @@
 #include "marey/format/rig/rig_file.h"
 
 #include "camera_health.h"
-#include "page_changes.h"
+#include "page_commands.h"
 #include "run_hooks.h"
 
 namespace marey::cli {
 namespace {
 
 using calibrate::wand::WandCoverage;
-constexpr int kToldEvery = 3;                               // of the looks, which are ten a second
+constexpr int kReportedEvery = 3;                           // of the looks, which are ten a second
 constexpr auto kToBeSent = std::chrono::milliseconds(300);  // the last words of a program that ends
 
-Json seen_by(const pipeline::calibrate::WandSeen::Camera& camera) {
+Json observed_by(const pipeline::calibrate::WandObserved::Camera& camera) {
   return {{"name", camera.health.name},  {"state", to_string(camera.health.state)},
           {"coverage", camera.coverage}, {"views", camera.views},
           {"covered", camera.covered},   {"parts", Json(camera.parts)}};
 }
 
-std::function<void(const viewer::PageCommand&)> changing_wands(const WandPage::Options& options,
-                                                               const std::shared_ptr<pipeline::live::CameraDesk>& desk) {
-  if (!is_for_this_computer(options.place.listen) && !options.allow_control) return {};
-  return page_changes(desk, nullptr, "");
+std::function<void(const viewer::PageCommand&)> changing_wands(
+    const WandPage::Options& options, const std::shared_ptr<pipeline::live::CameraSettings>& camera_settings) {
+  if (!is_for_this_computer(options.location.listen) && !options.allow_control) return {};
+  return page_changes(camera_settings, nullptr, "");
 }
 
 }  // namespace
 
 void WandScreen::begun(bool keys) {
-  out_->say(fmt::format("wave the wand through the whole volume{}", keys ? "; q: that will do" : ""));
+  out_->announce(fmt::format("wave the wand through the whole volume{}", keys ? "; q: that will do" : ""));
 }
 
-void WandScreen::show(const pipeline::calibrate::WandSeen& seen) {
-  covered_.resize(seen.cameras.size());
-  for (std::size_t c = 0; c < seen.cameras.size(); ++c) {
-    if (!seen.cameras[c].covered || covered_[c]) continue;
+void WandScreen::show(const pipeline::calibrate::WandObserved& detected) {
+  covered_.resize(detected.cameras.size());
+  for (std::size_t c = 0; c < detected.cameras.size(); ++c) {
+    if (!detected.cameras[c].covered || covered_[c]) continue;
     covered_[c] = true;
-    out_->say(fmt::format("camera \"{}\" has seen enough: {:.0f} % of its picture", seen.cameras[c].health.name,
-                          100 * seen.cameras[c].coverage));
+    out_->announce(fmt::format("camera \"{}\" has seen enough: {:.0f} % of its image", detected.cameras[c].health.name,
+                               100 * detected.cameras[c].coverage));
   }
-  if (seen.enough) out_->say(fmt::format("all of them have, after {:.0f} s", seen.seconds));
-  std::string line = fmt::format("{:.0f} s ", seen.seconds);
-  for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) {
+  if (detected.enough) out_->announce(fmt::format("all of them have, after {:.0f} s", detected.seconds));
+  std::string line = fmt::format("{:.0f} s ", detected.seconds);
+  for (const pipeline::calibrate::WandObserved::Camera& camera : detected.cameras) {
     line += " " + short_line_of(camera.health, fmt::format("{:.0f} %", 100 * camera.coverage));
   }
   out_->show(line);
 }
 
-WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraDesk> desk)
-    : desk_(std::move(desk)),
+WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraSettings> camera_settings)
+    : camera_settings_(std::move(camera_settings)),
       ground_(options.ground),
-      viewer_({.place = options.place,
-               .change = changing_wands(options, desk_),
+      viewer_({.location = options.location,
+               .change = changing_wands(options, camera_settings_),
                .job = "wand",
                .enough = options.enough,
-               .ground = [this] { ground_wanted_ = true; }}),
+               .ground = [this] { ground_required_ = true; }}),
       sink_(viewer_.make_sink()) {
-  told_ = {{"wanted", WandCoverage::wanted(pipeline::calibrate::knows_lenses(rig))},
-           {"across", WandCoverage::kPartsAcross},
-           {"down", WandCoverage::kPartsDown},
-           {"needed", WandCoverage::kEnoughShared}};
+  reported_ = {{"wanted", WandCoverage::required(pipeline::calibrate::knows_lenses(rig))},
+               {"across", WandCoverage::kPartsAcross},
+               {"down", WandCoverage::kPartsDown},
+               {"needed", WandCoverage::kEnoughShared}};
   show_rig(rig);
   fmt::print(stderr, "marey: open {} in a browser\n", viewer_.address());
 }
@@ -85,75 +85,76 @@ void WandPage::show_rig(const Rig& rig) {
   sink_->begin(header);
 }
 
-void WandPage::tell(const char* phase) {
-  told_["phase"] = phase;
-  viewer_.wand(compact(told_));
+void WandPage::notify(const char* phase) {
+  reported_["phase"] = phase;
+  viewer_.wand(compact(reported_));
 }
 
 /// How the cameras are set.
-void WandPage::report(const pipeline::calibrate::WandSeen& seen) {
-  viewer::LiveReport told;
-  for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) {
-    auto& entry = told.cameras.emplace_back(viewer::LiveReport::Camera{.health = camera.health, .finds_markers = true});
-    tell_changeable(entry, desk_->camera(told.cameras.size() - 1));
+void WandPage::report(const pipeline::calibrate::WandObserved& detected) {
+  viewer::LiveReport reported;
+  for (const pipeline::calibrate::WandObserved::Camera& camera : detected.cameras) {
+    auto& entry = reported.cameras.emplace_back(viewer::LiveReport::Camera{.health = camera.health, .finds_markers = true});
+    report_changeable(entry, camera_settings_->camera(reported.cameras.size() - 1));
   }
-  viewer_.report(told);
+  viewer_.report(reported);
 }
 
-void WandPage::show(const pipeline::calibrate::WandSeen& seen) {
-  sink_->write(seen.now);
-  if (shown_++ % kToldEvery != 0 && !seen.enough) return;
-  report(seen);
-  told_["seconds"] = seen.seconds;
-  told_["cameras"] = Json::array();
-  told_["shared"] = Json::array();
-  for (const pipeline::calibrate::WandSeen::Camera& camera : seen.cameras) told_["cameras"].push_back(seen_by(camera));
-  for (const pipeline::calibrate::WandSeen::Shared& pair : seen.shared)
-    told_["shared"].push_back({{"a", pair.a}, {"b", pair.b}, {"views", pair.views}, {"enough", pair.enough}});
-  tell("waving");
+void WandPage::show(const pipeline::calibrate::WandObserved& detected) {
+  sink_->write(detected.now);
+  if (shown_++ % kReportedEvery != 0 && !detected.enough) return;
+  report(detected);
+  reported_["seconds"] = detected.seconds;
+  reported_["cameras"] = Json::array();
+  reported_["shared"] = Json::array();
+  for (const pipeline::calibrate::WandObserved::Camera& camera : detected.cameras)
+    reported_["cameras"].push_back(observed_by(camera));
+  for (const pipeline::calibrate::WandObserved::Shared& pair : detected.shared)
+    reported_["shared"].push_back({{"a", pair.a}, {"b", pair.b}, {"views", pair.views}, {"enough", pair.enough}});
+  notify("waving");
 }
 
 void WandPage::computing() {
-  tell("computing");
+  notify("computing");
 }
 
 void WandPage::failed(const std::string& why) {
-  told_["why"] = why;
-  tell("failed");
+  reported_["why"] = why;
+  notify("failed");
   std::this_thread::sleep_for(kToBeSent);
 }
 
 void WandPage::done(Rig rig, Json report, const std::string& file) {
   show_rig(rig);
-  told_["report"] = std::move(report);
-  told_["rig"] = file;
-  ground_wanted_ = false;  // before there was a rig nobody could ask
-  tell("done");
+  reported_["report"] = std::move(report);
+  reported_["rig"] = file;
+  ground_required_ = false;  // before there was a rig no person could ask
+  notify("done");
   const std::stop_token stop = stop_by_signals();
   if (viewer_.count().pages > 0) fmt::print(stderr, "marey: the page shows how good it is; this ends when it is closed\n");
   while (viewer_.count().pages > 0 && !stop.stop_requested()) {
-    if (ground_wanted_) set_ground(rig, file);
+    if (ground_required_) set_ground(rig, file);
     std::this_thread::sleep_for(kToBeSent);
   }
 }
 
 void WandPage::set_ground(Rig& rig, const std::string& file) {
-  told_["ground"] = Json();
-  told_["ground"]["phase"] = "looking";
-  tell("done");
+  reported_["ground"] = Json();
+  reported_["ground"]["phase"] = "looking";
+  notify("done");
   try {
     const pipeline::calibrate::GroundCalibration found = ground_(rig);
     rig = found.rig;
     format::rig::write_rig(rig, file);
-    told_["ground"] = {{"phase", "set"}, {"rms_mm", found.found.rms_mm}, {"warnings", Json(found.warnings)}};
+    reported_["ground"] = {{"phase", "set"}, {"rms_mm", found.found.rms_mm}, {"warnings", Json(found.warnings)}};
     show_rig(rig);
   } catch (const Stopped&) {
-    told_["ground"] = Json();
+    reported_["ground"] = Json();
   } catch (const Error& error) {
-    told_["ground"] = {{"phase", "failed"}, {"why", error.what()}};
+    reported_["ground"] = {{"phase", "failed"}, {"why", error.what()}};
   }
-  ground_wanted_ = false;
-  tell("done");
+  ground_required_ = false;
+  notify("done");
 }
 
 }  // namespace marey::cli

@@ -24,7 +24,7 @@ class WandScreen {
   explicit WandScreen(bool quiet) : out_(std::in_place, quiet) {}
 
   void begun(bool keys);
-  void show(const pipeline::calibrate::WandSeen& seen);
+  void show(const pipeline::calibrate::WandObserved& detected);
   /// Nothing more is said.
   void end() { out_.reset(); }
 
@@ -33,38 +33,38 @@ class WandScreen {
   std::vector<bool> covered_;
 };
 
-/// The same on a page, with the cameras' pictures; then how good the calibration is.
+/// The same on a page, with the cameras' images; then how good the calibration is.
 class WandPage {
  public:
   struct Options {
-    viewer::WebPlace place;
+    viewer::ListenAddress location;
     bool allow_control = false;  ///< who opens the page from another computer may change the cameras
     std::function<pipeline::calibrate::GroundCalibration(const Rig&)> ground;  ///< by an L-frame that lies on the floor now
     std::function<void()> enough;  ///< called, on another thread, where the page's user finds that it will do
   };
   /// Prints its address. What is changed of the cameras on it is in `desk`.
-  WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraDesk> desk);
+  WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraSettings> camera_settings);
 
-  void show(const pipeline::calibrate::WandSeen& seen);
+  void show(const pipeline::calibrate::WandObserved& detected);
   void computing();
   void failed(const std::string& why);
-  /// `report` as --json prints it. Stays until the last page is closed, or the program is asked to end; meanwhile the ground is set
-  /// as often as somebody asks for it, and the file written anew.
+  /// `report` as --json prints it. Stays until the last page is closed, or the program is asked to end; in the meantime the ground
+  /// is set as often as a person asks for it, and the file written again.
   void done(Rig rig, Json report, const std::string& file);
 
  private:
-  void tell(const char* phase);
+  void notify(const char* phase);
   void show_rig(const Rig& rig);
-  void report(const pipeline::calibrate::WandSeen& seen);
+  void report(const pipeline::calibrate::WandObserved& detected);
 
   void set_ground(Rig& rig, const std::string& file);
 
-  std::shared_ptr<pipeline::live::CameraDesk> desk_;
+  std::shared_ptr<pipeline::live::CameraSettings> camera_settings_;
   std::function<pipeline::calibrate::GroundCalibration(const Rig&)> ground_;
-  std::atomic<bool> ground_wanted_ = false;
+  std::atomic<bool> ground_required_ = false;
   viewer::LiveViewer viewer_;
   std::unique_ptr<Sink> sink_;
-  Json told_;
+  Json reported_;
   int shown_ = 0;
 };
 

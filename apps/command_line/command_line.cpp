@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/overwriting.h"
+#include "marey/files/overwriting.h"
 
 #include "declared.h"
 #include "file_checks.h"
@@ -80,34 +80,34 @@ Option Command::flag(const std::string& name, bool& value, const std::string& me
   return Option(declared_->add(std::move(option)));
 }
 
-Option Command::add_number(const std::string& name, const std::string& usual, int count, const char* unit, const Interval& interval,
-                           const std::string& meaning, std::function<void(int, double)> set) {
+Option Command::add_number(const std::string& name, const std::string& typical, int count, const char* unit,
+                           const Interval& interval, const std::string& meaning, std::function<void(int, double)> set) {
   Option::Declared& option =
       declared_->declare(name, meaning, fmt::format("{} in {}", unit, pipeline::jobs::notation(interval)), count,
                          [=](int index, const std::string& text) { set(index, number_in(text, unit, interval)); });
-  option.parsed->default_str(usual);
+  option.parsed->default_str(typical);
   return Option(option);
 }
 
-Option Command::add_whole(const std::string& name, const std::string& usual, int count, const char* unit, std::int64_t low,
+Option Command::add_whole(const std::string& name, const std::string& typical, int count, const char* unit, std::int64_t low,
                           std::int64_t high, const std::string& meaning, std::function<void(int, std::int64_t)> set) {
   Option::Declared& option =
       declared_->declare(name, meaning, fmt::format("{} in {}", unit, pipeline::jobs::notation(low, high)), count,
                          [=](int index, const std::string& text) { set(index, whole_number_in(text, unit, low, high)); });
-  option.parsed->default_str(usual);
+  option.parsed->default_str(typical);
   return Option(option);
 }
 
-Option Command::add_choice(const std::string& name, std::vector<std::string> names, const std::string& usual,
+Option Command::add_choice(const std::string& name, std::vector<std::string> names, const std::string& typical,
                            const std::string& meaning, std::function<void(std::size_t)> set) {
   const std::string listed = CLI::detail::join(names, ", ");
   Option::Declared& option =
       declared_->declare(name, meaning + ": " + listed, "NAME", 1, [=, set = std::move(set)](int, const std::string& text) {
         const auto chosen = std::find(names.begin(), names.end(), text);
-        if (chosen == names.end()) throw Error("\"{}\" is not known; known are: {}.{}", text, listed, suggestion(text, names));
+        if (chosen == names.end()) throw Error("\"{}\" is not known; supported:: {}.{}", text, listed, suggestion(text, names));
         set(static_cast<std::size_t>(chosen - names.begin()));
       });
-  option.parsed->default_str(usual);
+  option.parsed->default_str(typical);
   return Option(option);
 }
 

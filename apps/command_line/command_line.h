@@ -57,7 +57,7 @@ class Option {
   Option& excludes(const Option& other);
   /// Called for each text that is given.
   Option& check(Check check);
-  /// Of an output: it ends in one of these (".svg"), or the command line is refused. What is no file, as /dev/null, is taken.
+  /// Of an output: it ends in one of these (".svg"), or the command line is refused. What is not a file, as /dev/null, is taken.
   Option& ends_in(std::vector<std::string> endings);
   /// Of an output: it may be that input, which the command reads whole before it writes.
   Option& may_replace(const Option& input);
@@ -130,16 +130,16 @@ class Command {
   Option choice(const std::string& name, T& value, const Choices& choices, const std::string& meaning) {
     std::vector<std::string> names;
     std::vector<T> values;
-    std::string usual;
+    std::string typical;
     for (const auto& [its_name, its_value] : choices) {
       names.emplace_back(its_name);
       values.push_back(its_value);
-      if (its_value == value) usual = names.back();
+      if (its_value == value) typical = names.back();
     }
-    return add_choice(name, std::move(names), usual, meaning, [&value, values](std::size_t chosen) { value = values[chosen]; });
+    return add_choice(name, std::move(names), typical, meaning, [&value, values](std::size_t chosen) { value = values[chosen]; });
   }
 
-  /// Files that are read: no output may be one of them. A folder and a pattern stand for the pictures in them; CAMERA=FILE stands
+  /// Files that are read: no output may be one of them. A folder and a pattern stand for the images in them; CAMERA=FILE stands
   /// for the file where `texts` are given.
   Option input_file(const std::string& name, std::string& value, const std::string& meaning);
   Option input_files(const std::string& name, std::vector<std::string>& values, const std::string& meaning);
@@ -171,11 +171,11 @@ class Command {
   }
   static std::string shown(double value) { return fmt::format("{}", value); }
 
-  Option add_number(const std::string& name, const std::string& usual, int count, const char* unit, const Interval& interval,
+  Option add_number(const std::string& name, const std::string& typical, int count, const char* unit, const Interval& interval,
                     const std::string& meaning, std::function<void(int, double)> set);
-  Option add_whole(const std::string& name, const std::string& usual, int count, const char* unit, std::int64_t low,
+  Option add_whole(const std::string& name, const std::string& typical, int count, const char* unit, std::int64_t low,
                    std::int64_t high, const std::string& meaning, std::function<void(int, std::int64_t)> set);
-  Option add_choice(const std::string& name, std::vector<std::string> names, const std::string& usual, const std::string& meaning,
+  Option add_choice(const std::string& name, std::vector<std::string> names, const std::string& typical, const std::string& meaning,
                     std::function<void(std::size_t)> set);
 
   Declared* declared_;

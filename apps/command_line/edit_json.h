@@ -1,6 +1,6 @@
 #pragma once
 
-#include "marey/pipeline/take/edit_words.h"
+#include "marey/pipeline/take/describe_edits.h"
 
 #include "json_value.h"
 

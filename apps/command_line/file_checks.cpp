@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "marey/core/overwriting.h"
+#include "marey/files/overwriting.h"
 
 #include "command_line.h"
 

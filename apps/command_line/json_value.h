@@ -72,7 +72,7 @@ inline Json path_or_null(const std::string& path) {
   return path.empty() ? Json() : Json(path);
 }
 
-/// On standard output, two blanks deep, with a newline behind it. Bytes that are no UTF-8 become U+FFFD.
+/// On standard output, two blanks deep, with a newline behind it. Bytes that are not UTF-8 become U+FFFD.
 void print(const Json& json);
 
 /// On one line, for programs. Likewise.

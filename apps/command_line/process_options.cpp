@@ -9,13 +9,13 @@
 #include <opencv2/core/utility.hpp>
 #include <tbb/global_control.h>
 
-#include "marey/core/limits.h"
+#include "marey/files/limits.h"
 
 namespace marey::cli {
 namespace {
 
-constexpr std::int64_t kLargestLimit = 1'000'000'000'000;
-constexpr int kMostThreads = 1024;
+constexpr std::int64_t kMaxLimit = 1'000'000'000'000;
+constexpr int kMaxThreads = 1024;
 
 std::string limit_names() {
   std::string text;
@@ -32,7 +32,7 @@ void put_limit_in_force(const std::string& text) {
   if (named == limits.end() || equals == std::string::npos)
     throw Error("\"{}\" must be NAME=N, a limit and its number; limits are: {}", text, limit_names());
   Limits changed = Limits::in_force();
-  changed.*named->value = static_cast<std::size_t>(whole_number_in(text.substr(equals + 1), named->meaning, 1, kLargestLimit));
+  changed.*named->value = static_cast<std::size_t>(whole_number_in(text.substr(equals + 1), named->meaning, 1, kMaxLimit));
   Limits::put_in_force(changed);
 }
 
@@ -52,7 +52,7 @@ void put_limits_in_force(const std::string& text) {
 }
 
 void compute_with(const std::string& text) {
-  const auto threads = whole_number_in(text, "N", 1, kMostThreads);
+  const auto threads = whole_number_in(text, "N", 1, kMaxThreads);
   static std::unique_ptr<tbb::global_control> control;
   control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   cv::setNumThreads(static_cast<int>(threads));
@@ -69,7 +69,7 @@ void add_process_options(Command& command) {
   Given& its = *given.emplace_back(std::make_unique<Given>());
   command.text("--limit", its.limits, "NAME=N,..., what one input may ask for at most: " + limits_with_their_numbers())
       .check(put_limits_in_force);
-  command.whole("--threads", its.threads, "N", 1, kMostThreads, "that compute at once; results are the same for any number")
+  command.whole("--threads", its.threads, "N", 1, kMaxThreads, "that compute at once; results are the same for any number")
       .check(compute_with);
 }
 

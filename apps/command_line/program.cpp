@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/register.h"
 
 #include "declared.h"
@@ -25,7 +25,71 @@ namespace {
 struct Renamed {
   const char *before, *now;
 };
-constexpr std::array<Renamed, 2> kRenamed{{{"--out", "--output"}, {"--in-step", "--synced"}}};
+constexpr Renamed kRenamed[]{{"--as-recorded", "--without-edits"},
+                             {"--associate", "--association"},
+                             {"--cameras", "--soccernet-cameras"},
+                             {"--contact", "--contact-shadow"},
+                             {"--delay", "--lag"},
+                             {"--do", "--job"},
+                             {"--doubts", "--review"},
+                             {"--dropped", "--miss-rate"},
+                             {"--dry", "--dry-run"},
+                             {"--ending", "--extension"},
+                             {"--every", "--detector-interval"},
+                             {"--fill", "--max-gap"},
+                             {"--film", "--video"},
+                             {"--filmed", "--broadcast-look"},
+                             {"--fit-noise", "--estimate-noise"},
+                             {"--for", "--duration"},
+                             {"--frame", "--l-frame"},
+                             {"--ground", "--background-image"},
+                             {"--hidden", "--max-occlusion"},
+                             {"--in-step", "--synced"},
+                             {"--jobs", "--max-jobs"},
+                             {"--labelled", "--labelled-only"},
+                             {"--late", "--frame-timeout"},
+                             {"--least", "--min-probability"},
+                             {"--least-fit", "--min-fit"},
+                             {"--least-margin", "--min-margin"},
+                             {"--leave-out", "--exclude"},
+                             {"--light", "--light-variation"},
+                             {"--lines", "--measurement-lines"},
+                             {"--loose", "--outlier-factor"},
+                             {"--marker-width", "--marker-diameter"},
+                             {"--masks", "--foreground-masks"},
+                             {"--missed", "--miss-rate"},
+                             {"--most-markers", "--max-markers"},
+                             {"--most-offset", "--max-offset"},
+                             {"--motion", "--rom-trial"},
+                             {"--names", "--annotations"},
+                             {"--options", "--job-options"},
+                             {"--order", "--spline-order"},
+                             {"--out", "--output"},
+                             {"--outline", "--contour"},
+                             {"--pace", "--speed-factor"},
+                             {"--part", "--shard"},
+                             {"--patience", "--connect-timeout"},
+                             {"--picture", "--plot"},
+                             {"--pictures", "--plots"},
+                             {"--predict", "--max-prediction"},
+                             {"--props", "--rigid-bodies"},
+                             {"--quality", "--jpeg-quality"},
+                             {"--realtime", "--realtime-priority"},
+                             {"--roster", "--squads"},
+                             {"--scaled", "--scale-invariant"},
+                             {"--seen-only", "--measured-only"},
+                             {"--set", "--marker-set"},
+                             {"--skin", "--soft-tissue"},
+                             {"--stand", "--layout"},
+                             {"--static", "--static-trial"},
+                             {"--steady", "--stabilise"},
+                             {"--to", "--engine"},
+                             {"--to", "--undo-to"},
+                             {"--videos", "--render"},
+                             {"--views", "--max-views"},
+                             {"--widest", "--max-width"},
+                             {"--without-background", "--no-background"}};
+constexpr Renamed kRenamedCommands[]{{"turning", "ptz"}, {"follow", "track"}, {"who", "identify"}};
 
 /// Help in one notation: "--rate HZ in (0, 1e6] (25)".
 class HelpText : public CLI::Formatter {
@@ -48,11 +112,11 @@ struct CommandMissing {
   std::string help;
 };
 
-std::map<std::string, std::string> asked_for;  // of the command that runs
+std::map<std::string, std::string> requested_for;  // of the command that runs
 
 /// One line: it may hold words of a file or of the command, which may hold anything.
-void say(std::string_view sentence) {
-  fmt::print(stderr, "marey: {}\n", plain_text(sentence));
+void announce(std::string_view message_text) {
+  fmt::print(stderr, "marey: {}\n", plain_text(message_text));
 }
 
 /// The exit code, after the last byte of standard output: what it did not take was lost.
@@ -62,7 +126,7 @@ int finish(int code) {
   const int reason = errno;
   if (!lost && std::fclose(stdout) == 0) return code;
   const std::string why = reason != 0 ? fmt::format(" ({})", std::strerror(reason)) : "";
-  say(fmt::format("standard output: could not be written to the end{}", why));
+  announce(fmt::format("standard output: could not be written to the end{}", why));
   return code == 0 ? 1 : code;
 }
 
@@ -78,6 +142,10 @@ Command::Declared& Command::Declared::child(const std::string& word) {
   for (const auto& each : below) {
     if (each->app->get_name() == word) return *each;
     names.push_back(each->app->get_name());
+  }
+  for (const Renamed& renamed : kRenamedCommands) {
+    if (word == renamed.before && std::ranges::find(names, renamed.now) != names.end())
+      throw WrongUsage("{} {} is called {} {} now", path(), word, path(), renamed.now);
   }
   throw WrongUsage("{} has no command \"{}\", but {}.{}", path(), word, CLI::detail::join(names, ", "), suggestion(word, names));
 }
@@ -110,7 +178,7 @@ Command::Declared& Command::Declared::named_by(const std::vector<std::string>& w
       const CLI::Option& named = at->option(word.substr(0, 2));
       if (word.size() == 2) i += static_cast<std::size_t>(named.get_items_expected_min());
     } else if (!at->below.empty() && !own) {
-      // A command that does something itself takes what is none of those below it as its own.
+      // A command that does something itself takes what is not one of those below it as its own.
       const auto is_named = [&](const auto& entry) { return entry->app->get_name() == word; };
       own = at->run && std::none_of(at->below.begin(), at->below.end(), is_named);
       if (!own) at = &at->child(word);
@@ -122,7 +190,7 @@ Command::Declared& Command::Declared::named_by(const std::vector<std::string>& w
 
 const std::set<std::string_view> kOfThisRun{"--threads", "--quiet", "--json"};  // have no part in what comes out
 
-/// What was asked for, by option, but for its files: those are told by name and hash.
+/// What was asked for, by option, but for its files: those are reported by name and hash.
 std::map<std::string, std::string> Command::Declared::given() const {
   if (records) return records();
   std::map<std::string, std::string> texts;
@@ -136,10 +204,10 @@ std::map<std::string, std::string> Command::Declared::given() const {
 }
 
 const std::map<std::string, std::string>& given_options() {
-  return asked_for;
+  return requested_for;
 }
 
-extern const char* const kCommit;  // of the repository; empty where the source lies in none
+extern const char* const kCommit;  // of the repository; empty if the source lies in none
 
 std::string version_text() {
   const std::string commit = kCommit;
@@ -173,36 +241,36 @@ int Program::run(int argc, char** argv) {
     std::reverse(words.begin(), words.end());
     parser_->app.parse(words);
     command.check_its_files();
-    asked_for = command.given();
+    requested_for = command.given();
     const StopScope scope(stop_by_signals());
     command.run();
   } catch (const EndWith& end) {
     code = end.code;
   } catch (const Stopped& stopped) {
-    say(stopped.what());
+    announce(stopped.what());
     code = kInterrupted;
   } catch (const CommandMissing& missing) {
     fmt::print(stderr, "{}", missing.help);
     code = 2;
-  } catch (const CLI::Success& said) {
-    parser_->app.exit(said);
+  } catch (const CLI::Success& stated) {
+    parser_->app.exit(stated);
   } catch (const CLI::ParseError& error) {
-    say(error.what());
+    announce(error.what());
     code = 2;
   } catch (const WrongUsage& error) {
-    say(error.what());
+    announce(error.what());
     code = 2;
   } catch (const pipeline::jobs::WrongOption& error) {
-    say(error.what());
+    announce(error.what());
     code = 2;
   } catch (const format::WrongFormat& error) {
-    say(error.what());
+    announce(error.what());
     code = 2;
   } catch (const std::bad_alloc&) {
-    say("there is not enough memory for this; give it a shorter recording, smaller pictures, or a machine with more");
+    announce("there is not enough memory for this; give it a shorter recording, smaller images, or a machine with more");
     code = 1;
   } catch (const std::exception& error) {
-    if (std::ferror(stdout) == 0) say(error.what());  // else `finish` says it
+    if (std::ferror(stdout) == 0) announce(error.what());  // else `finish` says it
     code = 1;
   }
   return finish(code);

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::cli {
 namespace {
@@ -42,9 +42,9 @@ void ProgressBar::show(std::string_view what, std::int64_t done, std::optional<s
   const double rate = static_cast<double>(done) / elapsed;
   std::string line = fmt::format("\r\x1b[K{} ", what_);
   if (total && *total >= done) {
-    const double share = *total > 0 ? static_cast<double>(done) / static_cast<double>(*total) : 1.0;
-    const int filled = static_cast<int>(share * kWidth);
-    line += fmt::format("[{:#>{}}{:.>{}}] {:3.0f} %  ", "", filled, "", kWidth - filled, 100 * share);
+    const double fraction = *total > 0 ? static_cast<double>(done) / static_cast<double>(*total) : 1.0;
+    const int filled = static_cast<int>(fraction * kWidth);
+    line += fmt::format("[{:#>{}}{:.>{}}] {:3.0f} %  ", "", filled, "", kWidth - filled, 100 * fraction);
     line += fmt::format("{:.0f} frames/s, {} left", rate, minutes(static_cast<double>(*total - done) / rate));
   } else {
     line += fmt::format("{} frames, {:.0f} frames/s", done, rate);
@@ -53,8 +53,8 @@ void ProgressBar::show(std::string_view what, std::int64_t done, std::optional<s
   std::fflush(stderr);
 }
 
-void ProgressBar::say(const std::string& sentence) {
-  if (!silent_) fmt::print(stderr, "\r\x1b[Kmarey: {}\n", plain_text(sentence));
+void ProgressBar::announce(const std::string& message_text) {
+  if (!silent_) fmt::print(stderr, "\r\x1b[Kmarey: {}\n", plain_text(message_text));
 }
 
 }  // namespace marey::cli

@@ -21,7 +21,7 @@ class ProgressBar {
   /// `what` names the step; a new name begins a new count.
   void show(std::string_view what, std::int64_t done, std::optional<std::int64_t> total);
   /// A line that stays, above.
-  void say(const std::string& sentence);
+  void announce(const std::string& message_text);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::cli {
 namespace {
@@ -70,11 +70,11 @@ Hooks hooks_over(ProgressBar& bar) {
   return {.progress = [&bar](const Progress& progress) { bar.show(progress.step, progress.done, progress.total); },
           .stop = stop_by_signals(),
           .options = given_options(),
-          .news = [&bar](const std::string& sentence) { bar.say(sentence); }};
+          .news = [&bar](const std::string& message_text) { bar.announce(message_text); }};
 }
 
 void warn(const std::vector<std::string>& sentences) {
-  for (const std::string& sentence : sentences) fmt::print(stderr, "marey: warning: {}\n", plain_text(sentence));
+  for (const std::string& message_text : sentences) fmt::print(stderr, "marey: warning: {}\n", plain_text(message_text));
 }
 
 }  // namespace marey::cli

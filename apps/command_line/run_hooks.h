@@ -32,10 +32,10 @@ auto with_progress(bool quiet, Work&& work) {
   return std::forward<Work>(work)(hooks_over(bar));
 }
 
-/// A line on standard error for each; a terminal that is gone is passed over.
+/// A line on standard error for each; a terminal that is gone is skipped.
 void warn(const std::vector<std::string>& sentences);
 
-/// Runs `track(hooks)`, which ends in order when it is stopped; `report(summary, elapsed)` says what came of it, elapsed in s.
+/// Runs `track(hooks)`, which ends in order when it is stopped; `report(summary, elapsed)` says the result, elapsed in s.
 /// Warnings go to standard error before.
 template <typename Track, typename Report>
 void run_with_progress(bool quiet, Track&& track, Report&& report) {

@@ -24,8 +24,8 @@ int letters_apart(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// So many slips are still a slip of the pen: a third of the letters, at most three.
-int most_apart(std::string_view known) {
+/// This many slips are still a slip of the pen: a third of the letters, at most three.
+int max_apart(std::string_view known) {
   const std::size_t dashes = std::min(known.find_first_not_of('-'), known.size());
   return std::clamp(static_cast<int>(known.size() - dashes) / 3, 1, 3);
 }
@@ -36,7 +36,7 @@ std::string suggestion(std::string_view word, std::span<const std::string> known
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
     return letters_apart(word, a) < letters_apart(word, b);
   });
-  if (nearest == known.end() || letters_apart(word, *nearest) > most_apart(*nearest)) return {};
+  if (nearest == known.end() || letters_apart(word, *nearest) > max_apart(*nearest)) return {};
   return " Did you mean " + *nearest + "?";
 }
 

@@ -6,7 +6,7 @@
 
 namespace marey::cli {
 
-/// How many letters have to be put in, left out, exchanged or swapped with their neighbour to make `b` of `a`.
+/// How many letters have to be put in, omitted, exchanged or swapped with their neighbour to make `b` of `a`.
 int letters_apart(std::string_view a, std::string_view b);
 
 /// " Did you mean X?" where a word of `known` is near; else empty.

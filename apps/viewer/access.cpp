@@ -12,7 +12,7 @@
 namespace marey::viewer {
 namespace {
 
-/// In a time that does not tell how much of it is right.
+/// In a time that does not specify how much of it is right.
 bool same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned different = 0;
@@ -81,7 +81,7 @@ bool Access::is_this_machine(std::string_view host) const {
 }
 
 Access::Verdict Access::check(const net::HttpRequest& head) const {
-  if (!is_this_machine(head.host)) return {403, "this address is no name of the machine that is asked", false};
+  if (!is_this_machine(head.host)) return {403, "this address is not a name of the machine that is asked", false};
   if (!head.origin.empty() && head.origin != "http://" + head.host) return {403, "asked by a page of another site", false};
   if (head.upgrade && head.origin.empty() && head.authorization.empty())
     return {403, "a WebSocket is opened by our own page, which says its Origin, or with an Authorization", false};
@@ -101,7 +101,7 @@ std::string Access::set_cookie() const {
 std::string new_token() {
   std::array<unsigned char, 24> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw Error("the system gives no random numbers, and without a token the viewer would be open to everybody");
+    throw Error("the system gives no random numbers, and without a token the viewer would be open to every person");
   return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 

@@ -13,18 +13,18 @@ namespace marey::viewer {
 
 /// What a target is made of. Nothing is decoded: our own paths and values need no escapes.
 std::string_view path_of(std::string_view target);
-/// The value of `name` in the query; empty where it is not there.
+/// The value of `name` in the query; empty if it is not there.
 std::string_view query_value(std::string_view target, std::string_view name);
 
 class Access {
  public:
   struct Verdict {
-    int status = 200;      ///< 200, or what a refusal says
-    std::string sentence;  ///< of a refusal
-    bool by_link = false;  ///< the token stood in the address: the answer is to set the cookie
+    int status = 200;          ///< 200, or what a refusal says
+    std::string message_text;  ///< of a refusal
+    bool by_link = false;      ///< the token stood in the address: the answer is to set the cookie
   };
 
-  /// `cookie` is the cookie's name, another one for each port, since browsers do not tell ports apart. `hosts` are names of this
+  /// `cookie` is the cookie's name, another one for each port, since browsers do not distinguish ports. `hosts` are names of this
   /// machine beside "localhost"; addresses in digits are taken always, for no name server stands behind them.
   Access(std::string token, std::string cookie, std::vector<std::string> hosts);
 
@@ -40,7 +40,7 @@ class Access {
   std::vector<std::string> hosts_;
 };
 
-/// 48 hexadecimal digits that nobody can guess. Throws Error where the system has none.
+/// 48 hexadecimal digits that no person can guess. Throws Error if the system has none.
 std::string new_token();
 
 }  // namespace marey::viewer

@@ -3,12 +3,12 @@
 #include <array>
 #include <utility>
 
-#include "page_words.h"
+#include "command_tokens.h"
 
 namespace marey::viewer {
 namespace {
 
-constexpr std::int64_t kMostId = 1'000'000'000;
+constexpr std::int64_t kMaxId = 1'000'000'000;
 
 std::optional<EditMessage::Kind> kind_of(std::string_view word) {
   using Kind = EditMessage::Kind;
@@ -22,13 +22,13 @@ std::optional<EditMessage::Kind> kind_of(std::string_view word) {
 
 }  // namespace
 
-bool asks_for_edit(std::string_view line) {
+bool queries_for_edit(std::string_view line) {
   return kind_of(next_word(line)).has_value();
 }
 
 std::optional<EditMessage> edit_message(std::string_view line) {
   const auto kind = kind_of(next_word(line));
-  const auto head = whole_in(next_word(line), 0, kMostId), newest = whole_in(next_word(line), 0, kMostId);
+  const auto head = whole_in(next_word(line), 0, kMaxId), newest = whole_in(next_word(line), 0, kMaxId);
   if (!kind || !head || !newest) return std::nullopt;
   EditMessage message{.kind = *kind, .on = {.head = *head, .newest = *newest}};
   if (message.kind == EditMessage::Kind::edit) {
@@ -37,7 +37,7 @@ std::optional<EditMessage> edit_message(std::string_view line) {
     return message;
   }
   if (message.kind == EditMessage::Kind::go) {
-    const auto to = whole_in(next_word(line), 0, kMostId);
+    const auto to = whole_in(next_word(line), 0, kMaxId);
     if (!to) return std::nullopt;
     message.to = *to;
   }

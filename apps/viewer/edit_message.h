@@ -21,10 +21,10 @@ struct EditMessage {
   std::int64_t to = 0;    ///< of `go`; 0: as it was recorded
 };
 
-/// Nothing where the line is none of these, whoever wrote it.
+/// Nothing if the line is not one of these, the one who wrote it.
 std::optional<EditMessage> edit_message(std::string_view line);
 
 /// Whether a line begins as one does.
-bool asks_for_edit(std::string_view line);
+bool queries_for_edit(std::string_view line);
 
 }  // namespace marey::viewer

@@ -4,16 +4,16 @@
 #include <system_error>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/take/take_file.h"
-#include "marey/pipeline/take/edit_words.h"
+#include "marey/pipeline/take/describe_edits.h"
 
 #include "edit_json.h"
 
 namespace marey::viewer {
 namespace {
 
-constexpr std::chrono::seconds kBetweenLooks{1};
+constexpr std::chrono::seconds kBetweenAppearance{1};
 
 std::string history_text(const pipeline::take::EditHistory& history) {
   cli::Json edits = cli::Json::array();
@@ -27,7 +27,7 @@ std::string history_text(const pipeline::take::EditHistory& history) {
 
 const std::string& take_to_edit(const std::string& path) {
   if (!format::take::is_take(path))
-    throw Error("{}: is no take, and only a take can be edited; \"marey convert {} NEW.marey\" makes one of it", path, path);
+    throw Error("{}: is not a take, and only a take can be edited; \"marey convert {} NEW.marey\" makes one of it", path, path);
   return path;
 }
 
@@ -48,20 +48,20 @@ void EditSession::begin() {
   thread_ = std::thread([this] { run(); });
 }
 
-void EditSession::ask(PageId page, std::string_view line) {
+void EditSession::request(PageId page, std::string_view line) {
   std::optional<EditMessage> message = edit_message(line);
   const char* refused = nullptr;
   {
     const std::lock_guard lock(mutex_);
     if (!message) {
-      refused = "refused this is no edit";
+      refused = "refused this is not an edit";
     } else if (!begun_) {
       refused = "refused the take is still being read; edit it when all of it is there";
     } else if (busy_) {
       refused = "refused another edit is being done; try again when it is";
     } else {
       busy_ = true;
-      wish_.emplace(page, std::move(*message));
+      request_.emplace(page, std::move(*message));
     }
   }
   if (refused != nullptr) return answers_.answer(page, refused);
@@ -84,15 +84,15 @@ void EditSession::end() {
 
 void EditSession::run() {
   for (;;) {
-    std::optional<std::pair<PageId, EditMessage>> wish;
+    std::optional<std::pair<PageId, EditMessage>> request;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, kBetweenLooks, [this] { return ending_ || wish_; });
+      changed_.wait_for(lock, kBetweenAppearance, [this] { return ending_ || request_; });
       if (ending_) return;
-      wish = std::exchange(wish_, std::nullopt);
+      request = std::exchange(request_, std::nullopt);
     }
-    if (wish) {
-      act(wish->first, wish->second);
+    if (request) {
+      act(request->first, request->second);
     } else if (was_written()) {
       catch_up();
     }
@@ -132,7 +132,7 @@ void EditSession::catch_up() {
     const std::lock_guard lock(mutex_);
     history_ = std::move(text);
   } catch (const Error&) {
-    return;  // it is gone, or being written: the next look may find it
+    return;  // it is gone, or being written: the next inspection may find it
   }
   answers_.changed();
 }

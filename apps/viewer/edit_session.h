@@ -20,8 +20,8 @@
 namespace marey::viewer {
 
 /// Edits a take that is shown, on a thread of its own, as `marey edit` does and by the same functions. What a page asks for is done
-/// only where the take's edits still stand as that page shows them. What another program does to the take meanwhile is shown within
-/// a second.
+/// only where the take's edits still stand as that page shows them. What another program does to the take in the meantime is shown
+/// within a second.
 class EditSession {
  public:
   struct Answers {
@@ -31,7 +31,7 @@ class EditSession {
     std::function<void()> changed;
   };
 
-  /// Throws Error where the file is no take, or one that cannot be edited.
+  /// Throws Error if the file is not a take, or one that cannot be edited.
   EditSession(const std::string& take, StoredRecording& recording, Answers answers);
   ~EditSession() { end(); }
   EditSession(const EditSession&) = delete;
@@ -39,8 +39,8 @@ class EditSession {
 
   /// The recording is complete: edits are taken from now on.
   void begin();
-  /// What a page said, whoever wrote it; never waits. One thing at a time is done, a second is refused.
-  void ask(PageId page, std::string_view line);
+  /// What a page said, the one who wrote it; never waits. One thing at a time is done, a second is refused.
+  void request(PageId page, std::string_view line);
   /// The history as JSON, as page/src/edits.ts declares it.
   Bytes history() const;
   /// Answers no more.
@@ -51,7 +51,7 @@ class EditSession {
   void act(PageId page, const EditMessage& message);
   /// Shows what the take is now.
   void catch_up();
-  /// Whether the file was written since the last look.
+  /// Whether the file was written since the last inspection.
   bool was_written();
 
   std::string take_;
@@ -62,7 +62,7 @@ class EditSession {
 
   mutable std::mutex mutex_;  // for what follows
   std::condition_variable changed_;
-  std::optional<std::pair<PageId, EditMessage>> wish_;
+  std::optional<std::pair<PageId, EditMessage>> request_;
   Bytes history_;
   bool begun_ = false, busy_ = false, ending_ = false;
   std::thread thread_;

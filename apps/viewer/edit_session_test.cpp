@@ -57,7 +57,7 @@ class EditedTake : public testing::Test {
     format::take::write_recording(path_, recorded_);
     session_ = std::make_unique<EditSession>(
         path_, stored_,
-        EditSession::Answers{.answer = [this](PageId, std::string line) { heard(std::move(line)); }, .changed = [] {}});
+        EditSession::Answers{.answer = [this](PageId, std::string line) { received(std::move(line)); }, .changed = [] {}});
   }
   ~EditedTake() override { session_->end(); }
 
@@ -68,34 +68,34 @@ class EditedTake : public testing::Test {
     before_ = bytes();
     session_->begin();
   }
-  std::string asked(const std::string& line) {
+  std::string requested(const std::string& line) {
     std::unique_lock lock(mutex_);
     answer_.clear();
     lock.unlock();
-    session_->ask(PageId{1}, line);
+    session_->request(PageId{1}, line);
     lock.lock();
     answered_.wait_for(lock, std::chrono::seconds(60), [this] { return !answer_.empty(); });
     return answer_;
   }
   std::vector<std::string> bytes() const {
     std::vector<std::string> all;
-    for (std::size_t n = 0; stored_.stretch(n) != nullptr; ++n) all.push_back(*stored_.stretch(n));
+    for (std::size_t n = 0; stored_.segment(n) != nullptr; ++n) all.push_back(*stored_.segment(n));
     return all;
   }
   std::vector<int> versions() const {
     std::vector<int> all;
-    for (const RecordingState::Stretch& stretch : stored_.state().stretches) all.push_back(stretch.version);
+    for (const RecordingState::TimeChunk& segment : stored_.state().segments) all.push_back(segment.version);
     return all;
   }
   /// As a viewer shows the take that is opened now.
-  std::vector<std::string> bytes_anew() const {
+  std::vector<std::string> bytes_again() const {
     const Recording now = edit::edited(format::take::read_recording(path_));
     StoredRecording fresh(now.header, {});
     InstantsOf instants(now);
     while (const auto instant = instants.next()) fresh.add(*instant);
     fresh.finish({});
     std::vector<std::string> all;
-    for (std::size_t n = 0; fresh.stretch(n) != nullptr; ++n) all.push_back(*fresh.stretch(n));
+    for (std::size_t n = 0; fresh.segment(n) != nullptr; ++n) all.push_back(*fresh.segment(n));
     return all;
   }
 
@@ -107,7 +107,7 @@ class EditedTake : public testing::Test {
   std::vector<std::string> before_;
 
  private:
-  void heard(std::string line) {
+  void received(std::string line) {
     const std::lock_guard lock(mutex_);
     answer_ = std::move(line);
     answered_.notify_all();
@@ -132,37 +132,37 @@ TEST(EditMessage, IsOneOfFourAndNothingElse) {
     EXPECT_FALSE(edit_message(wrong)) << wrong;
   EXPECT_FALSE(edit_message(std::string(4096, '9')));
   EXPECT_FALSE(edit_message(std::string("undo 1 2\0", 9)));
-  EXPECT_TRUE(asks_for_edit("edit what"));
-  EXPECT_FALSE(asks_for_edit("film 1 640"));
+  EXPECT_TRUE(queries_for_edit("edit what"));
+  EXPECT_FALSE(queries_for_edit("video 1 640"));
 }
 
 TEST_F(EditedTake, ShowsWhatTheTakeIsAfterEachEdit) {
   show();
-  EXPECT_EQ(before_, bytes_anew());
+  EXPECT_EQ(before_, bytes_again());
   int newest = 0;
   for (const char* edit : {"swap A B 120:180", "rename C knee", "fill knee", "split A 200 late", "delete B", "join A late",
                            "filter all 6", "delete knee 10:20"}) {
-    EXPECT_EQ(asked("edit " + std::to_string(newest) + " " + std::to_string(newest) + " " + edit), "done") << edit;
+    EXPECT_EQ(requested("edit " + std::to_string(newest) + " " + std::to_string(newest) + " " + edit), "done") << edit;
     ++newest;
-    EXPECT_EQ(bytes(), bytes_anew()) << edit;
+    EXPECT_EQ(bytes(), bytes_again()) << edit;
   }
   EXPECT_EQ(stored_.state().tracks.size(), 2U) << "B is deleted, late is joined";
-  EXPECT_EQ(asked("undo 8 8"), "done");
-  EXPECT_EQ(bytes(), bytes_anew());
-  EXPECT_EQ(asked("go 7 8 3"), "done");
-  EXPECT_EQ(bytes(), bytes_anew());
-  EXPECT_EQ(asked("edit 3 8 rename A hip"), "done") << "a branch";
-  EXPECT_EQ(asked("redo 9 9"), "refused " + path_ + ": there is nothing to be done again");
-  EXPECT_EQ(asked("go 9 9 0"), "done");
+  EXPECT_EQ(requested("undo 8 8"), "done");
+  EXPECT_EQ(bytes(), bytes_again());
+  EXPECT_EQ(requested("go 7 8 3"), "done");
+  EXPECT_EQ(bytes(), bytes_again());
+  EXPECT_EQ(requested("edit 3 8 rename A hip"), "done") << "a branch";
+  EXPECT_EQ(requested("redo 9 9"), "refused " + path_ + ": there is nothing to be done again");
+  EXPECT_EQ(requested("go 9 9 0"), "done");
   EXPECT_EQ(bytes(), before_);
 }
 
 TEST_F(EditedTake, OnlyStretchesThatAreOthersBecomeNew) {
   show();
   ASSERT_EQ(versions(), (std::vector{0, 0, 0}));
-  EXPECT_EQ(asked("edit 0 0 swap A B 20:30"), "done");
+  EXPECT_EQ(requested("edit 0 0 swap A B 20:30"), "done");
   EXPECT_EQ(versions(), (std::vector{1, 0, 0}));
-  EXPECT_EQ(asked("edit 1 1 rename A hip"), "done");
+  EXPECT_EQ(requested("edit 1 1 rename A hip"), "done");
   EXPECT_EQ(versions(), (std::vector{1, 0, 0})) << "a name moves nothing";
   const auto tracks = stored_.state().tracks;
   EXPECT_EQ(tracks[0].name.label, "hip");
@@ -173,43 +173,43 @@ TEST_F(EditedTake, OnlyStretchesThatAreOthersBecomeNew) {
 }
 
 TEST_F(EditedTake, RefusesWithTheSentenceOfTheCommandLine) {
-  EXPECT_EQ(asked("edit 0 0 fill all"), "refused the take is still being read; edit it when all of it is there");
+  EXPECT_EQ(requested("edit 0 0 fill all"), "refused the take is still being read; edit it when all of it is there");
   show();
-  EXPECT_EQ(asked("edit"), "refused this is no edit");
-  for (const char* wrong : {"swap A nobody", "jump A", "fill A", "rename A B", "delete A 10:9999"}) {
-    std::string sentence;
+  EXPECT_EQ(requested("edit"), "refused this is not an edit");
+  for (const char* wrong : {"swap A no person", "jump A", "fill A", "rename A B", "delete A 10:9999"}) {
+    std::string message_text;
     try {
       pipeline::take::edit_take(path_, {{.text = wrong, .where = std::string("\"") + wrong + "\""}});
     } catch (const Error& error) {
-      sentence = error.what();
+      message_text = error.what();
     }
-    EXPECT_EQ(asked(std::string("edit 0 0 ") + wrong), "refused " + sentence);
+    EXPECT_EQ(requested(std::string("edit 0 0 ") + wrong), "refused " + message_text);
   }
-  EXPECT_EQ(asked("go 0 0 7"), "refused " + path_ + ": there is no edit 7; `marey edit FILE --list` shows which there are");
+  EXPECT_EQ(requested("go 0 0 7"), "refused " + path_ + ": there is no edit 7; `marey edit FILE --list` shows which there are");
   EXPECT_EQ(bytes(), before_);
   EXPECT_EQ(pipeline::take::edit_history(path_).state, pipeline::take::EditState{});
 }
 
-TEST_F(EditedTake, WhatAnotherProgramEditsIsNeitherLostNorUndone) {
+TEST_F(EditedTake, KeepsEditsOfOtherPrograms) {
   show();
-  EXPECT_EQ(asked("edit 0 0 rename A hip"), "done");
+  EXPECT_EQ(requested("edit 0 0 rename A hip"), "done");
   pipeline::take::edit_take(path_, {{.text = "rename B knee", .where = "elsewhere"}});
   for (const char* blind : {"edit 1 1 swap #1 #2", "undo 1 1", "go 1 1 0"}) {
-    const std::string answer = asked(blind);
-    EXPECT_NE(answer.find("another program has edited it meanwhile"), std::string::npos) << answer;
+    const std::string answer = requested(blind);
+    EXPECT_NE(answer.find("another program has edited it in the meantime"), std::string::npos) << answer;
   }
   EXPECT_EQ(pipeline::take::edit_history(path_).counting, (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(stored_.state().tracks[1].name.label, "knee") << "it is shown";
-  EXPECT_EQ(asked("edit 2 2 swap hip knee"), "done");
-  EXPECT_EQ(bytes(), bytes_anew());
+  EXPECT_EQ(requested("edit 2 2 swap hip knee"), "done");
+  EXPECT_EQ(bytes(), bytes_again());
 }
 
 TEST_F(EditedTake, TheHistoryIsTold) {
   show();
-  EXPECT_EQ(asked("edit 0 0 rename C knee"), "done");
-  EXPECT_EQ(asked("edit 1 1 fill knee"), "done");
-  EXPECT_EQ(asked("undo 2 2"), "done");
-  EXPECT_EQ(asked("undo 1 2"), "done");
+  EXPECT_EQ(requested("edit 0 0 rename C knee"), "done");
+  EXPECT_EQ(requested("edit 1 1 fill knee"), "done");
+  EXPECT_EQ(requested("undo 2 2"), "done");
+  EXPECT_EQ(requested("undo 1 2"), "done");
   const std::string history = *session_->history();
   EXPECT_NE(history.find(R"("words":"rename C to knee")"), std::string::npos) << history;
   EXPECT_NE(history.find(R"("words":"fill knee: 1 gap, 5 frames)"), std::string::npos) << history;

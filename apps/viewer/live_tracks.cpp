@@ -3,7 +3,7 @@
 namespace marey::viewer {
 namespace {
 
-constexpr double kGrowth = 0.05;  // of the extent's longest side: by so much it has to grow before the page fits it again
+constexpr double kGrowth = 0.05;  // of the extent's longest side: by this much it has to grow before the page fits it again
 
 }  // namespace
 

@@ -19,7 +19,7 @@ class LiveTracks {
 
   void clear() { *this = LiveTracks(); }
 
-  /// Whether the page has to be told: a track or a name is new, or the targets have left the part of the world that was shown.
+  /// Whether the page has to be reported: a track or a name is new, or the targets have left the part of the world that was shown.
   bool add(const Instant& instant);
 
   std::vector<TrackName> names() const;

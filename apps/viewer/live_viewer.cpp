@@ -16,9 +16,9 @@
 #include "marey/draw/jpeg.h"
 
 #include "access.h"
+#include "command_tokens.h"
 #include "live_tracks.h"
 #include "page_files.h"
-#include "page_words.h"
 #include "scene.h"
 #include "status_text.h"
 #include "wire.h"
@@ -26,7 +26,7 @@
 namespace marey::viewer {
 namespace {
 
-enum LiveTopic { kLiveScene, kState, kStatus, kRecording, kSaid, kPong, kWand, kPictures };
+enum LiveTopic { kLiveScene, kState, kStatus, kRecording, kStated, kPong, kWand, kImages };
 
 std::uint64_t steady_ns() {
   return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
@@ -36,13 +36,13 @@ WebServer::Message text_message(int topic, std::string text) {
   return {.topic = topic, .bytes = bytes_of(std::move(text)), .text = true};
 }
 
-/// Which camera's picture a page shows, and how wide, px.
+/// Which camera's image a page shows, and how wide, px.
 using Watched = std::map<int, int>;
 
 Watched watched_by(std::string_view line) {
   Watched watched;
   while (true) {
-    const auto camera = whole_in(next_word(line), 0, kMostCameras - 1);
+    const auto camera = whole_in(next_word(line), 0, kMaxCameras - 1);
     const auto width = whole_in(next_word(line), 16, 4096);
     if (!camera || !width) return watched;
     watched[static_cast<int>(*camera)] = static_cast<int>(*width);
@@ -60,7 +60,7 @@ class LiveViewer::Core {
   WebServer::Count count() const { return server_->count(); }
   void begin(const RecordingHeader& header);
   void write(const Instant& instant);
-  void finish() { server_->publish(text_message(kSaid, "ended")); }
+  void finish() { server_->publish(text_message(kStated, "ended")); }
   void report(const LiveReport& report);
   void recording(bool on, const std::string& into);
   void wand(const std::string& json);
@@ -75,11 +75,11 @@ class LiveViewer::Core {
   void change(PageId page, const PageCommand& command);
   void watch(PageId page, Watched watched);
 
-  // On the pictures' thread.
-  void make_pictures();
-  void publish_picture(const Instant& instant, int camera, int width);
+  // On the images' thread.
+  void make_images();
+  void publish_image(const Instant& instant, int camera, int width);
 
-  void keep_for_pictures(const Instant& instant);
+  void keep_for_images(const Instant& instant);
   std::optional<Extent> extent() const;
   void list_tracks(const Instant& instant);
 
@@ -98,10 +98,10 @@ class LiveViewer::Core {
   std::string status_ = "status {}", recording_ = "recording off", wand_;
   bool ending_ = false;
 
-  std::set<int> with_pictures_;  // the pictures' thread alone
-  draw::JpegEncoder encoder_;    // likewise
+  std::set<int> with_images_;  // the images' thread alone
+  draw::JpegEncoder encoder_;  // likewise
   std::unique_ptr<WebServer> server_;
-  std::thread pictures_;
+  std::thread images_;
 };
 
 LiveViewer::Core::Core(const LiveViewOptions& options) : options_(options) {
@@ -110,9 +110,9 @@ LiveViewer::Core::Core(const LiveViewOptions& options) : options_(options) {
   handlers.joined = [this](PageId page) { joined(page); };
   handlers.left = [this](PageId page) { left(page); };
   handlers.received = [this](PageId page, std::string_view line) { received(page, line); };
-  server_ = std::make_unique<WebServer>(options.place, std::move(handlers));
+  server_ = std::make_unique<WebServer>(options.location, std::move(handlers));
   server_->start();
-  pictures_ = std::thread([this] { make_pictures(); });
+  images_ = std::thread([this] { make_images(); });
 }
 
 LiveViewer::Core::~Core() {
@@ -121,7 +121,7 @@ LiveViewer::Core::~Core() {
     ending_ = true;
   }
   changed_.notify_all();
-  pictures_.join();
+  images_.join();
 }
 
 void LiveViewer::Core::begin(const RecordingHeader& header) {
@@ -138,7 +138,7 @@ void LiveViewer::Core::write(const Instant& instant) {
   list_tracks(instant);
   const std::uint32_t sequence = written_++;
   if (server_->count().pages == 0) return;
-  keep_for_pictures(instant);
+  keep_for_images(instant);
   // A page that shows how late it is adds what passed between the capture and here, which only the run's clock can tell.
   const std::uint64_t now_ns = steady_ns();
   const std::uint64_t age_ns =
@@ -155,7 +155,7 @@ void LiveViewer::Core::list_tracks(const Instant& instant) {
   server_->publish(text_message(kLiveScene, "scene"));
 }
 
-void LiveViewer::Core::keep_for_pictures(const Instant& instant) {
+void LiveViewer::Core::keep_for_images(const Instant& instant) {
   {
     const std::lock_guard lock(mutex_);
     if (widths_.empty()) return;
@@ -163,7 +163,7 @@ void LiveViewer::Core::keep_for_pictures(const Instant& instant) {
   auto kept = std::make_shared<Instant>();
   kept->index = instant.index;
   kept->time = instant.time;
-  kept->seen = instant.seen;
+  kept->detected = instant.detected;
   kept->boxes = instant.boxes;
   kept->frames = instant.frames;
   if (header_.frame.kind == FrameOfReference::Kind::image) {
@@ -177,37 +177,37 @@ void LiveViewer::Core::keep_for_pictures(const Instant& instant) {
   newest_ = std::move(kept);
 }
 
-void LiveViewer::Core::make_pictures() {
-  const std::chrono::duration<double> period(1 / options_.pictures_hz);
+void LiveViewer::Core::make_images() {
+  const std::chrono::duration<double> period(1 / options_.images_hz);
   std::unique_lock lock(mutex_);
   while (!changed_.wait_for(lock, period, [this] { return ending_; })) {
     const std::shared_ptr<const Instant> instant = std::exchange(newest_, nullptr);
     const Watched widths = widths_;
     lock.unlock();
     for (const auto& [camera, width] : widths) {
-      if (instant != nullptr) publish_picture(*instant, camera, width);
+      if (instant != nullptr) publish_image(*instant, camera, width);
     }
     lock.lock();
   }
 }
 
-void LiveViewer::Core::publish_picture(const Instant& instant, int camera, int width) {
+void LiveViewer::Core::publish_image(const Instant& instant, int camera, int width) {
   const auto found = std::find_if(instant.frames.begin(), instant.frames.end(),
-                                  [&](const Frame& frame) { return number(frame.camera) == camera && !frame.picture.empty(); });
+                                  [&](const Frame& frame) { return number(frame.camera) == camera && !frame.image.empty(); });
   const bool has = found != instant.frames.end();
-  // Of a camera that gave nothing at this moment the last picture stays.
-  if (!has && with_pictures_.contains(camera)) return;
-  if (has) with_pictures_.insert(camera);
-  const std::string jpeg = has ? encoder_.encode(found->picture, width) : std::string();
+  // Of a camera that gave nothing at this instant the last image stays.
+  if (!has && with_images_.contains(camera)) return;
+  if (has) with_images_.insert(camera);
+  const std::string jpeg = has ? encoder_.encode(found->image, width) : std::string();
   std::string bytes = wire_of({.camera = CameraId{camera},
                                .frame = has ? found->index : instant.index,
                                .time = instant.time,
                                .sent_ns = steady_ns(),
-                               .size = has ? found->picture.size() : cv::Size(),
-                               .seen = instant.seen,
+                               .size = has ? found->image.size() : cv::Size(),
+                               .detected = instant.detected,
                                .boxes = instant.boxes,
                                .jpeg = jpeg});
-  server_->publish({.topic = kPictures + camera, .bytes = bytes_of(std::move(bytes)), .text = false}, [this, camera](PageId page) {
+  server_->publish({.topic = kImages + camera, .bytes = bytes_of(std::move(bytes)), .text = false}, [this, camera](PageId page) {
     const auto watched = watching_.find(page);
     return watched != watching_.end() && watched->second.contains(camera);
   });
@@ -305,7 +305,7 @@ void LiveViewer::Core::record(PageId page, std::string_view word) {
   try {
     options_.record(word == "on");
   } catch (const Error& error) {
-    server_->send(page, text_message(kSaid, fmt::format("said {}", error.what())));
+    server_->send(page, text_message(kStated, fmt::format("said {}", error.what())));
   }
 }
 
@@ -313,9 +313,9 @@ void LiveViewer::Core::change(PageId page, const PageCommand& command) {
   if (!options_.change) return;
   try {
     options_.change(command);
-    server_->send(page, text_message(kSaid, "said "));
+    server_->send(page, text_message(kStated, "said "));
   } catch (const Error& error) {
-    server_->send(page, text_message(kSaid, fmt::format("said {}", error.what())));
+    server_->send(page, text_message(kStated, fmt::format("said {}", error.what())));
   }
 }
 
@@ -335,9 +335,9 @@ class LiveViewer::ViewerSink final : public Sink {
   explicit ViewerSink(std::weak_ptr<Core> core) : core_(std::move(core)) {}
 
   std::string name() const override { return "the viewer"; }
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     if (const auto core = core_.lock()) core->begin(header);
-    return {.pictures = true, .boxes = true, .seen = true};
+    return {.images = true, .boxes = true, .detected = true};
   }
   void write(const Instant& instant) override {
     if (const auto core = core_.lock()) core->write(instant);

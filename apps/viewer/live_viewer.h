@@ -22,11 +22,11 @@ struct LiveReport {
   struct Camera {
     CameraHealth health = {};
     /// What of it can be changed, and how it is now.
-    struct Dial {
+    struct CameraControl {
       std::string name, unit;
-      double least = 0, most = 0, now = 0;
+      double minimum = 0, maximum = 0, now = 0;
     };
-    std::vector<Dial> dials = {};
+    std::vector<CameraControl> controls = {};
     bool finds_markers = false;  ///< then these count:
     std::optional<double> threshold = {};
     std::vector<Mask> masks = {};
@@ -40,8 +40,8 @@ struct LiveReport {
   };
 
   std::vector<Camera> cameras;     ///< CameraId i is cameras[i]
-  std::int64_t overtaken = 0;      ///< moments that were let go because newer ones were whole
-  std::vector<Step> steps;         ///< none where nobody measured them
+  std::int64_t superseded = 0;     ///< instants that were dropped because newer ones were whole
+  std::vector<Step> steps;         ///< none where no person measured them
   bool unsaved = false;            ///< something was changed that the rig file does not have
   std::vector<std::string> notes;  ///< sentences to the user; the page shows them until the next report
 };
@@ -53,7 +53,7 @@ struct LiveGround {
 };
 
 struct LiveViewOptions {
-  WebPlace place;
+  ListenAddress location;
   /// The page's record button; without it there is none. Called on the server's thread, so it only notes what is wanted. An Error
   /// of its is shown on the page.
   std::function<void(bool on)> record = {};
@@ -70,17 +70,17 @@ struct LiveViewOptions {
   /// The time now by the run's clock, so that the page can say how old is what it shows.
   std::function<Timestamp()> now = {};
   LiveGround ground_area = {};
-  double pictures_hz = 10;  ///< of each camera that somebody watches
+  double images_hz = 10;  ///< of each camera that a person watches
 };
 
-/// Shows a run while it goes on. `sinks.add(viewer.make_sink())` is all that a run needs of it.
+/// Shows a run while it continues. `sinks.add(viewer.make_sink())` is all that a run needs of it.
 ///
-/// It holds nothing up: of everything the newest counts, pictures are made into JPEG on a thread of its own, only of cameras that
+/// It holds nothing up: of everything the newest counts, images are made into JPEG on a thread of its own, only of cameras that
 /// some page shows, at the size at which it shows them. A run without tracks (a preview of a rig that is not calibrated) writes
 /// instants with frames and what was seen in them, and nothing else.
 class LiveViewer {
  public:
-  /// Listens from now on. Throws Error where that cannot be.
+  /// Listens from now on. Throws Error if that cannot be.
   explicit LiveViewer(const LiveViewOptions& options);
   ~LiveViewer();
   LiveViewer(const LiveViewer&) = delete;

@@ -7,7 +7,7 @@
 namespace marey::viewer {
 namespace {
 
-const LiveViewOptions kAnyPort{.place = {.listen = "127.0.0.1", .port = 0}};
+const LiveViewOptions kAnyPort{.location = {.listen = "127.0.0.1", .port = 0}};
 
 Instant instant_at(double time_s) {
   Instant instant;
@@ -21,11 +21,11 @@ TEST(LiveViewer, AsksForPicturesAndForWhatWasFound) {
   EXPECT_TRUE(viewer.address().starts_with("http://127.0.0.1:"));
   EXPECT_NE(viewer.address().find("/?token="), std::string::npos);
   const auto sink = viewer.make_sink();
-  const Sink::Wants wants = sink->begin({});
-  EXPECT_TRUE(wants.pictures && wants.boxes && wants.seen);
+  const Sink::SinkRequirements needs = sink->begin({});
+  EXPECT_TRUE(needs.images && needs.boxes && needs.detected);
   for (int i = 0; i < 1000; ++i) sink->write(instant_at(i / 100.0));
   sink->finish();
-  EXPECT_EQ(viewer.count().sent, 0U);  // nobody looks
+  EXPECT_EQ(viewer.count().sent, 0U);  // no person looks
 }
 
 TEST(LiveViewer, ItsSinkMayOutliveIt) {
@@ -47,16 +47,16 @@ TEST(LiveViewer, APortThatIsTakenIsSaid) {
   const std::size_t colon = address.rfind(':');
   const int port = std::stoi(address.substr(colon + 1));
   try {
-    LiveViewer({.place = {.listen = "127.0.0.1", .port = port}});
+    LiveViewer({.location = {.listen = "127.0.0.1", .port = port}});
     FAIL() << "both listen at one port";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("--port 0"), std::string::npos) << error.what();
   }
 }
 
-TEST(LiveViewer, WhatIsNoAddressOfThisMachineIsSaid) {
+TEST(LiveViewer, RejectsForeignListenAddress) {
   for (const char* listen : {"no.such.name", "8.8.8.8", "", "127.0.0.1:80"})
-    EXPECT_THROW(LiveViewer({.place = {.listen = listen, .port = 0}}), Error) << listen;
+    EXPECT_THROW(LiveViewer({.location = {.listen = listen, .port = 0}}), Error) << listen;
 }
 
 }  // namespace

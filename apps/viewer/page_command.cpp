@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
-#include "page_words.h"
+#include "command_tokens.h"
 
 namespace marey::viewer {
 namespace {
@@ -22,7 +22,7 @@ std::optional<double> number_in(std::string_view word, double low, double high) 
 }
 
 std::optional<CameraId> camera_in(std::string_view& line) {
-  const auto number = whole_in(next_word(line), 0, kMostCameras - 1);
+  const auto number = whole_in(next_word(line), 0, kMaxCameras - 1);
   return number ? std::optional(CameraId{static_cast<int>(*number)}) : std::nullopt;
 }
 
@@ -30,12 +30,12 @@ bool is_over(std::string_view line) {
   return next_word(line).empty();
 }
 
-std::optional<PageCommand> dial(std::string_view line) {
+std::optional<PageCommand> camera_control(std::string_view line) {
   const auto camera = camera_in(line);
   const std::string_view name = next_word(line);
   const auto value = number_in(next_word(line), 0, 1e6);
   if (!camera || !value || (name != "exposure" && name != "gain") || !is_over(line)) return std::nullopt;
-  return TurnDial{*camera, std::string(name), *value};
+  return SetCameraControl{*camera, std::string(name), *value};
 }
 
 std::optional<PageCommand> threshold(std::string_view line) {
@@ -56,8 +56,8 @@ std::optional<PageCommand> masks(ChangeMasks::What what, std::string_view line) 
     return ChangeMasks{ChangeMasks::What::remove_all, *camera, {}};
   std::vector<int> numbers;
   for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
-    const auto number = whole_in(word, 0, Mask::kFarthest);
-    if (!number || numbers.size() >= 2 * Mask::kMostCorners) return std::nullopt;
+    const auto number = whole_in(word, 0, Mask::kMaxDistance);
+    if (!number || numbers.size() >= 2 * Mask::kMaxCorners) return std::nullopt;
     numbers.push_back(static_cast<int>(*number));
   }
   const auto part = Mask::of_numbers(numbers);
@@ -69,7 +69,7 @@ std::optional<PageCommand> name(std::string_view line) {
   if (!track) return std::nullopt;
   std::string label = plain_text(line.substr(std::min(line.find_first_not_of(' '), line.size())));
   label.erase(label.find_last_not_of(' ') + 1);
-  if (label.size() > kLongestName) return std::nullopt;
+  if (label.size() > kMaxName) return std::nullopt;
   return NameTrack{TrackId{static_cast<int>(*track)}, std::move(label)};
 }
 
@@ -77,7 +77,7 @@ std::optional<PageCommand> name(std::string_view line) {
 
 std::optional<PageCommand> page_command(std::string_view line) {
   const std::string_view word = next_word(line);
-  if (word == "dial") return dial(line);
+  if (word == "dial") return camera_control(line);
   if (word == "threshold") return threshold(line);
   if (word == "mask") return masks(ChangeMasks::What::add, line);
   if (word == "unmask") return masks(ChangeMasks::What::remove, line);

@@ -16,10 +16,10 @@ Command read_as(std::string_view line) {
 }
 
 TEST(PageCommand, EachIsReadAsItIsWritten) {
-  const auto dial = read_as<TurnDial>("dial 3 exposure 2.5");
-  EXPECT_EQ(dial.camera, CameraId{3});
-  EXPECT_EQ(dial.name, "exposure");
-  EXPECT_EQ(dial.value, 2.5);
+  const auto camera_control = read_as<SetCameraControl>("dial 3 exposure 2.5");
+  EXPECT_EQ(camera_control.camera, CameraId{3});
+  EXPECT_EQ(camera_control.name, "exposure");
+  EXPECT_EQ(camera_control.value, 2.5);
   EXPECT_EQ(read_as<SetThreshold>("threshold 0 80").level, 80.0);
   EXPECT_FALSE(read_as<SetThreshold>("threshold 0 auto").level);
   const auto mask = read_as<ChangeMasks>("mask 1 10 20 30 40");
@@ -36,8 +36,8 @@ TEST(PageCommand, EachIsReadAsItIsWritten) {
   read_as<SaveRig>("save");
 }
 
-TEST(PageCommand, WhatIsNotExactlyOneOfThemIsNothing) {
-  const std::string long_name = "name 1 " + std::string(kLongestName + 1, 'x');
+TEST(PageCommand, RejectsUnknownCommand) {
+  const std::string long_name = "name 1 " + std::string(kMaxName + 1, 'x');
   for (const std::string_view line : {"",
                                       " ",
                                       "dial",

@@ -14,17 +14,17 @@
 #include "marey/pipeline/take/ground_orientation.h"
 
 #include "access.h"
+#include "command_tokens.h"
 #include "edit_session.h"
-#include "film_pictures.h"
 #include "page_files.h"
-#include "page_words.h"
 #include "stored_recording.h"
+#include "video_frames.h"
 
 namespace marey::viewer {
 namespace {
 
-// From kFilmPicture on each page has its own; down from kAnswer too.
-enum RecordingTopic { kAnswer = -2, kEditsChanged, kSceneChanged, kFilmPicture };
+// From kVideoImage on each page has its own; down from kAnswer too.
+enum RecordingTopic { kAnswer = -2, kEditsChanged, kSceneChanged, kVideoImage };
 constexpr std::chrono::milliseconds kBetweenReports{300};
 
 /// A match that was read whole, as a reader that owns it.
@@ -56,7 +56,7 @@ class RecordingViewer::Core {
  public:
   Core(const std::string& path, const ViewOptions& options);
   ~Core() {
-    if (film_) film_->end();
+    if (video_) video_->end();
     if (edits_) edits_->end();
   }
 
@@ -66,18 +66,18 @@ class RecordingViewer::Core {
  private:
   WebAnswer get(std::string_view target);
   void received(PageId page, std::string_view line);
-  void show_film(const std::string& film);
+  void show_video(const std::string& video);
   std::unique_ptr<EditSession> session();
-  void tell_all(RecordingTopic topic, const char* word);
+  void report_all(RecordingTopic topic, const char* word);
   void answer(PageId page, std::string line);
 
   std::string path_;
   std::unique_ptr<EditSession> edits_;  // before the reader: what is edited from then on is not missed
   GroundChoice ground_;
   std::unique_ptr<format::FileReader> reader_;
-  RecordingHeader header_;  // a copy: the reader goes on while the server looks at it
+  RecordingHeader header_;  // a copy: the reader continues while the server looks at it
   StoredRecording recording_;
-  std::optional<FilmPictures> film_;
+  std::optional<VideoFrames> video_;
   std::unique_ptr<WebServer> server_;
 };
 
@@ -89,14 +89,14 @@ RecordingViewer::Core::Core(const std::string& path, const ViewOptions& options)
       header_(reader_->header()),
       recording_(header_, reader_->tracks()) {
   header_.name = std::filesystem::path(path).filename().string();
-  if (!options.film.empty()) show_film(options.film);
+  if (!options.video.empty()) show_video(options.video);
   WebServer::Handlers handlers;
   handlers.get = [this](std::string_view target) { return get(target); };
   handlers.received = [this](PageId page, std::string_view line) { received(page, line); };
   handlers.left = [this](PageId page) {
-    if (film_) film_->forget(page);
+    if (video_) video_->forget(page);
   };
-  server_ = std::make_unique<WebServer>(options.place, std::move(handlers));
+  server_ = std::make_unique<WebServer>(options.location, std::move(handlers));
   server_->start();
 }
 
@@ -106,21 +106,21 @@ std::unique_ptr<EditSession> RecordingViewer::Core::session() {
       EditSession::Answers{.answer = [this](PageId page, std::string line) { answer(page, std::move(line)); },
                            .changed =
                                [this] {
-                                 tell_all(kSceneChanged, "scene");
-                                 tell_all(kEditsChanged, "edits");
+                                 report_all(kSceneChanged, "scene");
+                                 report_all(kEditsChanged, "edits");
                                }});
 }
 
-void RecordingViewer::Core::show_film(const std::string& film) {
+void RecordingViewer::Core::show_video(const std::string& video) {
   if (header_.frame.kind != FrameOfReference::Kind::image)
-    throw Error("{}: holds no tracks in a picture, so no film lies behind them", path_);
-  film_.emplace(film, [this](PageId page, std::string bytes) {
-    server_->publish({.topic = kFilmPicture + static_cast<int>(page), .bytes = bytes_of(std::move(bytes)), .text = false},
+    throw Error("{}: holds no tracks in an image, so no video lies behind them", path_);
+  video_.emplace(video, [this](PageId page, std::string bytes) {
+    server_->publish({.topic = kVideoImage + static_cast<int>(page), .bytes = bytes_of(std::move(bytes)), .text = false},
                      [page](PageId other) { return other == page; });
   });
 }
 
-void RecordingViewer::Core::tell_all(RecordingTopic topic, const char* word) {
+void RecordingViewer::Core::report_all(RecordingTopic topic, const char* word) {
   server_->publish({.topic = topic, .bytes = bytes_of(word), .text = true});
 }
 
@@ -138,48 +138,48 @@ std::vector<std::string> RecordingViewer::Core::read(const Hooks& hooks) {
     const auto now = std::chrono::steady_clock::now();
     if (now - reported < kBetweenReports) continue;
     reported = now;
-    tell_all(kSceneChanged, "scene");
+    report_all(kSceneChanged, "scene");
   }
   std::vector<std::string> warnings = reader_->warnings();
-  if (auto sentence = pipeline::take::orientation_unknown(path_, header_); sentence && !ground_.y_down)
-    warnings.push_back(std::move(*sentence));
+  if (auto message_text = pipeline::take::orientation_unknown(path_, header_); message_text && !ground_.y_down)
+    warnings.push_back(std::move(*message_text));
   reader_.reset();  // who holds a take open may keep others from writing it
   recording_.finish(warnings);
   if (edits_) edits_->begin();
-  tell_all(kSceneChanged, "scene");
+  report_all(kSceneChanged, "scene");
   return warnings;
 }
 
 WebAnswer RecordingViewer::Core::get(std::string_view target) {
   const std::string_view path = path_of(target);
   if (std::optional<WebAnswer> file = page_file(path)) return *file;
-  constexpr auto kMost = std::numeric_limits<std::int32_t>::max();
+  constexpr auto kMaxCount = std::numeric_limits<std::int32_t>::max();
   if (path == "/scene")
     return {.type = "application/json",
             .body = bytes_of(
-                scene_text(header_, recording_.state(), ground_, {.show_film = film_.has_value(), .edit = edits_ != nullptr}))};
+                scene_text(header_, recording_.state(), ground_, {.show_video = video_.has_value(), .edit = edits_ != nullptr}))};
   if (path == "/edits" && edits_) return {.type = "application/json", .body = edits_->history()};
   if (path == "/stretch") {
-    const auto wanted = whole_in(query_value(target, "n"), 0, kMost);
-    const Bytes bytes = wanted ? recording_.stretch(static_cast<std::size_t>(*wanted)) : nullptr;
+    const auto required = whole_in(query_value(target, "n"), 0, kMaxCount);
+    const Bytes bytes = required ? recording_.segment(static_cast<std::size_t>(*required)) : nullptr;
     if (bytes != nullptr) return {.body = bytes};
   }
   if (path == "/course") {
-    if (const auto track = whole_in(query_value(target, "track"), 0, kMost))
+    if (const auto track = whole_in(query_value(target, "track"), 0, kMaxCount))
       return {.body = bytes_of(recording_.course(TrackId{static_cast<int>(*track)}))};
   }
   return {.status = 404, .type = "text/plain; charset=utf-8", .body = bytes_of("there is nothing of that name\n")};
 }
 
 void RecordingViewer::Core::received(PageId page, std::string_view line) {
-  if (asks_for_edit(line)) {
-    if (edits_) return edits_->ask(page, line);
+  if (queries_for_edit(line)) {
+    if (edits_) return edits_->request(page, line);
     return answer(page, "refused editing was not asked for; \"marey view TAKE --edit\" allows it");
   }
-  if (next_word(line) != "film" || !film_) return;
+  if (next_word(line) != "film" || !video_) return;
   const auto frame = whole_in(next_word(line), 0, std::numeric_limits<std::int32_t>::max());
   const auto width = whole_in(next_word(line), 16, 4096);
-  if (frame && width) film_->ask(page, *frame, static_cast<int>(*width));
+  if (frame && width) video_->request(page, *frame, static_cast<int>(*width));
 }
 
 RecordingViewer::RecordingViewer(const std::string& path, const ViewOptions& options)

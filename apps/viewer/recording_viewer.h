@@ -13,22 +13,22 @@
 namespace marey::viewer {
 
 struct ViewOptions {
-  WebPlace place;
+  ListenAddress location;
   format::ReadOptions read;
   GroundChoice ground;
-  std::string film;   ///< whose pictures lie behind tracks in a picture; empty: none
+  std::string video;  ///< whose images lie behind tracks in an image; empty: none
   bool edit = false;  ///< the page may change the take that it shows
 };
 
-/// Shows a recording in a file to whoever opens `address()`: any that format::open_recording reads.
+/// Shows a recording in a file to the one who opens `address()`: any that format::open_recording reads.
 class RecordingViewer {
  public:
-  /// Opens the file and listens. Throws Error where either cannot be.
+  /// Opens the file and listens. Throws Error if either cannot be.
   RecordingViewer(const std::string& path, const ViewOptions& options);
   ~RecordingViewer();
 
   std::string address() const;
-  /// Reads the file to its end; what was read is shown meanwhile. Returns its warnings. Throws Error where the file breaks off,
+  /// Reads the file to its end; what was read is shown in the meantime. Returns its warnings. Throws Error if the file breaks off,
   /// Stopped where it is asked to stop.
   std::vector<std::string> read(const Hooks& hooks);
 

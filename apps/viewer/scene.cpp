@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "marey/core/ground_transform.h"
 #include "marey/core/keypoint_sets.h"
-#include "marey/core/other_ground.h"
 #include "marey/geometry/camera.h"
 
 #include "json_value.h"
@@ -18,15 +18,15 @@ namespace {
 
 using cli::Json;
 
-constexpr double kMostShownDigits = 1e4;  // a tenth of a millimetre
+constexpr double kMaxShownDigits = 1e4;  // a tenth of a millimetre
 
 Json rounded(double value) {
-  return std::round(value * kMostShownDigits) / kMostShownDigits;
+  return std::round(value * kMaxShownDigits) / kMaxShownDigits;
 }
 
-Json json_of(const Vector<3>& place) {
+Json json_of(const Vector<3>& location) {
   Json list = Json::array();
-  for (int axis = 0; axis < 3; ++axis) list.push_back(rounded(place[axis]));
+  for (int axis = 0; axis < 3; ++axis) list.push_back(rounded(location[axis]));
   return list;
 }
 
@@ -55,7 +55,7 @@ Json json_of(const Body& body) {
   return json;
 }
 
-/// Where it stands, and where it points: the directions of its picture's corners, length 1.
+/// Where it stands, and where it points: the directions of its image's corners, length 1.
 Json json_of(const RigCamera& camera) {
   Json json{{"name", camera.name}};
   if (camera.size) json["size"] = Json(std::array{camera.size->width, camera.size->height});
@@ -121,9 +121,9 @@ Json header_json(const RecordingHeader& header) {
 
 /// Whether places from `low` to `high` lie on a pitch that begins at `corner`, and use at least half of it.
 bool fits_pitch(const Extent& extent, const geometry::PitchSize& pitch, const Vector<2>& corner) {
-  constexpr double kBeside = 8;  // m: bench, linesmen, keepers behind their lines
+  constexpr double kNextTo = 8;  // m: bench, linesmen, keepers behind their lines
   const Vector<2> size(pitch.length, pitch.width), low = extent.low.head<2>() - corner, high = extent.high.head<2>() - corner;
-  return (low.array() > -kBeside).all() && ((high - size).array() < kBeside).all() &&
+  return (low.array() > -kNextTo).all() && ((high - size).array() < kNextTo).all() &&
          ((high - low).array() > 0.5 * size.array()).all();
 }
 
@@ -160,19 +160,19 @@ std::string scene_text(const RecordingHeader& header, const RecordingState& stat
                        const SceneCan& can) {
   Json scene = header_json(header);
   scene["kind"] = "recording";
-  scene["film"] = can.show_film;
+  scene["film"] = can.show_video;
   scene["can_edit"] = can.edit;
   scene["instants"] = state.instants;
   scene["last"] = state.last_s;
   scene["complete"] = state.complete;
   scene["warnings"] = Json(state.warnings);
   scene["stretches"] = Json::array();
-  for (const RecordingState::Stretch& stretch : state.stretches) {
+  for (const RecordingState::TimeChunk& segment : state.segments) {
     Json one = Json::array();
-    one.push_back(stretch.first_s);
-    one.push_back(stretch.instants);
-    one.push_back(stretch.rows);
-    one.push_back(stretch.version);
+    one.push_back(segment.first_s);
+    one.push_back(segment.instants);
+    one.push_back(segment.rows);
+    one.push_back(segment.version);
     scene["stretches"].push_back(one);
   }
   scene["tracks"] = Json::array();

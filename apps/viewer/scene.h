@@ -20,7 +20,7 @@ struct GroundChoice {
 
 /// What the page can do beyond looking.
 struct SceneCan {
-  bool show_film = false;
+  bool show_video = false;
   bool edit = false;
 };
 

@@ -7,19 +7,22 @@ namespace marey::viewer {
 namespace {
 
 cli::Json camera_json(const LiveReport::Camera& camera) {
-  cli::Json told = cli::page_json_of(camera.health);
-  told["dials"] = cli::Json::array();
-  for (const auto& dial : camera.dials) {
-    told["dials"].push_back(
-        {{"name", dial.name}, {"unit", dial.unit}, {"least", dial.least}, {"most", dial.most}, {"now", dial.now}});
+  cli::Json reported = cli::page_json_of(camera.health);
+  reported["dials"] = cli::Json::array();
+  for (const auto& camera_control : camera.controls) {
+    reported["dials"].push_back({{"name", camera_control.name},
+                                 {"unit", camera_control.unit},
+                                 {"least", camera_control.minimum},
+                                 {"most", camera_control.maximum},
+                                 {"now", camera_control.now}});
   }
-  if (!camera.refused.empty()) told["refused"] = camera.refused;
-  if (!camera.finds_markers) return told;
-  told["threshold"] = camera.threshold;
-  told["learning"] = camera.learning;
-  told["masks"] = cli::Json::array();
-  for (const Mask& mask : camera.masks) told["masks"].push_back(cli::Json(mask.numbers()));
-  return told;
+  if (!camera.refused.empty()) reported["refused"] = camera.refused;
+  if (!camera.finds_markers) return reported;
+  reported["threshold"] = camera.threshold;
+  reported["learning"] = camera.learning;
+  reported["masks"] = cli::Json::array();
+  for (const Mask& mask : camera.masks) reported["masks"].push_back(cli::Json(mask.numbers()));
+  return reported;
 }
 
 }  // namespace
@@ -27,7 +30,7 @@ cli::Json camera_json(const LiveReport::Camera& camera) {
 std::string status_text(const LiveReport& report) {
   cli::Json status{{"cameras", cli::Json::array()},
                    {"steps", cli::Json::array()},
-                   {"overtaken", report.overtaken},
+                   {"overtaken", report.superseded},
                    {"unsaved", report.unsaved},
                    {"notes", cli::Json(report.notes)}};
   for (const LiveReport::Camera& camera : report.cameras) status["cameras"].push_back(camera_json(camera));

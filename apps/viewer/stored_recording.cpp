@@ -4,13 +4,13 @@
 #include <cstring>
 #include <utility>
 
-#include "stretch_rows.h"
+#include "chunk_rows.h"
 
 namespace marey::viewer {
 namespace {
 
-constexpr std::int64_t kStretchInstants = 128, kStretchRows = 32768;
-constexpr std::size_t kMostSampled = 20000;
+constexpr std::int64_t kSegmentInstants = 128, kSegmentRows = 32768;
+constexpr std::size_t kMaxSampled = 20000;
 constexpr double kOutside = 0.005;  // share of positions, at either end, that may be errors
 
 template <typename T>
@@ -47,47 +47,47 @@ void StoredRecording::add(const Instant& instant) {
   open_.push_back({.index = instant.index,
                    .time = instant.time,
                    .samples = instant.samples,
-                   .seen = {},
+                   .detected = {},
                    .bodies = instant.bodies,
                    .named = {},
                    .boxes = {},
                    .frames = {}});
   for (Sample& row : open_.back().samples) row.outline = nullptr;
-  if (std::ssize(open_) >= kStretchInstants || open_rows_ >= kStretchRows) close_stretch();
+  if (std::ssize(open_) >= kSegmentInstants || open_rows_ >= kSegmentRows) close_segment();
 }
 
-void StoredRecording::close_stretch() {
+void StoredRecording::close_segment() {
   if (open_.empty()) return;
-  const RecordingState::Stretch stretch{
+  const RecordingState::TimeChunk segment{
       .first_s = seconds(open_.front().time), .instants = std::ssize(open_), .rows = open_rows_, .version = 0};
   Bytes bytes = bytes_of(wire_of(open_, static_cast<std::uint32_t>(state_.instants), columns_));
   const std::lock_guard lock(mutex_);
-  stretches_.push_back(std::move(bytes));
-  state_.stretches.push_back(stretch);
-  state_.instants += stretch.instants;
+  segments_.push_back(std::move(bytes));
+  state_.segments.push_back(segment);
+  state_.instants += segment.instants;
   state_.last_s = seconds(open_.back().time);
   open_.clear();
   open_rows_ = 0;
 }
 
 void StoredRecording::finish(std::vector<std::string> warnings) {
-  close_stretch();
+  close_segment();
   const std::lock_guard lock(mutex_);
   state_.warnings = std::move(warnings);
   state_.complete = true;
 }
 
 void StoredRecording::put(const std::vector<TrackColumns>& tracks) {
-  // Nobody else writes now: what is there is read without the lock, and only the exchange takes it.
+  // No other person writes now: what is there is read without the lock, and only the exchange takes it.
   std::int64_t first = 0;
-  for (std::size_t i = 0; i < stretches_.size(); ++i) {
-    const std::int64_t begins = std::exchange(first, first + state_.stretches[i].instants);
-    if (has_tracks(*stretches_[i], columns_, begins, tracks)) continue;
-    Bytes bytes = bytes_of(with_tracks(*stretches_[i], columns_, begins, tracks));
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    const std::int64_t begins = std::exchange(first, first + state_.segments[i].instants);
+    if (has_tracks(*segments_[i], columns_, begins, tracks)) continue;
+    Bytes bytes = bytes_of(with_tracks(*segments_[i], columns_, begins, tracks));
     const std::lock_guard lock(mutex_);
-    stretches_[i] = std::move(bytes);
-    state_.stretches[i].rows = row_count(*stretches_[i]);
-    ++state_.stretches[i].version;
+    segments_[i] = std::move(bytes);
+    state_.segments[i].rows = row_count(*segments_[i]);
+    ++state_.segments[i].version;
   }
   for (const TrackColumns& track : tracks) {
     const auto known = courses_.find(track.id());
@@ -102,9 +102,9 @@ RecordingState::Course StoredRecording::course_of(const TrackColumns& track, int
   for (std::size_t row = 0; row < track.size(); ++row) course.measured += track.measured(row) ? 1 : 0;
   if (track.empty()) return course;
   const auto time_of = [&](std::int64_t instant) {
-    std::size_t stretch = 0;
-    while (instant >= state_.stretches[stretch].instants) instant -= state_.stretches[stretch++].instants;
-    return time_in(*stretches_[stretch], static_cast<std::size_t>(instant));
+    std::size_t segment = 0;
+    while (instant >= state_.segments[segment].instants) instant -= state_.segments[segment++].instants;
+    return time_in(*segments_[segment], static_cast<std::size_t>(instant));
   };
   course.first_instant = track.at().front();
   course.last_instant = track.at().back();
@@ -117,7 +117,7 @@ void StoredRecording::sample(const Vector<3>& position) {
   if (until_next_-- > 0) return;
   until_next_ = sampled_each_ - 1;
   sampled_.push_back(position);
-  if (sampled_.size() < kMostSampled) return;
+  if (sampled_.size() < kMaxSampled) return;
   for (std::size_t i = 0; 2 * i < sampled_.size(); ++i) sampled_[i] = sampled_[2 * i];
   sampled_.resize(sampled_.size() / 2);
   sampled_each_ *= 2;
@@ -149,26 +149,26 @@ RecordingState StoredRecording::state() const {
   return state;
 }
 
-Bytes StoredRecording::stretch(std::size_t number) const {
+Bytes StoredRecording::segment(std::size_t number) const {
   const std::lock_guard lock(mutex_);
-  return number < stretches_.size() ? stretches_[number] : nullptr;
+  return number < segments_.size() ? segments_[number] : nullptr;
 }
 
 std::string StoredRecording::course(TrackId track) const {
-  std::vector<Bytes> stretches;
+  std::vector<Bytes> segments;
   {
     const std::lock_guard lock(mutex_);
     const auto known = courses_.find(track);
     if (known != courses_.end() && known->second.rows > 0) {
-      for (std::size_t i = 0; i < stretches_.size(); ++i) {
-        const RecordingState::Stretch& stretch = state_.stretches[i];
-        const double end_s = i + 1 < stretches_.size() ? state_.stretches[i + 1].first_s : state_.last_s;
-        if (end_s >= known->second.first_s && stretch.first_s <= known->second.last_s) stretches.push_back(stretches_[i]);
+      for (std::size_t i = 0; i < segments_.size(); ++i) {
+        const RecordingState::TimeChunk& segment = state_.segments[i];
+        const double end_s = i + 1 < segments_.size() ? state_.segments[i + 1].first_s : state_.last_s;
+        if (end_s >= known->second.first_s && segment.first_s <= known->second.last_s) segments.push_back(segments_[i]);
       }
     }
   }
   CourseColumns course;
-  for (const Bytes& stretch : stretches) gather_rows(*stretch, track, columns_, course);
+  for (const Bytes& segment : segments) gather_rows(*segment, track, columns_, course);
   std::string bytes(40, '\0');
   bytes[0] = 4;
   bytes[1] = 1;

@@ -23,7 +23,7 @@ struct Extent {
 
 /// What is known of a recording by now.
 struct RecordingState {
-  struct Stretch {
+  struct TimeChunk {
     double first_s = 0;
     std::int64_t instants = 0, rows = 0;
     int version = 0;  ///< grows whenever its bytes become others
@@ -36,7 +36,7 @@ struct RecordingState {
     int version = 0;                                   ///< grows with `put`
   };
 
-  std::vector<Stretch> stretches;
+  std::vector<TimeChunk> segments;
   std::vector<Course> tracks;  ///< by id; those that have a row
   std::int64_t instants = 0;
   double last_s = 0;
@@ -46,7 +46,7 @@ struct RecordingState {
 };
 
 /// A recording as the page takes it: in stretches of a second or so, each of them the bytes that are sent. Thirty minutes of fifty
-/// markers at 100 Hz are 190 MB. One thread adds, others ask meanwhile.
+/// markers at 100 Hz are 190 MB. One thread adds, others ask in the meantime.
 class StoredRecording {
  public:
   StoredRecording(const RecordingHeader& header, const std::vector<TrackName>& tracks);
@@ -60,13 +60,13 @@ class StoredRecording {
 
   RecordingState state() const;
   /// Null where there is no such stretch yet.
-  Bytes stretch(std::size_t number) const;
+  Bytes segment(std::size_t number) const;
   /// One track's course, of kind 4: the header's first number is its rows n; then float64 time[n]; float32 x[n], y[n], and z[n]
   /// with flag 1; uint8 state[n] as in a stretch.
   std::string course(TrackId track) const;
 
  private:
-  void close_stretch();
+  void close_segment();
   RecordingState::Course course_of(const TrackColumns& track, int version) const;
   void sample(const Vector<3>& position);
   std::optional<Extent> extent() const;
@@ -78,7 +78,7 @@ class StoredRecording {
   mutable std::mutex mutex_;  // for what follows
   RecordingState state_;
   std::map<TrackId, RecordingState::Course> courses_;
-  std::vector<Bytes> stretches_;
+  std::vector<Bytes> segments_;
   std::vector<Vector<3>> sampled_;  // every `sampled_each_`th position
   std::int64_t sampled_each_ = 1, until_next_ = 0;
 };

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "page_words.h"
+#include "command_tokens.h"
 #include "scene.h"
 
 namespace marey::viewer {
@@ -74,8 +74,8 @@ TEST(StoredRecording, CoursesAreWhatWasAdded) {
     }
     EXPECT_EQ(stored.course(TrackId{99}).size(), 40U);
     EXPECT_EQ(stored.state().instants, 700);
-    EXPECT_GT(stored.stretch(0)->size(), 40U);
-    EXPECT_EQ(stored.stretch(1000), nullptr);
+    EXPECT_GT(stored.segment(0)->size(), 40U);
+    EXPECT_EQ(stored.segment(1000), nullptr);
   }
 }
 
@@ -111,13 +111,13 @@ TEST(StoredRecording, TracksThatArePutAreAsIfTheyHadBeenAddedSo) {
     edited.finish({});
     fresh.finish({});
     edited.put(others);
-    for (std::size_t n = 0; n < 4; ++n) EXPECT_TRUE(*edited.stretch(n) == *fresh.stretch(n)) << n;
+    for (std::size_t n = 0; n < 4; ++n) EXPECT_TRUE(*edited.segment(n) == *fresh.segment(n)) << n;
     for (std::size_t i = 0; i < 7; ++i) {
       const RecordingState::Course one = edited.state().tracks[i], other = fresh.state().tracks[i];
       EXPECT_EQ(std::tuple(one.rows, one.measured, one.first_s, one.last_s, one.first_instant, one.last_instant),
                 std::tuple(other.rows, other.measured, other.first_s, other.last_s, other.first_instant, other.last_instant));
     }
-    EXPECT_EQ(edited.state().stretches[3].rows, fresh.state().stretches[3].rows);
+    EXPECT_EQ(edited.state().segments[3].rows, fresh.state().segments[3].rows);
   }
 }
 
@@ -127,7 +127,7 @@ TEST(StoredRecording, MayBeAskedWhileItGrows) {
     while (!stop.stop_requested()) {
       const RecordingState state = stored.state();
       std::int64_t instants = 0;
-      for (std::size_t i = 0; i < state.stretches.size(); ++i) instants += state.stretches[i].instants;
+      for (std::size_t i = 0; i < state.segments.size(); ++i) instants += state.segments[i].instants;
       EXPECT_EQ(instants, state.instants);
       stored.course(TrackId{1});
     }
@@ -186,7 +186,7 @@ TEST(Scene, NamesFromOutsideStayText) {
 }
 
 TEST(PageWords, TakeNumbersAndNothingElse) {
-  std::string_view line = "  film 12 640x";
+  std::string_view line = "  video 12 640x";
   EXPECT_EQ(next_word(line), "film");
   EXPECT_EQ(whole_in(next_word(line), 0, 100), 12);
   EXPECT_EQ(whole_in(next_word(line), 0, 1000), std::nullopt);

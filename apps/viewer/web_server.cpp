@@ -1,5 +1,5 @@
 // One thread answers the pages (net/loop.h); what `publish` brings comes from others, by way of one slot for each topic, so that a
-// server that is busy holds nobody up and gathers nothing.
+// server that is busy holds no person up and gathers nothing.
 #include "web_server.h"
 
 #include <array>
@@ -29,7 +29,7 @@ constexpr net::ServerOptions kPages{.protocol = net::Protocol::web,
                                     .max_request = 8192,
                                     .send_buffer = 1 << 18,
                                     .silence = std::chrono::seconds(30)};
-/// Nothing is loaded from elsewhere, and nobody puts the page into one of theirs.
+/// Nothing is loaded from elsewhere, and no person puts the page into one of theirs.
 constexpr const char* kPolicy =
     "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'";
 
@@ -59,8 +59,8 @@ net::HttpAnswer http_answer(int status, std::string type, Bytes body) {
                      {"Cross-Origin-Resource-Policy", "same-origin"}}};
 }
 
-net::HttpAnswer page_refusal(int status, const std::string& sentence) {
-  net::HttpAnswer answer = http_answer(status, "text/plain; charset=utf-8", bytes_of(sentence + "\n"));
+net::HttpAnswer page_refusal(int status, const std::string& message_text) {
+  net::HttpAnswer answer = http_answer(status, "text/plain; charset=utf-8", bytes_of(message_text + "\n"));
   answer.keep = false;
   return answer;
 }
@@ -69,12 +69,12 @@ net::HttpAnswer page_refusal(int status, const std::string& sentence) {
 
 class WebServer::Core {
  public:
-  Core(const WebPlace& place, Handlers handlers);
+  Core(const ListenAddress& location, Handlers handlers);
   ~Core() { loop_.stop(); }
 
   void start() { loop_.start(); }
   std::string address() const;
-  void publish(Message message, std::function<bool(PageId)> wants);
+  void publish(Message message, std::function<bool(PageId)> needs);
   void send(PageId page, const Message& message);
   Count count() const { return {sent_, dropped_, pages_}; }
 
@@ -82,10 +82,10 @@ class WebServer::Core {
   class Page;
   struct Published {
     Message message;
-    std::function<bool(PageId)> wants;
+    std::function<bool(PageId)> needs;
   };
 
-  net::Descriptor listen(const WebPlace& place);
+  net::Descriptor listen(const ListenAddress& location);
   void hand_out();
   void tick();
   void put(net::Outbox& out, const Message& message) {
@@ -95,7 +95,7 @@ class WebServer::Core {
   Handlers handlers_;
   std::optional<Access> access_;
   std::string shown_host_;
-  std::atomic<std::uint64_t> sent_ = 0, dropped_ = 0;  // as of the last tick: who asks waits for nobody
+  std::atomic<std::uint64_t> sent_ = 0, dropped_ = 0;  // as of the last tick: who asks waits for no person
   std::atomic<int> pages_ = 0;
   std::uint64_t last_page_ = 0;
   std::map<PageId, net::Outbox*> open_;
@@ -122,7 +122,7 @@ class WebServer::Core::Page : public net::Session {
 
   net::HttpAnswer requested(const net::HttpRequest& request) override {
     const Access::Verdict verdict = core_.access_->check(request);
-    if (verdict.status != 200) return page_refusal(verdict.status, verdict.sentence);
+    if (verdict.status != 200) return page_refusal(verdict.status, verdict.message_text);
     if (request.upgrade) {
       if (path_of(request.target) != "/socket") return page_refusal(404, "there is no such socket");
       return {.upgrade = true};
@@ -150,26 +150,26 @@ class WebServer::Core::Page : public net::Session {
   std::optional<PageId> id_;  // of an open WebSocket
 };
 
-WebServer::Core::Core(const WebPlace& place, Handlers handlers)
+WebServer::Core::Core(const ListenAddress& location, Handlers handlers)
     : handlers_(std::move(handlers)),
-      server_(loop_, listen(place), kPages, [this](const net::Address&) { return std::make_unique<Page>(*this); }) {
+      server_(loop_, listen(location), kPages, [this](const net::Address&) { return std::make_unique<Page>(*this); }) {
   loop_.on_tick([this] { tick(); });
 }
 
-net::Descriptor WebServer::Core::listen(const WebPlace& place) {
-  const std::string address = place.listen == "localhost" ? "127.0.0.1" : place.listen;
-  const int wanted = place.port.value_or(kUsualPort);
-  int port = wanted;
+net::Descriptor WebServer::Core::listen(const ListenAddress& location) {
+  const std::string address = location.listen == "localhost" ? "127.0.0.1" : location.listen;
+  const int required = location.port.value_or(kDefaultPort);
+  int port = required;
   std::optional<net::Descriptor> made = net::listen_at_digits(address, port);
-  if (made && !*made && !place.port) {
+  if (made && !*made && !location.port) {
     port = 0;
     made = net::listen_at_digits(address, port);
   }
   if (!made)
-    throw Error("\"{}\" is no address to listen on; give one of this machine's in digits, or 0.0.0.0 for all of them",
-                place.listen);
+    throw Error("\"{}\" is not an address to listen on; give one of this machine's in digits, or 0.0.0.0 for all of them",
+                location.listen);
   if (!*made)
-    throw Error("{} port {}: cannot listen there ({}); --port 0 takes one that is free", place.listen, wanted,
+    throw Error("{} port {}: cannot listen there ({}); --port 0 takes one that is free", location.listen, required,
                 std::generic_category().message(errno));
   const bool everywhere = address == "0.0.0.0" || address == "::";
   const std::string host = everywhere ? first_outer_address() : address;
@@ -182,11 +182,11 @@ std::string WebServer::Core::address() const {
   return fmt::format("http://{}/?token={}", shown_host_, access_->token());
 }
 
-void WebServer::Core::publish(Message message, std::function<bool(PageId)> wants) {
+void WebServer::Core::publish(Message message, std::function<bool(PageId)> needs) {
   if (pages_ == 0) return;
   const std::lock_guard lock(mutex_);
   const int topic = message.topic;
-  published_.insert_or_assign(topic, Published{std::move(message), std::move(wants)});
+  published_.insert_or_assign(topic, Published{std::move(message), std::move(needs)});
   if (std::exchange(waking_, true)) return;
   loop_.post([this] { hand_out(); });
 }
@@ -200,7 +200,7 @@ void WebServer::Core::hand_out() {
   }
   for (const auto& [topic, one] : published) {
     for (const auto& [id, out] : open_) {
-      if (!one.wants || one.wants(id)) put(*out, one.message);
+      if (!one.needs || one.needs(id)) put(*out, one.message);
     }
   }
 }
@@ -216,7 +216,8 @@ void WebServer::Core::send(PageId page, const Message& message) {
   if (const auto found = open_.find(page); found != open_.end()) put(*found->second, message);
 }
 
-WebServer::WebServer(const WebPlace& place, Handlers handlers) : core_(std::make_unique<Core>(place, std::move(handlers))) {}
+WebServer::WebServer(const ListenAddress& location, Handlers handlers)
+    : core_(std::make_unique<Core>(location, std::move(handlers))) {}
 WebServer::~WebServer() = default;
 void WebServer::start() {
   core_->start();
@@ -224,8 +225,8 @@ void WebServer::start() {
 std::string WebServer::address() const {
   return core_->address();
 }
-void WebServer::publish(Message message, std::function<bool(PageId)> wants) {
-  core_->publish(std::move(message), std::move(wants));
+void WebServer::publish(Message message, std::function<bool(PageId)> needs) {
+  core_->publish(std::move(message), std::move(needs));
 }
 void WebServer::send(PageId page, Message message) {
   core_->send(page, std::move(message));

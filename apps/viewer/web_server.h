@@ -31,11 +31,11 @@ struct WebAnswer {
 };
 
 /// Where to listen.
-struct WebPlace {
+struct ListenAddress {
   std::string listen = "127.0.0.1";  ///< an address of this machine
-  std::optional<int> port = {};      ///< 0: any that is free; nothing: `kUsualPort`, or another where that is taken
+  std::optional<int> port = {};      ///< 0: any that is free; nothing: `kDefaultPort`, or another where that is taken
 };
-inline constexpr int kUsualPort = 8780;
+inline constexpr int kDefaultPort = 8780;
 
 class WebServer {
  public:
@@ -44,7 +44,7 @@ class WebServer {
     std::function<WebAnswer(std::string_view target)> get;
     std::function<void(PageId)> joined = {};
     std::function<void(PageId)> left = {};
-    std::function<void(PageId, std::string_view text)> received = {};  ///< 4 KiB at most, whatever a stranger wrote
+    std::function<void(PageId, std::string_view text)> received = {};  ///< 4 KiB at most, whatever an untrusted client wrote
   };
   struct Message {
     int topic = 0;
@@ -57,19 +57,19 @@ class WebServer {
     int pages = 0;
   };
 
-  /// Throws Error where it cannot listen there: the port is taken, the address is none of this machine's.
-  WebServer(const WebPlace& place, Handlers handlers);
+  /// Throws Error if it cannot listen there: the port is taken, the address is not one of this machine's.
+  WebServer(const ListenAddress& location, Handlers handlers);
   /// Begins to answer. Who came earlier waits.
   void start();
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// "http://127.0.0.1:8780/?token=…": whoever has it may look.
+  /// "http://127.0.0.1:8780/?token=…": the one who has it may look.
   std::string address() const;
 
   /// From any thread; never waits. To the pages for which `wants` says so, which is asked on the server's thread.
-  void publish(Message message, std::function<bool(PageId)> wants = {});
+  void publish(Message message, std::function<bool(PageId)> needs = {});
   /// To one page, on the server's thread.
   void send(PageId page, Message message);
   Count count() const;

@@ -165,24 +165,25 @@ std::string wire_of(const Instant& instant, std::uint32_t sequence, const WireCo
                     {.kind = 2, .flags = 0, .sequence = sequence, .time = instant.time, .sent_ns = sent_ns, .counts = {}}, columns);
 }
 
-std::string wire_of(const WirePicture& picture) {
-  const std::vector<SeenPoint> seen = of_camera(picture.seen, picture.camera);
-  const std::vector<BoxInView> boxes = of_camera(picture.boxes, picture.camera);
-  const std::uint32_t size = static_cast<std::uint32_t>(picture.size.width) | static_cast<std::uint32_t>(picture.size.height) << 16;
+std::string wire_of(const ProtocolImage& image) {
+  const std::vector<ImageObservation> detected = of_camera(image.detected, image.camera);
+  const std::vector<BoxInView> boxes = of_camera(image.boxes, image.camera);
+  const std::uint32_t size = static_cast<std::uint32_t>(image.size.width) | static_cast<std::uint32_t>(image.size.height) << 16;
   ByteWriter out;
   write_header(out, {.kind = 3,
                      .flags = 0,
-                     .sequence = static_cast<std::uint32_t>(picture.frame),
-                     .time = picture.time,
-                     .sent_ns = picture.sent_ns,
-                     .counts = {static_cast<std::uint32_t>(number(picture.camera)), static_cast<std::uint32_t>(seen.size()),
+                     .sequence = static_cast<std::uint32_t>(image.frame),
+                     .time = image.time,
+                     .sent_ns = image.sent_ns,
+                     .counts = {static_cast<std::uint32_t>(number(image.camera)), static_cast<std::uint32_t>(detected.size()),
                                 static_cast<std::uint32_t>(boxes.size()), size}});
-  for (int axis = 0; axis < 2; ++axis) out.column<float>(seen, [axis](const SeenPoint& point) { return point.pixel[axis]; });
-  out.column<std::int32_t>(seen, [](const SeenPoint& point) { return point.track ? number(*point.track) : 0; });
+  for (int axis = 0; axis < 2; ++axis)
+    out.column<float>(detected, [axis](const ImageObservation& point) { return point.pixel[axis]; });
+  out.column<std::int32_t>(detected, [](const ImageObservation& point) { return point.track ? number(*point.track) : 0; });
   for (double Box::* part : {&Box::left, &Box::top, &Box::width, &Box::height})
     out.column<float>(boxes, [part](const BoxInView& box) { return box.box.*part; });
   out.column<std::int32_t>(boxes, [](const BoxInView& box) { return number(box.track); });
-  out.text(picture.jpeg);
+  out.text(image.jpeg);
   return out.take();
 }
 

@@ -13,10 +13,10 @@
 //   uint8 state[r]: provenance (0 measured, 1 filled, 2 predicted, 3 solved), and 8 where the row has a box;
 //   uint8 keypoint confidence[r * k] (visibility times presence, of 255; 0: the keypoint is absent);  uint8 tracked[p].
 //
-// Kind 3 is a camera's picture; sequence is its frame. The four are camera, the numbers of points n and of boxes b, and
-// width | height << 16 of the camera's pictures (px; 0 where unknown). Then float32 x[n], y[n], int32 track[n] (0: nobody's),
-// float32 left[b], top[b], width[b], height[b], int32 track[b], all px of the camera; the rest is a JPEG, or nothing where there is
-// no picture.
+// Kind 3 is a camera's image; sequence is its frame. The four are camera, the numbers of points n and of boxes b, and
+// width | height << 16 of the camera's images (px; 0 where unknown). Then float32 x[n], y[n], int32 track[n] (0: no person's),
+// float32 left[b], top[b], width[b], height[b], int32 track[b], all px of the camera; the rest is a JPEG, or nothing if there is
+// no image.
 #pragma once
 
 #include <cstdint>
@@ -47,18 +47,18 @@ std::string wire_of(std::span<const Instant> instants, std::uint32_t first, cons
 /// Kind 2.
 std::string wire_of(const Instant& instant, std::uint32_t sequence, const WireColumns& columns, std::uint64_t sent_ns);
 
-/// What is drawn over a camera's picture.
-struct WirePicture {
+/// What is drawn over a camera's image.
+struct ProtocolImage {
   CameraId camera{};
   std::int64_t frame = 0;
   Timestamp time{};
   std::uint64_t sent_ns = 0;
-  cv::Size size;                     ///< px, of the camera's pictures
-  std::span<const SeenPoint> seen;   ///< those of other cameras are passed over
-  std::span<const BoxInView> boxes;  ///< likewise
+  cv::Size size;                               ///< px, of the camera's images
+  std::span<const ImageObservation> detected;  ///< those of other cameras are skipped
+  std::span<const BoxInView> boxes;            ///< likewise
   std::string_view jpeg;
 };
 /// Kind 3.
-std::string wire_of(const WirePicture& picture);
+std::string wire_of(const ProtocolImage& image);
 
 }  // namespace marey::viewer

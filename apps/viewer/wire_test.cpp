@@ -33,7 +33,7 @@ Sample wired_row(int track, const Vector<3>& position, const std::optional<Box>&
   return row;
 }
 
-TEST(Wire, CamerasStandBeforeBodies) {
+TEST(StreamProtocol, CamerasStandBeforeBodies) {
   Instant instant = instant_of(3, 0.1);
   instant.samples.push_back(wired_row(3, {1, 2, 3}));
   instant.samples.back().cameras = 0b1011;
@@ -44,7 +44,7 @@ TEST(Wire, CamerasStandBeforeBodies) {
   EXPECT_EQ(bytes.size(), 40U + 8 + 12 + 20 + 1);
 }
 
-TEST(Wire, AStretchLiesAsItsDescriptionSays) {
+TEST(StreamProtocol, AStretchLiesAsItsDescriptionSays) {
   std::vector<Instant> instants{instant_of(7, 0.5), instant_of(9, 1.25)};
   instants[0].samples.push_back(wired_row(3, {1, 2, 3}));
   instants[1].samples.push_back(wired_row(3, {4, 5, 6}));
@@ -80,7 +80,7 @@ TEST(Wire, AStretchLiesAsItsDescriptionSays) {
   EXPECT_EQ(bytes.substr(160), std::string("\0\1\0\0", 4));  // states, tracked
 }
 
-TEST(Wire, BoxesOfThoseThatHaveOne) {
+TEST(StreamProtocol, BoxesOfThoseThatHaveOne) {
   Instant instant = instant_of(0, 0);
   instant.samples.push_back(wired_row(1, {1, 2, 0}, Box{10, 20, 30, 40}));
   instant.samples.push_back(wired_row(2, {3, 4, 0}));
@@ -95,17 +95,18 @@ TEST(Wire, BoxesOfThoseThatHaveOne) {
   EXPECT_EQ(bytes[bytes.size() - 1], 0);
 }
 
-TEST(Wire, APictureBringsWhatItsOwnCameraSaw) {
-  const std::vector<SeenPoint> seen{{.camera = CameraId{1}, .pixel = {5, 6}, .sigma = {}, .area = {}, .track = TrackId{4}},
-                                    {.camera = CameraId{0}, .pixel = {7, 8}, .sigma = {}, .area = {}, .track = {}}};
+TEST(StreamProtocol, APictureBringsWhatItsOwnCameraSaw) {
+  const std::vector<ImageObservation> detected{
+      {.camera = CameraId{1}, .pixel = {5, 6}, .sigma = {}, .area = {}, .track = TrackId{4}},
+      {.camera = CameraId{0}, .pixel = {7, 8}, .sigma = {}, .area = {}, .track = {}}};
   const std::vector<BoxInView> boxes{
-      {.camera = CameraId{1}, .frame = 0, .track = TrackId{9}, .box = {1, 2, 3, 4}, .foot = {}, .seen = true}};
+      {.camera = CameraId{1}, .frame = 0, .track = TrackId{9}, .box = {1, 2, 3, 4}, .foot = {}, .detected = true}};
   const std::string bytes = wire_of({.camera = CameraId{1},
                                      .frame = 12,
                                      .time = {},
                                      .sent_ns = 0,
                                      .size = {640, 480},
-                                     .seen = seen,
+                                     .detected = detected,
                                      .boxes = boxes,
                                      .jpeg = "JPEG"});
   EXPECT_EQ(bytes[0], 3);

@@ -96,7 +96,7 @@ def main():
                 for mode, more in (("live", ["--live"]), ("offline", [])):
                     subprocess.run([given.marey, "track", "--detections", work / "boxes.txt", "--rate", str(STREET.rate), "-o",
                                     work / "tracks.txt", "-q", *more], check=True, stderr=subprocess.DEVNULL)
-                    figures = live_peers.judged(given.marey, work / "truth.txt", work / "tracks.txt")
+                    figures = live_peers.evaluated(given.marey, work / "truth.txt", work / "tracks.txt")
                     rows.setdefault((name, mode), []).append((*(figures[n] for n in live_peers.FIGURES), upper_bound(truth)))
     for (name, mode), values in rows.items():
         figures = " ".join(f"{100 * statistics.mean(column):5.1f}" for column in list(zip(*values))[:3])

@@ -3,10 +3,10 @@
 
 Usage: box_peers.py MAREY [--seeds N] [--scenes TEXT] [--kinds true,weak] [--work FOLDER] [--no-peers] [--options="..."]
 
-The scenes are those of box_scenes.py: streets and athletes before cameras that stand, pan, zoom, roll and shake. Boxes are the
+The scenes are those of box_scenes.py: streets and athletes before static cameras, pan, zoom, roll and shake. Boxes are the
 truth's, or those of weak_detector.py: 30 % missed in runs, 10 % false, 8 % noise. Peers run with their own defaults at the
 scene's rate; "filled" is the same with gaps of up to a second filled on a straight line, which offline is compared with. All are
-judged by `marey evaluate`. A line is MOTA, IDF1, HOTA and frames a second.
+evaluated by `marey evaluate`. A line is MOTA, IDF1, HOTA and frames a second.
 """
 import argparse
 import collections
@@ -72,7 +72,7 @@ def run_scene(given, work, scene, seed, kind):
     weak_detector.write(detections, seen)
     result = {}
     for method, tracks, speed in methods_of(given, work, name, detections, scene.rate, len(boxes)):
-        figures = live_peers.judged(given.marey, truth, tracks)
+        figures = live_peers.evaluated(given.marey, truth, tracks)
         result[method] = (*(figures[n] for n in live_peers.FIGURES), speed)
     return scene.name, kind, result
 

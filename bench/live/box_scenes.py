@@ -1,8 +1,8 @@
-"""Boxes of people before a camera that stands still, pans, zooms, rolls or shakes, with their truth: nothing is rendered.
+"""Boxes of people before a static camera still, pans, zooms, rolls or shakes, with their truth: nothing is rendered.
 
 A scene is people on a ground (metres, z up) before a pinhole camera whose pan, tilt, roll and focal length change with time.
 Walkers stroll, stop and meet; athletes sprint, brake, turn, mark each other, crouch and jump, and the camera follows the play
-as an operator does, late. A box is the projection of somebody between sole and crown, as wide as the pose of the moment.
+as an operator does, late. A box is the projection of a person between sole and crown, as wide as the pose of the instant.
 """
 import collections
 import dataclasses
@@ -64,7 +64,7 @@ class Noise:
 
 
 class Crowd:
-    """Where everybody is, and how they hold themselves."""
+    """Where every person is, and how they hold themselves."""
 
     def __init__(self, scene, draw, dt):
         self.scene, self.draw, self.dt = scene, draw, dt
@@ -177,14 +177,14 @@ class Operator:
 
 
 def truth(scene, seed, box_draw=None):
-    """{frame: {person: (left, top, width, height)}}, frames from 1; what is mostly outside the image is left out.
+    """{frame: {person: (left, top, width, height)}}, frames from 1; what is mostly outside the image is omitted.
 
-    With a generator of its own for the boxes' noise, `box_draw`, what people do does not depend on who is in the picture.
+    With a generator of its own for the boxes' noise, `box_draw`, what people do does not depend on who is in the image.
     """
     dt = 1 / scene.rate
     draw = np.random.default_rng([seed, sum(map(ord, scene.name))])
     crowd, camera = Crowd(scene, draw, dt), Operator(scene, draw, dt)
-    for _ in range(int(3 * scene.rate)):  # until everybody has spread
+    for _ in range(int(3 * scene.rate)):  # until every person has spread
         crowd.step()
         camera.step(0, crowd.play)
     boxes = collections.defaultdict(dict)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""From the moment the simulator hands a picture over (drawn beforehand) to a client's hands: 4 cameras 640x480 at 100 Hz, 40 markers, JSON lines by TCP.
+"""From the instant the simulator hands an image over (drawn beforehand) to a client's hands: 4 cameras 640x480 at 100 Hz, 40 markers, JSON lines by TCP.
 
 Usage: client_latency.py MAREY [--seconds 15]
 """
@@ -28,7 +28,7 @@ def main():
     parser.add_argument("marey")
     parser.add_argument("--seconds", type=float, default=15)
     given = parser.parse_args()
-    run = subprocess.Popen([given.marey, "live", "sim://room?cameras=4&rate=100&markers=40&motion=walk&drawn=1", "--for", str(given.seconds + 10), "-q",
+    run = subprocess.Popen([given.marey, "live", "sim://room?cameras=4&rate=100&markers=40&motion=walk&drawn=1", "--duration", str(given.seconds + 10), "-q",
                             "--stream", f"json:127.0.0.1:{PORT}"])
     ages, arrivals, begin = [], [], time.monotonic()
     for line in connected().makefile():

@@ -25,7 +25,7 @@ def inside(given) -> None:
         for rate in map(float, given.rates.split(",")):
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             sources = [f"gige:127.0.0.{k + 1}?rate={rate:g}" for k in range(given.cameras)]
-            said = subprocess.run([given.marey, "live", *sources, "--for", str(given.seconds), "--json", "-q"], capture_output=True, text=True, check=True).stdout
+            said = subprocess.run([given.marey, "live", *sources, "--duration", str(given.seconds), "--json", "-q"], capture_output=True, text=True, check=True).stdout
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
             told = json.loads(said)
             cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -33,7 +33,7 @@ def inside(given) -> None:
             for name, camera in told["cameras"].items():
                 counts = ", ".join(f"{camera[key]} {key}" for key in ("frames", "lost", "damaged", "overrun", "missed"))
                 print(f"  {name}: {counts}; {camera['frames'] / given.seconds:.2f} Hz")
-            print("  let go:", ", ".join(f"{value} {key}" for key, value in told["dropped"].items()))
+            print("  drop:", ", ".join(f"{value} {key}" for key, value in told["dropped"].items()))
     finally:
         for camera in cameras:
             camera.kill()

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""How old live results are, and what is lost, on simulated cameras whose pictures are drawn beforehand.
+"""How old live results are, and what is lost, on simulated cameras whose images are drawn beforehand.
 
 Usage: live_latency.py MAREY [--seconds S] [--cases four,twenty]
 
-four:    4 cameras 640x480 at 100 Hz, 40 markers: the time from exposure (the moment the simulator hands a picture over) to the instant
-twenty:  20 cameras 640x480 at 30 Hz: frames lost or let go, and CPU time as a share of one core (the simulator's hand-over included)
+four:    4 cameras 640x480 at 100 Hz, 40 markers: the time from exposure (the instant the simulator hands an image over) to the instant
+twenty:  20 cameras 640x480 at 30 Hz: frames lost or drop, and CPU time as a share of one core (the simulator's hand-over included)
 Times of each stage are medians and 99 %; the machine's load is printed beside them, because nothing here is true on a busy one.
 """
 import argparse
@@ -21,7 +21,7 @@ CASES = {
 
 def run(marey, name, seconds):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    said = subprocess.run([marey, "live", CASES[name], "--for", str(seconds), "--json", "-q"], capture_output=True, text=True, check=True).stdout
+    said = subprocess.run([marey, "live", CASES[name], "--duration", str(seconds), "--json", "-q"], capture_output=True, text=True, check=True).stdout
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     told = json.loads(said)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """`marey track --live` beside SORT, ByteTrack, OC-SORT and BoT-SORT (PyPI `trackers`) on the same boxes of weak detectors.
 
-Usage: live_peers.py MAREY DATA [--options="--delay 0.5"] [--work FOLDER] [--scenes tud|pets|all] [--no-peers]
+Usage: live_peers.py MAREY DATA [--options="--lag 0.5"] [--work FOLDER] [--scenes tud|pets|all] [--no-peers]
 
-DATA is the folder that tests call MAREY_DATA: the boxes of a Faster R-CNN over tud/'s two films, and the truth of
+DATA is the folder that tests call MAREY_DATA: the boxes of a Faster R-CNN over tud/'s two videos, and the truth of
 pets2009/ through the simulated detector of weak_detector.py, five seeds, 25 to 40 % missed. Peers run with their own
-defaults at the recording's rate; without the package only Marey's lines are printed. All are judged by `marey evaluate`.
+defaults at the recording's rate; without the package only Marey's lines are printed. All are evaluated by `marey evaluate`.
 """
 import argparse
 import collections
@@ -43,7 +43,7 @@ def run_peer(peer, detections, rate, out, peers=PEERS):
     for line in detections.read_text().splitlines():
         frame, _, left, top, width, height, score = map(float, line.split(",")[:7])
         boxes[int(frame)].append((left, top, left + width, top + height, score))
-    more = {"enable_cmc": False} if peer == "BoT-SORT" else {}  # there are no pictures
+    more = {"enable_cmc": False} if peer == "BoT-SORT" else {}  # there are no images
     tracker = getattr(trackers, peers[peer])(frame_rate=rate, **more)
     with open(out, "w") as file:
         for frame in range(1, max(boxes) + 1):
@@ -56,7 +56,7 @@ def run_peer(peer, detections, rate, out, peers=PEERS):
                     file.write(f"{frame},{number + 1},{left:.2f},{top:.2f},{right - left:.2f},{bottom - top:.2f},1,-1,-1,-1\n")
 
 
-def judged(marey, truth, tracks):
+def evaluated(marey, truth, tracks):
     said = subprocess.run([marey, "evaluate", "--truth", truth, "--tracks", tracks, "--json"], capture_output=True, text=True,
                           check=True).stdout
     told = json.loads(said)
@@ -97,7 +97,7 @@ def main():
                                 *([] if given.offline else ["--live"]), *given.options.split()], check=True)
             else:
                 run_peer(method, detections, rate, out)
-            figures = judged(given.marey, truth, out)
+            figures = evaluated(given.marey, truth, out)
             print(f"{scene:24} {method:10}", *(f"{name} {value:6.3f}" for name, value in figures.items()))
             for name in FIGURES:
                 means[scene.split(",")[0]][method].append([figures[n] for n in FIGURES])

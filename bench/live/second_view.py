@@ -74,7 +74,7 @@ def main():
     print("| seed | IDs | observed by one camera, then by both | new IDs there |\n| --- | --- | --- | --- |")
     for seed in range(1, given.seeds + 1):
         with tempfile.TemporaryDirectory() as folder:
-            simulate = ["simulate", "match", "-o", "match", "--cameras", "2", "--stand", "football", "--seconds", given.seconds, "--boxes"]
+            simulate = ["simulate", "match", "-o", "match", "--cameras", "2", "--layout", "football", "--seconds", given.seconds, "--boxes"]
             subprocess.run([marey, *simulate, "--foot-error", given.foot_error, "--seed", str(seed), "-q"], cwd=folder, check=True)
             track = ["track", "match/rig.toml", "--ground", "-o", "tracks.csv", "-q", *given.options]
             subprocess.run([marey, *track], cwd=folder, check=True, stderr=subprocess.DEVNULL)

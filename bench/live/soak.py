@@ -26,7 +26,7 @@ def main():
     given = options.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         record = ["-o", "soak.marey"] if given.record else []
-        run = subprocess.Popen([given.marey, "live", given.source, "--for", str(60 * given.minutes), "--json", "-q", *record], cwd=folder, stdout=subprocess.PIPE, text=True)
+        run = subprocess.Popen([given.marey, "live", given.source, "--duration", str(60 * given.minutes), "--json", "-q", *record], cwd=folder, stdout=subprocess.PIPE, text=True)
         print(f"{'minute':>8}{'MB':>8}{'files':>8}{'threads':>9}")
         begin, states = time.monotonic(), []
         while run.poll() is None:

@@ -4,7 +4,7 @@
 Usage: weak_detector.py TRUTH.txt OUT.txt --seed N [--missed SHARE] [--false SHARE] [--noise SHARE] [--rate HZ]
 
 A person goes in and out of being found by a two-state chain (a run of misses lasts RUN seconds in the mean), a false box stands
-anywhere in the picture with somebody's size, every side of a true box is off by NOISE of the box's height. MOT text in and out.
+anywhere in the image with a person's size, every side of a true box is off by NOISE of the box's height. MOT text in and out.
 """
 import argparse
 import collections

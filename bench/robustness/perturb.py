@@ -1,7 +1,7 @@
-"""What may happen to a recording that changes nobody in it: how its pictures or boxes change, and how its truth does.
+"""What may happen to a recording that changes no person in it: how its images or boxes change, and how its truth does.
 
-A perturbation keeps some frames, in some order (`frames`), at a rate, and changes places by x -> across(x); films besides by a
-filter of FFmpeg and a quality. Films are kept lossless where nothing is said of quality.
+A perturbation keeps some frames, in some order (`frames`), at a rate, and changes places by x -> across(x); videos besides by a
+filter of FFmpeg and a quality. Videos are kept lossless where nothing is said of quality.
 """
 import dataclasses
 import random
@@ -19,11 +19,11 @@ class Perturbation:
     filter: str = ""       # of FFmpeg
     crf: int | None = None
     box_noise: float = 0.0  # recordings of boxes: of the height, on each side
-    box_missed: float = 0.0  # and share of boxes left out
+    box_missed: float = 0.0  # and share of boxes omitted
 
 
 def dropped(share, seed):
-    """Frames are lost, and nobody says when: those left follow one another evenly."""
+    """Frames are lost, and no person says when: those left follow one another evenly."""
     def keep(count):
         draw = random.Random(seed)
         return [i for i in range(count) if i == 0 or draw.random() >= share]
@@ -46,7 +46,7 @@ TIME = [
     Perturbation("from frame 21", frames=later(20)),
     Perturbation("from frame 71", frames=later(70)),
 ]
-FILMS = [
+VIDEOS = [
     Perturbation("as it is"),
     *TIME,
     Perturbation("crf 18", crf=18),
@@ -84,7 +84,7 @@ def read(path):
 
 
 def perturbed_rows(rows, perturbation, count, width, noisy=False):
-    """Rows of the frames shown, numbered anew. `width` of the picture, px. Noise and misses are for detections alone."""
+    """Rows of the frames shown, numbered again. `width` of the image, px. Noise and misses are for detections alone."""
     draw = random.Random(7)
     lines = []
     for number, frame in enumerate(perturbation.frames(count), 1):
@@ -115,7 +115,7 @@ def selection(chosen):
     return terms[0]
 
 
-def write_film(source, out, perturbation, count):
+def write_video(source, out, perturbation, count):
     """Plain frames are chosen by their numbers; what is reversed is turned round after that."""
     chosen = list(perturbation.frames(count))
     steps = []

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How much `marey track` hangs on small things: recordings with truth, each perturbed in ways that change nobody in it.
+"""How much `marey track` hangs on small things: recordings with truth, each perturbed in ways that change no person in it.
 
 Usage: robustness.py MAREY DATA [--cache build/robustness] [--recordings vtest,street,boxes] [--only NAME,...] [--jobs 2]
                      [--options="--live"] [--film VTEST.avi] [--json OUT.json] [--quiet]
 
 Recordings: `vtest` (truth of 300 frames in DATA/pets2009); `street`, simulated streets of several densities; `boxes`, the boxes
-of a Faster R-CNN over DATA/tud's two films and those of weak_detector.py over the truth of pets2009. A perturbed film is made
+of a Faster R-CNN over DATA/tud's two videos and those of weak_detector.py over the truth of pets2009. A perturbed video is made
 once and kept below the cache folder. Printed: IDF1, MOTA and switches of each, and of each recording the mean, the worst, and how far
 the worst is below the mean. Needs FFmpeg's program.
 """
@@ -66,7 +66,7 @@ def file_name(recording, perturbation):
     return "".join(c if c.isalnum() else "_" for c in f"{recording.name}__{perturbation.name}")
 
 
-def judged(marey, recording, perturbation, cache, options):
+def evaluated(marey, recording, perturbation, cache, options):
     """(IDF1, MOTA, switches)"""
     stem = cache / file_name(recording, perturbation)
     truth, tracks = stem.with_suffix(".truth.txt"), stem.with_suffix(".tracks.txt")
@@ -74,7 +74,7 @@ def judged(marey, recording, perturbation, cache, options):
     if recording.film:
         film = stem.with_suffix(".mkv")
         if not film.exists():
-            perturb.write_film(recording.film, film, perturbation, recording.frames)
+            perturb.write_video(recording.film, film, perturbation, recording.frames)
         given = [film]
     else:
         boxes = stem.with_suffix(".boxes.txt")
@@ -115,12 +115,12 @@ def main():
     only = given.only.split(";" if ";" in given.only else ",") if given.only else None
     work = []
     for recording in recordings(given.marey, given.data, given.cache, given.film, given.recordings.split(",")):
-        for perturbation in perturb.FILMS if recording.film else perturb.BOXES:
+        for perturbation in perturb.VIDEOS if recording.film else perturb.BOXES:
             if only is None or perturbation.name in only:
                 work.append((recording, perturbation))
     options = given.options.split()
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        found = list(pool.map(lambda one: judged(given.marey, *one, given.cache, options), work))
+        found = list(pool.map(lambda one: evaluated(given.marey, *one, given.cache, options), work))
     by_recording = collections.defaultdict(list)
     for (recording, perturbation), figures in zip(work, found):
         by_recording[recording.name].append((perturbation.name, *figures))

@@ -1,7 +1,7 @@
-// Background models as a live run uses them, from the first frame of a film to its last, nothing learned ahead: ten scenes with
-// the truth pixel by pixel (simulate/people/restless_film.h), judged by the pixels at least half of which somebody covers. Beside
-// Marey's model OpenCV's MOG2 and KNN on BGR with their defaults, what they call shadow left out, as they are and after a median of
-// 5 × 5.
+// Background models as a live run uses them, from the first frame of a video to its last, nothing learned ahead: ten scenes with
+// the truth pixel by pixel (simulate/people/restless_video.h), evaluated by the pixels at least half of which a person covers.
+// Beside Marey's model OpenCV's MOG2 and KNN on BGR with their defaults, what they call shadow omitted, as they are and after a
+// median of 5 × 5.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -15,22 +15,22 @@
 
 #include "marey/core/frame.h"
 #include "marey/detect/background/background.h"
-#include "marey/simulate/people/restless_film.h"
+#include "marey/simulate/people/restless_video.h"
 
 namespace {
 
 using marey::Frame;
 using marey::simulate::people::PeopleSituation;
-using marey::simulate::people::RestlessFilm;
-using marey::simulate::people::RestlessFilmOptions;
 using marey::simulate::people::RestlessFrame;
+using marey::simulate::people::RestlessVideo;
+using marey::simulate::people::RestlessVideoOptions;
 using marey::simulate::people::Unrest;
 
 struct Scene {
   const char* name;
   Unrest unrest;
   PeopleSituation situation = PeopleSituation::crowd;
-  double slower = 1;  ///< fewer frames a second, so that the film is so many times as long
+  double slower = 1;  ///< fewer frames a second, so that the video is this many times as long
 };
 
 const Scene kScenes[] = {{"still", {}},
@@ -63,7 +63,7 @@ struct Options {
   int frames = 300, seeds = 1, first_seed = 1;
   double rate_hz = 25;
   bool lawn = false, peers = true;
-  std::string only, pictures;
+  std::string only, images;
 };
 
 cv::Mat peer_mask(cv::BackgroundSubtractor& model, const cv::Mat& bgr) {
@@ -72,32 +72,32 @@ cv::Mat peer_mask(cv::BackgroundSubtractor& model, const cv::Mat& bgr) {
   return mask > 200;
 }
 
-/// For eyes: each tenth picture, its truth and Marey's mask side by side.
+/// For eyes: each tenth image, its truth and Marey's mask side by side.
 void keep(const Options& options, const Scene& scene, int seed, int index, const cv::Mat& bgr, const cv::Mat& truth,
           const cv::Mat& mask) {
   cv::Mat all, one;
   cv::hconcat(truth, mask, one);
   cv::cvtColor(one, one, cv::COLOR_GRAY2BGR);
   cv::hconcat(bgr, one, all);
-  cv::imwrite(fmt::format("{}/{} {} {:04}.png", options.pictures, scene.name, seed, index), all);
+  cv::imwrite(fmt::format("{}/{} {} {:04}.png", options.images, scene.name, seed, index), all);
 }
 
-void judge(const Options& options, const Scene& scene, int seed, std::vector<Score>& scores) {
-  RestlessFilmOptions wanted;
-  wanted.frames = options.frames;
-  wanted.rate_hz = options.rate_hz / scene.slower;
-  wanted.lawn = options.lawn;
-  wanted.situation = scene.situation;
-  wanted.unrest = scene.unrest;
-  const RestlessFilm film(static_cast<std::uint64_t>(seed), wanted);
+void assess(const Options& options, const Scene& scene, int seed, std::vector<Score>& scores) {
+  RestlessVideoOptions required;
+  required.frames = options.frames;
+  required.rate_hz = options.rate_hz / scene.slower;
+  required.lawn = options.lawn;
+  required.situation = scene.situation;
+  required.unrest = scene.unrest;
+  const RestlessVideo video(static_cast<std::uint64_t>(seed), required);
   std::vector<Frame> frames;
   std::vector<cv::Mat> truths;
-  for (int i = 0; i < film.frames(); ++i) {
-    RestlessFrame shown = film.render(i);
+  for (int i = 0; i < video.frames(); ++i) {
+    RestlessFrame shown = video.render(i);
     Frame& frame = frames.emplace_back();
     frame.index = i;
-    frame.time = marey::timestamp_from_seconds(i / film.rate_hz());
-    frame.picture = shown.picture;
+    frame.time = marey::timestamp_from_seconds(i / video.rate_hz());
+    frame.image = shown.image;
     truths.push_back(shown.people);
   }
   std::vector<Frame> samples;
@@ -107,9 +107,9 @@ void judge(const Options& options, const Scene& scene, int seed, std::vector<Sco
   const auto first = cv::createBackgroundSubtractorMOG2();
   const auto second = cv::createBackgroundSubtractorKNN();
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const cv::Mat mask = live->apply(frames[i], {}).covered, bgr = frames[i].picture.bgr();
+    const cv::Mat mask = live->apply(frames[i], {}).covered, bgr = frames[i].image.bgr();
     scores[marey_live].add(mask, truths[i]);
-    if (!options.pictures.empty() && i % 10 == 0) keep(options, scene, seed, static_cast<int>(i), bgr, truths[i], mask);
+    if (!options.images.empty() && i % 10 == 0) keep(options, scene, seed, static_cast<int>(i), bgr, truths[i], mask);
     scores[marey_primed].add(primed->apply(frames[i], {}).covered, truths[i]);
     if (!options.peers) continue;
     cv::Mat smooth;
@@ -127,24 +127,24 @@ void judge(const Options& options, const Scene& scene, int seed, std::vector<Sco
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Background models, live, on films with truth");
+  CLI::App app("Background models, live, on videos with truth");
   app.add_option("--frames", options.frames);
   app.add_option("--rate", options.rate_hz, "frames a second");
-  app.add_option("--seeds", options.seeds, "films of each scene");
+  app.add_option("--seeds", options.seeds, "videos of each scene");
   app.add_option("--first-seed", options.first_seed);
   app.add_option("--only", options.only, "scenes whose name holds this");
-  app.add_option("--pictures", options.pictures, "a folder for every tenth picture, its truth and Marey's mask");
+  app.add_option("--pictures", options.images, "a folder for every tenth image, its truth and Marey's mask");
   app.add_flag("--lawn", options.lawn, "a lawn instead of a street");
   app.add_flag("!--no-peers", options.peers);
   CLI11_PARSE(app, argc, argv);
-  if (!options.pictures.empty()) std::filesystem::create_directories(options.pictures);
+  if (!options.images.empty()) std::filesystem::create_directories(options.images);
   fmt::print("| scene: precision, recall, F |");
   for (const char* name : kNames) fmt::print(" {} |", name);
   fmt::print("\n| --- |{}\n", std::string(" --- |") + " --- | --- | --- | --- | --- |");
   for (const Scene& scene : kScenes) {
     if (std::string(scene.name).find(options.only) == std::string::npos) continue;
     std::vector<Score> scores(kModels);
-    for (int seed = 0; seed < options.seeds; ++seed) judge(options, scene, options.first_seed + seed, scores);
+    for (int seed = 0; seed < options.seeds; ++seed) assess(options, scene, options.first_seed + seed, scores);
     fmt::print("| {} |", scene.name);
     for (const Score& score : scores) {
       if (score.people > 0) fmt::print(" {:.3f} {:.3f} {:.3f} |", score.precision(), score.recall(), score.f());

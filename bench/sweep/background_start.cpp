@@ -21,11 +21,11 @@ using marey::detect::background::test::SceneFrame;
 using marey::detect::background::test::SmallScene;
 
 constexpr int kSeconds = 60;
-constexpr int kMostFrames = kSeconds * SmallScene::kRate;
+constexpr int kMaxFrames = kSeconds * SmallScene::kRate;
 
 std::vector<Figure> passers(int frame) {
-  const int way = 3 * frame;
-  return {{way % 420 - 50, 120}, {330 - (way + 150) % 430, 180}};
+  const int method = 3 * frame;
+  return {{method % 420 - 50, 120}, {330 - (method + 150) % 430, 180}};
 }
 
 /// One stands from the start and goes to another place after 20 s; one comes in after 15 s, and stands before the shelves.
@@ -51,17 +51,17 @@ constexpr Scene kScenes[] = {{.name = "road"},
                              {.name = "shake of 1 px", .shake = 1},
                              {.name = "shake of 2 px", .shake = 2}};
 
-std::vector<SceneFrame> film(const Scene& scene, std::uint32_t seed) {
+std::vector<SceneFrame> video(const Scene& scene, std::uint32_t seed) {
   SmallScene camera(seed, 2, scene.shelves);
   std::mt19937 random(seed + 100);
   std::normal_distribution<double> normal(0, 1);
   std::vector<SceneFrame> frames;
-  for (int i = 0; i < kMostFrames; ++i) {
+  for (int i = 0; i < kMaxFrames; ++i) {
     const std::vector<Figure> people = scene.people_stay ? people_in_room(i) : passers(i);
-    frames.push_back(camera.film(people, Conditions{.light = 1 + scene.flicker * std::sin(i * 0.37),
-                                                    .sway = scene.sway * std::sin(i * 0.7),
-                                                    .shake_x = scene.shake * normal(random),
-                                                    .shake_y = scene.shake * normal(random)}));
+    frames.push_back(camera.video(people, Conditions{.light = 1 + scene.flicker * std::sin(i * 0.37),
+                                                     .sway = scene.sway * std::sin(i * 0.7),
+                                                     .shake_x = scene.shake * normal(random),
+                                                     .shake_y = scene.shake * normal(random)}));
   }
   return frames;
 }
@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
   for (const Scene& scene : kScenes) {
     double sums[4] = {};
     for (int seed = 1; seed <= seeds; ++seed) {
-      const std::vector<SceneFrame> frames = film(scene, static_cast<std::uint32_t>(seed));
+      const std::vector<SceneFrame> frames = video(scene, static_cast<std::uint32_t>(seed));
       std::vector<Frame> samples;
       for (int i = 0; i < 32; ++i) samples.push_back(frames[i * frames.size() / 32].frame);
       const auto unprimed = make_background(), primed = make_background(), mog2 = make_background(Mog2Options{}),

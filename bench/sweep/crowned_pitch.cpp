@@ -7,7 +7,7 @@
 // blurred and put through JPEG, as a codec would. Printed: the error of places over all of the pitch that a camera sees (every 2
 // m), 95 % of them, along the touchline and across; the same along within 4 m of the near touchline; the worst focal length; the
 // share of places within their own 95 % ellipse and of focal lengths within their own interval. Beside it a plane under the same
-// clicks by OpenCV's calibrateCamera, the gross clicks left out for it. `level=1`: the ground is held level here too.
+// clicks by OpenCV's calibrateCamera, the gross clicks omitted for it. `level=1`: the ground is held level here too.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -26,8 +26,8 @@
 #include "marey/core/error.h"
 #include "marey/geometry/ground_view.h"
 #include "marey/simulate/match/match_cameras.h"
-#include "marey/simulate/match/match_film.h"
 #include "marey/simulate/match/match_ground.h"
+#include "marey/simulate/match/match_renderer.h"
 
 namespace {
 
@@ -64,7 +64,7 @@ struct Settings {
 };
 
 /// Luma of the empty ground as a codec leaves it.
-cv::Mat filmed(const GroundView& view, const Matrix<3>& pitch_from_world, const geometry::PitchSize& size, std::uint64_t seed) {
+cv::Mat recorded(const GroundView& view, const Matrix<3>& pitch_from_world, const geometry::PitchSize& size, std::uint64_t seed) {
   cv::Mat luma = simulate::match::draw_match_ground(view, pitch_from_world, size, seed).luma().clone();
   cv::GaussianBlur(luma, luma, {}, 0.9);
   std::vector<unsigned char> bytes;
@@ -78,7 +78,7 @@ Camera over_a_plane(const PitchView& view, const Matrix<3>& world_from_pitch, co
   for (auto& point : points) point.ground = (world_from_pitch * point.ground.homogeneous()).head<2>();
   auto lines = geometry::pitch_lines(size, 0.25);
   for (auto& line : lines) {
-    for (Vector<2>& place : line.points) place = (world_from_pitch * place.homogeneous()).head<2>();
+    for (Vector<2>& location : line.points) location = (world_from_pitch * location.homogeneous()).head<2>();
     for (Vector<2>& tangent : line.tangents) tangent = world_from_pitch.topLeftCorner<2, 2>() * tangent;
   }
   const auto start = calibrate::pitch::camera_from_points(view.name, points, view.size);
@@ -93,13 +93,13 @@ Camera over_a_plane(const PitchView& view, const Matrix<3>& world_from_pitch, co
 /// What was wrong where.
 struct Errors {
   std::vector<double> along, across, near_along, focal;
-  int covered = 0, places = 0, focal_covered = 0, cameras = 0;
+  int covered = 0, locations = 0, focal_covered = 0, cameras = 0;
 };
 
-double share_of(std::vector<double> values, double share) {
+double fraction_of(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
 /// Calls `each(place on the pitch, place in the world, pixel)` for every two metres of the pitch in view.
@@ -109,7 +109,7 @@ void over_the_pitch(const GroundView& truth, const Matrix<3>& world_from_pitch, 
     for (double y = 0; y <= size.width; y += 2) {
       const Vector<2> world = (world_from_pitch * Vector<3>(x, y, 1)).head<2>();
       const auto pixel = truth.pixel(world);
-      if (pixel && truth.camera()->in_picture(*pixel)) each(Vector<2>(x, y), world, *pixel);
+      if (pixel && truth.camera()->in_image(*pixel)) each(Vector<2>(x, y), world, *pixel);
     }
   }
 }
@@ -121,21 +121,21 @@ void note(Errors& errors, const Vector<2>& off, double y, const geometry::PitchS
 
 /// OpenCV's own over a plane, on the clicks that are right.
 Camera by_opencv(const PitchView& view, const GroundView& truth, const Matrix<3>& world_from_pitch) {
-  std::vector<cv::Point3f> places;
+  std::vector<cv::Point3f> locations;
   std::vector<cv::Point2f> pixels;
   for (const auto& click : view.points) {
     const Vector<2> world = (world_from_pitch * click.ground.homogeneous()).head<2>();
     const auto pixel = truth.pixel(world);
     if (!pixel || (*pixel - click.pixel).norm() > 20) continue;
-    places.emplace_back(static_cast<float>(world.x()), static_cast<float>(world.y()), 0.0F);
+    locations.emplace_back(static_cast<float>(world.x()), static_cast<float>(world.y()), 0.0F);
     pixels.emplace_back(static_cast<float>(click.pixel.x()), static_cast<float>(click.pixel.y()));
   }
   const double focal = 0.7 * view.size.width;
   cv::Mat K = (cv::Mat_<double>(3, 3) << focal, 0, view.size.width / 2.0, 0, focal, view.size.height / 2.0, 0, 0, 1);
   cv::Mat bent;
   std::vector<cv::Mat> turn, move;
-  cv::calibrateCamera(std::vector<std::vector<cv::Point3f>>(1, places), std::vector<std::vector<cv::Point2f>>(1, pixels), view.size,
-                      K, bent, turn, move, cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_FIX_ASPECT_RATIO);
+  cv::calibrateCamera(std::vector<std::vector<cv::Point3f>>(1, locations), std::vector<std::vector<cv::Point2f>>(1, pixels),
+                      view.size, K, bent, turn, move, cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_FIX_ASPECT_RATIO);
   cv::Mat R;
   cv::Rodrigues(turn[0], R);
   geometry::BrownLens lens{{K.at<double>(0, 0), K.at<double>(1, 1)}, {K.at<double>(0, 2), K.at<double>(1, 2)}, {}};
@@ -149,19 +149,19 @@ Camera by_opencv(const PitchView& view, const GroundView& truth, const Matrix<3>
 }
 
 /// One camera of ours against the truth, and against what it says of its own errors.
-void judge(const calibrate::pitch::PitchCalibration& result, std::size_t index, const GroundView& truth,
-           const Matrix<3>& world_from_pitch, const geometry::PitchSize& size, Errors& errors) {
+void assess(const calibrate::pitch::PitchCalibration& result, std::size_t index, const GroundView& truth,
+            const Matrix<3>& world_from_pitch, const geometry::PitchSize& size, Errors& errors) {
   constexpr double kOfPlane = 5.991, kOfLine = 1.96;  // 95 % of χ² with two degrees of freedom; of a normal deviate
   const Camera& camera = result.views[index].camera;
   const GroundView found(camera, result.fit.ground);
   int number = 0;
   over_the_pitch(truth, world_from_pitch, size, [&](const Vector<2>& pitch, const Vector<2>& world, const Vector<2>& pixel) {
-    const auto place = found.place(pixel);
-    const Vector<2> off = place ? Vector<2>(place->ground - world) : Vector<2>(1e3, 1e3);
+    const auto location = found.location(pixel);
+    const Vector<2> off = location ? Vector<2>(location->ground - world) : Vector<2>(1e3, 1e3);
     note(errors, off, pitch.y(), size);
-    if (number++ % 10 != 0 || !place) return;
-    const auto covariance = calibrate::pitch::place_covariance(result.fit, index, place->ground);
-    ++errors.places;
+    if (number++ % 10 != 0 || !location) return;
+    const auto covariance = calibrate::pitch::position_covariance(result.fit, index, location->ground);
+    ++errors.locations;
     errors.covered += covariance && off.dot(covariance->inverse() * off) < kOfPlane ? 1 : 0;
   });
   const double focal = geometry::focal_of(camera.lens()).x(), real = geometry::focal_of(truth.camera()->lens()).x();
@@ -171,13 +171,13 @@ void judge(const calibrate::pitch::PitchCalibration& result, std::size_t index, 
   errors.focal_covered += std::abs(focal - real) < kOfLine * std::sqrt(result.fit.covariance(own, own)) ? 1 : 0;
 }
 
-/// Somebody else's camera over a plane.
-void judge_plane(const Camera& camera, const GroundView& truth, const Matrix<3>& world_from_pitch, const geometry::PitchSize& size,
-                 Errors& errors) {
+/// Another person's camera over a plane.
+void evaluate_plane(const Camera& camera, const GroundView& truth, const Matrix<3>& world_from_pitch,
+                    const geometry::PitchSize& size, Errors& errors) {
   const GroundView found(camera);
   over_the_pitch(truth, world_from_pitch, size, [&](const Vector<2>& pitch, const Vector<2>& world, const Vector<2>& pixel) {
-    const auto place = found.place(pixel);
-    note(errors, place ? Vector<2>(place->ground - world) : Vector<2>(99, 99), pitch.y(), size);
+    const auto location = found.location(pixel);
+    note(errors, location ? Vector<2>(location->ground - world) : Vector<2>(99, 99), pitch.y(), size);
   });
   errors.focal.push_back(std::abs(geometry::focal_of(camera.lens()).x() / geometry::focal_of(truth.camera()->lens()).x() - 1));
 }
@@ -200,15 +200,15 @@ void one_scene(const Case& scene, std::uint64_t seed, const Settings& how, Error
     for (const auto& click : simulate::match::match_clicks(truths.back(), world_from_pitch, size, how.noise,
                                                            static_cast<int>(how.wrong), seed * 2 + views.size()))
       view.points.push_back({click.ground, click.pixel, {}});
-    view.empty_ground = filmed(truths.back(), *rig.ground_from_world, size, seed);
-    judge_plane(by_opencv(view, truths.back(), world_from_pitch), truths.back(), world_from_pitch, size, theirs);
-    judge_plane(over_a_plane(view, world_from_pitch, size), truths.back(), world_from_pitch, size, before);
+    view.empty_ground = recorded(truths.back(), *rig.ground_from_world, size, seed);
+    evaluate_plane(by_opencv(view, truths.back(), world_from_pitch), truths.back(), world_from_pitch, size, theirs);
+    evaluate_plane(over_a_plane(view, world_from_pitch, size), truths.back(), world_from_pitch, size, before);
   }
   calibrate::pitch::PitchCalibrationOptions options;
   options.size = size;
   if (how.level > 0) options.known = calibrate::pitch::GroundKnown::level;
   const auto result = calibrate::pitch::calibrate_pitch(views, options);
-  for (std::size_t i = 0; i < views.size(); ++i) judge(result, i, truths[i], world_from_pitch, size, ours);
+  for (std::size_t i = 0; i < views.size(); ++i) assess(result, i, truths[i], world_from_pitch, size, ours);
   std::printf("  seed %llu: %d terms of the lens; across %.3f along %.3f dome %.3f ridge %.2f;",
               static_cast<unsigned long long>(seed), result.fit.lens_terms, result.fit.ground.across, result.fit.ground.along,
               result.fit.ground.dome, result.fit.ground.ridge);
@@ -218,12 +218,12 @@ void one_scene(const Case& scene, std::uint64_t seed, const Settings& how, Error
   std::printf("\n");
 }
 
-void print(const char* who, const Errors& errors) {
-  std::printf("  %-7s 95 %%: along %.3f across %.3f m, median %.3f %.3f; near touchline along %.3f; focal worst %.2f %%", who,
-              share_of(errors.along, 0.95), share_of(errors.across, 0.95), share_of(errors.along, 0.5),
-              share_of(errors.across, 0.5), share_of(errors.near_along, 0.95), 100 * share_of(errors.focal, 1));
-  if (errors.places > 0)
-    std::printf("; in their 95 %%: places %.1f %%, focal %d of %d", 100.0 * errors.covered / errors.places, errors.focal_covered,
+void print(const char* identity, const Errors& errors) {
+  std::printf("  %-7s 95 %%: along %.3f across %.3f m, median %.3f %.3f; near touchline along %.3f; focal worst %.2f %%", identity,
+              fraction_of(errors.along, 0.95), fraction_of(errors.across, 0.95), fraction_of(errors.along, 0.5),
+              fraction_of(errors.across, 0.5), fraction_of(errors.near_along, 0.95), 100 * fraction_of(errors.focal, 1));
+  if (errors.locations > 0)
+    std::printf("; in their 95 %%: places %.1f %%, focal %d of %d", 100.0 * errors.covered / errors.locations, errors.focal_covered,
                 errors.cameras);
   std::printf("\n");
 }

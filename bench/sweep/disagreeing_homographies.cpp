@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/simulate/match_files.h"
 #include "marey/simulate/match/match_homographies.h"
@@ -17,12 +17,12 @@
 namespace marey::sweep {
 namespace {
 
-constexpr double kLeast = 0.25, kMost = 0.6;  // m, of each camera: two disagree by √2 times as much
-constexpr double kFarthest = 1.5;             // m from the truth, where a track counts: the truth's own frame is off
+constexpr double kMinValue = 0.25, kMaxCount = 0.6;  // m, of each camera: two disagree by √2 times as much
+constexpr double kMaxDistance = 1.5;                 // m from the truth, where a track counts: the truth's own frame is off
 
 void use_homographies(const std::string& folder, std::uint64_t seed) {
   const Rig exact = format::rig::read_rig(folder + "/rig.toml");
-  const Rig off = simulate::match::known_by_homographies(exact, {}, kLeast, kMost, seed);
+  const Rig off = simulate::match::known_by_homographies(exact, {}, kMinValue, kMaxCount, seed);
   WholeFile file(folder + "/rig.toml");
   file.write(format::rig::rig_text(off));
   file.finish();
@@ -49,10 +49,10 @@ void run(int seeds, double seconds, double rate_hz) {
     for (const bool off : {false, true}) {
       if (off) use_homographies(folder.path(), scene.seed);
       const std::string cameras = off ? "off, " : "exact, ";
-      print_scores(seed, cameras + "naive", run_naive(folder.path(), kFarthest));
+      print_scores(seed, cameras + "naive", run_naive(folder.path(), kMaxDistance));
       for (const auto& [name, association] : {std::pair("gnn", GroundAssociation::gnn), std::pair("mht", GroundAssociation::mht)}) {
-        print_scores(seed, cameras + name + ", nothing learned", run_ours(folder.path(), with(association, false), kFarthest));
-        print_scores(seed, cameras + name, run_ours(folder.path(), with(association, true), kFarthest));
+        print_scores(seed, cameras + name + ", nothing learned", run_ours(folder.path(), with(association, false), kMaxDistance));
+        print_scores(seed, cameras + name, run_ours(folder.path(), with(association, true), kMaxDistance));
       }
     }
   }

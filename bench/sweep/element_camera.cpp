@@ -30,9 +30,9 @@ calibrate::pitch::ElementCameraOptions options;
 
 std::map<std::string, double*> settings() {
   return {{"roll_sigma", &options.roll_sigma},
-          {"place_sigma_x", &options.place_sigma.x()},
-          {"place_sigma_y", &options.place_sigma.y()},
-          {"place_sigma_z", &options.place_sigma.z()},
+          {"place_sigma_x", &options.position_sigma.x()},
+          {"place_sigma_y", &options.position_sigma.y()},
+          {"place_sigma_z", &options.position_sigma.z()},
           {"bend", &options.bend},
           {"bend_sigma", &options.bend_sigma},
           {"focal_sigma", &options.focal_sigma},
@@ -47,56 +47,56 @@ bool predicted(const geometry::Camera& camera, const LabelledElement& label) {
   return std::all_of(distances.begin(), distances.end(), [](const auto& distance) { return distance && *distance < 5; });
 }
 
-void print_fit(const std::vector<format::LabelledPicture>& pictures, bool details) {
+void print_fit(const std::vector<format::LabelledImage>& images, bool details) {
   double jac5 = 0, jac10 = 0;
   int found = 0;
-  for (const auto& picture : pictures) {
-    const ElementCamera fitted = calibrate::pitch::camera_from_elements(picture.elements, kSize, options);
+  for (const auto& image : images) {
+    const ElementCamera fitted = calibrate::pitch::camera_from_elements(image.elements, kSize, options);
     if (!fitted.camera) {
-      if (details) std::printf("%s: %s\n", picture.name.c_str(), std::string(element_verdict_name(fitted.verdict)).c_str());
+      if (details) std::printf("%s: %s\n", image.name.c_str(), std::string(element_verdict_name(fitted.verdict)).c_str());
       continue;
     }
     ++found;
-    const auto score = calibrate::pitch::score_elements(*fitted.camera, picture.elements, {}, 5);
+    const auto score = calibrate::pitch::score_elements(*fitted.camera, image.elements, {}, 5);
     jac5 += score.jaccard();
-    jac10 += calibrate::pitch::score_elements(*fitted.camera, picture.elements, {}, 10).jaccard();
+    jac10 += calibrate::pitch::score_elements(*fitted.camera, image.elements, {}, 10).jaccard();
     if (!details) continue;
-    std::printf("%s: JaC %.2f (%d %d %d)", picture.name.c_str(), score.jaccard(), score.right, score.wrong, score.missed);
+    std::printf("%s: JaC %.2f (%d %d %d)", image.name.c_str(), score.jaccard(), score.right, score.wrong, score.missed);
     for (const double p : fitted.view.p) std::printf(" %.4f", p);
     for (std::size_t i = 0; i < fitted.used.size(); ++i) {
       if (!fitted.used[i])
-        std::printf(" [%s %.0f px]", std::string(geometry::pitch_elements({})[picture.elements[i].element].name).c_str(),
+        std::printf(" [%s %.0f px]", std::string(geometry::pitch_elements({})[image.elements[i].element].name).c_str(),
                     fitted.error_px[i]);
     }
     std::printf("\n");
   }
-  const double n = static_cast<double>(pictures.size());
+  const double n = static_cast<double>(images.size());
   std::printf("JaC@5 %.2f %% of those found, JaC@10 %.2f %%, complete %.2f %%, JaC@5 x complete %.2f %%\n", 100 * jac5 / found,
               100 * jac10 / found, 100 * found / n, 100 * jac5 / n);
 }
 
-void print_left_out(const std::vector<format::LabelledPicture>& pictures) {
+void print_excluded(const std::vector<format::LabelledImage>& images) {
   int right = 0, all = 0;
-  for (const auto& picture : pictures) {
-    for (std::size_t i = 0; i < picture.elements.size(); ++i) {
-      std::vector<LabelledElement> others = picture.elements;
+  for (const auto& image : images) {
+    for (std::size_t i = 0; i < image.elements.size(); ++i) {
+      std::vector<LabelledElement> others = image.elements;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       const ElementCamera fitted = calibrate::pitch::camera_from_elements(others, kSize, options);
-      right += fitted.camera && predicted(*fitted.camera, picture.elements[i]) ? 1 : 0;
+      right += fitted.camera && predicted(*fitted.camera, image.elements[i]) ? 1 : 0;
       ++all;
     }
   }
   std::printf("each element by the camera fitted without it, within 5 px: %.2f %% of %d\n", 100.0 * right / all, all);
 }
 
-void print_mirrored(const std::vector<format::LabelledPicture>& pictures) {
+void print_mirrored(const std::vector<format::LabelledImage>& images) {
   for (const auto& [what, mirror] : {std::pair{"left and right", geometry::PitchMirror{.left_right = true}},
                                      {"near and far", geometry::PitchMirror{.near_far = true}},
                                      {"both", geometry::PitchMirror{.left_right = true, .near_far = true}}}) {
     int undetected = 0, all = 0;
-    for (const auto& picture : pictures) {
-      if (picture.elements.size() < 5) continue;
-      std::vector<LabelledElement> mirrored = picture.elements;
+    for (const auto& image : images) {
+      if (image.elements.size() < 5) continue;
+      std::vector<LabelledElement> mirrored = image.elements;
       for (LabelledElement& label : mirrored) label.element = geometry::mirrored_element(label.element, mirror);
       undetected += calibrate::pitch::camera_from_elements(mirrored, kSize, options).camera ? 1 : 0;
       ++all;
@@ -110,9 +110,9 @@ void print_mirrored(const std::vector<format::LabelledPicture>& pictures) {
 int main(int argc, char** argv) {
   if (argc < 2) return std::fprintf(stderr, "usage: element_camera LABELS.json [every=N] [OPTION=VALUE ...]\n"), 2;
   std::map<std::string, double*> known = settings();
-  double every = 1, from = 0, mirrors = 1, details = 0, left_out = 1;
+  double every = 1, from = 0, mirrors = 1, details = 0, excluded = 1;
   known["every"] = &every, known["from"] = &from, known["mirrors"] = &mirrors, known["details"] = &details,
-  known["left_out"] = &left_out;
+  known["left_out"] = &excluded;
   for (int i = 2; i < argc; ++i) {
     const std::string text = argv[i];
     const auto equals = text.find('=');
@@ -122,12 +122,12 @@ int main(int argc, char** argv) {
   }
   try {
     const auto all = format::read_pitch_labels(argv[1], kSize);
-    std::vector<format::LabelledPicture> some;
+    std::vector<format::LabelledImage> some;
     for (auto i = static_cast<std::size_t>(from); i < all.size(); i += static_cast<std::size_t>(std::max(1.0, every)))
       some.push_back(all[i]);
     print_fit(some, details > 0);
     if (mirrors > 0) print_mirrored(some);
-    if (left_out > 0) print_left_out(some);
+    if (excluded > 0) print_excluded(some);
   } catch (const Error& error) {
     return std::fprintf(stderr, "%s\n", error.what()), 1;
   }

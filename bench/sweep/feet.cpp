@@ -1,8 +1,8 @@
-// Where people stand, on film as a match's cameras show it: blur, halo, smeared chroma, blocks, a shadow under and between the
+// Where people stand, on video as a match's cameras show it: blur, halo, smeared chroma, blocks, a shadow under and between the
 // shoes. Two of the football stand's cameras, 7.4 m up: 3072 × 1728, and 1280 × 720 for people of 20 to 40 px. The truth is the
-// point on the ground between the soles. Judged is everybody who stands alone and whole in the picture: how many rows too low the
-// place lies (mean, median), by height, and how far off it is on the ground, by distance. Beside it: the lowest pixel's ray, as one
-// places people in an afternoon; and how many rows too far the boxes' lower and upper edges reach beyond the figure.
+// point on the ground between the soles. Evaluated is every person who stands alone and whole in the image: how many rows too low
+// the place lies (mean, median), by height, and how far off it is on the ground, by distance. Beside it: the lowest pixel's ray, as
+// one places people in an afternoon; and how many rows too far the boxes' lower and upper edges reach beyond the figure.
 //   feet [FRAMES (24)] [SEEDS (1)] [sweep]
 #include <algorithm>
 #include <array>
@@ -29,12 +29,12 @@ namespace {
 using simulate::match::kMatchPeople;
 
 constexpr double kContact = 0.5, kShadow = 0.8, kNoise = 1.2;  // of the scene
-constexpr int kBefore = 7;                                     // pictures that the scene is learned from
-constexpr double kApart_s = 1.7;                               // between pictures that are judged
+constexpr int kBefore = 7;                                     // images that the scene is learned from
+constexpr double kApart_s = 1.7;                               // between images that are evaluated
 constexpr double kToe = 0.1;                                   // m, the detector's
 constexpr double kAlone = 0.999;                               // visible share
 
-/// The truth of one person in one picture, and where it is placed.
+/// The truth of one person in one image, and where it is placed.
 struct Standing {
   Vector<2> truth_ground, truth_pixel;
   Box whole;            // px, of the whole figure
@@ -59,9 +59,9 @@ Vector<2> between_soles(const simulate::people::Figure& figure, const simulate::
 }
 
 struct Scene {
-  simulate::people::CameraLook look;
+  simulate::people::ImageDegradation degradation;
   cv::Size size;
-  double least = 0, most = 0;  // px: whose heights are judged
+  double minimum = 0, maximum = 0;  // px: whose heights are evaluated
 };
 
 simulate::match::MatchCamerasOptions stand(cv::Size size) {
@@ -71,22 +71,22 @@ simulate::match::MatchCamerasOptions stand(cv::Size size) {
   return options;
 }
 
-/// One camera's film, picture by picture, and what is made of it.
-class Film {
+/// One camera's video, image by image, and what is made of it.
+class SweepVideo {
  public:
-  Film(const Scene& scene, std::uint64_t seed)
+  SweepVideo(const Scene& scene, std::uint64_t seed)
       : scene_(scene),
         match_(stand(scene.size), seed),
         camera_(*match_.rig.cameras.front().camera()),
         view_(camera_),
         motion_(seed, match_.options.pitch),
-        film_(view_, match_.world_from_pitch, match_.options.pitch, film_options(scene.look), seed) {
+        video_(view_, match_.world_from_pitch, match_.options.pitch, video_options(scene.degradation), seed) {
     detect::people::PeopleDetectorOptions options;
     options.people.sizes = std::make_shared<detect::people::PersonSizeMap>(scene.size, [this](double x, double y) {
       std::optional<detect::people::PersonSize> size;
-      const auto place = view_.place({x, y});
-      if (!place || (place->ground - camera_.centre().head<2>()).norm() > 120) return size;
-      const auto box = reconstruct::person_box(camera_, {place->ground.x(), place->ground.y(), 0});
+      const auto location = view_.location({x, y});
+      if (!location || (location->ground - camera_.centre().head<2>()).norm() > 120) return size;
+      const auto box = reconstruct::person_box(camera_, {location->ground.x(), location->ground.y(), 0});
       if (box && box->height >= 8) size = detect::people::PersonSize{box->height, box->width};
       return size;
     });
@@ -96,45 +96,45 @@ class Film {
     detector_->prime(samples);
   }
 
-  static simulate::match::MatchFilmOptions film_options(const simulate::people::CameraLook& look) {
-    simulate::match::MatchFilmOptions options;
+  static simulate::match::MatchVideoOptions video_options(const simulate::people::ImageDegradation& degradation) {
+    simulate::match::MatchVideoOptions options;
     options.noise = kNoise;
     options.shadow_level = kShadow;
     options.contact = kContact;
-    options.look = look;
+    options.degradation = degradation;
     return options;
   }
 
-  /// The next picture, who is in it, and what is detected there.
+  /// The next image, who is in it, and what is detected there.
   void step() {
     frame_ = next();
     people_.clear();
     std::vector<Expected> expected;
     const auto stances = match_.stances(motion_.people());
-    for (const auto& seen : simulate::match::people_in_view(view_, match_.figures, stances)) {
-      expected.push_back({seen.shown});
-      const bool whole = seen.shown.height == seen.whole.height && seen.shown.width == seen.whole.width;
-      if (!whole || seen.visible_share < kAlone) continue;
+    for (const auto& detected : simulate::match::people_in_view(view_, match_.figures, stances)) {
+      expected.push_back({detected.shown});
+      const bool whole = detected.shown.height == detected.whole.height && detected.shown.width == detected.whole.width;
+      if (!whole || detected.visible_fraction < kAlone) continue;
       Standing one;
-      const auto person = static_cast<std::size_t>(seen.person);
+      const auto person = static_cast<std::size_t>(detected.person);
       one.truth_ground = between_soles(match_.figures[person], stances[person]);
       one.truth_pixel = *view_.pixel(one.truth_ground);
-      one.whole = seen.whole;
-      one.height = seen.whole.height;
+      one.whole = detected.whole;
+      one.height = detected.whole.height;
       one.distance = (one.truth_ground - camera_.centre().head<2>()).norm();
-      if (one.height >= scene_.least && one.height < scene_.most) people_.push_back(one);
+      if (one.height >= scene_.minimum && one.height < scene_.maximum) people_.push_back(one);
     }
     found_ = detector_->detect(frame_, expected);
   }
 
-  void judge_lowest(Method& method) const {
+  void evaluate_lowest(Method& method) const {
     for (const Detection& one : found_.detections) {
-      if (const auto place = view_.place(one.box.foot()); place && !one.group) judge(one.box, place->ground, method);
+      if (const auto location = view_.location(one.box.foot()); location && !one.group) assess(one.box, location->ground, method);
     }
   }
 
   /// Rows by which edges of boxes reach too far.
-  void judge_edges(Method& below, Method& above) const {
+  void evaluate_edges(Method& below, Method& above) const {
     for (const Detection& one : found_.detections) {
       const Standing* person = one.group ? nullptr : nearest_to(one.box);
       if (person == nullptr) continue;
@@ -143,10 +143,10 @@ class Film {
     }
   }
 
-  void judge(const reconstruct::PlacePeopleOptions& options, Method& method) const {
-    const auto placed = reconstruct::place_people(found_.detections, view_, CameraId{0}, options);
-    for (std::size_t i = 0; i < placed.seen.size(); ++i) {
-      if (!placed.seen[i].shared) judge(*placed.seen[i].box, placed.seen[i].value, method);
+  void assess(const reconstruct::LocalisePeopleOptions& options, Method& method) const {
+    const auto located = reconstruct::localise_people(found_.detections, view_, CameraId{0}, options);
+    for (std::size_t i = 0; i < located.detected.size(); ++i) {
+      if (!located.detected[i].shared) assess(*located.detected[i].box, located.detected[i].value, method);
     }
   }
 
@@ -157,24 +157,24 @@ class Film {
     Frame frame;
     frame.index = index_++;
     frame.time = timestamp_from_seconds(time_);
-    frame.picture = film_.render(match_.figures, match_.stances(motion_.people()), time_, frame.index);
+    frame.image = video_.render(match_.figures, match_.stances(motion_.people()), time_, frame.index);
     return frame;
   }
 
   /// A detection is the person's whose feet are nearest to its foot.
   const Standing* nearest_to(const Box& box) const {
     const Standing* nearest = nullptr;
-    double least = 0;
+    double minimum = 0;
     for (const Standing& one : people_) {
       const Vector<2> apart = (one.truth_pixel - box.foot()) / one.height;
       if (std::abs(apart.x()) > 0.25 || std::abs(apart.y()) > 0.4) continue;
-      if (nearest != nullptr && apart.norm() >= least) continue;
-      nearest = &one, least = apart.norm();
+      if (nearest != nullptr && apart.norm() >= minimum) continue;
+      nearest = &one, minimum = apart.norm();
     }
     return nearest;
   }
 
-  void judge(const Box& box, const Vector<2>& ground, Method& method) const {
+  void assess(const Box& box, const Vector<2>& ground, Method& method) const {
     const Standing* nearest = nearest_to(box);
     const auto pixel = view_.pixel(ground);
     if (nearest == nullptr || !pixel) return;
@@ -187,7 +187,7 @@ class Film {
   Camera camera_;
   GroundView view_;
   simulate::match::MatchMotion motion_;
-  simulate::match::MatchFilm film_;
+  simulate::match::MatchRenderer video_;
   std::unique_ptr<detect::Detector> detector_;
   double time_ = 0;
   std::int64_t index_ = 0;
@@ -223,7 +223,7 @@ void print(const Method& method) {
 /// What is compared: how boxes are placed.
 struct Variant {
   Method method;
-  reconstruct::PlacePeopleOptions placing = {.toe = kToe};
+  reconstruct::LocalisePeopleOptions locating = {.toe = kToe};
 };
 
 std::vector<Variant> variants(bool sweep) {
@@ -232,32 +232,32 @@ std::vector<Variant> variants(bool sweep) {
   const auto add = [&](const std::string& name, double value, auto option) {
     Variant& one = all.emplace_back();
     one.method.name = fmt::format("{} {:g}", name, value);
-    one.placing.*option = value;
+    one.locating.*option = value;
   };
-  for (const double v : {0.02, 0.03, 0.06}) add("edge noise", v, &reconstruct::PlacePeopleOptions::edge_noise);
-  for (const double v : {0.0, 0.05, 0.15}) add("toe", v, &reconstruct::PlacePeopleOptions::toe);
-  for (const double v : {0.06, 0.15, 0.25}) add("height spread", v, &reconstruct::PlacePeopleOptions::height_spread);
+  for (const double v : {0.02, 0.03, 0.06}) add("edge noise", v, &reconstruct::LocalisePeopleOptions::edge_noise);
+  for (const double v : {0.0, 0.05, 0.15}) add("toe", v, &reconstruct::LocalisePeopleOptions::toe);
+  for (const double v : {0.06, 0.15, 0.25}) add("height spread", v, &reconstruct::LocalisePeopleOptions::height_spread);
   return all;
 }
 
-void run(const simulate::people::CameraLook& look, int frames, int seeds, bool sweep) {
+void run(const simulate::people::ImageDegradation& degradation, int frames, int seeds, bool sweep) {
   Method lowest{"lowest pixel", {}}, below{"lower edge", {}}, above{"upper edge", {}};
   std::vector<Variant> all = variants(sweep);
-  const std::array kScenes{Scene{look, {3072, 1728}, 40, 200}, Scene{look, {1280, 720}, 20, 40}};
+  const std::array kScenes{Scene{degradation, {3072, 1728}, 40, 200}, Scene{degradation, {1280, 720}, 20, 40}};
   for (const Scene& scene : kScenes) {
     for (int seed = 1; seed <= seeds; ++seed) {
-      Film film(scene, static_cast<std::uint64_t>(seed));
+      SweepVideo video(scene, static_cast<std::uint64_t>(seed));
       for (int i = 0; i < frames; ++i) {
-        film.step();
-        film.judge_lowest(lowest);
-        film.judge_edges(below, above);
-        for (Variant& one : all) film.judge(one.placing, one.method);
+        video.step();
+        video.evaluate_lowest(lowest);
+        video.evaluate_edges(below, above);
+        for (Variant& one : all) video.assess(one.locating, one.method);
       }
     }
   }
   fmt::print("{} frames, {} seeds; blur {} px, halo {} over {} px, chroma {} px late by {}, quantizer {}, contact {}, noise {}\n",
-             frames, seeds, look.blur, look.halo, look.halo_px, look.chroma_bleed, look.chroma_shift, look.quantizer, kContact,
-             kNoise);
+             frames, seeds, degradation.blur, degradation.halo, degradation.halo_px, degradation.chroma_bleed,
+             degradation.chroma_shift, degradation.quantizer, kContact, kNoise);
   fmt::print("{:<24} |  20-40 px: n, mean, median of rows too low | 40-80 | 80-120 | 120-200 | at 20 m: n, m | 40 m | 65 m\n", "");
   for (const Method* one : {&below, &above, &lowest}) print(*one);
   for (const Variant& one : all) print(one.method);
@@ -269,7 +269,8 @@ void run(const simulate::people::CameraLook& look, int frames, int seeds, bool s
 int main(int count, char** words) {
   const int frames = count > 1 ? std::atoi(words[1]) : 24, seeds = count > 2 ? std::atoi(words[2]) : 1;
   const bool sweep = count > 3 && std::strcmp(words[3], "sweep") == 0;
-  const marey::simulate::people::CameraLook smeared{1.2, 0.8, 3, 6, 4, 8};
-  for (const auto& look : {marey::simulate::people::CameraLook::filmed(), smeared}) marey::run(look, frames, seeds, sweep);
+  const marey::simulate::people::ImageDegradation smeared{1.2, 0.8, 3, 6, 4, 8};
+  for (const auto& degradation : {marey::simulate::people::ImageDegradation::recorded(), smeared})
+    marey::run(degradation, frames, seeds, sweep);
   return 0;
 }

@@ -13,7 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/corridor/clock.h"
@@ -28,22 +28,22 @@
 namespace marey::sweep {
 namespace {
 
-constexpr double kFarthest = 1.5;        // m from the truth, where a track counts
+constexpr double kMaxDistance = 1.5;     // m from the truth, where a track counts
 constexpr double kAlone = 4, kNear = 2;  // m: who is alone within the one is whatever is seen within the other
 constexpr double kLag = 0.1;             // s
 
 struct Scene {
   pipeline::simulate::MatchFilesOptions files;
-  double least = 0.25, most = 0.6;  ///< m, of each camera, root mean square: far more at the corners
+  double minimum = 0.25, maximum = 0.6;  ///< m, of each camera, root mean square: far more at the corners
 };
 
 void write_scene(const Scene& scene, const std::string& folder) {
   pipeline::simulate::write_match(scene.files, folder);
-  if (scene.most == 0) return;
+  if (scene.maximum == 0) return;
   const Rig rig = format::rig::read_rig(folder + "/rig.toml");
   WholeFile file(folder + "/rig.toml");
   file.write(format::rig::rig_text(
-      simulate::match::known_by_homographies(rig, scene.files.cameras.pitch, scene.least, scene.most, scene.files.seed)));
+      simulate::match::known_by_homographies(rig, scene.files.cameras.pitch, scene.minimum, scene.maximum, scene.files.seed)));
   file.finish();
 }
 
@@ -53,13 +53,14 @@ std::vector<track::ground::GroundInstant> instants_of(const std::string& folder)
   pipeline::corridor::Clock clock(pipeline::corridor::open_feeds(rig, {}));
   std::vector<track::ground::GroundInstant> instants;
   while (const auto frames = clock.next()) {
-    std::vector<reconstruct::PlacedPeople> placed(frames->cameras.size());
+    std::vector<reconstruct::LocatedPeople> located(frames->cameras.size());
     std::vector<track::ground::CameraObservations> views;
     for (std::size_t i = 0; i < frames->cameras.size(); ++i) {
       if (!frames->cameras[i] || !frames->cameras[i]->detections) continue;
       const CameraId id{static_cast<int>(i)};
-      placed[i] = reconstruct::place_people(*frames->cameras[i]->detections, rig.cameras[i].ground_view(rig.ground).value(), id);
-      views.push_back({id, frames->time, placed[i].seen});
+      located[i] =
+          reconstruct::localise_people(*frames->cameras[i]->detections, rig.cameras[i].ground_view(rig.ground).value(), id);
+      views.push_back({id, frames->time, located[i].detected});
     }
     instants.emplace_back(static_cast<std::int32_t>(frames->index), frames->time, views);
   }
@@ -73,17 +74,17 @@ Alone alone_at(const track::ground::GroundInstant& instant, const std::vector<Sa
                const track::ground::GroundAgreement& agreement) {
   Alone alone;
   for (const Sample& one : truth) {
-    const Vector<2> place = one.position.head<2>();
+    const Vector<2> location = one.position.head<2>();
     bool crowded = false;
     for (const Sample& other : truth)
-      crowded = crowded || (other.track != one.track && (other.position.head<2>() - place).norm() < kAlone);
+      crowded = crowded || (other.track != one.track && (other.position.head<2>() - location).norm() < kAlone);
     if (crowded) continue;
     for (const track::ground::CameraObservations& view : instant.cameras) {
       double nearest = kNear;
-      for (const Observation<2>& seen : view.seen) {
-        const Vector<2> at = agreement.corrected(seen).value;
-        if ((at - place).norm() >= nearest) continue;
-        nearest = (at - place).norm();
+      for (const Observation<2>& detected : view.detected) {
+        const Vector<2> at = agreement.corrected(detected).value;
+        if ((at - location).norm() >= nearest) continue;
+        nearest = (at - location).norm();
         alone[number(one.track)][number(view.camera)] = at;
       }
     }
@@ -168,7 +169,7 @@ void run(Scene scene, int first, int seeds, const std::string& only) {
     scene.files.seed = static_cast<std::uint64_t>(seed);
     write_scene(scene, folder.path());
     const auto row = [&](const std::string& name, const pipeline::people::PeopleOnGroundOptions& options) {
-      if (only.empty() || only == name) print_scores(seed, name, run_ours(folder.path(), options, kFarthest));
+      if (only.empty() || only == name) print_scores(seed, name, run_ours(folder.path(), options, kMaxDistance));
     };
     row("live", live(scene.files.cameras.pitch));
     row("offline", offline(scene.files.cameras.pitch));
@@ -198,8 +199,8 @@ int main(int count, char** words) {
   app.add_option("--foot-error", scene.files.detector.foot_error, "m")->capture_default_str();
   app.add_option("--along", scene.files.detector.foot_along, "share of its variance along the view")->capture_default_str();
   app.add_option("--edges", edges, "noise of each edge of a box, of its height or width")->capture_default_str();
-  app.add_option("--least", scene.least, "m, that a camera is off, at least")->capture_default_str();
-  app.add_option("--most", scene.most, "m, at most; 0: cameras are exact")->capture_default_str();
+  app.add_option("--least", scene.minimum, "m, that a camera is off, at least")->capture_default_str();
+  app.add_option("--most", scene.maximum, "m, at most; 0: cameras are exact")->capture_default_str();
   bool sides = false;
   app.add_flag("--sides", sides, "cameras behind both touchlines in place of round the pitch");
   app.add_option("--length", scene.files.cameras.pitch.length, "of the pitch, m")->capture_default_str();

@@ -15,7 +15,7 @@
 #include "marey/format/tracks/detections.h"
 #include "marey/pipeline/corridor/clock.h"
 #include "marey/pipeline/people/track_ground.h"
-#include "marey/pipeline/take/judge_match.h"
+#include "marey/pipeline/take/evaluate_match.h"
 #include "marey/reconstruct/place_people.h"
 
 #include "experiments/markdown_table.h"
@@ -25,8 +25,8 @@ namespace {
 
 GroundScores scores_of(const std::string& folder, const Recording& tracks, double farthest) {
   const Recording truth = format::match::read_ground(folder + "/truth.csv");
-  const pipeline::take::MatchJudgement judged = pipeline::take::judge_match(truth, tracks, farthest);
-  const evaluate::Evaluation& scores = judged.evaluation.scores;
+  const pipeline::take::MatchEvaluation evaluated = pipeline::take::evaluate_match(truth, tracks, farthest);
+  const evaluate::Evaluation& scores = evaluated.evaluation.scores;
   GroundScores result;
   result.mota = scores.clear.mota.value_or(0);
   result.idf1 = scores.identity.f1.value_or(0);
@@ -34,15 +34,15 @@ GroundScores scores_of(const std::string& folder, const Recording& tracks, doubl
   result.switches = scores.clear.switches;
   result.people = static_cast<int>(truth.tracks().size());
   result.tracks = static_cast<int>(tracks.tracks().size());
-  if (judged.evaluation.position) result.median_error = judged.evaluation.position->median;
+  if (evaluated.evaluation.position) result.median_error = evaluated.evaluation.position->median;
   return result;
 }
 
 struct NaiveTrack {
   int id = 0;
-  double seen = 0;  // s
+  double detected = 0;  // s
   int hits = 1;
-  Vector<2> place = Vector<2>::Zero(), velocity = Vector<2>::Zero();
+  Vector<2> location = Vector<2>::Zero(), velocity = Vector<2>::Zero();
 };
 
 /// Places of all cameras at one instant, those near each other from different cameras as one, weighted by how sure they are.
@@ -51,14 +51,14 @@ std::vector<Vector<2>> fused(const std::vector<Observation<2>>& all) {
     Matrix<2> weight = Matrix<2>::Zero();
     Vector<2> sum = Vector<2>::Zero();
     std::vector<int> cameras;
-    Vector<2> place() const { return weight.inverse() * sum; }
+    Vector<2> location() const { return weight.inverse() * sum; }
   };
   std::vector<Cluster> clusters;
   for (const Observation<2>& one : all) {
     Cluster* best = nullptr;
     double nearest = 0.8;
     for (Cluster& cluster : clusters) {
-      const double distance = (cluster.place() - one.value).norm();
+      const double distance = (cluster.location() - one.value).norm();
       const bool taken = std::count(cluster.cameras.begin(), cluster.cameras.end(), number(one.camera)) > 0;
       if (taken || distance > nearest) continue;
       nearest = distance;
@@ -70,46 +70,46 @@ std::vector<Vector<2>> fused(const std::vector<Observation<2>>& all) {
     best->sum += weight * one.value;
     best->cameras.push_back(number(one.camera));
   }
-  std::vector<Vector<2>> places;
+  std::vector<Vector<2>> locations;
   for (const Cluster& cluster : clusters) {
-    if (cluster.cameras.size() > 1) places.push_back(cluster.place());
+    if (cluster.cameras.size() > 1) locations.push_back(cluster.location());
   }
-  return places;
+  return locations;
 }
 
 /// The tracks' next instant; rows go into `rows` by track.
-void follow_naively(double time, const std::vector<Vector<2>>& places, std::vector<NaiveTrack>& tracks, int& next_id,
-                    std::vector<std::pair<int, Vector<2>>>& rows) {
+void track_naively(double time, const std::vector<Vector<2>>& locations, std::vector<NaiveTrack>& tracks, int& next_id,
+                   std::vector<std::pair<int, Vector<2>>>& rows) {
   constexpr double gate = 1.2, patience = 1;
   std::vector<assign::GatedPair> pairs;
   for (int t = 0; t < std::ssize(tracks); ++t) {
-    const Vector<2> ahead = tracks[t].place + (time - tracks[t].seen) * tracks[t].velocity;
-    for (int p = 0; p < std::ssize(places); ++p) {
-      const double distance = (places[p] - ahead).norm();
+    const Vector<2> ahead = tracks[t].location + (time - tracks[t].detected) * tracks[t].velocity;
+    for (int p = 0; p < std::ssize(locations); ++p) {
+      const double distance = (locations[p] - ahead).norm();
       if (distance < gate) pairs.push_back({t, p, gate - distance});
     }
   }
   assign::GatedAssigner assigner;
-  const auto given = assigner.assign(static_cast<int>(tracks.size()), static_cast<int>(places.size()), pairs);
-  std::vector<char> taken(places.size(), 0);
+  const auto given = assigner.assign(static_cast<int>(tracks.size()), static_cast<int>(locations.size()), pairs);
+  std::vector<char> taken(locations.size(), 0);
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     if (given[t] == assign::kNoIndex) continue;
     NaiveTrack& track = tracks[t];
     taken[static_cast<std::size_t>(given[t])] = 1;
-    const Vector<2>& place = places[static_cast<std::size_t>(given[t])];
-    const Vector<2> velocity = (place - track.place) / (time - track.seen);
+    const Vector<2>& location = locations[static_cast<std::size_t>(given[t])];
+    const Vector<2> velocity = (location - track.location) / (time - track.detected);
     track.velocity = track.hits == 1 ? velocity : Vector<2>(0.5 * track.velocity + 0.5 * velocity);
-    track.place = place;
-    track.seen = time;
+    track.location = location;
+    track.detected = time;
     ++track.hits;
-    rows.emplace_back(track.id, place);
+    rows.emplace_back(track.id, location);
   }
-  for (std::size_t p = 0; p < places.size(); ++p) {
+  for (std::size_t p = 0; p < locations.size(); ++p) {
     if (taken[p]) continue;
-    tracks.push_back({next_id, time, 1, places[p], Vector<2>::Zero()});
-    rows.emplace_back(next_id++, places[p]);
+    tracks.push_back({next_id, time, 1, locations[p], Vector<2>::Zero()});
+    rows.emplace_back(next_id++, locations[p]);
   }
-  std::erase_if(tracks, [&](const NaiveTrack& track) { return time - track.seen > patience; });
+  std::erase_if(tracks, [&](const NaiveTrack& track) { return time - track.detected > patience; });
 }
 
 }  // namespace
@@ -134,18 +134,18 @@ GroundScores run_naive(const std::string& folder, double farthest) {
     std::vector<Observation<2>> all;
     for (std::size_t i = 0; i < frames->cameras.size(); ++i) {
       if (!frames->cameras[i] || !frames->cameras[i]->detections) continue;
-      reconstruct::PlacePeopleOptions feet;
+      reconstruct::LocalisePeopleOptions feet;
       feet.height_spread = 1e6;  // feet alone
-      const auto placed = reconstruct::place_people(*frames->cameras[i]->detections, rig.cameras[i].ground_view(rig.ground).value(),
-                                                    CameraId{static_cast<int>(i)}, feet);
-      all.insert(all.end(), placed.seen.begin(), placed.seen.end());
+      const auto located = reconstruct::localise_people(
+          *frames->cameras[i]->detections, rig.cameras[i].ground_view(rig.ground).value(), CameraId{static_cast<int>(i)}, feet);
+      all.insert(all.end(), located.detected.begin(), located.detected.end());
     }
-    recording.add_moment({frames->index, frames->time});
+    recording.add_time_step({frames->index, frames->time});
     std::vector<std::pair<int, Vector<2>>> rows;
-    follow_naively(seconds(frames->time), fused(all), tracks, next_id, rows);
-    for (const auto& [id, place] : rows) {
+    track_naively(seconds(frames->time), fused(all), tracks, next_id, rows);
+    for (const auto& [id, location] : rows) {
       Sample sample;
-      sample.position.head<2>() = place;
+      sample.position.head<2>() = location;
       columns.try_emplace(id, TrackName{TrackId{id}, {}, {}}, 2).first->second.add(instant, sample);
     }
   }

@@ -17,12 +17,12 @@ struct GroundScores {
   double median_error = 0;  ///< m
 };
 
-/// Tracks of a folder with rig.toml, truth.csv and each camera's boxes, judged at `farthest` m.
+/// Tracks of a folder with rig.toml, truth.csv and each camera's boxes, evaluated at `farthest` m.
 GroundScores run_ours(const std::string& folder, const pipeline::people::PeopleOnGroundOptions& options, double farthest = 1);
 
 /// A tracker as one writes in an afternoon: boxes' feet through the calibration, places of one instant within 0.8 m from other
-/// cameras are one if two at least see it, the nearest goes on at constant velocity (assignment of least distance, at most 1.2 m),
-/// 1 s of patience.
+/// cameras are one if two at least see it, the nearest continues at constant velocity (assignment of least distance, at most 1.2
+/// m), 1 s of patience.
 GroundScores run_naive(const std::string& folder, double farthest = 1);
 
 /// A table in Markdown: its titles, and a row.

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/bodies/label_set_file.h"
 #include "marey/format/recording_file.h"
 
@@ -59,12 +59,12 @@ struct Kind {
   int swaps = 0;
 };
 
-NamedShare share_of(const Kind& kind, std::uint64_t seed) {
+NamedFraction fraction_of(const Kind& kind, std::uint64_t seed) {
   const bool same = kind.motion == kind.taught_motion;
   const RoomScene scene = person(kind.motion, kind.markers, seed, 2000);
   const auto set =
       set_of({same ? taught_by(scene, 12, 400) : taught_by(person(kind.taught_motion, kind.markers, seed, 2000), 12, 400)});
-  return named_in(scene, Spoiler(scene, seed, kind.hidden, kind.swaps).seen(800), set);
+  return named_in(scene, Spoiler(scene, seed, kind.hidden, kind.swaps).detected(800), set);
 }
 
 void print_simulated(std::uint64_t first) {
@@ -82,10 +82,10 @@ void print_simulated(std::uint64_t first) {
   for (const Kind& kind : kinds) {
     std::vector<std::string> right, wrong;
     for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(kind.seeds); ++seed) {
-      const NamedShare share = share_of(kind, seed);
-      const double all = static_cast<double>(std::max<std::int64_t>(1, share.points)) / 100;
-      right.push_back(fmt::format("{:.2f}", static_cast<double>(share.right) / all));
-      wrong.push_back(fmt::format("{:.2f}", static_cast<double>(share.wrong) / all));
+      const NamedFraction fraction = fraction_of(kind, seed);
+      const double all = static_cast<double>(std::max<std::int64_t>(1, fraction.points)) / 100;
+      right.push_back(fmt::format("{:.2f}", static_cast<double>(fraction.right) / all));
+      wrong.push_back(fmt::format("{:.2f}", static_cast<double>(fraction.wrong) / all));
     }
     fmt::print("{}",
                experiments::markdown_row({kind.name, kind.taught, fmt::format("{}–{}", first, first + right.size() - 1),

@@ -3,7 +3,7 @@
 //
 //   network_people MODEL.toml VIDEO TRUTH.txt [every=12] [first=10] [last=298] [score=S]
 //
-// Frames are the truth's, from 1. The network looks all over each picture; the size of people is learned on the way.
+// Frames are the truth's, from 1. The network looks all over each image; the size of people is learned on the way.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -49,10 +49,10 @@ struct Tally {
     std::vector<char> taken(truth.size(), 0);
     for (const Detection& one : detections) {
       std::size_t best = truth.size();
-      double most = 0.5;
+      double maximum = 0.5;
       for (std::size_t i = 0; i < truth.size(); ++i) {
         const double overlap = geometry::iou(one.box, truth[i]);
-        if (!taken[i] && overlap >= most) most = overlap, best = i;
+        if (!taken[i] && overlap >= maximum) maximum = overlap, best = i;
       }
       if (best < truth.size()) taken[best] = 1, ++right;
     }
@@ -86,10 +86,10 @@ int main(int argc, char** argv) {
       const auto here = truth.find(number);
       if (here == truth.end()) continue;
       ++frames;
-      const std::vector<Detection> seen = detector.look(*frame);
+      const std::vector<Detection> detected = detector.inspect(*frame);
       for (int percent = 20; percent <= 70; percent += 5) {
         std::vector<Detection> sure;
-        std::copy_if(seen.begin(), seen.end(), std::back_inserter(sure),
+        std::copy_if(detected.begin(), detected.end(), std::back_inserter(sure),
                      [&](const Detection& one) { return one.score * 100 >= percent; });
         by_score[percent].add(std::move(sure), here->second);
       }

@@ -22,7 +22,7 @@
 #include "marey/pipeline/markers/markers_in_space.h"
 #include "marey/simulate/random.h"
 #include "marey/simulate/room/room.h"
-#include "marey/simulate/room/room_film.h"
+#include "marey/simulate/room/room_video.h"
 #include "marey/track/roster/roster_tracker.h"
 
 namespace {
@@ -44,75 +44,77 @@ struct Setup {
 /// What is reported of one track at one instant.
 struct Reported {
   int id = 0;
-  Vector<3> place = Vector<3>::Zero();
+  Vector<3> location = Vector<3>::Zero();
   bool measured = false;
 };
 
 /// True places of the markers at one instant, those that can be seen.
 struct Truth {
-  std::vector<Vector<3>> places;
+  std::vector<Vector<3>> locations;
   std::vector<bool> visible;
 };
 
-class Judge {
+class Assessor {
  public:
-  Judge(double reach, double leap) : reach_(reach), leap_(leap) {}
+  Assessor(double reach, double leap) : reach_(reach), leap_(leap) {}
 
-  void see(const Truth& truth, const std::vector<Reported>& reported, const cv::Size& picture, bool list) {
-    visible_.resize(truth.places.size(), 0);
+  void observe_frame(const Truth& truth, const std::vector<Reported>& reported, const cv::Size& image, bool list) {
+    visible_.resize(truth.locations.size(), 0);
     std::set<std::size_t> found;
-    for (std::size_t m = 0; m < truth.places.size(); ++m) visible_[m] += truth.visible[m];
+    for (std::size_t m = 0; m < truth.locations.size(); ++m) visible_[m] += truth.visible[m];
     std::map<int, Reported> now;
     for (const Reported& one : reported) {
       now[one.id] = one;
       ids_.insert(one.id);
       const auto before = before_.find(one.id);
-      if (before != before_.end() && (before->second.place - one.place).norm() > leap_) {
+      if (before != before_.end() && (before->second.location - one.location).norm() > leap_) {
         leapt_.insert(one.id);
         ++leaps_;
         if (list)
-          std::printf("    frame %d: %d leaps by %.1f, %s to %s\n", frame_, one.id, (before->second.place - one.place).norm(),
+          std::printf("    frame %d: %d leaps by %.1f, %s to %s\n", frame_, one.id, (before->second.location - one.location).norm(),
                       before->second.measured ? "measured" : "predicted", one.measured ? "measured" : "predicted");
       }
-      if (!picture.empty() && !cv::Rect2d(-0.5, -0.5, picture.width, picture.height).contains({one.place.x(), one.place.y()}))
+      if (!image.empty() && !cv::Rect2d(-0.5, -0.5, image.width, image.height).contains({one.location.x(), one.location.y()}))
         ++outside_;
       std::size_t nearest = 0;
-      for (std::size_t m = 1; m < truth.places.size(); ++m) {
-        if ((truth.places[m] - one.place).squaredNorm() < (truth.places[nearest] - one.place).squaredNorm()) nearest = m;
+      for (std::size_t m = 1; m < truth.locations.size(); ++m) {
+        if ((truth.locations[m] - one.location).squaredNorm() < (truth.locations[nearest] - one.location).squaredNorm())
+          nearest = m;
       }
       if (one.measured) {
-        if ((truth.places[nearest] - one.place).norm() > reach_) continue;
+        if ((truth.locations[nearest] - one.location).norm() > reach_) continue;
         ++on_[one.id][nearest];
         if (truth.visible[nearest]) found.insert(nearest);
         home_[one.id] = nearest;
       } else {
         ++predicted_;
-        if (home_.contains(one.id)) errors_.push_back((truth.places[home_[one.id]] - one.place).norm());
+        if (home_.contains(one.id)) errors_.push_back((truth.locations[home_[one.id]] - one.location).norm());
       }
     }
-    told_ += std::ssize(found);
+    reported_ += std::ssize(found);
     before_ = std::move(now);
     ++frame_;
   }
 
   void print(const Kind& kind) const {
-    std::int64_t visible = 0, all = 0, most = 0;
+    std::int64_t visible = 0, all = 0, maximum = 0;
     int markers = 0;
     for (const int frames : visible_) visible += frames, markers += frames > 2;
     for (const auto& [id, on] : on_) {
       int best = 0;
       for (const auto& [marker, frames] : on) all += frames, best = std::max(best, frames);
-      most += best;
+      maximum += best;
     }
     auto errors = errors_;
     std::sort(errors.begin(), errors.end());
     const auto quantile = [&](double q) {
       return errors.empty() ? 0 : errors[static_cast<std::size_t>(q * (std::ssize(errors) - 1.0))];
     };
-    std::printf(
-        "%-7s %4.0f Hz %3d %7d %5zu %6zu %6d %8d %8.3f %8.3f %8d %8.1f %8.1f\n", kind.motion.c_str(), kind.rate_hz, kind.markers,
-        markers, ids_.size(), leapt_.size(), leaps_, outside_, all > 0 ? static_cast<double>(most) / static_cast<double>(all) : 0,
-        visible > 0 ? static_cast<double>(told_) / static_cast<double>(visible) : 0, predicted_, quantile(0.5), quantile(0.95));
+    std::printf("%-7s %4.0f Hz %3d %7d %5zu %6zu %6d %8d %8.3f %8.3f %8d %8.1f %8.1f\n", kind.motion.c_str(), kind.rate_hz,
+                kind.markers, markers, ids_.size(), leapt_.size(), leaps_, outside_,
+                all > 0 ? static_cast<double>(maximum) / static_cast<double>(all) : 0,
+                visible > 0 ? static_cast<double>(reported_) / static_cast<double>(visible) : 0, predicted_, quantile(0.5),
+                quantile(0.95));
     std::fflush(stdout);
   }
 
@@ -125,18 +127,18 @@ class Judge {
   std::map<int, std::map<std::size_t, int>> on_;
   std::map<int, std::size_t> home_;
   std::vector<double> errors_;
-  std::int64_t told_ = 0;
+  std::int64_t reported_ = 0;
 };
 
 /// What every camera detects at one of the instants that are drawn.
 struct Drawn {
   double time_s = 0;
-  std::vector<cv::Mat> pictures;  // none for blobs
+  std::vector<cv::Mat> images;  // none for blobs
 };
 
 std::vector<Detection> blobs_of(const RoomScene& scene, int camera, double t, std::uint64_t draw) {
   std::vector<Detection> detections;
-  for (const auto& blob : scene.seen_by(camera, t, draw)) {
+  for (const auto& blob : scene.observed_by(camera, t, draw)) {
     Detection& detection = detections.emplace_back();
     detection.centre = blob.pixel;
   }
@@ -153,22 +155,22 @@ class Run {
       one.time_s = i / kind.rate_hz;
       for (int c = 0; !setup.blobs && c < cameras(); ++c) {
         const auto draw = static_cast<std::uint64_t>(i);
-        one.pictures.push_back(
-            draw_room(scene_, static_cast<std::size_t>(c), one.time_s, scene_.seen_by(c, one.time_s, draw), draw));
+        one.images.push_back(
+            draw_room(scene_, static_cast<std::size_t>(c), one.time_s, scene_.observed_by(c, one.time_s, draw), draw));
       }
     }
   }
 
   void print() {
-    Judge judge(setup_.space ? 0.03 : 5.0, setup_.space ? 0.3 : 60.0);
-    setup_.space ? follow_in_space(judge) : follow_in_picture(judge);
-    judge.print(kind_);
+    Assessor assess(setup_.space ? 0.03 : 5.0, setup_.space ? 0.3 : 60.0);
+    setup_.space ? track_in_space(assess) : track_in_image(assess);
+    assess.print(kind_);
   }
 
  private:
   static simulate::room::RoomOptions options_of(const Kind& kind, std::uint64_t seed, const Setup& setup) {
     simulate::room::RoomOptions options;
-    options.picture = {640, 480};
+    options.image = {640, 480};
     options.cameras = 4;
     options.markers = kind.markers;
     options.rate_hz = kind.rate_hz;
@@ -188,46 +190,47 @@ class Run {
     return static_cast<std::size_t>(at < count ? at : turn - at);
   }
 
-  void follow_in_picture(Judge& judge) {
+  void track_in_image(Assessor& assess) {
     detect::markers::MarkerDetector detector{detect::markers::MarkerOptions{}};
     track::roster::RosterTrackerOptions options;
-    const cv::Size size = scene_.options().picture;
-    options.picture = Box{-0.5, -0.5, static_cast<double>(size.width), static_cast<double>(size.height)};
+    const cv::Size size = scene_.options().image;
+    options.image = Box{-0.5, -0.5, static_cast<double>(size.width), static_cast<double>(size.height)};
     const auto tracker = track::roster::make_roster_tracker<2>(options);
     const auto camera = scene_.rig().cameras[0].camera();
     for (std::int64_t i = 0; i < frames(); ++i) {
       const Drawn& drawn = drawn_[at(i)];
       const Timestamp now = timestamp_from_seconds(static_cast<double>(i) / kind_.rate_hz);
-      std::vector<Observation<2>> seen;
+      std::vector<Observation<2>> detected;
       if (setup_.blobs) {
         for (const Detection& one : blobs_of(scene_, 0, drawn.time_s, static_cast<std::uint64_t>(i)))
-          seen.push_back(observation_of(one));
+          detected.push_back(observation_of(one));
       } else {
         std::vector<Expected> expected;
         for (const Track<2>& track : tracker->expected(now)) {
           if (track.box) expected.push_back({*track.box});
         }
-        const Frame frame{CameraId{}, i, now, Picture(drawn.pictures[0])};
-        for (const Detection& one : detector.detect(frame, expected).detections) seen.push_back(observation_of(one));
+        const Frame frame{CameraId{}, i, now, Image(drawn.images[0])};
+        for (const Detection& one : detector.detect(frame, expected).detections) detected.push_back(observation_of(one));
       }
       std::vector<Reported> reported;
-      for (const Track<2>& track : tracker->step(now, seen)) {
+      for (const Track<2>& track : tracker->step(now, detected)) {
         if (!track.confirmed) continue;
-        const Vector<2> place = track.observation ? seen[static_cast<std::size_t>(*track.observation)].value : track.position;
-        reported.push_back({number(track.id), {place.x(), place.y(), 0}, track.observation.has_value()});
+        const Vector<2> location =
+            track.observation ? detected[static_cast<std::size_t>(*track.observation)].value : track.position;
+        reported.push_back({number(track.id), {location.x(), location.y(), 0}, track.observation.has_value()});
       }
       Truth truth;
       const auto points = scene_.points(drawn.time_s);
       truth.visible = scene_.visible(0, drawn.time_s, points);
       for (const Vector<3>& point : points) {
         const auto pixel = camera->project(point);
-        truth.places.push_back(pixel ? Vector<3>(pixel->x(), pixel->y(), 0) : Vector<3>::Constant(1e6));
+        truth.locations.push_back(pixel ? Vector<3>(pixel->x(), pixel->y(), 0) : Vector<3>::Constant(1e6));
       }
-      judge.see(truth, reported, size, setup_.list);
+      assess.observe_frame(truth, reported, size, setup_.list);
     }
   }
 
-  void follow_in_space(Judge& judge) {
+  void track_in_space(Assessor& assess) {
     pipeline::markers::MarkersInSpaceOptions options;
     options.live = true;
     const auto stage = pipeline::markers::markers_in_space(scene_.rig(), kind_.rate_hz, options);
@@ -245,23 +248,23 @@ class Run {
           given.detections = blobs_of(scene_, c, drawn.time_s, static_cast<std::uint64_t>(i));
         } else {
           Frame frame = given.frame;
-          frame.picture = Picture(drawn.pictures[static_cast<std::size_t>(c)]);
+          frame.image = Image(drawn.images[static_cast<std::size_t>(c)]);
           given.detections = detectors[static_cast<std::size_t>(c)].detect(frame, {}).detections;
         }
         set.states.push_back(FeedState::live);
       }
       Truth truth;
-      truth.places = scene_.points(drawn.time_s);
-      std::vector<int> by(truth.places.size(), 0);
+      truth.locations = scene_.points(drawn.time_s);
+      std::vector<int> by(truth.locations.size(), 0);
       for (int c = 0; c < cameras(); ++c) {
-        const auto visible = scene_.visible(c, drawn.time_s, truth.places);
+        const auto visible = scene_.visible(c, drawn.time_s, truth.locations);
         for (std::size_t m = 0; m < by.size(); ++m) by[m] += visible[m];
       }
       for (const int count : by) truth.visible.push_back(count >= 3);
       for (const Instant& instant : stage->step(set)) {
         std::vector<Reported> reported;
         for (const Sample& sample : instant.samples) reported.push_back({number(sample.track), sample.position, sample.measured()});
-        judge.see(truth, reported, {}, setup_.list);
+        assess.observe_frame(truth, reported, {}, setup_.list);
       }
     }
   }

@@ -30,21 +30,21 @@ constexpr double kReach = 0.03;      // m from the true marker that a point may 
 constexpr double kLongEnough = 0.1;  // s that a wrong name must last to be counted
 
 /// Follows which track is on each marker. A track is at home on the marker that it was on the longest.
-class NameJudge {
+class NameEvaluate {
  public:
-  NameJudge(std::size_t markers, double rate_hz) : rate_hz_(rate_hz), seen_(markers) {}
+  NameEvaluate(std::size_t markers, double rate_hz) : rate_hz_(rate_hz), detected_(markers) {}
 
-  void see(std::int64_t frame, int track, const Vector<3>& place, const std::vector<Vector<3>>& truth) {
+  void observe_frame(std::int64_t frame, int track, const Vector<3>& location, const std::vector<Vector<3>>& truth) {
     std::size_t nearest = 0;
     for (std::size_t m = 1; m < truth.size(); ++m) {
-      if ((truth[m] - place).squaredNorm() < (truth[nearest] - place).squaredNorm()) nearest = m;
+      if ((truth[m] - location).squaredNorm() < (truth[nearest] - location).squaredNorm()) nearest = m;
     }
-    if ((truth[nearest] - place).norm() > kReach) {
+    if ((truth[nearest] - location).norm() > kReach) {
       ++nowhere_;
       return;
     }
-    seen_[nearest].push_back({static_cast<std::int32_t>(frame), track});
-    ++told_;
+    detected_[nearest].push_back({static_cast<std::int32_t>(frame), track});
+    ++reported_;
   }
 
   struct Verdict {
@@ -56,62 +56,62 @@ class NameJudge {
 
   Verdict verdict(bool events) const {
     std::map<int, std::map<std::size_t, int>> on;
-    for (std::size_t m = 0; m < seen_.size(); ++m) {
-      for (const Seen& seen : seen_[m]) ++on[seen.track][m];
+    for (std::size_t m = 0; m < detected_.size(); ++m) {
+      for (const Detected& detected : detected_[m]) ++on[detected.track][m];
     }
     std::map<int, std::size_t> home;
     std::map<std::size_t, int> names;
     for (const auto& [track, markers] : on) {
-      const auto most = std::max_element(markers.begin(), markers.end(), [](auto& p, auto& q) { return p.second < q.second; });
-      home[track] = most->first;
-      names[most->first] += most->second >= kLongEnough * rate_hz_;
+      const auto maximum = std::max_element(markers.begin(), markers.end(), [](auto& p, auto& q) { return p.second < q.second; });
+      home[track] = maximum->first;
+      names[maximum->first] += maximum->second >= kLongEnough * rate_hz_;
     }
     Verdict verdict;
     for (const auto& [marker, count] : names) verdict.renamed += std::max(0, count - 1);
-    for (std::size_t m = 0; m < seen_.size(); ++m) {
+    for (std::size_t m = 0; m < detected_.size(); ++m) {
       int run = 0, counted_track = 0;
-      for (const Seen& seen : seen_[m]) {
-        run = home[seen.track] == m ? 0 : run + 1;
+      for (const Detected& detected : detected_[m]) {
+        run = home[detected.track] == m ? 0 : run + 1;
         if (run == 0) counted_track = 0;
         if (run < kLongEnough * rate_hz_ || counted_track != 0) continue;
-        counted_track = seen.track;
+        counted_track = detected.track;
         ++verdict.wrong;
-        verdict.early += seen.frame < 3 * rate_hz_;
+        verdict.early += detected.frame < 3 * rate_hz_;
         if (events)
-          std::printf("        %8.2f s: marker %zu bears %d, which is at home on %zu\n", seen.frame / rate_hz_, m, seen.track,
-                      home[seen.track]);
+          std::printf("        %8.2f s: marker %zu bears %d, which is at home on %zu\n", detected.frame / rate_hz_, m,
+                      detected.track, home[detected.track]);
       }
       verdict.swapped += run >= kLongEnough * rate_hz_;
     }
     return verdict;
   }
 
-  std::int64_t told() const { return told_; }
+  std::int64_t reported() const { return reported_; }
   std::int64_t nowhere() const { return nowhere_; }
 
  private:
-  struct Seen {
+  struct Detected {
     std::int32_t frame;
     int track;
   };
   double rate_hz_;
-  std::vector<std::vector<Seen>> seen_;  // by marker
-  std::int64_t told_ = 0, nowhere_ = 0;
+  std::vector<std::vector<Detected>> detected_;  // by marker
+  std::int64_t reported_ = 0, nowhere_ = 0;
 };
 
-/// What anybody would write first.
+/// What any person would write first.
 class PlainTracker {
  public:
   /// Tracks by place; those that are given no point keep going as they went.
-  void step(double dt, const std::vector<Vector<3>>& points, std::int64_t frame, NameJudge& judge,
+  void step(double dt, const std::vector<Vector<3>>& points, std::int64_t frame, NameEvaluate& assess,
             const std::vector<Vector<3>>& truth) {
     std::vector<double> costs;
     for (Target& target : targets_) {
-      target.place += dt * target.velocity;
-      target.unseen += dt;
-      const double gate = 0.02 + 1.0 * target.unseen;
+      target.location += dt * target.velocity;
+      target.unobserved += dt;
+      const double gate = 0.02 + 1.0 * target.unobserved;
       for (const Vector<3>& point : points) {
-        const double away = (point - target.place).norm();
+        const double away = (point - target.location).norm();
         costs.push_back(away < gate ? away : kNever);
       }
     }
@@ -122,12 +122,12 @@ class PlainTracker {
       const auto column = static_cast<std::size_t>(columns[i]);
       if (costs[i * points.size() + column] >= kNever) continue;
       Target& target = targets_[i];
-      const Vector<3> off = points[column] - target.place;
-      target.velocity += (target.unseen < 1.5 * dt ? 0.3 / dt : 0.3 / target.unseen) * off;
-      target.place = points[column];
-      target.unseen = 0;
+      const Vector<3> off = points[column] - target.location;
+      target.velocity += (target.unobserved < 1.5 * dt ? 0.3 / dt : 0.3 / target.unobserved) * off;
+      target.location = points[column];
+      target.unobserved = 0;
       taken[column] = 1;
-      judge.see(frame, static_cast<int>(i), target.place, truth);
+      assess.observe_frame(frame, static_cast<int>(i), target.location, truth);
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!taken[i] && targets_.size() < truth.size()) targets_.push_back({points[i], Vector<3>::Zero(), 0});
@@ -137,24 +137,24 @@ class PlainTracker {
  private:
   static constexpr double kNever = 1e6;
   struct Target {
-    Vector<3> place, velocity;
-    double unseen = 0;  // s
+    Vector<3> location, velocity;
+    double unobserved = 0;  // s
   };
   std::vector<Target> targets_;
   assign::LinearAssigner assigner_;
 };
 
-FrameSet frame_set_of(const simulate::room::RoomFrame& seen) {
+FrameSet frame_set_of(const simulate::room::RoomFrame& detected) {
   FrameSet set;
-  set.index = seen.index;
-  set.time = timestamp_from_seconds(seen.time_s);
-  for (std::size_t c = 0; c < seen.seen.size(); ++c) {
+  set.index = detected.index;
+  set.time = timestamp_from_seconds(detected.time_s);
+  for (std::size_t c = 0; c < detected.detected.size(); ++c) {
     CameraFrame& camera = set.cameras.emplace_back().emplace();
     camera.frame.camera = CameraId{static_cast<int>(c)};
-    camera.frame.index = seen.index;
+    camera.frame.index = detected.index;
     camera.frame.time = set.time;
     camera.detections.emplace();
-    for (const simulate::room::RoomBlob& blob : seen.seen[c]) {
+    for (const simulate::room::RoomBlob& blob : detected.detected[c]) {
       Detection& detection = camera.detections->emplace_back();
       detection.centre = blob.pixel;
       detection.area = 0;
@@ -166,34 +166,34 @@ FrameSet frame_set_of(const simulate::room::RoomFrame& seen) {
 }
 
 struct Result {
-  NameJudge::Verdict ours, peer;
-  double told = 0, nowhere = 0, impure[3] = {0, 0, 0};  // %, of all markers and frames; of points of 2, 3, more rays
+  NameEvaluate::Verdict ours, peer;
+  double reported = 0, nowhere = 0, impure[3] = {0, 0, 0};  // %, of all markers and frames; of points of 2, 3, more rays
 };
 
-Result judge(const simulate::room::RoomOptions& options, bool live, bool events) {
+Result assess(const simulate::room::RoomOptions& options, bool live, bool events) {
   const simulate::room::RoomScene scene(options);
   pipeline::markers::MarkersInSpaceOptions space;
   space.live = live;
   const auto stage = pipeline::markers::markers_in_space(scene.rig(), options.rate_hz, space);
   const std::size_t markers = scene.labels().size();
-  NameJudge ours(markers, options.rate_hz), peers(markers, options.rate_hz);
+  NameEvaluate ours(markers, options.rate_hz), peers(markers, options.rate_hz);
   PlainTracker peer;
   std::deque<simulate::room::RoomFrame> waiting;
   double all[3] = {}, impure[3] = {};
-  const auto look = [&](const Instant& instant) {
+  const auto inspect = [&](const Instant& instant) {
     const simulate::room::RoomFrame frame = std::move(waiting.front());
     waiting.pop_front();
     std::vector<Vector<3>> points;
     for (const Sample& sample : instant.samples) {
       if (!sample.measured()) continue;
-      ours.see(instant.index, number(sample.track), sample.position, frame.points);
+      ours.observe_frame(instant.index, number(sample.track), sample.position, frame.points);
       points.push_back(sample.position);
       std::set<int> owners;
       int rays = 0;
       std::size_t next = 0;
-      for (const auto& camera : frame.seen) {
+      for (const auto& camera : frame.detected) {
         for (const auto& blob : camera) {
-          if (instant.seen[next++].track == sample.track) owners.insert(blob.marker.value_or(-1)), ++rays;
+          if (instant.detected[next++].track == sample.track) owners.insert(blob.marker.value_or(-1)), ++rays;
         }
       }
       const int kind = std::clamp(rays - 2, 0, 2);
@@ -204,19 +204,19 @@ Result judge(const simulate::room::RoomOptions& options, bool live, bool events)
   };
   for (std::int64_t i = 0; i < options.frames; ++i) {
     waiting.push_back(scene.frame(i));
-    for (const Instant& instant : stage->step(frame_set_of(waiting.back()))) look(instant);
+    for (const Instant& instant : stage->step(frame_set_of(waiting.back()))) inspect(instant);
   }
   if (const auto rest = stage->finish({})) {
-    while (const auto instant = rest->next()) look(*instant);
+    while (const auto instant = rest->next()) inspect(*instant);
   }
   pipeline::corridor::Summary summary;
   stage->report(summary);
   for (const std::string& warning : summary.warnings) std::printf("        %s\n", warning.c_str());
   if (events) std::printf("        noise %.3f px\n", summary.figures.at("noise_px"));
   Result result{ours.verdict(events), peers.verdict(false)};
-  const double most = static_cast<double>(options.frames) * static_cast<double>(markers);
-  result.told = 100 * static_cast<double>(ours.told()) / most;
-  result.nowhere = 100 * static_cast<double>(ours.nowhere()) / most;
+  const double maximum = static_cast<double>(options.frames) * static_cast<double>(markers);
+  result.reported = 100 * static_cast<double>(ours.reported()) / maximum;
+  result.nowhere = 100 * static_cast<double>(ours.nowhere()) / maximum;
   for (int i = 0; i < 3; ++i) result.impure[i] = 100 * impure[i] / std::max(1.0, all[i]);
   return result;
 }
@@ -230,13 +230,13 @@ struct Plan {
 };
 
 void add_options(CLI::App& app, Plan& plan) {
-  plan.room.dropped = plan.room.ghosts = plan.room.gap_share = 0.05;
+  plan.room.dropped = plan.room.ghosts = plan.room.gap_fraction = 0.05;
   std::map<std::string, simulate::room::RoomMotion> motions;
   for (const auto& named : simulate::room::room_motions()) motions[std::string(named.name)] = named.motion;
   app.add_option("--motion", plan.room.motion)->transform(CLI::CheckedTransformer(motions));
   app.add_option("--cameras", plan.room.cameras);
   app.add_option("--markers", plan.room.markers);
-  app.add_option("--gaps", plan.room.gap_share);
+  app.add_option("--gaps", plan.room.gap_fraction);
   app.add_option("--seconds", plan.duration_s);
   app.add_option("--rate", plan.room.rate_hz);
   app.add_option("--noise", plan.room.noise_px);
@@ -249,7 +249,7 @@ void add_options(CLI::App& app, Plan& plan) {
 void print_heading(const Plan& plan) {
   const auto& room = plan.room;
   std::printf("%d cameras, %d markers, %g Hz, %g s, %g px, dropped %g, ghosts %g, gaps %g up to %g s%s\n", room.cameras,
-              room.markers, room.rate_hz, plan.duration_s, room.noise_px, room.dropped, room.ghosts, room.gap_share, room.gap_s,
+              room.markers, room.rate_hz, plan.duration_s, room.noise_px, room.dropped, room.ghosts, room.gap_fraction, room.gap_s,
               plan.live ? ", live" : "");
   std::printf("%6s %7s %7s %7s %7s %7s %8s %22s   peer: %7s %7s %7s\n", "seed", "wrong", "early", "swapped", "renamed", "told %",
               "nowhere", "mixed of 2, 3, 4 rays", "wrong", "swapped", "renamed");
@@ -257,7 +257,7 @@ void print_heading(const Plan& plan) {
 
 void print(std::uint64_t seed, const Result& result) {
   std::printf("%6llu %7d %7d %7d %7d %7.2f %8.3f %8.2f %6.2f %6.2f         %7d %7d %7d\n", static_cast<unsigned long long>(seed),
-              result.ours.wrong, result.ours.early, result.ours.swapped, result.ours.renamed, result.told, result.nowhere,
+              result.ours.wrong, result.ours.early, result.ours.swapped, result.ours.renamed, result.reported, result.nowhere,
               result.impure[0], result.impure[1], result.impure[2], result.peer.wrong, result.peer.swapped, result.peer.renamed);
   std::fflush(stdout);
 }
@@ -273,7 +273,7 @@ int main(int count, char** words) {
   print_heading(plan);
   for (std::uint64_t seed = plan.first_seed; seed < plan.first_seed + static_cast<std::uint64_t>(plan.seeds); ++seed) {
     plan.room.seed = seed;
-    print(seed, judge(plan.room, plan.live, plan.events));
+    print(seed, assess(plan.room, plan.live, plan.events));
   }
   return 0;
 }

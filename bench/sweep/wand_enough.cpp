@@ -1,5 +1,5 @@
-// When a waved wand was seen enough: the criterion of calibrate/wand/wand_coverage.h on simulated rooms, by what comes of the
-// calibration at that moment beside one by a whole minute. Arguments: cameras (3), trials (40), Hz (60), first seed (1).
+// When a waved wand was seen enough: the criterion of calibrate/wand/wand_coverage.h on simulated rooms, by what results from the
+// calibration at that instant beside one by a whole minute. Arguments: cameras (3), trials (40), Hz (60), first seed (1).
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -21,7 +21,7 @@ namespace {
 using namespace marey;
 using calibrate::wand::WandCoverage;
 
-constexpr double kWhole = 60, kLookEvery = 2;  // s
+constexpr double kWhole = 60, kInspectEvery = 2;  // s
 
 struct Waved {
   calibrate::wand::WandInput input;
@@ -45,13 +45,13 @@ Waved waved(int cameras, double rate_hz, std::uint64_t seed, bool lenses) {
     camera.camera_from_world.reset();
     camera.offset_s.reset();
   }
-  all.input.seen.resize(all.input.rig.cameras.size());
+  all.input.detected.resize(all.input.rig.cameras.size());
   for (std::int64_t i = 0; i < room.frames; ++i) {
     const simulate::room::RoomFrame frame = scene.frame(i);
-    for (std::size_t c = 0; c < frame.seen.size(); ++c) {
+    for (std::size_t c = 0; c < frame.detected.size(); ++c) {
       calibrate::wand::BlobFrame blobs{frame.time_s, {}};
-      for (const simulate::room::RoomBlob& blob : frame.seen[c]) blobs.blobs.push_back(blob.pixel);
-      all.input.seen[c].push_back(std::move(blobs));
+      for (const simulate::room::RoomBlob& blob : frame.detected[c]) blobs.blobs.push_back(blob.pixel);
+      all.input.detected[c].push_back(std::move(blobs));
     }
   }
   return all;
@@ -60,23 +60,23 @@ Waved waved(int cameras, double rate_hz, std::uint64_t seed, bool lenses) {
 /// When it is said to be enough, s.
 double enough_after(const Waved& all) {
   const bool lenses_known = all.input.rig.cameras.front().lens.has_value();
-  WandCoverage coverage(all.input.wand, all.input.seen.size(), lenses_known);
-  const auto step = static_cast<std::size_t>(kLookEvery * all.rate_hz);
-  for (std::size_t at = 0; at + step <= all.input.seen.front().size(); at += step) {
-    std::vector<WandCoverage::Seen> seen;
-    for (std::size_t c = 0; c < all.input.seen.size(); ++c)
-      seen.push_back(
-          {std::span(all.input.seen[c]).subspan(at, step), all.input.rig.cameras[c].lens, *all.input.rig.cameras[c].size});
-    coverage.add(seen, 0.5 / all.rate_hz);
+  WandCoverage coverage(all.input.wand, all.input.detected.size(), lenses_known);
+  const auto step = static_cast<std::size_t>(kInspectEvery * all.rate_hz);
+  for (std::size_t at = 0; at + step <= all.input.detected.front().size(); at += step) {
+    std::vector<WandCoverage::Detected> detected;
+    for (std::size_t c = 0; c < all.input.detected.size(); ++c)
+      detected.push_back(
+          {std::span(all.input.detected[c]).subspan(at, step), all.input.rig.cameras[c].lens, *all.input.rig.cameras[c].size});
+    coverage.add(detected, 0.5 / all.rate_hz);
     if (coverage.is_enough()) return static_cast<double>(at + step) / all.rate_hz;
   }
   return kWhole;
 }
 
-/// The worst camera's place, mm, after the rigs are laid onto each other; nothing, and why, where no rig comes of it.
+/// The worst camera's place, mm, after the rigs are laid onto each other; nothing, and why, where no rig results from it.
 std::optional<double> off_mm(const Waved& all, double seconds, std::string& why) {
   calibrate::wand::WandInput input = all.input;
-  for (auto& frames : input.seen) frames.resize(std::min(frames.size(), static_cast<std::size_t>(seconds * all.rate_hz)));
+  for (auto& frames : input.detected) frames.resize(std::min(frames.size(), static_cast<std::size_t>(seconds * all.rate_hz)));
   try {
     const Rig found = calibrate::wand::calibrate_wand(input).rig;
     Eigen::Matrix3Xd a(3, found.cameras.size()), b = a;
@@ -93,7 +93,7 @@ std::optional<double> off_mm(const Waved& all, double seconds, std::string& why)
   }
 }
 
-void judge(int cameras, int trials, double rate_hz, std::uint64_t first, bool lenses) {
+void assess(int cameras, int trials, double rate_hz, std::uint64_t first, bool lenses) {
   int failed = 0, much_worse = 0, never = 0;
   std::vector<double> after, then, whole;
   for (int trial = 0; trial < trials; ++trial) {
@@ -122,7 +122,7 @@ void judge(int cameras, int trials, double rate_hz, std::uint64_t first, bool le
 }  // namespace
 
 int main(int count, char** arguments) {
-  const auto number = [&](int at, int usual) { return count > at ? std::atoi(arguments[at]) : usual; };
+  const auto number = [&](int at, int typical) { return count > at ? std::atoi(arguments[at]) : typical; };
   const int cameras = number(1, 3), trials = number(2, 40), rate_hz = number(3, 60), first = number(4, 1);
-  for (const bool lenses : {true, false}) judge(cameras, trials, rate_hz, static_cast<std::uint64_t>(first), lenses);
+  for (const bool lenses : {true, false}) assess(cameras, trials, rate_hz, static_cast<std::uint64_t>(first), lenses);
 }

@@ -5,7 +5,7 @@
     people.to_pandas()
 
 Jobs: `track`, `track_ground`, `reconstruct`, `calibrate.wand`, `evaluate`, `live`; files: `read`, `read_rig`. Each job returns a `Recording`.
-Positions are px in a picture (integer coordinates are pixel centres, y down) and m elsewhere (z up); times are s from the beginning.
+Positions are px in an image (integer coordinates are pixel centres, y down) and m elsewhere (z up); times are s from the beginning.
 What the outside world did wrong is a `marey.Error`, in one sentence; doubts are `marey.Warning`s. While a job runs other threads have Python,
 and Ctrl-C ends it.
 """

@@ -55,10 +55,10 @@ def evaluate(
     distance: float | None = None,
     motchallenge: bool = False,
 ) -> Evaluation:
-    """Judges tracks against the truth: CLEAR-MOT, IDF1 and HOTA, as `marey evaluate` does.
+    """Evaluates tracks against the truth: CLEAR-MOT, IDF1 and HOTA, as `marey evaluate` does.
 
-    truth, tracks: recordings, or files. iou: overlap from which a box counts as found. distance: m; judges places on the ground instead of boxes.
-    motchallenge: rows of a truth file whose seventh column is 0 are not judged. Raises marey.Error where one of them cannot be read, or holds
+    truth, tracks: recordings, or files. iou: overlap from which a box counts as found. distance: m; evaluates places on the ground instead of boxes.
+    motchallenge: rows of a truth file whose seventh column is 0 are not evaluated. Raises marey.Error where one of them cannot be read, or holds
     something else.
     """
     if not 0 < iou <= 1:

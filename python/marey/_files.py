@@ -13,7 +13,7 @@ from ._rig import Rig
 def read(path: str | os.PathLike[str], *, format: str | None = None, rate: float = 25, metadata: str | os.PathLike[str] | None = None) -> Recording:
     """A recording out of a file of any format that Marey reads: a take, C3D, TRC, MOT, CSV, TRACAB, EPTS, … (docs/formats.md).
 
-    format: by name, where the content does not tell it. rate: Hz, where the file does not. metadata: of TRACAB, EPTS or DFL, where it is not beside
+    format: by name, where the content does not specify it. rate: Hz, where the file does not. metadata: of TRACAB, EPTS or DFL, where it is not beside
     the file. Raises marey.Error for what cannot be read.
     """
     from ._jobs import Warning

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class Filter(Protocol):
-    """One target. D is 2 in pictures and on the ground, 3 in space; lengths are px in a picture, else m; times s."""
+    """One target. D is 2 in images and on the ground, 3 in space; lengths are px in an image, else m; times s."""
 
     position: Any  #: D
     velocity: Any  #: D, per second
@@ -29,7 +29,7 @@ class Filter(Protocol):
 
 
 #: Begins a target at its first measurement: position (D), its covariance (D×D), and how long 1 is for parameters that scale with the
-#: target: a person's height in px in a picture, else 1.
+#: target: a person's height in px in an image, else 1.
 MakeFilter = Callable[[Array, Array, float], Filter]
 
 

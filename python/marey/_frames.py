@@ -14,15 +14,15 @@ Picture = NDArray[np.uint8]
 
 
 class Frames:
-    """Pictures of one camera, in order.
+    """Images of one camera, in order.
 
-    pictures: an array N×H×W×3 or N×H×W (uint8), a sequence of pictures, a function without arguments that returns an iterator (it is called anew
-        for each look at them), or an iterator (looked at once: the empty scene is then learned as it goes). A picture is H×W×3 or H×W, uint8, of
-        any strides; an iterator may also give (time in s, picture).
-    rate: pictures a second. Times are index / rate where pictures do not bring their own.
+    images: an array N×H×W×3 or N×H×W (uint8), a sequence of images, a function without arguments that returns an iterator (it is called again
+        for each inspection at them), or an iterator (inspected once: the empty scene is then learned as it goes). An image is H×W×3 or H×W, uint8, of
+        any strides; an iterator may also give (time in s, image).
+    rate: images a second. Times are index / rate where images do not bring their own.
     colour: order of the three channels: "bgr" as OpenCV reads them, or "rgb".
 
-    Raises marey.Error where a picture has another shape or type than this, or a time is not later than the last one's.
+    Raises marey.Error where an image has another shape or type than this, or a time is not later than the last one's.
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class Frames:
         if not (np.isfinite(rate) and rate > 0):
             raise Error(f"{name}: the rate is {rate} frames a second; it must be positive")
         if colour not in ("bgr", "rgb"):
-            raise Error(f'{name}: colour is "{colour}"; known are bgr and rgb')
+            raise Error(f'{name}: colour is "{colour}"; supported: bgr and rgb')
         self.rate = float(rate)
         self.colour = colour
         self.name = name
@@ -55,12 +55,12 @@ class Frames:
             self._make = lambda: once
         first = next(self._first(), None)
         if first is None:
-            raise Error(f"{name}: there is no picture in it")
+            raise Error(f"{name}: there is no image in it")
         self.size: tuple[int, int] = (first[1].shape[0], first[1].shape[1])
 
     def _first(self) -> Iterator[tuple[float | None, Picture]]:
-        """The first picture, without losing it where pictures can be had only once."""
-        pictures = _Pictures(self)
+        """The first image, without losing it where images can be had only once."""
+        pictures = _Images(self)
         given = pictures.next()
         if given is None:
             return
@@ -75,12 +75,12 @@ class Frames:
             self._make = lambda: chained
         yield given
 
-    def open(self) -> _Pictures:
-        return _Pictures(self)
+    def open(self) -> _Images:
+        return _Images(self)
 
 
-class _Pictures:
-    """One look at them."""
+class _Images:
+    """One inspection at them."""
 
     def __init__(self, frames: Frames) -> None:
         self._frames = frames
@@ -97,7 +97,7 @@ class _Pictures:
         time: float | None = None
         if isinstance(given, tuple):
             if len(given) != 2:
-                raise self._error(f"is a tuple of {len(given)}; give a picture, or (time in s, picture)")
+                raise self._error(f"is a tuple of {len(given)}; give an image, or (time in s, image)")
             time = None if given[0] is None else float(given[0])
             given = given[1]
         if time is not None:
@@ -109,7 +109,7 @@ class _Pictures:
         return time, self._checked(given)
 
     def _error(self, what: str) -> Error:
-        return Error(f"{self._frames.name}: picture {self._index}: {what}")
+        return Error(f"{self._frames.name}: image {self._index}: {what}")
 
     def _checked(self, given: Any) -> Picture:
         if not isinstance(given, np.ndarray):

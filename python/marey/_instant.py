@@ -1,4 +1,4 @@
-"""What is known of one moment, as sinks and `live` are given it."""
+"""What is known of one instant, as sinks and `live` are given it."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ PROVENANCE = ("measured", "filled", "predicted", "solved")
 
 @dataclass(frozen=True)
 class Instant:
-    """Who is where at one moment. Rows of all arrays belong together, by growing id.
+    """Who is where at one instant. Rows of all arrays belong together, by growing id.
 
-    index: counts from 0 at the beginning; some may be left out. time: s from the beginning.
+    index: counts from 0 at the beginning; some may be omitted. time: s from the beginning.
     id: N. position: N×2 (px, or m on the ground) or N×3 (m). provenance: N, indices of `marey._instant.PROVENANCE`.
     score: N, in [0, 1], NaN where none is known. box: N×4, left, top, right, bottom in px, NaN where there is none.
     labels, teams: of each id that was named so far.
-    frames: the pictures of the moment (H×W×3, blue first), where the sink asked for them.
+    frames: the images of the instant (H×W×3, blue first), where the sink asked for them.
     """
 
     index: int

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ._recording import Recording
 
 
-def wanted(package: str, what: str) -> Any:
+def required(package: str, what: str) -> Any:
     """The package, or a marey.Error that says how to get it."""
     import importlib
 
@@ -25,7 +25,7 @@ def wanted(package: str, what: str) -> Any:
 
 
 def detections_of(ids: NDArray[np.int32], box: NDArray[np.float64], score: NDArray[np.float64]) -> Any:
-    supervision = wanted("supervision", "to_supervision()")
+    supervision = required("supervision", "to_supervision()")
     with_box = ~np.isnan(box[:, 0]) if len(box) else np.zeros(0, dtype=bool)
     confidence = np.where(np.isnan(score), 1.0, score)[with_box]
     return supervision.Detections(
@@ -63,7 +63,7 @@ def rows_of_detections(given: Any) -> NDArray[np.float64]:
 
 
 def xarray_of(recording: Recording) -> Any:
-    xarray = wanted("xarray", "to_xarray()")
+    xarray = required("xarray", "to_xarray()")
     position, confidence, shape = recording.to_numpy(), recording._column_array("score", 1), recording._box_shapes()
     names = [track.name for track in recording.tracks]
     attributes = {
@@ -89,9 +89,9 @@ def xarray_of(recording: Recording) -> Any:
 
 
 def floodlight_of(recording: Recording, tracks: list[Any]) -> Any:
-    core = wanted("floodlight.core.xy", "to_floodlight()")
+    core = required("floodlight.core.xy", "to_floodlight()")
     if recording.kind == "image":
-        raise Error("floodlight wants metres on a pitch; these positions are px of a picture")
+        raise Error("floodlight wants metres on a pitch; these positions are px of an image")
     places = recording.to_numpy()[:, :, :2]
     numbers = [recording.tracks.index(track) for track in tracks]
     chosen = places[:, numbers, :]

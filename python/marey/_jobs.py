@@ -63,7 +63,7 @@ def _sinks(given: Iterable[Sink]) -> dict[str, Any]:
         elif callable(sink) or hasattr(sink, "write"):
             objects.append((_Sink(sink), bool(getattr(sink, "pictures", False))))
         else:
-            raise Error(f"{sink!r} is no sink; give a file's name, a function of an Instant, or an object with write")
+            raise Error(f"{sink!r} is not a sink; give a file's name, a function of an Instant, or an object with write")
     return {"files": files, "sinks": objects}
 
 
@@ -146,7 +146,7 @@ def _camera(source: Path | Frames | None, detections: Path | None, detector: Det
         raise Error("give either a source or detections: what is to be tracked?")
     if detections is not None:
         if detector is not None:
-            raise Error("detections come from a file already; leave out the detector")
+            raise Error("detections come from a file already; omit the detector")
         return {}
     options: dict[str, Any] = {}
     if isinstance(source, (str, os.PathLike)):
@@ -154,7 +154,7 @@ def _camera(source: Path | Frames | None, detections: Path | None, detector: Det
     elif isinstance(source, Frames):
         options |= {"source": source.name, "frames": source, "frames_again": source.again}
     else:
-        raise Error("the source is neither a file's name nor marey.Frames; wrap pictures: marey.Frames(pictures, rate=25)")
+        raise Error("the source is neither a file's name nor marey.Frames; wrap images: marey.Frames(images, rate=25)")
     if detector is not None:
         options["detector"] = lambda picture: rows_of_detections(detector(picture))
     return options
@@ -263,7 +263,7 @@ def reconstruct(
 ) -> Recording:
     """Reconstructs and tracks the markers, or people's body keypoints, that several calibrated cameras observe: `marey reconstruct`.
 
-    rig: a rig file, or a Rig; may be left out if observations name the cameras. targets: "markers" or "keypoints"; of keypoints each camera's source
+    rig: a rig file, or a Rig; may be omitted if observations name the cameras. targets: "markers" or "keypoints"; of keypoints each camera's source
     names a file or folder of them. observations: blobs of another program, a CSV with camera,frame,x,y[,marker]. sources: {camera: file} in place of
     the rig's own. filter: a function that begins a motion filter of your own. sinks, progress: as in `track`.
 
@@ -281,7 +281,7 @@ def reconstruct(
 
 
 def threads(count: int) -> None:
-    """So many threads compute at once from now on, in this process; results are the same for any number."""
+    """This many threads compute at once from now on, in this process; results are the same for any number."""
     if not 1 <= count <= 1024:
         raise Error(f"{count} threads; give 1 to 1024")
     _core.use_threads(count)

@@ -1,4 +1,4 @@
-"""What cameras see, moment by moment, while they see it."""
+"""What cameras see, instant by instant, while they see it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ._instant import Instant
 from ._jobs import Path, Sink, Warning, _rig, _rows, _shows, _sinks, track
 from ._rig import Rig
 
-_KEPT = 8  # moments that wait for who iterates
+_KEPT = 8  # instants that wait for who iterates
 
 
 class _Left(Exception):
-    """The loop over the moments was left."""
+    """The loop over the instants was left."""
 
 
 @_shows("live")
@@ -35,8 +35,8 @@ def live(
     """People or markers, one instant after the other, while cameras observe them: `for instant in marey.live("rig.toml")`. The run ends with the loop.
 
     source: a rig file or Rig whose cameras are live, or live sources alone, each a camera ("v4l2:/dev/video0", "rtsp://…",
-        "sim://room?cameras=4"): `marey live`. If the loop is slow, instants are left out, as their `index` shows.
-        Or one video, or Frames: `track` with `live=True`, and its options; there nothing is left out, the run waits for the loop.
+        "sim://room?cameras=4"): `marey live`. If the loop is slow, instants are omitted, as their `index` shows.
+        Or one video, or Frames: `track` with `live=True`, and its options; there nothing is omitted, the run waits for the loop.
     targets: "markers", "people" or "keypoints" (body points; of several calibrated cameras in space); default: markers of live cameras, people of one video. take: NAME.marey, written as it grows.
     sinks: functions or objects, as in `track`; of live cameras no files: name a take. One that raises is closed, which a `marey.Warning` states at
         the end, and the run continues.
@@ -49,15 +49,15 @@ def live(
             raise Error("ground, take, late, preroll and patience are for live cameras: a rig, or sources such as v4l2:/dev/video0")
         if targets is not None:
             options["targets"] = targets
-        return _moments(lambda put, ends: _follow_film(source, put, sinks, options), waits=True)
+        return _time_steps(lambda put, ends: _track_video(source, put, sinks, options), waits=True)
     if targets not in (None, "markers", "people", "keypoints"):
         raise Error(f'targets is "{targets}"; use one of people, markers, keypoints')
     given = _rows("live", options) | {"targets": targets or "markers", "take": None if take is None else os.fspath(take), "keep": False}
-    return _moments(lambda put, ends: _follow_cameras(cameras | given, put, ends, sinks), waits=False)
+    return _time_steps(lambda put, ends: _track_cameras(cameras | given, put, ends, sinks), waits=False)
 
 
 def _live_cameras(source: Path | Frames | Rig | Sequence[str]) -> dict[str, Any] | None:
-    """What the core is to open, or None for one film or Frames."""
+    """What the core is to open, or None for one video or Frames."""
     if isinstance(source, Rig):
         return _rig(source)
     if isinstance(source, (str, os.PathLike)):
@@ -70,12 +70,12 @@ def _live_cameras(source: Path | Frames | Rig | Sequence[str]) -> dict[str, Any]
     return None
 
 
-def _follow_film(source: Any, put: Callable[[Instant | None], None], sinks: Iterable[Sink], options: dict[str, Any]) -> list[str]:
+def _track_video(source: Any, put: Callable[[Instant | None], None], sinks: Iterable[Sink], options: dict[str, Any]) -> list[str]:
     track(source, live=True, keep=False, sinks=[put, *sinks], **options)
     return []
 
 
-def _follow_cameras(
+def _track_cameras(
     options: dict[str, Any], put: Callable[[Instant | None], None], ends: Callable[[], bool], sinks: Iterable[Sink]
 ) -> list[str]:
     given = _sinks([put, *sinks])
@@ -85,8 +85,8 @@ def _follow_cameras(
     return list(summary["warnings"])
 
 
-def _moments(follow: Callable[[Callable[[Instant | None], None], Callable[[], bool]], list[str]], *, waits: bool) -> Iterator[Instant]:
-    """What `follow(put, ends)` puts, on a thread of its own. waits: it is held up while nobody asks; else the oldest moments give way."""
+def _time_steps(follow: Callable[[Callable[[Instant | None], None], Callable[[], bool]], list[str]], *, waits: bool) -> Iterator[Instant]:
+    """What `follow(put, ends)` puts, on a thread of its own. waits: it is held up while no person asks; else the oldest instants give way."""
     waiting: queue.Queue[Instant | None] = queue.Queue(maxsize=_KEPT)
     left = threading.Event()
     failure: list[BaseException] = []
@@ -101,7 +101,7 @@ def _moments(follow: Callable[[Callable[[Instant | None], None], Callable[[], bo
                 return waiting.put(item, timeout=0.1 if waits else 0)
             except queue.Full:
                 if not waits:
-                    _let_go(waiting)
+                    _dropped(waiting)
         raise _Left
 
     def run() -> None:
@@ -130,7 +130,7 @@ def _moments(follow: Callable[[Callable[[Instant | None], None], Callable[[], bo
         raise failure[0]
 
 
-def _let_go(waiting: queue.Queue[Instant | None]) -> None:
+def _dropped(waiting: queue.Queue[Instant | None]) -> None:
     try:
         waiting.get_nowait()
     except queue.Empty:

@@ -38,7 +38,7 @@ class Track:
 
     @property
     def kind(self) -> str | None:
-        """"person", "ball", "marker", "keypoint", or None if the recording does not state it."""
+        """"person", "ball", "marker", "keypoint", or None if the recording does not specify it."""
         return self._kind or None
 
     @property
@@ -101,7 +101,7 @@ class Recording:
 
     def __init__(self, core: _core.Recording, summary: dict[str, Any] | None = None) -> None:
         self._core = core
-        #: What the run counted: frames, tracks, samples, what was left out and why; empty of a recording that was read.
+        #: What the run counted: frames, tracks, samples, what was omitted and why; empty of a recording that was read.
         self.summary: dict[str, Any] = summary or {}
         self._tracks = [Track(core, index, about) for index, about in enumerate(core.tracks)]
 
@@ -155,7 +155,7 @@ class Recording:
 
     @property
     def time_base(self) -> str | None:
-        """Whose clock the times follow, in words; None if the source does not state it."""
+        """Whose clock the times follow, in words; None if the source does not specify it."""
         return self._core.time_base
 
     @property
@@ -187,7 +187,7 @@ class Recording:
 
     @property
     def indices(self) -> NDArray[np.int64]:
-        """Of the instants, growing; some may be left out. View."""
+        """Of the instants, growing; some may be omitted. View."""
         return self._core.moments()[0]
 
     @property
@@ -269,7 +269,7 @@ class Recording:
         return found + [("residual_px", track.optional("residual_px"))]
 
     def to_xarray(self) -> xr.Dataset:
-        """movement's Dataset: of boxes (time, space, individuals) in a picture and on the ground, of poses (time, space, keypoints, individuals) in
+        """movement's Dataset: of boxes (time, space, individuals) in an image and on the ground, of poses (time, space, keypoints, individuals) in
         space. Needs xarray."""
         return _interop.xarray_of(self)  # type: ignore[no-any-return]
 
@@ -300,16 +300,16 @@ class Recording:
         )
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None) -> list[str]:
-        """Writes a file of the format of its ending, or of `format`; whole or not at all. Returns what the format could not hold, one sentence each.
+        """Writes a file of the format of its ending, or of `format`; atomically. Returns what the format could not hold, one sentence each.
         Raises marey.Error where it cannot be written."""
         return self._core.write(os.fspath(path), format or "")
 
     def _repr_html_(self) -> str:
-        return f"{_picture(self)}<div>{escape(repr(self).strip('<>'))}</div>"
+        return f"{_image(self)}<div>{escape(repr(self).strip('<>'))}</div>"
 
 
-def _picture(recording: Recording, most_points: int = 400) -> str:
-    """The paths, from above or in the picture, as a small SVG."""
+def _image(recording: Recording, most_points: int = 400) -> str:
+    """The paths, from above or in the image, as a small SVG."""
     drawn = [track for track in recording.tracks if len(track) > 1][:60]
     if not drawn:
         return ""

@@ -50,7 +50,7 @@ class Rig:
         raise KeyError(f"the rig has no camera {name!r}, but {', '.join(c.name for c in self.cameras)}")
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes a rig file (docs/rig.md), whole or not at all. Raises marey.Error where that cannot be."""
+        """Writes a rig file (docs/rig.md), atomically. Raises marey.Error where that cannot be."""
         self._core.write(os.fspath(path))
 
     def __repr__(self) -> str:

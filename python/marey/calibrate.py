@@ -49,7 +49,7 @@ def wand(
 ) -> Calibration:
     """Where the rig's cameras stand, by a wand that was waved before them: `marey calibrate wand`.
 
-    rig: a rig file, or a Rig; may be left out where observations name the cameras. distances: of the wand's markers from the first, m: [0, 0.12,
+    rig: a rig file, or a Rig; may be omitted where observations name the cameras. distances: of the wand's markers from the first, m: [0, 0.12,
     0.30]; None for a single light. observations: what another program saw of it. synced: the cameras' clocks are right.
 
     Raises marey.Error, with the cause and what to do, for what cannot become a rig; KeyboardInterrupt.

@@ -19,7 +19,7 @@ def ffmpeg(*arguments):
     subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-y", *map(str, arguments)], check=True)
 
 
-def film(path, seconds=4, size="320x240", codec=("-c:v", "mpeg4", "-q:v", "4")):
+def video(path, seconds=4, size="320x240", codec=("-c:v", "mpeg4", "-q:v", "4")):
     """Two dark figures who cross a lawn."""
     lawn = f"color=0x90a080:size={size}:rate=10"
     person = "color=0x303040:size=16x44:rate=10"
@@ -72,14 +72,14 @@ class BadInput(unittest.TestCase):
     def test_missing_file(self):
         self.assertIn("no_such.avi: no such file", self.refused("track", "no_such.avi"))
 
-    def test_folder_without_pictures(self):
+    def test_folder_without_images(self):
         (self.folder / "empty").mkdir()
-        self.assertIn("no pictures found", self.refused("track", "empty"))
+        self.assertIn("no images found", self.refused("track", "empty"))
         (self.folder / "empty" / "notes.txt").write_text("hello")
-        self.assertIn("no pictures found", self.refused("track", "empty"))
+        self.assertIn("no images found", self.refused("track", "empty"))
 
     def test_pattern_that_matches_nothing(self):
-        self.assertIn("no pictures found", self.refused("track", "shot_%04d.png"))
+        self.assertIn("no images found", self.refused("track", "shot_%04d.png"))
 
     def test_text_named_avi(self):
         (self.folder / "letter.avi").write_text("Dear camera,\n" * 100)
@@ -91,52 +91,52 @@ class BadInput(unittest.TestCase):
 
     def test_truncated_avi(self):
         source = self.folder / "cut.avi"
-        film(source)
+        video(source)
         cut(source, 0.6)
         self.assertRegex(self.track(source), r"breaks off after \d+ frames of 40")
 
     def test_truncated_mp4(self):
         source = self.folder / "cut.mp4"
-        film(source, codec=("-c:v", "libx264", "-pix_fmt", "yuv420p", "-g", "10", "-movflags", "+faststart"))
+        video(source, codec=("-c:v", "libx264", "-pix_fmt", "yuv420p", "-g", "10", "-movflags", "+faststart"))
         cut(source, 0.6)
         self.assertRegex(self.track(source), r"breaks off after \d+ frames of 40")
 
     def test_mp4_cut_off_before_its_index(self):
         source = self.folder / "cut.mp4"
-        film(source, codec=("-c:v", "libx264", "-pix_fmt", "yuv420p"))
+        video(source, codec=("-c:v", "libx264", "-pix_fmt", "yuv420p"))
         cut(source, 0.6)
         self.assertIn("cut off before its index", self.refused("track", source))
 
-    def test_film_of_one_pixel(self):
+    def test_video_of_one_pixel(self):
         raw = self.folder / "dot.raw"
         raw.write_bytes(bytes(range(0, 200, 10)))
         source = self.folder / "dot.mkv"
         ffmpeg("-f", "rawvideo", "-pixel_format", "gray", "-video_size", "1x1", "-framerate", "5", "-i", raw, "-c:v", "ffv1", source)
         self.track(source, "--overlay", self.folder / "dot.mp4")
 
-    def test_film_that_changes_size(self):
+    def test_video_that_changes_size(self):
         parts = []
         for size in ("320x240", "160x120", "640x480"):
             part = self.folder / f"{size}.h264"
-            film(part, seconds=2, size=size, codec=("-c:v", "libx264", "-pix_fmt", "yuv420p"))
+            video(part, seconds=2, size=size, codec=("-c:v", "libx264", "-pix_fmt", "yuv420p"))
             parts.append(part.read_bytes())
         source = self.folder / "sizes.h264"
         source.write_bytes(b"".join(parts))
         self.assertIn("scaled to the size of the first: 40", self.track(source, "--overlay", self.folder / "sizes.mp4"))
 
-    def test_pictures_that_change_size(self):
+    def test_images_that_change_size(self):
         for i, size in enumerate(("64x48", "64x48", "32x32", "64x48")):
             ffmpeg("-f", "lavfi", "-i", f"color=gray:size={size}", "-frames:v", "1", self.folder / f"p{i}.png")
-        self.assertIn("1 of 4 pictures left out; the first: p2.png has another size", self.track(self.folder / "p%d.png", "--rate", 5))
+        self.assertIn("1 of 4 images omitted; the first: p2.png has another size", self.track(self.folder / "p%d.png", "--rate", 5))
 
     def test_corrupted_avi(self):
         source = self.folder / "film.avi"
-        film(source)
+        video(source)
         whole = source.read_bytes()
         for seed in range(6):
             dice = random.Random(seed)
             data = bytearray(whole)
-            # The first 2 KiB are headers: half of the films are damaged there too.
+            # The first 2 KiB are headers: half of the videos are damaged there too.
             for _ in range(60):
                 data[dice.randrange(0 if seed % 2 else 2048, len(data))] = dice.randrange(256)
             damaged = self.folder / f"damaged_{seed}.avi"
@@ -162,8 +162,8 @@ class BadInput(unittest.TestCase):
                 self.assertRegex(done.stderr, r"^marey: fuzzed\.txt", f"seed {seed}")
         self.assertGreater(taken, 5)
 
-    def test_place_that_cannot_be_written(self):
-        film(self.folder / "film.avi", seconds=1)
+    def test_position_that_cannot_be_written(self):
+        video(self.folder / "film.avi", seconds=1)
         (self.folder / "file").touch()
         self.assertIn("file/out.txt: cannot be written", self.refused("track", "film.avi", "-o", "file/out.txt"))
         self.assertIn("cannot be written", self.refused("track", "film.avi", "-o", "missing/out.txt"))
@@ -171,8 +171,8 @@ class BadInput(unittest.TestCase):
         self.assertIn("is a folder", self.refused("track", "film.avi", "-o", self.folder))
         self.assertIn("cannot be written", self.refused("track", "film.avi", "-o", "out.txt", "--overlay", "file/out.mp4"))
 
-    def test_full_place(self):
-        film(self.folder / "film.avi", seconds=4)
+    def test_full_position(self):
+        video(self.folder / "film.avi", seconds=4)
         self.assertIn("/dev/full: cannot be written (No space left on device)",
                       self.refused("track", "film.avi", "-q", "-o", "/dev/full", "--format", "csv"))
         self.assertTrue(pathlib.Path("/dev/full").is_char_device())
@@ -190,32 +190,32 @@ class BadInput(unittest.TestCase):
         for arguments in ((), ("fly",), ("track",), ("track", "a.avi", "--no-such-option"), ("track", "a.avi", "--detections", "b.txt")):
             self.refused(*arguments, code=2)
 
-    def test_overlay_without_pictures(self):
+    def test_overlay_without_images(self):
         (self.folder / "det.txt").write_text("1,-1,10,10,20,40,1\n")
-        self.assertIn("needs pictures", self.refused("track", "--detections", "det.txt", "--overlay", "out.mp4"))
+        self.assertIn("needs images", self.refused("track", "--detections", "det.txt", "--overlay", "out.mp4"))
 
     def test_outlines_that_cannot_be(self):
-        film(self.folder / "film.avi", seconds=1)
-        for flags, said in ((("--lines", "0"), "--lines 0"), (("--lines", "-4"), "--lines -4"), (("--lines", "100000"), "--lines 100000"),
-                            (("--order", "1"), "--order 1"), (("--order", "9"), "--order 9"),
+        video(self.folder / "film.avi", seconds=1)
+        for flags, said in ((("--measurement-lines", "0"), "--measurement-lines 0"), (("--measurement-lines", "-4"), "--measurement-lines -4"), (("--measurement-lines", "100000"), "--measurement-lines 100000"),
+                            (("--spline-order", "1"), "--spline-order 1"), (("--spline-order", "9"), "--spline-order 9"),
                             (("--control-points", "3"), "--control-points 3"), (("--control-points", "0"), "--control-points 0"),
-                            (("--control-points", "5", "--order", "6"), "--control-points 5"),
+                            (("--control-points", "5", "--spline-order", "6"), "--control-points 5"),
                             (("--control-points", "1000"), "--control-points 1000"),
-                            (("--targets", "markers"), "--outline")):
-            self.assertIn(said.split()[0], self.refused("track", "film.avi", "--outline", *flags, code=2))
+                            (("--targets", "markers"), "--contour")):
+            self.assertIn(said.split()[0], self.refused("track", "film.avi", "--contour", *flags, code=2))
         (self.folder / "det.txt").write_text("1,-1,10,10,20,40,1\n")
-        self.assertIn("searched in pictures", self.refused("track", "--detections", "det.txt", "--outline"))
-        for flags in (("--lines", "many"), ("--order", "4.5"), ("--control-points",)):
-            self.refused("track", "film.avi", "--outline", *flags, code=2)
-        self.refused("track", "film.avi", "--lines", "24", code=2)  # without --outline
+        self.assertIn("searched in images", self.refused("track", "--detections", "det.txt", "--contour"))
+        for flags in (("--measurement-lines", "many"), ("--spline-order", "4.5"), ("--control-points",)):
+            self.refused("track", "film.avi", "--contour", *flags, code=2)
+        self.refused("track", "film.avi", "--measurement-lines", "24", code=2)  # without --contour
 
     def test_plot_that_cannot_be_written(self):
-        film(self.folder / "film.avi", seconds=1)
+        video(self.folder / "film.avi", seconds=1)
         (self.folder / "file").touch()
         self.assertIn("cannot be written", self.refused("track", "film.avi", "--plot", "file/out.svg"))
 
     def test_json_summary_and_default_output(self):
-        film(self.folder / "film.avi")
+        video(self.folder / "film.avi")
         done = self.run_marey("track", "film.avi", "--json", "--format", "csv", code=0)
         summary = json.loads(done.stdout)
         self.assertEqual(summary["tracks"], "film_tracks.csv")
@@ -225,7 +225,7 @@ class BadInput(unittest.TestCase):
         self.assertEqual(len(lines), 1 + summary["rows"])
 
     def test_tracks_to_standard_output(self):
-        film(self.folder / "film.avi")
+        video(self.folder / "film.avi")
         done = self.run_marey("track", "film.avi", "-o", "-", "--format", "jsonl", code=0)
         for line in done.stdout.splitlines():
             self.assertIn("frame", json.loads(line))

@@ -1,4 +1,4 @@
-"""The ball as docs/ball.md has it: played with in the simulator, followed with one and two cameras, written, handed on and measured.
+"""The ball as docs/ball.md has it: played with in the simulator, followed with one and two cameras, written, forwarded and measured.
 
 Usage: ball_test.py MAREY [unittest options]
 """
@@ -34,7 +34,7 @@ class Ball(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_ball_"))
         cls.match = cls.folder / "match"
-        marey("simulate", "match", "-o", cls.match, "--stand", "football", "--seconds", SECONDS, "--seed", 21, "--size", 1280, 720,
+        marey("simulate", "match", "-o", cls.match, "--layout", "football", "--seconds", SECONDS, "--seed", 21, "--size", 1280, 720,
               "--render", "--ball", "--quiet")
         cls.tracks = cls.folder / "match.marey"
         marey("track", cls.match / "rig.toml", "--ground", "--size", "105x68", "--ball", "-o", cls.tracks, "--quiet")
@@ -47,7 +47,7 @@ class Ball(unittest.TestCase):
 
     def test_truth_is_whole_and_people_do_not_mind_it(self):
         plain = self.folder / "plain"
-        marey("simulate", "match", "-o", plain, "--stand", "football", "--seconds", SECONDS, "--seed", 21, "--size", 1280, 720, "--quiet")
+        marey("simulate", "match", "-o", plain, "--layout", "football", "--seconds", SECONDS, "--seed", 21, "--size", 1280, 720, "--quiet")
         self.assertEqual((plain / "truth.csv").read_bytes(), (self.match / "truth.csv").read_bytes())
         self.assertFalse((plain / "ball.csv").exists())
         truth = rows(self.match / "ball.csv")
@@ -61,7 +61,7 @@ class Ball(unittest.TestCase):
         truth = {int(row["frame"]): row for row in rows(self.match / "ball.csv") if row["state"] != "dead"}
         found = {int(row["frame"]): row for row in rows(self.text) if row["label"] == "ball"}
         both = truth.keys() & found.keys()
-        self.assertGreater(len(both), 0.2 * len(truth))  # little of what is not sure is told: docs/ball.md
+        self.assertGreater(len(both), 0.2 * len(truth))  # little of what is not sure is reported: docs/ball.md
         off = [math.dist([float(found[f][a]) for a in "xyz"], [float(truth[f][a]) for a in "xyz"]) for f in both]
         self.assertLess(statistics.median(off), 0.15)
         self.assertLess(sum(far > 1 for far in off), 0.4 * len(off))  # docs/ball.md tells how often something else is followed
@@ -69,13 +69,13 @@ class Ball(unittest.TestCase):
 
     def test_a_match_without_one_has_none(self):
         plain = self.folder / "without"
-        marey("simulate", "match", "-o", plain, "--stand", "football", "--seconds", 8, "--seed", 21, "--size", 1280, 720, "--render", "--quiet")
+        marey("simulate", "match", "-o", plain, "--layout", "football", "--seconds", 8, "--seed", 21, "--size", 1280, 720, "--render", "--quiet")
         done = marey("track", plain / "rig.toml", "--ground", "--size", "105x68", "--ball", "-o", self.folder / "without.csv")
         self.assertIn("the ball was not found", done.stderr)
         self.assertNotIn("ball", {row["label"] for row in rows(self.folder / "without.csv")})
 
-    def test_it_is_nobody(self):
-        """Neither counted nor judged; an edit of it leaves the rest of it as it was, with its height."""
+    def test_it_is_none(self):
+        """Neither counted nor evaluated; an edit of it leaves the rest of it as it was, with its height."""
         told = json.loads(marey("evaluate", "--truth", self.match / "truth.csv", "--tracks", self.text, "--distance", 1.5, "--json").stdout)
         bare = self.folder / "bare.csv"
         with open(bare, "w", newline="") as file:
@@ -113,7 +113,7 @@ class Ball(unittest.TestCase):
         self.assertNotIn("ball", {person["label"] for person in said["people"]})
         self.assertIn("The ball", (self.folder / "report/report.html").read_text())
 
-    def test_what_cannot_be_is_said(self):
+    def test_what_cannot_be_is_stated(self):
         rig = self.match / "rig.toml"
         self.assertIn("--live", marey("track", rig, "--ground", "--ball", "--live", "-o", self.folder / "x.csv", code=2).stderr)
         self.assertIn("--render", marey("simulate", "match", "-o", self.folder / "y", "--ball", code=2).stderr)

@@ -66,8 +66,8 @@ class BodiesAndLabels(unittest.TestCase):
         self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 120, "-o", "walk", "-q")
         self.marey("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "-o", "walk.marey", "-q")
         self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
-        # So much better than the next that hardly any name is: most stay suggestions.
-        strict = ("label", "walk.marey", "--set", "set.toml", "--least-margin", 90, "-o", "named.marey")
+        # This much better than the next that barely any name is: most stay suggestions.
+        strict = ("label", "walk.marey", "--marker-set", "set.toml", "--min-margin", 90, "-o", "named.marey")
         before, after = (json.loads(self.marey(*strict, *more, "--json").stdout) for more in ((), ("--accept", "all")))
         self.assertEqual(before["accepted"], 0)
         self.assertGreater(len(before["unnamed"]), 0)
@@ -93,14 +93,14 @@ class BodiesAndLabels(unittest.TestCase):
                     file.write(f"{row['frame']},{row['time']},{ids[row['label']] + 100 * copy},{row['label']}{'_' * copy},{float(row['x']) + 0.002 * copy},{row['y']},{row['z']}\n")
         told = json.loads(self.marey("label", "learn", "computed.csv", "-o", "set.toml", "--json").stdout)
         self.assertIn("200 of the set's 200 points", told["warnings"][0])
-        done = self.marey("label", "computed.csv", "--set", "set.toml", "-o", "named.csv", code=1)
+        done = self.marey("label", "computed.csv", "--marker-set", "set.toml", "-o", "named.csv", code=1)
         self.assertIn("name the markers alone", done.stderr)
         self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
-        done = self.marey("label", "computed.csv", "--set", "set.toml", "-o", "named.csv", code=1)
+        done = self.marey("label", "computed.csv", "--marker-set", "set.toml", "-o", "named.csv", code=1)
         self.assertIn("200 points stand in a frame", done.stderr)
         self.assertNotIn("in metres?", done.stderr)
 
-    def test_bodies_as_the_page_says(self):
+    def test_bodies_as_the_page_states(self):
         self.run_page("bodies.md")
         database = sqlite3.connect(self.folder / "bodies.marey")
         labels = [label for (label,) in database.execute("SELECT label FROM body ORDER BY id")]
@@ -124,7 +124,7 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertIn("holds no bodies", self.marey("convert", "walk.marey", "none.csv", "--format", "poses", code=1).stderr)
         self.assertFalse((self.folder / "none.csv").exists())
 
-    def test_labels_as_the_page_says(self):
+    def test_labels_as_the_page_states(self):
         self.run_page("labels.md")
         self.marey("convert", "named.marey", "named.csv")
         truth = {(row["frame"], row["label"]): [float(row[axis]) for axis in "xyz"] for row in self.rows("walk/truth.csv")}
@@ -155,7 +155,7 @@ class BodiesAndLabels(unittest.TestCase):
         files = ["walk/rig.toml", "--observations", "walk/observations.csv"]
         told = []
         for take in ("one.marey", "two.marey"):
-            done = self.marey("reconstruct", *files, "--live", "--set", "set.toml", "--skeleton", "walk/skeleton.toml", "-o", take, "--json")
+            done = self.marey("reconstruct", *files, "--live", "--marker-set", "set.toml", "--skeleton", "walk/skeleton.toml", "-o", take, "--json")
             told.append(json.loads(done.stdout))
         self.assertEqual(told[0]["set"]["named"], told[1]["set"]["named"])
         self.assertAlmostEqual(told[0]["set"]["found_at_s"], 1.0, delta=0.2)
@@ -167,33 +167,33 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertLess(wrong, 0.003 * points)
         self.assertEqual(len({row["id"] for row in self.rows("one.csv") if row["label"]}), 40, "each name is one track")
 
-    def test_sets_that_do_not_fit_are_said(self):
+    def test_sets_that_do_not_fit_are_stated(self):
         self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 240, "-o", "walk", "-q")
         self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml", "-q")
         files = ["reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "--live"]
         (self.folder / "empty.toml").write_text("labels = []\nmoves = true\nscaled = false\nplaces = []\ndistances = []\n")
-        self.assertIn("4 to 2000 names", self.marey(*files, "--set", "empty.toml", "-o", "x.marey", code=1).stderr)
+        self.assertIn("4 to 2000 names", self.marey(*files, "--marker-set", "empty.toml", "-o", "x.marey", code=1).stderr)
         text = (self.folder / "set.toml").read_text()
         (self.folder / "renamed.toml").write_text(re.sub(r'"([a-z_]+[0-9]+)"', r'"X\1"', text))
-        refused = self.marey(*files, "--set", "renamed.toml", "--skeleton", "walk/skeleton.toml", "-o", "x.marey", "-q", code=1).stderr
+        refused = self.marey(*files, "--marker-set", "renamed.toml", "--skeleton", "walk/skeleton.toml", "-o", "x.marey", "-q", code=1).stderr
         self.assertIn("none of its names is a marker of the skeleton", refused)
         self.assertEqual(refused.count("\n"), 1, refused)
         self.assertFalse((self.folder / "x.marey").exists())
-        refused = self.marey("live", "sim://people", "--targets", "people", "--set", "set.toml", "--for", 1, "-q", code=1).stderr
+        refused = self.marey("live", "sim://people", "--targets", "people", "--marker-set", "set.toml", "--duration", 1, "-q", code=1).stderr
         self.assertIn("two calibrated cameras", refused)
         self.marey("simulate", "room", "--motion", "wand", "--frames", 240, "-o", "wand", "-q")
-        few = self.marey("reconstruct", "wand/rig.toml", "--observations", "wand/observations.csv", "--live", "--set", "set.toml", "-o", "few.marey").stderr
+        few = self.marey("reconstruct", "wand/rig.toml", "--observations", "wand/observations.csv", "--live", "--marker-set", "set.toml", "-o", "few.marey").stderr
         self.assertIn("never more than 3 markers were seen at once, of the set's 40", few)
 
-    def test_points_are_left_out_by_name(self):
+    def test_points_are_excluded_by_name(self):
         self.marey("simulate", "room", "--motion", "walk", "--markers", 40, "--frames", 100, "-o", "walk", "-q")
-        self.marey("label", "learn", "walk/truth.csv", "--leave-out", "head*,chest1", "-o", "set.toml", "-q")
+        self.marey("label", "learn", "walk/truth.csv", "--exclude", "head*,chest1", "-o", "set.toml", "-q")
         labels = {row["label"] for row in self.rows("walk/truth.csv")}
         left = {label for label in labels if label.startswith("head") or label == "chest1"}
-        told = json.loads(self.marey("label", "walk/truth.csv", "--set", "set.toml", "--leave-out", "head*", "--leave-out", "chest1", "-o", "named.csv", "--json").stdout)
+        told = json.loads(self.marey("label", "walk/truth.csv", "--marker-set", "set.toml", "--exclude", "head*", "--exclude", "chest1", "-o", "named.csv", "--json").stdout)
         self.assertEqual({marker["label"] for marker in told["markers"]}, labels - left)
         self.assertEqual({row["label"] for row in self.rows("named.csv")}, labels)
-        self.assertIn("no point is called LHJC", self.marey("label", "learn", "walk/truth.csv", "--leave-out", "LHJC", "-o", "x.toml", code=1).stderr)
+        self.assertIn("no point is called LHJC", self.marey("label", "learn", "walk/truth.csv", "--exclude", "LHJC", "-o", "x.toml", code=1).stderr)
 
     def test_sets_of_which_nothing_comes_are_refused(self):
         def learn(name, frames, place, code):
@@ -211,16 +211,16 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertIn("learned from 1 frame", learn("one.csv", 1, lambda frame, marker: spread[marker], 0))
         self.assertIn("in one plane", learn("flat.csv", 50, lambda frame, marker: (spread[marker][0], spread[marker][1], 1), 0))
 
-    def test_what_cannot_be_is_said(self):
+    def test_what_cannot_be_is_stated(self):
         self.marey("simulate", "room", "--motion", "walk", "--markers", "40", "--frames", "60", "-o", "walk", "-q")
         two = self.marey("body", "define", "walk/truth.csv", "--markers", "head1,head2", "-o", "b.toml", code=2)
         self.assertIn("three markers", two.stderr)
         missing = self.marey("body", "define", "walk/truth.csv", "--markers", "head1,head2,nose", "-o", "b.toml", code=1)
         self.assertIn('no marker "nose"', missing.stderr)
         (self.folder / "b.toml").write_text('[[body]]\nname = "a"\n')
-        broken = self.marey("body", "follow", "walk/truth.csv", "b.toml", "-o", "out.marey", code=1)
+        broken = self.marey("body", "track", "walk/truth.csv", "b.toml", "-o", "out.marey", code=1)
         self.assertIn("b.toml:1", broken.stderr)
-        self.assertIn("--set", self.marey("label", "walk/truth.csv", "-o", "out.marey", code=2).stderr)
+        self.assertIn("--marker-set", self.marey("label", "walk/truth.csv", "-o", "out.marey", code=2).stderr)
         self.marey("label", "learn", "walk/truth.csv", "-o", "set.toml")
         self.assertEqual(json.loads(self.marey("info", "set.toml", "--json").stdout)["format"], "label set")
         self.assertFalse((self.folder / "out.marey").exists())

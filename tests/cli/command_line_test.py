@@ -18,7 +18,7 @@ NUMBER = re.compile(r"^  (?:-\w,)?(--[a-z-]+) (\S.*? in [\[(][^\])]+[\])])(?: x 
 COMMANDS = ("track", "evaluate", "measure", "convert", "info", "play", "reconstruct", "simulate markers", "simulate people", "simulate room",
             "simulate match", "calibrate lens", "calibrate wand", "calibrate ground", "calibrate board", "calibrate pitch",
             "experiment trackers", "experiment outlines", "experiment hypotheses")
-PLACES = "frame,time,id,x,y\n" + "".join(f"{f},{f / 25:.2f},{i},{10 + i + 0.2 * f:.2f},{20 + i}\n" for f in range(200) for i in (1, 2))
+LOCATIONS = "frame,time,id,x,y\n" + "".join(f"{f},{f / 25:.2f},{i},{10 + i + 0.2 * f:.2f},{20 + i}\n" for f in range(200) for i in (1, 2))
 
 
 class CommandLine(unittest.TestCase):
@@ -33,7 +33,7 @@ class CommandLine(unittest.TestCase):
         simulate("markers", "plain", "--frames", "12", "-o", "plain")
         simulate("room", "--motion", "ground", "--frames", "20", "--cameras", "5", "-o", "floor")
         simulate("match", "--seconds", "2", "--cameras", "2", "-o", "match")
-        (cls.made / "places.csv").write_text(PLACES)
+        (cls.made / "places.csv").write_text(LOCATIONS)
         (cls.made / "boxes.txt").write_text("".join(f"{f},1,{10 + 3 * f},50,20,50,0.9,-1,-1,-1\n" for f in range(1, 61)))
 
     def setUp(self):
@@ -81,14 +81,14 @@ class CommandLine(unittest.TestCase):
             ("reconstruct", "floor/rig.toml", "--observations", "floor/observations.csv", "-o", "floor/observations.csv"),
             ("convert", "places.csv", "places.csv"),
             ("convert", "run_home.csv", "run_away.csv"),
-            ("simulate", "people", "--frames", 2, "--ground", "people/video.mp4", "-o", "people"),
+            ("simulate", "people", "--frames", 2, "--background-image", "people/video.mp4", "-o", "people"),
         ):
             self.assertIn("input", self.refused(*arguments), arguments)
 
-    def test_pictures_of_a_folder_are_inputs(self):
+    def test_images_of_a_folder_are_inputs(self):
         (self.folder / "shots").mkdir()
         for i in range(3):
-            (self.folder / "shots" / f"p{i}.png").write_bytes(b"a picture")
+            (self.folder / "shots" / f"p{i}.png").write_bytes(b"an image")
         for source in ("shots", "shots/*.png", "shots/p%d.png"):
             self.assertIn("input", self.refused("track", source, "-o", "shots/p1.png", "--format", "mot"))
 
@@ -126,7 +126,7 @@ class CommandLine(unittest.TestCase):
                           ("measure", "places.csv", "-o", "s.csv", "--size", "105x68x2"),
                           ("simulate", "room", "--wand", "0,nan"), ("simulate", "room", "--bump", "1,1,1e308"),
                           ("simulate", "room", "--bump", "1.5,1,1"),
-                          ("calibrate", "ground", "floor/rig.toml", "-o", "g.toml", "--frame", "0,0;nan,0;0,1")):
+                          ("calibrate", "ground", "floor/rig.toml", "-o", "g.toml", "--l-frame", "0,0;nan,0;0,1")):
             self.assertIn(arguments[-1].split(";")[-2] if ";" in arguments[-1] else arguments[-1], self.refused(*arguments))
 
     def test_standard_output_takes_every_byte_or_the_run_failed(self):
@@ -176,7 +176,7 @@ class CommandLine(unittest.TestCase):
             listed = self.marey(*command.split(), "--help").stdout
             self.assertNotRegex(listed, r"--out\b|--in-step")
 
-    def test_endings_say_the_format(self):
+    def test_endings_report_the_format(self):
         film = "plain/video.mp4"
         for arguments in (("track", film, "-o", "t.xyz"), ("track", film, "-o", "t"), ("track", film, "-o", "t.txt", "--plot", "p.png"),
                           ("track", film, "-o", "t.txt", "--overlay", "o.gif"), ("track", "match/rig.toml", "--ground", "-o", "t.txt"),
@@ -186,7 +186,7 @@ class CommandLine(unittest.TestCase):
             self.assertIn("end", self.refused(*arguments), arguments)
         self.marey("track", film, "--targets", "markers", "-q", "-o", "/dev/null")
 
-    def test_what_was_made_is_said(self):
+    def test_what_was_made_is_stated(self):
         self.assertRegex(self.marey("convert", "places.csv", "places.dat").stderr, r"places\.dat: \w+, 400 places")
         self.assertNotIn("places.dat:", self.marey("convert", "places.csv", "places.dat", "-q").stderr)
         told = json.loads(self.marey("convert", "floor/rig.toml", "rig.yml", "--json").stdout)

@@ -54,9 +54,9 @@ class Edit(unittest.TestCase):
         marey("edit", self.take, "swap A B 20:29", "rename C knee")
         self.assertEqual({frame: x for frame, x in self.places("A").items() if x == 2}, {frame: 2 for frame in range(20, 30)})
         self.assertEqual(len(self.places("knee")), FRAMES - 5)
-        self.assertEqual(self.exported("raw.csv", "--as-recorded"), self.before)
+        self.assertEqual(self.exported("raw.csv", "--without-edits"), self.before)
 
-    def test_info_says_what_the_edits_have_left_and_what_they_are(self):
+    def test_info_states_what_the_edits_have_left_and_what_they_are(self):
         marey("edit", self.take, "rename A ankle", "delete B", "fill all", "rename C hip")
         self.assertIn("undone:    4  rename C to hip\n", marey("edit", self.take, "--undo").stderr)
         said = json.loads(marey("info", self.take, "--json").stdout)
@@ -67,11 +67,11 @@ class Edit(unittest.TestCase):
         self.assertIn("rename A to ankle\n", shown)
         self.assertIn("rename C to hip (does not count)", shown)
         self.assertNotIn("{", shown)
-        marey("edit", self.take, "--to", 0)
+        marey("edit", self.take, "--undo-to", 0)
         said = json.loads(marey("info", self.take, "--json").stdout)
         self.assertEqual([track["label"] for track in said["tracks"]], ["A", "B", "C"])
 
-    def test_the_line_for_those_who_come_from_elsewhere(self):
+    def test_the_line_for_those_identify_come_from_elsewhere(self):
         """As docs/coming_from.md has it, on a take that has these markers and gaps."""
         page = (pathlib.Path(__file__).resolve().parent.parent.parent / "docs/coming_from.md").read_text()
         line = next(line for line in page.splitlines() if "`marey edit walk.marey" in line and "swap" in line)
@@ -97,10 +97,10 @@ class Edit(unittest.TestCase):
         self.assertIn("one", self.exported("one.csv").decode())
         marey("edit", self.take, "--redo")
         self.assertEqual(self.exported("again.csv"), both)
-        marey("edit", self.take, "--to", 0)
+        marey("edit", self.take, "--undo-to", 0)
         self.assertEqual(self.exported("none.csv"), self.before)
         self.assertIn("nothing to be undone", marey("edit", self.take, "--undo", code=1).stderr)
-        self.assertIn("no edit 7", marey("edit", self.take, "--to", 7, code=1).stderr)
+        self.assertIn("no edit 7", marey("edit", self.take, "--undo-to", 7, code=1).stderr)
         listed = json.loads(marey("edit", self.take, "--list", "--json").stdout)
         self.assertEqual([edit["counts"] for edit in listed["edits"]], [False, False])
 
@@ -114,14 +114,14 @@ class Edit(unittest.TestCase):
         marey("edit", self.take, "--script", script)
         self.assertEqual(len(self.places("right")), FRAMES)
 
-    def test_a_gap_is_filled_and_says_how_far_it_may_be_off(self):
+    def test_a_gap_is_filled_and_states_how_far_it_may_be_off(self):
         run = marey("edit", self.take, "fill C", "--json")
         gap = json.loads(run.stdout)["edits"][0]["gaps"][0]
         self.assertEqual((gap["first"], gap["last"], gap["track"]), (50, 54, "C"))
         self.assertLess(gap["expected_mm"], 1)
         self.assertEqual(len(self.places("C")), FRAMES)
 
-    def test_a_fill_without_a_gap_is_no_error_and_says_so(self):
+    def test_a_fill_without_a_gap_is_no_error_and_states_so(self):
         marey("edit", self.take, "fill C")
         script = self.folder / "edits.txt"
         script.write_text("fill all\nrename A knee\nfill all\n")
@@ -136,11 +136,11 @@ class Edit(unittest.TestCase):
         marey("edit", self.take, "delete knee 80:95")
         run = marey("edit", self.take, "fill all longest=0.1")
         self.assertIn("1 gap stays open: 1 longer than 0.1 s (longest=); nothing was filled\n", run.stderr)
-        self.assertIn("\"fill nobody\": there is no track", marey("edit", self.take, "fill nobody", code=1).stderr)
+        self.assertIn("\"fill no person\": there is no track", marey("edit", self.take, "fill nobody", code=1).stderr)
 
-    def test_what_cannot_be_is_a_sentence(self):
+    def test_what_cannot_be_is_a_message(self):
         for arguments, sentence in (((self.folder / "walk.csv", "rename A B"), "no take"), ((self.folder / "none.marey",), "no such file"),
-                                    ((self.take, "jump A"), "\"jump\" is no edit")):
+                                    ((self.take, "jump A"), "\"jump\" is not an edit")):
             run = marey("edit", *arguments, code=1)
             self.assertIn(sentence, run.stderr)
             self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
@@ -157,7 +157,7 @@ class Edit(unittest.TestCase):
         script.write_text("\n".join(lines) + "\n")
         marey("edit", self.take, "--script", script, "-q")
         self.assertNotEqual(self.exported("many.csv"), self.before)
-        marey("edit", self.take, "--to", 0)
+        marey("edit", self.take, "--undo-to", 0)
         self.assertEqual(self.exported("none.csv"), self.before)
 
     def test_killed_between_edits_nothing_is_lost(self):
@@ -169,7 +169,7 @@ class Edit(unittest.TestCase):
             run.wait()
             listed = json.loads(marey("edit", self.take, "--list", "--json").stdout)["edits"]
             self.assertEqual(len(listed) % 2, 0, "both edits of a command, or none")
-        self.assertEqual(self.exported("raw.csv", "--as-recorded"), self.before)
+        self.assertEqual(self.exported("raw.csv", "--without-edits"), self.before)
 
 
 if __name__ == "__main__":

@@ -87,7 +87,7 @@ class Files(unittest.TestCase):
         self.run_marey("convert", "tracks.txt", "part.txt", "--rate", "25", "--frames", ":4")
         self.assertEqual([int(line.split(",")[0]) for line in (self.folder / "part.txt").read_text().splitlines()], [1, 2, 3, 4, 5])
 
-    def test_the_axis_that_a_c3d_file_says_is_up(self):
+    def test_the_axis_that_a_c3d_file_states_is_up(self):
         self.run_marey("convert", self.csv, "y.c3d", "--up", "y")
         said = self.run_marey("convert", "y.c3d", "back.csv").stderr
         self.assertIn("y.c3d: its y is taken for up, as the file says; if z is up in it, say --up z (`marey convert`: --from-up z)", said)
@@ -133,7 +133,7 @@ class Files(unittest.TestCase):
         self.assertIn("none of the files", self.refused("convert", "notes.txt", "out.c3d"))
         self.assertIn("unknown ending; these can be written: ", self.refused("convert", self.csv, "out.xyz", code=2))
         self.assertIn("is an input too", self.refused("convert", self.csv, self.csv, code=2))
-        self.assertIn("is no take", self.refused("convert", self.csv, "notes.txt", "--format", "take"))
+        self.assertIn("is not a take", self.refused("convert", self.csv, "notes.txt", "--format", "take"))
         self.refused("convert", self.csv, "out.c3d", "--up", "x", code=2)
         self.assertIn("cannot be written", self.refused("convert", self.csv, "/dev/full", "--format", "c3d"))
         self.assertIn("read only", self.refused("convert", self.csv, "out.csv", "--format", "nexus", code=2))

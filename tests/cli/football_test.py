@@ -67,7 +67,7 @@ class Football(unittest.TestCase):
         wrong = [list(p) for p in self.points]
         wrong[4][2] += 90
         clicks = self.write_clicks("clicks.csv", wrong)
-        pitch = ("calibrate", "pitch", "rig.toml", "--points", f"stand={clicks}", "-o", "pitch.toml", "--pictures", "pictures")
+        pitch = ("calibrate", "pitch", "rig.toml", "--points", f"stand={clicks}", "-o", "pitch.toml", "--plots", "pictures")
         report = json.loads(self.marey(*pitch, "--json").stdout)
         camera = report["cameras"]["stand"]
         self.assertEqual(camera["observations"], len(wrong))
@@ -95,13 +95,13 @@ class Football(unittest.TestCase):
         self.assertIn("mirrored", self.refused(*both))
         self.assertFalse((self.folder / "never.toml").exists())
 
-    def test_pictures_are_not_drawn_over_those_of_the_cameras(self):
+    def test_images_are_not_drawn_over_those_of_the_cameras(self):
         clicks = self.write_clicks("own.csv", self.points)
         (self.folder / "own").mkdir()
         picture = self.folder / "own" / "stand.jpg"
         picture.write_bytes(b"taken by the camera")
         (self.folder / "own.toml").write_text('[[camera]]\nname = "stand"\nsource = "own/stand.jpg"\nsize = [1920, 1080]\n')
-        pitch = ("calibrate", "pitch", "own.toml", "--points", f"stand={clicks}", "-o", "never.toml", "--pictures", "own")
+        pitch = ("calibrate", "pitch", "own.toml", "--points", f"stand={clicks}", "-o", "never.toml", "--plots", "own")
         self.assertIn("is an input too", self.marey(*pitch, code=2).stderr)
         self.assertEqual(picture.read_bytes(), b"taken by the camera")
         self.assertFalse((self.folder / "never.toml").exists())
@@ -135,7 +135,7 @@ class Football(unittest.TestCase):
         self.assertEqual([n for n in told["notes"] if '"b" was started 0.60' in n or '"b" was started 0.59' in n], told["notes"])
         self.assertEqual(len(told["notes"]), 1)
         self.assertTrue(any('"far"' in w and "in common" in w for w in told["warnings"]), told["warnings"])
-        # What is given is believed, and contradicted.
+        # What is given is trusted, and contradicted.
         given = rig.replace('name = "b"', 'name = "b"\noffset_s = 0.0').replace('name = "far"', 'name = "far"\noffset_s = 0.0')
         (self.folder / "ground.toml").write_text(given)
         told = json.loads(self.marey(*track).stdout)

@@ -63,10 +63,10 @@ class GroundFiles(unittest.TestCase):
             self.assertAlmostEqual(float(rows[0]["top_mps"]), 8, delta=0.9, msg=f"{rate} Hz")
             self.assertGreaterEqual(int(rows[0]["sprints"]), 2, f"{rate} Hz")
 
-    def test_what_nobody_can_do_is_told_and_not_counted(self):
+    def test_what_none_can_do_is_reported_and_not_counted(self):
         with open(self.folder / "slid.csv", "w") as out:
             out.write("frame,time,id,x,y,state\n")
-            for i in range(251):  # the first goes over to whoever walks beside him; the second is predicted to dash away and back
+            for i in range(251):  # the first goes over to the one who walks beside him; the second is predicted to dash away and back
                 time = i / 25
                 out.write(f"{i},{time},1,{10 + 1.5 * time:.3f},{20 + 3 * min(1, max(0, (time - 5) * 3)):.3f},observed\n")
                 dash = min(1, max(0, (time - 5) / 1.6))
@@ -88,7 +88,7 @@ class GroundFiles(unittest.TestCase):
         rows = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))
         self.assertEqual([row["team"] for row in rows], ["", ""])
         said = self.marey("convert", "run.csv", "run.dat").stderr
-        self.assertIn("nobody has a team", said)
+        self.assertIn("no person has a team", said)
         self.marey("measure", "run.dat", "-o", "again.csv", "-q")
         again = list(csv.DictReader((self.folder / "again.csv").read_text().splitlines()))
         self.assertAlmostEqual(float(again[0]["distance_m"]), float(rows[0]["distance_m"]), delta=0.2)
@@ -108,7 +108,7 @@ class GroundFiles(unittest.TestCase):
         self.refused("measure", "missing.csv", "-o", "never.csv")
         self.refused("measure", ".", "-o", "never.csv")
 
-    def test_who_never_moves_has_no_distance(self):
+    def test_identify_never_moves_has_no_distance(self):
         (self.folder / "zero.csv").write_text("frame,time,id,x,y\n" + "".join(f"{i},{i / 25},1,2,3\n" for i in range(50)))
         self.marey("measure", "zero.csv", "-o", "summary.csv", "-q")
         row = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))[0]
@@ -117,7 +117,7 @@ class GroundFiles(unittest.TestCase):
     def judged(self, *options):
         return json.loads(self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5, "--json", *options).stdout)
 
-    def test_judged_in_metres(self):
+    def test_evaluated_in_metres(self):
         self.write_run("truth.csv", 25)
         self.write_run("tracks.csv", 25, shift=0.4)
         result = self.judged()
@@ -142,12 +142,12 @@ class GroundFiles(unittest.TestCase):
             result = self.judged()
             self.assertEqual((result["paired_by"], result["mota"], result["kept"]), ("frame", 1, 1), columns)
 
-    def test_nobody_is_judged_with_a_warning(self):
+    def test_none_is_evaluated_with_a_warning(self):
         self.write_run("truth.csv", 25)
         (self.folder / "tracks.csv").write_text("frame,time,id,x,y\n")
         result = self.judged()
         self.assertEqual((result["found"], result["mota"], result["position_rms_m"]), (0, 0, None))
-        self.assertIn("tracks.csv: nobody is in it", result["warnings"])
+        self.assertIn("tracks.csv: no person is in it", result["warnings"])
 
     def test_frames_of_other_users(self):
         (self.folder / "m.csv").write_text("frame,time,id,team,x,y\n0,0,1,a,-52.5,-34\n0,0,2,b,52.5,34\n1,0.04,1,a,-52.5,-34\n")
@@ -168,7 +168,7 @@ class GroundFiles(unittest.TestCase):
         self.assertIn("12.5", self.refused("convert", "run.csv", "run.dat"))
         self.assertIn("read only", self.refused("convert", "run.csv", "run.xml", "--format", "sportec", code=2))
         self.assertIn("ending", self.refused("convert", "run.csv", "run.odt", code=2))
-        self.assertIn("nobody is of the team", self.refused("convert", "run.csv", "run_home.csv", "--home", "green"))
+        self.assertIn("no person is of the team", self.refused("convert", "run.csv", "run_home.csv", "--home", "green"))
         self.assertIn("input", self.refused("convert", "run.csv", "run.csv", code=2))
         self.assertIn("--up", self.refused("convert", "run.csv", "run_home.csv", "--up", "y", code=2))
         self.marey("convert", "run.csv", "run_home.csv", "--period", "9-3", code=2)

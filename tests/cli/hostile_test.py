@@ -94,7 +94,7 @@ class Hostile(unittest.TestCase):
 
     # --- one wild number ---
 
-    def test_one_wild_frame_is_named_before_anything_is_followed(self):
+    def test_one_wild_frame_is_named_before_anything_is_tracked(self):
         far, words = 999_999_999, ["999999999 are named, of which", "a number must be wrong"]
         self.write("boxes.txt", "".join(f"{i},-1,100,100,20,50,0.9\n" for i in (1, 2, 3, far)))
         self.refused("track", "--detections", "boxes.txt", "--rate", "25", "-o", "out.txt", words=words)
@@ -132,7 +132,7 @@ class Hostile(unittest.TestCase):
         self.assertIn(",'=1+1,", csv)
         self.assertNotIn("\x01", csv)
 
-    def test_a_film_with_a_foreign_byte_in_its_name(self):
+    def test_a_video_with_a_foreign_byte_in_its_name(self):
         name = os.fsencode(self.folder) + b"/f\xff<m>.txt"
         with open(name, "wb") as file:
             file.write(b"".join(b"%d,-1,%d,100,20,50,0.9\n" % (i, 100 + 2 * i) for i in range(1, 60)))
@@ -140,7 +140,7 @@ class Hostile(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         xml.dom.minidom.parse(str(self.folder / "out.svg"))
 
-    def test_takes_of_strangers_write_no_control_characters(self):
+    def test_takes_of_untrusted_write_no_control_characters(self):
         evil = "A\x1b]0;evil\x07\n\x01"
         take = self.take()
         self.accepted("edit", take, "rename a knee")
@@ -183,7 +183,7 @@ class Hostile(unittest.TestCase):
         self.write("tracks.txt", "".join(f"1,{i},{i % 100},{i // 100},20,50,1\n" for i in range(8000)))
         self.refused("evaluate", "--truth", "tracks.txt", "--tracks", "tracks.txt", words=["pairs_a_frame"])
 
-    def test_more_blobs_than_anybody_has(self):
+    def test_more_blobs_than_any_person_has(self):
         self.accepted("simulate", "room", "--motion", "ground", "--frames", "2", "--cameras", "8", "-o", "room")
         seen = [row.split(",") for row in (self.folder / "room" / "blobs.csv").read_text().splitlines()]
         head = seen[0]
@@ -232,7 +232,7 @@ class Hostile(unittest.TestCase):
         self.accepted("simulate", "room", "--motion", "ground", "--frames", "2", "--cameras", "3", "-o", "room")
         for arguments in (("track", "--detections", "/dev/zero", "-o", "out.csv"), ("edit", take, "--script", "/dev/zero"),
                           ("calibrate", "ground", "room/rig.toml", "--observations", "/dev/zero", "-o", "out.toml"),
-                          ("live", "sim://room?cameras=2", "--labels", "/dev/zero", "--for", "1"),
+                          ("live", "sim://room?cameras=2", "--labels", "/dev/zero", "--duration", "1"),
                           ("batch", "plan", "/dev/zero", "-o", "out.tsv"), ("batch", "run", "/dev/zero")):
             with self.subTest(arguments=arguments):
                 self.refused(*arguments, words=["a line has more than 16777216 bytes"])
@@ -283,10 +283,10 @@ class Hostile(unittest.TestCase):
         self.write("a.c3d", c3d(0, 0, 0, 0, bodies=-1))
         self.refused("convert", "a.c3d", "b.c3d", words=["is cut off"])
         self.write("a.c3d", c3d(20, 3, 7, 1))  # 20 values a frame, of 7 channels or of 3 samples
-        self.assertIn("they are passed over", self.accepted("convert", "a.c3d", "b.c3d").stderr.decode())
+        self.assertIn("they are skipped", self.accepted("convert", "a.c3d", "b.c3d").stderr.decode())
 
     @unittest.skipIf(SANITIZED, "sanitizers reserve more than any bound")
-    def test_memory_that_is_not_enough_is_a_sentence(self):
+    def test_memory_that_is_not_enough_is_a_message(self):
         rows = "".join(f"{i},{i / 100:.2f},{m},{i},0,1\n" for i in range(200_000) for m in "ab")
         self.write("points.csv", "frame,time,label,x,y,z\n" + rows)
         seen = set()
@@ -299,7 +299,7 @@ class Hostile(unittest.TestCase):
             seen.add(done.returncode)
         self.assertIn(0, seen)
 
-    def test_a_picture_beyond_reason(self):
+    def test_a_image_beyond_reason(self):
         def chunk(kind, data):
             return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 

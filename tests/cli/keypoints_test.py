@@ -64,7 +64,7 @@ class Keypoints(unittest.TestCase):
         said = marey(["solve", "dance.marey", "-o", "dance.bvh", "--write-skeleton", "person.toml", "--quiet"], self.folder)
         self.assertEqual(said.returncode, 0, said.stderr)
         live = ["live", "rig.toml", *(f"{camera}=play:{camera}.mp4?loop" for camera in cameras), "--targets", "keypoints", "--people", "1", "--skeleton",
-                "person.toml", "--for", "8", "-o", "live.marey", "--json"]
+                "person.toml", "--duration", "8", "-o", "live.marey", "--json"]
         said = marey(live, self.folder)
         self.assertEqual(said.returncode, 0, said.stderr)
         summary = json.loads(said.stdout)
@@ -84,18 +84,18 @@ class Keypoints(unittest.TestCase):
         self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
         self.assertEqual(sorted(self.folder.iterdir()), before)
 
-    def test_what_cannot_be_is_one_sentence(self):
+    def test_what_cannot_be_is_one_message(self):
         track = ("track", "people.mp4", "--targets", "keypoints", "--quiet")
         with tempfile.TemporaryDirectory() as empty:
             self.refused(1, "script/model", *track, "--model", "lite", models=empty)
-            self.refused(1, "script/model", *track, "--without-background", models=empty)
+            self.refused(1, "script/model", *track, "--no-background", models=empty)
             for content in (b"", b"no network"):
                 (pathlib.Path(empty) / "pose_landmark_full.onnx").write_bytes(content)
                 self.refused(1, "script/model", *track, models=empty)
         self.refused(2, "lite, full or heavy", *track, "--model", "tiny")
         self.refused(2, "--ground", *track, "--ground")
-        self.refused(2, "requires --detector", "track", "people.mp4", "--every", "3")
-        self.refused(2, "requires --detector", "track", "people.mp4", "--without-background")
+        self.refused(2, "requires --detector", "track", "people.mp4", "--detector-interval", "3")
+        self.refused(2, "requires --detector", "track", "people.mp4", "--no-background")
         self.need_models()
         self.refused(1, "another network", *track, "--model", MODELS / "person.onnx")
 
@@ -141,24 +141,24 @@ class Keypoints(unittest.TestCase):
 
     def test_without_background(self):
         self.need_models()
-        done = marey(["track", "people.mp4", "--targets", "keypoints", "--model", "lite", "--without-background", "-o", "alone.csv"], self.folder)
+        done = marey(["track", "people.mp4", "--targets", "keypoints", "--model", "lite", "--no-background", "-o", "alone.csv"], self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.folder / "alone.csv") as file:
             self.assertGreater(len(list(file)), 33 * 40)
 
-    def test_where_nobody_is_found_the_other_way_is_named(self):
+    def test_where_none_is_found_the_other_trajectory_is_named(self):
         self.need_models()
         (self.folder / "still").mkdir()
         for frame in range(20):
             (self.folder / "still" / f"{frame:02}.pgm").write_bytes(b"P5 160 120 255\n" + bytes(range(160)) * 120)
         done = marey(["track", "still", "--rate", "10", "--targets", "keypoints", "--model", "lite", "-o", "still.csv"], self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("nobody was found", done.stderr)
-        self.assertIn("--without-background finds people who fill the picture", done.stderr)
+        self.assertIn("no person was found", done.stderr)
+        self.assertIn("--no-background finds people who fill the image", done.stderr)
 
-    def test_what_holds_no_points_says_so(self):
+    def test_what_holds_no_points_states_so(self):
         self.need_models()
-        done = marey(["track", "people.mp4", "--targets", "keypoints", "--model", "lite", "--every", "8", "-o", "boxes.txt"], self.folder)
+        done = marey(["track", "people.mp4", "--targets", "keypoints", "--model", "lite", "--detector-interval", "8", "-o", "boxes.txt"], self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("holds no keypoints", done.stderr)
 

@@ -48,7 +48,7 @@ class Killed(unittest.TestCase):
     def instants(self, take):
         return json.loads(self.marey("info", take, "--json").stdout)["frames"]
 
-    def test_pictures_of_a_live_run_are_kept_as_its_take_is(self):
+    def test_images_of_a_live_run_are_kept_as_its_take_is(self):
         pictures = self.folder / "take_pictures"
         begun = []
 
@@ -66,7 +66,7 @@ class Killed(unittest.TestCase):
             self.assertLess(self.instants("take.marey") - frames, RATE, "less than a second is lost, as of the take")
         self.marey("reconstruct", "take_pictures/rig.toml", "-o", "again.marey", "-q")
         self.assertGreater(self.instants("again.marey"), RATE)
-        self.marey("live", ROOM, "--record", "raw", "-o", "take.marey", "--for", 1, "-q")  # nothing of the killed run is in its way
+        self.marey("live", ROOM, "--record", "raw", "-o", "take.marey", "--duration", 1, "-q")  # nothing of the killed run is in its way
         self.assertEqual({path.name for path in pictures.iterdir()}, {"cam1.mp4", "cam2.mp4", "rig.toml"})
 
     def test_an_overlay_can_be_read_as_far_as_it_was_written(self):

@@ -1,6 +1,6 @@
 """`marey live` and `marey cameras`: cameras that are simulated, played, on a network and absent; recording; how it ends.
 
-Usage: live_cameras_test.py MAREY [unittest options]. What needs ffmpeg or Aravis's fake camera is left out where that is not installed.
+Usage: live_cameras_test.py MAREY [unittest options]. What needs ffmpeg or Aravis's fake camera is omitted where that is not installed.
 How fast it is belongs to bench/live; here nothing fails because the machine is busy.
 """
 import contextlib
@@ -57,7 +57,7 @@ class JpegCamera(http.server.BaseHTTPRequestHandler):
         with contextlib.suppress(OSError):
             for number in range(1_000_000):
                 picture = self.pictures[number % len(self.pictures)]
-                self.wfile.write(b"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n" % len(picture) + picture + b"\r\n")
+                self.wfile.write(b"--l-frame\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n" % len(picture) + picture + b"\r\n")
                 time.sleep(0.04)
 
     def log_message(self, *_):
@@ -78,7 +78,7 @@ class LiveCameras(unittest.TestCase):
         return json.loads(self.marey("live", *arguments, "--json", "-q", **more).stdout)
 
     def test_markers_of_a_simulated_room_are_tracked_and_recorded(self):
-        told = self.live(ROOM, "--for", 2, "-o", "take.marey")
+        told = self.live(ROOM, "--duration", 2, "-o", "take.marey")
         self.assertEqual(told["job"], "markers in space")
         self.assertGreater(told["instants"], 15)
         self.assertGreaterEqual(told["targets"], 10)
@@ -89,16 +89,16 @@ class LiveCameras(unittest.TestCase):
         self.assertEqual(told["take"], "take.marey")
 
     def test_every_frame_is_used_or_counted(self):
-        told = self.live(ROOM, "--for", 2)
+        told = self.live(ROOM, "--duration", 2)
         dropped = told["dropped"]
         for name, camera in told["cameras"].items():
             self.assertEqual(camera["lost"] + camera["damaged"], 0, name)
-            # What came is in an instant, or waited when it ended, or was let go.
+            # What came is in an instant, or waited when it ended, or was dropped.
             gone = dropped["overtaken"] + dropped["incomplete"] + dropped["late_frames"] + camera["overrun"]
             self.assertLessEqual(abs(camera["frames"] - (told["instants"] - camera["missed"]) - gone), 4 + dropped["late_frames"], name)
 
     def test_a_camera_that_goes_away_costs_only_itself_and_comes_back(self):
-        done = self.marey("live", ROOM + "&away=2,1,2", "--for", 4, "--json")
+        done = self.marey("live", ROOM + "&away=2,1,2", "--duration", 4, "--json")
         told = json.loads(done.stdout)
         self.assertEqual(told["cameras"]["cam2"]["connections"], 2)
         self.assertEqual(told["cameras"]["cam1"]["connections"], 1)
@@ -106,25 +106,25 @@ class LiveCameras(unittest.TestCase):
         self.assertIn('camera "cam2" is back', done.stderr)
         self.assertEqual(told["cameras"]["cam2"]["state"], "live")
 
-    def test_a_camera_that_is_not_there_is_looked_for(self):
-        done = self.marey("live", "sim://room?cameras=1&rate=30", "v4l2:/dev/video63", "--for", 1.5, "--patience", 0.3, "--json")
+    def test_a_camera_that_is_not_there_is_inspected_for(self):
+        done = self.marey("live", "sim://room?cameras=1&rate=30", "v4l2:/dev/video63", "--duration", 1.5, "--connect-timeout", 0.3, "--json")
         told = json.loads(done.stdout)
         self.assertEqual(told["job"], "a preview")
         self.assertEqual(told["cameras"]["cam2"]["state"], "connecting")
         self.assertIn("no such camera now", done.stderr)
         self.assertGreater(told["cameras"]["cam1"]["frames"], 3)
 
-    def test_without_any_camera_it_says_why(self):
-        done = self.marey("live", "v4l2:/dev/video63", "--for", 0.5, "--patience", 0.1, "-o", "take.marey", "--armed", code=1)
+    def test_without_any_camera_it_states_why(self):
+        done = self.marey("live", "v4l2:/dev/video63", "--duration", 0.5, "--connect-timeout", 0.1, "-o", "take.marey", "--armed", code=1)
         self.assertIn("no camera gave a frame", done.stderr)
         self.assertIn("/dev/video63", done.stderr)
         self.assertFalse((self.folder / "take.marey").exists())
 
-    def test_a_take_stays_where_the_next_run_sees_nothing(self):
-        self.live(ROOM, "--for", 1, "-o", "take.marey")
+    def test_a_take_stays_where_the_next_run_observes_nothing(self):
+        self.live(ROOM, "--duration", 1, "-o", "take.marey")
         before = (self.folder / "take.marey").read_bytes()
         for name in ("take.marey", "new.marey"):
-            done = self.marey("live", "v4l2:/dev/video63", "--for", 0.5, "--patience", 0.1, "-o", name, code=1)
+            done = self.marey("live", "v4l2:/dev/video63", "--duration", 0.5, "--connect-timeout", 0.1, "-o", name, code=1)
             self.assertIn("no camera gave a frame", done.stderr)
         self.assertEqual((self.folder / "take.marey").read_bytes(), before)
         self.assertFalse((self.folder / "new.marey").exists())
@@ -136,7 +136,7 @@ class LiveCameras(unittest.TestCase):
         if mounted.returncode != 0:
             self.skipTest(f"a small disk cannot be made here: {mounted.stderr.strip()}")
         self.addCleanup(subprocess.run, ["umount", disk], check=True)
-        done = self.marey("live", "sim://room?cameras=4&rate=60&markers=40&blobs", "--for", 8, "-o", "disk/take.marey", "--json", "-q", code=1)
+        done = self.marey("live", "sim://room?cameras=4&rate=60&markers=40&blobs", "--duration", 8, "-o", "disk/take.marey", "--json", "-q", code=1)
         told = json.loads(done.stdout)
         said = "disk/take.marey: cannot be written, the disk is full; what was written before is kept"
         self.assertIn(said, told["warnings"])
@@ -145,24 +145,24 @@ class LiveCameras(unittest.TestCase):
         kept = json.loads(self.marey("info", "disk/take.marey", "--json").stdout)
         self.assertTrue(0 < kept["frames"] < told["instants"], kept)
 
-    def test_real_time_is_asked_for(self):
-        run = subprocess.Popen([MAREY, "live", ROOM, "--for", "20", "--realtime", "-q"], stderr=subprocess.PIPE, text=True, cwd=self.folder)
+    def test_real_time_is_requested_for(self):
+        run = subprocess.Popen([MAREY, "live", ROOM, "--duration", "20", "--realtime-priority", "-q"], stderr=subprocess.PIPE, text=True, cwd=self.folder)
         self.addCleanup(run.stderr.close)
         time.sleep(2)
         policies = [os.sched_getscheduler(int(task.name)) for task in pathlib.Path(f"/proc/{run.pid}/task").iterdir()]
         run.send_signal(signal.SIGINT)
         said = run.communicate(timeout=30)[1]
-        if "marey: warning: --realtime was refused (" not in said:
+        if "marey: warning: --realtime-priority was refused (" not in said:
             self.assertGreater(policies.count(os.SCHED_RR), 4, policies)  # the run, and its cameras
-        refused = subprocess.run(["setpriv", "--reuid", "65534", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all", MAREY, "live", ROOM, "--for", "0.5", "--realtime", "-q"],
+        refused = subprocess.run(["setpriv", "--reuid", "65534", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all", MAREY, "live", ROOM, "--duration", "0.5", "--realtime-priority", "-q"],
                                  capture_output=True, text=True, timeout=60)
         if os.geteuid() == 0 and "Permission denied" not in refused.stderr:
             self.assertEqual(refused.returncode, 0, refused.stderr)
-            self.assertIn("--realtime was refused (Operation not permitted); it goes on at the usual priority", refused.stderr)
+            self.assertIn("--realtime-priority was refused (Operation not permitted); it continues at the typical priority", refused.stderr)
 
-    def test_the_pictures_are_kept_to_do_it_again(self):
+    def test_the_images_are_kept_to_do_it_again(self):
         room = "sim://room?cameras=3&rate=15&markers=20&size=320x240&drawn=1"
-        told = self.live(room, "--for", 4, "-o", "walk.marey", "--record", "raw")
+        told = self.live(room, "--duration", 4, "-o", "walk.marey", "--record", "raw")
         pictures = self.folder / "walk_pictures"
         self.assertEqual(sorted(path.name for path in pictures.iterdir()), ["cam1.mp4", "cam2.mp4", "cam3.mp4", "rig.toml"])
         again = json.loads(self.marey("reconstruct", "walk_pictures/rig.toml", "-o", "again.marey", "--json", "-q").stdout)
@@ -171,34 +171,34 @@ class LiveCameras(unittest.TestCase):
         live, anew = (json.loads(self.marey("info", take, "--json").stdout) for take in ("walk.marey", "again.marey"))
         self.assertGreater(live["observations"], 50)
         self.assertLess(abs(live["observations"] - anew["observations"]), 0.1 * live["observations"])
-        self.live(room, "--for", 0.5, "-o", "none.marey", "--record", "raw", "--armed")
+        self.live(room, "--duration", 0.5, "-o", "none.marey", "--record", "raw", "--armed")
         self.assertFalse((self.folder / "none_pictures").exists())
         self.assertIn("--record raw: name the take with -o", self.marey("live", room, "--record", "raw", code=2).stderr)
         (self.folder / "file_pictures").write_text("a file")
-        self.assertIn("file_pictures", self.marey("live", room, "--for", 0.5, "-o", "file.marey", "--record", "raw", code=1).stderr)
+        self.assertIn("file_pictures", self.marey("live", room, "--duration", 0.5, "-o", "file.marey", "--record", "raw", code=1).stderr)
 
-    def test_pictures_drawn_beforehand_take_little_memory(self):
-        room = "sim://room?cameras=8&rate=240&markers=8&size=1280x1024&drawn=2"  # 5 GB of pictures
+    def test_images_drawn_beforehand_take_little_memory(self):
+        room = "sim://room?cameras=8&rate=240&markers=8&size=1280x1024&drawn=2"  # 5 GB of images
         with open(self.folder / "said.txt", "w+") as said:
-            run = subprocess.Popen([MAREY, "live", room, "--for", "0.5", "-q"], cwd=self.folder, stderr=said)
+            run = subprocess.Popen([MAREY, "live", room, "--duration", "0.5", "-q"], cwd=self.folder, stderr=said)
             _, status, used = os.wait4(run.pid, 0)
             run.returncode = os.waitstatus_to_exitcode(status)
             self.assertEqual(run.returncode, 0, (self.folder / "said.txt").read_text())
         self.assertLess(used.ru_maxrss, 500_000, "kB")
 
     def test_what_is_played_is_not_recorded_over(self):
-        self.live("sim://room?cameras=2&rate=15&markers=20&size=320x240&drawn=1", "--for", 1, "-o", "walk.marey", "--record", "raw")
+        self.live("sim://room?cameras=2&rate=15&markers=20&size=320x240&drawn=1", "--duration", 1, "-o", "walk.marey", "--record", "raw")
         pictures = self.folder / "walk_pictures"
         before = {path.name: path.read_bytes() for path in pictures.iterdir()}
         for played in (["walk_pictures/rig.toml"], ["cam1=walk_pictures/cam1.mp4"], ["play:walk_pictures/cam1.mp4?loop"],
                        ["./walk_pictures/../walk_pictures/cam1.mp4"]):
-            said = self.marey("live", *played, "-o", "walk.marey", "--record", "raw", "--for", 0.5, code=2).stderr
+            said = self.marey("live", *played, "-o", "walk.marey", "--record", "raw", "--duration", 0.5, code=2).stderr
             self.assertIn("is an input too", said)
             self.assertEqual({path.name: path.read_bytes() for path in pictures.iterdir()}, before, played)
         taken = (self.folder / "walk.marey").read_bytes()
-        self.assertIn("is an input too", self.marey("live", "play:walk.marey", "-o", "walk.marey", "--for", 0.5, code=2).stderr)
+        self.assertIn("is an input too", self.marey("live", "play:walk.marey", "-o", "walk.marey", "--duration", 0.5, code=2).stderr)
         self.assertEqual((self.folder / "walk.marey").read_bytes(), taken)
-        self.marey("live", "walk_pictures/rig.toml", "-o", "again.marey", "--record", "raw", "--for", 0.5, "-q")
+        self.marey("live", "walk_pictures/rig.toml", "-o", "again.marey", "--record", "raw", "--duration", 0.5, "-q")
         self.assertEqual({path.name: path.read_bytes() for path in pictures.iterdir()}, before)
 
     def test_a_take_is_played_as_its_cameras(self):
@@ -212,27 +212,27 @@ class LiveCameras(unittest.TestCase):
         self.assertEqual(sorted(cameras), ["cam1", "cam2", "cam3", "cam4"])
         self.assertEqual({camera["state"] for camera in cameras.values()}, {"ended"})
         self.assertEqual({camera["frames"] + camera["lost"] for camera in cameras.values()}, {100})
-        if told["instants"] == 100:  # nothing was let go: what the live run made of films and of the take is one thing
+        if told["instants"] == 100:  # nothing was dropped: what the live run made of videos and of the take is one thing
             self.marey("reconstruct", "room/rig.toml", "--observations", "room/observations.csv", "--live", "-o", "offline.marey", "-q")
             infos = [json.loads(self.marey("info", take, "--json").stdout) for take in ("again.marey", "offline.marey")]
             self.assertEqual(*(info["observations"] for info in infos))
             self.assertEqual(*(len(info["tracks"]) for info in infos))
-        looped = self.live("play:walk.marey?loop", "--for", 4)
+        looped = self.live("play:walk.marey?loop", "--duration", 4)
         self.assertGreater(min(camera["frames"] for camera in looped["cameras"].values()), 110)
-        alone = self.live("play:walk.marey?camera=2", "--for", 1)
-        self.assertEqual(alone["job"], "markers in a picture")
+        alone = self.live("play:walk.marey?camera=2", "--duration", 1)
+        self.assertEqual(alone["job"], "markers in an image")
         for name, said in (("play:walk.marey?camera=5", "has 4 cameras"), ("play:none.marey", "none.marey"), ("play:walk.marey?rate=5", "no option")):
-            self.assertIn(said, self.marey("live", name, "--for", 0.5, code=1).stderr)
+            self.assertIn(said, self.marey("live", name, "--duration", 0.5, code=1).stderr)
 
-    def test_a_film_is_played_in_real_time_and_ends(self):
+    def test_a_video_is_played_in_real_time_and_ends(self):
         self.marey("simulate", "people", "-o", "film", "--frames", 30, "--size", 192, 144, "-q")
         begin = time.monotonic()
         told = self.live("film/video.mp4", "--targets", "people")
         self.assertGreater(time.monotonic() - begin, 1.0, "30 frames of 25 Hz")
-        self.assertEqual(told["job"], "people in a picture")
+        self.assertEqual(told["job"], "people in an image")
         self.assertEqual(told["cameras"]["cam1"]["state"], "ended")
         self.assertEqual(told["cameras"]["cam1"]["frames"] + told["cameras"]["cam1"]["lost"], 30)
-        looped = self.live("play:film/video.mp4?loop", "--targets", "people", "--for", 5)
+        looped = self.live("play:film/video.mp4?loop", "--targets", "people", "--duration", 5)
         self.assertGreater(looped["cameras"]["cam1"]["frames"] + looped["cameras"]["cam1"]["lost"], 35)
 
     def test_a_rig_names_its_cameras(self):
@@ -243,13 +243,13 @@ class LiveCameras(unittest.TestCase):
             rig = rig.replace(f'name = "cam{number}"', source)
         rig = "\n".join(line if not line.startswith("rate") else "rate = 30.0" for line in rig.splitlines())
         (self.folder / "room/live.toml").write_text(rig)
-        told = self.live("room/live.toml", "--for", 2)
+        told = self.live("room/live.toml", "--duration", 2)
         self.assertEqual(told["job"], "markers in space")
         self.assertGreater(told["targets"], 0)
-        told = self.live("room/live.toml", "cam2=sim://room?cameras=3&rate=30&blobs&size=1280x1024&camera=1", "--for", 1)
+        told = self.live("room/live.toml", "cam2=sim://room?cameras=3&rate=30&blobs&size=1280x1024&camera=1", "--duration", 1)
         self.assertEqual(len(told["cameras"]), 3)
         self.assertIn("run marey live", self.marey("reconstruct", "room/live.toml", "-o", "x.marey", code=1).stderr)
-        wrong = self.marey("live", "room/live.toml", "cam2=sim://room?cameras=3&rate=30&size=640x480&camera=1", "--for", 1, code=1)
+        wrong = self.marey("live", "room/live.toml", "cam2=sim://room?cameras=3&rate=30&size=640x480&camera=1", "--duration", 1, code=1)
         self.assertIn("cam2", wrong.stderr)
 
     def test_a_rate_that_is_not_the_cameras_own_is_warned_of(self):
@@ -261,7 +261,7 @@ class LiveCameras(unittest.TestCase):
         for rate, warned in ((40, True), (20, False)):
             lines = [line if not line.startswith("rate") else f"rate = {rate}" for line in rig.splitlines()]
             (self.folder / "room/live.toml").write_text("\n".join(lines))
-            said = self.marey("live", "room/live.toml", "--for", 1).stderr
+            said = self.marey("live", "room/live.toml", "--duration", 1).stderr
             for number in (1, 2):
                 words = f'camera "cam{number}": the rig says rate = {rate}, the camera 20 frames per second'
                 (self.assertIn if warned else self.assertNotIn)(words, said)
@@ -309,8 +309,8 @@ class LiveCameras(unittest.TestCase):
         info = self.marey("info", "take.marey").stdout
         self.assertIn("frames", info)
 
-    def test_a_take_that_cannot_be_written_is_told(self):
-        self.assertIn("nowhere", self.marey("live", ROOM, "-o", "nowhere/take.marey", "--for", 1, code=1).stderr)
+    def test_a_take_that_cannot_be_written_is_reported(self):
+        self.assertIn("nowhere", self.marey("live", ROOM, "-o", "nowhere/take.marey", "--duration", 1, code=1).stderr)
         self.marey("live", ROOM, "-o", "take.c3d", code=2)
         self.marey("live", ROOM, "--armed", code=2)
         self.marey("live", code=2)
@@ -319,7 +319,7 @@ class LiveCameras(unittest.TestCase):
         for name, word in (("sim://space", "room, people"), ("sim://room?cameras=900", "whole number"), ("sim://room?colour=red", "no option"),
                            ("node:/left", "node"), ("play:missing.mp4", "no such file"), ("missing.mp4", "no such file"),
                            ("v4l2:/dev/video0?format=H264", "H264"), ("http://", "names no host")):
-            self.assertIn(word, self.marey("live", name, "--for", 1, code=1).stderr, name)
+            self.assertIn(word, self.marey("live", name, "--duration", 1, code=1).stderr, name)
 
     def test_cameras_lists_and_writes_no_empty_rig(self):
         told = json.loads(self.marey("cameras", "--json").stdout)
@@ -338,13 +338,13 @@ class LiveCameras(unittest.TestCase):
         server.daemon_threads = True
         port = server.server_address[1]
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        told = self.live(f"http://eve:secret@127.0.0.1:{port}/left", "--targets", "people", "--for", 3, "-o", "take.marey")
+        told = self.live(f"http://eve:secret@127.0.0.1:{port}/left", "--targets", "people", "--duration", 3, "-o", "take.marey")
         server.shutdown()
         server.server_close()
         self.assertGreater(told["cameras"]["cam1"]["frames"], 20)
         self.assertNotIn("secret", json.dumps(told))
         self.assertFalse(b"secret" in (self.folder / "take.marey").read_bytes(), "a take holds no password")
-        gone = self.marey("live", f"http://eve:secret@127.0.0.1:{port}/left", "--for", 1, code=1)
+        gone = self.marey("live", f"http://eve:secret@127.0.0.1:{port}/left", "--duration", 1, code=1)
         self.assertIn("cannot be reached", gone.stderr)
         self.assertNotIn("secret", gone.stderr)
 
@@ -362,7 +362,7 @@ class LiveCameras(unittest.TestCase):
             some.bind(("127.0.0.1", 0))
             port = some.getsockname()[1]
         running = server()
-        with subprocess.Popen([MAREY, "live", f"rtsp://127.0.0.1:{port}/left", "--targets", "people", "--for", "14", "--json"], cwd=self.folder,
+        with subprocess.Popen([MAREY, "live", f"rtsp://127.0.0.1:{port}/left", "--targets", "people", "--duration", "14", "--json"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as live:
             time.sleep(6)
             running.kill()
@@ -388,7 +388,7 @@ arv-fake-gv-camera-0.8 -i 127.0.0.1 -s LEFT & one=$!
 arv-fake-gv-camera-0.8 -i 127.0.0.2 -s RIGHT & two=$!
 sleep 2
 {MAREY} cameras --json -o rig.toml > found.json
-{MAREY} live gige:LEFT gige:RIGHT --for 4 --json -q > live.json
+{MAREY} live gige:LEFT gige:RIGHT --duration 4 --json -q > live.json
 code=$?
 kill $one $two
 exit $code

@@ -1,5 +1,5 @@
 """A live run that is changed from its page, without a browser: who may, what reaches the cameras, the rig file and the take, and what
-strangers write. live_page_test.py MAREY."""
+untrusted clients write. live_page_test.py MAREY."""
 
 import json
 import os
@@ -15,7 +15,7 @@ import unittest
 
 import node_test
 import shown_page
-from shown_page import LivePage, WebSocket, hear_until
+from shown_page import LivePage, WebSocket, receive_until
 
 MAREY = ""
 
@@ -39,28 +39,28 @@ class Page(unittest.TestCase):
             self.assertTrue(scene["can_change"])
             self.assertEqual(scene["rig_file"], "rig.toml")
             page = WebSocket(shown)
-            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(len(c["dials"]) == 2 for c in s["cameras"]))
-            dials = {dial["name"]: dial for dial in status["cameras"][0]["dials"]}
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(len(c["dials"]) == 2 for c in s["cameras"]))
+            dials = {camera_control["name"]: camera_control for camera_control in status["cameras"][0]["dials"]}
             self.assertEqual((dials["exposure"]["unit"], dials["exposure"]["most"], dials["exposure"]["now"]), ("ms", 50, 2))
             self.assertFalse(status["unsaved"])
             for line in ("dial 0 exposure 1.5", "dial 0 gain 2", "threshold 1 90", "mask 1 10 20 30 40", "mask 1 50 60 7 8", "unmask 1 10 20 30 40", "mask 1 9 9 90 9 50 80", "mask 1 1 1 2 2 3 9", "unmask 1 1 1 2 2 3 9"):
                 page.say(line)
-            status = hear_until(page, "status", lambda s: s["unsaved"] and len(s["cameras"][1].get("masks", [])) == 2 and [d["now"] for d in s["cameras"][0]["dials"]] == [1.5, 2])
+            status = receive_until(page, "status", lambda s: s["unsaved"] and len(s["cameras"][1].get("masks", [])) == 2 and [d["now"] for d in s["cameras"][0]["dials"]] == [1.5, 2])
             self.assertEqual(status["cameras"][1]["masks"], [[50, 60, 7, 8], [9, 9, 90, 9, 50, 80]])
             self.assertEqual(status["cameras"][1]["threshold"], 90)
             self.assertIsNone(status["cameras"][0]["threshold"])
             page.say("dial 0 exposure 500")
-            refused = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]
+            refused = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]
             self.assertTrue(refused["refused"].startswith("cam1: does not take that exposure; it must be 0.02 to 50 ms"), refused["refused"])
             self.assertEqual(refused["dials"][0]["now"], 1.5)
             for level in ("99999", "-1", "0"):
                 page.say(f"threshold 1 {level}")
-                self.assertIn("cam2: does not take that threshold; it must be a grey level above 0", hear_until(page, "said", lambda text: text != ""))
+                self.assertIn("cam2: does not take that threshold; it must be a grey level above 0", receive_until(page, "said", lambda text: text != ""))
             page.say("lit 0")
-            hear_until(page, "status", lambda s: s["cameras"][0]["learning"])
-            hear_until(page, "status", lambda s: not s["cameras"][0]["learning"] and len(s["cameras"][0]["masks"]) >= 2)
+            receive_until(page, "status", lambda s: s["cameras"][0]["learning"])
+            receive_until(page, "status", lambda s: not s["cameras"][0]["learning"] and len(s["cameras"][0]["masks"]) >= 2)
             page.say("save")
-            hear_until(page, "status", lambda s: not s["unsaved"])
+            receive_until(page, "status", lambda s: not s["unsaved"])
         one, two = self.rig()
         self.assertEqual((one["exposure"], one["gain"]), (1.5, 2))
         self.assertGreaterEqual(len(one["masks"]), 2)
@@ -69,11 +69,11 @@ class Page(unittest.TestCase):
         self.assertIn("sim://room", one["source"])
         self.assertNotIn("seen from this file", (self.folder / "rig.toml").read_text())
 
-    def test_a_rig_that_says_so_is_set_so_from_the_beginning(self):
+    def test_a_rig_that_states_so_is_set_so_from_the_beginning(self):
         self.write_rig("exposure = 0.7\nthreshold = 33\nmasks = [[0, 0, 320, 240]]\n")
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(c["dials"] and c["dials"][0]["now"] == 0.7 for c in s["cameras"]))
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(c["dials"] and c["dials"][0]["now"] == 0.7 for c in s["cameras"]))
             self.assertEqual(status["cameras"][0]["threshold"], 33)
             self.assertFalse(status["unsaved"])
             page.say("watch 0 320")
@@ -84,33 +84,33 @@ class Page(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("masks must be [[x, y, width, height], …] in px", done.stderr)
 
-    def test_films_are_searched_as_the_rig_says(self):
-        subprocess.run([MAREY, "simulate", "room", "--cameras", "2", "--frames", "30", "--size", "320", "240", "--videos", "-o", "room", "-q"], cwd=self.folder, check=True, timeout=120)
+    def test_videos_are_searched_as_the_rig_states(self):
+        subprocess.run([MAREY, "simulate", "room", "--cameras", "2", "--frames", "30", "--size", "320", "240", "--render", "-o", "room", "-q"], cwd=self.folder, check=True, timeout=120)
         rig = (self.folder / "room/rig.toml").read_text()
-        seen = []
+        detected = []
         for lines in ("", "masks = [[0, 0, 320, 240]]", "masks = [[0, 0, 160, 240]]", "threshold = 255", "masks = [[0, 0, 319, 0, 319, 239, 0, 239]]"):
             (self.folder / "room/set.toml").write_text(rig.replace("[[camera]]", f"[[camera]]\n{lines}"))
             done = subprocess.run([MAREY, "reconstruct", "room/set.toml", "-o", "out.marey", "--json", "-q"], cwd=self.folder, capture_output=True, text=True, timeout=120)
             self.assertEqual(done.returncode, 0, done.stderr)
-            seen.append(json.loads(done.stdout)["observations"])
-        self.assertGreater(seen[0], 100)
-        self.assertEqual(seen[1], 0)
-        self.assertTrue(0 < seen[2] < seen[0], seen)
-        self.assertEqual(seen[3], 0)
-        self.assertEqual(seen[4], 0, "a polygon round all of it")
+            detected.append(json.loads(done.stdout)["observations"])
+        self.assertGreater(detected[0], 100)
+        self.assertEqual(detected[1], 0)
+        self.assertTrue(0 < detected[2] < detected[0], detected)
+        self.assertEqual(detected[3], 0)
+        self.assertEqual(detected[4], 0, "a polygon round all of it")
 
     def test_markers_that_come_ready_are_masked_too(self):
         self.write_rig(options="&blobs&lamps=2")
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["frames"] > 5)
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["frames"] > 5)
             self.assertEqual(status["cameras"][0]["dials"], [], "points have no exposure")
             page.say("watch 0 320")
-            seen = lambda: next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
-            self.assertGreater(max(seen() for _ in range(5)), 2)
+            detected = lambda: next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
+            self.assertGreater(max(detected() for _ in range(5)), 2)
             page.say("mask 0 0 0 320 240")
             for _ in range(50):
-                if seen() == 0:
+                if detected() == 0:
                     break
             else:
                 self.fail("they are not masked")
@@ -127,13 +127,13 @@ class Page(unittest.TestCase):
                 time.sleep(0.1)
             one, two = tracks[0]["id"], tracks[1]["id"]
             page.say(f"name {one} left knee")
-            hear_until(page, "said", lambda text: text == "")
+            receive_until(page, "said", lambda text: text == "")
             page.say(f"name {two} left knee")
-            self.assertIn("is called left knee and is seen now", hear_until(page, "said"))
-            page.say("name 999999 nobody")
-            self.assertIn("there is no track 999999", hear_until(page, "said"))
+            self.assertIn("is called left knee and is detected now", receive_until(page, "said"))
+            page.say("name 999999 no person")
+            self.assertIn("there is no track 999999", receive_until(page, "said"))
             page.say("save")
-            self.assertIn("there is no rig file", hear_until(page, "said", lambda text: "rig" in text))
+            self.assertIn("there is no rig file", receive_until(page, "said", lambda text: "rig" in text))
             for _ in range(100):
                 if any(track["label"] == "left knee" for track in shown.scene()["tracks"]):
                     break
@@ -149,17 +149,17 @@ class Page(unittest.TestCase):
             with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0, "--listen", "0.0.0.0", *["--allow-control"] * allowed) as shown:
                 self.assertEqual(shown.scene()["can_change"], allowed)
                 page = WebSocket(shown)
-                hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
+                receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
                 page.say("mask 0 1 2 3 4")
                 page.say("dial 0 gain 3")
                 page.say("save")
                 time.sleep(0.6)
-                hear_until(page, "status")
-                status = hear_until(page, "status")
+                receive_until(page, "status")
+                status = receive_until(page, "status")
                 self.assertEqual(status["cameras"][0]["masks"], [[1, 2, 3, 4]] if allowed else [])
                 self.assertEqual("masks" in self.rig()[0], allowed)
 
-    def test_lines_of_strangers_cost_nothing(self):
+    def test_lines_of_untrusted_cost_nothing(self):
         self.write_rig()
         before = (self.folder / "rig.toml").read_text()
         generator = random.Random(7)
@@ -170,12 +170,12 @@ class Page(unittest.TestCase):
                 page.say(" ".join(generator.choices(words, k=generator.randint(0, 7))))
             for i in range(400):
                 page.say(f"mask 0 {i} 0 1 1")
-            self.assertIn("256 masks already", hear_until(page, "said", lambda text: "masks" in text))
-            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and len(s["cameras"][0].get("masks", [])) == 256)
+            self.assertIn("256 masks already", receive_until(page, "said", lambda text: "masks" in text))
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and len(s["cameras"][0].get("masks", [])) == 256)
             self.assertEqual(len(status["cameras"]), 2)
             page.say("lit 63")
-            self.assertIn("there is no camera 64", hear_until(page, "said", lambda text: "camera" in text))
-        self.assertEqual((self.folder / "rig.toml").read_text(), before, "nobody said save")
+            self.assertIn("there is no camera 64", receive_until(page, "said", lambda text: "camera" in text))
+        self.assertEqual((self.folder / "rig.toml").read_text(), before, "no person said save")
 
 
 class OtherComputer(unittest.TestCase):
@@ -197,35 +197,35 @@ class OtherComputer(unittest.TestCase):
         where = self.node()
         (self.folder / "rig.toml").write_text("".join(f'[[camera]]\nname = "mine{c}"\nsource = "{where}/cam{c}"\nexposure = 1.5\n' for c in (1, 2)))
         found = lambda page: max(next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3) for _ in range(4))
-        now = lambda s: [dial["now"] for dial in s["cameras"][0].get("dials", [])]
+        now = lambda s: [camera_control["now"] for camera_control in s["cameras"][0].get("dials", [])]
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [1.5, 1])
-            self.assertEqual([dial["name"] for dial in status["cameras"][0]["dials"]], ["exposure", "gain"])
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [1.5, 1])
+            self.assertEqual([camera_control["name"] for camera_control in status["cameras"][0]["dials"]], ["exposure", "gain"])
             page.say("watch 0 320")
             self.assertGreater(found(page), 2)
             page.say("dial 0 exposure 2.5")
             page.say("dial 0 gain 2")
-            hear_until(page, "status", lambda s: now(s) == [2.5, 2])
+            receive_until(page, "status", lambda s: now(s) == [2.5, 2])
             page.say("dial 0 exposure 500")
-            refused = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
+            refused = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
             self.assertTrue(refused.startswith("mine1: does not take that exposure; it must be 0.02 to 50 ms"), refused)
             page.say("threshold 0 254")
-            hear_until(page, "status", lambda s: s["cameras"][0]["threshold"] == 254 and "refused" not in s["cameras"][0])
+            receive_until(page, "status", lambda s: s["cameras"][0]["threshold"] == 254 and "refused" not in s["cameras"][0])
             for _ in range(50):
                 if found(page) < 2:
                     break
             else:
                 self.fail("the node finds as many markers as before")
             page.say("save")
-            hear_until(page, "status", lambda s: not s["unsaved"])
+            receive_until(page, "status", lambda s: not s["unsaved"])
         kept = tomllib.loads((self.folder / "rig.toml").read_text())["camera"][0]
         self.assertEqual((kept["exposure"], kept["gain"], kept["threshold"]), (2.5, 2, 254))
         with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [2.5, 2] and s["cameras"][0]["threshold"] == 254)
+            receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [2.5, 2] and s["cameras"][0]["threshold"] == 254)
             page.say("threshold 0 auto")
-            hear_until(page, "status", lambda s: s["cameras"][0]["threshold"] is None)
+            receive_until(page, "status", lambda s: s["cameras"][0]["threshold"] is None)
             page.say("watch 0 320")
             for _ in range(50):
                 if found(page) > 2:
@@ -238,13 +238,13 @@ class OtherComputer(unittest.TestCase):
             where = self.node("--listen", "0.0.0.0", *options)
             with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
                 page = WebSocket(shown)
-                hear_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
+                receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
                 page.say("dial 0 exposure 3")
                 if refused:
-                    why = hear_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
+                    why = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
                     self.assertEqual(why, "cam1: its exposure cannot be set from here: marey node there was started without --allow-control")
                 else:
-                    hear_until(page, "status", lambda s: s["cameras"][0]["dials"][0]["now"] == 3)
+                    receive_until(page, "status", lambda s: s["cameras"][0]["dials"][0]["now"] == 3)
 
 
 class MachineVision(unittest.TestCase):
@@ -264,15 +264,15 @@ class MachineVision(unittest.TestCase):
         (folder / "rig.toml").write_text('[[camera]]\nname = "eye"\nsource = "gige:EYE"\nexposure = 4.0\n')
         with LivePage(folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            dial = lambda s, name: next(each for each in s["cameras"][0]["dials"] if each["name"] == name)
-            status = hear_until(page, "status", lambda s: len(s["cameras"][0]["dials"]) == 2)
-            self.assertAlmostEqual(dial(status, "exposure")["now"], 4, places=2)
+            camera_control = lambda s, name: next(each for each in s["cameras"][0]["dials"] if each["name"] == name)
+            status = receive_until(page, "status", lambda s: len(s["cameras"][0]["dials"]) == 2)
+            self.assertAlmostEqual(camera_control(status, "exposure")["now"], 4, places=2)
             page.say("dial 0 exposure 7.5")
-            hear_until(page, "status", lambda s: abs(dial(s, "exposure")["now"] - 7.5) < 0.01)
-            page.say(f"dial 0 gain {dial(status, 'gain')['most'] / 2}")
-            hear_until(page, "status", lambda s: abs(dial(s, "gain")["now"] - dial(s, "gain")["most"] / 2) < 0.51)
+            receive_until(page, "status", lambda s: abs(camera_control(s, "exposure")["now"] - 7.5) < 0.01)
+            page.say(f"dial 0 gain {camera_control(status, 'gain')['most'] / 2}")
+            receive_until(page, "status", lambda s: abs(camera_control(s, "gain")["now"] - camera_control(s, "gain")["most"] / 2) < 0.51)
             page.say("save")
-            hear_until(page, "status", lambda s: not s["unsaved"])
+            receive_until(page, "status", lambda s: not s["unsaved"])
         self.assertEqual(tomllib.loads((folder / "rig.toml").read_text())["camera"][0]["exposure"], 7.5)
 
 

@@ -1,6 +1,6 @@
-"""`marey track --live` on boxes of weak detectors: ahead of other trackers, honest about whom nobody saw.
+"""`marey track --live` on boxes of weak detectors: ahead of other trackers, honest about whom no person saw.
 
-Usage: live_test.py MAREY SOURCE_FOLDER [unittest options]. Scenes whose truth is not there (MAREY_DATA) are left out, saying so.
+Usage: live_test.py MAREY SOURCE_FOLDER [unittest options]. Scenes whose truth is not there (MAREY_DATA) are omitted, saying so.
 """
 import json
 import os
@@ -60,23 +60,23 @@ class Live(unittest.TestCase):
             for name, own, peers in zip(live_peers.FIGURES, ours, best):
                 self.assertGreater(own, peers, f"{scene}: {name}")
 
-    def test_whom_nobody_saw_has_no_confidence(self):
+    def test_an_unobserved_person_has_no_confidence(self):
         missing = {frame for frame in range(15, 60) if frame % 5 == 0}
         rows = self.live(walkers(60, missing))
         unseen = [row for row in rows if row[2] == 0]
         self.assertTrue(unseen)
         self.assertLessEqual({frame for frame, _, _ in unseen}, missing)
-        self.assertFalse([row for row in self.live(walkers(60, missing), "--seen-only") if row[2] == 0])
+        self.assertFalse([row for row in self.live(walkers(60, missing), "--measured-only") if row[2] == 0])
 
-    def test_who_has_gone_is_not_written_on(self):
+    def test_identify_has_gone_is_not_written_on(self):
         rows = self.live(walkers(60, set(range(31, 61))))
         gone = {person for frame, person, _ in rows if frame == 20} - {person for frame, person, _ in rows if frame == 60}
         self.assertEqual(len(gone), 1)
         self.assertLess(max(frame for frame, person, _ in rows if person in gone), 38)
 
-    def test_a_delay_tells_everybody_from_the_beginning_and_fills_gaps(self):
+    def test_a_delay_reports_all_from_the_beginning_and_fills_gaps(self):
         at_once = self.live(walkers(40, {20, 21}))
-        later = self.live(walkers(40, {20, 21}), "--delay", 0.5)
+        later = self.live(walkers(40, {20, 21}), "--lag", 0.5)
         self.assertEqual(len([row for row in later if row[0] == 1]), 2)
         self.assertEqual(len([row for row in at_once if row[0] == 1]), 0)
         self.assertEqual(len([row for row in later if row[0] in (20, 21)]), 4)
@@ -85,8 +85,8 @@ class Live(unittest.TestCase):
     def test_what_a_delay_is_not_for_is_refused(self):
         (self.folder / "boxes.txt").write_text(walkers(5))
         given = ["track", "--detections", "boxes.txt", "-o", "out.txt"]
-        self.assertIn("--live", self.marey(*given, "--delay", 1, code=2).stderr)
-        self.marey(*given, "--live", "--delay", -1, code=2)
+        self.assertIn("--live", self.marey(*given, "--lag", 1, code=2).stderr)
+        self.marey(*given, "--live", "--lag", -1, code=2)
         self.assertFalse((self.folder / "out.txt").exists())
 
 

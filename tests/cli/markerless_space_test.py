@@ -95,7 +95,7 @@ class Keypoints(unittest.TestCase):
         said = self.marey("solve", "three.marey", "--person", "P9", "-o", "p9.bvh", code=1).stderr
         self.assertIn("there are P1, P2, P3", said)
 
-    def test_unsuitable_input_is_refused_in_one_sentence(self):
+    def test_unsuitable_input_is_refused_in_one_message(self):
         good = self.folder / "one/keypoints_cam1.json"
         (self.folder / "cut.json").write_text(good.read_text()[:3000])
         self.assertIn("breaks off", self.refused(*self.keypoints("one", cam1="cut.json")))
@@ -109,7 +109,7 @@ class Keypoints(unittest.TestCase):
         self.assertIn("needs a video, or keypoints", self.refused(*self.keypoints("one", cam1="empty")))
         self.assertIn("only one", self.refused("cam1=one/keypoints_cam1.json"))
 
-    def test_cameras_that_see_different_people_place_nobody(self):
+    def test_cameras_that_observe_different_people_position_none(self):
         for camera in CAMERAS[:2]:
             text = json.loads((self.folder / f"one/keypoints_{camera}.json").read_text())
             if camera == "cam2":
@@ -119,7 +119,7 @@ class Keypoints(unittest.TestCase):
         said = self.refused("cam1=differ_cam1.json", "cam2=differ_cam2.json")
         self.assertIn("no two cameras see the same person", said)
 
-    def test_exchanged_cameras_are_named(self):
+    def test_swapped_cameras_are_named(self):
         done = self.marey("reconstruct", "one/rig.toml", "--targets", "keypoints",
                           *self.keypoints("one", cam1="one/keypoints_cam2.json", cam2="one/keypoints_cam1.json"), "-o", "swapped.marey")
         self.assertIn('keypoints of "cam1" and "cam2" exchanged', done.stderr)

@@ -46,7 +46,7 @@ class Markers(unittest.TestCase):
     def test_crossing_markers_keep_their_names(self):
         self.marey("simulate", "markers", "crossing", "--seed", 3, "-o", "crossing")
         self.names("left", "right")
-        for mode in ([], ["--live"], ["--fit-noise"], ["--filter", "kalman-acceleration"]):
+        for mode in ([], ["--live"], ["--estimate-noise"], ["--filter", "kalman-acceleration"]):
             with self.subTest(mode=mode):
                 self.marey("track", "crossing/video.mp4", "--targets", "markers", "--labels", "names.txt", "-o", "t.csv", *mode)
                 tracks = self.rows("t.csv")
@@ -120,7 +120,7 @@ class Markers(unittest.TestCase):
         self.assertIn("no marker was seen in any frame", done.stderr)
         self.assertEqual(self.rows("t.csv"), [])
 
-    def test_a_saturated_picture(self):
+    def test_a_saturated_image(self):
         self.film("white.mp4", "color=white:size=320x240:rate=25")
         self.assertIn("no marker was seen", self.marey("track", "white.mp4", "--targets", "markers", "-o", "t.csv").stderr)
 

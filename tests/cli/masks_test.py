@@ -43,7 +43,7 @@ class Masks(unittest.TestCase):
             made = marey("simulate", "people", "--situation", "overlap", "--frames", 50, "--seed", 4, "-o", "people", "-q", **options)
             self.assertEqual(made.returncode, 0, made.stderr)
             for form in ("mots", "coco-instances"):
-                done = marey("track", "people/video.mp4", "--outline", "--format", form, "-o", form, "-q", **options)
+                done = marey("track", "people/video.mp4", "--contour", "--format", form, "-o", form, "-q", **options)
                 self.assertEqual(done.returncode, 0, done.stderr)
             rows = [line.split() for line in pathlib.Path(folder, "mots").read_text().splitlines()]
             self.assertGreater(len(rows), 40)

@@ -69,7 +69,7 @@ class Match(unittest.TestCase):
         self.assertGreater(people, 6 * 100 * 12)
         self.assertAlmostEqual(found / people, 0.9, delta=0.02)
 
-    def test_velocities_are_those_of_the_places(self):
+    def test_velocities_are_those_of_the_positions(self):
         rows = self.truth(self.simulate("match", "--cameras", 1, "--seconds", 3, "--rate", 50))
         ways = collections.defaultdict(list)
         for r in rows:
@@ -80,10 +80,10 @@ class Match(unittest.TestCase):
                     self.assertAlmostEqual((after[axis] - before[axis]) * 25, now[2 + axis], delta=0.35)
 
     def test_rates_agree_and_seeds_differ(self):
-        def places(name, *more):
+        def locations(name, *more):
             return {(r["time"], r["id"]): (r["x"], r["y"]) for r in self.truth(self.simulate(name, "--cameras", 1, "--seconds", 2, *more))}
 
-        fast, slow, other = places("a", "--rate", 50), places("b", "--rate", 10), places("c", "--rate", 10, "--seed", 2)
+        fast, slow, other = locations("a", "--rate", 50), locations("b", "--rate", 10), locations("c", "--rate", 10, "--seed", 2)
         self.assertEqual(len(slow), 20 * 25)
         for key, place in slow.items():
             self.assertEqual(place, fast[key])
@@ -105,7 +105,7 @@ class Match(unittest.TestCase):
         self.assertTrue(all(0 < abs(float(t)) <= 0.4 for t in true[1:]), true)
 
     def test_two_cameras_on_one_stand(self):
-        folder = self.simulate("match", "--stand", "football", "--seconds", 1)
+        folder = self.simulate("match", "--layout", "football", "--seconds", 1)
         rig = (folder / "rig.toml").read_text()
         self.assertEqual(re.findall(r'name = "(.*)"', rig), ["left", "right"])
         self.assertIn("ground_from_world", rig)
@@ -113,7 +113,7 @@ class Match(unittest.TestCase):
             self.assertTrue(-3 < float(row["y"]) < 71, row)
 
     def test_what_cannot_be_is_refused(self):
-        for more in (["--cameras", 0], ["--cameras", 65], ["--seconds", -1], ["--rate", 0], ["--missed", 2], ["--stand", "roof"]):
+        for more in (["--cameras", 0], ["--cameras", 65], ["--seconds", -1], ["--rate", 0], ["--miss-rate", 2], ["--layout", "roof"]):
             self.marey("simulate", "match", "-o", "match", *more, code=2)
         self.assertIn("--output", self.marey("simulate", "match", "--cameras", 2, code=2).stderr)
         self.marey("simulate", "match", "-o", "match", "--pitch", "20x10", code=2)

@@ -88,7 +88,7 @@ class Mocap(unittest.TestCase):
         self.assertNotEqual((self.folder / "a/truth.csv").read_bytes(), (self.folder / "c/truth.csv").read_bytes())
 
     def test_a_room_with_videos(self):
-        self.marey("simulate", "room", "--cameras", 2, "--frames", 4, "--size", 320, 240, "--videos", "--bump", "2,0.01,0.02", "-o", "v")
+        self.marey("simulate", "room", "--cameras", 2, "--frames", 4, "--size", 320, 240, "--render", "--bump", "2,0.01,0.02", "-o", "v")
         rig = tomllib.loads((self.folder / "v/start.toml").read_text())
         for camera in rig["camera"]:
             self.assertNotIn("rotation", camera)
@@ -107,7 +107,7 @@ class Mocap(unittest.TestCase):
         self.assertIn("cannot be made", self.marey("simulate", "room", "-o", "file/room", code=1).stderr)
         self.assertEqual(os.listdir(self.folder), ["file"])
 
-    def test_all_problems_of_a_rig_are_told_at_once(self):
+    def test_all_problems_of_a_rig_are_reported_at_once(self):
         (self.folder / "rig.toml").write_text('[[camera]]\nname = "left"\nsize = [640, 480]\nfocal = [0, 500]\nprincipal = [320, 240]\n'
                                               '[[camera]]\nname = "left"\nfocol = 3\n')
         said = self.marey("convert", "rig.toml", "rig.yml", code=1).stderr

@@ -60,7 +60,7 @@ class Node(unittest.TestCase):
 
     def test_markers_of_another_computer_in_space(self):
         node = self.start(ROOM)
-        live = self.live(self.where, "--for", 3, "-o", "walk.marey")
+        live = self.live(self.where, "--duration", 3, "-o", "walk.marey")
         told = self.end(node)
         self.assertEqual(live["job"], "markers in space", "the calibration comes along")
         self.assertEqual(sorted(live["cameras"]), ["cam1", "cam2", "cam3", "cam4"])
@@ -73,18 +73,18 @@ class Node(unittest.TestCase):
         info = json.loads(subprocess.run([MAREY, "info", "walk.marey", "--json"], cwd=self.folder, capture_output=True, text=True, check=True).stdout)
         self.assertGreater(info["points"], 200)
 
-    def test_pictures_of_one_camera_that_the_host_names(self):
-        node = self.start("left=sim://room?cameras=1&rate=20&markers=8&drawn=1", "--send", "pictures")
-        live = self.live(f"mine={self.where}/left", "--for", 3)
+    def test_images_of_one_camera_that_the_host_names(self):
+        node = self.start("left=sim://room?cameras=1&rate=20&markers=8&drawn=1", "--send", "images")
+        live = self.live(f"mine={self.where}/left", "--duration", 3)
         self.assertGreater(self.end(node)["bytes"], 50_000)
-        self.assertEqual(live["job"], "markers in a picture")
+        self.assertEqual(live["job"], "markers in an image")
         self.assertEqual(list(live["cameras"]), ["mine"])
         self.assertEqual(live["cameras"]["mine"]["damaged"], 0)
         self.assertGreaterEqual(live["targets"], 5)
 
-    def test_a_node_that_is_killed_and_started_anew_is_back(self):
+    def test_a_node_that_is_killed_and_started_again_is_back(self):
         node = self.start(ROOM)
-        live = subprocess.Popen([MAREY, "live", self.where, "--for", "9", "--json"], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+        live = subprocess.Popen([MAREY, "live", self.where, "--duration", "9", "--json"], cwd=self.folder, text=True, stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE)
         self.addCleanup(live.kill)
         time.sleep(2.5)
@@ -105,7 +105,7 @@ class Node(unittest.TestCase):
         with socket.socket() as probe:
             return probe.connect_ex(("127.0.0.1", self.port)) == 0
 
-    def test_whoever_sends_garbage_disturbs_nobody(self):
+    def test_garbage_from_a_client_disturbs_no_other(self):
         node = self.start(ROOM)
         for garbage in (b"", b"GET / HTTP/1.1\r\n\r\n", b"\xff" * 100_000, b"\x00" * 10, os.urandom(5000)):
             with socket.create_connection(("127.0.0.1", self.port)) as wire:
@@ -114,7 +114,7 @@ class Node(unittest.TestCase):
                 except OSError:
                     pass
         crowd = [socket.create_connection(("127.0.0.1", self.port)) for _ in range(100)]
-        live = self.live(self.where, "--for", 2)
+        live = self.live(self.where, "--duration", 2)
         for wire in crowd:
             wire.close()
         camera = self.end(node)["cameras"]["cam1"]
@@ -130,18 +130,18 @@ class Node(unittest.TestCase):
                 self.assertEqual(wire.recv(4096).split()[1], status, origin)
         self.end(node)
 
-    def test_what_cannot_be_is_said(self):
-        self.assertIn("does not answer; does marey node run there", self.refused("live", self.where, "--for", 1))
-        self.assertIn("names no host", self.refused("live", "node:/left", "--for", 1))
+    def test_what_cannot_be_is_stated(self):
+        self.assertIn("does not answer; does marey node run there", self.refused("live", self.where, "--duration", 1))
+        self.assertIn("names no host", self.refused("live", "node:/left", "--duration", 1))
         node = self.start(ROOM)
         self.assertIn("cannot be had", self.refused("node", ROOM, "--port", self.port))
-        done = subprocess.run([MAREY, "live", f"{self.where}/nobody", "--for", "1"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        done = subprocess.run([MAREY, "live", f"{self.where}/nobody", "--duration", "1"], cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 1)
         self.assertIn('has no camera "nobody"; it has cam1, cam2, cam3, cam4', done.stderr)
         self.end(node)
-        self.refused("node", ROOM, "--quality", 0, code=2)
+        self.refused("node", ROOM, "--jpeg-quality", 0, code=2)
         self.refused("node", ROOM, "--port", 65536, code=2)
-        self.assertIn("is no address of this computer", self.refused("node", ROOM, "--listen", "nowhere.example"))
+        self.assertIn("is not an address of this computer", self.refused("node", ROOM, "--listen", "nowhere.example"))
         self.assertIn("no such file", self.refused("node", "film.mp4", "--port", self.port))
 
 

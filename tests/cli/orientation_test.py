@@ -1,5 +1,5 @@
 """One orientation of the ground: over a rig whose ground_from_world is a reflection, the viewer of a take, the viewer of its CSV, the view from above
-and the report show a corner of the pitch as the same corner; and what does not state its orientation is told.
+and the report show a corner of the pitch as the same corner; and what does not specify its orientation is reported.
 
 Usage: orientation_test.py MAREY [unittest options]. ffmpeg decodes the view from above.
 """
@@ -39,9 +39,9 @@ def shown(*words):
 
 
 def drawn_in_report(folder):
-    """(x, y) in m on the page's own picture, right and down from the corner that is drawn on the left above, of all first points of paths."""
+    """(x, y) in m on the page's own image, right and down from the corner that is drawn on the left above, of all first points of paths."""
     page = (shown_page.FOLDER / folder / "report.html").read_text()
-    picture = page[page.index("Where everybody went") : page.index("One by one")]
+    picture = page[page.index("Where every person went") : page.index("One by one")]
     left, top = map(float, re.search(r'viewBox="(\S+) (\S+)', picture).groups())
     down = int(re.search(r'transform="scale\(1 (-?1)\)"', picture)[1])
     return [(float(x) - left - 3, down * float(y) - top - 3) for x, y in re.findall(r'<polyline [^>]*?points="([-\d.]+),([-\d.]+)', picture)]
@@ -50,12 +50,12 @@ def drawn_in_report(folder):
 class Orientation(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        marey("simulate", "match", "--stand", "football", "--seconds", 3, "--seed", 4, "-o", "match", "-q")
+        marey("simulate", "match", "--layout", "football", "--seconds", 3, "--seed", 4, "-o", "match", "-q")
         marey("track", "match/rig.toml", "--ground", "--size", "105x68", "-o", "take.marey", "--pitch-view", "above.mp4", "-q")
         marey("convert", "take.marey", "match.csv", "-q")
         rows = rows_of("match.csv")
         columns = [name for name in rows[0] if name != "y_down"]
-        with open(shown_page.FOLDER / "old.csv", "w", newline="") as out:  # of another program: it does not state it
+        with open(shown_page.FOLDER / "old.csv", "w", newline="") as out:  # of another program: it does not specify it
             old = csv.DictWriter(out, [name for name in columns if name not in ("state", "cameras")], extrasaction="ignore")
             old.writeheader()
             old.writerows(rows)
@@ -74,7 +74,7 @@ class Orientation(unittest.TestCase):
         self.assertEqual(shown("match.csv"), (True, ""))
         down, words = shown("old.csv")
         self.assertFalse(down)
-        self.assertIn("old.csv: does not state whether y grows upwards or downwards", words)
+        self.assertIn("old.csv: does not specify whether y grows upwards or downwards", words)
         self.assertEqual(shown("old.csv", "--rig", "match/rig.toml"), (True, ""))
         self.assertEqual(shown("old.csv", "--y-down"), (True, ""))
         marey("view", "old.csv", "--rig", "match/rig.toml", "--y-down", code=2)
@@ -112,13 +112,13 @@ class Orientation(unittest.TestCase):
             for x, y in drawn:  # as from above, the corner (0, 0) on the left above
                 self.assertLess(min(abs(x - a) + abs(y - b) for a, b in first.values()), 1.5, folder)
         told = marey("measure", "old.csv", "-o", "figures.csv", "--report", "old")
-        self.assertIn("does not state whether y grows", told.stderr)
-        self.assertIn("does not state whether y grows", (shown_page.FOLDER / "old/report.html").read_text())
+        self.assertIn("does not specify whether y grows", told.stderr)
+        self.assertIn("does not specify whether y grows", (shown_page.FOLDER / "old/report.html").read_text())
         by_x = {round(x, 1): y for x, y in drawn_in_report("report")}
         upwards = drawn_in_report("old")
         self.assertGreater(sum(round(x, 1) in by_x and abs(by_x[round(x, 1)] - (WIDTH - y)) < 0.1 for x, y in upwards), 15)
         for how in (("--rig", "match/rig.toml"), ("--y-down",)):
-            self.assertNotIn("does not state", marey("measure", "old.csv", "-o", "figures.csv", "--report", "old", *how).stderr)
+            self.assertNotIn("does not specify", marey("measure", "old.csv", "-o", "figures.csv", "--report", "old", *how).stderr)
             self.assertEqual(drawn_in_report("old"), drawn_in_report("report"))
 
     def test_conversions_keep_it(self):

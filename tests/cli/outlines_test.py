@@ -105,20 +105,20 @@ class Outlines(unittest.TestCase):
             near += abs(x - row["x"]) < row["width"] and abs(y - row["y"]) < row["height"] / 2
         self.assertGreater(near, 0.97 * count)
 
-    def test_what_was_asked_of_the_spline(self):
+    def test_what_was_requested_of_the_spline(self):
         outlines = [row["outline"] for row in self.rows("quadratic.jsonl") if "outline" in row]
         self.assertGreater(len(outlines), 20)
         for outline in outlines:
             self.assertEqual(outline["order"], 3)
             self.assertEqual(len(outline["control_points"]), 16)
 
-    def test_the_plot_has_a_way_for_each_person(self):
+    def test_the_plot_has_a_trajectory_for_each_person(self):
         svg = xml.etree.ElementTree.parse(self.folder / "match.svg").getroot()
         people = {row["id"] for row in self.rows("match.jsonl")}
         circles = svg.findall("{http://www.w3.org/2000/svg}circle")
         self.assertEqual(len(circles), len(people))
 
-    def test_the_film_is_there_and_nothing_else_is_left(self):
+    def test_the_video_is_there_and_nothing_else_is_left(self):
         names = {path.name for path in self.folder.iterdir()}
         self.assertIn("match_tracks.mp4", names)
         self.assertFalse([name for name in names if name.endswith(".part") or "outlines-" in name])

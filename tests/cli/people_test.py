@@ -63,7 +63,7 @@ class People(unittest.TestCase):
             seen += 1
         self.assertGreater(seen, 60)
 
-    def test_the_same_seed_gives_the_same_film(self):
+    def test_the_same_seed_gives_the_same_video(self):
         for name, seed in (("a", 3), ("b", 3), ("c", 4)):
             self.run_marey("simulate", "people", "-o", name, "--seed", seed, *SMALL)
         read = [(self.folder / name / "silhouettes.jsonl").read_bytes() for name in "abc"]
@@ -77,23 +77,23 @@ class People(unittest.TestCase):
         self.assertGreaterEqual(len(there), 2)
         for name in ("imm", "ekf", "ukf", "condensation", "condensation-velocity", "kalman-acceleration", "kalman-paper", "alpha-beta"):
             for live in ([], ["--live"]):
-                self.run_marey("track", "film/video.mp4", "--filter", name, "--seen-only", "-o", "t.txt", "-q", *live)
+                self.run_marey("track", "film/video.mp4", "--filter", name, "--measured-only", "-o", "t.txt", "-q", *live)
                 people = {line.split(",")[1] for line in (self.folder / "t.txt").read_text().splitlines()}
                 self.assertGreaterEqual(len(people), len(there), f"{name} {live}")
 
-    def test_a_run_that_finds_nobody_says_why(self):
+    def test_a_run_that_finds_none_states_why(self):
         self.run_marey("simulate", "people", "-o", "film", *SMALL, "--people", "0")
-        self.assertIn("nobody was found: nothing moved", self.run_marey("track", "film/video.mp4", "-o", "t.txt").stderr)
+        self.assertIn("no person was found: nothing moved", self.run_marey("track", "film/video.mp4", "-o", "t.txt").stderr)
         (self.folder / "boxes.txt").write_text("1,-1,10,10,20,40,1\n2,-1,200,10,20,40,1\n9,-1,90,80,20,40,1\n")
         said = self.run_marey("track", "--detections", "boxes.txt", "--rate", "2", "-o", "t.txt").stderr
-        self.assertIn("nowhere for long enough to be believed", said)
+        self.assertIn("nowhere for long enough to be trusted", said)
         self.assertIn("2 frames a second", said)
 
-    def test_who_stands_from_the_beginning_is_on_the_ground_from_the_first_frame(self):
+    def test_identify_stands_from_the_beginning_is_on_the_ground_from_the_first_frame(self):
         self.run_marey("simulate", "people", "-o", "film", "--size", "384", "288", "--height", "44", "--frames", "200", "--rate", "10",
                        "--people", "6", "--situation", "standing", "--seed", "3", "-q")
         told = json.loads(self.run_marey("track", "film/rig.toml", "--ground", "-o", "g.csv", "--json", "-q").stdout)
-        self.assertTrue(any("looked at again" in note for note in told["notes"]), told["notes"])
+        self.assertTrue(any("inspected again" in note for note in told["notes"]), told["notes"])
         with open(self.folder / "film/positions.csv") as truth, open(self.folder / "g.csv") as tracks:
             places = {(int(row["frame"]), int(row["id"])): (float(row["x"]), float(row["y"])) for row in csv.DictReader(truth)}
             seen = {}
@@ -106,7 +106,7 @@ class People(unittest.TestCase):
 
     def test_masks_show_the_people(self):
         self.run_marey("simulate", "people", "-o", "film", *SMALL)
-        self.run_marey("track", "film/video.mp4", "-o", "t.txt", "--masks", "seen", "-q")
+        self.run_marey("track", "film/video.mp4", "-o", "t.txt", "--foreground-masks", "seen", "-q")
         names = [f"bin{frame:06}.png" for frame in range(1, 31)]
         self.assertEqual(sorted(p.name for p in (self.folder / "seen").iterdir()), names)
         grey = subprocess.run(["ffmpeg", "-v", "error", "-i", "seen/bin%06d.png", "-f", "rawvideo", "-pix_fmt", "gray", "-"],
@@ -126,20 +126,20 @@ class People(unittest.TestCase):
         print(f"masks: {hit / union:.2f} of the union with the truth")
         self.assertGreater(hit / union, 0.4)
 
-    def test_masks_are_refused_where_there_is_nothing_to_see_or_something_to_lose(self):
+    def test_masks_are_refused_where_there_is_nothing_to_observe_or_something_to_lose(self):
         (self.folder / "boxes.txt").write_text("1,-1,10,10,20,40,1\n2,-1,11,10,20,40,1\n")
-        said = self.run_marey("track", "--detections", "boxes.txt", "--rate", "25", "-o", "t.txt", "--masks", "seen", code=1).stderr
+        said = self.run_marey("track", "--detections", "boxes.txt", "--rate", "25", "-o", "t.txt", "--foreground-masks", "seen", code=1).stderr
         self.assertIn("detections are given", said)
         self.run_marey("simulate", "people", "-o", "film", *SMALL)
-        self.assertIn("not empty", self.run_marey("track", "film/video.mp4", "-o", "t.txt", "--masks", "film", code=1).stderr)
-        # Before the film is looked at, which may take hours.
-        (self.folder / "broken.mp4").write_bytes(b"no film")
-        self.assertIn("film: is not empty", self.run_marey("track", "broken.mp4", "--steady", "-o", "t.txt", "--masks", "film", code=1).stderr)
-        self.run_marey("track", "film/video.mp4", "--targets", "markers", "-o", "t.txt", "--masks", "seen", code=2)
-        self.run_marey("track", "film/rig.toml", "--ground", "-o", "t.csv", "--masks", "seen", code=2)
+        self.assertIn("not empty", self.run_marey("track", "film/video.mp4", "-o", "t.txt", "--foreground-masks", "film", code=1).stderr)
+        # Before the video is inspected, which may take hours.
+        (self.folder / "broken.mp4").write_bytes(b"no video")
+        self.assertIn("film: is not empty", self.run_marey("track", "broken.mp4", "--stabilise", "-o", "t.txt", "--foreground-masks", "film", code=1).stderr)
+        self.run_marey("track", "film/video.mp4", "--targets", "markers", "-o", "t.txt", "--foreground-masks", "seen", code=2)
+        self.run_marey("track", "film/rig.toml", "--ground", "-o", "t.csv", "--foreground-masks", "seen", code=2)
         self.assertFalse((self.folder / "seen").exists() or (self.folder / "t.txt").exists())
 
-    def test_people_who_have_no_room_are_told(self):
+    def test_people_identify_have_no_room_are_reported(self):
         apart = ("simulate", "people", "--situation", "apart", "--people", "4", "--frames", "2", "-o", "film")
         self.assertIn("2 of 4 people have room to keep apart in 768 x 576 px", self.run_marey(*apart, "--height", "100").stderr)
         self.assertNotIn("warning", self.run_marey(*apart, "--height", "60").stderr)
@@ -148,13 +148,13 @@ class People(unittest.TestCase):
     def test_what_cannot_be_is_refused(self):
         said = self.run_marey("simulate", "people", "-o", "film", "--size", "100", "100", "--height", "400", code=1).stderr
         self.assertIn("400 px tall do not fit", said)
-        self.assertIn("no_such.png", self.run_marey("simulate", "people", "--ground", "no_such.png", code=1).stderr)
+        self.assertIn("no_such.png", self.run_marey("simulate", "people", "--background-image", "no_such.png", code=1).stderr)
         for wrong in (["--light", "green"], ["--situation", "dance"], ["--people", "-1"], ["--frames", "0"]):
             self.run_marey("simulate", "people", *wrong, code=2)
         self.assertIn("holds", self.run_marey("experiment", "outlines", "--only", "nothing like it", code=1).stderr)
         self.assertEqual(list(self.folder.iterdir()), [])
 
-    def test_the_experiment_tells_every_method(self):
+    def test_the_experiment_reports_every_method(self):
         said = self.run_marey("experiment", "outlines", "--videos", 1, "--only", "partly hidden, 25", "--json", "--quiet").stdout
         case, = json.loads(said)["cases"]
         self.assertEqual(case["people"], 2)
@@ -164,7 +164,7 @@ class People(unittest.TestCase):
             self.assertTrue(0 <= method["lost"] <= 2, name)
         self.assertGreater(case["methods"]["Marey"]["iou"], case["methods"]["published (Arnaut & Costa)"]["iou"])
 
-    def test_the_experiment_with_hypotheses_tells_every_association(self):
+    def test_the_experiment_with_hypotheses_reports_every_association(self):
         said = self.run_marey("experiment", "hypotheses", "--scenes", 3, "--json", "--quiet").stdout
         told = json.loads(said)
         self.assertEqual(told["scenes"], 3)

@@ -13,7 +13,7 @@ import tempfile
 import unittest
 
 MAREY = ""
-PAN, TILT, PLACE, FOCAL = 35.0, 79.0, (-0.5, 65.0, -14.0), 2300.0
+PAN, TILT, LOCATION, FOCAL = 35.0, 79.0, (-0.5, 65.0, -14.0), 2300.0
 
 # Straight elements at the right end, in SoccerNet's frame: from the middle, x to the right, y to the near side, z down.
 LINES = {
@@ -29,10 +29,10 @@ LINES = {
 }
 
 
-def share(place):
-    """Where SoccerNet's code sees a place, as shares of a picture of 960x540; nothing outside it."""
+def fraction(place):
+    """Where SoccerNet's code sees a place, as shares of an image of 960x540; nothing outside it."""
     p, t = math.radians(PAN), math.radians(TILT)
-    x, y, z = (a - b for a, b in zip(place, PLACE))
+    x, y, z = (a - b for a, b in zip(place, LOCATION))
     x, y = math.cos(p) * x + math.sin(p) * y, -math.sin(p) * x + math.cos(p) * y
     y, z = math.cos(t) * y + math.sin(t) * z, -math.sin(t) * y + math.cos(t) * z
     u, v = 479.5 + FOCAL * x / z, 269.5 + FOCAL * y / z
@@ -42,7 +42,7 @@ def share(place):
 def labels():
     found = {}
     for name, (a, b) in LINES.items():
-        seen = [s for i in range(101) if (s := share([p + (q - p) * i / 100 for p, q in zip(a, b)]))]
+        seen = [s for i in range(101) if (s := fraction([p + (q - p) * i / 100 for p, q in zip(a, b)]))]
         if len(seen) > 3:
             found[name] = [seen[0], seen[-1]]
     return found
@@ -63,10 +63,10 @@ class PitchElements(unittest.TestCase):
         (self.folder / name).write_text(what if isinstance(what, str) else json.dumps(what))
         return name
 
-    def test_camera_is_found_and_written_both_ways(self):
+    def test_camera_is_found_and_written_both_trajectories(self):
         self.assertGreaterEqual(len(labels()), 6, "the scene is as it was meant")
         frame = self.write("00012.json", labels())
-        done = self.marey("calibrate", "pitch", "--elements", frame, "-o", "rig.toml", "--cameras", "cameras", "--json")
+        done = self.marey("calibrate", "pitch", "--elements", frame, "-o", "rig.toml", "--soccernet-cameras", "cameras", "--json")
         self.assertEqual(json.loads(done.stdout)["pictures"][0]["verdict"], "found")
         camera = json.loads((self.folder / "cameras/camera_00012.json").read_text())
         self.assertAlmostEqual(camera["pan_degrees"], PAN, delta=1.5)
@@ -78,15 +78,15 @@ class PitchElements(unittest.TestCase):
         self.assertEqual(again.stdout, "")
         self.assertEqual((self.folder / "rig.toml").read_text(), (self.folder / "second.toml").read_text())
 
-    def test_many_pictures_in_one_file(self):
+    def test_many_images_in_one_file(self):
         mirrored = {name.replace("right", "left", 1): points for name, points in labels().items()}
         many = self.write("many.json", {"a": labels(), "b": {"Middle line": [{"x": 0.5, "y": 0}]}, "c": mirrored})
         done = self.marey("calibrate", "pitch", "--elements", many, "-o", "many.toml")
-        self.assertIn("1 of 3 pictures have a camera", done.stdout)
+        self.assertIn("1 of 3 images have a camera", done.stdout)
         self.assertIn("b: 1 labelled element; at least two are needed", done.stderr)
         self.assertIn("c: the labels fit a mirrored pitch", done.stderr)
 
-    def test_what_cannot_be_used_is_one_sentence(self):
+    def test_what_cannot_be_used_is_one_message(self):
         def refused(frame, code=1, *more):
             done = self.marey("calibrate", "pitch", "--elements", frame, "-o", "never.toml", *more, code=code)
             self.assertEqual(done.stdout, "")
@@ -94,8 +94,8 @@ class PitchElements(unittest.TestCase):
             self.assertFalse((self.folder / "never.toml").exists())
             return done.stderr
 
-        self.assertIn("is no JSON", refused(self.write("broken.json", "{")))
-        self.assertIn("is no element of a pitch", refused(self.write("other.json", {"Tramline": [{"x": 0, "y": 0}]})))
+        self.assertIn("is not a JSON", refused(self.write("broken.json", "{")))
+        self.assertIn("is not an element of a pitch", refused(self.write("other.json", {"Tramline": [{"x": 0, "y": 0}]})))
         self.assertIn("at least two are needed", refused(self.write("one.json", {"Middle line": [{"x": 0.5, "y": 0.5}]})))
         frame = self.write("frame.json", labels())
         self.assertIn("WIDTHxHEIGHT", refused(frame, 2, "--resolution", "960"))

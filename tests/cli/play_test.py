@@ -17,7 +17,7 @@ import unittest
 MAREY = ""
 
 
-def usual_signals():
+def default_signals():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -38,7 +38,7 @@ class Play(unittest.TestCase):
     def start(self, *arguments):
         """The process and its wires' ports."""
         process = subprocess.Popen([MAREY, "play", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.folder,
-                                   preexec_fn=usual_signals)
+                                   preexec_fn=default_signals)
         self.addCleanup(process.kill)
         count = sum(word == "--stream" for word in arguments)
         return process, [int(process.stderr.readline().split(":")[2].split(",")[0]) for _ in range(count)]
@@ -54,7 +54,7 @@ class Play(unittest.TestCase):
         self.assertEqual([wire["wire"] for wire in told["streams"]], ["osc", "json"])
         self.assertEqual(told["streams"][0]["sent"], told["instants"])
         said = self.marey("play", "points.csv", "--speed", 10, "--rate", 10, "--stream", "vmc").stderr
-        self.assertIn("80 left out by --rate", said)
+        self.assertIn("80 omitted by --rate", said)
         self.assertIn("vmc to 127.0.0.1:39539: 20 frames sent, 0 dropped", said)
         self.assertEqual(self.marey("play", "points.csv", "--speed", 100, "--stream", "osc", "-q").stderr, "")
 
@@ -66,7 +66,7 @@ class Play(unittest.TestCase):
         self.marey("play", "boxes.txt", "--speed", 50, "--stream", "json::0", "-q")
         self.assertIn("qtm: carries metres", self.marey("play", "boxes.txt", "--stream", "qtm::0", code=1).stderr)
 
-    def test_what_is_wrong_is_told(self):
+    def test_what_is_wrong_is_reported(self):
         for arguments, code, sentence in (
                 (("points.csv", "--stream", "word"), 2, "there are qtm, natnet"),
                 (("points.csv", "--stream", "qtm:a:99999"), 2, "names no port"),
@@ -83,7 +83,7 @@ class Play(unittest.TestCase):
             said = self.marey("play", "points.csv", "--stream", f"qtm::{taken.getsockname()[1]}", code=1).stderr
         self.assertIn("is in use by another program", said)
 
-    def test_it_ends_when_it_is_told_to(self):
+    def test_it_ends_when_it_is_reported_to(self):
         process, _ = self.start("points.csv", "--loop", "--stream", "json::0")
         code, _, said = self.end(process)
         self.assertEqual(code, 0, said)
@@ -91,7 +91,7 @@ class Play(unittest.TestCase):
         process, _ = self.start("points.csv", "--speed", "0.01", "--stream", "json::0")
         self.assertEqual(self.end(process)[0], 130)
 
-    def test_hostile_clients_cost_nobody_else_anything(self):
+    def test_hostile_clients_cost_none_else_anything(self):
         process, ports = self.start("points.csv", "--loop", "--json", "--stream", "qtm::0", "--stream", "json::0", "--stream", "foxglove::0",
                                     "--stream", "lsl::0")
         good = socket.create_connection(("127.0.0.1", ports[1]))
@@ -106,7 +106,7 @@ class Play(unittest.TestCase):
                 try:
                     client.sendall(attack)
                 except OSError:
-                    pass  # sent off meanwhile
+                    pass  # disconnected in the meantime
                 kept.append(client)
         for port in ports:
             for _ in range(250):

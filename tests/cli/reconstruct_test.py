@@ -19,7 +19,7 @@ class Reconstruct(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_reconstruct_"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
-        cls.marey("simulate", "room", "--frames", 60, "--cameras", 4, "--markers", 12, "--size", 640, 512, "--videos", "--no-occlusion",
+        cls.marey("simulate", "room", "--frames", 60, "--cameras", 4, "--markers", 12, "--size", 640, 512, "--render", "--no-occlusion",
                   "-o", "room", "-q")
 
     @classmethod
@@ -56,7 +56,7 @@ class Reconstruct(unittest.TestCase):
         self.marey("reconstruct", "room/rig.toml", "--observations", "room/observations.csv", "-o", "first.marey", "-q")
         first = json.loads(self.marey("info", "first.marey", "--json").stdout)
         for again in (["first.marey"], ["room/rig.toml", "--observations", "first.marey"], ["--observations", "first.marey"]):
-            summary = json.loads(self.marey("reconstruct", *again, "--fill", 0, "-o", "again.marey", "--json").stdout)
+            summary = json.loads(self.marey("reconstruct", *again, "--max-gap", 0, "-o", "again.marey", "--json").stdout)
             self.assertEqual(summary["frames"], 60)
             self.assertEqual(summary["points"]["filled"], 0)
             self.assertGreater(summary["points"]["measured"], 0.7 * 60 * 12)

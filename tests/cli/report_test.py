@@ -1,6 +1,6 @@
 """The page of `marey measure --report`: one file without a network, sorted by its reader, with sprints, territories and numbers; opened in a browser.
 
-Usage: report_test.py MAREY [unittest options]. Chromium is looked for.
+Usage: report_test.py MAREY [unittest options]. Chromium is searched for.
 """
 
 import json
@@ -67,7 +67,7 @@ class Report(unittest.TestCase):
         self.assertEqual(sorted(first), sorted(second))
         self.assertEqual(sort, "ascending")
 
-    def test_what_is_empty_is_left_out(self):
+    def test_what_is_empty_is_excluded(self):
         self.assertNotIn("The ball", self.page)
         rows = [f"{i},{i / 25},{p},{10 * p + i / 25:.3f},20,{team}\n" for i in range(100) for p, team in ((1, "a"), (2, "b"))]
         ball = [f"{i},{i / 25},3,90,60,\n" for i in range(100)]
@@ -77,16 +77,16 @@ class Report(unittest.TestCase):
             subprocess.run([MAREY, "measure", f"{name}.csv", "-o", "figures.csv", "--report", name, "-q"], cwd=self.folder, check=True)
             page = (self.folder / name / "report.html").read_text()
             self.assertNotRegex(page, r"<tbody>\s*</tbody>", name)
-            self.assertNotIn("<button>name</button>", page, "nobody has a name")
+            self.assertNotIn("<button>name</button>", page, "no person has a name")
             self.assertEqual("The ball" in page, name == "far")
-            self.assertNotIn("Possession", page, "nobody has it")
+            self.assertNotIn("Possession", page, "no person has it")
 
     def test_a_white_team_is_white(self):
         colours = {team: colour for colour, team in re.findall(r"<i style=\"--c:(#\w+)\"></i>(\w+)", self.page)}
         self.assertGreater(int(colours["white"][1:3], 16), 240)
         self.assertIn(f"stroke=\"{colours['white']}\"", self.page)
 
-    def test_seen_and_printed(self):
+    def test_observed_and_printed(self):
         self.browser("--screenshot=light.png", "--window-size=1300,1800", self.file.as_uri())
         self.browser("--print-to-pdf=paper.pdf", self.file.as_uri())
         self.assertGreater((self.folder / "light.png").stat().st_size, 20_000)

@@ -152,7 +152,7 @@ class WebSocket:
         return data
 
 
-class Stretch:
+class TimeChunk:
     """Kinds 1 and 2 of apps/viewer/wire.h."""
 
     def __init__(self, data):
@@ -168,7 +168,7 @@ class Stretch:
         self.x = struct.unpack_from(f"<{rows}f", data, at + 4 * rows)
 
 
-def hear_until(page, word, holds=lambda rest: True, patience_s=20):
+def receive_until(page, word, holds=lambda rest: True, patience_s=20):
     """What is behind that word, once it holds."""
     end = time.monotonic() + patience_s
     page.wire.settimeout(max(5, patience_s))  # while a rig is computed nothing is said

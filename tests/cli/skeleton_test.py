@@ -71,7 +71,7 @@ class Skeleton(unittest.TestCase):
         for name in ("walk.mot", "walk.bvh", "run.bvh", "person.toml", "cycles.csv", "angles.csv", "gait.html", "walk_angles.c3d"):
             self.assertGreater((self.folder / name).stat().st_size, 1000, name)
 
-    def test_the_summary_says_what_fits_and_what_is_not_seen(self):
+    def test_the_summary_states_what_fits_and_what_is_not_observed(self):
         done = self.marey("solve", "walk.trc", "--skeleton", "model.osim", "-o", "walk.mot")
         self.assertIn("walk.trc: the skeleton subject01, solved from 31 markers in 73 frames", done.stderr)
         self.assertIn("mm RMS", done.stderr)
@@ -82,12 +82,12 @@ class Skeleton(unittest.TestCase):
 
     def test_the_same_bytes_again(self):
         for name in ("a", "b"):
-            self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", f"{name}.mot", "-o", f"{name}.bvh", "-o", f"{name}.glb", "-q")
+            self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "-o", f"{name}.mot", "-o", f"{name}.bvh", "-o", f"{name}.glb", "-q")
         for ending in ("mot", "bvh", "glb"):
             self.assertEqual((self.folder / f"a.{ending}").read_bytes(), (self.folder / f"b.{ending}").read_bytes())
 
-    def test_the_motion_says_where_joints_are(self):
-        arguments = ("solve", "walk.c3d", "--static", "standing.c3d", "--motion", "range.c3d", "-o", "walk.mot")
+    def test_the_motion_states_where_joints_are(self):
+        arguments = ("solve", "walk.c3d", "--static-trial", "standing.c3d", "--rom-trial", "range.c3d", "-o", "walk.mot")
         told = json.loads(self.marey(*arguments, "--json").stdout)["joints"]
         self.assertEqual([joint["name"] for joint in told],
                          ["left hip", "right hip", "left knee", "left elbow", "right knee", "right elbow"])
@@ -96,10 +96,10 @@ class Skeleton(unittest.TestCase):
         self.assertFalse(told[3]["by_motion"])  # its upper arm has one marker
         said = self.marey(*arguments).stderr
         self.assertIn("left hip: ", said)
-        other = self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--motion", "other_walk.c3d", "-o", "walk.mot", "-q")
+        other = self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--rom-trial", "other_walk.c3d", "-o", "walk.mot", "-q")
         self.assertIn("other_walk.c3d is of another person than standing.c3d", other.stderr)
-        self.assertIn("--static", self.marey("solve", "walk.c3d", "--skeleton", "model.osim", "--motion", "range.c3d", "-o", "x.mot", code=2).stderr)
-        self.assertIn("one of the two", self.marey("solve", "walk.c3d", "--skeleton", "model.osim", "--static", "standing.c3d", "-o", "x.mot", code=2).stderr)
+        self.assertIn("--static-trial", self.marey("solve", "walk.c3d", "--skeleton", "model.osim", "--rom-trial", "range.c3d", "-o", "x.mot", code=2).stderr)
+        self.assertIn("one of the two", self.marey("solve", "walk.c3d", "--skeleton", "model.osim", "--static-trial", "standing.c3d", "-o", "x.mot", code=2).stderr)
 
     def standing_puncher(self, *without):
         """CMU's man stands still for a third of a second near the end."""
@@ -111,11 +111,11 @@ class Skeleton(unittest.TestCase):
 
     def test_marker_sets_are_known_by_their_labels(self):
         self.standing_puncher()
-        told = json.loads(self.marey("solve", "punches.c3d", "--static", "standing.csv", "-o", "punches.bvh", "-o", "punches.mot", "--json").stdout)
+        told = json.loads(self.marey("solve", "punches.c3d", "--static-trial", "standing.csv", "-o", "punches.bvh", "-o", "punches.mot", "--json").stdout)
         self.assertEqual(told["marker_set"], "CMU's 41 markers")
         self.assertEqual((len(told["markers"]), told["not_recorded"], told["not_known"]), (41, [], []))
         self.assertLess(told["rms_mm"], 20)
-        triads = ("solve", "triads.trc", "--static", "triads_standing.trc", "--up", "y", "-o", "walk.mot")
+        triads = ("solve", "triads.trc", "--static-trial", "triads_standing.trc", "--up", "y", "-o", "walk.mot")
         told = json.loads(self.marey(*triads, "--json").stdout)
         self.assertEqual(told["marker_set"], "Cleveland Clinic")
         self.assertLess(told["rms_mm"], 10)
@@ -123,13 +123,13 @@ class Skeleton(unittest.TestCase):
         self.assertEqual(few["marker_set"], "Helen Hayes")
         self.assertLess(len(few["markers"]), len(told["markers"]))
 
-    def test_what_lacks_of_a_marker_set_is_said(self):
+    def test_what_lacks_of_a_marker_set_is_stated(self):
         self.standing_puncher("LSHN", "RKNE")
-        done = self.marey("solve", "punches.c3d", "--static", "standing.csv", "-o", "x.mot", code=1)
-        self.assertIn("standing.csv: its labels are no whole marker set that Marey knows; CMU's 41 markers is nearest, and lacks RKNE, LSHN", done.stderr)
-        done = self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--marker-set", "cmu-41", "-o", "x.mot", code=1)
+        done = self.marey("solve", "punches.c3d", "--static-trial", "standing.csv", "-o", "x.mot", code=1)
+        self.assertIn("standing.csv: its labels are not whole marker set that Marey knows; CMU's 41 markers is nearest, and lacks RKNE, LSHN", done.stderr)
+        done = self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--marker-set", "cmu-41", "-o", "x.mot", code=1)
         self.assertIn("of CMU's 41 markers it lacks LFWT, RFWT", done.stderr)
-        self.assertIn("cleveland-clinic", self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--marker-set", "golem", "-o", "x.mot", code=2).stderr)
+        self.assertIn("cleveland-clinic", self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--marker-set", "golem", "-o", "x.mot", code=2).stderr)
         self.marey("solve", "walk.c3d", "--skeleton", "model.osim", "--marker-set", "cmu-41", "-o", "x.mot", code=2)
         self.assertFalse((self.folder / "x.mot").exists())
 
@@ -139,7 +139,7 @@ class Skeleton(unittest.TestCase):
         return next((DATA / "gait_children" / name).glob(kind + "_*.c3d"))
 
     def column(self, name, column, separator):
-        """Of a table whose head is the first line that names the column; nothing where a cell is empty."""
+        """Of a table whose head is the first line that names the column; nothing if a cell is empty."""
         lines = (self.folder / name).read_text().splitlines()
         begin = next(i for i, line in enumerate(lines) if column in line.split(separator))
         at = lines[begin].split(separator).index(column)
@@ -150,8 +150,8 @@ class Skeleton(unittest.TestCase):
         # Shoulders stand otherwise when children walk than when they stand: by 30 mm with HC031A.
         for name in self.CHILDREN:
             static, walk = self.child(name, "static"), self.child(name, "straight")
-            told = json.loads(self.marey("solve", walk, "--static", static, "-o", "walk.mot", "--json").stdout)
-            self.marey("gait", walk, "--static", static, "--angles", "angles.csv", "-q")
+            told = json.loads(self.marey("solve", walk, "--static-trial", static, "-o", "walk.mot", "--json").stdout)
+            self.marey("gait", walk, "--static-trial", static, "--angles", "angles.csv", "-q")
             shoulder = max(marker["rms_mm"] for marker in told["markers"] if marker["label"] in ("LSHO", "RSHO"))
             offs = {}
             for side in ("left", "right"):
@@ -168,9 +168,9 @@ class Skeleton(unittest.TestCase):
         for name in self.CHILDREN[:2]:
             static, walk = self.child(name, "static"), self.child(name, "straight")
             done = self.marey("solve", walk, "-o", "alone.mot", "-o", "alone.bvh", "--json")
-            self.assertIn("without --static the skeleton is calibrated from this motion alone, by the posture at", done.stderr)
+            self.assertIn("without --static-trial the skeleton is calibrated from this motion alone, by the posture at", done.stderr)
             told = json.loads(done.stdout)
-            known = json.loads(self.marey("solve", walk, "--static", static, "-o", "known.mot", "--json").stdout)
+            known = json.loads(self.marey("solve", walk, "--static-trial", static, "-o", "known.mot", "--json").stdout)
             offs = {}
             for joint in ("left_knee_flexion", "right_knee_flexion", "left_hip_flexion", "right_hip_flexion"):
                 pairs = list(zip(self.column("alone.mot", joint, "\t"), self.column("known.mot", joint, "\t")))
@@ -183,7 +183,7 @@ class Skeleton(unittest.TestCase):
             self.assertLess(max(rms for _, rms in offs.values()), 5, name)
 
     def test_bones_have_ends(self):
-        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.bvh", "-q")
+        self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "-o", "walk.bvh", "-q")
         joint, ends = "", {}
         for line in (self.folder / "walk.bvh").read_text().splitlines():
             words = line.split()
@@ -198,7 +198,7 @@ class Skeleton(unittest.TestCase):
             self.assertTrue((4 if "hand" in name else 10) < cm < 30, (name, cm))
 
     def test_few_markers_are_not_called_good(self):
-        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--write-skeleton", "person.toml", "-o", "x.mot", "-q")
+        self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--write-skeleton", "person.toml", "-o", "x.mot", "-q")
         self.marey("convert", "walk.c3d", "walk.csv", "-q")
         head, *rows = (self.folder / "walk.csv").read_text().splitlines()
         label = head.split(",").index("label")
@@ -207,35 +207,35 @@ class Skeleton(unittest.TestCase):
             (self.folder / "few.csv").write_text("\n".join([head, *(row for row in rows if row.split(",")[label] in kept)]) + "\n")
             self.assertIn(words, self.marey("solve", "few.csv", "--skeleton", "person.toml", "-o", "x.mot").stderr)
 
-    def test_what_is_up_is_asked(self):
-        triads = ("solve", "triads.trc", "--static", "triads_standing.trc", "-o", "walk.mot")
+    def test_what_is_up_is_requested(self):
+        triads = ("solve", "triads.trc", "--static-trial", "triads_standing.trc", "-o", "walk.mot")
         self.assertIn("triads.trc: z was taken for up", self.marey(*triads).stderr)
         self.assertNotIn("taken for up", self.marey(*triads, "--up", "y").stderr)
-        self.assertNotIn("taken for up", self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "walk.mot").stderr)
+        self.assertNotIn("taken for up", self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "-o", "walk.mot").stderr)
         self.marey("convert", "walk.c3d", "walk_y.trc", "--up", "y", "-q")
         self.assertIn("walk_y.trc: z was taken for up, and the person's up is along y: give --up y", self.marey("gait", "walk_y.trc", code=1).stderr)
         self.assertNotIn("does it lie down", self.marey("gait", "walk_y.trc", "--up", "y", "-q").stderr)
         self.assertIn("by the --up that was given: is that right?", self.marey("gait", "walk_y.trc", "--up", "z", code=1).stderr)
-        said = self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--up", "y", "-o", "walk.mot").stderr
+        said = self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--up", "y", "-o", "walk.mot").stderr
         self.assertIn("--up y was given, and the skeleton's up is along z: does the person lie down?", said)
         self.assertNotIn("how wide", said)  # standing.c3d tells it
         self.marey("convert", "standing.c3d", "standing.trc", "-q")
-        self.assertIn("standing.trc: how wide knees and ankles are is not known", self.marey("solve", "walk.c3d", "--static", "standing.trc", "-o", "walk.mot").stderr)
+        self.assertIn("standing.trc: how wide knees and ankles are is not known", self.marey("solve", "walk.c3d", "--static-trial", "standing.trc", "-o", "walk.mot").stderr)
 
-    def test_who_the_static_trial_is_of_and_what_it_lacks(self):
-        other = self.marey("solve", "walk.c3d", "--static", "other.c3d", "-o", "x.mot", "-q").stderr
+    def test_identify_the_static_trial_is_of_and_what_it_lacks(self):
+        other = self.marey("solve", "walk.c3d", "--static-trial", "other.c3d", "-o", "x.mot", "-q").stderr
         self.assertIn("another person's static trial than walk.c3d", other)
-        own = self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "x.mot", "-q").stderr
+        own = self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "-o", "x.mot", "-q").stderr
         self.assertNotIn("another person", own)
         self.marey("convert", "standing.c3d", "standing.csv", "-q")
         kept = [row for row in (self.folder / "standing.csv").read_text().splitlines() if not any(f",{label}," in row for label in ("SACR", "LPSI", "RPSI"))]
         (self.folder / "standing.csv").write_text("\n".join(kept) + "\n")
-        done = self.marey("solve", "walk.c3d", "--static", "standing.csv", "-o", "y.mot", code=1)
+        done = self.marey("solve", "walk.c3d", "--static-trial", "standing.csv", "-o", "y.mot", code=1)
         self.assertIn("standing.csv: the pelvis is not known", done.stderr)
         self.assertIn("SACR, LPSI, RPSI are not seen", done.stderr)
 
-    def test_the_second_pass_says_its_own_rms_and_what_was_hidden(self):
-        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--write-skeleton", "person.toml", "-o", "x.mot", "-q")
+    def test_the_second_pass_states_its_own_rms_and_what_was_hidden(self):
+        self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--write-skeleton", "person.toml", "-o", "x.mot", "-q")
         self.marey("convert", "walk.c3d", "walk.csv", "-q")
         head, *rows = (self.folder / "walk.csv").read_text().splitlines()
         frame, label = head.split(",").index("frame"), head.split(",").index("label")
@@ -263,13 +263,13 @@ class Skeleton(unittest.TestCase):
         self.assertLess(max(steps), 10)
         self.assertIn("at times no marker shows these to 10°: ", self.marey(*solve).stderr)
 
-    def test_gait_of_who_stands_is_refused(self):
+    def test_gait_of_identify_stands_is_refused(self):
         done = self.marey("gait", "standing.c3d", code=1)
         self.assertIn("standing.c3d: no steps were found", done.stderr)
         self.marey("gait", "standing.c3d", "--angles", "angles.csv", "-q")
 
     def test_gait_finds_the_steps(self):
-        said = json.loads(self.marey("gait", "walk.c3d", "--static", "standing.c3d", "-o", "cycles.csv", "--json").stdout)
+        said = json.loads(self.marey("gait", "walk.c3d", "--static-trial", "standing.c3d", "-o", "cycles.csv", "--json").stdout)
         self.assertEqual(len([e for e in said["events"] if e["event"] == "strike"]), 6)
         with open(self.folder / "cycles.csv", newline="") as file:
             rows = [row for row in csv.DictReader(file) if row["angle"] == "left_knee_flexion"]
@@ -277,21 +277,21 @@ class Skeleton(unittest.TestCase):
         self.assertGreater(max(float(row["mean_deg"]) for row in rows), 45)
         self.assertTrue(any("left shoulder plane" in warning for warning in said["warnings"]), said["warnings"])
 
-    def test_gait_of_who_does_not_walk_is_refused(self):
+    def test_gait_of_identify_does_not_walk_is_refused(self):
         done = self.marey("gait", "punches.c3d", "-o", "none.csv", code=1)
         self.assertIn("no steps were found", done.stderr)
         self.assertFalse((self.folder / "none.csv").exists())
 
     def test_gait_warns_of_another_persons_static_trial(self):
-        done = self.marey("gait", "run.c3d", "--static", "other.c3d", "-o", "cycles.csv", "-q")
+        done = self.marey("gait", "run.c3d", "--static-trial", "other.c3d", "-o", "cycles.csv", "-q")
         self.assertIn("LASI and RASI are 33 mm farther apart", done.stderr)
 
     def test_gait_into_c3d(self):
-        self.marey("gait", "walk.c3d", "--static", "standing.c3d", "--c3d", "a.c3d", "--angles", "walk.csv", "-q")
+        self.marey("gait", "walk.c3d", "--static-trial", "standing.c3d", "--c3d", "a.c3d", "--angles", "walk.csv", "-q")
         info = json.loads(self.marey("info", "a.c3d", "--json").stdout)
         self.assertEqual((info["first_frame"], info["last_frame"], info["events"], info["analog_channels"]), (123, 377, 12, 24))
         # What was written is a walk like any other: its measures are in it, and its markers lead to the same angles.
-        self.marey("gait", "a.c3d", "--static", "standing.c3d", "--angles", "again.csv", "-q")
+        self.marey("gait", "a.c3d", "--static-trial", "standing.c3d", "--angles", "again.csv", "-q")
         before, after = ([[float(cell or "nan") for cell in line.split(",")] for line in (self.folder / name).read_text().splitlines()[1:]]
                          for name in ("walk.csv", "again.csv"))
         self.assertEqual(len(before), 255)
@@ -312,12 +312,12 @@ class Skeleton(unittest.TestCase):
         self.assertIn("neither", self.marey("convert", "walk.c3d", "x.c3d", "--analog", "without.c3d", code=1).stderr)
         self.assertIn("C3D", self.marey("convert", "walk.c3d", "x.trc", "--analog", "walk.c3d", code=2).stderr)
         self.assertFalse((self.folder / "x.c3d").exists())
-        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "-o", "solved.c3d", "-q")
+        self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "-o", "solved.c3d", "-q")
         info = json.loads(self.marey("info", "solved.c3d", "--json").stdout)
         self.assertEqual(info["analog_channels"], 24)
         self.assertIn("left_thigh", [body["name"] for body in info["bodies"]])
 
-    def test_channels_of_another_recording_are_told(self):
+    def test_channels_of_another_recording_are_reported(self):
         self.marey("convert", "walk.c3d", "walk.marey")
         self.assertNotIn("recording was made of", self.marey("convert", "walk.marey", "with.c3d", "--analog", "walk.c3d").stderr)
         # run.c3d and other.c3d have other frames than walk.c3d, which has 123 to 377.
@@ -405,7 +405,7 @@ class Skeleton(unittest.TestCase):
         self.assertGreater(len(live), 15 * 200)
         self.assertEqual(live, after[-len(live):])
 
-    def test_bones_go_over_the_wires_while_cameras_see(self):
+    def test_bones_go_over_the_protocols_while_cameras_observe(self):
         self.marey("reconstruct", *self.room(), "-o", "walk.marey", "-q")
         with contextlib.ExitStack() as sockets:
             vmc = sockets.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
@@ -415,7 +415,7 @@ class Skeleton(unittest.TestCase):
             qtm, lines = (server.getsockname()[1] for server in taken)
             for server in taken:
                 server.close()
-            process = subprocess.Popen([MAREY, "live", "play:walk.marey?loop", "--skeleton", "room/skeleton.toml", "-o", "again.marey", "--json", "--for", "4",
+            process = subprocess.Popen([MAREY, "live", "play:walk.marey?loop", "--skeleton", "room/skeleton.toml", "-o", "again.marey", "--json", "--duration", "4",
                                         "--stream", f"vmc:127.0.0.1:{vmc.getsockname()[1]}", "--stream", f"qtm::{qtm}", "--stream", f"json::{lines}"],
                                        cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             self.addCleanup(process.kill)
@@ -443,7 +443,7 @@ class Skeleton(unittest.TestCase):
         self.assertEqual({row[3] for row in self.poses("again.marey")} & {"pelvis", "left_foot"}, {"pelvis", "left_foot"})
 
     def test_a_recording_is_played_with_its_bones(self):
-        self.marey("solve", "walk.c3d", "--static", "standing.c3d", "--write-skeleton", "person.toml", "-o", "walk.marey", "-q")
+        self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--write-skeleton", "person.toml", "-o", "walk.marey", "-q")
         with contextlib.ExitStack() as sockets:
             server = sockets.enter_context(socket.create_server(("127.0.0.1", 0)))
             port = server.getsockname()[1]
@@ -463,10 +463,10 @@ class Skeleton(unittest.TestCase):
             process.terminate()
             process.wait(timeout=20)
 
-    def test_who_has_no_names_has_no_pose(self):
+    def test_identify_has_no_names_has_no_pose(self):
         rig, *more = self.room()
         for arguments, words in ((("reconstruct", rig, *more[:2], "--skeleton", "room/skeleton.toml", "-o", "x.marey"), "--labels"),
-                                 (("live", "sim://people", "--targets", "people", "--skeleton", "room/skeleton.toml", "--for", "1"), "two calibrated cameras")):
+                                 (("live", "sim://people", "--targets", "people", "--skeleton", "room/skeleton.toml", "--duration", "1"), "two calibrated cameras")):
             with self.subTest(words=words):
                 said = self.marey(*arguments, "-q", code=1).stderr
                 self.assertIn(words, said)
@@ -479,17 +479,17 @@ class Skeleton(unittest.TestCase):
             self.assertIn("has no pose: none of its labels is a marker of the skeleton", said)
 
     def test_what_cannot_be_is_refused(self):
-        def says(code, words, *arguments):
+        def states(code, words, *arguments):
             done = self.marey("solve", *arguments, code=code)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
             for word in words:
                 self.assertIn(word, done.stderr)
 
-        says(1, ["figure.bvh", "none of its labels is a marker of the skeleton"], "walk.trc", "--skeleton", "figure.bvh", "-o", "x.mot")
-        says(1, ["no whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
-        says(1, ["stands still"], "walk.c3d", "--static", "walk.c3d", "-o", "x.mot")
-        says(2, ["x.png"], "walk.trc", "--skeleton", "model.osim", "-o", "x.png")
-        says(1, ["no skeleton that Marey knows"], "walk.trc", "--skeleton", "walk.trc", "-o", "x.mot")
+        states(1, ["figure.bvh", "none of its labels is a marker of the skeleton"], "walk.trc", "--skeleton", "figure.bvh", "-o", "x.mot")
+        states(1, ["no whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
+        states(1, ["stands still"], "walk.c3d", "--static-trial", "walk.c3d", "-o", "x.mot")
+        states(2, ["x.png"], "walk.trc", "--skeleton", "model.osim", "-o", "x.png")
+        states(1, ["no skeleton that Marey knows"], "walk.trc", "--skeleton", "walk.trc", "-o", "x.mot")
         self.assertFalse((self.folder / "x.mot").exists())
 
 

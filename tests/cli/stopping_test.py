@@ -16,7 +16,7 @@ import time
 import unittest
 
 MAREY = ""
-AT_MOST = 1.0  # s from the signal to the end, or on a machine that does other things too, s of processor time
+UPPER_LIMIT = 1.0  # s from the signal to the end, or on a machine that does other things too, s of processor time
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 RIG = """[[camera]]
@@ -31,7 +31,7 @@ rate = 25
 """
 
 
-def usual_signals():
+def default_signals():
     """What a test's parent ignores, as a shell's background job does, is not ignored here."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
@@ -51,7 +51,7 @@ def processor_time(process):
 
 
 def is_idle(process, seconds=0.5):
-    """Whether the process waits: it takes no processor time for so long."""
+    """Whether the process waits: it takes no processor time for this long."""
     before = processor_time(process)
     time.sleep(seconds)
     return processor_time(process) == before
@@ -79,7 +79,7 @@ class Stopping(unittest.TestCase):
     def outputs_when_stopped(self, *arguments, number=signal.SIGINT, after=0.5, stdin=subprocess.DEVNULL, ready=None):
         """What it wrote on standard output and on standard error."""
         run = subprocess.Popen([MAREY, *map(str, arguments)], cwd=self.folder, stdin=stdin, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True, preexec_fn=usual_signals)
+                               stderr=subprocess.PIPE, text=True, preexec_fn=default_signals)
         end = time.monotonic() + 60
         while run.poll() is None and time.monotonic() < end and not (catches(run, number) and (ready is None or ready(run))):
             time.sleep(0.01)
@@ -92,7 +92,7 @@ class Stopping(unittest.TestCase):
         written, said = run.stdout.read(), run.stderr.read()
         run.stderr.close(), run.stdout.close()
         self.assertEqual(run.returncode, 130, f"{arguments}\n{said}")
-        self.assertLess(min(took - begin, needed - used), AT_MOST, arguments)
+        self.assertLess(min(took - begin, needed - used), UPPER_LIMIT, arguments)
         return written, said
 
     def wait_for(self, run, arguments):
@@ -162,7 +162,7 @@ class Stopping(unittest.TestCase):
                 self.leaves_nothing(*arguments, stdin=read, after=0.3)
         os.close(read)
 
-    def test_a_film_on_a_pipe_that_stalls_keeps_what_was_tracked(self):
+    def test_a_video_on_a_pipe_that_stalls_keeps_what_was_tracked(self):
         subprocess.run([MAREY, "simulate", "people", "--frames", "100", "--size", "320", "240", "--height", "60", "-o",
                         self.folder / "people", "-q"], check=True, timeout=120)
         subprocess.run(["ffmpeg", "-v", "error", "-i", self.folder / "people/video.mp4", "-c", "copy", self.folder / "film.mkv"],

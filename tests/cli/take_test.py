@@ -1,4 +1,4 @@
-"""Takes of every job: written, looked into, measured, handed on, refused where their positions do not fit. take_test.py MAREY."""
+"""Takes of every job: written, looked into, measured, forwarded, refused where their positions do not fit. take_test.py MAREY."""
 
 import csv
 import json
@@ -40,7 +40,7 @@ class Takes(unittest.TestCase):
                 else:
                     self.assertEqual(value, theirs[name], (name, mine))
 
-    def test_people_in_a_picture(self):
+    def test_people_in_a_image(self):
         self.run_marey("track", "--detections", self.boxes(), "--rate", "25", "-o", "street.marey", "-q")
         said = json.loads(self.run_marey("info", "street.marey", "--json").stdout)
         self.assertEqual(said["frames"], 79)
@@ -48,7 +48,7 @@ class Takes(unittest.TestCase):
         self.assertIn("px", refused)
         self.assertFalse((self.folder / "no.csv").exists())
         said = self.run_marey("convert", "street.marey", "street.c3d", code=2).stderr
-        self.assertIn("holds points in space, and not tracks in a picture", said)
+        self.assertIn("holds points in space, and not tracks in an image", said)
 
     def test_people_on_the_ground(self):
         self.run_marey("simulate", "match", "--cameras", "3", "--seconds", "8", "--boxes", "-o", "match", "-q")

@@ -1,4 +1,4 @@
-"""`marey track RIG --ground`: one identity across cameras, in the user's coordinates; films in step with the videos; and a sentence for
+"""`marey track RIG --ground`: one identity across cameras, in the user's coordinates; videos synchronised with the videos; and a sentence for
 what cannot be tracked.
 
 Usage: track_ground_test.py MAREY [unittest options]. Nothing else is needed.
@@ -66,7 +66,7 @@ class TrackGround(unittest.TestCase):
         told = self.marey("evaluate", "--truth", self.made / "boxes" / "truth.csv", "--tracks", tracks, "--distance", 1.5, "--json")
         return json.loads(told.stdout)
 
-    def test_everybody_is_found_once_under_one_name(self):
+    def test_all_is_found_once_under_one_name(self):
         self.track(self.made / "boxes" / "rig.toml", "-o", "match.csv", "--size", "105x68")
         rows = rows_of(self.folder / "match.csv")
         self.assertEqual(list(rows[0]), HEADER)
@@ -94,7 +94,7 @@ class TrackGround(unittest.TestCase):
 
     def test_live_writes_what_it_knows(self):
         for associate in ("gnn", "jpda", "mht"):
-            told = self.track(self.made / "boxes" / "rig.toml", "-o", "live.csv", "--live", "--associate", associate, "--json")
+            told = self.track(self.made / "boxes" / "rig.toml", "-o", "live.csv", "--live", "--association", associate, "--json")
             self.assertGreater(self.judged("live.csv")["idf1"], 0.8, associate)
             self.assertEqual(json.loads(told.stdout)["rows"], len(rows_of(self.folder / "live.csv")))
 
@@ -111,7 +111,7 @@ class TrackGround(unittest.TestCase):
             self.assertAlmostEqual(float(one["vy"]), -float(other["vy"]), delta=0.0015)
             self.assertEqual(one["x"], other["x"])
 
-    def test_films_are_in_step_with_the_videos(self):
+    def test_videos_are_in_step_with_the_videos(self):
         self.track(self.made / "films" / "rig.toml", "-o", "match.csv", "--overlay", "overlays", "--pitch-view", "above.mp4")
         films = [self.made / "films" / "cam1.mp4", "overlays/cam1.mp4", "overlays/cam2.mp4", "above.mp4"]
         told = [json.loads(self.marey("track", film, "-o", "film.txt", "--json").stdout) for film in films]
@@ -128,13 +128,13 @@ class TrackGround(unittest.TestCase):
         self.assertIn("cam9", said)
         self.assertIn("cam1", said)
 
-    def test_pictures_beside_detections(self):
+    def test_images_next_to_detections(self):
         self.track(self.made / "films" / "rig.toml", f"cam2={self.made / 'films' / 'cam2.txt'}", "-o", "match.csv", "--size", "105x68")
         self.assertEqual({c for r in rows_of(self.folder / "match.csv") for c in r["cameras"].split()}, {"cam1", "cam2"})
 
-    def test_bramble_follows_two_without_detections(self):
+    def test_bramble_tracks_two_without_detections(self):
         self.marey("simulate", "people", "--people", 2, "--frames", 250, "--seed", 1, "-o", "two", "-q")
-        self.track("two/rig.toml", "--associate", "bramble", "-o", "a.csv", "-q")
+        self.track("two/rig.toml", "--association", "bramble", "-o", "a.csv", "-q")
         places = {(row["frame"], float(row["x"]), float(row["y"])) for row in rows_of(self.folder / "a.csv")}
         truth = rows_of(self.folder / "two/positions.csv")
         found = sum(any(frame == one["frame"] and math.hypot(x - float(one["x"]), y - float(one["y"])) < 1 for frame, x, y in places)
@@ -142,17 +142,17 @@ class TrackGround(unittest.TestCase):
         self.assertGreater(found, 0.9 * len(truth))
         self.assertLess(len(places), 1.1 * len(truth))
 
-    def test_bramble_tells_the_same_twice(self):
+    def test_bramble_reports_the_same_twice(self):
         self.marey("simulate", "people", "--people", 2, "--frames", 60, "--seed", 1, "-o", "two", "-q")
         for name in ("a.csv", "b.csv"):
-            self.track("two/rig.toml", "--associate", "bramble", "-o", name, "-q")
+            self.track("two/rig.toml", "--association", "bramble", "-o", name, "-q")
         self.assertGreater(len(rows_of(self.folder / "a.csv")), 40)
         self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
 
-    def test_bramble_needs_pictures_and_nothing_beside(self):
-        said = self.refused(self.made / "boxes/rig.toml", "--targets", "people", "--ground", "--associate", "bramble", "-o", "match.csv")
-        self.assertIn("bramble looks at pictures", said)
-        said = self.refused(self.made / "films/rig.toml", "--targets", "people", "--ground", "--associate", "bramble", "--teams", "white,blue",
+    def test_bramble_needs_images_and_nothing_next_to(self):
+        said = self.refused(self.made / "boxes/rig.toml", "--targets", "people", "--ground", "--association", "bramble", "-o", "match.csv")
+        self.assertIn("bramble looks at images", said)
+        said = self.refused(self.made / "films/rig.toml", "--targets", "people", "--ground", "--association", "bramble", "--teams", "white,blue",
                             "-o", "match.csv", code=2)
         self.assertIn("--teams", said)
 
@@ -184,7 +184,7 @@ class TrackGround(unittest.TestCase):
         said = self.refused(self.made / "boxes" / "rig.toml", "cam2=cut.txt", "--ground", "-o", "match.csv")
         self.assertIn("cut.txt:", said)
 
-    def test_what_cannot_be_asked_for(self):
+    def test_what_cannot_be_requested_for(self):
         rig = self.made / "boxes" / "rig.toml"
         said = self.refused(rig, "--ground", "--format", "mot", "--camera", "nobody", "-o", "boxes.txt")
         self.assertIn("cam1, cam2", said)

@@ -1,4 +1,4 @@
-"""`marey track` of pictures that background subtraction is not made for: each time a warning names the cause. And of a real room, where people
+"""`marey track` of images that background subtraction is not made for: each time a warning names the cause. And of a real room, where people
 come near the camera one after another, if its video is there (MAREY_DATA).
 
 Usage: unsuited_test.py MAREY ROOT [unittest options].
@@ -16,11 +16,11 @@ import sys
 import tempfile
 import unittest
 
-from steady_test import scene, window, write_pictures
+from stabilise_test import scene, window, write_images
 
 MAREY = ""
 ROOT = pathlib.Path()
-# When somebody is in clips/walk_in_room.mp4, six people one after another: frames in which 2 % of the picture, a fifth of a person, differ by 60
+# When a person is in clips/walk_in_room.mp4, six people one after another: frames in which 2 % of the image, a fifth of a person, differ by 60
 # levels from the empty room, as no shadow does.
 VISITS = ((61, 195), (228, 445), (503, 695), (746, 865), (922, 1196), (1236, 1357))
 
@@ -38,7 +38,7 @@ class Unsuited(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.folder)
 
     def warnings(self, name, pictures, *options):
-        write_pictures(self.folder / name, pictures)
+        write_images(self.folder / name, pictures)
         done = run("track", self.folder / name, "--rate", "10", "-o", self.folder / f"{name}.txt", "--json", *options)
         return json.loads(done.stdout)["warnings"]
 
@@ -46,18 +46,18 @@ class Unsuited(unittest.TestCase):
         here = scene(1)
         said = self.warnings("still", [window(here, 0, 0)] * 60)
         self.assertEqual(len(said), 1, said)
-        self.assertIn("nobody was found", said[0])  # which is so, and all there is to say
+        self.assertIn("no person was found", said[0])  # which is so, and all there is to say
 
     def test_a_camera_that_pans_and_what_to_do(self):
         here = scene(4)
         said = self.warnings("pan", [window(here, -20 + i // 2, 0) for i in range(80)])
-        self.assertRegex(said[0], r"the camera pans or tilts, by \d+ % of the picture's width between 0\.\d and 7\.\d s.*marey calibrate turning")
-        self.assertNotIn("--steady", "".join(said))
+        self.assertRegex(said[0], r"the camera pans or tilts, by \d+ % of the image's width between 0\.\d and 7\.\d s.*marey calibrate ptz")
+        self.assertNotIn("--stabilise", "".join(said))
 
-    def test_a_camera_that_was_turned_once(self):
+    def test_a_camera_that_was_rotated_once(self):
         here = scene(4)
         said = self.warnings("turned", [window(here, -10 + 20 * (i >= 60), 0) for i in range(150)])
-        self.assertRegex(said[0], r"the camera was turned by 1\d % of the picture's width at about [4-7]\.\d s.*--steady")
+        self.assertRegex(said[0], r"the camera was turned by 1\d % of the image's width at about [4-7]\.\d s.*--stabilise")
 
     def test_a_video_that_is_cut_and_where(self):
         scenes = [scene(seed) for seed in (5, 6, 7)]
@@ -66,12 +66,12 @@ class Unsuited(unittest.TestCase):
                 said = self.warnings(f"cut{len(options)}", [window(scenes[i // 30], 0, 0) for i in range(90)], *options)
                 self.assertIn("the video is cut at 3.0, 6.0 s:", said[0])
 
-    def test_on_the_ground_the_same_is_said(self):
+    def test_on_the_ground_the_same_is_stated(self):
         scenes = [scene(seed) for seed in (5, 6)]
         films = {"ground_cut": [window(scenes[i // 30], 0, 0) for i in range(60)],
                  "ground_pan": [window(scenes[0], -20 + i // 2, 0) for i in range(80)]}
         for name, pictures in films.items():
-            write_pictures(self.folder / name, pictures)
+            write_images(self.folder / name, pictures)
         (self.folder / "rig.toml").write_text(
             "".join(f'[[camera]]\nname = "{name}"\nsource = "{name}"\nsize = [160, 120]\n'
                     "ground_from_image = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 1.0]]\n" for name in films))
@@ -80,9 +80,9 @@ class Unsuited(unittest.TestCase):
         self.assertIn('camera "ground_cut": the video is cut at 3.0 s', said)
         self.assertIn('camera "ground_pan": the camera pans or tilts', said)
 
-    def test_a_terminal_is_told_before_the_end(self):
+    def test_a_terminal_is_reported_before_the_end(self):
         scenes = [scene(seed) for seed in (5, 6)]
-        write_pictures(self.folder / "early", [window(scenes[i // 30], 0, 0) for i in range(60)])
+        write_images(self.folder / "early", [window(scenes[i // 30], 0, 0) for i in range(60)])
         here, terminal = pty.openpty()
         self.addCleanup(os.close, here)
         done = subprocess.run([MAREY, "track", self.folder / "early", "--rate", "10", "-o", self.folder / "early.txt"], stdout=subprocess.PIPE,
@@ -110,7 +110,7 @@ class Unsuited(unittest.TestCase):
             pictures.append(rows)
         self.assertIn("as on a screen that is scrolled", "".join(self.warnings("screen", pictures)))
 
-    def test_what_leaves_its_place_from_picture_to_picture(self):
+    def test_what_leaves_its_position_from_image_to_image(self):
         draw, here = random.Random(3), scene(9)
         pictures = []
         for _ in range(60):
@@ -132,8 +132,8 @@ class Room(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_room_"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
 
-    def test_whoever_comes_near_is_one_person(self):
-        for options in ((), ("--live",), ("--steady",)):
+    def test_a_person_who_comes_near_is_one_person(self):
+        for options in ((), ("--live",), ("--stabilise",)):
             with self.subTest(options):
                 report = json.loads(run("track", self.video, "-o", self.folder / "room.csv", "--json", *options).stdout)
                 self.assertEqual(report["warnings"], [])

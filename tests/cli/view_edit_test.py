@@ -1,4 +1,4 @@
-"""Takes that are edited in `marey view`, without a browser: what is shown, what is in the take, who may, what strangers write. view_edit_test.py MAREY."""
+"""Takes that are edited in `marey view`, without a browser: what is shown, what is in the take, who may, what untrusted clients write. view_edit_test.py MAREY."""
 
 import json
 import random
@@ -18,7 +18,7 @@ class Edit(unittest.TestCase):
         return Shown(shown_page.MAREY, "view", self.take, "--port", "0", "-q", *options)
 
     def answer(self, page, line):
-        """What the page is told that asked, and the words before."""
+        """What the page is reported that asked, and the words before."""
         page.say(line)
         before = []
         while not (heard := page.hear()).split()[0] in ("done", "refused"):
@@ -45,7 +45,7 @@ class Edit(unittest.TestCase):
             self.assertEqual(self.answer(page, "redo 0 1")[0], "done")
             self.assertEqual(self.answer(page, "go 1 1 0")[0], "done")
 
-    def test_what_cannot_be_is_said_as_on_the_command_line(self):
+    def test_what_cannot_be_is_stated_as_on_the_command_line(self):
         with self.shown("--edit") as shown:
             a, b = (track["id"] for track in shown.scene()["tracks"][:2])
             page = WebSocket(shown)
@@ -63,10 +63,10 @@ class Edit(unittest.TestCase):
             self.assertEqual(shown.scene()["tracks"][0]["label"], "hip")
             marey("edit", self.take, "rename hip thigh", "-q")
             said, _ = self.answer(page, "edit 1 1 rename hip knee")
-            self.assertIn("another program has edited it meanwhile", said)
+            self.assertIn("another program has edited it in the meantime", said)
             self.assertEqual(shown.scene()["tracks"][0]["label"], "thigh")
 
-    def test_without_being_asked_for_nothing_can_be_changed(self):
+    def test_without_being_requested_for_nothing_can_be_changed(self):
         before = self.take.read_bytes()
         with self.shown() as shown:
             self.assertFalse(shown.scene()["can_edit"])
@@ -82,10 +82,10 @@ class Edit(unittest.TestCase):
         self.assertEqual(self.take.read_bytes(), before)
         marey("convert", "walk.marey", "view_edit.csv", "-q")
         said = marey("view", "view_edit.csv", "--edit", code=1).stderr
-        self.assertIn("is no take, and only a take can be edited", said)
+        self.assertIn("is not a take, and only a take can be edited", said)
         self.assertEqual(said.count("\n"), 1)
 
-    def test_lines_of_strangers_change_nothing(self):
+    def test_lines_of_untrusted_change_nothing(self):
         seed = random.randrange(1 << 32)
         dice = random.Random(seed)
         with self.shown("--edit") as shown:
@@ -102,7 +102,7 @@ class Edit(unittest.TestCase):
                 lines.append("".join(bent))
             for line in lines:
                 said, _ = self.answer(page, line) if line.split(" ")[0] in ("edit", "undo", "redo", "go") else ("refused", [])
-                stays = line.split() == ["go", "0", "0", "0"]  # bent into the one line that is no stranger's: the head goes where it is
+                stays = line.split() == ["go", "0", "0", "0"]  # bent into the one line that is no untrusted client's: the head goes where it is
                 self.assertEqual(said.split(" ")[0].rstrip(":"), "done" if stays else "refused", f"{line!r}: {said!r}, seed {seed}")
                 self.assertNotRegex(said, r"[\x00-\x1f]", f"{line!r}, seed {seed}")
             self.assertEqual(json.loads(shown.ask("/edits")[2])["edits"], [])

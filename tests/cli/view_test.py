@@ -1,4 +1,4 @@
-"""`marey view` and the live viewer without a browser: what is served, to whom, and what strangers and slow readers can do. view_test.py MAREY LIVE_SCENE."""
+"""`marey view` and the live viewer without a browser: what is served, to whom, and what untrusted clients and slow readers can do. view_test.py MAREY LIVE_SCENE."""
 
 import contextlib
 import json
@@ -16,7 +16,7 @@ import time
 import unittest
 
 import shown_page
-from shown_page import Shown, Stretch, WebSocket, marey
+from shown_page import Shown, TimeChunk, WebSocket, marey
 
 LIVE_SCENE = ""
 
@@ -37,7 +37,7 @@ class View(unittest.TestCase):
             self.assertEqual(len(scene["cameras"][0]["corners"]), 4)
             found = {}
             for number in range(len(scene["stretches"])):
-                stretch = Stretch(shown.ask(f"/stretch?n={number}")[2])
+                stretch = TimeChunk(shown.ask(f"/stretch?n={number}")[2])
                 self.assertEqual(stretch.kind, 1)
                 row = 0
                 for index, end in zip(stretch.index, stretch.row_end):
@@ -72,7 +72,7 @@ class View(unittest.TestCase):
                 if frame == "ground":
                     self.assertEqual(scene["pitch"], {"length": 105.0, "width": 68.0, "x": 0.0, "y": 0.0})
 
-    def test_only_who_has_the_token_and_asks_this_machine_may_look(self):
+    def test_only_identify_has_the_token_and_queries_this_machine_may_inspect(self):
         with Shown(shown_page.MAREY, "view", "walk.marey", "--port", "0", "-q") as shown:
             for path in ("/", "/scene", "/page.js", "/stretch?n=0"):
                 self.assertEqual(shown.ask(path, token=False)[0], 401, path)
@@ -91,7 +91,7 @@ class View(unittest.TestCase):
             self.assertEqual(WebSocket(shown, Cookie="marey=1").status, 401)
             self.assertEqual(WebSocket(shown, Origin="").status, 403)
 
-    def test_bytes_of_strangers_cost_nothing(self):
+    def test_bytes_of_untrusted_cost_nothing(self):
         seed = random.randrange(1 << 32)
         dice = random.Random(seed)
         with Shown(shown_page.MAREY, "view", "walk.marey", "--port", "0", "-q") as shown:
@@ -126,7 +126,7 @@ class View(unittest.TestCase):
                 except OSError:
                     pass
             page = WebSocket(shown)
-            for line in ("film", "film x y", "film 0 0", "film 99999999999 640", "watch " + "9 " * 1000, "record on", "ping", "\0\0", "sleep" * 700):
+            for line in ("film", "video x y", "video 0 0", "video 99999999999 640", "watch " + "9 " * 1000, "record on", "ping", "\0\0", "sleep" * 700):
                 page.say(line)
             crowd = [shown.connect() for _ in range(300)]
             time.sleep(0.2)
@@ -136,7 +136,7 @@ class View(unittest.TestCase):
             if not shown_page.SANITIZED:
                 self.assertLess(shown.memory_mb() - before, 30, f"seed {seed}")
 
-    def test_it_ends_when_it_is_told_to(self):
+    def test_it_ends_when_it_is_reported_to(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             with Shown(shown_page.MAREY, "view", "walk.marey", "--port", "0") as shown:
                 page = WebSocket(shown)
@@ -146,7 +146,7 @@ class View(unittest.TestCase):
                 self.assertEqual(shown.process.wait(timeout=5), 0)
                 self.assertLess(time.monotonic() - began, 4)  # at once, on a busy machine too
 
-    def test_a_take_of_another_version_is_told(self):
+    def test_a_take_of_another_version_is_reported(self):
         later = shown_page.FOLDER / "later.marey"
         shutil.copy(shown_page.FOLDER / "walk.marey", later)
         with contextlib.closing(sqlite3.connect(later)) as take:
@@ -154,7 +154,7 @@ class View(unittest.TestCase):
             take.commit()
         self.assertRegex(marey("view", "later.marey", "--port", "0", code=1).stderr, r"^marey: later.marey: was written by a later version of Marey .*\n$")
 
-    def test_the_axis_that_a_c3d_file_says_is_up(self):
+    def test_the_axis_that_a_c3d_file_states_is_up(self):
         marey("convert", "walk.marey", "y_up.c3d", "--up", "y", "-q")
         marey("convert", "walk.marey", "z_up.c3d", "-q")
         extents = []
@@ -168,7 +168,7 @@ class View(unittest.TestCase):
                 self.assertAlmostEqual(a, b, places=3)
         self.assertAlmostEqual(extents[2][1][1], extents[0][1][2], places=3)
 
-    def test_what_cannot_be_is_said_in_one_sentence(self):
+    def test_what_cannot_be_is_stated_in_one_message(self):
         with Shown(shown_page.MAREY, "view", "walk.marey", "--port", "0", "-q") as shown:
             taken = marey("view", "walk.marey", "--port", shown.port, code=1).stderr
             self.assertRegex(taken, rf"^marey: 127\.0\.0\.1 port {shown.port}: cannot listen there \(.*\); --port 0 takes one that is free\n$")
@@ -177,7 +177,7 @@ class View(unittest.TestCase):
             (["no_such.marey"], 1, "no_such.marey"),
             (["noise.bin"], 1, "noise.bin"),
             (["walk/rig.toml"], 1, "rig.toml"),
-            (["walk.marey", "--film", "walk.marey"], 1, "holds no tracks in a picture"),
+            (["walk.marey", "--video", "walk.marey"], 1, "holds no tracks in an image"),
             (["walk.marey", "--listen", "nowhere"], 1, "no address to listen on"),
             (["walk.marey", "--port", "70000"], 2, "port"),
             (["walk.marey", "--size", "3"], 2, "size"),
@@ -186,7 +186,7 @@ class View(unittest.TestCase):
             self.assertIn(words, said)
             self.assertEqual(said.count("\n"), 1, said)
 
-    def test_json_tells_the_address(self):
+    def test_json_reports_the_address(self):
         process = subprocess.Popen([shown_page.MAREY, "view", "walk.marey", "--port", "0", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=shown_page.FOLDER)
         text = ""
         while not text.endswith("}\n"):
@@ -198,7 +198,7 @@ class View(unittest.TestCase):
 
 
 class Live(unittest.TestCase):
-    def test_a_page_gets_what_it_asks_for_and_the_newest(self):
+    def test_a_page_gets_what_it_queries_for_and_the_newest(self):
         with Shown(LIVE_SCENE, "walk.marey", "100") as shown:
             self.assertEqual(shown.scene()["kind"], "live")
             page = WebSocket(shown)
@@ -214,7 +214,7 @@ class Live(unittest.TestCase):
                     continue
                 kinds[heard[0]] = kinds.get(heard[0], 0) + 1
                 if heard[0] == 2:
-                    states.append(Stretch(heard))
+                    states.append(TimeChunk(heard))
                 else:
                     camera, points, boxes, size = struct.unpack_from("<IIII", heard, 24)
                     cameras[camera] = heard[40 + 12 * points + 20 * boxes :]
@@ -246,7 +246,7 @@ class Live(unittest.TestCase):
                 while not (isinstance(heard := page.hear(), str) and heard.startswith(f"recording {word}")):
                     pass
 
-    def test_a_page_that_stops_reading_costs_nobody_anything(self):
+    def test_a_page_that_stops_reading_costs_none_anything(self):
         with Shown(LIVE_SCENE, "walk.marey", "100") as shown:
             pages = [WebSocket(shown) for _ in range(3)]
             stalled, *others = pages

@@ -1,4 +1,4 @@
-"""A wand that is waved before a page, without a browser: coverage, cameras that are set meanwhile, the rig, the ground. wand_page_test.py MAREY."""
+"""A wand that is waved before a page, without a browser: coverage, cameras that are set in the meantime, the rig, the ground. wand_page_test.py MAREY."""
 
 import json
 import pathlib
@@ -10,7 +10,7 @@ import tomllib
 import unittest
 
 import shown_page
-from shown_page import LivePage, WebSocket, hear_until
+from shown_page import LivePage, WebSocket, receive_until
 
 MAREY = ""
 
@@ -24,7 +24,7 @@ class Wand(unittest.TestCase):
         source = f"sim://room?cameras=4&rate=60&motion={motion}&blobs&size=1280x1024&noise=0.1{options}"
         cameras = [f'[[camera]]\nname = "cam{c}"\nsize = [1280, 1024]\nsource = "{source}&camera={c}"\n' for c in range(1, 5)]
         (self.folder / "live.toml").write_text("\n".join(cameras))
-        return ["calibrate", "wand", "live.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", 0, "--for", 90]
+        return ["calibrate", "wand", "live.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", 0, "--duration", 90]
 
     def test_coverage_grows_until_it_is_enough_and_the_rig_is_written(self):
         with LivePage(self.folder, *self.write_rig("wand"), "--json") as shown:
@@ -32,12 +32,12 @@ class Wand(unittest.TestCase):
             self.assertEqual(scene["job"], "wand")
             self.assertTrue(scene["can_change"])
             page = WebSocket(shown)
-            status = hear_until(page, "status", lambda s: len(s["cameras"]) == 4 and s["cameras"][3]["frames"] > 0)
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 4 and s["cameras"][3]["frames"] > 0)
             self.assertEqual((status["cameras"][0]["threshold"], status["cameras"][0]["dials"]), (None, []), "points have no exposure")
             page.say("mask 3 0 0 20 0 0 20")
             page.say("threshold 3 90")
-            hear_until(page, "status", lambda s: s["cameras"][3]["masks"] == [[0, 0, 20, 0, 0, 20]] and s["cameras"][3]["threshold"] == 90)
-            early = hear_until(page, "wand", lambda w: w.get("cameras") and all(c["parts"] for c in w["cameras"]), 60)
+            receive_until(page, "status", lambda s: s["cameras"][3]["masks"] == [[0, 0, 20, 0, 0, 20]] and s["cameras"][3]["threshold"] == 90)
+            early = receive_until(page, "wand", lambda w: w.get("cameras") and all(c["parts"] for c in w["cameras"]), 60)
             self.assertEqual((early["across"], early["down"]), (10, 8))
             for camera in early["cameras"]:
                 self.assertAlmostEqual(camera["coverage"], len(camera["parts"]) / 80)
@@ -45,10 +45,10 @@ class Wand(unittest.TestCase):
             page.say("watch 0 320")
             picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3 and int.from_bytes(data[28:32], "little") == 3)
             tracks = [int.from_bytes(picture[64 + 4 * i:68 + 4 * i], "little") for i in range(3)]
-            self.assertEqual(sorted(tracks), [1, 2, 3], "the wand's markers are told from others")
-            later = hear_until(page, "wand", lambda w: len(w["cameras"][0]["parts"]) > len(early["cameras"][0]["parts"]), 60)
+            self.assertEqual(sorted(tracks), [1, 2, 3], "the wand's markers are distinguished from others")
+            later = receive_until(page, "wand", lambda w: len(w["cameras"][0]["parts"]) > len(early["cameras"][0]["parts"]), 60)
             self.assertEqual(later["phase"], "waving")
-            done = hear_until(page, "wand", lambda w: w["phase"] == "done", 180)
+            done = receive_until(page, "wand", lambda w: w["phase"] == "done", 180)
             self.assertEqual(done["rig"], "waved.toml")
             self.assertTrue((self.folder / "waved.toml").exists())
             self.assertIn("centre", shown.scene()["cameras"][0], "the page knows where the cameras stand")
@@ -61,13 +61,13 @@ class Wand(unittest.TestCase):
         self.assertEqual((cameras[3]["masks"], cameras[3]["threshold"]), ([[0, 0, 20, 0, 0, 20]], 90), "as it was set on the page")
         self.assertNotIn("masks", cameras[0])
 
-    def test_enough_is_a_button_and_what_comes_of_too_little_is_told(self):
+    def test_enough_is_a_button_and_what_comes_of_too_little_is_reported(self):
         with LivePage(self.folder, *self.write_rig("ground")) as shown:
             page = WebSocket(shown)
-            hear_until(page, "wand", lambda w: w.get("cameras") and w["seconds"] > 0.5)
+            receive_until(page, "wand", lambda w: w.get("cameras") and w["seconds"] > 0.5)
             page.say("mask 0 1 2 3 4")
             page.say("enough")
-            failed = hear_until(page, "wand", lambda w: w["phase"] == "failed", 60)
+            failed = receive_until(page, "wand", lambda w: w["phase"] == "failed", 60)
             self.assertGreater(len(failed["why"]), 20)
             self.assertEqual(shown.process.wait(timeout=20), 1)
         self.assertFalse((self.folder / "waved.toml").exists())
@@ -76,11 +76,11 @@ class Wand(unittest.TestCase):
         with LivePage(self.folder, *self.write_rig("wand", "&frame")) as shown:
             page = WebSocket(shown)
             page.say("ground")  # there is no rig yet
-            hear_until(page, "wand", lambda w: w["phase"] == "done", 180)
+            receive_until(page, "wand", lambda w: w["phase"] == "done", 180)
             before = tomllib.loads((self.folder / "waved.toml").read_text())["camera"]
             page.say("ground")
-            hear_until(page, "wand", lambda w: w.get("ground", {}).get("phase") == "looking")
-            told = hear_until(page, "wand", lambda w: w["ground"]["phase"] != "looking", 60)["ground"]
+            receive_until(page, "wand", lambda w: w.get("ground", {}).get("phase") == "looking")
+            told = receive_until(page, "wand", lambda w: w["ground"]["phase"] != "looking", 60)["ground"]
             self.assertEqual(told["phase"], "set", told)
             self.assertLess(told["rms_mm"], 5)
             after = tomllib.loads((self.folder / "waved.toml").read_text())["camera"]

@@ -67,12 +67,12 @@ class Wand(unittest.TestCase):
 
     def test_waved_before_live_cameras(self):
         self.live_rig("live.toml", "wand")
-        done = self.marey("calibrate", "wand", "live.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--for", 60, "--json")
+        done = self.marey("calibrate", "wand", "live.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--duration", 60, "--json")
         report = json.loads(done.stdout)
         self.assertIn("has seen enough", done.stderr)
         self.assertIn("all of them have", done.stderr, "it ends by itself")
         self.assertIn(report["grade"], ("excellent", "good"))
-        self.assertIn("sim://room", (self.folder / "waved.toml").read_text(), "the rig goes on with its live cameras")
+        self.assertIn("sim://room", (self.folder / "waved.toml").read_text(), "the rig continues with its live cameras")
         self.marey("simulate", "room", "--motion", "wand", "--frames", 2, "--cameras", 4, "-o", "waved_room", "-q")
         found, truth = self.centres("waved.toml"), self.centres("waved_room/rig.toml")
         for a in range(4):
@@ -83,7 +83,7 @@ class Wand(unittest.TestCase):
         ground = json.loads(self.marey("calibrate", "ground", "on_floor.toml", "-o", "grounded.toml", "--json").stdout)
         self.assertLess(ground["rms_mm"], 2)
 
-    def test_live_cameras_that_see_too_little(self):
+    def test_live_cameras_that_observe_too_little(self):
         self.live_rig("live.toml", "wand")
         stopped = subprocess.Popen([MAREY, "calibrate", "wand", "live.toml", "--wand", "0,0.12,0.30", "-o", "never.toml"], cwd=self.folder,
                                    stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -94,7 +94,7 @@ class Wand(unittest.TestCase):
         self.assertIn("nothing was written", said)
         self.assertFalse((self.folder / "never.toml").exists())
         self.live_rig("elsewhere.toml", "ground")
-        said = self.marey("calibrate", "wand", "elsewhere.toml", "--wand", "0,0.12,0.30", "-o", "never.toml", "--for", 1, code=1).stderr
+        said = self.marey("calibrate", "wand", "elsewhere.toml", "--wand", "0,0.12,0.30", "-o", "never.toml", "--duration", 1, code=1).stderr
         self.assertFalse((self.folder / "never.toml").exists())
         self.assertIn("marey: ", said.splitlines()[-1])
 
@@ -108,7 +108,7 @@ class Wand(unittest.TestCase):
         self.assertIn("no camera", self.refused("wand", "room/start.toml", "nobody=a.mp4", "--wand", "0,0.12,0.30"))
         self.assertIn("--wand", self.refused("wand", "room/start.toml", *seen, "--wand", "0,0.20,0.30"))
         self.assertIn("calibrate them first", self.refused("ground", "room/start.toml", "--observations", "floor/observations.csv"))
-        self.assertIn("on a line", self.refused("ground", "room/rig.toml", "--observations", "floor/observations.csv", "--frame", "0,0;1,0;2,0"))
+        self.assertIn("on a line", self.refused("ground", "room/rig.toml", "--observations", "floor/observations.csv", "--l-frame", "0,0;1,0;2,0"))
         self.assertIn("not found", self.refused("ground", "room/rig.toml", *seen))
 
 

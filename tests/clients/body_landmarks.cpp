@@ -1,10 +1,10 @@
-// Runs a landmark network on one picture, for keypoints_test.py to compare with another program.
+// Runs a landmark network on one image, for keypoints_test.py to compare with another program.
 //
-//   body_landmarks NETWORK.onnx PICTURE LEFT TOP WIDTH HEIGHT CROP.bin
+//   body_landmarks NETWORK.onnx IMAGE LEFT TOP WIDTH HEIGHT CROP.bin
 //
 // Writes what the network was shown, 256 × 256 × 3 bytes, blue first, into CROP.bin. Prints the network's own numbers for each of
 // its 39 points, x y z visibility presence, a line each; a line with the person's presence; then for each of the 33 points of a
-// body its place in the picture, px, and covariance:
+// body its place in the image, px, and covariance:
 //   x y xx xy yy visibility presence
 #include <cstdlib>
 #include <fstream>
@@ -23,7 +23,7 @@ void print_landmarks(char** argv) {
   const auto frame = marey::source::open_source(argv[2])->next();
   if (!frame) throw marey::Error("{}: cannot be read", argv[2]);
   const PersonRegion region = region_of(marey::Box{std::atof(argv[3]), std::atof(argv[4]), std::atof(argv[5]), std::atof(argv[6])});
-  const cv::Mat crop = crop_of(frame->picture.bgr(), region);
+  const cv::Mat crop = crop_of(frame->image.bgr(), region);
   std::ofstream(argv[7], std::ios::binary).write(crop.ptr<char>(), static_cast<std::streamsize>(crop.total() * crop.elemSize()));
   const auto outputs = network.raw(crop);
   for (std::size_t i = 0; i < outputs[0].values.size(); ++i) fmt::print("{:.9g}{}", outputs[0].values[i], i % 5 == 4 ? '\n' : ' ');
@@ -38,7 +38,7 @@ void print_landmarks(char** argv) {
 
 int main(int argc, char** argv) {
   if (argc != 8) {
-    fmt::print(stderr, "usage: body_landmarks NETWORK.onnx PICTURE LEFT TOP WIDTH HEIGHT CROP.bin\n");
+    fmt::print(stderr, "usage: body_landmarks NETWORK.onnx IMAGE LEFT TOP WIDTH HEIGHT CROP.bin\n");
     return 2;
   }
   try {

@@ -83,7 +83,7 @@ def expect_plug_in_gaits(before, after):
 
 def check_gait(program, folder):
     """Frames begin at 124; events count from frame 1 all the same."""
-    said = marey(program, "gait", WALK, "--static", STANDING, "--c3d", folder / "angles.c3d", "--angles", folder / "angles.csv", "--json")
+    said = marey(program, "gait", WALK, "--static-trial", STANDING, "--c3d", folder / "angles.c3d", "--angles", folder / "angles.csv", "--json")
     before, after = ezc3d.c3d(str(WALK)), ezc3d.c3d(str(folder / "angles.c3d"))
     assert after["header"]["points"]["first_frame"] == before["header"]["points"]["first_frame"] == 123
     expect_points(before, after)

@@ -108,7 +108,7 @@ def compare(program, truth_path, tracks_path, iou, name):
 
 def random_scene(rng):
     """Walkers that cross and pause, a tracker that jitters, loses, swaps, doubles and invents. On a grid of whole pixels in half
-    of the scenes, where many overlaps and costs are equal; sometimes with boxes not to be judged, or one side empty."""
+    of the scenes, where many overlaps and costs are equal; sometimes with boxes not to be evaluated, or one side empty."""
     digits = rng.choice([0, 2])
     frames, people = rng.randint(1, 40), rng.randint(1, 8)
     first = rng.choice([1, 1, 1, 500])

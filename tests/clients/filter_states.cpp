@@ -32,7 +32,7 @@ void print_parameters(const filter::KalmanOptions& o) {
 }
 void print_parameters(const filter::KalmanPaperOptions& o) {
   fmt::print("frame_rate={} r_xx={} r_xy={} r_yy={} initial_velocity_variance={} noise_per_speed={} least_noise={}\n", o.frame_rate,
-             o.r_xx, o.r_xy, o.r_yy, o.initial_velocity_variance, o.noise_per_speed, o.least_noise);
+             o.r_xx, o.r_xy, o.r_yy, o.initial_velocity_variance, o.noise_per_speed, o.min_noise);
 }
 void print_parameters(const filter::KalmanAccelerationOptions& o) {
   fmt::print("jerk_noise={} initial_speed={} initial_acceleration={}\n", o.jerk_noise, o.initial_speed, o.initial_acceleration);
@@ -50,9 +50,9 @@ void print_parameters(const filter::CondensationOptions& o) {
 }
 void print_parameters(const filter::InteractingModelsOptions& o) {
   fmt::print("steady_noise={} acceleration={} agility={} acceleration_time={} turn_limit={} mode_time={} initial_speed={} ",
-             o.steady_noise, o.acceleration, o.agility, o.acceleration_time, o.turn_limit, o.mode_time, o.initial_speed);
+             o.constant_noise, o.acceleration, o.agility, o.acceleration_time, o.turn_limit, o.mode_time, o.initial_speed);
   fmt::print("swerve_rate={} swerve_speed={} swerve_share={} share_0={} share_1={} share_2={}\n", o.swerve_rate, o.swerve_speed,
-             o.swerve_share, o.shares[0], o.shares[1], o.shares[2]);
+             o.swerve_fraction, o.fractions[0], o.fractions[1], o.fractions[2]);
 }
 
 template <typename Entries>
@@ -84,9 +84,9 @@ class Walk {
       R = covariance();
       filter.predict(dt);
       const F predicted = filter;
-      const bool seen = step % 9 != 0;
-      if (seen) filter.correct(z, R);
-      print_line(dt, seen, z, R, predicted, filter);
+      const bool detected = step % 9 != 0;
+      if (detected) filter.correct(z, R);
+      print_line(dt, detected, z, R, predicted, filter);
     }
   }
 
@@ -102,8 +102,8 @@ class Walk {
   }
 
   template <typename F>
-  static void print_line(double dt, bool seen, const Vector<D>& z, const Matrix<D>& R, const F& predicted, const F& filter) {
-    fmt::print("{:.17g} {:d}", dt, seen);
+  static void print_line(double dt, bool detected, const Vector<D>& z, const Matrix<D>& R, const F& predicted, const F& filter) {
+    fmt::print("{:.17g} {:d}", dt, detected);
     print_entries(z);
     print_entries(R);
     print_entries(predicted.position());

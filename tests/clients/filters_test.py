@@ -2,7 +2,7 @@
 
     filters_test.py PROGRAM      PROGRAM is filter_states; exits 77 (skipped) where filterpy is not installed
 
-filterpy supplies the filters; the motion models are written here anew, by matrix exponentials instead of closed forms.
+filterpy supplies the filters; the motion models are written here again, by matrix exponentials instead of closed forms.
 """
 import subprocess
 import sys
@@ -162,7 +162,7 @@ def turn(x, dt, turn_time, D):
     return np.concatenate([expm(A * dt) @ x[:2 * D], w * np.exp(-dt / turn_time)])
 
 
-class Turning(Reference):
+class Ptz(Reference):
     def start(self, z, R):
         D, p = self.D, self.p
         self.turns = 1 if D == 2 else 3
@@ -180,7 +180,7 @@ class Turning(Reference):
         return Q
 
 
-class Extended(Turning):
+class Extended(Ptz):
     def __init__(self, p, z, R):
         super().__init__(p, z, R)
         x, P = self.start(z, R)
@@ -204,7 +204,7 @@ class Extended(Turning):
         self.f.update(z, lambda x: H, lambda x: H @ x, R=R)
 
 
-class Unscented(Turning):
+class Unscented(Ptz):
     def __init__(self, p, z, R):
         super().__init__(p, z, R)
         x, P = self.start(z, R)
@@ -217,7 +217,7 @@ class Unscented(Turning):
     def predict(self, dt):
         self.f.Q = self.noise(dt)
         self.f.predict(dt=dt)
-        # What was added to P is to be seen by the measurement: draw the points anew.
+        # What was added to P is to be seen by the measurement: draw the points again.
         self.f.sigmas_f = self.f.points_fn.sigma_points(self.f.x, self.f.P)
 
     def correct(self, z, R):

@@ -1,4 +1,4 @@
-// A take played into the live viewer as if its cameras ran now, with pictures drawn from what they saw. For tests of the page and
+// A take played into the live viewer as if its cameras ran now, with images drawn from what they saw. For tests of the page and
 // for figures: live_scene TAKE [RATE_HZ]. Prints the address, then "record on" and "record off" as the page's button is pressed,
 // and a line of figures at its end, which is when standard input ends.
 #include <atomic>
@@ -22,14 +22,14 @@
 namespace {
 
 using namespace marey;
-using Steady = std::chrono::steady_clock;
+using Stabilise = std::chrono::steady_clock;
 
-constexpr int kDrawn = 90;  // instants that are played forth and back; their pictures are drawn beforehand
+constexpr int kDrawn = 90;  // instants that are played forth and back; their images are drawn beforehand
 
-Picture drawn(const Recording& take, std::size_t instant, CameraId camera, cv::Size size) {
+Image drawn(const Recording& take, std::size_t instant, CameraId camera, cv::Size size) {
   cv::Mat grey(size, CV_8UC1, cv::Scalar(18));
   for (int y = 0; y < size.height; ++y) grey.row(y).setTo(cv::Scalar(14 + 22 * y / size.height));
-  for (const SeenPoint& point : take.seen(instant)) {
+  for (const ImageObservation& point : take.detected(instant)) {
     if (point.camera != camera) continue;
     cv::circle(grey, cv::Point2d(16 * point.pixel.x(), 16 * point.pixel.y()), 32, cv::Scalar(240), cv::FILLED, cv::LINE_AA, 4);
   }
@@ -42,20 +42,20 @@ Picture drawn(const Recording& take, std::size_t instant, CameraId camera, cv::S
                       cv::Scalar(110 + 20 * (number(track.id()) % 5)), cv::FILLED);
     }
   }
-  return Picture(grey);
+  return Image(grey);
 }
 
 /// By camera, then by instant.
-std::vector<std::vector<Picture>> drawn_beforehand(const Recording& take) {
-  std::vector<std::vector<Picture>> pictures;
+std::vector<std::vector<Image>> drawn_beforehand(const Recording& take) {
+  std::vector<std::vector<Image>> images;
   const Rig rig = take.header.rig.value_or(Rig{});
   for (std::size_t camera = 0; camera < rig.cameras.size(); ++camera) {
-    pictures.emplace_back();
+    images.emplace_back();
     for (std::size_t i = 0; i < std::min<std::size_t>(kDrawn, take.instants().size()); ++i)
-      pictures.back().push_back(
+      images.back().push_back(
           drawn(take, i, CameraId{static_cast<int>(camera)}, rig.cameras[camera].size.value_or(cv::Size(320, 240))));
   }
-  return pictures;
+  return images;
 }
 
 /// A body that hangs on the first marker, so that the page has one to draw.
@@ -67,18 +67,18 @@ Body some_body() {
   return body;
 }
 
-Instant played(const Recording& take, const std::vector<Instant>& instants, const std::vector<std::vector<Picture>>& pictures,
+Instant played(const Recording& take, const std::vector<Instant>& instants, const std::vector<std::vector<Image>>& images,
                std::int64_t count, double rate_hz) {
-  const std::size_t length = std::min(instants.size(), pictures.front().size()),
+  const std::size_t length = std::min(instants.size(), images.front().size()),
                     phase = static_cast<std::size_t>(count) % (2 * length);
   const std::size_t at = phase < length ? phase : 2 * length - 1 - phase;
   Instant instant = instants[at];
   instant.index = count;
   instant.time = timestamp_from_seconds(static_cast<double>(count) / rate_hz);
-  const auto seen = take.seen(at);
-  instant.seen.assign(seen.begin(), seen.end());
-  for (std::size_t camera = 0; camera < pictures.size(); ++camera)
-    instant.frames.push_back({CameraId{static_cast<int>(camera)}, count, instant.time, pictures[camera][at]});
+  const auto detected = take.detected(at);
+  instant.detected.assign(detected.begin(), detected.end());
+  for (std::size_t camera = 0; camera < images.size(); ++camera)
+    instant.frames.push_back({CameraId{static_cast<int>(camera)}, count, instant.time, images[camera][at]});
   BodyPose pose;
   pose.body = BodyId{1};
   if (!instant.samples.empty()) pose.world_from_body.translation = instant.samples.front().position;
@@ -111,13 +111,13 @@ void play(const std::string& path, double rate_hz) {
   std::vector<Instant> instants;
   MemoryReader again(take);
   while (auto instant = again.next()) instants.push_back(std::move(*instant));
-  const auto pictures = drawn_beforehand(take);
-  if (instants.empty() || pictures.empty()) throw Error("{}: is no take of several cameras", path);
-  std::atomic<int> wanted = -1;
-  const Steady::time_point begin = Steady::now();
-  const auto now = [begin] { return Timestamp(std::chrono::duration_cast<Duration>(Steady::now() - begin)); };
+  const auto images = drawn_beforehand(take);
+  if (instants.empty() || images.empty()) throw Error("{}: is not a take of several cameras", path);
+  std::atomic<int> required = -1;
+  const Stabilise::time_point begin = Stabilise::now();
+  const auto now = [begin] { return Timestamp(std::chrono::duration_cast<Duration>(Stabilise::now() - begin)); };
   viewer::LiveViewer viewer(
-      {.place = {.listen = "127.0.0.1", .port = 0}, .record = [&](bool on) { wanted = on ? 1 : 0; }, .now = now});
+      {.location = {.listen = "127.0.0.1", .port = 0}, .record = [&](bool on) { required = on ? 1 : 0; }, .now = now});
   fmt::print("{}\n", viewer.address());
   std::fflush(stdout);
   std::atomic<bool> ended = false;
@@ -132,14 +132,14 @@ void play(const std::string& path, double rate_hz) {
   double longest_s = 0;
   std::int64_t count = 0;
   for (; !ended; ++count) {
-    Instant instant = played(take, instants, pictures, count, rate_hz);
+    Instant instant = played(take, instants, images, count, rate_hz);
     if (count == 0) instant.named = reader->tracks();
-    std::this_thread::sleep_until(begin + std::chrono::duration_cast<Steady::duration>(instant.time.time_since_epoch()));
-    const Steady::time_point before = Steady::now();
+    std::this_thread::sleep_until(begin + std::chrono::duration_cast<Stabilise::duration>(instant.time.time_since_epoch()));
+    const Stabilise::time_point before = Stabilise::now();
     sink->write(instant);
-    longest_s = std::max(longest_s, std::chrono::duration<double>(Steady::now() - before).count());
+    longest_s = std::max(longest_s, std::chrono::duration<double>(Stabilise::now() - before).count());
     if (count % static_cast<int>(rate_hz / 2) == 0) viewer.report(report_of(take, count, rate_hz));
-    const int record = wanted.exchange(-1);
+    const int record = required.interchange(-1);
     if (record < 0) continue;
     viewer.recording(record == 1, "walk.marey");
     fmt::print("record {}\n", record == 1 ? "on" : "off");

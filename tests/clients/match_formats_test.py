@@ -83,7 +83,7 @@ def convert(program, *arguments):
 
 
 def expect_same(name, found, wanted):
-    """Places by key, to 1 cm; nobody more, nobody less."""
+    """Places by key, to 1 cm; no person more, no person less."""
     assert found.keys() == wanted.keys(), f"{name}: {len(found.keys() ^ wanted.keys())} places are too many or missing, of {len(wanted)}"
     error = max(max(abs(found[key][0] - wanted[key][0]), abs(found[key][1] - wanted[key][1])) for key in wanted)
     print(f"{name}: {len(wanted)} places, largest error {100 * error:.2f} cm")
@@ -179,8 +179,8 @@ def by_marey(program, folder, path):
                 if row["label"] != "ball"]
 
 
-def compare_places(name, ours, theirs):
-    """Sets of places by frame, whoever they are of, to 1 cm: names and ids differ."""
+def compare_positions(name, ours, theirs):
+    """Sets of places by frame, the one who they are of, to 1 cm: names and ids differ."""
     def by_frame(rows):
         frames = {}
         for frame, x, y in rows:
@@ -204,23 +204,23 @@ def rows_of(data, place):
 def check_read(program, folder):
     ours = by_marey(program, folder, DATA / "tracab_raw.dat")
     data = kloppy.tracab.load(meta_data=str(DATA / "tracab_meta.xml"), raw_data=str(DATA / "tracab_raw.dat"), coordinates="tracab", only_alive=False)
-    compare_places("tracab_raw.dat", [(f, x, y) for f, team, _, x, y in ours if team not in ("", "referee")],
+    compare_positions("tracab_raw.dat", [(f, x, y) for f, team, _, x, y in ours if team not in ("", "referee")],
                    rows_of(data, lambda p: (p.x / 100 + LENGTH / 2, p.y / 100 + WIDTH / 2)))
     ours = by_marey(program, folder, DATA / "epts_metrica_tracking.txt")
     data = kloppy.metrica.load_tracking_epts(meta_data=str(DATA / "epts_metrica_metadata.xml"), raw_data=str(DATA / "epts_metrica_tracking.txt"))
-    compare_places("epts_metrica_tracking.txt", [(f, x, y) for f, _, _, x, y in ours], rows_of(data, lambda p: (p.x * LENGTH, (1 - p.y) * WIDTH)))
+    compare_positions("epts_metrica_tracking.txt", [(f, x, y) for f, _, _, x, y in ours], rows_of(data, lambda p: (p.x * LENGTH, (1 - p.y) * WIDTH)))
     ours = by_marey(program, folder, DATA / "metrica_home.csv")
     data = kloppy.metrica.load_tracking_csv(home_data=str(DATA / "metrica_home.csv"), away_data=str(DATA / "metrica_away.csv"))
-    compare_places("metrica_home.csv", [(f + 1, x, y) for f, _, _, x, y in ours], rows_of(data, lambda p: (p.x * LENGTH, p.y * WIDTH)))
+    compare_positions("metrica_home.csv", [(f + 1, x, y) for f, _, _, x, y in ours], rows_of(data, lambda p: (p.x * LENGTH, p.y * WIDTH)))
     ours = by_marey(program, folder, DATA / "sportec_positional.xml")
     data = kloppy.sportec.load_tracking(meta_data=str(DATA / "sportec_meta.xml"), raw_data=str(DATA / "sportec_positional.xml"),
                                         coordinates="sportec", only_alive=False)
-    compare_places("sportec_positional.xml", [(f, x, y) for f, _, _, x, y in ours], rows_of(data, lambda p: (p.x + 50, p.y + WIDTH / 2)))
+    compare_positions("sportec_positional.xml", [(f, x, y) for f, _, _, x, y in ours], rows_of(data, lambda p: (p.x + 50, p.y + WIDTH / 2)))
     ours = by_marey(program, folder, DATA / "statsperform_tracking_ma25.txt")
     data = kloppy.statsperform.load_tracking(ma1_data=str(DATA / "statsperform_tracking_ma1.json"), ma25_data=str(DATA / "statsperform_tracking_ma25.txt"),
                                              tracking_system="sportvu", pitch_length=LENGTH, pitch_width=WIDTH, coordinates="sportvu", only_alive=False)
     start = data.records[0].frame_id
-    compare_places("statsperform_tracking_ma25.txt", [(f, x, y) for f, team, _, x, y in ours if team != "referee"],
+    compare_positions("statsperform_tracking_ma25.txt", [(f, x, y) for f, team, _, x, y in ours if team != "referee"],
                    [(round((f - start) / 100), x, y) for f, x, y in rows_of(data, lambda p: (p.x, WIDTH - p.y))])
 
 

@@ -14,9 +14,9 @@ int main(int argc, char** argv) {
   if (argc < 3) return 2;
   const int instants = static_cast<int>(100 * std::strtod(argv[1], nullptr));
   try {
-    const std::vector<std::string> wires(argv + 2, argv + argc);
-    const marey::stream::Streams streams(wires, {.allow_control = true, .record = [](bool) { return true; }});
-    for (const auto& report : streams.reports()) std::printf("%s %s\n", report.wire.c_str(), report.where.c_str());
+    const std::vector<std::string> protocols(argv + 2, argv + argc);
+    const marey::stream::Streams streams(protocols, {.allow_control = true, .record = [](bool) { return true; }});
+    for (const auto& report : streams.reports()) std::printf("%s %s\n", report.protocol.c_str(), report.where.c_str());
     std::fflush(stdout);
     marey::pipeline::take::play([&] { return std::make_unique<marey::test::MovingBodies>(instants); }, streams.sinks(), {},
                                 &streams.clock());

@@ -3,7 +3,7 @@ no column is cut off, nothing is wider than its box, and every figure of every t
 
     report_pages_test.py MAREY [FOLDER]      exits 77 (skipped) where Node, the viewer's packages or Chromium are not here
 
-Screenshots and PDFs are left in FOLDER. The page of a walk needs the test data, and is left out without them.
+Screenshots and PDFs are left in FOLDER. The page of a walk needs the test data, and is omitted without them.
 """
 import csv
 import io
@@ -42,12 +42,12 @@ def make_pages(marey, folder):
 
     (folder / "matches").mkdir(exist_ok=True)
     for seed in (1, 2, 3):
-        run("simulate", "match", "--stand", "football", "--seconds", 60, "--seed", seed, "--no-boxes", "-o", "scene")
+        run("simulate", "match", "--layout", "football", "--seconds", 60, "--seed", seed, "--no-boxes", "-o", "scene")
         text = named((folder / "scene/truth.csv").read_text())
         (folder / f"matches/2026-0{seed}-14 Sportfreunde Oberwiesenfeld against Wanderers, match {seed}.csv").write_text(text)
         (folder / "match.csv").write_text(text)
     run("measure", "match.csv", "-o", "figures.csv", "--report", "match")
-    run("batch", "plan", "matches", "--do", "measure", "-o", "plan.tsv")
+    run("batch", "plan", "matches", "--job", "measure", "-o", "plan.tsv")
     run("batch", "run", "plan.tsv")
     run("batch", "reduce", "plan.tsv", "-o", "season.csv", "--report", "season")
     pages = {"match": folder / "match/report.html", "season": folder / "season/report.html"}
@@ -57,7 +57,7 @@ def make_pages(marey, folder):
         print(f"no page of a walk: {walks} is not here")
         return pages
     static = next(iter(sorted(walk.parent.glob("static*.c3d"))))
-    run("gait", walk, "--static", static, "-o", "cycles.csv", "--report", "gait.html")
+    run("gait", walk, "--static-trial", static, "-o", "cycles.csv", "--report", "gait.html")
     return pages | {"gait": folder / "gait.html"}
 
 

@@ -57,7 +57,7 @@ def near(found, wanted, tolerance=1e-4):
     assert len(found) == len(wanted) and all(abs(a - b) <= tolerance for a, b in zip(found, wanted)), (found, wanted)
 
 
-def wanted_rotation(k):
+def required_rotation(k):
     """Of the racket, column by column."""
     c, s = math.cos(k / 100), math.sin(k / 100)
     return [c, s, 0, -s, c, 0, 0, 0, 1]
@@ -106,7 +106,7 @@ def qtm_rt():
             assert math.isnan(place.x)
         else:
             near(place, (0, k, 1500), 1e-2)
-            near(rotation.matrix, wanted_rotation(k))
+            near(rotation.matrix, required_rotation(k))
             near((packet.get_6d_euler()[1][0][1].a3,), (math.degrees(math.remainder(k / 100, math.tau)),), 1e-2)
         segments = packet.get_skeletons()[1][0]
         near(segments[1][1], (100, 0, -100), 1e-2)
@@ -254,7 +254,7 @@ def unlabelled():
     import qtm_rt  # noqa: F401: the script imports it
 
     streams = ["--stream", "lsl", "--stream", "qtm"]
-    live = subprocess.Popen([MAREY, "live", "sim://room?cameras=4&rate=30&markers=8&blobs", "--most-markers", "12", "--for", "30", *streams],
+    live = subprocess.Popen([MAREY, "live", "sim://room?cameras=4&rate=30&markers=8&blobs", "--max-markers", "12", "--duration", "30", *streams],
                             stderr=subprocess.PIPE, text=True)
     try:
         said = [live.stderr.readline() for _ in range(3)]

@@ -20,7 +20,7 @@ async function width_of_bones() {
     const { data: rgba } = draw.getImageData(0, 0, image.width, image.height);
     const grey = (at) => Math.min(rgba[at], rgba[at + 1], rgba[at + 2]) > 75 && Math.max(rgba[at], rgba[at + 1], rgba[at + 2]) - Math.min(rgba[at], rgba[at + 1], rgba[at + 2]) < 40;
     const runs = [];
-    // The buttons over the view are left out.
+    // The buttons over the view are omitted.
     for (let y = 60; y < image.height - 60; ++y) {
       let longest = 0;
       for (let x = 0, run = 0; x < image.width; ++x) {

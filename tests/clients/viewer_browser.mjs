@@ -23,14 +23,14 @@ export async function browse(page_folder, phone) {
     for (const end = Date.now() + 1000 * seconds; Date.now() < end; await sleep(60)) if (await holds()) return true;
     return false;
   }
-  /** The last sentence and the list, for whoever reads that a test failed. */
+  /** The last sentence and the list, for the one who reads that a test failed. */
   const shown = () => page.evaluate(() => {
     const row = (each) => [each.className, each.querySelector(".name").textContent, each.querySelector(".percent").textContent].join(" ");
     return JSON.stringify({ said: document.querySelector("#said")?.textContent, rows: [...document.querySelectorAll(".row")].map(row) });
   });
   /**
    * The id of the track that was seen most among those that are there and are not called `other`: it will be seen on, unless the machine
-   * stalls for so long that every track ends. So whoever does something with it must try again with another one.
+   * stalls for so long that every track ends. So the one who does something with it must try again with another one.
    */
   const steadiest = (other = "") => page.evaluate((name) => {
     const rows = [...document.querySelectorAll(".row:not(.gone)")].filter((row) => row.querySelector(".name").textContent !== name);

@@ -11,7 +11,7 @@ const shot = (name) => page.screenshot({ path: join(folder, `${scenario}_${name}
 const first = page.locator("#cameras figure").first();
 const found = async () => parseInt(await first.locator(".found").textContent());
 const masks = async () => parseInt(await first.locator(".count").textContent()) || 0;
-/** Mean grey of the first camera's picture. */
+/** Mean grey of the first camera's image. */
 const brightness = () =>
   page.evaluate(() => {
     const canvas = document.querySelector("#cameras canvas");
@@ -30,15 +30,15 @@ async function turn(dial, value) {
 async function exposure_and_gain() {
   const before = await brightness();
   await turn("exposure", 0.5);
-  await eventually("the picture is not darker", async () => (await brightness()) < 0.6 * before);
+  await eventually("the image is not darker", async () => (await brightness()) < 0.6 * before);
   await turn("exposure", 900);
-  await eventually("what the camera refuses is not told", async () => /does not take that exposure; it must be 0.02 to/.test(await first.locator(".refused").textContent()));
+  await eventually("what the camera refuses is not reported", async () => /does not take that exposure; it must be 0.02 to/.test(await first.locator(".refused").textContent()));
   await shot("refused");
   await eventually("what it has is not shown again", async () => (await first.locator('[data-dial="exposure"] input[type="number"]').inputValue()) === "0.5");
   await turn("exposure", 2);
   await eventually("the refusal stays", async () => !(await first.locator(".refused").isVisible()));
   await turn("gain", 1.5);
-  await eventually("the picture is not brighter", async () => (await brightness()) > 1.2 * before);
+  await eventually("the image is not brighter", async () => (await brightness()) > 1.2 * before);
 }
 
 async function threshold() {
@@ -67,7 +67,7 @@ async function draw_masks() {
   const [x, y] = at(0.9, 0.04);
   await page.mouse.move(x, y);
   await page.mouse.down();
-  await page.mouse.move(x + 2, y + 2); // it slips, which is no mask
+  await page.mouse.move(x + 2, y + 2); // it slips, which is not a mask
   await page.mouse.up();
   await eventually("a click does not take the mask away", async () => (await masks()) === lit);
   await eventually("its markers do not come back", async () => (await found()) > 0);
@@ -92,7 +92,7 @@ async function draw_polygon() {
   await begin();
   await page.keyboard.press("Enter");
   await eventually("Enter closes no polygon", async () => (await masks()) === before + 1);
-  await eventually("a half of the picture is masked, and as many are found", async () => (await found()) < all);
+  await eventually("a half of the image is masked, and as many are found", async () => (await found()) < all);
   await page.mouse.dblclick(...at(0.01, 0.99)); // outside of it: the first corner of another one, which one place cannot close
   await page.keyboard.press("Escape");
   for (const corner of [[0.01, 0.02], [0.01, 0.99]]) await page.mouse.click(...at(...corner));
@@ -110,7 +110,7 @@ async function draw_polygon() {
   await eventually("a click on the first corner closes no polygon", async () => (await masks()) === before + 1);
 }
 
-/** What is typed is not overwritten by what the server says meanwhile, and is sent when it is done. */
+/** What is typed is not overwritten by what the server says in the meantime, and is sent when it is done. */
 async function typed() {
   const field = first.locator('[data-dial="exposure"] input[type="number"]');
   const before = await field.inputValue();
@@ -134,7 +134,7 @@ async function list() {
     return 60 * Number(minutes) + Number(rest);
   };
   await page.click('#tabs [data-tab="list"]');
-  await eventually("nobody is in the list", async () => (await there()) > 3);
+  await eventually("no person is in the list", async () => (await there()) > 3);
   const count = await there();
   const then = await seconds();
   await page.click("#pictures_tab");
@@ -162,7 +162,7 @@ async function list() {
   assert.equal(await text("#total"), "live");
   await page.click("#play");
   const stood = await seconds();
-  await eventually("nobody says how far behind a pause is", async () => /^0:0[1-9]\.\d\d behind$/.test(await text("#total")));
+  await eventually("no person says how far behind a pause is", async () => /^0:0[1-9]\.\d\d behind$/.test(await text("#total")));
   assert.equal(await seconds(), stood, "the clock runs on in a pause");
   await page.click("#live");
   await eventually("the clock does not catch up", async () => (await seconds()) > stood + 0.5 && (await text("#total")) === "live");
@@ -174,7 +174,7 @@ async function list() {
     await figure.locator(".adjust").click();
   }
   await page.click('#tabs [data-tab="list"]');
-  await eventually("nobody comes back", async () => (await there()) > 3);
+  await eventually("no person comes back", async () => (await there()) > 3);
 }
 
 async function names() {
@@ -187,7 +187,7 @@ async function names() {
   assert.match(await text("#naming label"), new RegExp(name));
   await page.keyboard.press("Escape");
   await until("the field stays", () => document.querySelector("#naming").hidden);
-  // Whoever has the name may have gone meanwhile; then another one takes it, and a third is refused.
+  // The one who has the name may have gone in the meantime; then another one takes it, and a third is refused.
   await eventually("two have one name", async () => (await give_name(name)) && (await soon(is_refused)));
   await shot("named");
   await page.keyboard.press("Escape");
@@ -198,7 +198,7 @@ async function cameras() {
   await until("no camera is live", () => [...document.querySelectorAll("#cameras figure b")].some((b) => b.className === "live"));
   await shot("cameras");
   await first.locator(".adjust").click();
-  await eventually("the panel does not tell what is found", async () => (await found()) > 0);
+  await eventually("the panel does not specify what is found", async () => (await found()) > 0);
   await shot("panel");
   await check_layout();
   if (phone) return;

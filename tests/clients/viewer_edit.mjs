@@ -103,7 +103,7 @@ async function mark_by_dragging() {
   await page.keyboard.press("u");
   await page.fill("#range_first", "30");
   await page.keyboard.press("Tab");
-  assert.equal(await page.inputValue("#range_last"), "", "an end that nobody set is open");
+  assert.equal(await page.inputValue("#range_last"), "", "an end that no person set is open");
   await page.fill("#range_last", "9999");
   await page.keyboard.press("Tab");
   assert.match(await text("#edit_said"), /Range not set. Frames are from 0 to 359/);

@@ -45,7 +45,7 @@ async function name() {
 /** The view shows all of the pitch, of the image or of the volume, and fits it again after it was zoomed. */
 async function fit() {
   const { pitch, low, high } = await scene();
-  if (frame === "ground") assert(pitch || (high[0] - low[0] > 2 && high[1] - low[1] > 2), "the page is not told where the ground is");
+  if (frame === "ground") assert(pitch || (high[0] - low[0] > 2 && high[1] - low[1] > 2), "the page is not reported where the ground is");
   await page.click("#reset");
   const box = await page.locator("#stage").boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);

@@ -25,13 +25,13 @@ def begun(command, folder):
     raise AssertionError(f"{command} shows no page: {shown.wait()}")
 
 
-def look(script, folder, scenario, address):
+def inspect(script, folder, scenario, address):
     script = pathlib.Path(__file__).with_name(script)
     subprocess.run(["node", script, viewer_test.PAGE, folder, scenario, address], check=True, timeout=300)
 
 
 def write_rig(marey, folder):
-    """Calibrated cameras round a few markers and two lamps in each picture."""
+    """Calibrated cameras round a few markers and two lamps in each image."""
     subprocess.run([marey, "simulate", "room", "--cameras", "4", "--markers", "12", "--frames", "2", "--size", "640", "480", "-o", "room", "-q"], cwd=folder, check=True)
     rig = re.sub(r"source = .*\n", "", (folder / "room/rig.toml").read_text())
     source = "sim://room?cameras=4&markers=12&size=640x480&rate=20&drawn=3&lamps=2&camera={}"
@@ -59,10 +59,10 @@ def name_markers(marey, folder):
 
 
 def run_live(command, folder, *scenarios):
-    shown, address = begun([*command, "--view", "--port", "0", "--for", "280"], folder)
+    shown, address = begun([*command, "--view", "--port", "0", "--duration", "280"], folder)
     try:
         for scenario in scenarios:
-            look("viewer_changes.mjs", folder, scenario, address)
+            inspect("viewer_changes.mjs", folder, scenario, address)
     finally:
         shown.send_signal(signal.SIGINT)
         shown.communicate(timeout=60)
@@ -74,10 +74,10 @@ def wave(marey, folder, scenario):
         cameras[0] += "masks = [[0, 0, 640, 440]]\n"
     (folder / "start.toml").write_text("\n".join(cameras))
     (folder / "waved.toml").unlink(missing_ok=True)
-    command = [marey, "calibrate", "wand", "start.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", "0", "--for", "120", "--json"]
+    command = [marey, "calibrate", "wand", "start.toml", "--wand", "0,0.12,0.30", "-o", "waved.toml", "--view", "--port", "0", "--duration", "120", "--json"]
     shown, address = begun(command, folder)
     try:
-        look("viewer_wand.mjs", folder, scenario, address)
+        inspect("viewer_wand.mjs", folder, scenario, address)
         told = shown.communicate(timeout=30)[0]  # it ends when the page is closed
     finally:
         shown.kill()
@@ -95,11 +95,11 @@ def show_kinds(marey, live_scene, folder):
         subprocess.run([marey, *arguments, "-q"], cwd=folder, check=True)
 
     run("simulate", "people", "--frames", "100", "--size", "320", "180", "--height", "40", "-o", "street")
-    run("simulate", "match", "--cameras", "2", "--stand", "football", "--seconds", "1", "--size", "640", "360", "--render", "-o", "match")
+    run("simulate", "match", "--cameras", "2", "--layout", "football", "--seconds", "1", "--size", "640", "360", "--render", "-o", "match")
     run("simulate", "room", "--motion", "walk", "--markers", "50", "--frames", "600", "-o", "walk")
     run("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "--labels", "walk/labels.csv", "-o", "walk.marey")
     run("body", "define", "walk/truth.csv", "--markers", "head1,head2,head3", "--name", "head", "-o", "head.toml")
-    run("body", "follow", "walk.marey", "head.toml", "-o", "bodies.marey")
+    run("body", "track", "walk.marey", "head.toml", "-o", "bodies.marey")
     match = ["match/rig.toml", "left=play:match/left.mp4?loop", "right=play:match/right.mp4?loop", "--ground"]
     for scenario, *arguments in (
         ("image_markers", "sim://room?cameras=1&rate=20&markers=8&size=320x240&blobs"),
@@ -109,13 +109,13 @@ def show_kinds(marey, live_scene, folder):
         ("ground_pitch", *match, "--size", "105x68"),
         ("ground_anywhere", *match),
     ):
-        shown, address = begun([marey, "live", *arguments, "--view", "--port", "0", "--for", "280"], folder)
+        shown, address = begun([marey, "live", *arguments, "--view", "--port", "0", "--duration", "280"], folder)
         try:
-            look("viewer_kinds.mjs", folder, scenario, address)
+            inspect("viewer_kinds.mjs", folder, scenario, address)
         finally:
             shown.send_signal(signal.SIGINT)
             shown.communicate(timeout=60)
-    viewer_test.look_at([live_scene, "bodies.marey", "60"], folder, "space_bodies", "viewer_kinds.mjs")
+    viewer_test.inspect_at([live_scene, "bodies.marey", "60"], folder, "space_bodies", "viewer_kinds.mjs")
 
 
 def main(marey, live_scene, folder):

@@ -1,4 +1,4 @@
-// The viewer's page in Chromium: loaded, looked at, every control used. viewer_page.mjs PAGE_FOLDER FOLDER SCENARIO ADDRESS
+// The viewer's page in Chromium: loaded, inspected, every control used. viewer_page.mjs PAGE_FOLDER FOLDER SCENARIO ADDRESS
 // Screenshots are left in FOLDER. Exits 1 with the first thing that is not as it should be.
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -168,19 +168,19 @@ async function pick() {
   assert.fail("nothing in the view can be picked");
 }
 
-/** The picture lies behind its tracks. */
+/** The image lies behind its tracks. */
 async function live_image() {
-  await eventually("the view has no picture", async () => (await look("#view canvas")).colours > 40);
-  await eventually("no rate is told", async () => /Hz/.test(await text("#facts")));
+  await eventually("the view has no image", async () => (await look("#view canvas")).colours > 40);
+  await eventually("no rate is reported", async () => /Hz/.test(await text("#facts")));
   await page.screenshot({ path: join(folder, `${scenario}.png`) });
 }
 
 async function live() {
-  await until("no picture comes", () => [...document.querySelectorAll("#cameras figure b")].some((b) => b.className === "live"));
+  await until("no image comes", () => [...document.querySelectorAll("#cameras figure b")].some((b) => b.className === "live"));
   if (phone) await page.click("#pictures_tab");
-  await eventually("a camera's picture is empty", async () => (await look("#cameras canvas")).colours > 10);
+  await eventually("a camera's image is empty", async () => (await look("#cameras canvas")).colours > 10);
   await eventually("no camera is said to be stalled", async () => /stalled/.test(await text("#cameras")));
-  await eventually("no pictures are said to be lost", async () => /7 lost/.test(await text("#cameras")));
+  await eventually("no images are said to be lost", async () => /7 lost/.test(await text("#cameras")));
   await page.click("#record");
   await until("nothing is recorded", () => document.querySelector("#record").getAttribute("aria-pressed") === "true");
   await page.keyboard.press("r");
@@ -190,11 +190,11 @@ async function live() {
   await page.keyboard.press("ArrowLeft");
   await time_where("no step back", (now) => now < paused);
   await page.click("#live");
-  await until("it does not go on", (t) => Number(document.body.dataset.time) > t, paused);
+  await until("it does not continue", (t) => Number(document.body.dataset.time) > t, paused);
   const figure = page.locator("#cameras figure").first();
   const small = (await figure.boundingBox()).width;
   await figure.click();
-  if (!phone) await eventually("a picture does not grow", async () => (await figure.boundingBox()).width > small);
+  if (!phone) await eventually("an image does not grow", async () => (await figure.boundingBox()).width > small);
   await figure.click();
   await page.keyboard.press("m");
   await page.locator(".row .name").first().click();
@@ -209,7 +209,7 @@ async function live() {
 await page.goto(address);
 await until("nothing was loaded", () => Number(document.body.dataset.rows) > 0);
 assert(!page.url().includes("token"), "the token stays in the address bar");
-await eventually("the view has hardly a colour", async () => (await look("#stage")).colours > 30);
+await eventually("the view has barely a colour", async () => (await look("#stage")).colours > 30);
 await page.screenshot({ path: join(folder, `${scenario}.png`) });
 await check_layout();
 const space = scenario.includes("space") || scenario.includes("live");

@@ -45,7 +45,7 @@ def make_recordings(marey, folder):
     run("simulate", "room", "--motion", "walk", "--markers", "30", "--frames", "360", "--cameras", "8", "--size", "640", "480", "-o", "walk")
     run("reconstruct", "walk/rig.toml", "--observations", "walk/observations.csv", "--labels", "walk/labels.csv", "-o", "walk.marey")
     run("simulate", "room", "--motion", "walk", "--markers", "30", "--frames", "360", "--cameras", "8", "--size", "640", "480", "--gaps", "0.04", "--gap-length", "0.2", "-o", "gaps")
-    run("reconstruct", "gaps/rig.toml", "--observations", "gaps/observations.csv", "--labels", "gaps/labels.csv", "--fill", "0", "-o", "edit.marey")
+    run("reconstruct", "gaps/rig.toml", "--observations", "gaps/observations.csv", "--labels", "gaps/labels.csv", "--max-gap", "0", "-o", "edit.marey")
     run("simulate", "match", "--cameras", "2", "--seconds", "6", "--boxes", "-o", "match")
     run("track", "match/rig.toml", "--ground", "-o", "match.csv")
     run("simulate", "people", "-o", "street", "--frames", "120")
@@ -74,7 +74,7 @@ def make_skeleton(path):
     path.write_text("HIERARCHY\n" + joint("Hips", "0 0 0", [joint("lowerback", "0 30 0", arms, 1), *legs], 0) + f"MOTION\nFrames: {len(rows)}\nFrame Time: 0.0166667\n" + "\n".join(rows) + "\n")
 
 
-def look_at(command, folder, scenario, script="viewer_page.mjs"):
+def inspect_at(command, folder, scenario, script="viewer_page.mjs"):
     shown = subprocess.Popen([str(part) for part in command], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     try:
         address = shown.stdout.readline().strip()
@@ -88,16 +88,16 @@ def main(marey, live_scene, folder):
     check_built(folder)
     make_recordings(marey, folder)
     view = [marey, "view", "--port", "0", "-q"]
-    look_at([*view, "walk.marey"], folder, "space")
-    look_at([*view, "edit.marey", "--edit"], folder, "edit", "viewer_edit.mjs")
-    look_at([*view, "edit.marey", "--edit"], folder, "edit_phone", "viewer_edit.mjs")
+    inspect_at([*view, "walk.marey"], folder, "space")
+    inspect_at([*view, "edit.marey", "--edit"], folder, "edit", "viewer_edit.mjs")
+    inspect_at([*view, "edit.marey", "--edit"], folder, "edit_phone", "viewer_edit.mjs")
     make_skeleton(pathlib.Path(folder) / "anna.bvh")
-    look_at([*view, "anna.bvh"], folder, "bones", "viewer_bones.mjs")
-    look_at([*view, "walk.marey"], folder, "odd", "viewer_odd.mjs")
-    look_at([*view, "street.csv", "--film", "street/video.mp4"], folder, "image")
-    look_at([*view, "match.csv"], folder, "ground_phone")
-    look_at([live_scene, "walk.marey", "60"], folder, "live")
-    look_at([live_scene, "street.marey", "25"], folder, "live_image")
+    inspect_at([*view, "anna.bvh"], folder, "bones", "viewer_bones.mjs")
+    inspect_at([*view, "walk.marey"], folder, "odd", "viewer_odd.mjs")
+    inspect_at([*view, "street.csv", "--video", "street/video.mp4"], folder, "image")
+    inspect_at([*view, "match.csv"], folder, "ground_phone")
+    inspect_at([live_scene, "walk.marey", "60"], folder, "live")
+    inspect_at([live_scene, "street.marey", "25"], folder, "live_image")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ const [, , page_folder, folder, scenario, address] = process.argv;
 const phone = scenario.includes("phone");
 const { page, text, eventually, until, check_layout, done } = await browse(page_folder, phone);
 const shot = (name) => page.screenshot({ path: join(folder, `${scenario}_${name}.png`) });
-/** Whether the picture has pixels of the wand's colour, and of the parts that are covered. */
+/** Whether the image has pixels of the wand's colour, and of the parts that are covered. */
 const has_colour = ([r, g, b]) =>
   page.evaluate(([r, g, b]) => {
     const canvas = document.querySelector("#cameras canvas");
@@ -18,7 +18,7 @@ const has_colour = ([r, g, b]) =>
     return false;
   }, [r, g, b]);
 
-/** The first camera, whose picture is masked but for a strip below: the wand is not seen enough before the mask is gone. */
+/** The first camera, whose image is masked but for a strip below: the wand is not seen enough before the mask is gone. */
 async function set_camera() {
   const first = page.locator("#cameras figure").first();
   const masks = (count) => eventually(`there are not ${count} masks`, async () => (await first.locator(".count").textContent()) === count);
@@ -39,11 +39,11 @@ async function set_camera() {
 }
 
 await page.goto(address);
-await eventually("nobody says what to do", async () => /Wave the wand/.test(await text("#wand h1")));
+await eventually("no person says what to do", async () => /Wave the wand/.test(await text("#wand h1")));
 if (!scenario.includes("enough")) await set_camera();
 await eventually("the wand is not drawn", () => has_colour([255, 209, 102]));
 await eventually("no part is covered", async () => /[1-9]\d*\s% of its picture/.test(await text(".coverage")));
-await eventually("nobody says with whom it was seen", async () => /cam2/.test(await text(".pairs")));
+await eventually("no person says with whom it was seen", async () => /cam2/.test(await text(".pairs")));
 await shot("waving");
 await check_layout();
 if (scenario.includes("enough")) {
@@ -62,7 +62,7 @@ await page.waitForTimeout(1000);
 await shot("done");
 assert.match(await text(".floor p"), /Lay the L-frame down/);
 await page.click("#set_ground");
-await eventually("nobody says that the L-frame is looked at", async () => /Looking at the L-frame/.test(await text(".floor p")));
+await eventually("no person says that the L-frame is inspected", async () => /Looking at the L-frame/.test(await text(".floor p")));
 await eventually("the ground is not set", async () => /The ground is set; the L-frame fits to [\d.]+ mm/.test(await text(".floor p")));
 await page.waitForTimeout(1000);
 await shot("ground");

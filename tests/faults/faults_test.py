@@ -1,4 +1,4 @@
-"""Every command while the outside world fails: the disk at any write, memory, standard output, signals at any moment, the clock.
+"""Every command while the outside world fails: the disk at any write, memory, standard output, signals at any instant, the clock.
 
 Never a crash, never half a file at its final name, never exit 0 with something lost.
 
@@ -27,7 +27,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 
 # name, arguments, what it writes (a folder counts with all that is in it)
 COMMANDS = (
-    ("track film", "track plain/video.mp4 --targets markers -o out/t.txt", ["out/t.txt"]),
+    ("track video", "track plain/video.mp4 --targets markers -o out/t.txt", ["out/t.txt"]),
     ("track take", "track plain/video.mp4 --targets markers -o out/t.marey", ["out/t.marey"]),
     ("track overlay", "track plain/video.mp4 --targets markers -o out/t.csv --overlay out/t.mp4 --plot out/t.svg", ["out/t.csv", "out/t.mp4", "out/t.svg"]),
     ("track detections", "track --detections boxes.txt --rate 25 -o out/t.jsonl --json", ["out/t.jsonl"]),
@@ -53,7 +53,7 @@ COMMANDS = (
     ("info", "info take.marey --json", []),
     ("edit", "edit out/e.marey --script edits.txt --json", ["out/e.marey"]),
     ("body define", "body define leg.csv --markers T1,T2,T3 --name thigh -o out/b.toml", ["out/b.toml"]),
-    ("body follow", "body follow leg.csv bodies.toml -o out/f.marey", ["out/f.marey"]),
+    ("body track", "body track leg.csv bodies.toml -o out/f.marey", ["out/f.marey"]),
     ("label learn", "label learn leg.csv -o out/set.toml --json", ["out/set.toml"]),
     ("label", "label leg.csv --set set.toml -o out/l.c3d", ["out/l.c3d"]),
     ("solve", "solve leg.csv --skeleton leg.toml -o out/s.mot -o out/s.bvh -o out/s.glb --write-skeleton out/s.toml --json",
@@ -80,7 +80,7 @@ coordinates = ["knee"]
 """
 LEG_MARKERS = {"T1": ("thigh", (0.1, 0, -0.1)), "T2": ("thigh", (0, 0.12, -0.2)), "T3": ("thigh", (-0.08, 0, -0.35)),
                "S1": ("shank", (0.05, 0, -0.1)), "S2": ("shank", (0, 0.05, -0.3)), "S3": ("shank", (-0.06, 0, -0.2))}
-GAIT = {"walk.c3d": "straight_HC002D06.c3d", "standing.c3d": "static_HC002D02.c3d"}  # of MAREY_DATA; without it `gait` is left out
+GAIT = {"walk.c3d": "straight_HC002D06.c3d", "standing.c3d": "static_HC002D02.c3d"}  # of MAREY_DATA; without it `gait` is omitted
 
 
 def content(folder, outputs):
@@ -95,7 +95,7 @@ def content(folder, outputs):
 
 
 def frames_of(video):
-    """The decoded frames of a video's bytes, as hashes; empty where it cannot be decoded."""
+    """The decoded frames of a video's bytes, as hashes; empty if it cannot be decoded."""
     with tempfile.NamedTemporaryFile(suffix=".mp4") as file:
         file.write(video)
         file.flush()
@@ -304,7 +304,7 @@ class Faults:
         for run in range(runs):
             self.random.choice(ways)(self.commands[run % len(self.commands)])
         for which in SIGNALS:
-            # What a batch began ends a moment after the batch was killed: in the next run's time.
+            # What a batch began ends an instant after the batch was killed: in the next run's time.
             stopped = [each for each in self.commands if which != signal.SIGKILL or each[0] != "batch run"]
             for _ in range(signals):
                 self.stopped(self.random.choice(stopped), which)

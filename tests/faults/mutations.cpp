@@ -110,8 +110,8 @@ void limit_memory(int megabytes) {
   std::ifstream file("/proc/self/statm");
   rlim_t pages = 0;
   file >> pages;
-  const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (static_cast<rlim_t>(megabytes) << 20);
-  const rlimit limit{most, most}, no_core{0, 0};
+  const rlim_t maximum = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (static_cast<rlim_t>(megabytes) << 20);
+  const rlimit limit{maximum, maximum}, no_core{0, 0};
   setrlimit(RLIMIT_AS, &limit);
   setrlimit(RLIMIT_CORE, &no_core);
 }

@@ -10,7 +10,7 @@
 namespace marey::faults {
 namespace {
 
-constexpr std::size_t kLargest = std::size_t{1} << 20;
+constexpr std::size_t kMaxSize = std::size_t{1} << 20;
 
 constexpr std::array kWildNumbers{"0",
                                   "-1",
@@ -47,15 +47,15 @@ class Mutation {
 
  private:
   std::size_t below(std::size_t end) { return end == 0 ? 0 : random_() % end; }
-  std::size_t place() { return below(text_.size() + 1); }
+  std::size_t location() { return below(text_.size() + 1); }
 
   void flip();
-  void leave_out();
+  void exclude();
   void repeat();
-  void truncate() { text_.resize(place()); }
+  void truncate() { text_.resize(location()); }
   void make_number_wild();
   void change_lines();
-  void exchange_fields();
+  void swap_fields();
   void nest();
   void splice();
   void write_integer();
@@ -75,7 +75,7 @@ void Mutation::once() {
   using Change = void (Mutation::*)();
   constexpr std::array<Change, 14> kChanges{&Mutation::flip,
                                             &Mutation::flip,
-                                            &Mutation::leave_out,
+                                            &Mutation::exclude,
                                             &Mutation::repeat,
                                             &Mutation::truncate,
                                             &Mutation::make_number_wild,
@@ -83,12 +83,12 @@ void Mutation::once() {
                                             &Mutation::make_number_wild,
                                             &Mutation::change_lines,
                                             &Mutation::change_lines,
-                                            &Mutation::exchange_fields,
+                                            &Mutation::swap_fields,
                                             &Mutation::nest,
                                             &Mutation::splice,
                                             &Mutation::write_integer};
   (this->*kChanges[below(kChanges.size())])();
-  if (text_.size() > kLargest) text_.resize(kLargest);
+  if (text_.size() > kMaxSize) text_.resize(kMaxSize);
 }
 
 void Mutation::flip() {
@@ -99,21 +99,21 @@ void Mutation::flip() {
   }
 }
 
-void Mutation::leave_out() {
-  const std::size_t from = place();
+void Mutation::exclude() {
+  const std::size_t from = location();
   text_.erase(from, 1 + below(below(2) == 0 ? 8 : 200));
 }
 
 void Mutation::repeat() {
-  const std::size_t from = place();
+  const std::size_t from = location();
   std::string part = text_.substr(from, 1 + below(below(2) == 0 ? 8 : 200));
   for (std::size_t doublings = below(8); doublings > 0 && part.size() < 50'000; --doublings) part += part;
-  text_.insert(place(), part);
+  text_.insert(location(), part);
 }
 
 void Mutation::make_number_wild() {
   const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  const auto found = std::find_if(text_.begin() + static_cast<std::ptrdiff_t>(place()), text_.end(), is_digit);
+  const auto found = std::find_if(text_.begin() + static_cast<std::ptrdiff_t>(location()), text_.end(), is_digit);
   if (found == text_.end()) return;
   std::size_t begin = static_cast<std::size_t>(found - text_.begin()), end = begin;
   while (begin > 0 && (is_digit(text_[begin - 1]) || std::string_view("+-.").find(text_[begin - 1]) != std::string_view::npos))
@@ -146,7 +146,7 @@ void Mutation::change_lines() {
   }
 }
 
-void Mutation::exchange_fields() {
+void Mutation::swap_fields() {
   constexpr std::string_view kSeparators = ",;:\t =|";
   const std::vector<std::size_t> starts = line_starts();
   const auto [begin, end] = line_at(starts, below(starts.size()));
@@ -165,7 +165,7 @@ void Mutation::nest() {
   const std::string_view level = kNestings[below(kNestings.size())];
   std::string levels;
   for (std::size_t left = std::size_t{1} << below(15); left > 0; --left) levels += level;
-  text_.insert(place(), levels);
+  text_.insert(location(), levels);
 }
 
 void Mutation::splice() {
@@ -173,7 +173,7 @@ void Mutation::splice() {
   const std::string& other = others_[below(others_.size())];
   const std::size_t from = below(other.size() + 1);
   const std::string part = other.substr(from, below(2) == 0 ? below(64) : std::string::npos);
-  const std::size_t at = place();
+  const std::size_t at = location();
   text_.replace(at, below(2) == 0 ? part.size() : 0, part);
 }
 
@@ -182,7 +182,7 @@ void Mutation::write_integer() {
   constexpr std::array<std::uint32_t, 8> kValues{0, 1, 0x7F, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0xFFFFFFFF};
   const std::size_t size = below(2) == 0 ? 2 : 4;
   if (text_.size() < size) return;
-  const std::size_t at = below(std::min<std::size_t>(text_.size() - size + 1, below(2) == 0 ? 512 : kLargest));
+  const std::size_t at = below(std::min<std::size_t>(text_.size() - size + 1, below(2) == 0 ? 512 : kMaxSize));
   const std::uint32_t value = kValues[below(kValues.size())];
   for (std::size_t i = 0; i < size; ++i) text_[at + i] = static_cast<char>(value >> (8 * i));
 }

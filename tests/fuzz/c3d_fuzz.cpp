@@ -7,7 +7,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/motion/c3d.h"
-#include "marey/format/motion/c3d_beside.h"
+#include "marey/format/motion/c3d_auxiliary.h"
 #include "marey/format/motion/c3d_section.h"
 
 #include "fuzz.h"
@@ -25,18 +25,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const marey::Sample& point : frame->samples) check(point.position.allFinite());
       check(frame->bodies.size() <= reader->header().bodies.size());
       for (const marey::BodyPose& pose : frame->bodies) {
-        const auto& turned = pose.world_from_body.rotation;
+        const auto& rotated = pose.world_from_body.rotation;
         check(pose.world_from_body.translation.allFinite() &&
-              (turned * turned.transpose() - marey::Matrix<3>::Identity()).norm() < 1e-9);
+              (rotated * rotated.transpose() - marey::Matrix<3>::Identity()).norm() < 1e-9);
       }
     }
     // What would go along into another file.
-    marey::format::motion::C3dBeside beside(std::as_bytes(std::span(data, size)), {.path = "file", .turned = true});
-    check(beside.channels() * beside.samples() * 2 <= size);
-    check(beside.frame(last).size() == beside.channels() * beside.samples());
+    marey::format::motion::C3dAuxiliary next_to(std::as_bytes(std::span(data, size)), {.path = "file", .rotated = true});
+    check(next_to.channels() * next_to.samples() * 2 <= size);
+    check(next_to.frame(last).size() == next_to.channels() * next_to.samples());
     for (const char* group : {"ANALOG", "FORCE_PLATFORM", "EVENT"}) {
       marey::format::motion::C3dSection section;
-      for (const auto& parameter : beside.group(group, marey::format::UpAxis::z)) section.copy(parameter);
+      for (const auto& parameter : next_to.group(group, marey::format::UpAxis::z)) section.copy(parameter);
     }
   } catch (const marey::Error& error) {
     const std::string_view message = error.what();

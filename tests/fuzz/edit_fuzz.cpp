@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
 #include "marey/edit/operation.h"
 #include "marey/edit/request.h"
+#include "marey/files/text_safety.h"
 
 #include "fuzz.h"
 

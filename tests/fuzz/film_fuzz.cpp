@@ -3,7 +3,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/source.h"
-#include "marey/source/picture_files.h"
+#include "marey/source/image_sequence.h"
 #include "marey/source/video_source.h"
 
 extern "C" {
@@ -22,7 +22,7 @@ void walk(marey::Source& source) {
   for (int frames = 0; frames < 200; ++frames) {
     const auto frame = source.next();
     if (!frame) return;
-    check(frame->picture.size() == size);
+    check(frame->image.size() == size);
   }
 }
 
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     marey::fuzz::check_message(error.what(), path);
   }
   try {
-    walk(*marey::source::open_pictures(path, {path}, 25));
+    walk(*marey::source::open_images(path, {path}, 25));
   } catch (const marey::Error& error) {
     marey::fuzz::check_message(error.what(), path);
   }

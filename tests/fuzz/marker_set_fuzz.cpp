@@ -12,9 +12,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string& path = marey::fuzz::memory_file(marey::fuzz::text_of(data, size));
   try {
     const auto markers = marey::format::motion::read_marker_set(path);
-    check(!markers.has_places() || markers.places.size() == markers.labels.size());
+    check(!markers.has_positions() || markers.locations.size() == markers.labels.size());
     check(std::set(markers.labels.begin(), markers.labels.end()).size() == markers.labels.size());
-    for (const auto& place : markers.places) check(place.allFinite());
+    for (const auto& location : markers.locations) check(location.allFinite());
   } catch (const marey::Error& error) {
     marey::fuzz::check_message(error.what(), path);
   }

@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const marey::TrackColumns& track : match.recording.tracks()) {
       check(marey::number(track.id()) > 0);
       for (std::size_t row = 0; row < track.size(); ++row) {
-        check(track.place(row).allFinite() && track.at()[row] >= 0);
+        check(track.location(row).allFinite() && track.at()[row] >= 0);
         check(row == 0 || track.at()[row] > track.at()[row - 1]);
       }
     }

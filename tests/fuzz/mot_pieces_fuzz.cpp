@@ -14,12 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text = marey::fuzz::text_of(data, size);
   const std::string& path = marey::fuzz::memory_file(text);
   std::optional<tracks::MotTable> whole;
-  std::string said;
+  std::string stated;
   try {
     whole = tracks::parse_mot(text, path, tracks::MotKind::detections);
   } catch (const marey::Error& error) {
-    said = error.what();
-    marey::fuzz::check_message(said, path);
+    stated = error.what();
+    marey::fuzz::check_message(stated, path);
   }
   try {
     tracks::MotReader reader(path);
@@ -27,9 +27,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (const auto piece = reader.next()) boxes.insert(boxes.end(), piece->begin(), piece->end());
     // Only the whole is looked over for a frame that is far from the others, and put in order.
     check(whole ? boxes.size() == whole->boxes.size() && reader.warnings() == whole->warnings
-                : said.find("a number must be wrong") != said.npos);
+                : stated.find("a number must be wrong") != stated.npos);
   } catch (const marey::Error& error) {
-    check(!whole && said == error.what());
+    check(!whole && stated == error.what());
   }
   return 0;
 }

@@ -30,14 +30,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   try {
     if (const auto controls = live::read_node_controls(message, "node")) {
-      for (const live::ControlRange& range : controls->has) check(std::isfinite(range.now) && range.least <= range.most);
+      for (const live::ControlRange& range : controls->has) check(std::isfinite(range.now) && range.minimum <= range.maximum);
       check(controls->refused.find('\x1b') == std::string::npos);
     }
   } catch (const marey::Error& error) {
     marey::fuzz::check_message(error.what(), "node: ");
   }
   if (const auto question = live::read_node_question(message)) {
-    check(!question->wish || (std::isfinite(question->wish->value) && question->wish->value >= 0));
+    check(!question->request || (std::isfinite(question->request->value) && question->request->value >= 0));
     check(live::read_node_question(live::text_of(*question)).has_value());
   }
   return 0;

@@ -22,9 +22,9 @@ void walk(marey::format::FileReader& reader) {
   while (const auto frame = reader.next()) {
     check(frame->index > last);
     last = frame->index;
-    std::set<marey::TrackId> seen;
+    std::set<marey::TrackId> detected;
     for (const marey::Sample& point : frame->samples) {
-      check(point.position.allFinite() && marey::number(point.track) > 0 && seen.insert(point.track).second);
+      check(point.position.allFinite() && marey::number(point.track) > 0 && detected.insert(point.track).second);
     }
   }
 }

@@ -22,11 +22,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     made.bodies[1].skeleton = "s";
     return made;
   }();
-  stream::Cast cast;
-  cast.begin(header);
+  stream::ChannelLayout channel_layout;
+  channel_layout.begin(header);
   stream::QtmState state;
   state.header = &header;
-  state.cast = &cast;
+  state.channel_layout = &channel_layout;
   state.allow_control = true;
   state.newest.emplace();
   stream::QtmSession session(state, {});

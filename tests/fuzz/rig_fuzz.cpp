@@ -34,8 +34,8 @@ void check_camera(const marey::RigCamera& camera) {
     check((R * R.transpose() - marey::Matrix<3>::Identity()).norm() < 1e-8 && R.determinant() > 0);
   }
   if (const auto whole = camera.camera()) {
-    const auto seen = whole->project({0.1, 0.2, 0.3});
-    check(!seen || seen->allFinite());
+    const auto detected = whole->project({0.1, 0.2, 0.3});
+    check(!detected || detected->allFinite());
   }
 }
 

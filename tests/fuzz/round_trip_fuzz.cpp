@@ -50,7 +50,7 @@ bool taken(const std::function<void()>& write) {
 /// Of a frame that has samples: how many, and the sum of their places, which no order changes.
 struct Sum {
   std::size_t count = 0;
-  marey::Vector<3> place = marey::Vector<3>::Zero();
+  marey::Vector<3> location = marey::Vector<3>::Zero();
   double largest = 0;
 };
 
@@ -60,7 +60,7 @@ std::vector<Sum> sums(format::FileReader& reader) {
     Sum sum;
     for (const marey::Sample& sample : instant->samples) {
       ++sum.count;
-      sum.place += sample.position;
+      sum.location += sample.position;
       sum.largest = std::max(sum.largest, sample.position.cwiseAbs().maxCoeff());
     }
     if (sum.count > 0) result.push_back(sum);
@@ -91,8 +91,8 @@ void check_motion(std::string_view text) {
     check(after.size() == before.size());
     for (std::size_t i = 0; i < after.size(); ++i) {
       check(after[i].count == before[i].count);
-      const double most = static_cast<double>(before[i].count) * (1e-3 + 1e-5 * before[i].largest);
-      check((after[i].place - before[i].place).norm() <= most);
+      const double maximum = static_cast<double>(before[i].count) * (1e-3 + 1e-5 * before[i].largest);
+      check((after[i].location - before[i].location).norm() <= maximum);
     }
   }
 }

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto summary = reader.summary();
     reader.edits();
     reader.warnings();
-    reader.moments();
+    reader.time_steps();
     for (int frames = 0; frames < 10'000; ++frames) {
       const auto frame = reader.next();
       if (!frame) break;

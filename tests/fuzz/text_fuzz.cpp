@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/nesting.h"
 #include "marey/format/text_rows.h"
 

@@ -20,10 +20,10 @@ namespace {
 
 class Counted : public net::Session {
  public:
-  explicit Counted(std::size_t& heard) : heard_(heard) {}
+  explicit Counted(std::size_t& received) : received_(received) {}
 
   std::size_t received(std::string_view bytes, net::Outbox&) override {
-    heard_ += bytes.size();
+    received_ += bytes.size();
     return bytes.size();
   }
   net::HttpAnswer requested(const net::HttpRequest& request) override {
@@ -32,12 +32,12 @@ class Counted : public net::Session {
     return {.body = std::make_shared<const std::string>(request.target)};
   }
   void message(std::string_view bytes, net::Kind kind, net::Outbox& out) override {
-    heard_ += bytes.size();
+    received_ += bytes.size();
     out.answer(std::string(bytes), kind);
   }
 
  private:
-  std::size_t& heard_;
+  std::size_t& received_;
 };
 
 net::Loop& loop() {
@@ -58,12 +58,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const net::Descriptor ours(pair[0]);
   const timeval patience{.tv_sec = 0, .tv_usec = 100'000};  // a request may be whole for us and not for the server
   setsockopt(ours.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  std::size_t heard = 0;
+  std::size_t received = 0;
   std::shared_ptr<net::Connection> connection;
   {
     const std::scoped_lock lock(loop().mutex());
     connection = net::make_connection(loop(), net::Descriptor(pair[1]), {.protocol = net::Protocol::either},
-                                      std::make_unique<Counted>(heard));
+                                      std::make_unique<Counted>(received));
     connection->start();
   }
   // Beside a handshake that is whole the frames come after its answer.
@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (recv(ours.get(), answer.data(), answer.size(), 0) > 0) {
   }
   const std::scoped_lock lock(loop().mutex());
-  check(heard <= size);
+  check(received <= size);
   connection->close();
   connection->forget_session();
   return 0;

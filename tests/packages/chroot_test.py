@@ -1,6 +1,6 @@
 """The Debian packages in a Debian 12 that has nothing else: installed, used, and how long that takes.
 
-Usage: chroot_test.py FOLDER_OF_PACKAGES [--film FILM] (root; debootstrap). Downloads are timed apart: they are the network's. Exits 77 where it cannot
+Usage: chroot_test.py FOLDER_OF_PACKAGES [--video FILM] (root; debootstrap). Downloads are timed apart: they are the network's. Exits 77 where it cannot
 be tried here.
 """
 
@@ -19,7 +19,7 @@ MIRROR = os.environ.get("MAREY_DEBIAN_MIRROR", "http://deb.debian.org/debian")
 def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("packages", type=pathlib.Path)
-    parser.add_argument("--film", type=pathlib.Path)
+    parser.add_argument("--video", type=pathlib.Path)
     given = parser.parse_args()
     if os.geteuid() != 0 or shutil.which("debootstrap") is None:
         print("not tried: this needs root and debootstrap (apt install debootstrap)")

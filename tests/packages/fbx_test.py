@@ -79,7 +79,7 @@ class InBlender(unittest.TestCase):
             self.assertIn(f"{FRAMES} frames at {RATE} Hz", said)
             self.assertLess(self.farthest("walk.fbx"), 0.1)
 
-    def test_what_is_no_motion_is_said(self):
+    def test_what_is_no_motion_is_stated(self):
         for name, content, words in (("a.bvh", "HIERARCHY\nROOT a\n{\n}\n", "holds no motion"), ("a.glb", "glTF", "is damaged"), ("b.glb", "x", "no GLB file"),
                                      ("b.bvh", "Frame Time: zero\n", "is damaged")):
             (self.folder / name).write_text(content)

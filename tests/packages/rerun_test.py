@@ -1,4 +1,4 @@
-"""Rerun converts the MCAP files that are written: every moment, at its time, with every point where it is.
+"""Rerun converts the MCAP files that are written: every instant, at its time, with every point where it is.
 
 Usage: rerun_test.py MAREY (a network: Rerun, 170 MB, goes into a virtual environment of its own). Exits 77 where it cannot be had.
 """
@@ -60,7 +60,7 @@ def main() -> int:
                 nearest = min(math.dist(point, other) for other in moments[at])
                 assert nearest < 2e-5, (time, point, nearest)
                 compared += 1
-        print(f"Rerun {VERSION}: {len(shown)} moments, {compared} points looked at")
+        print(f"Rerun {VERSION}: {len(shown)} instants, {compared} points inspected")
     return 0
 
 

@@ -1,6 +1,6 @@
 """The Python wheel in a bare virtual environment: how large it is, how long it takes to install and to import, and whether it works.
 
-Usage: wheel_test.py FOLDER_OF_PACKAGES [--film FILM] (a network, for numpy; for --film the program ffmpeg). Exits 77 where there is no wheel.
+Usage: wheel_test.py FOLDER_OF_PACKAGES [--video FILM] (a network, for numpy; for --video the program ffmpeg). Exits 77 where there is no wheel.
 """
 
 import argparse
@@ -47,7 +47,7 @@ print(f"import {imported:.2f} s; {len(tracks.tracks)} tracks of pictures in an a
 def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("packages", type=pathlib.Path)
-    parser.add_argument("--film", type=pathlib.Path)
+    parser.add_argument("--video", type=pathlib.Path)
     given = parser.parse_args()
     wheels = sorted(given.packages.glob("marey-*.whl"))
     if not wheels:

@@ -14,13 +14,13 @@ import unittest
 import warnings
 
 from own_kalman import Kalman
-from simulated_film import MAREY, ROOT, SimulatedFilm, command, np
+from simulated_video import MAREY, ROOT, SimulatedVideo, command, np
 
 import marey
 
 
-class Jobs(SimulatedFilm):
-    # ---- people in one picture
+class Jobs(SimulatedVideo):
+    # ---- people in one image
 
     def test_same_bytes_as_the_command_line(self):
         command("track", self.film, "-o", "shell.txt", "-q", cwd=self.folder)
@@ -83,27 +83,27 @@ class Jobs(SimulatedFilm):
             (lambda: marey.Frames([picture.astype(float)], rate=25), "is of float64; give uint8"),
             (lambda: marey.Frames([picture[..., None]], rate=25), "has the shape"),
             (lambda: marey.Frames([picture], rate=float("nan")), "the rate is nan"),
-            (lambda: marey.Frames([], rate=25), "there is no picture"),
+            (lambda: marey.Frames([], rate=25), "there is no image"),
             (lambda: marey.Frames([picture], rate=25, colour="hsv"), 'colour is "hsv"'),
-            (lambda: marey.track(marey.Frames([picture, picture[:100]], rate=25)), "picture 1: has"),
+            (lambda: marey.track(marey.Frames([picture, picture[:100]], rate=25)), "image 1: has"),
             (lambda: marey.track(marey.Frames(lambda: [(0.0, picture), (float("nan"), picture)], rate=25)), "its time is nan s"),
             (lambda: marey.track(marey.Frames(lambda: [(1.0, picture), (1.0, picture)], rate=25)), "is not later"),
-            (lambda: marey.track(self.pictures), "wrap pictures: marey.Frames"),
+            (lambda: marey.track(self.pictures), "wrap images: marey.Frames"),
             (lambda: marey.track("nothing.mp4"), "nothing.mp4: no such file"),
             (lambda: marey.track(), "what is to be tracked?"),
             (lambda: marey.track(self.film, targets="cars"), "use one of people, keypoints, markers"),
             (lambda: marey.track(self.film, filter="imn"), 'filter: filter "imn" is not known'),
             (lambda: marey.track(self.film, seen_onyl=True), "did you mean seen_only?"),
-            (lambda: marey.track(self.film, associate="mht"), "associate is not an option of this job (track people)"),
-            (lambda: marey.track(self.film, delay=1), "delay 1: is an option of live"),
-            (lambda: marey.track(self.film, order=3), "order requires outline"),
+            (lambda: marey.track(self.film, association="mht"), "associate is not an option of this job (track people)"),
+            (lambda: marey.track(self.film, lag=1), "delay 1: is an option of live"),
+            (lambda: marey.track(self.film, spline_order=3), "order requires outline"),
             (lambda: marey.track(self.film, plot="plot.png"), "name a file that ends in .svg"),
             (lambda: marey.track(self.film, rate=[1, 2]), 'rate: "1x2" is no number'),
             (lambda: marey.track(self.film, plot=object()), "is neither a number nor text nor a path"),
             (lambda: marey.track(self.film, rate=-1), "rate: -1 is out of range; give Hz in"),
             (lambda: marey.track(self.film, sinks=["tracks.xyz"]), "xyz"),
             (lambda: marey.track(self.film, sinks=["/nowhere/tracks.txt"]), "/nowhere/tracks.txt"),
-            (lambda: marey.track(self.film, sinks=[3]), "3 is no sink"),
+            (lambda: marey.track(self.film, sinks=[3]), "3 is not a sink"),
         ]:
             with self.assertRaises(marey.Error) as raised:
                 wrong()
@@ -130,11 +130,11 @@ class Jobs(SimulatedFilm):
         program = (
             "import itertools, numpy as np, marey, sys\n"
             "picture = np.zeros((240, 320, 3), dtype=np.uint8)\n"
-            "def pictures():\n"
+            "def images():\n"
             "    print('runs', flush=True)\n"
-            "    yield from itertools.repeat(picture)\n"
+            "    yield from itertools.repeat(image)\n"
             "try:\n"
-            "    marey.track(marey.Frames(pictures(), rate=25), live=True, keep=False)\n"
+            "    marey.track(marey.Frames(images(), rate=25), live=True, keep=False)\n"
             "except KeyboardInterrupt:\n"
             "    print('interrupted', flush=True)\n"
         )

@@ -31,7 +31,7 @@ MAREY = pathlib.Path(sys.argv.pop(1))
 ROOT = pathlib.Path(sys.argv.pop(1))
 
 
-def said(cell):
+def stated(cell):
     """What a cell printed, and the plain text of what it returned."""
     return "".join(output.get("text", "") or output.get("data", {}).get("text/plain", "") for output in cell.get("outputs", []))
 
@@ -57,11 +57,11 @@ class Notebooks(unittest.TestCase):
         os.environ.update(jupyter, PATH=f"{self.folder / 'bin'}:{os.environ['PATH']}")
 
     def run_notebook(self, name):
-        """All that its cells said, one after the other."""
+        """All that its cells stated, one after the other."""
         book = nbformat.read(ROOT / f"examples/{name}.ipynb", as_version=4)
         NotebookClient(book, timeout=300, startup_timeout=180, kernel_name="python3", resources={"metadata": {"path": str(self.folder)}}).execute()
         self.assertTrue(all(cell.execution_count for cell in book.cells if cell.cell_type == "code"))
-        return "\n".join(said(cell) for cell in book.cells if cell.cell_type == "code")
+        return "\n".join(stated(cell) for cell in book.cells if cell.cell_type == "code")
 
     def number(self, text, pattern):
         found = re.search(pattern, text)

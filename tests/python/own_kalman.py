@@ -1,6 +1,6 @@
 """A filter of one's own, for the tests of jobs."""
 
-from simulated_film import np
+from simulated_video import np
 
 
 class Kalman:

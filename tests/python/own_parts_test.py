@@ -10,12 +10,12 @@ import traceback
 import unittest
 
 from own_kalman import Kalman
-from simulated_film import SimulatedFilm, command, np
+from simulated_video import SimulatedVideo, command, np
 
 import marey
 
 
-class OwnParts(SimulatedFilm):
+class OwnParts(SimulatedVideo):
     def test_own_detector(self):
         seen = marey.track(self.film, detector=self.bright)
         # The sanitizers' build is another compiler's, which draws random numbers in another order: people walk elsewhere.
@@ -136,7 +136,7 @@ class OwnParts(SimulatedFilm):
         self.assertEqual(seen[-1].position.shape[1], 3)
         self.assertTrue(6 <= len(seen[-1]) <= 24, len(seen[-1]))
         self.assertGreater(len(marey.read(self.folder / "live.marey").indices), len(seen) - 2)
-        # A rig, a loop that is too slow for it, and a sink that goes wrong: the run goes on, with the newest moments.
+        # A rig, a loop that is too slow for it, and a sink that goes wrong: the run continues, with the newest instants.
         command("simulate", "room", "--cameras", 3, "--frames", 2, "-o", "live_room", "-q", cwd=self.folder)
         text = (self.folder / "live_room" / "rig.toml").read_text()
         rig = self.folder / "live_room" / "live.toml"

@@ -1,4 +1,4 @@
-"""Recordings in Python: columns without copies, what other packages accept, files, and arrays that are none.
+"""Recordings in Python: columns without copies, what other packages accept, files, and arrays that are not any.
 
 Usage: recordings_test.py MAREY ROOT [unittest options].
 """
@@ -73,7 +73,7 @@ class Recordings(unittest.TestCase):
 
     def film(self):
         subprocess.run([MAREY, "simulate", "people", "--people", "3", "--frames", "40", "--seed", "4", "-o", "film", "-q"], cwd=self.folder, check=True)
-        return marey.track(self.folder / "film" / "video.mp4", seen_only=True)
+        return marey.track(self.folder / "film" / "video.mp4", measured_only=True)
 
     # ---- columns
 
@@ -120,7 +120,7 @@ class Recordings(unittest.TestCase):
             (dict(position=good, times=np.zeros(50)), "grow from instant"),
             (dict(position=good, times=np.full(50, np.nan)), "grow from instant"),
             (dict(position=good, labels=["Anna"]), "1 names for 3"),
-            (dict(position=good, frame="moon"), '"moon" is no frame of reference'),
+            (dict(position=good, frame="moon"), '"moon" is not a frame of reference'),
         ]:
             with self.assertRaises(marey.Error, msg=said) as raised:
                 marey.Recording.from_arrays(**({"rate": 25, "frame": "ground"} | wrong))
@@ -222,7 +222,7 @@ class Recordings(unittest.TestCase):
             marey.evaluate(self.ground(), self.ground())  # has no boxes
         self.assertEqual(marey.evaluate(self.ground(), self.ground(), distance=1).recall, 1.0)
 
-    def test_stubs_tell_what_there_is(self):
+    def test_stubs_report_what_there_is(self):
         import ast
 
         core = sys.modules["marey._core"]

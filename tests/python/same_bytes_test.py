@@ -12,7 +12,7 @@ import tempfile
 import unittest
 import warnings
 
-from simulated_film import MAREY, ROOT, command, np
+from simulated_video import MAREY, ROOT, command, np
 
 import marey
 from marey import _core
@@ -28,13 +28,13 @@ EXAMPLES = {
         "rate": 20,
         "overlay": lambda out: out / "overlay.mp4",
         "plot": lambda out: out / "plot.svg",
-        "masks": lambda out: out / "masks",
-        "delay": 0.5,
+        "foreground-masks": lambda out: out / "masks",
+        "lag": 0.5,
         "detector": MODELS / "person.toml",
-        "every": 3,
+        "detector-interval": 3,
         "control-points": 12,
-        "order": 3,
-        "lines": 16,
+        "spline-order": 3,
+        "measurement-lines": 16,
         "model": "lite",
     },
     "track markers": {
@@ -44,8 +44,8 @@ EXAMPLES = {
         "plot": lambda out: out / "plot.svg",
         "labels": "labels.txt",
         "threshold": 60.5,
-        "widest": 30,
-        "most-markers": 4,
+        "max-width": 30,
+        "max-markers": 4,
         "min-area": 5,
         "max-area": 900,
         "min-roundness": 0.5,
@@ -59,7 +59,7 @@ EXAMPLES = {
         "overlay": lambda out: out / "overlays",
         "pitch-view": lambda out: out / "view.mp4",
         "detector": MODELS / "person.toml",
-        "every": 3,
+        "detector-interval": 3,
         "size": (100, 60),
         "area": [(10, 5), (90, 5), (50, 60)],
         "margin": 1.5,
@@ -70,17 +70,17 @@ EXAMPLES["reconstruct markers"] = {
     "labels": "room_labels.txt",
     "rate": 80,
     "noise": 0.5,
-    "fill": 0.1,
-    "predict": 0.05,
-    "marker-width": 0.02,
+    "max-gap": 0.1,
+    "max-prediction": 0.05,
+    "marker-diameter": 0.02,
     "max-speed": 4,
     "threshold": 60,
-    "widest": 20,
-    "most-markers": 6,
+    "max-width": 20,
+    "max-markers": 6,
     "min-area": 4,
     "max-area": 500,
     "min-roundness": 0.5,
-    "set": "set.toml",
+    "marker-set": "set.toml",
     "skeleton": "skeleton.toml",
 }
 EXAMPLES["reconstruct keypoints"] = {
@@ -90,11 +90,11 @@ EXAMPLES["reconstruct keypoints"] = {
     "max-offset": 0.1,
     "model": "lite",
     "detector": MODELS / "person.toml",
-    "every": 3,
+    "detector-interval": 3,
 }
 EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
-WITH = {"masks": ["background"], "every": ["detector"], "without-background": ["detector"]}
+WITH = {"foreground-masks": ["background"], "detector-interval": ["detector"], "no-background": ["detector"]}
 # Options whose network is made by script/model, which not every machine has.
 MODEL_OPTIONS = {"detector", "every", "without-background", "model"}
 
@@ -251,7 +251,7 @@ class SameBytes(unittest.TestCase):
         self.check("track ground", lambda given: ["track", rig, "--ground"], lambda given, sinks: marey.track_ground(rig, sinks=sinks, **given))
 
     def test_reconstruct_markers(self):
-        room = ("simulate", "room", "--cameras", 3, "--markers", 12, "--frames", 40, "--size", 640, 512, "--videos", "-o", "room", "-q")
+        room = ("simulate", "room", "--cameras", 3, "--markers", 12, "--frames", 40, "--size", 640, 512, "--render", "-o", "room", "-q")
         command(*room, cwd=FOLDER)
         command("label", "learn", "room/truth.csv", "-o", "set.toml", "-q", cwd=FOLDER)
         (FOLDER / "room_labels.txt").write_text("".join(f"name{i}\n" for i in range(12)))

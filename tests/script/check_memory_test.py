@@ -58,7 +58,7 @@ class CheckMemory(unittest.TestCase):
     def test_clean_ones_of_one_process(self):
         self.assertIn("3 tests clean, 0 findings, 0 not through", self.check(0, "A.One", "A.Two", "A.Three"))
 
-    def test_a_finding_is_told_with_what_ran(self):
+    def test_a_finding_is_reported_with_what_ran(self):
         said = self.check(1, "A.One", "A.Reads")
         self.assertIn("Invalid read", said)
         self.assertIn("A.One:A.Reads", said)

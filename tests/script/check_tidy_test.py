@@ -63,7 +63,7 @@ class CheckTidy(unittest.TestCase):
     def test_of_changed_sources_only_their_units(self):
         self.assertEqual(self.check(0, "src/marey/track/swap.cpp"), ["room_unit_0.cpp"])
 
-    def test_a_finding_is_told(self):
+    def test_a_finding_is_reported(self):
         self.unit("faulty_unit_0.cpp", "src/marey/draw/plot.cpp")
         self.check(1)
         self.assertIn("error: a finding", self.said)

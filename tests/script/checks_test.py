@@ -61,7 +61,7 @@ class Checks(unittest.TestCase):
         self.check("check-layers", 1, "pipeline/attic has no place in the order")
 
     def test_unswept_constants_may_only_become_fewer(self):
-        for folder in ("filter", "assign", "edit", "source/steady", "detect", "reconstruct", "calibrate", "solve", "analyse", "pipeline"):
+        for folder in ("filter", "assign", "edit", "source/stabilise", "detect", "reconstruct", "calibrate", "solve", "analyse", "pipeline"):
             (self.root / "src/marey" / folder).mkdir(parents=True, exist_ok=True)
         self.plant("docs/tuning.md", "`kGate` was chosen among five.\n`kReach` is not swept.\n")
         self.plant("script/constants.txt", "# per folder\nfixed kPi\ntrack 2\n")
@@ -78,7 +78,7 @@ class Checks(unittest.TestCase):
         self.plant("src/marey/detect/blob.h", "namespace marey {\nstruct Blob {};\n}\n")
         self.check("check-names", 1, "Blob is defined in marey; its folder is marey::detect")
 
-    def test_an_inner_room_in_its_parents_namespace_and_the_other_way_round(self):
+    def test_an_inner_room_in_its_parents_namespace_and_the_other_trajectory_round(self):
         self.plant("src/marey/track/ground/a.h", "namespace marey::track {\nstruct InnerAsOuter {};\n}\n")
         self.plant("src/marey/track/b.h", "namespace marey::track {\nnamespace ground {\nstruct OuterAsInner {};\n}\n}\n")
         self.check("check-names", 1, "InnerAsOuter is defined in marey::track;", "OuterAsInner is defined in marey::track::ground;")
@@ -120,13 +120,13 @@ class Checks(unittest.TestCase):
     def test_words_are_counted_in_every_scope(self):
         self.plant("src/marey/track/told.h", "// who looks\nnamespace marey::track {\nint kLongestGap();\nstruct ToldTrack {};\n}\n")
         self.plant("src/marey/track/told_test.cpp", 'TEST(Told, WhatIsNone) { f("a picture", "picture"); }\n')
-        self.plant("docs/a.md", "A picture, a look-up.\n```\npicture\n```\n`picture`\n")
+        self.plant("docs/a.md", "An image, a inspection-up.\n```\npicture\n```\n`picture`\n")
         self.count_words("id 1 _told_  ->  x", "const 1 ^kLongest  ->  x", "path 2 ^told  ->  x", "prose 2 \\bpictures?\\b  ->  x", "prose 1 \\blook  ->  x",
                          "test 1 ^What  ->  x")
         self.check("check-words", 0, "1 id, 1 const, 2 path, 2 prose, 1 test")
 
     def test_a_count_that_rises_fails_and_names_the_rule(self):
-        self.plant("docs/a.md", "A picture.\nAnother picture.\n")
+        self.plant("docs/a.md", "An image.\nAnother image.\n")
         self.count_words("prose 1 \\bpicture\\b  ->  image")
         done = subprocess.run([PROJECT / "script/check-words", self.root], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 1, done.stdout)
@@ -135,7 +135,7 @@ class Checks(unittest.TestCase):
         self.assertEqual((self.root / "script/words.txt").read_text().splitlines()[1], "prose 2 \\bpicture\\b  ->  image")
 
     def test_words_outside_a_working_tree_are_not_counted(self):
-        self.plant("script/words.txt", "prose 1 picture  ->  image\n")
+        self.plant("script/words.txt", "prose 1 image  ->  image\n")
         self.check("check-words", 77, "needs a git working tree")
 
 

@@ -44,7 +44,7 @@ class Docs(unittest.TestCase):
         for picture in shown:
             self.assertIsNone(gallery().shows_nothing(site / picture), picture)
 
-    def test_a_picture_that_shows_nothing(self):
+    def test_a_image_that_shows_nothing(self):
         shows_nothing = gallery().shows_nothing
         with tempfile.TemporaryDirectory(prefix="marey_docs_") as name:
             folder = pathlib.Path(name)
@@ -56,7 +56,7 @@ class Docs(unittest.TestCase):
             (folder / "empty.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"><rect/></svg>')
             self.assertEqual(shows_nothing(folder / "empty.svg"), "has 1 lines")
 
-    def test_every_picture_of_the_gallery_has_commands(self):
+    def test_every_image_of_the_gallery_has_commands(self):
         for heading, (commands, pictures) in gallery().sections_of((ROOT / "docs/gallery.md").read_text()).items():
             self.assertTrue(pictures, heading)
             for picture in pictures:

@@ -42,8 +42,8 @@ inline void write_file(const std::string& path, const std::string& text) {
 }
 
 /// Keeps the first `share` of a file's bytes.
-inline void cut_file(const std::string& path, double share) {
-  std::filesystem::resize_file(path, static_cast<std::uintmax_t>(static_cast<double>(std::filesystem::file_size(path)) * share));
+inline void cut_file(const std::string& path, double fraction) {
+  std::filesystem::resize_file(path, static_cast<std::uintmax_t>(static_cast<double>(std::filesystem::file_size(path)) * fraction));
 }
 
 /// Runs the ffmpeg program: `arguments` as on a command line, without the program's name.

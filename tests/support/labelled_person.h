@@ -66,32 +66,32 @@ inline std::shared_ptr<const LearnedMarkers> set_of(const std::vector<Recording>
 
 /// What a tracker makes of the points: each marker's track ends where it is hidden, 5 % of the time, and another begins; now and
 /// then two that are near exchange their tracks; ghosts come and go. `truth` has the marker of each point, −1 of a ghost.
-struct Seen {
+struct Detected {
   std::vector<Instant> instants;
   std::vector<std::vector<int>> truth;  // by instant and sample
 };
 
 class Spoiler {
  public:
-  Spoiler(const RoomScene& scene, std::uint64_t seed, double hidden = 0.05, int exchanges = 0)
-      : scene_(scene), random_(seed), hidden_(hidden), exchanges_(exchanges) {}
+  Spoiler(const RoomScene& scene, std::uint64_t seed, double hidden = 0.05, int swaps = 0)
+      : scene_(scene), random_(seed), hidden_(hidden), swaps_(swaps) {}
 
-  Seen seen(std::int64_t frames) {
+  Detected detected(std::int64_t frames) {
     const auto count = static_cast<int>(scene_.labels().size());
     for (int m = 0; m < count; ++m) track_of_.push_back(next_++), hidden_for_.push_back(0);
-    Seen seen;
-    for (std::int64_t i = 0; i < frames; ++i) add(seen, i, frames);
-    return seen;
+    Detected detected;
+    for (std::int64_t i = 0; i < frames; ++i) add(detected, i, frames);
+    return detected;
   }
 
  private:
-  void add(Seen& seen, std::int64_t i, std::int64_t frames) {
-    Instant& instant = seen.instants.emplace_back();
-    auto& truth = seen.truth.emplace_back();
+  void add(Detected& detected, std::int64_t i, std::int64_t frames) {
+    Instant& instant = detected.instants.emplace_back();
+    auto& truth = detected.truth.emplace_back();
     instant.index = i;
     instant.time = timestamp_from_seconds(static_cast<double>(i) / kTestedRate);
     const auto points = scene_.points(seconds(instant.time));
-    if (exchanges_ > 0 && i % (frames / (exchanges_ + 1)) == frames / (exchanges_ + 1) / 2) exchange(points);
+    if (swaps_ > 0 && i % (frames / (swaps_ + 1)) == frames / (swaps_ + 1) / 2) interchange(points);
     std::vector<std::pair<Sample, int>> samples;
     for (std::size_t m = 0; m < points.size(); ++m) {
       if (hidden_for_[m] == 0 && random_.uniform() < hidden_ / 10) {
@@ -118,7 +118,7 @@ class Spoiler {
     for (auto& ghost : ghosts_) {
       Sample sample;
       sample.track = TrackId{ghost.track};
-      sample.position = ghost.place;
+      sample.position = ghost.location;
       samples.emplace_back(sample, -1);
       --ghost.left;
     }
@@ -126,7 +126,7 @@ class Spoiler {
   }
 
   /// A marker that is seen, and the nearest other one.
-  void exchange(const std::vector<Vector<3>>& points) {
+  void interchange(const std::vector<Vector<3>>& points) {
     const auto one = static_cast<std::size_t>(random_.uniform() * static_cast<double>(points.size()));
     std::size_t other = one == 0 ? 1 : 0;
     for (std::size_t m = 0; m < points.size(); ++m) {
@@ -137,56 +137,56 @@ class Spoiler {
 
   struct Ghost {
     int track = 0;
-    Vector<3> place = Vector<3>::Zero();
+    Vector<3> location = Vector<3>::Zero();
     int left = 0;
   };
   const RoomScene& scene_;
   simulate::Random random_;
   double hidden_;
-  int exchanges_;
+  int swaps_;
   int next_ = 1;
   std::vector<int> track_of_, hidden_for_;
   std::vector<Ghost> ghosts_;
 };
 
 /// Of the markers' points since the first names counted.
-struct NamedShare {
+struct NamedFraction {
   std::int64_t points = 0, right = 0, wrong = 0;
   bool is_consistent = true;  // each sample stays, and no track is there twice at an instant
   double found_at_s = -1;
   std::vector<std::string> news;
 };
 
-inline NamedShare named_in(const RoomScene& scene, const Seen& seen, const std::shared_ptr<const LearnedMarkers>& set,
-                           std::vector<std::string>* warnings = nullptr) {
+inline NamedFraction named_in(const RoomScene& scene, const Detected& detected, const std::shared_ptr<const LearnedMarkers>& set,
+                              std::vector<std::string>* warnings = nullptr) {
   pipeline::markers::SetInSpaceOptions options;
   options.wait = true;
-  pipeline::markers::SetInSpace named(set, kTestedRate, options);
-  NamedShare share;
+  pipeline::markers::LiveLabelling named(set, kTestedRate, options);
+  NamedFraction fraction;
   std::map<TrackId, std::string> labels;
-  for (std::size_t i = 0; i < seen.instants.size(); ++i) {
-    Instant instant = seen.instants[i];
+  for (std::size_t i = 0; i < detected.instants.size(); ++i) {
+    Instant instant = detected.instants[i];
     const std::vector<Sample> before = instant.samples;
     named.add_to(instant);
-    for (std::string& sentence : named.news()) share.news.push_back(std::move(sentence));
+    for (std::string& message_text : named.news()) fraction.news.push_back(std::move(message_text));
     for (const TrackName& name : instant.named) labels[name.id] = name.label;
     if (!named.found_at_s()) continue;
-    share.is_consistent = share.is_consistent && instant.samples.size() == before.size();
+    fraction.is_consistent = fraction.is_consistent && instant.samples.size() == before.size();
     std::map<double, int> marker_at;  // by x: samples come in another order
-    for (std::size_t p = 0; p < before.size(); ++p) marker_at[before[p].position.x()] = seen.truth[i][p];
-    std::set<TrackId> told;
+    for (std::size_t p = 0; p < before.size(); ++p) marker_at[before[p].position.x()] = detected.truth[i][p];
+    std::set<TrackId> reported;
     for (const Sample& sample : instant.samples) {
-      share.is_consistent = share.is_consistent && told.insert(sample.track).second;
+      fraction.is_consistent = fraction.is_consistent && reported.insert(sample.track).second;
       const int marker = marker_at.at(sample.position.x());
       const std::string& label = labels[sample.track];
-      share.points += marker >= 0;
+      fraction.points += marker >= 0;
       if (label.empty()) continue;
-      ++(marker >= 0 && label == scene.labels()[static_cast<std::size_t>(marker)] ? share.right : share.wrong);
+      ++(marker >= 0 && label == scene.labels()[static_cast<std::size_t>(marker)] ? fraction.right : fraction.wrong);
     }
   }
-  share.found_at_s = named.found_at_s().value_or(-1);
+  fraction.found_at_s = named.found_at_s().value_or(-1);
   if (warnings != nullptr) *warnings = named.warnings();
-  return share;
+  return fraction;
 }
 
 }  // namespace marey::labelled

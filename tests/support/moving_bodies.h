@@ -11,7 +11,7 @@
 namespace marey::test {
 
 /// About z, rad.
-inline Matrix<3> turned_about_z(double angle) {
+inline Matrix<3> rotated_about_z(double angle) {
   return geometry::rotation_from(Vector<3>(0, 0, angle));
 }
 
@@ -52,10 +52,10 @@ inline Instant moving_bodies(int k) {
   if (k % 5 != 0) instant.samples.push_back(point_at(2, {0, 0.25, 1}));
   instant.samples.push_back(point_at(3, {1, 2, 3}));
   instant.samples.back().provenance = Provenance::predicted;
-  const Rigid3 hips{.rotation = turned_about_z(0.3), .translation = {1, 1, 1}};
-  const Rigid3 leg = hips * Rigid3{.rotation = turned_about_z(0.2), .translation = {0.1, 0, -0.1}};
+  const Rigid3 hips{.rotation = rotated_about_z(0.3), .translation = {1, 1, 1}};
+  const Rigid3 leg = hips * Rigid3{.rotation = rotated_about_z(0.2), .translation = {0.1, 0, -0.1}};
   instant.bodies.push_back({.body = BodyId(1),
-                            .world_from_body = {.rotation = turned_about_z(k / 100.0), .translation = {0, k / 1000.0, 1.5}},
+                            .world_from_body = {.rotation = rotated_about_z(k / 100.0), .translation = {0, k / 1000.0, 1.5}},
                             .covariance = {},
                             .residual_m = 0.001,
                             .tracked = k % 7 != 0});
@@ -64,7 +64,7 @@ inline Instant moving_bodies(int k) {
   return instant;
 }
 
-/// So many of those instants as a recording.
+/// This many of those instants as a recording.
 class MovingBodies : public RecordingReader {
  public:
   explicit MovingBodies(int instants) : count_(instants), header_(header_of_moving_bodies()) {}

@@ -13,7 +13,7 @@ inline std::size_t count_of(std::string_view part, std::string_view text) {
   return count;
 }
 
-/// The text, so often in a row.
+/// The text, this often in a row.
 inline std::string repeated(std::string_view text, int count) {
   std::string result;
   for (int i = 0; i < count; ++i) result += text;

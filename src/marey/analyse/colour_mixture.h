@@ -15,22 +15,22 @@
 
 namespace marey::analyse {
 
-struct ColourSeen {
+struct ColourObserved {
   Appearance colour;  ///< with its own deviation
   double weight = 1;  ///< > 0; in people: 1 for one who was seen throughout
 };
 
 struct ColourMixture {
   struct Kind {
-    Appearance colour;  ///< deviation: how much people of one kind differ
-    double share = 0;   ///< of the weight
+    Appearance colour;    ///< deviation: how much people of one kind differ
+    double fraction = 0;  ///< of the weight
   };
   std::vector<Kind> kinds;                 ///< largest share first
   double odd = 0;                          ///< share of those who are of none
-  std::vector<std::vector<double>> whose;  ///< of each one given, the probability of each kind; what is missing to 1 is odd
+  std::vector<std::vector<double>> owner;  ///< of each one given, the probability of each kind; what is missing to 1 is odd
 };
 
 /// At most `most` kinds. None where nothing was seen.
-ColourMixture find_colours(std::span<const ColourSeen> seen, int most = 6);
+ColourMixture find_colours(std::span<const ColourObserved> detected, int maximum = 6);
 
 }  // namespace marey::analyse

@@ -12,7 +12,7 @@
 namespace marey::analyse {
 namespace {
 
-// Shirts in the open, filmed from afar: duller than a painter's colours.
+// Shirts in the open, recorded from afar: duller than a painter's colours.
 constexpr std::array<ColourName, 14> kColourNames = {{
     {"white", {80, 0, 0}},
     {"black", {18, 0, 0}},
@@ -49,8 +49,8 @@ std::span<const ColourName> colour_names() {
 
 Appearance colour_named(std::string_view name) {
   std::string word = lower(name);
-  for (const auto& [other, usual] : others) {
-    if (word == other) word = usual;
+  for (const auto& [other, typical] : others) {
+    if (word == other) word = typical;
   }
   float shift = 0;
   for (const auto& [prefix, change] : {std::pair{std::string_view("light "), lighter}, {"dark ", -lighter}}) {
@@ -67,7 +67,7 @@ Appearance colour_named(std::string_view name) {
   }
   std::string all;
   for (const ColourName& known : kColourNames) all += fmt::format("{}{}", all.empty() ? "" : ", ", known.word);
-  throw Error(fmt::format("\"{}\" is no colour that is known here; there are {}, each also light or dark", name, all));
+  throw Error(fmt::format("\"{}\" is not a colour that is known here; there are {}, each also light or dark", name, all));
 }
 
 std::string name_of_colour(const Appearance& colour) {

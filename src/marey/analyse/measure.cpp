@@ -11,7 +11,7 @@ namespace {
 
 /// Where `fast(i)` holds without a break for at least `least` steps: the first, and one past the last.
 template <typename Fast>
-std::vector<std::pair<std::size_t, std::size_t>> bouts(std::size_t count, double least, Fast&& fast) {
+std::vector<std::pair<std::size_t, std::size_t>> bouts(std::size_t count, double minimum, Fast&& fast) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   std::size_t length = 0;
   for (std::size_t i = 0; i <= count; ++i) {
@@ -19,7 +19,7 @@ std::vector<std::pair<std::size_t, std::size_t>> bouts(std::size_t count, double
       ++length;
       continue;
     }
-    if (length > 0 && static_cast<double>(length) >= least) found.emplace_back(i - length, i);
+    if (length > 0 && static_cast<double>(length) >= minimum) found.emplace_back(i - length, i);
     length = 0;
   }
   return found;
@@ -42,38 +42,38 @@ HeatMap empty_map(const MeasureOptions& options) {
 
 void add_path(const Path& path, const MeasureOptions& options, PersonMeasure& person) {
   const auto fast = [&](std::size_t i) { return path.velocity[i].norm(); };
-  for (std::size_t i = 0; i < path.place.size(); ++i) {
+  for (std::size_t i = 0; i < path.location.size(); ++i) {
     const double speed = fast(i);
     // The fastest of which that is sure: else the least certain of many speeds would be the greatest.
-    if (path.seen[i] && (!person.top_mps || speed - path.speed_sigma[i] > *person.top_mps - *person.top_sigma_mps))
+    if (path.detected[i] && (!person.top_mps || speed - path.speed_sigma[i] > *person.top_mps - *person.top_sigma_mps))
       person.top_mps = speed, person.top_sigma_mps = path.speed_sigma[i];
-    person.average_place += path.place[i] * path.step_s;
-    const int column = static_cast<int>(std::floor(path.place[i].x() / options.cell_m));
-    const int row = static_cast<int>(std::floor(path.place[i].y() / options.cell_m));
+    person.average_position += path.location[i] * path.step_s;
+    const int column = static_cast<int>(std::floor(path.location[i].x() / options.cell_m));
+    const int row = static_cast<int>(std::floor(path.location[i].y() / options.cell_m));
     if (column >= 0 && row >= 0 && column < person.heat.columns && row < person.heat.rows)
       person.heat.at(column, row) += path.step_s;
     if (i == 0) continue;
-    const double step = (path.place[i] - path.place[i - 1]).norm();
+    const double step = (path.location[i] - path.location[i - 1]).norm();
     const auto zone =
         std::upper_bound(options.zones.begin(), options.zones.end(), (speed + fast(i - 1)) / 2) - options.zones.begin();
     person.distance_m += step;
-    if (!path.seen[i]) continue;
-    person.seen_s += path.step_s;
+    if (!path.detected[i]) continue;
+    person.observed_s += path.step_s;
     person.zone_s[static_cast<std::size_t>(zone)] += path.step_s;
     person.zone_m[static_cast<std::size_t>(zone)] += step;
   }
   person.seconds += path.seconds();
-  const std::size_t count = path.place.size();
+  const std::size_t count = path.location.size();
   const auto time = [&](std::size_t i) { return path.start_s + path.step_s * static_cast<double>(i); };
-  for (const auto& [first, end] :
-       bouts(count, options.sprint_s / path.step_s, [&](std::size_t i) { return path.seen[i] && fast(i) >= options.sprint_mps; }))
+  for (const auto& [first, end] : bouts(count, options.sprint_s / path.step_s,
+                                        [&](std::size_t i) { return path.detected[i] && fast(i) >= options.sprint_mps; }))
     person.sprint_times.emplace_back(time(first), time(end - 1));
   person.sprints = static_cast<int>(person.sprint_times.size());
   const double effort = options.effort_s / path.step_s;
   const auto change = [&](std::size_t i) { return along(path.acceleration[i], path.velocity[i]); };
   const auto count_of = [&](const auto& fast_enough) { return static_cast<int>(bouts(count, effort, fast_enough).size()); };
-  person.accelerations += count_of([&](std::size_t i) { return path.seen[i] && change(i) >= options.effort_mps2; });
-  person.decelerations += count_of([&](std::size_t i) { return path.seen[i] && change(i) <= -options.effort_mps2; });
+  person.accelerations += count_of([&](std::size_t i) { return path.detected[i] && change(i) >= options.effort_mps2; });
+  person.decelerations += count_of([&](std::size_t i) { return path.detected[i] && change(i) <= -options.effort_mps2; });
 }
 
 /// Area of the convex hull (Andrew's monotone chain), m².
@@ -102,7 +102,7 @@ double hull_area(std::vector<Vector<2>> points) {
 }
 
 std::vector<TeamMeasure> measure_teams(const Recording& recording, const std::vector<PersonMeasure>& people) {
-  constexpr std::size_t fewest = 3;
+  constexpr std::size_t lowest_count = 3;
   std::map<std::string, TeamMeasure> teams;
   for (const PersonMeasure& person : people) {
     if (person.team.empty()) continue;
@@ -113,32 +113,32 @@ std::vector<TeamMeasure> measure_teams(const Recording& recording, const std::ve
   }
   std::map<std::string, std::vector<Vector<2>>> standing;
   const auto close_instant = [&] {
-    for (auto& [name, places] : standing) {
-      if (places.size() >= fewest) {
+    for (auto& [name, locations] : standing) {
+      if (locations.size() >= lowest_count) {
         TeamMeasure& team = teams[name];
-        Vector<2> low = places.front(), high = low, sum = Vector<2>::Zero();
-        for (const Vector<2>& place : places) low = low.cwiseMin(place), high = high.cwiseMax(place), sum += place;
+        Vector<2> low = locations.front(), high = low, sum = Vector<2>::Zero();
+        for (const Vector<2>& location : locations) low = low.cwiseMin(location), high = high.cwiseMax(location), sum += location;
         team.length_m += high.x() - low.x();
         team.width_m += high.y() - low.y();
-        team.hull_m2 += hull_area(places);
-        team.average_place += sum / static_cast<double>(places.size());
+        team.hull_m2 += hull_area(locations);
+        team.average_position += sum / static_cast<double>(locations.size());
         ++team.instants;
       }
-      places.clear();
+      locations.clear();
     }
   };
   InstantRows rows(recording);
   for (std::size_t instant = 0; instant < recording.instants().size(); ++instant) {
     for (const auto& [index, row] : rows.at(instant)) {
       const TrackColumns& track = recording.tracks()[index];
-      if (teams.contains(track.name.team)) standing[track.name.team].push_back(track.place(row));
+      if (teams.contains(track.name.team)) standing[track.name.team].push_back(track.location(row));
     }
     close_instant();
   }
   std::vector<TeamMeasure> result;
   for (auto& [name, team] : teams) {
     const double instants = std::max(1, team.instants);
-    team.length_m /= instants, team.width_m /= instants, team.hull_m2 /= instants, team.average_place /= instants;
+    team.length_m /= instants, team.width_m /= instants, team.hull_m2 /= instants, team.average_position /= instants;
     result.push_back(team);
   }
   return result;
@@ -162,10 +162,10 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
     double weight = 0;
     for (const Path& path : person.paths) {
       add_path(path, options, person);
-      weight += path.step_s * static_cast<double>(path.place.size());
+      weight += path.step_s * static_cast<double>(path.location.size());
     }
     if (person.paths.empty() || !found.measured) continue;
-    person.average_place /= weight;
+    person.average_position /= weight;
     person.mean_mps = person.seconds > 0 ? person.distance_m / person.seconds : 0;
     result.people.push_back(std::move(person));
   }

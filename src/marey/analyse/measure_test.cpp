@@ -19,14 +19,14 @@ RecordingHeader on_the_ground() {
   return header;
 }
 
-Sample sample_at(int track, const Vector<2>& place) {
+Sample sample_at(int track, const Vector<2>& location) {
   Sample sample;
   sample.track = TrackId{track};
-  sample.position.head<2>() = place;
+  sample.position.head<2>() = location;
   return sample;
 }
 
-Recording one_person(double rate, double seconds, const std::function<Vector<2>(double)>& place, double noise) {
+Recording one_person(double rate, double seconds, const std::function<Vector<2>(double)>& location, double noise) {
   Recording recording(on_the_ground());
   recording.set_name({TrackId{7}, "seven", "white"});
   std::mt19937 random(5);
@@ -36,7 +36,7 @@ Recording one_person(double rate, double seconds, const std::function<Vector<2>(
     instant.index = i;
     instant.time = timestamp_from_seconds(i / rate);
     const double dx = off(random), dy = off(random);
-    instant.samples = {sample_at(7, place(i / rate) + noise * Vector<2>(dx, dy))};
+    instant.samples = {sample_at(7, location(i / rate) + noise * Vector<2>(dx, dy))};
     recording.add(instant);
   }
   return recording;
@@ -54,7 +54,7 @@ TEST(Measure, ARunIsAsLongAndAsFastAsItIs) {
     EXPECT_NEAR(person.distance_m, 40, 0.05) << rate;
     EXPECT_NEAR(person.mean_mps, 4, 0.01);
     EXPECT_NEAR(person.top_mps.value(), 4, 0.02);
-    EXPECT_NEAR(person.average_place.x(), 40, 0.1);
+    EXPECT_NEAR(person.average_position.x(), 40, 0.1);
     EXPECT_EQ(person.sprints, 0);
   }
 }
@@ -80,13 +80,13 @@ TEST(Measure, SprintsNeedSpeedAndTime) {
     return 2 + std::max({above(2, 5), above(8, 8.5), 0.0});
   };
   double x = 0, last = 0;
-  const auto place = [&](double t) {
+  const auto location = [&](double t) {
     for (; last < t; last += 0.001) x += 0.001 * speed(last);
     return Vector<2>(x, 10);
   };
   MeasureOptions options;
   options.path.method = PathOptions::Method::raw;
-  const auto result = measure(one_person(50, 12, place, 0), options);
+  const auto result = measure(one_person(50, 12, location, 0), options);
   EXPECT_EQ(result.people[0].sprints, 1);
   EXPECT_NEAR(result.people[0].zone_s.back(), 3.5 + 4 * 0.2, 0.15);
   EXPECT_NEAR(result.people[0].zone_m.back(), 28 + 4 * 0.2 * 7.5, 1.2);
@@ -100,8 +100,8 @@ TEST(Measure, LowPassLeavesSlowMotionAloneAndDoesNotLag) {
     double in_phase = 0, across = 0;
     for (int i = 500; i < 1500; ++i) {
       const double angle = 2 * M_PI * hertz * i / 50.0;
-      in_phase += path.place[i].x() * std::sin(angle) / 500;
-      across += path.place[i].x() * std::cos(angle) / 500;
+      in_phase += path.location[i].x() * std::sin(angle) / 500;
+      across += path.location[i].x() * std::cos(angle) / 500;
     }
     EXPECT_NEAR(across, 0, 0.01) << "nothing lags at " << hertz << " Hz";
     if (hertz < 0.5) {
@@ -119,14 +119,14 @@ TEST(Measure, LowPassLeavesSlowMotionAloneAndDoesNotLag) {
 TEST(Measure, PathsAreCutAtLongGapsAndNobodyIsNoError) {
   const std::vector<double> times = {0, 0.1, 5, 5.1, 5.1, 9}, x = {0, 1, 50, 51, 70, 0}, y(6, 0.0);
   const auto paths = smooth_paths(times, x, y, {.method = PathOptions::Method::raw});
-  ASSERT_EQ(paths.size(), 2u) << "a lone place is no path";
-  EXPECT_EQ(paths[1].place.back().x(), 51) << "of two rows at one time the first counts";
+  ASSERT_EQ(paths.size(), 2u) << "a lone place is not a path";
+  EXPECT_EQ(paths[1].location.back().x(), 51) << "of two rows at one time the first counts";
   EXPECT_TRUE(measure(Recording(on_the_ground())).people.empty());
   Recording still(on_the_ground());
   Instant lone;
   lone.samples = {sample_at(1, {1, 1})};
   still.add(lone);
-  EXPECT_TRUE(measure(still).people.empty()) << "one place is no path";
+  EXPECT_TRUE(measure(still).people.empty()) << "one place is not a path";
 }
 
 /// Runs at 6 m/s; the velocities recorded are off on purpose, so that one sees whose are taken.
@@ -149,15 +149,15 @@ TEST(Measure, ASmoothedRunHasOneSpeed) {
   const PersonMeasure recorded = measure(with_velocities(true)).people.at(0);
   EXPECT_NEAR(recorded.top_mps.value(), 6.75, 1e-9) << "the recording's own";
   ASSERT_EQ(recorded.paths.size(), 1u);
-  ASSERT_EQ(recorded.paths[0].place.size(), 250u);
+  ASSERT_EQ(recorded.paths[0].location.size(), 250u);
   for (std::size_t i = 0; i < 250; ++i) {
     EXPECT_NEAR(recorded.paths[0].velocity[i].x(), i == 100 ? 6.75 : 6.5, 1e-9) << i;
-    EXPECT_NEAR(recorded.paths[0].place[i].x(), 0.24 * static_cast<double>(i), 1e-9) << "not smoothed again";
+    EXPECT_NEAR(recorded.paths[0].location[i].x(), 0.24 * static_cast<double>(i), 1e-9) << "not smoothed again";
   }
   MeasureOptions other;
   other.path.method = PathOptions::Method::kalman;
   EXPECT_EQ(measure(with_velocities(true), other).people.at(0).top_mps, recorded.top_mps) << "whatever smoother is asked for";
-  EXPECT_NEAR(measure(with_velocities(false)).people.at(0).top_mps.value(), 6, 0.05) << "of places that nobody has smoothed";
+  EXPECT_NEAR(measure(with_velocities(false)).people.at(0).top_mps.value(), 6, 0.05) << "of places that no person has smoothed";
 }
 
 TEST(Measure, ASmoothedRunWithoutVelocitiesHasThoseOfItsPlaces) {
@@ -166,8 +166,8 @@ TEST(Measure, ASmoothedRunWithoutVelocitiesHasThoseOfItsPlaces) {
   EXPECT_NEAR(measure(recording).people.at(0).top_mps.value(), 4, 1e-6);
 }
 
-/// Strolls at 1.5 m/s; from second 4 to second 5.6 nobody sees him, and whoever followed him has him dash 10 m to the side and
-/// back.
+/// Strolls at 1.5 m/s; from second 4 to second 5.6 no person sees him, and the one who followed him has him dash 10 m to the side
+/// and back.
 Recording with_a_predicted_dash(bool smoothed) {
   Recording recording(on_the_ground());
   recording.header.smoothed = smoothed;
@@ -190,14 +190,14 @@ TEST(Measure, SpeedsAreOfWhatWasMeasured) {
     const PersonMeasure person = measure(with_a_predicted_dash(smoothed)).people.at(0);
     EXPECT_LT(person.top_mps.value(), 4) << (smoothed ? "smoothed" : "not smoothed");
     EXPECT_EQ(person.sprints, 0);
-    EXPECT_NEAR(person.seen_s, 8.4, 0.5);
+    EXPECT_NEAR(person.observed_s, 8.4, 0.5);
     EXPECT_NEAR(person.seconds, 10, 0.05);
     EXPECT_NEAR(person.zone_s.back(), 0, 1e-9);
-    EXPECT_TRUE(person.impossible.empty()) << "what nobody measured says nothing";
+    EXPECT_TRUE(person.impossible.empty()) << "what no person measured says nothing";
   }
 }
 
-TEST(Measure, WhoWasNeverMeasuredHasNoRow) {
+TEST(Measure, UnmeasuredPersonHasNoRow) {
   Recording recording = one_person(25, 4, running, 0);
   for (int i = 0; i < 50; ++i) {
     Sample sample = sample_at(9, {0.3 * i, 20});
@@ -212,12 +212,12 @@ TEST(Measure, WhoWasNeverMeasuredHasNoRow) {
   EXPECT_EQ(people[0].id, 7);
 }
 
-/// Walks at 1.5 m/s; at second 5 the places go over to somebody who walks 3 m beside him, within a third of a second.
+/// Walks at 1.5 m/s; at second 5 the places go over to a person who walks 3 m beside him, within a third of a second.
 Vector<2> slid(double t) {
   return {1.5 * t, 20 + 3 * std::clamp((t - 5) / 0.33, 0.0, 1.0)};
 }
 
-TEST(Measure, WhatNobodyCanHaveDoneDoesNotCountAndIsTold) {
+TEST(Measure, ExcludesAndReportsImpossibleMotion) {
   const PersonMeasure person = measure(one_person(25, 10, slid, 0.05)).people.at(0);
   ASSERT_EQ(person.impossible.size(), 1u);
   EXPECT_NEAR(person.impossible[0].begin_s, 5, 0.4);
@@ -263,23 +263,23 @@ TEST(Measure, PixelsAndSpaceAreRefused) {
       measure(Recording(header));
       ADD_FAILURE() << "measured " << to_string(header.frame);
     } catch (const Error& error) {
-      const std::string sentence = error.what();
-      EXPECT_NE(sentence.find("match.csv"), std::string::npos) << sentence;
-      EXPECT_NE(sentence.find(to_string(header.frame)), std::string::npos) << sentence;
+      const std::string message_text = error.what();
+      EXPECT_NE(message_text.find("match.csv"), std::string::npos) << message_text;
+      EXPECT_NE(message_text.find(to_string(header.frame)), std::string::npos) << message_text;
     }
   }
 }
 
 TEST(Measure, TeamsHaveALengthAWidthAndAHull) {
   Recording recording(on_the_ground());
-  const std::vector<Vector<2>> places = {{10, 10}, {30, 10}, {30, 40}, {10, 40}, {20, 25}};
+  const std::vector<Vector<2>> locations = {{10, 10}, {30, 10}, {30, 40}, {10, 40}, {20, 25}};
   for (int frame = 0; frame < 3; ++frame) {
     Instant instant;
     instant.index = frame;
     instant.time = timestamp_from_seconds(frame * 0.04);
     for (int i = 0; i < 5; ++i) {
       if (frame == 0) instant.named.push_back({TrackId{i + 1}, "", "blue"});
-      instant.samples.push_back(sample_at(i + 1, places[static_cast<std::size_t>(i)]));
+      instant.samples.push_back(sample_at(i + 1, locations[static_cast<std::size_t>(i)]));
     }
     recording.add(instant);
   }

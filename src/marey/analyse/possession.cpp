@@ -13,7 +13,7 @@ namespace marey::analyse {
 namespace {
 
 struct BallNow {
-  Vector<3> place;
+  Vector<3> location;
   double time = 0;
   bool dead = false;
 };
@@ -23,7 +23,7 @@ class Possession {
   Possession(const Recording& recording, const PossessionOptions& options) : recording_(recording), options_(options) {}
 
   void step(const BallNow& ball, std::span<const InstantRows::Row> rows) {
-    if (ball.dead || ball.place.z() > options_.reach_m) {
+    if (ball.dead || ball.location.z() > options_.reach_m) {
       end_spell();
       was_dead_ |= ball.dead;
       return;
@@ -32,10 +32,11 @@ class Possession {
     if (holder == nullptr) return end_spell();
     if (!open_ || open_->person != number(holder->id())) {
       end_spell();
-      open_ = BallSpell{number(holder->id()), holder->name.team, ball.time, ball.time, ball.place.head<2>(), ball.place.head<2>()};
+      open_ = BallSpell{number(holder->id()),    holder->name.team,      ball.time, ball.time,
+                        ball.location.head<2>(), ball.location.head<2>()};
     }
     open_->end_s = ball.time;
-    open_->to = ball.place.head<2>();
+    open_->to = ball.location.head<2>();
   }
 
   void finish(BallMeasure& result) {
@@ -45,17 +46,17 @@ class Possession {
   }
 
  private:
-  /// Who is within reach: whoever has it, unless another is nearer and near.
+  /// Who is within reach: the one who has it, unless another is nearer and near.
   const TrackColumns* holder_of(const BallNow& ball, std::span<const InstantRows::Row> rows) const {
     const TrackColumns* holder = nullptr;
-    double least = options_.keep_m;
+    double minimum = options_.keep_m;
     for (const auto& [index, row] : rows) {
       const TrackColumns& track = recording_.tracks()[index];
       if (track.name.kind == TrackKind::ball || track.name.team.empty() || track.name.team == "referee") continue;
-      const double away = (track.place(row) - ball.place.head<2>()).norm();
+      const double away = (track.location(row) - ball.location.head<2>()).norm();
       const bool has_it = open_ && open_->person == number(track.id());
-      if (away >= least || (!has_it && away >= options_.take_m)) continue;
-      least = away;
+      if (away >= minimum || (!has_it && away >= options_.take_m)) continue;
+      minimum = away;
       holder = &track;
     }
     return holder;
@@ -64,7 +65,7 @@ class Possession {
   void end_spell() {
     if (!open_) return;
     const BallSpell spell = *std::exchange(open_, std::nullopt);
-    if (spell.end_s - spell.begin_s < options_.least_s) return;
+    if (spell.end_s - spell.begin_s < options_.min_s) return;
     if (!spells_.empty() && !was_dead_ && spells_.back().person == spell.person) {
       spells_.back().end_s = spell.end_s;
       spells_.back().to = spell.to;
@@ -133,7 +134,7 @@ std::optional<BallMeasure> measure_ball(const Recording& recording, const Posses
     if (step > 0 && step < kGap) {
       result.seconds += step;
       result.dead_s += now.dead ? step : 0;
-      const double metres = (now.place - last->place).norm();
+      const double metres = (now.location - last->location).norm();
       result.distance_m += metres;
       const auto velocity = track.velocity(row);
       result.top_mps = std::max(result.top_mps, velocity ? velocity->norm() : metres / step);

@@ -1,4 +1,4 @@
-// Who has the ball, who passes it to whom, and when it is out of play, from where the ball and everybody is.
+// Who has the ball, who passes it to whom, and when it is out of play, from where the ball and every person is.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,11 @@ namespace marey::analyse {
 
 struct PossessionOptions {
   geometry::PitchSize pitch;
-  double take_m = 1.2;   ///< somebody who is nearest and so near to the ball takes it,
+  double take_m = 1.2;   ///< a person who is nearest and so near to the ball takes it,
   double keep_m = 2;     ///< and has it until it is farther away than this, or another takes it
-  double least_s = 0.2;  ///< for so long at least: who is passed by has not had it
-  double reach_m = 2.2;  ///< height above which nobody has it
-  double pass_m = 2;     ///< what goes less far is no pass
+  double min_s = 0.2;    ///< for this long at least: who is passed by has not had it
+  double reach_m = 2.2;  ///< height above which no person has it
+  double pass_m = 2;     ///< what goes less far is not a pass
 };
 
 /// One person has the ball.
@@ -52,7 +52,7 @@ struct BallMeasure {
   std::vector<TeamBall> teams;    ///< by name
 };
 
-/// Nothing where the recording has no ball. People without a team, and referees, never have it. Throws Error for a recording that
+/// Nothing if the recording has no ball. People without a team, and referees, never have it. Throws Error for a recording that
 /// is not of the ground in m.
 std::optional<BallMeasure> measure_ball(const Recording& recording, const PossessionOptions& options = {});
 

@@ -34,26 +34,26 @@ Recording with_ball(const std::vector<Vector<3>>& ball) {
 void add_stay(std::vector<Vector<3>>& ball, double x, int instants, double y = 30.5) {
   ball.insert(ball.end(), static_cast<std::size_t>(instants), Vector<3>(x, y, 0.11));
 }
-void add_way(std::vector<Vector<3>>& ball, double from, double to, int instants, double high) {
+void add_trajectory(std::vector<Vector<3>>& ball, double from, double to, int instants, double high) {
   for (int i = 1; i < instants; ++i) {
-    const double share = static_cast<double>(i) / instants;
-    ball.emplace_back(from + share * (to - from), 30.5, 0.11 + 4 * high * share * (1 - share));
+    const double fraction = static_cast<double>(i) / instants;
+    ball.emplace_back(from + fraction * (to - from), 30.5, 0.11 + 4 * high * fraction * (1 - fraction));
   }
 }
 
 TEST(MeasureBall, TellsPassesTurnoversAndWhatIsDead) {
   std::vector<Vector<3>> ball;
   add_stay(ball, 20, 10);
-  add_way(ball, 20, 40, 10, 0);
+  add_trajectory(ball, 20, 40, 10, 0);
   add_stay(ball, 40, 10);
-  add_way(ball, 40, 60, 15, 6);
+  add_trajectory(ball, 40, 60, 15, 6);
   add_stay(ball, 60, 10);
   add_stay(ball, 60, 10, -3);
   add_stay(ball, 40, 10);
   const auto measured = measure_ball(with_ball(ball));
   ASSERT_TRUE(measured);
   ASSERT_EQ(measured->spells.size(), 4u);
-  ASSERT_EQ(measured->passes.size(), 2u) << "after it was dead nobody has passed it";
+  ASSERT_EQ(measured->passes.size(), 2u) << "after it was dead no person has passed it";
   EXPECT_EQ(measured->passes[0].from, 1);
   EXPECT_EQ(measured->passes[0].to, 2);
   EXPECT_TRUE(measured->passes[0].completed);
@@ -67,10 +67,10 @@ TEST(MeasureBall, TellsPassesTurnoversAndWhatIsDead) {
   EXPECT_NEAR(measured->dead_s, 1, 0.11);
 }
 
-TEST(MeasureBall, WhoIsPassedByOrOverHasNotHadIt) {
+TEST(MeasureBall, PassedPersonHasNoPossession) {
   std::vector<Vector<3>> ball;
   add_stay(ball, 20, 10);
-  add_way(ball, 20, 60, 20, 0);  // 2 m an instant past number 2
+  add_trajectory(ball, 20, 60, 20, 0);  // 2 m an instant past number 2
   add_stay(ball, 60, 10);
   const auto measured = measure_ball(with_ball(ball));
   ASSERT_EQ(measured->passes.size(), 1u);

@@ -18,13 +18,14 @@
 namespace marey::analyse {
 namespace {
 
-constexpr double kTold = 0.2;  // s before and after: measured places within tell a speed; smoothing reaches about so far
+constexpr double kReported = 0.2;  // s before and after: measured places within tell a speed; smoothing reaches about so far
 
-constexpr double kSureSpeed = 0.75;  // m/s, standard deviation: half of the narrowest of the usual zones. What is less sure is none
+constexpr double kSureSpeed =
+    0.75;  // m/s, standard deviation: half of the narrowest of the typical zones. What is less sure is not one
 
 struct Row {
   double time = 0;  // s
-  Vector<2> place;
+  Vector<2> location;
   Matrix<2> covariance;  // m²
   std::optional<Vector<2>> velocity = {};
   bool measured = true;
@@ -50,28 +51,28 @@ Path evenly(std::span<const Row> piece) {
     const double time = path.start_s + path.step_s * static_cast<double>(i);
     while (after + 1 < piece.size() && piece[after].time < time) ++after;
     const Row &a = piece[after - 1], &b = piece[after];
-    const double share = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
-    path.place.emplace_back(a.place + share * (b.place - a.place));
-    if (moving) path.velocity.emplace_back(*a.velocity + share * (*b.velocity - *a.velocity));
-    path.seen.push_back(is_measured(share < 0.5 ? a : b, time, path.step_s));
+    const double fraction = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
+    path.location.emplace_back(a.location + fraction * (b.location - a.location));
+    if (moving) path.velocity.emplace_back(*a.velocity + fraction * (*b.velocity - *a.velocity));
+    path.detected.push_back(is_measured(fraction < 0.5 ? a : b, time, path.step_s));
   }
   return path;
 }
 
-/// Half of the instants round each, at least, are measured: one missed look does not take a speed away, and one look in a gap gives
-/// none. At its ends a path is not seen from both sides: `ends` tells whether they are known all the same.
-std::vector<bool> told_by_measured(const std::vector<bool>& measured, double step_s, bool ends) {
-  const auto reach = static_cast<std::ptrdiff_t>(std::floor(kTold / step_s + 1e-9));
+/// Half of the instants round each, at least, are measured: one missed look does not take a speed away, and one inspection in a gap
+/// gives none. At its ends a path is not seen from both sides: `ends` tells whether they are known all the same.
+std::vector<bool> reported_by_measured(const std::vector<bool>& measured, double step_s, bool ends) {
+  const auto reach = static_cast<std::ptrdiff_t>(std::floor(kReported / step_s + 1e-9));
   const auto count = std::ssize(measured);
   std::vector<std::ptrdiff_t> until(measured.size() + 1, 0);
   for (std::size_t i = 0; i < measured.size(); ++i) until[i + 1] = until[i] + (measured[i] ? 1 : 0);
-  std::vector<bool> told(measured.size());
+  std::vector<bool> reported(measured.size());
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto from = std::max<std::ptrdiff_t>(0, i - reach), to = std::min(count, i + reach + 1);
-    const auto seen = until[static_cast<std::size_t>(to)] - until[static_cast<std::size_t>(from)];
-    told[static_cast<std::size_t>(i)] = 2 * seen >= to - from && (ends || to - from == 2 * reach + 1);
+    const auto detected = until[static_cast<std::size_t>(to)] - until[static_cast<std::size_t>(from)];
+    reported[static_cast<std::size_t>(i)] = 2 * detected >= to - from && (ends || to - from == 2 * reach + 1);
   }
-  return told;
+  return reported;
 }
 
 /// Central differences; one-sided at the ends.
@@ -94,20 +95,20 @@ void low_pass(std::vector<Vector<2>>& values, double cutoff_hz, double rate_hz) 
 // ---------------------------------------------------------------------------------------------------------------
 
 /// Of N x = v with N symmetric and not negative; the shortest where several solve it, as with fewer places than coefficients.
-Eigen::Matrix<double, 3, 2> least_norm_solution(const Matrix<3>& N, const Eigen::Matrix<double, 3, 2>& v) {
+Eigen::Matrix<double, 3, 2> minimum_norm_solution(const Matrix<3>& N, const Eigen::Matrix<double, 3, 2>& v) {
   const auto [values, vectors] = geometry::eigenpairs<3>(N);
-  const double least = 3 * std::numeric_limits<double>::epsilon() * values[2];
+  const double minimum = 3 * std::numeric_limits<double>::epsilon() * values[2];
   Eigen::Matrix<double, 3, 2> x = Eigen::Matrix<double, 3, 2>::Zero();
   for (int i = 0; i < 3; ++i) {
-    if (values[i] > least) x += vectors.col(i) * (vectors.col(i).transpose() * v / values[i]);
+    if (values[i] > minimum) x += vectors.col(i) * (vectors.col(i).transpose() * v / values[i]);
   }
   return x;
 }
 
 void savitzky_golay(Path& path, double window_s) {
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(window_s / path.step_s / 2));
-  const auto count = static_cast<std::ptrdiff_t>(path.place.size());
-  std::vector<Vector<2>> place(path.place.size()), velocity(path.place.size()), acceleration(path.place.size());
+  const auto count = static_cast<std::ptrdiff_t>(path.location.size());
+  std::vector<Vector<2>> location(path.location.size()), velocity(path.location.size()), acceleration(path.location.size());
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     Matrix<3> N = Matrix<3>::Zero();
     Eigen::Matrix<double, 3, 2> v = Eigen::Matrix<double, 3, 2>::Zero();
@@ -115,14 +116,14 @@ void savitzky_golay(Path& path, double window_s) {
       const double t = path.step_s * static_cast<double>(j - i);
       const Vector<3> basis(1, t, t * t / 2);
       N += basis * basis.transpose();
-      v += basis * path.place[static_cast<std::size_t>(j)].transpose();
+      v += basis * path.location[static_cast<std::size_t>(j)].transpose();
     }
-    const Eigen::Matrix<double, 3, 2> fit = least_norm_solution(N, v);
-    place[static_cast<std::size_t>(i)] = fit.row(0);
+    const Eigen::Matrix<double, 3, 2> fit = minimum_norm_solution(N, v);
+    location[static_cast<std::size_t>(i)] = fit.row(0);
     velocity[static_cast<std::size_t>(i)] = fit.row(1);
     acceleration[static_cast<std::size_t>(i)] = fit.row(2);
   }
-  path.place = std::move(place);
+  path.location = std::move(location);
   path.velocity = std::move(velocity);
   path.acceleration = std::move(acceleration);
 }
@@ -130,41 +131,41 @@ void savitzky_golay(Path& path, double window_s) {
 // --- Kalman, from both ends -----------------------------------------------------------------------------------------------------
 
 /// Position and velocity of one axis; both axes share their covariance.
-struct Moment {
+struct TimeStep {
   Eigen::Matrix2d mean;  // rows: position, velocity; columns: x, y
   Matrix<2> P;
 };
 
-void rauch_tung_striebel(Path& path, double place_noise, double acceleration) {
+void rauch_tung_striebel(Path& path, double position_noise, double acceleration) {
   const double dt = path.step_s, q = acceleration * acceleration;
   Matrix<2> A, Q;
   A << 1, dt, 0, 1;
   Q << q * dt * dt * dt / 3, q * dt * dt / 2, q * dt * dt / 2, q * dt;
-  const double R = place_noise * place_noise;
+  const double R = position_noise * position_noise;
   constexpr double unknown_speed = 5;  // m/s
-  std::vector<Moment> ahead(path.place.size()), corrected(path.place.size());
-  Moment now;
-  now.mean.row(0) = path.place.front();
+  std::vector<TimeStep> ahead(path.location.size()), corrected(path.location.size());
+  TimeStep now;
+  now.mean.row(0) = path.location.front();
   now.mean.row(1).setZero();
   now.P = Vector<2>(R, unknown_speed * unknown_speed).asDiagonal();
   ahead[0] = corrected[0] = now;
-  for (std::size_t i = 1; i < path.place.size(); ++i) {
+  for (std::size_t i = 1; i < path.location.size(); ++i) {
     now.mean = A * now.mean;
     now.P = A * now.P * A.transpose() + Q;
     ahead[i] = now;
     const Vector<2> K = now.P.col(0) / (now.P(0, 0) + R);
-    now.mean += K * (path.place[i].transpose() - now.mean.row(0));
+    now.mean += K * (path.location[i].transpose() - now.mean.row(0));
     now.P -= K * now.P.row(0);
     corrected[i] = now;
   }
-  path.velocity.resize(path.place.size());
-  for (std::size_t i = path.place.size(); i-- > 0;) {
-    if (i + 1 < path.place.size()) {
+  path.velocity.resize(path.location.size());
+  for (std::size_t i = path.location.size(); i-- > 0;) {
+    if (i + 1 < path.location.size()) {
       const Matrix<2> G = corrected[i].P * A.transpose() * ahead[i + 1].P.inverse();
       corrected[i].mean += G * (corrected[i + 1].mean - ahead[i + 1].mean);
       corrected[i].P += G * (corrected[i + 1].P - ahead[i + 1].P) * G.transpose();
     }
-    path.place[i] = corrected[i].mean.row(0);
+    path.location[i] = corrected[i].mean.row(0);
     path.velocity[i] = corrected[i].mean.row(1);
   }
 }
@@ -172,13 +173,13 @@ void rauch_tung_striebel(Path& path, double place_noise, double acceleration) {
 void smooth(Path& path, const PathOptions& options) {
   switch (options.method) {
     case PathOptions::Method::lowpass:
-      low_pass(path.place, options.cutoff_hz, 1 / path.step_s);
+      low_pass(path.location, options.cutoff_hz, 1 / path.step_s);
       break;
     case PathOptions::Method::savgol:
       savitzky_golay(path, options.window_s);
       break;
     case PathOptions::Method::kalman:
-      rauch_tung_striebel(path, options.place_noise, options.acceleration);
+      rauch_tung_striebel(path, options.position_noise, options.acceleration);
       break;
     case PathOptions::Method::raw:
       break;
@@ -187,7 +188,7 @@ void smooth(Path& path, const PathOptions& options) {
 
 /// By which a speed's deviation is a place's, 1/s. What is left after smoothing are errors slower than the cut-off; of errors whose
 /// power is even up to there the derivative has 2π/√3 times the cut-off. Where nothing is smoothed, differences have it all.
-double speed_per_place(const PathOptions& options, double step_s, bool smoothed) {
+double speed_per_position(const PathOptions& options, double step_s, bool smoothed) {
   if (!smoothed && options.method == PathOptions::Method::raw) return 1 / (std::numbers::sqrt2 * step_s);
   const double cutoff = !smoothed && options.method == PathOptions::Method::lowpass ? options.cutoff_hz : PathOptions().cutoff_hz;
   return 2 * std::numbers::pi * cutoff / std::numbers::sqrt3;
@@ -197,7 +198,7 @@ double speed_per_place(const PathOptions& options, double step_s, bool smoothed)
 std::vector<double> speed_sigmas(const Path& path, std::span<const Row> piece, double per_place) {
   std::vector<double> sigmas;
   std::size_t near = 0;
-  for (std::size_t i = 0; i < path.place.size(); ++i) {
+  for (std::size_t i = 0; i < path.location.size(); ++i) {
     const double time = path.start_s + path.step_s * static_cast<double>(i);
     while (near + 1 < piece.size() && std::abs(piece[near + 1].time - time) <= std::abs(piece[near].time - time)) ++near;
     const Matrix<2>& P = piece[near].covariance;
@@ -212,28 +213,29 @@ std::vector<double> speed_sigmas(const Path& path, std::span<const Row> piece, d
 Path path_of(std::span<const Row> piece, const PathOptions& options, bool smoothed) {
   Path path = evenly(piece);
   if (!smoothed) smooth(path, options);
-  if (path.velocity.empty()) path.velocity = slope(path.place, path.step_s);
+  if (path.velocity.empty()) path.velocity = slope(path.location, path.step_s);
   if (path.acceleration.empty()) path.acceleration = slope(path.velocity, path.step_s);
-  path.seen = told_by_measured(path.seen, path.step_s, smoothed);
-  path.speed_sigma = speed_sigmas(path, piece, speed_per_place(options, path.step_s, smoothed));
+  path.detected = reported_by_measured(path.detected, path.step_s, smoothed);
+  path.speed_sigma = speed_sigmas(path, piece, speed_per_position(options, path.step_s, smoothed));
   const bool raw = !smoothed && options.method == PathOptions::Method::raw;  // asked for as it is
-  for (std::size_t i = 0; i < path.seen.size() && !raw; ++i) path.seen[i] = path.seen[i] && path.speed_sigma[i] <= kSureSpeed;
+  for (std::size_t i = 0; i < path.detected.size() && !raw; ++i)
+    path.detected[i] = path.detected[i] && path.speed_sigma[i] <= kSureSpeed;
   return path;
 }
 
-/// Takes rows in which somebody did what nobody can out. `cut`: the rows, of those left, before which another person begins.
-std::vector<ImpossibleStretch> leave_impossible_out(std::vector<Row>& rows, std::vector<bool>& cut) {
-  std::vector<filter::TimedPlace> places;
+/// Takes rows in which a person did what no person can out. `cut`: the rows, of those left, before which another person begins.
+std::vector<ImpossibleSegment> leave_impossible_out(std::vector<Row>& rows, std::vector<bool>& cut) {
+  std::vector<filter::TimedPosition> locations;
   std::vector<std::size_t> row_of;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!rows[i].measured) continue;
-    places.push_back({rows[i].time, rows[i].place, rows[i].covariance});
+    locations.push_back({rows[i].time, rows[i].location, rows[i].covariance});
     row_of.push_back(i);
   }
-  std::vector<ImpossibleStretch> impossible;
+  std::vector<ImpossibleSegment> impossible;
   std::vector<bool> out(rows.size(), false), begins(rows.size(), false);
-  for (const filter::ImpossiblePiece& piece : filter::impossible_pieces(places)) {
-    impossible.push_back({places[piece.first].time, places[piece.last].time, piece.one_person});
+  for (const filter::ImpossiblePiece& piece : filter::impossible_pieces(locations)) {
+    impossible.push_back({locations[piece.first].time, locations[piece.last].time, piece.one_person});
     for (std::size_t i = row_of[piece.first]; i <= row_of[piece.last]; ++i) out[i] = true;
     if (!piece.one_person) begins[row_of[piece.last]] = true;
   }
@@ -263,8 +265,8 @@ std::vector<Path> pieces_of(std::span<const Row> rows, const std::vector<bool>& 
 }
 
 /// A place that was not measured is known no better than the measured ones before and after it.
-void doubt_unmeasured(std::vector<Row>& rows) {
-  const auto doubt = [](auto from, auto to) {
+void ambiguity_unmeasured(std::vector<Row>& rows) {
+  const auto review_item = [](auto from, auto to) {
     const Row* last = nullptr;
     for (auto row = from; row != to; ++row) {
       if (row->measured) last = &*row;
@@ -272,11 +274,11 @@ void doubt_unmeasured(std::vector<Row>& rows) {
         row->covariance = last->covariance;
     }
   };
-  doubt(rows.begin(), rows.end());
-  doubt(rows.rbegin(), rows.rend());
+  review_item(rows.begin(), rows.end());
+  review_item(rows.rbegin(), rows.rend());
 }
 
-/// Puts rows that were not measured straight between those that were, and leaves out those before the first and after the last:
+/// Puts rows that were not measured straight between those that were, and omits those before the first and after the last:
 /// whatever followed the person there, smoothing would carry it into the speeds beside.
 void bridge_unmeasured(std::vector<Row>& rows) {
   const auto measured = [](const Row& row) { return row.measured; };
@@ -288,12 +290,13 @@ void bridge_unmeasured(std::vector<Row>& rows) {
     for (next = std::max(next, i); !rows[next].measured; ++next) {
     }
     const Row &before = rows[i - 1], &after = rows[next];
-    rows[i].place = before.place + (rows[i].time - before.time) / (after.time - before.time) * (after.place - before.place);
+    rows[i].location =
+        before.location + (rows[i].time - before.time) / (after.time - before.time) * (after.location - before.location);
   }
 }
 
-Matrix<2> usual_covariance(const PathOptions& options) {
-  return options.place_sigma * options.place_sigma * Matrix<2>::Identity();
+Matrix<2> default_covariance(const PathOptions& options) {
+  return options.position_sigma * options.position_sigma * Matrix<2>::Identity();
 }
 
 }  // namespace
@@ -303,7 +306,7 @@ PathOptions::Method parse_path_method(std::string_view name) {
   if (name == "savgol") return PathOptions::Method::savgol;
   if (name == "kalman") return PathOptions::Method::kalman;
   if (name == "raw") return PathOptions::Method::raw;
-  throw Error("\"{}\" is no way to smooth; these are: lowpass, savgol, kalman, raw", name);
+  throw Error("\"{}\" is not a way to smooth; these are: lowpass, savgol, kalman, raw", name);
 }
 
 std::vector<Path> smooth_paths(std::span<const double> times, std::span<const double> x, std::span<const double> y,
@@ -311,7 +314,7 @@ std::vector<Path> smooth_paths(std::span<const double> times, std::span<const do
   std::vector<Row> rows;
   rows.reserve(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (rows.empty() || times[i] > rows.back().time) rows.push_back({times[i], {x[i], y[i]}, usual_covariance(options)});
+    if (rows.empty() || times[i] > rows.back().time) rows.push_back({times[i], {x[i], y[i]}, default_covariance(options)});
   }
   return pieces_of(rows, std::vector<bool>(rows.size(), false), options, false);
 }
@@ -324,14 +327,14 @@ PersonPaths paths_of(const Recording& recording, const TrackColumns& track, cons
     const double time = recording.seconds_at(static_cast<std::size_t>(track.at()[i]));
     if (!rows.empty() && time <= rows.back().time) continue;
     const Sample sample = track.sample(i);
-    Row& row = rows.emplace_back(Row{time, track.place(i), usual_covariance(options)});
+    Row& row = rows.emplace_back(Row{time, track.location(i), default_covariance(options)});
     if (sample.covariance) row.covariance = sample.covariance->topLeftCorner<2, 2>();
     row.measured = sample.provenance == Provenance::measured;
     if (smoothed && sample.velocity) row.velocity = sample.velocity->head<2>();
   }
   PersonPaths person;
   person.measured = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.measured; });
-  doubt_unmeasured(rows);
+  ambiguity_unmeasured(rows);
   if (!smoothed) bridge_unmeasured(rows);
   std::vector<bool> cut;
   person.impossible = leave_impossible_out(rows, cut);

@@ -7,10 +7,10 @@
 //   kalman   constant velocity with noise in the acceleration, smoothed from both ends (Rauch, Tung & Striebel 1965)
 //   raw      as measured; velocities are differences
 // Paths are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
-// What nobody can have done (filter/human_motion.h) is left out before: it is bridged where one person can have gone over it, else
-// the path is cut there. Places that were not measured lie straight between those that were, and speeds are believed where measured
-// places tell them: not where a tracker filled a gap or ran on blindly.
-// References: Winter, "Biomechanics and Motor Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
+// What no person can have done (filter/human_motion.h) is omitted before: it is bridged where one person can have gone over it,
+// else the path is cut there. Places that were not measured lie straight between those that were, and speeds are trusted where
+// measured places tell them: not where a tracker filled a gap or ran on blindly. References: Winter, "Biomechanics and Motor
+// Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
 #pragma once
 
 #include <span>
@@ -26,45 +26,45 @@ struct PathOptions {
   enum class Method { lowpass, savgol, kalman, raw };
 
   Method method = Method::lowpass;
-  double cutoff_hz = 1;       ///< lowpass
-  double window_s = 1;        ///< savgol
-  double place_noise = 0.3;   ///< kalman: m, of a measured place
-  double acceleration = 1.5;  ///< kalman: m/s^1.5
-  double longest_gap_s = 1;   ///< a person missing for longer is on another path afterwards
-  double place_sigma = 0.15;  ///< m, of a measured place of which the recording does not say it, once it is smoothed
+  double cutoff_hz = 1;          ///< lowpass
+  double window_s = 1;           ///< savgol
+  double position_noise = 0.3;   ///< kalman: m, of a measured place
+  double acceleration = 1.5;     ///< kalman: m/s^1.5
+  double longest_gap_s = 1;      ///< a person missing for longer is on another path afterwards
+  double position_sigma = 0.15;  ///< m, of a measured place of which the recording does not specify it, once it is smoothed
 };
 
-/// Throws Error, naming what is valid, for a name that is none.
+/// Throws Error, naming what is valid, for a name that is not one.
 PathOptions::Method parse_path_method(std::string_view name);
 
 /// One unbroken path at an even rate.
 struct Path {
   double start_s = 0;
   double step_s = 0.04;
-  std::vector<Vector<2>> place;         ///< m
+  std::vector<Vector<2>> location;      ///< m
   std::vector<Vector<2>> velocity;      ///< m/s
   std::vector<Vector<2>> acceleration;  ///< m/s²
-  std::vector<bool> seen;               ///< measured places tell the speed there, to 0.75 m/s: only such speeds are believed
+  std::vector<bool> detected;           ///< measured places tell the speed there, to 0.75 m/s: only such speeds are trusted
   std::vector<double> speed_sigma;      ///< m/s, standard deviation of the speed
 
-  double seconds() const { return step_s * static_cast<double>(place.empty() ? 0 : place.size() - 1); }
+  double seconds() const { return step_s * static_cast<double>(location.empty() ? 0 : location.size() - 1); }
 };
 
-/// A stretch of time in which somebody is told to have done what nobody can.
-struct ImpossibleStretch {
+/// A stretch of time in which a person is reported to have done what no person can.
+struct ImpossibleSegment {
   double begin_s = 0, end_s = 0;
-  bool one_person = true;  ///< places are wrong; else who is there afterwards is somebody else
+  bool one_person = true;  ///< places are wrong; else who is there afterwards is another person
 };
 
-/// What is left of somebody's rows, and what was not believed.
+/// What is left of a person's rows, and what was not trusted.
 struct PersonPaths {
   std::vector<Path> paths;
-  std::vector<ImpossibleStretch> impossible;
+  std::vector<ImpossibleSegment> impossible;
   bool measured = false;  ///< at some instant
 };
 
-/// The path of whoever was at (x, y) m at these times, s. Rows whose time is not later than the one's before are passed over,
-/// pieces of fewer than two places left out. All are taken for measured.
+/// The path of the one who was at (x, y) m at these times, s. Rows whose time is not later than the one's before are skipped,
+/// pieces of fewer than two places omitted. All are taken for measured.
 std::vector<Path> smooth_paths(std::span<const double> times, std::span<const double> x, std::span<const double> y,
                                const PathOptions& options = {});
 

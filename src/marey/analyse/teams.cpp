@@ -15,16 +15,16 @@
 namespace marey::analyse {
 namespace {
 
-constexpr double least_team = 0.12;      // share of all people's time that a team's people have at least
-constexpr double keepers_length = 22;    // m from the goal line: where a keeper is nearly always
-constexpr double keepers_width = 20;     // m to either side of the middle
-constexpr double keepers_time = 0.85;    // nearly always
-constexpr std::size_t last_players = 3;  // of a team, that tell which goal is its own
-constexpr double officials = 0.2;        // share that referees have at most
-constexpr double another_colour = 14;    // L*a*b*: by how much an official's colour differs from each team's
-constexpr float most_cast = 35;          // chroma
-constexpr double longest_step = 0.5;     // s from one row of a person to the next that counts as seen
-constexpr double colours_differ = 25;    // L*a*b*: how far a team's colour may lie from the one that is named
+constexpr double min_team = 0.12;         // share of all people's time that a team's people have at least
+constexpr double keepers_length = 22;     // m from the goal line: where a keeper is nearly always
+constexpr double keepers_width = 20;      // m to either side of the middle
+constexpr double keepers_time = 0.85;     // nearly always
+constexpr std::size_t last_players = 3;   // of a team, that tell which goal is its own
+constexpr double officials = 0.2;         // share that referees have at most
+constexpr double another_colour = 14;     // L*a*b*: by how much an official's colour differs from each team's
+constexpr float max_channel_layout = 35;  // chroma
+constexpr double longest_step = 0.5;      // s from one row of a person to the next that counts as seen
+constexpr double colours_differ = 25;     // L*a*b*: how far a team's colour may lie from the one that is named
 
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
@@ -32,7 +32,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
 }
 
-/// Where and for how long somebody was seen.
+/// Where and for how long a person was seen.
 struct Presence {
   double seconds = 0;
   double near_goal[2] = {0, 0};  // s before the goal at x = 0 and before the other
@@ -61,11 +61,11 @@ std::vector<Presence> presences(const Recording& recording, const std::optional<
   return all;
 }
 
-/// The kinds that are teams, in the order in which they are told.
+/// The kinds that are teams, in the order in which they are reported.
 std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::vector<TeamName>& names) {
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < mixture.kinds.size(); ++k) {
-    if (mixture.kinds[k].share >= least_team) chosen.push_back(k);
+    if (mixture.kinds[k].fraction >= min_team) chosen.push_back(k);
   }
   if (names.empty()) {
     if (chosen.size() > 2) chosen.resize(2);
@@ -74,9 +74,9 @@ std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::v
   // Large kinds of about the colours named, each named team another kind, or none.
   std::vector<std::size_t> best;
   double best_worth = 0;
-  const auto worth = [&](std::size_t kind, const TeamName& name) {
+  const auto merit = [&](std::size_t kind, const TeamName& name) {
     const double apart = colours_apart(mixture.kinds[kind].colour, name.colour) / colours_differ;
-    return std::log(mixture.kinds[kind].share / least_team) + 4 - apart * apart / 2;
+    return std::log(mixture.kinds[kind].fraction / min_team) + 4 - apart * apart / 2;
   };
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::vector<std::size_t> kinds = chosen;
@@ -84,7 +84,7 @@ std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::v
   for (const std::size_t a : kinds) {
     for (const std::size_t b : kinds) {
       if (a == b && a != none) continue;
-      const double sum = (a == none ? 0 : worth(a, names[0])) + (b == none ? 0 : worth(b, names[1]));
+      const double sum = (a == none ? 0 : merit(a, names[0])) + (b == none ? 0 : merit(b, names[1]));
       if (sum <= best_worth) continue;
       best_worth = sum;
       best = {a, b};
@@ -94,25 +94,25 @@ std::vector<std::size_t> choose_teams(const ColourMixture& mixture, const std::v
 }
 
 /// What cameras and light make of grey: the colour of the kind of people that has least, if that is little enough to be it.
-Appearance cast_of(const ColourMixture& mixture) {
-  Appearance cast{.lightness = 0};
-  float least = most_cast;
+Appearance layout_of(const ColourMixture& mixture) {
+  Appearance channel_layout{.lightness = 0};
+  float minimum = max_channel_layout;
   for (const ColourMixture::Kind& kind : mixture.kinds) {
     const float chroma = std::hypot(kind.colour.a, kind.colour.b);
-    if (chroma >= least) continue;
-    least = chroma;
-    cast.a = kind.colour.a;
-    cast.b = kind.colour.b;
+    if (chroma >= minimum) continue;
+    minimum = chroma;
+    channel_layout.a = kind.colour.a;
+    channel_layout.b = kind.colour.b;
   }
-  return cast;
+  return channel_layout;
 }
 
-/// Names for teams that the user has not named: by colour, told apart by lightness where they have the same.
-void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& cast) {
+/// Names for teams that the user has not named: by colour, distinguished by lightness where they have the same.
+void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& channel_layout) {
   for (Teams::Team& team : teams) {
     Appearance colour = team.colour;
-    colour.a -= cast.a;
-    colour.b -= cast.b;
+    colour.a -= channel_layout.a;
+    colour.b -= channel_layout.b;
     team.name = name_of_colour(colour);
   }
   if (teams.size() < 2 || teams[0].name != teams[1].name) return;
@@ -122,7 +122,7 @@ void name_by_colour(std::vector<Teams::Team>& teams, const Appearance& cast) {
 }
 
 /// Mean of the `count` least values, m.
-double mean_of_least(std::vector<double>& values, std::size_t count) {
+double mean_of_lowest(std::vector<double>& values, std::size_t count) {
   std::partial_sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), values.end());
   return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), 0.0) / static_cast<double>(count);
 }
@@ -141,38 +141,38 @@ std::optional<int> team_of_keeper(const Recording& recording, std::span<const Te
       before_goal[static_cast<std::size_t>(*member.team)].push_back(end == 0 ? x : -x);
     }
     const std::size_t last = std::min({last_players, before_goal[0].size(), before_goal[1].size()});
-    if (last > 0) lead += mean_of_least(before_goal[0], last) - mean_of_least(before_goal[1], last);
+    if (last > 0) lead += mean_of_lowest(before_goal[0], last) - mean_of_lowest(before_goal[1], last);
   }
   if (lead == 0) return std::nullopt;
   return lead < 0 ? 0 : 1;
 }
 
-/// Everybody's colour and time, for those who were seen long enough.
+/// Every person's colour and time, for those who were seen long enough.
 struct Candidates {
   std::vector<int> people;
-  std::vector<ColourSeen> seen;
+  std::vector<ColourObserved> detected;
 };
 
-Candidates candidates(std::span<const Presence> presence, std::span<const std::optional<Appearance>> wears, double shortest) {
+Candidates candidates(std::span<const Presence> presence, std::span<const std::optional<Appearance>> clothing, double shortest) {
   double longest = 0;
   for (const Presence& one : presence) longest = std::max(longest, one.seconds);
   Candidates result;
-  for (std::size_t who = 0; who < presence.size(); ++who) {
-    if (!wears[who] || presence[who].seconds < std::min(shortest, longest)) continue;
-    result.people.push_back(static_cast<int>(who));
-    result.seen.push_back({*wears[who], std::max(presence[who].seconds / std::max(longest, 1e-9), 1e-3)});
+  for (std::size_t identity = 0; identity < presence.size(); ++identity) {
+    if (!clothing[identity] || presence[identity].seconds < std::min(shortest, longest)) continue;
+    result.people.push_back(static_cast<int>(identity));
+    result.detected.push_back({*clothing[identity], std::max(presence[identity].seconds / std::max(longest, 1e-9), 1e-3)});
   }
   return result;
 }
 
 class Finder {
  public:
-  Finder(const Recording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options)
+  Finder(const Recording& recording, std::span<const std::optional<Appearance>> clothing, const TeamOptions& options)
       : recording_(recording),
         options_(options),
         presence_(presences(recording, options.pitch)),
-        candidates_(candidates(presence_, wears, options.shortest)),
-        mixture_(find_colours(candidates_.seen)) {}
+        candidates_(candidates(presence_, clothing, options.shortest)),
+        mixture_(find_colours(candidates_.detected)) {}
 
   Teams find() {
     teams_.members.resize(recording_.tracks().size());
@@ -186,9 +186,9 @@ class Finder {
       if (!options_.names.empty()) team.name = options_.names[t].name;
       teams_.teams.push_back(team);
     }
-    if (options_.names.empty()) name_by_colour(teams_.teams, cast_of(mixture_));
+    if (options_.names.empty()) name_by_colour(teams_.teams, layout_of(mixture_));
     vote(kinds);
-    for (std::size_t i = 0; i < candidates_.people.size(); ++i) place_official(i);
+    for (std::size_t i = 0; i < candidates_.people.size(); ++i) position_official(i);
     return std::move(teams_);
   }
 
@@ -198,7 +198,7 @@ class Finder {
       Teams::Member& member = teams_.members[static_cast<std::size_t>(candidates_.people[i])];
       for (std::size_t t = 0; t < kinds.size(); ++t) {
         if (kinds[t] >= mixture_.kinds.size()) continue;
-        const double probability = mixture_.whose[i][kinds[t]];
+        const double probability = mixture_.owner[i][kinds[t]];
         if (probability <= member.confidence) continue;
         member.confidence = probability;
         member.team = static_cast<int>(t);
@@ -214,41 +214,41 @@ class Finder {
 
   /// Who is nearly always before a goal, and plainly not in the team's colour although no other is nearer.
   bool may_be_keeper(std::size_t candidate, int team) const {
-    const ColourSeen& seen = candidates_.seen[candidate];
+    const ColourObserved& detected = candidates_.detected[candidate];
     const Presence& presence = presence_[static_cast<std::size_t>(candidates_.people[candidate])];
     const bool at_home = std::max(presence.near_goal[0], presence.near_goal[1]) >= keepers_time * presence.seconds;
-    const double apart = colours_apart(seen.colour, teams_.teams[static_cast<std::size_t>(team)].colour);
+    const double apart = colours_apart(detected.colour, teams_.teams[static_cast<std::size_t>(team)].colour);
     return at_home && presence.seconds > 0 && apart > colours_differ;
   }
 
-  /// Who is in no team's colour: a keeper, a referee, or nobody knows.
-  void place_official(std::size_t candidate) {
-    const int who = candidates_.people[candidate];
-    Teams::Member& member = teams_.members[static_cast<std::size_t>(who)];
+  /// Who is in no team's colour: a keeper, a referee, or no person knows.
+  void position_official(std::size_t candidate) {
+    const int identity = candidates_.people[candidate];
+    Teams::Member& member = teams_.members[static_cast<std::size_t>(identity)];
     if (member.role != Teams::Role::unknown || teams_.teams.empty()) return;
-    const ColourSeen& seen = candidates_.seen[candidate];
+    const ColourObserved& detected = candidates_.detected[candidate];
     double apart = 1e9;
-    for (const Teams::Team& team : teams_.teams) apart = std::min(apart, colours_apart(seen.colour, team.colour));
-    if (apart < another_colour + seen.colour.deviation / 2) return;
+    for (const Teams::Team& team : teams_.teams) apart = std::min(apart, colours_apart(detected.colour, team.colour));
+    if (apart < another_colour + detected.colour.deviation / 2) return;
     const double confidence = std::clamp(1 - another_colour / (2 * apart), 0.0, 1.0);
-    const Presence& presence = presence_[static_cast<std::size_t>(who)];
+    const Presence& presence = presence_[static_cast<std::size_t>(identity)];
     for (const int end : {0, 1}) {
       if (presence.near_goal[end] < keepers_time * presence.seconds || presence.seconds == 0) continue;
-      member = {
-          Teams::Role::keeper,
-          teams_.teams.size() == 2 ? team_of_keeper(recording_, teams_.members, static_cast<std::size_t>(who), end) : std::nullopt,
-          confidence};
+      member = {Teams::Role::keeper,
+                teams_.teams.size() == 2 ? team_of_keeper(recording_, teams_.members, static_cast<std::size_t>(identity), end)
+                                         : std::nullopt,
+                confidence};
       return;
     }
-    if (share_of_kind(candidate) <= officials) member = {Teams::Role::referee, std::nullopt, confidence};
+    if (fraction_of_kind(candidate) <= officials) member = {Teams::Role::referee, std::nullopt, confidence};
   }
 
   /// How many wear what this one wears: of all people's time.
-  double share_of_kind(std::size_t candidate) const {
-    const std::vector<double>& whose = mixture_.whose[candidate];
-    const auto likeliest = std::max_element(whose.begin(), whose.end());
-    if (likeliest == whose.end() || *likeliest < 0.5) return 0;
-    return mixture_.kinds[static_cast<std::size_t>(likeliest - whose.begin())].share;
+  double fraction_of_kind(std::size_t candidate) const {
+    const std::vector<double>& owner = mixture_.owner[candidate];
+    const auto likeliest = std::max_element(owner.begin(), owner.end());
+    if (likeliest == owner.end() || *likeliest < 0.5) return 0;
+    return mixture_.kinds[static_cast<std::size_t>(likeliest - owner.begin())].fraction;
   }
 
   const Recording& recording_;
@@ -281,15 +281,15 @@ std::vector<TeamName> parse_teams(std::string_view text) {
   return names;
 }
 
-Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options) {
+Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> clothing, const TeamOptions& options) {
   require_ground(recording, "finding teams");
-  return Finder(recording, wears, options).find();
+  return Finder(recording, clothing, options).find();
 }
 
 void note_teams(const Teams& teams, Recording& recording) {
-  for (std::size_t who = 0; who < recording.tracks().size(); ++who) {
-    const Teams::Member& member = teams.members[who];
-    TrackName name = recording.tracks()[who].name;
+  for (std::size_t identity = 0; identity < recording.tracks().size(); ++identity) {
+    const Teams::Member& member = teams.members[identity];
+    TrackName name = recording.tracks()[identity].name;
     name.team = member.team ? teams.teams[static_cast<std::size_t>(*member.team)].name : std::string();
     if (name.label.empty() && member.role == Teams::Role::keeper) name.label = "keeper";
     if (name.label.empty() && member.role == Teams::Role::referee) name.label = "referee";

@@ -1,6 +1,7 @@
 // Who plays with whom, learned from the recording itself: what each person wears over the whole of it (not frame by frame), the few
 // colours that there are among them (colour_mixture.h), the two that most people wear. Others are keepers, who wear their own
-// colour and stay near a goal, or referees. Everybody's vote comes with its probability; who cannot be told stays without a team.
+// colour and stay near a goal, or referees. Every person's vote comes with its probability; who cannot be reported stays without a
+// team.
 #pragma once
 
 #include <optional>
@@ -21,7 +22,8 @@ struct TeamName {
   Appearance colour;
 };
 
-/// "white,blue", or "City=sky blue,United=red": two, in the order in which teams are to be told. Throws Error for what is not so.
+/// "white,blue", or "City=sky blue,United=red": two, in the order in which teams are to be reported. Throws Error for what is not
+/// so.
 std::vector<TeamName> parse_teams(std::string_view text);
 
 struct TeamOptions {
@@ -49,7 +51,7 @@ struct Teams {
 
 /// `wears` of each track of the recording, in their order, where known. `recording` is of the ground, in the pitch's frame where
 /// `pitch` is given; throws Error for another.
-Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> wears, const TeamOptions& options = {});
+Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> clothing, const TeamOptions& options = {});
 
 /// Writes what was found into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have
 /// none.

@@ -21,7 +21,7 @@ RecordingHeader on_the_pitch() {
 /// People and what they wear; each stands about somewhere for some seconds.
 struct Scene {
   Recording recording{on_the_pitch()};
-  std::vector<std::optional<Appearance>> wears;
+  std::vector<std::optional<Appearance>> clothing;
   std::mt19937_64 engine;
   double seconds = 20;
 
@@ -31,12 +31,12 @@ struct Scene {
 
   void add(const std::string& colour, double spread, double x, double y, double from = 0, double to = 1) {
     const Appearance typical = colour_named(colour);
-    wears.push_back(Appearance{.lightness = typical.lightness + static_cast<float>(normal(spread)),
-                               .a = typical.a + static_cast<float>(normal(spread)),
-                               .b = typical.b + static_cast<float>(normal(spread)),
-                               .deviation = 3});
+    clothing.push_back(Appearance{.lightness = typical.lightness + static_cast<float>(normal(spread)),
+                                  .a = typical.a + static_cast<float>(normal(spread)),
+                                  .b = typical.b + static_cast<float>(normal(spread)),
+                                  .deviation = 3});
     for (auto k = static_cast<int>(recording.instants().size()); k < static_cast<int>(seconds * 5); ++k)
-      recording.add_moment({k, timestamp_from_seconds(k / 5.0)});
+      recording.add_time_step({k, timestamp_from_seconds(k / 5.0)});
     TrackColumns track({TrackId{static_cast<int>(recording.tracks().size()) + 1}, {}, {}}, 2);
     for (int k = static_cast<int>(from * seconds * 5); k < static_cast<int>(to * seconds * 5); ++k) {
       Sample sample;
@@ -48,7 +48,7 @@ struct Scene {
   }
 
   Teams find(const TeamOptions& options = {.names = {}, .pitch = geometry::PitchSize{}}) {
-    return find_teams(recording, wears, options);
+    return find_teams(recording, clothing, options);
   }
 };
 
@@ -71,22 +71,22 @@ TEST(Teams, TwoTeamsKeepersAndRefereesAreTold) {
     const int white = teams.teams[0].name == "white" ? 0 : 1;
     EXPECT_EQ(teams.teams[white].name, "white") << "seed " << seed;
     EXPECT_EQ(teams.teams[1 - white].name, "blue") << "seed " << seed;
-    int told = 0;
-    for (int who = 0; who < 20; ++who) {
-      if (!teams.members[who].team) continue;
-      ++told;
-      EXPECT_EQ(teams.members[who].role, Teams::Role::player) << "seed " << seed << ", person " << who;
-      EXPECT_EQ(teams.members[who].team, who < 10 ? white : 1 - white) << "seed " << seed << ", person " << who;
-      EXPECT_GT(teams.members[who].confidence, 0.8);
+    int reported = 0;
+    for (int identity = 0; identity < 20; ++identity) {
+      if (!teams.members[identity].team) continue;
+      ++reported;
+      EXPECT_EQ(teams.members[identity].role, Teams::Role::player) << "seed " << seed << ", person " << identity;
+      EXPECT_EQ(teams.members[identity].team, identity < 10 ? white : 1 - white) << "seed " << seed << ", person " << identity;
+      EXPECT_GT(teams.members[identity].confidence, 0.8);
     }
-    EXPECT_GE(told, 19) << "seed " << seed;
+    EXPECT_GE(reported, 19) << "seed " << seed;
     EXPECT_EQ(teams.members[20].role, Teams::Role::keeper);
     EXPECT_EQ(teams.members[20].team, white) << "who is behind them";
     EXPECT_EQ(teams.members[21].role, Teams::Role::keeper);
     EXPECT_EQ(teams.members[21].team, 1 - white);
-    for (int who = 22; who < 25; ++who) {
-      EXPECT_EQ(teams.members[who].role, Teams::Role::referee) << "seed " << seed;
-      EXPECT_FALSE(teams.members[who].team);
+    for (int identity = 22; identity < 25; ++identity) {
+      EXPECT_EQ(teams.members[identity].role, Teams::Role::referee) << "seed " << seed;
+      EXPECT_FALSE(teams.members[identity].team);
     }
   }
 }
@@ -118,13 +118,13 @@ TEST(Teams, AreCalledAsTheUserSaysInThatOrder) {
   EXPECT_EQ(scene.recording.tracks()[22].name.team, "");
 }
 
-TEST(Teams, WhereKitsAreTheSameNobodyIsGivenTheWrongOne) {
+TEST(Teams, SameKitsGiveNoWrongTeam) {
   Scene scene = match(5, "blue", "blue", 6);
   const Teams teams = scene.find();
   EXPECT_EQ(teams.teams.size(), 1U);
 }
 
-TEST(Teams, OneTeamAloneIsOne) {
+TEST(Teams, SingleTeamIsOne) {
   Scene scene(7);
   for (int k = 0; k < 8; ++k) scene.add("red", 4, 30 + 5 * k, 30);
   const Teams teams = scene.find();
@@ -136,15 +136,15 @@ TEST(Teams, OneTeamAloneIsOne) {
   EXPECT_EQ(named.teams[0].people, 0);
 }
 
-TEST(Teams, WhoWasHardlySeenOrHasNoColourStaysWithout) {
+TEST(Teams, RarelyVisiblePersonHasNoTeam) {
   Scene scene = match(9);
   scene.add("white", 4, 50, 50, 0.5, 0.52);
   scene.add("white", 4, 50, 55);
-  scene.wears.back().reset();
+  scene.clothing.back().reset();
   scene.add("white", 4, 50, 58);
-  scene.wears.back() = Appearance{.lightness = 60, .a = 5, .b = -20, .deviation = 20};
+  scene.clothing.back() = Appearance{.lightness = 60, .a = 5, .b = -20, .deviation = 20};
   const Teams teams = scene.find();
-  for (int who = 25; who < 28; ++who) EXPECT_FALSE(teams.members[who].team) << who;
+  for (int identity = 25; identity < 28; ++identity) EXPECT_FALSE(teams.members[identity].team) << identity;
 }
 
 TEST(Teams, ManyShortPiecesOfPeopleAreNoTrouble) {
@@ -159,12 +159,12 @@ TEST(Teams, ManyShortPiecesOfPeopleAreNoTrouble) {
   EXPECT_GE(right, 290);
 }
 
-TEST(Teams, NobodyIsNoTeam) {
+TEST(Teams, EmptySetHasNoTeams) {
   EXPECT_TRUE(find_teams(Recording(on_the_pitch()), {}).teams.empty());
-  EXPECT_THROW(find_teams(Recording(), {}), Error) << "space is no ground";
+  EXPECT_THROW(find_teams(Recording(), {}), Error) << "space is not a ground";
 }
 
-TEST(Teams, WhatIsNoColourIsSaid) {
+TEST(Teams, ReportsInvalidColour) {
   EXPECT_THROW(parse_teams("white,bleu"), Error);
   EXPECT_THROW(parse_teams("white"), Error);
   EXPECT_THROW(parse_teams("white,"), Error);

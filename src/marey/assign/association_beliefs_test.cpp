@@ -10,7 +10,7 @@
 namespace marey::assign {
 namespace {
 
-TEST(AssociationBeliefs, OnePairIsAsProbableAsItsOdds) {
+TEST(AssociationBeliefs, PairProbabilityEqualsItsOdds) {
   EXPECT_NEAR(association_beliefs(1, 1, std::vector<GatedPair>{{0, 0, std::log(3.0)}})[0], 0.75, 1e-9);
 }
 

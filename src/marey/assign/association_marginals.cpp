@@ -43,7 +43,7 @@ void AssociationMarginals::solve_cluster(std::span<const GatedPair> pairs, std::
     arcs_.push_back({static_cast<int>(row), static_cast<int>(column), 0, static_cast<std::size_t>(i)});
   }
   const int rows = static_cast<int>(row_names_.size()), columns = static_cast<int>(column_names_.size());
-  if (columns <= most_columns)
+  if (columns <= max_columns)
     sum_exactly(pairs, rows, columns);
   else
     sum_best(pairs, rows, columns);
@@ -106,7 +106,7 @@ void AssociationMarginals::sum_best(std::span<const GatedPair> pairs, int rows, 
   named_.clear();
   for (const Arc& arc : arcs_) named_.push_back({arc.row, arc.column, pairs[arc.pair].gain});
   const AssignmentProblem problem{.rows = rows, .columns = columns, .pairs = named_};
-  const auto answers = best_.find({&problem, 1}, most_answers);
+  const auto answers = best_.find({&problem, 1}, max_answers);
   double total = 0;
   for (const auto& answer : answers) {
     const double weight = std::exp(answer.gain - answers.front().gain);

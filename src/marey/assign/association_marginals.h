@@ -4,7 +4,7 @@
 //
 // Pairs fall apart into clusters that share no column. Within a cluster answers are not listed but summed row by row over the sets
 // of columns in use, forwards and backwards, as in a hidden Markov model: exact, and of cost rows · 2^columns · columns instead of
-// the number of answers, which is exponential in the rows. A cluster of more than `most_columns`, which only a gate that holds
+// the number of answers, which is exponential in the rows. A cluster of more than `max_columns`, which only a gate that holds
 // half of the scene leaves, is summed over its most probable answers alone (k_best_assignments.h).
 #pragma once
 
@@ -19,8 +19,8 @@ namespace marey::assign {
 
 class AssociationMarginals {
  public:
-  static constexpr int most_columns = 12;  ///< of a cluster that is summed exactly
-  static constexpr int most_answers = 300;
+  static constexpr int max_columns = 12;  ///< of a cluster that is summed exactly
+  static constexpr int max_answers = 300;
 
   /// For each pair its probability, in the order of the pairs; valid until the next call. A pair's gain is the logarithm of its
   /// weight against that of its row having no column, of any sign; each pair occurs once.

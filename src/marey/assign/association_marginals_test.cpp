@@ -38,12 +38,12 @@ std::vector<double> listed(int rows, int columns, const std::vector<GatedPair>& 
   return sums;
 }
 
-std::vector<GatedPair> random_pairs(std::mt19937_64& engine, int rows, int columns, double share) {
+std::vector<GatedPair> random_pairs(std::mt19937_64& engine, int rows, int columns, double fraction) {
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<GatedPair> pairs;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      if (uniform(engine) < share) pairs.push_back({row, column, 8 * uniform(engine) - 3});
+      if (uniform(engine) < fraction) pairs.push_back({row, column, 8 * uniform(engine) - 3});
     }
   }
   std::shuffle(pairs.begin(), pairs.end(), engine);
@@ -75,7 +75,7 @@ TEST(AssociationMarginals, StayFiniteForGreatGains) {
 
 TEST(AssociationMarginals, LargeClustersAreSummedOverTheirBestAnswers) {
   // A chain of rows that each prefer their own column: little weight lies beyond the best answers.
-  constexpr int count = 2 * AssociationMarginals::most_columns;
+  constexpr int count = 2 * AssociationMarginals::max_columns;
   std::vector<GatedPair> pairs;
   for (int row = 0; row < count; ++row) {
     pairs.push_back({row, row, 9});

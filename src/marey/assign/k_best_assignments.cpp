@@ -11,12 +11,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-std::span<const KBestAssigner::Answer> KBestAssigner::find(std::span<const AssignmentProblem> problems, int most, double within) {
+std::span<const KBestAssigner::Answer> KBestAssigner::find(std::span<const AssignmentProblem> problems, int maximum,
+                                                           double within) {
   clear();
   for (const AssignmentProblem& problem : problems) tabulate(problem);
-  answers_.reserve(most);
+  answers_.reserve(maximum);
   double limit = -infinity;
-  while (!queue_.empty() && static_cast<int>(answers_.size()) < most) {
+  while (!queue_.empty() && static_cast<int>(answers_.size()) < maximum) {
     Part part = pop();
     if (part.gain < limit) break;
     if (!part.solved) {
@@ -26,7 +27,7 @@ std::span<const KBestAssigner::Answer> KBestAssigner::find(std::span<const Assig
     if (answers_.empty()) limit = part.gain - within;
     give_answer(part);
     parts_.push_back(part);
-    if (static_cast<int>(answers_.size()) < most) split(static_cast<int>(parts_.size()) - 1, limit);
+    if (static_cast<int>(answers_.size()) < maximum) split(static_cast<int>(parts_.size()) - 1, limit);
   }
   for (Answer& answer : answers_) {
     const Table& table = tables_[answer.problem];
@@ -173,7 +174,7 @@ void KBestAssigner::split(int index, double limit) {
   order_.clear();
   for (int i = 0; i < part.free_count; ++i) {
     const int row = free_rows_[part.free + i];
-    order_.emplace_back(-least_loss(part, row), row);
+    order_.emplace_back(-min_loss(part, row), row);
   }
   ban(part, 0);
   std::sort(order_.begin(), order_.end());
@@ -194,18 +195,18 @@ void KBestAssigner::split(int index, double limit) {
 }
 
 /// What an answer costs more, at the least, where this row's choice is forbidden.
-double KBestAssigner::least_loss(const Part& part, int row) const {
+double KBestAssigner::min_loss(const Part& part, int row) const {
   const Table& table = tables_[part.problem];
   const double* price = prices_.data() + part.prices;
   const int choice = choices_[part.choices + row];
-  double least = infinity;
+  double minimum = infinity;
   for (int arc = row_begin_[table.rows_at + row]; arc < row_begin_[table.rows_at + row + 1]; ++arc) {
     const int column = arcs_[arc].column;
     if (arc == choice || arc_banned_[arc] || !column_open_[column]) continue;
-    least = std::min(least, arcs_[arc].cost + price[row] - price[table.rows + column]);
+    minimum = std::min(minimum, arcs_[arc].cost + price[row] - price[table.rows + column]);
   }
-  if (choice != kNoIndex && !none_banned_[row]) least = std::min(least, price[row] - price[table.rows + table.columns]);
-  return std::max(0.0, least);
+  if (choice != kNoIndex && !none_banned_[row]) minimum = std::min(minimum, price[row] - price[table.rows + table.columns]);
+  return std::max(0.0, minimum);
 }
 
 /// Lays out the network of a part: the rows that are free, the columns that no settled row has, and who has those.
@@ -264,7 +265,7 @@ bool KBestAssigner::reroute(const Part& part, int from, int to) {
   if (!settled_[to]) return false;
   double* prices = prices_.data() + part.prices;
   for (int node = 0; node <= sink; ++node) prices[node] += std::min(distance_[node], distance_[to]);
-  follow_path(part, from, to);
+  track_path(part, from, to);
   return true;
 }
 
@@ -278,7 +279,7 @@ void KBestAssigner::reach(int node, int by, int arc, double loss) {
   std::push_heap(reached_.begin(), reached_.end(), std::greater<>());
 }
 
-/// `anew`: the row is looking for another choice than it had, or for its first.
+/// `anew`: the row is searching for another choice than it had, or for its first.
 void KBestAssigner::leave_row(const Part& part, int row, bool anew) {
   const Table& table = tables_[part.problem];
   const int choice = choices_[part.choices + row];
@@ -307,7 +308,7 @@ void KBestAssigner::leave_sink(const Part& part, int left) {
   }
 }
 
-void KBestAssigner::follow_path(const Part& part, int from, int to) {
+void KBestAssigner::track_path(const Part& part, int from, int to) {
   const Table& table = tables_[part.problem];
   int* choices = choices_.data() + part.choices;
   for (int node = to; node != from; node = by_[node]) {

@@ -42,10 +42,10 @@ class KBestAssigner {
     std::span<const int> column_of_row;  ///< or `kNoIndex`
   };
 
-  /// The `most` best answers to all problems together, the best first, leaving out those whose gain is less than the best's by
+  /// The `most` best answers to all problems together, the best first, omitting those whose gain is less than the best's by
   /// more than `within`. All answers are different. Valid until the next call, as is what it points to; the problems' pairs are
   /// not needed any longer. Allocates only where a call needs more than all before.
-  std::span<const Answer> find(std::span<const AssignmentProblem> problems, int most,
+  std::span<const Answer> find(std::span<const AssignmentProblem> problems, int maximum,
                                double within = std::numeric_limits<double>::infinity());
 
  private:
@@ -89,14 +89,14 @@ class KBestAssigner {
   void settle_gain(Part& part) const;
   void give_answer(const Part& part);
   void split(int index, double limit);
-  double least_loss(const Part& part, int row) const;
+  double min_loss(const Part& part, int row) const;
   void open(const Part& part);
   void ban(const Part& part, char value);
   bool reroute(const Part& part, int from, int to);
   void reach(int node, int by, int arc, double loss);
   void leave_row(const Part& part, int row, bool anew);
   void leave_sink(const Part& part, int left);
-  void follow_path(const Part& part, int from, int to);
+  void track_path(const Part& part, int from, int to);
   double price(const Part& part, int node) const { return prices_[part.prices + node]; }
 
   std::vector<Table> tables_;

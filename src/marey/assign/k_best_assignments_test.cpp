@@ -66,11 +66,11 @@ TEST(KBestAssigner, AsTryingAll) {
       try_all(p, problems.back(), chosen, problems.back().gain, all);
     }
     std::stable_sort(all.begin(), all.end(), [](const Whole& a, const Whole& b) { return a.gain > b.gain; });
-    const int most = static_cast<int>(random() % 2 == 0 ? all.size() + 5 : random() % all.size() + 1);
+    const int maximum = static_cast<int>(random() % 2 == 0 ? all.size() + 5 : random() % all.size() + 1);
     const double within = random() % 2 == 0 ? 1e9 : 3.5;
-    const auto answers = assigner.find(problems, most, within);
+    const auto answers = assigner.find(problems, maximum, within);
     std::size_t expected = 0;
-    while (expected < all.size() && static_cast<int>(expected) < most && all[expected].gain >= all[0].gain - within) ++expected;
+    while (expected < all.size() && static_cast<int>(expected) < maximum && all[expected].gain >= all[0].gain - within) ++expected;
     ASSERT_EQ(answers.size(), expected);
     std::set<std::pair<int, std::vector<int>>> different;
     for (std::size_t i = 0; i < answers.size(); ++i) {

@@ -36,10 +36,10 @@ void LinearAssigner::solve(int rows, int columns, const double* costs) {
     int column = find_path(row, columns, costs);
     row_price_[row] += path_cost_;
     for (int other = 0; other < rows; ++other) {
-      if (row_seen_[other] && other != row) row_price_[other] += path_cost_ - shortest_[column_of_row_[other]];
+      if (row_observed_[other] && other != row) row_price_[other] += path_cost_ - shortest_[column_of_row_[other]];
     }
     for (int other = 0; other < columns; ++other) {
-      if (column_seen_[other]) column_price_[other] -= path_cost_ - shortest_[other];
+      if (column_observed_[other]) column_price_[other] -= path_cost_ - shortest_[other];
     }
     for (int owner = kNoIndex; owner != row;) {
       owner = from_row_[column];
@@ -53,14 +53,14 @@ void LinearAssigner::solve(int rows, int columns, const double* costs) {
 int LinearAssigner::find_path(int row, int columns, const double* costs) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   shortest_.assign(columns, infinity);
-  row_seen_.assign(column_of_row_.size(), 0);
-  column_seen_.assign(columns, 0);
+  row_observed_.assign(column_of_row_.size(), 0);
+  column_observed_.assign(columns, 0);
   // From the last to the first, so that where all costs are equal the pairs are (0, 0), (1, 1), ...
   remaining_.resize(columns);
   for (int i = 0; i < columns; ++i) remaining_[i] = columns - 1 - i;
   path_cost_ = 0;
   for (;;) {
-    row_seen_[row] = 1;
+    row_observed_[row] = 1;
     const double* row_costs = costs + static_cast<std::size_t>(row) * columns;
     double lowest = infinity;
     int best = kNoIndex;
@@ -79,7 +79,7 @@ int LinearAssigner::find_path(int row, int columns, const double* costs) {
     }
     path_cost_ = lowest;
     const int column = remaining_[best];
-    column_seen_[column] = 1;
+    column_observed_[column] = 1;
     if (row_of_column_[column] == kNoIndex) return column;
     row = row_of_column_[column];
     remaining_[best] = remaining_.back();

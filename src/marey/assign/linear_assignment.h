@@ -2,7 +2,7 @@
 // augmenting paths (Jonker & Volgenant 1987) in the form of D. F. Crouse, "On implementing 2D rectangular assignment
 // algorithms", IEEE Trans. AES 52 (2016): one Dijkstra a row over reduced costs.
 //
-// Where several assignments cost the same, the choice is the one that SciPy's linear_sum_assignment makes (columns are looked at
+// Where several assignments cost the same, the choice is the one that SciPy's linear_sum_assignment makes (columns are inspected
 // in the same order, a free column wins a draw, and a matrix with more rows than columns is transposed): evaluation, whose
 // figures can hang on such draws, then agrees with the reference implementations.
 // Cost: O(rows² · columns) at worst; a fraction of that where most rows have an obvious column. For sparse problems see
@@ -28,7 +28,7 @@ class LinearAssigner {
 
   std::vector<double> transposed_, row_price_, column_price_, shortest_;
   std::vector<int> column_of_row_, row_of_column_, from_row_, remaining_, result_;
-  std::vector<char> row_seen_, column_seen_;
+  std::vector<char> row_observed_, column_observed_;
   double path_cost_ = 0;
 };
 

@@ -12,10 +12,10 @@ namespace {
 template <int D>
 void agrees_with_looking_at_all(unsigned seed, double extent) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> place(-extent, extent);
+  std::uniform_real_distribution<double> location(-extent, extent);
   const auto anywhere = [&] {
     Vector<D> x;
-    for (int i = 0; i < D; ++i) x[i] = place(random);
+    for (int i = 0; i < D; ++i) x[i] = location(random);
     return x;
   };
   std::vector<Vector<D>> points(random() % 200);
@@ -47,14 +47,14 @@ TEST(PointGrid, MissesNoPointNearby) {
 
 TEST(PointGrid, LooksAtFewOfMany) {
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> place(0, 10000);
+  std::uniform_real_distribution<double> location(0, 10000);
   std::vector<Vector<2>> points(10000);
-  for (auto& point : points) point = {place(random), place(random)};
+  for (auto& point : points) point = {location(random), location(random)};
   PointGrid<2> grid;
   grid.build(points, 100);
-  int looked_at = 0;
-  for (const auto& point : points) grid.for_each_near(point, 100, [&](int) { ++looked_at; });
-  EXPECT_LT(looked_at / 10000, 20);
+  int inspected_at = 0;
+  for (const auto& point : points) grid.for_each_near(point, 100, [&](int) { ++inspected_at; });
+  EXPECT_LT(inspected_at / 10000, 20);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-double worth(std::span<const int> columns, const std::vector<GatedPair>& pairs) {
+double merit(std::span<const int> columns, const std::vector<GatedPair>& pairs) {
   double sum = 0;
   std::set<int> used;
   for (int row = 0; row < static_cast<int>(columns.size()); ++row) {
@@ -49,11 +49,11 @@ double best_of_all(int row, int rows, std::set<int>& used, const std::vector<Gat
   return best;
 }
 
-std::vector<GatedPair> random_pairs(Random& random, int rows, int columns, double share) {
+std::vector<GatedPair> random_pairs(Random& random, int rows, int columns, double fraction) {
   std::vector<GatedPair> pairs;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      if (random.chance(share)) pairs.push_back({row, column, random.uniform(-2, 10)});
+      if (random.chance(fraction)) pairs.push_back({row, column, random.uniform(-2, 10)});
     }
   }
   return pairs;
@@ -66,7 +66,7 @@ TEST(SparseAssignment, IsTheBestOfAllOnSmallProblems) {
     const int columns = random.integer(1, 6);
     const std::vector<GatedPair> pairs = random_pairs(random, rows, columns, random.uniform(0.2, 1));
     std::set<int> used;
-    EXPECT_NEAR(worth(sparse_assignment(rows, columns, pairs), pairs), best_of_all(0, rows, used, pairs), 1e-9) << "seed " << seed;
+    EXPECT_NEAR(merit(sparse_assignment(rows, columns, pairs), pairs), best_of_all(0, rows, used, pairs), 1e-9) << "seed " << seed;
   }
 }
 
@@ -75,7 +75,7 @@ TEST(SparseAssignment, AgreesWithTheDenseSolverOnLargerOnes) {
     Random random(seed);
     const std::vector<GatedPair> pairs = random_pairs(random, 120, 100, random.uniform(0.02, 0.5));
     GatedAssigner dense;
-    EXPECT_NEAR(worth(sparse_assignment(120, 100, pairs), pairs), worth(dense.assign(120, 100, pairs), pairs), 1e-7)
+    EXPECT_NEAR(merit(sparse_assignment(120, 100, pairs), pairs), merit(dense.assign(120, 100, pairs), pairs), 1e-7)
         << "seed " << seed;
   }
 }

@@ -15,7 +15,7 @@
 namespace marey::calibrate {
 namespace {
 
-constexpr double kSamePlace = 3;       // px, within which a blob has stood still
+constexpr double kSamePosition = 3;    // px, within which a blob has stood still
 constexpr double kSigmaPx = 1.5;       // of a ray, the rig's own error included
 constexpr double kMeet = 3;            // sigmas within which rays meet
 constexpr double kDistanceOff = 0.02;  // of a distance between markers, and at least:
@@ -23,9 +23,9 @@ constexpr double kDistanceOff_m = 0.005;
 constexpr double kBoardsOff_m = 0.05;  // between cameras that see one board
 
 struct SpacePoint {
-  Vector<3> place = Vector<3>::Zero();
-  std::set<std::pair<std::size_t, std::size_t>> seen;  // camera, blob
-  double off = 0;                                      // the worst ray, sigmas
+  Vector<3> location = Vector<3>::Zero();
+  std::set<std::pair<std::size_t, std::size_t>> detected;  // camera, blob
+  double off = 0;                                          // the worst ray, sigmas
 };
 
 struct View {
@@ -50,29 +50,29 @@ std::vector<View> views_of(const Rig& rig, std::span<const std::vector<Vector<2>
 }
 
 /// A point with every ray of another camera that leads to it.
-std::optional<SpacePoint> gather(const std::vector<View>& views, Vector<3> place) {
+std::optional<SpacePoint> gather(const std::vector<View>& views, Vector<3> location) {
   SpacePoint point;
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<SightLine> lines;
-    point.seen.clear();
+    point.detected.clear();
     point.off = 0;
     for (const View& view : views) {
       std::size_t best = view.lines.size();
       double nearest = kMeet;
       for (std::size_t b = 0; b < view.lines.size(); ++b) {
-        const double off = view.lines[b] ? angle_off(*view.lines[b], place) : kMeet;
+        const double off = view.lines[b] ? angle_off(*view.lines[b], location) : kMeet;
         if (off < nearest) nearest = off, best = b;
       }
       if (best == view.lines.size()) continue;
       lines.push_back(*view.lines[best]);
-      point.seen.insert({view.index, best});
+      point.detected.insert({view.index, best});
       point.off = std::max(point.off, nearest);
     }
     const auto met = intersection_point(lines);
     if (!met) return std::nullopt;
-    place = *met;
+    location = *met;
   }
-  point.place = place;
+  point.location = location;
   return point;
 }
 
@@ -83,28 +83,28 @@ std::vector<SpacePoint> points_in_space(const std::vector<View>& views) {
       for (const auto& from_a : views[a].lines) {
         for (const auto& from_b : views[b].lines) {
           if (!from_a || !from_b) continue;
-          const auto place = intersection_point(std::array{*from_a, *from_b});
-          if (!place || angle_off(*from_a, *place) > kMeet || angle_off(*from_b, *place) > kMeet) continue;
-          if (auto point = gather(views, *place)) all.push_back(std::move(*point));
+          const auto location = intersection_point(std::array{*from_a, *from_b});
+          if (!location || angle_off(*from_a, *location) > kMeet || angle_off(*from_b, *location) > kMeet) continue;
+          if (auto point = gather(views, *location)) all.push_back(std::move(*point));
         }
       }
     }
   }
   std::stable_sort(all.begin(), all.end(), [](const SpacePoint& x, const SpacePoint& y) {
-    return x.seen.size() != y.seen.size() ? x.seen.size() > y.seen.size() : x.off < y.off;
+    return x.detected.size() != y.detected.size() ? x.detected.size() > y.detected.size() : x.off < y.off;
   });
   std::vector<SpacePoint> kept;
   std::set<std::pair<std::size_t, std::size_t>> used;
   for (SpacePoint& point : all) {
-    if (std::any_of(point.seen.begin(), point.seen.end(), [&](const auto& blob) { return used.contains(blob); })) continue;
-    used.insert(point.seen.begin(), point.seen.end());
+    if (std::any_of(point.detected.begin(), point.detected.end(), [&](const auto& blob) { return used.contains(blob); })) continue;
+    used.insert(point.detected.begin(), point.detected.end());
     kept.push_back(std::move(point));
   }
   return kept;
 }
 
-bool same_distance(double found, double wanted) {
-  return std::abs(found - wanted) <= std::max(kDistanceOff_m, kDistanceOff * wanted);
+bool same_distance(double found, double required) {
+  return std::abs(found - required) <= std::max(kDistanceOff_m, kDistanceOff * required);
 }
 
 /// Which points can be the frame's markers: every assignment whose distances fit.
@@ -161,7 +161,7 @@ void check_frame(std::span<const Vector<3>> frame, bool free_scale) {
   if (extent[1] < 0.02 * extent[2])
     throw Error("{}", "the ground frame's markers lie on a line: the floor could turn about it; use an L");
   if (Matcher({frame.begin(), frame.end()}, frame, free_scale).matches().size() > 1) {
-    throw Error("{}", "the ground frame looks the same when it is turned: use one whose markers all have distances of their own");
+    throw Error("{}", "the ground frame appears the same when it is turned: use one whose markers all have distances of their own");
   }
 }
 
@@ -169,7 +169,7 @@ GroundFound fit(const std::vector<SpacePoint>& points, const std::vector<std::si
                 bool free_scale) {
   Eigen::Matrix3Xd world(3, frame.size()), ground(3, frame.size());
   for (std::size_t m = 0; m < frame.size(); ++m) {
-    world.col(static_cast<Eigen::Index>(m)) = points[match[m]].place;
+    world.col(static_cast<Eigen::Index>(m)) = points[match[m]].location;
     ground.col(static_cast<Eigen::Index>(m)) = frame[m];
   }
   const Eigen::Matrix4d motion = Eigen::umeyama(world, ground, free_scale);
@@ -179,31 +179,31 @@ GroundFound fit(const std::vector<SpacePoint>& points, const std::vector<std::si
   const Eigen::Matrix3Xd off =
       ((motion.topLeftCorner<3, 3>() * world).colwise() + Vector<3>(motion.topRightCorner<3, 1>())) - ground;
   found.rms_mm = 1000 * std::sqrt(off.squaredNorm() / static_cast<double>(frame.size()));
-  for (const std::size_t p : match) found.seen_by.push_back(static_cast<int>(points[p].seen.size()));
+  for (const std::size_t p : match) found.observed_by.push_back(static_cast<int>(points[p].detected.size()));
   return found;
 }
 
 }  // namespace
 
 std::vector<Vector<2>> still_blobs(std::span<const wand::BlobFrame> frames) {
-  struct Place {
+  struct Location {
     Vector<2> sum = Vector<2>::Zero();
     std::size_t count = 0;
     Vector<2> mean() const { return sum / static_cast<double>(count); }
   };
-  std::vector<Place> places;
+  std::vector<Location> locations;
   for (const wand::BlobFrame& frame : frames) {
     for (const auto& blob : frame.blobs) {
-      auto place =
-          std::find_if(places.begin(), places.end(), [&](const Place& one) { return (one.mean() - blob).norm() < kSamePlace; });
-      if (place == places.end()) place = places.insert(places.end(), Place{});
-      place->sum += blob;
-      ++place->count;
+      auto location = std::find_if(locations.begin(), locations.end(),
+                                   [&](const Location& one) { return (one.mean() - blob).norm() < kSamePosition; });
+      if (location == locations.end()) location = locations.insert(locations.end(), Location{});
+      location->sum += blob;
+      ++location->count;
     }
   }
   std::vector<Vector<2>> still;
-  for (const Place& place : places) {
-    if (2 * place.count >= frames.size()) still.push_back(place.mean());
+  for (const Location& location : locations) {
+    if (2 * location.count >= frames.size()) still.push_back(location.mean());
   }
   return still;
 }
@@ -215,10 +215,10 @@ GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> 
   if (views.size() < 2)
     throw Error("{} of the rig's cameras have a lens and a pose; the ground needs two: calibrate them first", views.size());
   const auto points = points_in_space(views);
-  std::vector<Vector<3>> places;
-  for (const SpacePoint& point : points) places.push_back(point.place);
+  std::vector<Vector<3>> locations;
+  for (const SpacePoint& point : points) locations.push_back(point.location);
   std::optional<GroundFound> best;
-  const Matcher matcher(places, frame, free_scale);
+  const Matcher matcher(locations, frame, free_scale);
   for (const auto& match : matcher.matches()) {
     const GroundFound found = fit(points, match, frame, free_scale);
     if (!best || found.rms_mm < best->rms_mm) best = found;
@@ -227,7 +227,7 @@ GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> 
   throw Error(
       "the ground frame is not found: {} points stand still where rays meet, and no {} of them have its distances; lay it where "
       "two cameras "
-      "or more see all of it, cover what else shines, and check --frame",
+      "or more see all of it, cover what else shines, and check --l-frame",
       points.size(), frame.size());
 }
 
@@ -248,11 +248,10 @@ GroundFound ground_under_board(std::span<const Rigid3> world_from_board) {
   double square = 0;
   for (const Rigid3& one : world_from_board) square += ((one * board_from_ground).translation - origin).squaredNorm();
   ground.rms_mm = 1000 * std::sqrt(square / count);
-  ground.seen_by = {static_cast<int>(world_from_board.size())};
+  ground.observed_by = {static_cast<int>(world_from_board.size())};
   if (ground.rms_mm <= 1000 * kBoardsOff_m) return ground;
-  throw Error(
-      "the cameras place the board {:.0f} mm apart: it was moved between their pictures, or the rig is not of these cameras",
-      ground.rms_mm);
+  throw Error("the cameras place the board {:.0f} mm apart: it was moved between their images, or the rig is not of these cameras",
+              ground.rms_mm);
 }
 
 Rig moved_to_ground(const Rig& rig, const Rigid3& ground_from_world, double scale) {

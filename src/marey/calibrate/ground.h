@@ -16,21 +16,21 @@ namespace marey::calibrate {
 struct GroundFound {
   Rigid3 ground_from_world;  ///< ground = scale · (rotation · world + translation)
   double scale = 1;
-  double rms_mm = 0;         ///< of the markers' places about the frame's
-  std::vector<int> seen_by;  ///< for each marker, how many cameras
+  double rms_mm = 0;             ///< of the markers' places about the frame's
+  std::vector<int> observed_by;  ///< for each marker, how many cameras
 };
 
 /// Blobs that stand still, averaged: those in half of the frames at least. px.
 std::vector<Vector<2>> still_blobs(std::span<const wand::BlobFrame> frames);
 
 /// `frame`: the markers' places on the ground, m, three at least, not on a line, their distances all of their own. `blobs` by
-/// camera of the rig; cameras without a pose are passed over. Where `free_scale`, the frame's size sets the rig's. Throws Error,
+/// camera of the rig; cameras without a pose are skipped. Where `free_scale`, the frame's size sets the rig's. Throws Error,
 /// with the cause and what to do.
 GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> blobs, std::span<const Vector<3>> frame,
                         bool free_scale);
 
 /// The floor by a board that lies on it: its first corner is the origin, x runs along its rows, z up from it. `world_from_board`:
-/// as each camera that sees it has it, one at least; they are averaged, and `rms_mm` is how far they are apart. Throws Error where
+/// as each camera that sees it has it, one at least; they are averaged, and `rms_mm` is how far they are apart. Throws Error if
 /// that is so far that it must have been moved.
 GroundFound ground_under_board(std::span<const Rigid3> world_from_board);
 

@@ -19,11 +19,11 @@ std::vector<std::vector<Vector<2>>> blobs_of(WandScene& scene, const Rigid3& wor
   std::vector<std::vector<Vector<2>>> blobs;
   for (const RigCamera& camera : scene.rig.cameras) {
     auto& mine = blobs.emplace_back();
-    const auto add = [&](const Vector<3>& place) {
-      const auto pixel = camera.camera()->project(place);
+    const auto add = [&](const Vector<3>& location) {
+      const auto pixel = camera.camera()->project(location);
       if (pixel) mine.push_back(*pixel + Vector<2>(scene.noise.gaussian(sigma), scene.noise.gaussian(sigma)));
     };
-    for (const Vector<3>& place : others) add(place);
+    for (const Vector<3>& location : others) add(location);
     for (const Vector<3>& marker : kFrame) add(world_from_ground * (size * marker));
   }
   return blobs;
@@ -47,7 +47,7 @@ TEST(Ground, TheFrameIsFoundAmongOtherLights) {
     const GroundFound found = find_ground(scene.rig, blobs, kFrame, false);
     EXPECT_NEAR(found.scale, 1, 1e-12);
     EXPECT_LT(found.rms_mm, 1);
-    EXPECT_EQ(found.seen_by, std::vector<int>(kFrame.size(), 4));
+    EXPECT_EQ(found.observed_by, std::vector<int>(kFrame.size(), 4));
     for (const Vector<3>& marker : kFrame) {
       EXPECT_LT((found.ground_from_world * (world_from_ground * marker) - marker).norm(), 2e-3);
     }
@@ -70,7 +70,7 @@ TEST(Ground, FramesThatTellNoFloorAreRefused) {
   const std::vector<Vector<3>> even{{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}};
   EXPECT_NE(refusal_of(scene.rig, blobs, two).find("three markers or more; 2 are given"), std::string::npos);
   EXPECT_NE(refusal_of(scene.rig, blobs, line).find("on a line"), std::string::npos);
-  EXPECT_NE(refusal_of(scene.rig, blobs, even).find("looks the same when it is turned"), std::string::npos);
+  EXPECT_NE(refusal_of(scene.rig, blobs, even).find("appears the same when it is turned"), std::string::npos);
   EXPECT_NE(refusal_of(scene.rig, std::vector<std::vector<Vector<2>>>(4), kFrame).find("is not found"), std::string::npos);
   for (RigCamera& camera : scene.rig.cameras) camera.camera_from_world.reset();
   EXPECT_NE(refusal_of(scene.rig, blobs, kFrame).find("the ground needs two"), std::string::npos);

@@ -13,11 +13,11 @@
 namespace marey::calibrate {
 namespace {
 
-constexpr std::size_t kLeastShared = 12;  // instants that two cameras have to share to begin
-constexpr std::size_t kMostPairs = 12;    // looked at before one is chosen
-constexpr double kGoodParallax = 0.15;    // rad, from which on more does not count
-constexpr double kLeastParallax = 0.01;   // rad
-constexpr double kProportionOff = 0.05;   // by which the middle marker's share of the length may differ from the wand's
+constexpr std::size_t kMinShared = 12;   // instants that two cameras have to share to begin
+constexpr std::size_t kMaxPairs = 12;    // inspected before one is chosen
+constexpr double kGoodParallax = 0.15;   // rad, from which on more does not count
+constexpr double kMinParallax = 0.01;    // rad
+constexpr double kProportionOff = 0.05;  // by which the middle marker's share of the length may differ from the wand's
 
 class Grower {
  public:
@@ -52,7 +52,7 @@ class Grower {
   bool relate_pair(Start& pair);
   void begin();
   double metres_per_baseline(const Start& start);
-  void require_proportions(const std::vector<double>& shares) const;
+  void require_proportions(const std::vector<double>& fractions) const;
   void add_next();
   bool set_camera(std::size_t c);
   bundle::BundleResult adjust_all(bundle::Bundle& bundle, int rounds);
@@ -75,14 +75,14 @@ std::optional<Grower::Start> Grower::choose() {
     for (std::size_t b = a + 1; b < at_.cameras(); ++b) {
       Start pair{a, b, {}};
       for (std::size_t i = 0; i < at_.instants(); ++i) {
-        if (at_.sees(i, a) && at_.sees(i, b)) pair.instants.push_back(i);
+        if (at_.observes(i, a) && at_.observes(i, b)) pair.instants.push_back(i);
       }
-      if (pair.instants.size() >= kLeastShared) pairs.push_back(std::move(pair));
+      if (pair.instants.size() >= kMinShared) pairs.push_back(std::move(pair));
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const Start& x, const Start& y) { return x.instants.size() > y.instants.size(); });
-  if (pairs.size() > kMostPairs) pairs.resize(kMostPairs);
+  if (pairs.size() > kMaxPairs) pairs.resize(kMaxPairs);
   std::optional<Start> best;
   for (Start& pair : pairs) {
     if (relate_pair(pair) && (!best || pair.score > best->score)) best = std::move(pair);
@@ -95,14 +95,14 @@ bool Grower::relate_pair(Start& pair) {
   for (const std::size_t i : pair.instants) sights.push_back({at_.bearings(i, pair.a), at_.bearings(i, pair.b)});
   const auto views = relate(sights, {markers_, at_.wand().reversible(), at_.sigma(pair.a), at_.sigma(pair.b), seed_});
   const std::string &a = at_.camera(pair.a).name, &b = at_.camera(pair.b).name;
-  if (!views || views->share < 0.5) {
+  if (!views || views->fraction < 0.5) {
     blame(
         fmt::format("what cameras \"{}\" and \"{}\" see at the same time does not fit together{}: are their lenses right, and were "
                     "they started together?",
-                    a, b, views ? fmt::format(" (only {:.0f} % of {} views do)", 100 * views->share, sights.size()) : ""));
+                    a, b, views ? fmt::format(" (only {:.0f} % of {} views do)", 100 * views->fraction, sights.size()) : ""));
     return false;
   }
-  if (views->one_place || (!views->plane && views->parallax < kLeastParallax)) {
+  if (views->one_position || (!views->plane && views->parallax < kMinParallax)) {
     blame(
         fmt::format("cameras \"{}\" and \"{}\" stand in one place (or are the same recording): they see everything under the same "
                     "directions, and no depth follows; move them apart",
@@ -117,7 +117,7 @@ bool Grower::relate_pair(Start& pair) {
     return false;
   }
   pair.views = *views;
-  pair.score = views->share * static_cast<double>(pair.instants.size()) * std::min(1.0, views->parallax / kGoodParallax);
+  pair.score = views->fraction * static_cast<double>(pair.instants.size()) * std::min(1.0, views->parallax / kGoodParallax);
   return true;
 }
 
@@ -129,36 +129,36 @@ void Grower::begin() {
   at_.poses[start->b] = start->views.b_from_a;
   if (markers_ > 1) at_.poses[start->b]->translation *= metres_per_baseline(*start);
   for (std::size_t k = 0; k < start->instants.size(); ++k) {
-    if (start->views.inlier[k]) at_.place(start->instants[k]);
+    if (start->views.inlier[k]) at_.location(start->instants[k]);
   }
   bundle::Bundle bundle;
   adjust_all(bundle, 2);
 }
 
 double Grower::metres_per_baseline(const Start& start) {
-  std::vector<double> lengths, shares;
+  std::vector<double> lengths, fractions;
   for (std::size_t k = 0; k < start.instants.size(); ++k) {
     const std::size_t i = start.instants[k];
-    const auto places = start.views.inlier[k] ? at_.markers(i) : std::nullopt;
-    if (!places) continue;
-    lengths.push_back(((*places)[markers_ - 1] - (*places)[0]).norm());
-    if (markers_ == 3) shares.push_back(((*places)[1] - (*places)[0]).norm() / lengths.back());
+    const auto locations = start.views.inlier[k] ? at_.markers(i) : std::nullopt;
+    if (!locations) continue;
+    lengths.push_back(((*locations)[markers_ - 1] - (*locations)[0]).norm());
+    if (markers_ == 3) fractions.push_back(((*locations)[1] - (*locations)[0]).norm() / lengths.back());
   }
-  if (lengths.size() < kLeastShared / 2) {
+  if (lengths.size() < kMinShared / 2) {
     throw Error("{}", "too few views of the wand fit together: wave it longer, where the cameras see it");
   }
-  require_proportions(shares);
+  require_proportions(fractions);
   return at_.wand().length() / geometry::median(lengths);
 }
 
-void Grower::require_proportions(const std::vector<double>& shares) const {
-  if (shares.empty() || at_.wand().reversible()) return;
-  const double seen = geometry::median(std::vector(shares)), said = at_.wand().distances[1] / at_.wand().distances[2];
-  if (std::abs(seen - said) <= kProportionOff) return;
+void Grower::require_proportions(const std::vector<double>& fractions) const {
+  if (fractions.empty() || at_.wand().reversible()) return;
+  const double detected = geometry::median(std::vector(fractions)), stated = at_.wand().distances[1] / at_.wand().distances[2];
+  if (std::abs(detected - stated) <= kProportionOff) return;
   throw Error(
       "the wand's middle marker lies at {:.0f} % of its length by what the cameras see, and at {:.0f} % by --wand: give the "
       "markers' distances as they are on this wand",
-      100 * seen, 100 * said);
+      100 * detected, 100 * stated);
 }
 
 /// The camera not yet standing that sees most of what is placed, set by it.
@@ -167,13 +167,13 @@ void Grower::add_next() {
   for (std::size_t c = 0; c < at_.cameras(); ++c) {
     if (at_.poses[c]) continue;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < at_.instants(); ++i) count += at_.bodies[i] && at_.sees(i, c) ? 1 : 0;
+    for (std::size_t i = 0; i < at_.instants(); ++i) count += at_.bodies[i] && at_.observes(i, c) ? 1 : 0;
     candidates.emplace_back(count, c);
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   for (const auto& [count, c] : candidates) {
     if (!set_camera(c)) continue;
-    at_.place_all();
+    at_.position_all();
     bundle::Bundle bundle;
     adjust_all(bundle, 1);
     return;
@@ -182,23 +182,23 @@ void Grower::add_next() {
   throw Error(
       "camera \"{}\" cannot be set beside the others: {} of the wand's places that the others fix are seen by it{}; wave the "
       "wand where it and another camera both see it, and check its lens and that it was started with the others",
-      at_.camera(c).name, count, count < kLeastShared ? "" : ", and they do not fit together");
+      at_.camera(c).name, count, count < kMinShared ? "" : ", and they do not fit together");
 }
 
 bool Grower::set_camera(std::size_t c) {
-  std::vector<SeenWand> wands;
+  std::vector<WandObservation> wands;
   std::vector<std::size_t> instants;
   for (std::size_t i = 0; i < at_.instants(); ++i) {
-    if (!at_.bodies[i] || !at_.sees(i, c)) continue;
-    SeenWand wand{{}, at_.bearings(i, c)};
+    if (!at_.bodies[i] || !at_.observes(i, c)) continue;
+    WandObservation wand{{}, at_.bearings(i, c)};
     for (std::size_t m = 0; m < markers_; ++m) wand.world[m] = at_.marker_at(*at_.bodies[i], m);
     wands.push_back(wand);
     instants.push_back(i);
   }
   const auto found = resect(wands, {markers_, at_.wand().reversible(), at_.sigma(c), seed_});
-  if (!found || 2 * found->inliers < wands.size() || found->inliers < kLeastShared / 2) return false;
+  if (!found || 2 * found->inliers < wands.size() || found->inliers < kMinShared / 2) return false;
   at_.poses[c] = found->camera_from_world;
-  for (std::size_t k = 0; k < instants.size(); ++k) at_.turned[instants[k]][c] = found->turned[k];
+  for (std::size_t k = 0; k < instants.size(); ++k) at_.rotated[instants[k]][c] = found->rotated[k];
   return true;
 }
 
@@ -218,7 +218,7 @@ std::vector<int> Grower::fill(bundle::Bundle& bundle) const {
   for (std::size_t i = 0; i < at_.instants(); ++i) {
     bundle.bodies.push_back(at_.bodies[i].value_or(bundle::Body(Vector<3>(Vector<3>::Zero()))));
     for (std::size_t c = 0; at_.bodies[i] && c < at_.cameras(); ++c) {
-      for (std::size_t m = 0; at_.poses[c] && at_.sees(i, c) && m < markers_; ++m) {
+      for (std::size_t m = 0; at_.poses[c] && at_.observes(i, c) && m < markers_; ++m) {
         bundle.observations.push_back({place_in_bundle[c], static_cast<int>(i), static_cast<int>(m), at_.pixel(i, c, m)});
       }
     }
@@ -226,7 +226,7 @@ std::vector<int> Grower::fill(bundle::Bundle& bundle) const {
   return place_in_bundle;
 }
 
-/// Adjusts the cameras that stand and what is placed, and takes both over.
+/// Adjusts the static cameras and what is placed, and takes both over.
 bundle::BundleResult Grower::adjust_all(bundle::Bundle& bundle, int rounds) {
   const std::vector<int> place_in_bundle = fill(bundle);
   bundle::BundleOptions options;
@@ -265,7 +265,7 @@ std::vector<std::vector<int>> shared_views(const wand::WandTable& table, std::si
   return shared;
 }
 
-void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int least) {
+void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int minimum) {
   std::vector<char> reached(names.size(), 0);
   std::vector<std::size_t> open = {0};
   reached[0] = 1;
@@ -273,7 +273,7 @@ void require_connected(const std::vector<std::string>& names, const std::vector<
     const std::size_t a = open.back();
     open.pop_back();
     for (std::size_t b = 0; b < names.size(); ++b) {
-      if (reached[b] || shared[a][b] < least) continue;
+      if (reached[b] || shared[a][b] < minimum) continue;
       reached[b] = 1;
       open.push_back(b);
     }
@@ -282,9 +282,9 @@ void require_connected(const std::vector<std::string>& names, const std::vector<
   for (std::size_t c = 0; c < names.size(); ++c) (reached[c] ? here : there).push_back(names[c]);
   if (there.empty()) return;
   throw Error(
-      "cameras {} share no view with {} (fewer than {} moments at which both see the wand): wave it where cameras of both "
+      "cameras {} share no view with {} (fewer than {} instants at which both see the wand): wave it where cameras of both "
       "groups see it, or calibrate the groups apart",
-      fmt::join(here, ", "), fmt::join(there, ", "), least);
+      fmt::join(here, ", "), fmt::join(there, ", "), minimum);
 }
 
 }  // namespace marey::calibrate

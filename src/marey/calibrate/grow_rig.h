@@ -1,4 +1,4 @@
-// From views of a wand to cameras that stand roughly right.
+// From views of a wand to static cameras roughly right.
 //
 // Begins with the two cameras whose common views fix their relation best (many, and from different directions), and places what
 // they saw; then always the camera that sees most of what is placed is set by it, so that cameras without a common view are chained
@@ -30,6 +30,6 @@ Growth grow_rig(const std::vector<wand::WandCamera>& cameras, const wand::WandSh
 std::vector<std::vector<int>> shared_views(const wand::WandTable& table, std::size_t cameras);
 
 /// Refuses cameras that share too few instants, one way or another, to become one rig.
-void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int least);
+void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int minimum);
 
 }  // namespace marey::calibrate

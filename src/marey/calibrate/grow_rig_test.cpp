@@ -57,18 +57,18 @@ TEST(GrowRig, TheSameSeedGivesTheSameBits) {
     EXPECT_EQ(a.bundle.cameras[c].camera_from_world.translation, b.bundle.cameras[c].camera_from_world.translation);
 }
 
-TEST(GrowRig, WhatCannotBecomeARigIsRefusedWithItsCause) {
+TEST(GrowRig, RejectsImpossibleRigWithCause) {
   WandScene scene(6);
   const auto table = scene.table(80, 0);
   const std::string proportions = refusal_of(scene.cameras(), {{0, 0.2, 0.30}}, table);
   EXPECT_NE(proportions.find("the wand's middle marker lies at 40 % of its length"), std::string::npos) << proportions;
-  auto one_place = table;
+  auto one_position = table;
   auto cameras = scene.cameras();
-  for (auto& row : one_place) {
+  for (auto& row : one_position) {
     for (std::size_t c = 1; c < 4; ++c) row[c] = row[0];
   }
   for (auto& camera : cameras) camera.lens = cameras[0].lens;
-  EXPECT_NE(refusal_of(cameras, scene.wand, one_place), "");
+  EXPECT_NE(refusal_of(cameras, scene.wand, one_position), "");
   EXPECT_NE(refusal_of(scene.cameras(), scene.wand, scene.table(2, 0)), "");
 }
 

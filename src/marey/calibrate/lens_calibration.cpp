@@ -16,11 +16,11 @@
 namespace marey::calibrate {
 namespace {
 
-constexpr int kLeastViews = 3;
+constexpr int kMinViews = 3;
 constexpr int kRounds = 6;
-constexpr double kLeastSpread = 5 * std::numbers::pi / 180;  // between the directions that boards face
-constexpr double kWorseThanOthers = 4;                       // times the median error: then a view is put out whole
-constexpr double kAlwaysGood = 0.5;                          // px: but never one as good as this
+constexpr double kMinSpread = 5 * std::numbers::pi / 180;  // between the directions that boards face
+constexpr double kWorseThanOthers = 4;                     // times the median error: then a view is put out whole
+constexpr double kAlwaysGood = 0.5;                        // px: but never one as good as this
 
 bundle::LensFreedom freedom_of(const LensOptions& options, int step) {
   bundle::LensFreedom freedom;
@@ -36,7 +36,7 @@ bundle::LensFreedom freedom_of(const LensOptions& options, int step) {
   return freedom;
 }
 
-/// One camera that stands still, one board for each view.
+/// One static camera still, one board for each view.
 class Solver {
  public:
   Solver(const board::Board& board, std::span<const LensView> views, const LensOptions& options, const geometry::Lens& start)
@@ -71,7 +71,7 @@ class Solver {
       const double limit = std::max(kAlwaysGood, kWorseThanOthers * sorted[(sorted.size() - 1) / 2]);
       std::vector<bool> verdict;
       for (const double here : misfit) verdict.push_back(here <= limit);
-      if (verdict == used_ || std::ranges::count(verdict, true) < kLeastViews) return;
+      if (verdict == used_ || std::ranges::count(verdict, true) < kMinViews) return;
       for (std::size_t i = 0; i < verdict.size(); ++i) {
         if (verdict[i] && !used_[i]) bundle_.bodies[i] = *board::board_pose(board_, views_[i].board, bundle_.cameras[0].lens);
       }
@@ -86,7 +86,7 @@ class Solver {
   bundle::BundleResult finish() {
     bundle::BundleOptions how;
     how.noise_px = std::max(0.02, last_.noise_px);
-    how.least_outlier_px = 0.5;
+    how.min_outlier_px = 0.5;
     how.outlier_sigmas = 6;
     last_ = solve(2, how);
     return last_;
@@ -150,7 +150,7 @@ double spread_of(const Solver& solver) {
   return widest;
 }
 
-double covered_share(const std::vector<LensCalibration::View>& views, const cv::Size& size) {
+double covered_fraction(const std::vector<LensCalibration::View>& views, const cv::Size& size) {
   constexpr int columns = 10, rows = 8;
   std::set<std::pair<int, int>> fields;
   for (const LensCalibration::View& view : views) {
@@ -181,7 +181,7 @@ std::vector<LensCalibration::View> describe(const board::Board& board, std::span
     }
     if (!solver.used(i)) {
       view.refused =
-          rms ? fmt::format("its corners miss by {:.2f} px, far more than in the other pictures: blurred, or the board bent", *rms)
+          rms ? fmt::format("its corners miss by {:.2f} px, far more than in the other images: blurred, or the board bent", *rms)
               : "its corners give no pose of the board";
     }
     described.push_back(std::move(view));
@@ -190,10 +190,10 @@ std::vector<LensCalibration::View> describe(const board::Board& board, std::span
 }
 
 void warn(LensCalibration& result, double spread, int used) {
-  if (used < 8) result.warnings.push_back(fmt::format("only {} pictures were usable; take 15 or more", used));
+  if (used < 8) result.warnings.push_back(fmt::format("only {} images were usable; take 15 or more", used));
   if (result.covered < 0.5) {
     result.warnings.push_back(
-        fmt::format("corners cover {:.0f} % of the picture: towards its edges the distortion is a guess; bring the board there",
+        fmt::format("corners cover {:.0f} % of the image: towards its edges the distortion is a guess; bring the board there",
                     100 * result.covered));
   }
   if (spread < 0.35)
@@ -213,28 +213,28 @@ std::vector<std::string> lens_models() {
 
 LensCalibration calibrate_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,
                                const LensOptions& options) {
-  if (static_cast<int>(views.size()) < kLeastViews)
+  if (static_cast<int>(views.size()) < kMinViews)
     throw Error(
-        "the board was seen in {} pictures, and a lens needs {} at least; show it in 15 or more, near and far, tilted, and in "
-        "every corner of the picture",
-        views.size(), kLeastViews);
+        "the board was seen in {} images, and a lens needs {} at least; show it in 15 or more, near and far, tilted, and in "
+        "every corner of the image",
+        views.size(), kMinViews);
   const auto start = first_lens(board, size, views, options.model);
   if (!start)
-    throw Error("no focal length explains what was seen of the board; is {} the board in the pictures?", board::to_string(board));
+    throw Error("no focal length explains what was seen of the board; is {} the board in the images?", board::to_string(board));
   Solver solver(board, views, options, *start);
   solver.approach();
   solver.refuse_bad_views();
-  if (solver.used_views() < kLeastViews)
+  if (solver.used_views() < kMinViews)
     throw Error(
-        "only {} pictures of the board agree with each other, and a lens needs {} at least; is {} the board in the pictures, flat "
+        "only {} images of the board agree with each other, and a lens needs {} at least; is {} the board in the images, flat "
         "and still?",
-        solver.used_views(), kLeastViews, board::to_string(board));
+        solver.used_views(), kMinViews, board::to_string(board));
   const bundle::BundleResult found = solver.finish();
   const double spread = spread_of(solver);
-  if (spread < kLeastSpread)
+  if (spread < kMinSpread)
     throw Error(
-        "the board faces the camera at the same angle in all pictures (within {:.1f}°), so that its distance and the focal length "
-        "cannot be told apart; tilt it by 30° and more, "
+        "the board faces the camera at the same angle in all images (within {:.1f}°), so that its distance and the focal length "
+        "cannot be distinguished; tilt it by 30° and more, "
         "to both sides and up and down",
         spread * 180 / std::numbers::pi);
   LensCalibration result;
@@ -247,7 +247,7 @@ LensCalibration calibrate_lens(const board::Board& board, cv::Size size, std::sp
   result.inliers = found.inliers;
   for (const LensView& view : views) result.observations += static_cast<int>(view.board.corners.size());
   result.views = describe(board, views, solver);
-  result.covered = covered_share(result.views, size);
+  result.covered = covered_fraction(result.views, size);
   warn(result, spread, solver.used_views());
   return result;
 }

@@ -2,7 +2,7 @@
 //
 // The focal length is sought over a grid: for each candidate the board's pose in every view is found from its homography, and the
 // candidate that reprojects best is refined, first alone, then with the first coefficient, then with all that is free. No start is
-// needed, and the same way serves every lens model. A view that fits far worse than the others (a blurred picture, corners
+// needed, and likewise serves every lens model. A view that fits far worse than the others (a blurred image, corners
 // mistaken) is put out whole, with its reason; then single corners are.
 // Reference: Zhang, "A flexible new technique for camera calibration", PAMI 2000.
 #pragma once
@@ -21,9 +21,9 @@
 
 namespace marey::calibrate {
 
-/// A board seen in one picture of a lens.
+/// A board seen in one image of a lens.
 struct LensView {
-  std::string name;  ///< what messages call the picture
+  std::string name;  ///< what messages call the image
   board::BoardView board;
 };
 
@@ -45,16 +45,16 @@ struct LensCalibration {
     std::string name;
     std::optional<Rigid3> camera_from_board;
     double rms_px = 0;
-    std::string refused;            ///< why it is not used; empty where it is
+    std::string refused;            ///< why it is not used; empty if it is
     std::vector<Vector<2>> pixels;  ///< of the corners
-    std::vector<Vector<2>> errors;  ///< seen minus predicted, px, one for each of `pixels`; empty where there is no pose
+    std::vector<Vector<2>> errors;  ///< seen minus predicted, px, one for each of `pixels`; empty if there is no pose
   };
   std::vector<View> views;
-  double covered = 0;                 ///< share of the picture where corners were, 0 to 1, in 10 × 8 fields
+  double covered = 0;                 ///< share of the image where corners were, 0 to 1, in 10 × 8 fields
   std::vector<std::string> warnings;  ///< what is worth knowing before it is used, one sentence each
 };
 
-/// `views` of one board in pictures of `size` px. Throws Error, with cause and remedy, where they cannot tell the lens: fewer than
+/// `views` of one board in images of `size` px. Throws Error, with cause and remedy, where they cannot tell the lens: fewer than
 /// three usable views, or the board at one angle in all.
 LensCalibration calibrate_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,
                                const LensOptions& options = {});

@@ -22,10 +22,10 @@ std::vector<LensView> views_by(const geometry::Lens& lens, std::uint64_t seed, i
     const Vector<3> turn(noise.uniform(-most_tilt, most_tilt), noise.uniform(-most_tilt, most_tilt),
                          noise.uniform(-most_tilt, most_tilt));
     const double far = distance * noise.uniform(1, 2.5);
-    const Vector<3> place(noise.uniform(-0.5, 0.5) * far, noise.uniform(-0.4, 0.4) * far, far);
-    const Rigid3 pose{geometry::rotation_from(turn), place - geometry::rotation_from(turn) * Vector<3>(0.12, 0.075, 0)};
-    auto view = board::see_board(camera, kBoard, [&](double) { return pose; }, noise_px, noise);
-    if (view) views.push_back({"picture " + std::to_string(views.size()), std::move(*view)});
+    const Vector<3> location(noise.uniform(-0.5, 0.5) * far, noise.uniform(-0.4, 0.4) * far, far);
+    const Rigid3 pose{geometry::rotation_from(turn), location - geometry::rotation_from(turn) * Vector<3>(0.12, 0.075, 0)};
+    auto view = board::observe_board(camera, kBoard, [&](double) { return pose; }, noise_px, noise);
+    if (view) views.push_back({"image " + std::to_string(views.size()), std::move(*view)});
   }
   return views;
 }
@@ -82,9 +82,9 @@ TEST(CalibrateLens, SingleWrongCornersArePutOut) {
   EXPECT_EQ(found.inliers, found.observations - 2);
 }
 
-TEST(CalibrateLens, WhatCannotTellALensIsRefusedWithTheRemedy) {
+TEST(CalibrateLens, RejectsViewsThatDoNotDetermineLens) {
   const geometry::Lens lens = geometry::BrownLens{{1100, 1100}, {640, 480}, {}};
-  EXPECT_NE(refusal(views_by(lens, 1, 2, 0.1)).find("seen in 2 pictures, and a lens needs 3"), std::string::npos);
+  EXPECT_NE(refusal(views_by(lens, 1, 2, 0.1)).find("seen in 2 images, and a lens needs 3"), std::string::npos);
   const std::string parallel = refusal(views_by(lens, 1, 12, 0.1, 0.0));
   EXPECT_NE(parallel.find("tilt it by 30"), std::string::npos) << parallel;
 }

@@ -13,8 +13,8 @@
 namespace marey::calibrate {
 namespace {
 
-constexpr std::size_t kViewsTried = 12;                         // spread over all: a guess needs no more
-constexpr double kNarrowest = 20, kWidest = 0.2, kStep = 1.15;  // focal length in picture widths
+constexpr std::size_t kViewsTried = 12;                          // spread over all: a guess needs no more
+constexpr double kMinWidth = 20, kMaxWidth = 0.2, kStep = 1.15;  // focal length in image widths
 
 /// Median over the views of how far corners are from where this lens and the view's best pose would put them.
 std::optional<double> misfit(const board::Board& board, std::span<const LensView> views, const geometry::Lens& lens) {
@@ -47,11 +47,11 @@ std::optional<geometry::Lens> first_lens(const board::Board& board, cv::Size siz
                                          const std::string& model) {
   const Vector<2> middle((size.width - 1) / 2.0, (size.height - 1) / 2.0);
   std::optional<geometry::Lens> best;
-  double least = 0;
-  for (double widths = kWidest; widths < kNarrowest; widths *= kStep) {
+  double minimum = 0;
+  for (double widths = kMaxWidth; widths < kMinWidth; widths *= kStep) {
     const geometry::Lens lens = plain_lens(model, widths * std::max(size.width, size.height), middle);
     const auto off = misfit(board, views, lens);
-    if (off && (!best || *off < least)) best = lens, least = *off;
+    if (off && (!best || *off < minimum)) best = lens, minimum = *off;
   }
   return best;
 }

@@ -18,7 +18,8 @@ std::vector<LensView> views_of(const board::Board& board, const geometry::Lens& 
     const Vector<3> turn(noise.uniform(-0.6, 0.6), noise.uniform(-0.6, 0.6), noise.uniform(-0.6, 0.6));
     const Rigid3 pose{geometry::rotation_from(turn), {noise.uniform(-0.2, 0), noise.uniform(-0.2, 0), noise.uniform(0.5, 1)}};
     const Camera camera(lens, {}, kSize);
-    if (const auto view = board::see_board(camera, board, [&](double) { return pose; }, 0.2, noise)) views.push_back({"", *view});
+    if (const auto view = board::observe_board(camera, board, [&](double) { return pose; }, 0.2, noise))
+      views.push_back({"", *view});
   }
   return views;
 }

@@ -54,7 +54,7 @@ std::optional<Vector<3>> agreed_point(std::span<const SightLine> lines, double g
       if (near.size() > best.size()) best = std::move(near);
     }
   }
-  // Two rays of many that happen to meet are no agreement.
+  // Two rays of many that happen to meet are not agreement.
   if (best.size() < 2 || 2 * best.size() < lines.size()) return std::nullopt;
   return intersection_point(best);
 }

@@ -14,7 +14,7 @@ struct SightLine {
   double sigma = 1e-3;
 };
 
-/// The point nearest to all lines by the squares of their angles; nothing where fewer than two lines are given, they are parallel,
+/// The point nearest to all lines by the squares of their angles; nothing if fewer than two lines are given, they are parallel,
 /// or the point lies behind one of them.
 std::optional<Vector<3>> intersection_point(std::span<const SightLine> lines);
 

@@ -40,7 +40,7 @@ TEST(Rays, LinesThroughOnePointMeetThere) {
   }
 }
 
-/// The slow twin: the sum of squared angles itself, looked at on all sides of what was found.
+/// The slow twin: the sum of squared angles itself, inspected on all sides of what was found.
 TEST(Rays, NoPointNearbyIsNearerToAllLines) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -55,11 +55,11 @@ TEST(Rays, NoPointNearbyIsNearerToAllLines) {
 
 TEST(Rays, NothingWhereThereIsNoPoint) {
   const SightLine one{{{0, 0, 0}, {0, 0, 1}}, 1e-3};
-  const SightLine beside{{{1, 0, 0}, {0, 0, 1}}, 1e-3};
+  const SightLine next_to{{{1, 0, 0}, {0, 0, 1}}, 1e-3};
   const SightLine away{{{1, 0, 0}, Vector<3>(1, 0, -1).normalized()}, 1e-3};
   EXPECT_FALSE(intersection_point({})) << "no line";
   EXPECT_FALSE(intersection_point(std::vector{one})) << "one line";
-  EXPECT_FALSE(intersection_point(std::vector{one, beside})) << "parallel";
+  EXPECT_FALSE(intersection_point(std::vector{one, next_to})) << "parallel";
   EXPECT_FALSE(intersection_point(std::vector{one, away})) << "behind both";
 }
 

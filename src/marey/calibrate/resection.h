@@ -16,8 +16,8 @@
 namespace marey::calibrate {
 
 /// A wand whose markers' places are known, and the bearings at which the camera sees them.
-struct SeenWand {
-  std::array<Vector<3>, wand::WandShape::most> world, bearing;
+struct WandObservation {
+  std::array<Vector<3>, wand::WandShape::maximum> world, bearing;
 };
 
 struct ResectionOptions {
@@ -29,11 +29,11 @@ struct ResectionOptions {
 
 struct Resection {
   Rigid3 camera_from_world;
-  std::vector<char> inlier, turned;  ///< for each wand
+  std::vector<char> inlier, rotated;  ///< for each wand
   std::size_t inliers = 0;
 };
 
-/// Nothing where fewer than four wands or points are given, or no pose explains so many.
-std::optional<Resection> resect(std::span<const SeenWand> wands, const ResectionOptions& options);
+/// Nothing if fewer than four wands or points are given, or no pose explains this many.
+std::optional<Resection> resect(std::span<const WandObservation> wands, const ResectionOptions& options);
 
 }  // namespace marey::calibrate

@@ -10,18 +10,18 @@ namespace {
 using wand::WandScene;
 
 /// The wand as camera 0 of a scene sees it; every third view turned round where asked for.
-std::vector<SeenWand> wands_of(WandScene& scene, int count, double sigma_px, bool turned = false) {
-  std::vector<SeenWand> wands;
+std::vector<WandObservation> wands_of(WandScene& scene, int count, double sigma_px, bool rotated = false) {
+  std::vector<WandObservation> wands;
   const Camera lens(*scene.rig.cameras[0].lens, {}, *scene.rig.cameras[0].size);
   for (int i = 0; static_cast<int>(wands.size()) < count; ++i) {
-    const auto marks = scene.seen(0, 0.17 * i, sigma_px);
+    const auto marks = scene.detected(0, 0.17 * i, sigma_px);
     if (!marks) continue;
-    const auto places = scene.markers(0.17 * i);
-    SeenWand wand{};
-    for (std::size_t m = 0; m < places.size(); ++m) {
-      const bool turn = turned && wands.size() % 3 == 0;
-      wand.world[m] = places[m];
-      wand.bearing[turn ? places.size() - 1 - m : m] = *lens.bearing(*(*marks)[m]);
+    const auto locations = scene.markers(0.17 * i);
+    WandObservation wand{};
+    for (std::size_t m = 0; m < locations.size(); ++m) {
+      const bool turn = rotated && wands.size() % 3 == 0;
+      wand.world[m] = locations[m];
+      wand.bearing[turn ? locations.size() - 1 - m : m] = *lens.bearing(*(*marks)[m]);
     }
     wands.push_back(wand);
   }
@@ -64,7 +64,7 @@ TEST(Resection, AReversibleWandsViewsAreTurned) {
   const auto found = resect(wands, {.markers = 3, .reversible = true, .seed = 2});
   ASSERT_TRUE(found);
   expect_pose(found->camera_from_world, *scene.rig.cameras[0].camera_from_world, 1e-3, 1e-2);
-  for (std::size_t i = 0; i < wands.size(); ++i) EXPECT_EQ(found->turned[i] != 0, i % 3 == 0) << i;
+  for (std::size_t i = 0; i < wands.size(); ++i) EXPECT_EQ(found->rotated[i] != 0, i % 3 == 0) << i;
 }
 
 TEST(Resection, TheSameSeedGivesTheSameBits) {
@@ -81,7 +81,7 @@ TEST(Resection, TooFewWandsOrNoneThatFitGiveNothing) {
   auto wands = wands_of(scene, 12, 0);
   EXPECT_FALSE(resect(std::span(wands).first(3), {.markers = 3}));
   board::Noise noise(8);
-  for (SeenWand& wand : wands) {
+  for (WandObservation& wand : wands) {
     for (auto& bearing : wand.bearing) bearing = Vector<3>(noise.uniform(-1, 1), noise.uniform(-1, 1), 1).normalized();
   }
   EXPECT_FALSE(resect(wands, {.markers = 3}));

@@ -10,7 +10,7 @@ namespace {
 
 struct Grade {
   const char* word;
-  double noise_px;  // up to, for a picture of 1280 columns
+  double noise_px;  // up to, for an image of 1280 columns
   double length;    // up to, relative error of the wand
   double coverage;  // from
   double outliers;  // up to, share
@@ -33,26 +33,27 @@ std::size_t best(Passes passes) {
 void grade(RigReport& report, int columns, double wand_m) {
   std::size_t worst = 0;
   std::string limit;
-  const auto judge = [&](std::size_t level, std::string what) {
+  const auto assess = [&](std::size_t level, std::string what) {
     if (level <= worst) return;
     worst = level;
     limit = std::move(what);
   };
   const double noise = report.noise_px * 1280 / std::max(1, columns);
-  judge(best([&](const Grade& g) { return noise <= g.noise_px; }), fmt::format("the markers' noise of {:.2f} px", report.noise_px));
+  assess(best([&](const Grade& g) { return noise <= g.noise_px; }),
+         fmt::format("the markers' noise of {:.2f} px", report.noise_px));
   if (report.held_out && wand_m > 0) {
     const double off = report.held_out->length_rms_mm / (1000 * wand_m);
-    judge(best([&](const Grade& g) { return off <= g.length; }),
-          fmt::format("the wand's length, off by {:.1f} mm", report.held_out->length_rms_mm));
+    assess(best([&](const Grade& g) { return off <= g.length; }),
+           fmt::format("the wand's length, off by {:.1f} mm", report.held_out->length_rms_mm));
   }
-  const auto least = std::min_element(report.cameras.begin(), report.cameras.end(),
-                                      [](const CameraReport& a, const CameraReport& b) { return a.coverage < b.coverage; });
-  if (least != report.cameras.end()) {
-    judge(best([&](const Grade& g) { return least->coverage >= g.coverage; }),
-          fmt::format("{}, in which only {:.0f} % of the picture was covered", least->name, 100 * least->coverage));
+  const auto minimum = std::min_element(report.cameras.begin(), report.cameras.end(),
+                                        [](const CameraReport& a, const CameraReport& b) { return a.coverage < b.coverage; });
+  if (minimum != report.cameras.end()) {
+    assess(best([&](const Grade& g) { return minimum->coverage >= g.coverage; }),
+           fmt::format("{}, in which only {:.0f} % of the image was covered", minimum->name, 100 * minimum->coverage));
   }
   const double outliers = 1 - static_cast<double>(report.all.inliers) / std::max(1, report.all.observations);
-  judge(best([&](const Grade& g) { return outliers <= g.outliers; }), fmt::format("{:.0f} % of outliers", 100 * outliers));
+  assess(best([&](const Grade& g) { return outliers <= g.outliers; }), fmt::format("{:.0f} % of outliers", 100 * outliers));
   report.grade = kGrades[worst].word;
   report.meaning = fmt::format("{}{}{}", kGrades[worst].use, limit.empty() ? "" : "; limited by ", limit);
 }

@@ -6,7 +6,7 @@
 namespace marey::calibrate {
 namespace {
 
-/// A rig without fault: 0.1 px, half of each picture covered, no outlier, the wand's length right to 0.1 mm.
+/// A rig without fault: 0.1 px, half of each image covered, no outlier, the wand's length right to 0.1 mm.
 RigReport faultless() {
   RigReport report;
   report.noise_px = 0.1;

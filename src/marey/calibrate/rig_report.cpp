@@ -15,7 +15,7 @@
 namespace marey::calibrate {
 namespace {
 
-constexpr int kColumns = 10, kRows = 8;  // parts of a picture whose coverage is counted
+constexpr int kColumns = 10, kRows = 8;  // parts of an image whose coverage is counted
 constexpr double kMm = 1000;
 
 std::vector<Camera> cameras_of(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes) {
@@ -45,17 +45,17 @@ struct Sum {
   }
 };
 
-/// Standard deviation of a point's place over all axes, m; nothing where fewer than two cameras see it.
-std::optional<double> point_deviation(const std::vector<Camera>& cameras, const Vector<3>& point, double noise_px, int& seeing) {
+/// Standard deviation of a point's place over all axes, m; nothing if fewer than two cameras see it.
+std::optional<double> point_deviation(const std::vector<Camera>& cameras, const Vector<3>& point, double noise_px, int& observing) {
   Matrix<3> information = Matrix<3>::Zero();
-  seeing = 0;
+  observing = 0;
   for (const Camera& camera : cameras) {
-    const auto seen = camera.project_with_jacobian(point);
-    if (!seen || !camera.in_picture(seen->pixel)) continue;
-    ++seeing;
-    information += seen->by_world.transpose() * seen->by_world;
+    const auto detected = camera.project_with_jacobian(point);
+    if (!detected || !camera.in_image(detected->pixel)) continue;
+    ++observing;
+    information += detected->by_world.transpose() * detected->by_world;
   }
-  if (seeing < 2) return std::nullopt;
+  if (observing < 2) return std::nullopt;
   return noise_px * std::sqrt(information.inverse().trace());
 }
 
@@ -75,19 +75,20 @@ VolumeReport volume_of(const std::vector<Camera>& cameras, const std::vector<Vec
     for (int y = 0; y < steps; ++y) {
       for (int z = 0; z < steps; ++z) {
         const Vector<3> at = (Vector<3>(x, y, z) + Vector<3>::Constant(0.5)) / steps;
-        int seeing = 0;
-        const auto deviation = point_deviation(cameras, volume.low + at.cwiseProduct(volume.high - volume.low), noise_px, seeing);
+        int observing = 0;
+        const auto deviation =
+            point_deviation(cameras, volume.low + at.cwiseProduct(volume.high - volume.low), noise_px, observing);
         if (deviation) deviations.push_back(*deviation * kMm);
-        two += seeing >= 2 ? 1 : 0;
-        three += seeing >= 3 ? 1 : 0;
+        two += observing >= 2 ? 1 : 0;
+        three += observing >= 3 ? 1 : 0;
       }
     }
   }
   constexpr double all = steps * steps * steps;
   volume.median_mm = geometry::quantile(deviations, 0.5);
   volume.worst_tenth_mm = geometry::quantile(deviations, 0.9);
-  volume.seen_by_two = two / all;
-  volume.seen_by_three = three / all;
+  volume.observed_by_two = two / all;
+  volume.observed_by_three = three / all;
   return volume;
 }
 
@@ -104,10 +105,10 @@ std::optional<Vector<3>> refined_point(const std::vector<const Camera*>& cameras
     Matrix<3> normal = Matrix<3>::Zero();
     Vector<3> right = Vector<3>::Zero();
     for (std::size_t k = 0; k < cameras.size(); ++k) {
-      const auto seen = cameras[k]->project_with_jacobian(point);
-      if (!seen) return std::nullopt;
-      normal += seen->by_world.transpose() * seen->by_world;
-      right += seen->by_world.transpose() * (pixels[k] - seen->pixel);
+      const auto detected = cameras[k]->project_with_jacobian(point);
+      if (!detected) return std::nullopt;
+      normal += detected->by_world.transpose() * detected->by_world;
+      right += detected->by_world.transpose() * (pixels[k] - detected->pixel);
     }
     point += normal.ldlt().solve(right);
   }
@@ -116,46 +117,46 @@ std::optional<Vector<3>> refined_point(const std::vector<const Camera*>& cameras
 
 /// A marker that was not adjusted, by the cameras that agree on it.
 struct HeldOutPoint {
-  Vector<3> place = Vector<3>::Zero();
-  std::vector<const Camera*> seeing;
+  Vector<3> location = Vector<3>::Zero();
+  std::vector<const Camera*> observing;
   std::vector<Vector<2>> pixels;
 };
 
 std::optional<HeldOutPoint> held_out_point(const bundle::Bundle& bundle, const std::vector<Camera>& cameras,
-                                           std::span<const bundle::BundleObservation* const> seen) {
+                                           std::span<const bundle::BundleObservation* const> detected) {
   constexpr double kAgreed = 5;  // px
   HeldOutPoint found;
   std::vector<SightLine> lines;
-  for (const bundle::BundleObservation* one : seen) {
+  for (const bundle::BundleObservation* one : detected) {
     const Camera& camera = cameras[static_cast<std::size_t>(one->camera)];
     const Vector<2> pixel = one->pixel - one->velocity * bundle.cameras[static_cast<std::size_t>(one->camera)].offset_s;
     const auto ray = camera.ray(pixel);
     if (!ray) continue;
     lines.push_back({*ray, 1 / geometry::focal_of(camera.lens()).x()});
-    found.seeing.push_back(&camera);
+    found.observing.push_back(&camera);
     found.pixels.push_back(pixel);
   }
   const auto start = agreed_point(lines, kAgreed);
   if (!start) return std::nullopt;
   for (std::size_t k = lines.size(); k-- > 0;) {
     if (angle_off(lines[k], *start) <= kAgreed) continue;
-    found.seeing.erase(found.seeing.begin() + static_cast<std::ptrdiff_t>(k));
+    found.observing.erase(found.observing.begin() + static_cast<std::ptrdiff_t>(k));
     found.pixels.erase(found.pixels.begin() + static_cast<std::ptrdiff_t>(k));
   }
-  const auto point = refined_point(found.seeing, found.pixels, *start);
+  const auto point = refined_point(found.observing, found.pixels, *start);
   if (!point) return std::nullopt;
-  found.place = *point;
+  found.location = *point;
   return found;
 }
 
-using HeldOutPlaces = std::map<int, std::map<int, Vector<3>>>;  // by body, marker
+using HeldOutPositions = std::map<int, std::map<int, Vector<3>>>;  // by body, marker
 
 /// By how much the wand's length is off where both of its ends were placed.
-void judge_lengths(const HeldOutPlaces& places, const std::vector<double>& wand, HeldOutReport& report) {
+void evaluate_lengths(const HeldOutPositions& locations, const std::vector<double>& wand, HeldOutReport& report) {
   double mean = 0, square = 0;
   int lengths = 0;
   const int last = static_cast<int>(wand.size()) - 1;
-  for (const auto& [body, at] : places) {
+  for (const auto& [body, at] : locations) {
     if (last < 1 || !at.contains(0) || !at.contains(last)) continue;
     const double off = kMm * ((at.at(last) - at.at(0)).norm() - wand.back());
     mean += off;
@@ -177,15 +178,15 @@ RigReport report_on(const bundle::Bundle& bundle, const bundle::BundleResult& fi
   std::vector<Vector<3>> points;
   Sum all;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const bundle::BundleObservation& seen = bundle.observations[i];
-    const auto c = static_cast<std::size_t>(seen.camera);
+    const bundle::BundleObservation& detected = bundle.observations[i];
+    const auto c = static_cast<std::size_t>(detected.camera);
     const double error = errors[i] ? errors[i]->norm() : 0;
     sums[c].add(error, fit.inlier[i]);
     all.add(error, fit.inlier[i]);
     if (!fit.inlier[i]) continue;
-    const Vector<3> point = bundle::marker_position(bundle, seen);
+    const Vector<3> point = bundle::marker_position(bundle, detected);
     points.push_back(point);
-    parts[c].insert(part_of(seen.pixel, sizes[c]));
+    parts[c].insert(part_of(detected.pixel, sizes[c]));
     world[c] += error * (bundle.cameras[c].camera_from_world * point).norm() / geometry::focal_of(bundle.cameras[c].lens).x();
   }
   RigReport report;
@@ -202,28 +203,29 @@ RigReport report_on(const bundle::Bundle& bundle, const bundle::BundleResult& fi
   return report;
 }
 
-HeldOutReport judge_held_out(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes) {
+HeldOutReport evaluate_held_out(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes) {
   const auto cameras = cameras_of(bundle, sizes);
   std::map<std::pair<int, int>, std::vector<const bundle::BundleObservation*>> markers;  // by body and marker
-  for (const bundle::BundleObservation& seen : bundle.observations) markers[{seen.body, seen.marker}].push_back(&seen);
-  HeldOutPlaces places;
+  for (const bundle::BundleObservation& detected : bundle.observations)
+    markers[{detected.body, detected.marker}].push_back(&detected);
+  HeldOutPositions locations;
   HeldOutReport report;
   Sum sum;
   int unknowns = 0;
-  for (const auto& [key, seen] : markers) {
-    const auto point = held_out_point(bundle, cameras, seen);
+  for (const auto& [key, detected] : markers) {
+    const auto point = held_out_point(bundle, cameras, detected);
     if (!point) continue;
     unknowns += 3;
-    places[key.first][key.second] = point->place;
-    for (std::size_t k = 0; k < point->seeing.size(); ++k) {
-      const auto again = point->seeing[k]->project(point->place);
+    locations[key.first][key.second] = point->location;
+    for (std::size_t k = 0; k < point->observing.size(); ++k) {
+      const auto again = point->observing[k]->project(point->location);
       if (again) sum.add((*again - point->pixels[k]).norm(), true);
     }
   }
-  report.frames = static_cast<int>(places.size());
+  report.frames = static_cast<int>(locations.size());
   report.fit = sum.quality();
   report.noise_px = std::sqrt(sum.square / std::max(1, 2 * sum.inliers - unknowns));
-  judge_lengths(places, bundle.wand, report);
+  evaluate_lengths(locations, bundle.wand, report);
   return report;
 }
 

@@ -19,7 +19,7 @@ struct FitQuality {
 struct CameraReport {
   std::string name;
   FitQuality fit;
-  double coverage = 0;        ///< share of the picture, in 10 × 8 parts, in which something was seen
+  double coverage = 0;        ///< share of the image, in 10 × 8 parts, in which something was seen
   double world_error_mm = 0;  ///< mean distance of its rays from what they saw; in thousandths of the unit without a scale
   bundle::CameraDeviation deviation = {};
 };
@@ -28,13 +28,13 @@ struct CameraReport {
 struct VolumeReport {
   Vector<3> low = Vector<3>::Zero(), high = Vector<3>::Zero();  ///< m: the box, nine tenths of what the wand covered on each axis
   double median_mm = 0, worst_tenth_mm = 0;                     ///< standard deviation of the place, all axes together
-  double seen_by_two = 0, seen_by_three = 0;                    ///< share of the box
+  double observed_by_two = 0, observed_by_three = 0;            ///< share of the box
 };
 
 /// On frames that took no part in the fit.
 struct HeldOutReport {
   int frames = 0;
-  FitQuality fit;             ///< markers placed anew by all who see them
+  FitQuality fit;             ///< markers placed again by all who see them
   double noise_px = 0;        ///< each axis, by those errors, degrees of freedom taken off
   double length_mean_mm = 0;  ///< measured minus true
   double length_rms_mm = 0;
@@ -54,10 +54,10 @@ struct RigReport {
 RigReport report_on(const bundle::Bundle& bundle, const bundle::BundleResult& fit, const std::vector<std::string>& names,
                     const std::vector<cv::Size>& sizes);
 
-/// Places every marker of `bundle`'s observations anew, as a free point, by the bundle's cameras, and compares.
-HeldOutReport judge_held_out(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes);
+/// Places every marker of `bundle`'s observations again, as a free point, by the bundle's cameras, and compares.
+HeldOutReport evaluate_held_out(const bundle::Bundle& bundle, const std::vector<cv::Size>& sizes);
 
-/// Sets grade and meaning: the worst of the noise (for a picture of 1280 columns; `columns` of the widest one), the wand's length
+/// Sets grade and meaning: the worst of the noise (for an image of 1280 columns; `columns` of the widest one), the wand's length
 /// on held-out frames (relative to `wand_m`, where there is one), the least covered camera and the share of outliers decides.
 void grade(RigReport& report, int columns, double wand_m);
 

@@ -15,10 +15,10 @@ bundle::Bundle bundle_of(WandScene& scene, int instants, double sigma) {
   bundle.wand = scene.wand.distances;
   for (const RigCamera& camera : scene.rig.cameras) bundle.cameras.push_back({*camera.lens, *camera.camera_from_world});
   for (int i = 0; i < instants; ++i) {
-    const auto places = scene.markers(0.1 * i);
-    bundle.bodies.emplace_back(bundle::WandPose{places[0], (places[2] - places[0]).normalized()});
+    const auto locations = scene.markers(0.1 * i);
+    bundle.bodies.emplace_back(bundle::WandPose{locations[0], (locations[2] - locations[0]).normalized()});
     for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
-      const auto marks = scene.seen(c, 0.1 * i, sigma);
+      const auto marks = scene.detected(c, 0.1 * i, sigma);
       for (int m = 0; marks && m < 3; ++m)
         bundle.observations.push_back({static_cast<int>(c), i, m, *(*marks)[static_cast<std::size_t>(m)]});
     }
@@ -39,7 +39,8 @@ const std::vector<cv::Size> kSizes(4, cv::Size(1280, 1024));
 TEST(RigReport, CountsAndErrorsAreThoseOfTheObservations) {
   WandScene scene(1);
   bundle::Bundle bundle = bundle_of(scene, 60, 0);
-  for (auto& seen : bundle.observations) seen.pixel.x() += seen.camera == 1 ? 3 : 0;  // one camera is 3 px off throughout
+  for (auto& detected : bundle.observations)
+    detected.pixel.x() += detected.camera == 1 ? 3 : 0;  // one camera is 3 px off throughout
   auto fit = fit_of(bundle, 1);
   int of_second = 0, out = 0;
   for (std::size_t i = 0; i < fit.inlier.size(); ++i) {
@@ -67,8 +68,8 @@ TEST(RigReport, TheVolumeIsWhereTheWandWasAndDeviationsGrowWithNoise) {
   const RigReport report = report_on(bundle, fit_of(bundle, 0.5), kNames, kSizes);
   EXPECT_GT(report.volume.high.x() - report.volume.low.x(), 1.4);
   EXPECT_LT(report.volume.high.x() - report.volume.low.x(), 2.5);
-  EXPECT_GT(report.volume.seen_by_three, 0.8);
-  EXPECT_GE(report.volume.seen_by_two, report.volume.seen_by_three);
+  EXPECT_GT(report.volume.observed_by_three, 0.8);
+  EXPECT_GE(report.volume.observed_by_two, report.volume.observed_by_three);
   EXPECT_GT(report.volume.median_mm, 0.5);
   EXPECT_LT(report.volume.median_mm, 5);
   const RigReport noisier = report_on(bundle, fit_of(bundle, 1), kNames, kSizes);
@@ -80,13 +81,13 @@ TEST(RigReport, HeldOutFramesShowNoiseAndLength) {
     SCOPED_TRACE(seed);
     WandScene scene(seed);
     bundle::Bundle bundle = bundle_of(scene, 150, 0.4);
-    const HeldOutReport truth = judge_held_out(bundle, kSizes);
+    const HeldOutReport truth = evaluate_held_out(bundle, kSizes);
     EXPECT_EQ(truth.frames, 150);
     EXPECT_NEAR(truth.noise_px, 0.4, 0.03);
     EXPECT_NEAR(truth.length_mean_mm, 0, 0.3);
     EXPECT_LT(truth.length_rms_mm, 3);
     bundle.wand.back() += 0.01;  // said to be 1 cm longer than it is
-    EXPECT_NEAR(judge_held_out(bundle, kSizes).length_mean_mm, truth.length_mean_mm - 10, 1e-6);
+    EXPECT_NEAR(evaluate_held_out(bundle, kSizes).length_mean_mm, truth.length_mean_mm - 10, 1e-6);
   }
 }
 
@@ -96,7 +97,7 @@ TEST(RigReport, NothingSeenIsAReportOfNothing) {
   const RigReport report = report_on(bundle, fit_of(bundle, 0), kNames, kSizes);
   EXPECT_EQ(report.all.observations, 0);
   EXPECT_EQ(report.volume.median_mm, 0);
-  EXPECT_EQ(judge_held_out(bundle, kSizes).frames, 0);
+  EXPECT_EQ(evaluate_held_out(bundle, kSizes).frames, 0);
 }
 
 }  // namespace

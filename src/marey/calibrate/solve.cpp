@@ -5,7 +5,7 @@
 namespace marey::calibrate {
 namespace {
 
-class EndWhenAsked final : public ceres::IterationCallback {
+class EndWhenRequested final : public ceres::IterationCallback {
  public:
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*step*/) override {
     return StopScope::current().stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
@@ -15,7 +15,7 @@ class EndWhenAsked final : public ceres::IterationCallback {
 }  // namespace
 
 ceres::Solver::Summary solve(ceres::Solver::Options how, ceres::Problem& problem) {
-  EndWhenAsked callback;
+  EndWhenRequested callback;
   how.callbacks.push_back(&callback);
   how.num_threads = 1;
   how.logging_type = ceres::SILENT;

@@ -23,9 +23,9 @@ struct Match {
 
 /// A linear map that makes the bearings' second moments equal in all directions.
 Matrix<3> whitening(std::span<const Match> matches, Ray Match::* side) {
-  Matrix<3> moments = Matrix<3>::Zero();
-  for (const Match& match : matches) moments += (match.*side) * (match.*side).transpose();
-  const geometry::Eigenpairs<3> eigen = geometry::eigenpairs<3>(moments / static_cast<double>(matches.size()));
+  Matrix<3> time_steps = Matrix<3>::Zero();
+  for (const Match& match : matches) time_steps += (match.*side) * (match.*side).transpose();
+  const geometry::Eigenpairs<3> eigen = geometry::eigenpairs<3>(time_steps / static_cast<double>(matches.size()));
   const Vector<3> scale = eigen.values.cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
   return eigen.vectors * scale.asDiagonal() * eigen.vectors.transpose();
 }
@@ -68,9 +68,9 @@ Matrix<3> homography_of(std::span<const Match> matches) {
 }
 
 Matrix<3> rotation_of(std::span<const Match> matches) {
-  Matrix<3> moments = Matrix<3>::Zero();
-  for (const Match& match : matches) moments += match.b * match.a.transpose();
-  const geometry::SingularValues3 svd = geometry::singular_values(moments);
+  Matrix<3> time_steps = Matrix<3>::Zero();
+  for (const Match& match : matches) time_steps += match.b * match.a.transpose();
+  const geometry::SingularValues3 svd = geometry::singular_values(time_steps);
   const double sign = (svd.U * svd.V.transpose()).determinant();
   return svd.U * Vector<3>(1, 1, sign).asDiagonal() * svd.V.transpose();
 }
@@ -95,8 +95,8 @@ class Relation {
  public:
   Relation(std::span<const WandPair> pairs, const TwoViewOptions& options) : pairs_(pairs), options_(options) {}
 
-  Match match(std::size_t pair, std::size_t marker, bool turned) const {
-    return {pairs_[pair].a[marker], pairs_[pair].b[turned ? options_.markers - 1 - marker : marker]};
+  Match match(std::size_t pair, std::size_t marker, bool rotated) const {
+    return {pairs_[pair].a[marker], pairs_[pair].b[rotated ? options_.markers - 1 - marker : marker]};
   }
 
   /// Squared Sampson error of one match in units of the noise.
@@ -109,38 +109,38 @@ class Relation {
   }
 
   /// Mean squared error of a wand, the better way round.
-  double error(const Matrix<3>& E, std::size_t pair, bool& turned) const {
+  double error(const Matrix<3>& E, std::size_t pair, bool& rotated) const {
     double best = 0;
-    turned = false;
+    rotated = false;
     for (const bool turn : {false, true}) {
       if (turn && !options_.reversible) break;
       double sum = 0;
       for (std::size_t m = 0; m < options_.markers; ++m) sum += error(E, match(pair, m, turn));
-      if (!turn || sum < best) best = sum, turned = turn;
+      if (!turn || sum < best) best = sum, rotated = turn;
     }
     return best / static_cast<double>(options_.markers);
   }
 
   double cost(const Matrix<3>& E, std::span<const std::size_t> sample) const {
     double sum = 0;
-    bool turned = false;
-    for (const std::size_t pair : sample) sum += std::min(error(E, pair, turned), kMatchGate * kMatchGate);
+    bool rotated = false;
+    for (const std::size_t pair : sample) sum += std::min(error(E, pair, rotated), kMatchGate * kMatchGate);
     return sum;
   }
 
   std::vector<Match> inliers(const Matrix<3>& E, std::span<const std::size_t> among, double gate) const {
     std::vector<Match> matches;
     for (const std::size_t pair : among) {
-      bool turned = false;
-      if (error(E, pair, turned) > gate * gate) continue;
-      for (std::size_t m = 0; m < options_.markers; ++m) matches.push_back(match(pair, m, turned));
+      bool rotated = false;
+      if (error(E, pair, rotated) > gate * gate) continue;
+      for (std::size_t m = 0; m < options_.markers; ++m) matches.push_back(match(pair, m, rotated));
     }
     return matches;
   }
 
   std::optional<Matrix<3>> search() const;
   TwoViews describe(const Matrix<3>& E) const;
-  double share_of_a_plane() const;
+  double fraction_of_a_plane() const;
 
  private:
   std::span<const WandPair> pairs_;
@@ -150,7 +150,7 @@ class Relation {
 /// RANSAC over whole wands, each best model refitted to its inliers.
 std::optional<Matrix<3>> Relation::search() const {
   constexpr std::size_t judges = 300;
-  const int most_draws = options_.most_draws;
+  const int max_draws = options_.max_draws;
   std::vector<std::size_t> sample;
   const std::size_t step = std::max<std::size_t>(1, pairs_.size() / judges);
   for (std::size_t i = 0; i < pairs_.size(); i += step) sample.push_back(i);
@@ -160,13 +160,13 @@ std::optional<Matrix<3>> Relation::search() const {
   std::mt19937_64 engine(options_.seed);
   std::optional<Matrix<3>> best;
   double best_cost = std::numeric_limits<double>::infinity();
-  int needed = most_draws;
-  for (int i = 0; i < std::min(needed, most_draws); ++i) {
+  int needed = max_draws;
+  for (int i = 0; i < std::min(needed, max_draws); ++i) {
     std::vector<Match> drawn;
     for (std::size_t w = 0; w < wands; ++w) {
       const std::size_t pair = draw_below(engine, pairs_.size());
-      const bool turned = options_.reversible && draw_below(engine, 2) == 1;
-      for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, turned));
+      const bool rotated = options_.reversible && draw_below(engine, 2) == 1;
+      for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, rotated));
     }
     Matrix<3> E = essential_of(drawn);
     double cost_here = cost(E, sample);
@@ -189,38 +189,38 @@ std::optional<Matrix<3>> Relation::search() const {
 }
 
 /// The largest share of wands that one homography explains.
-double Relation::share_of_a_plane() const {
+double Relation::fraction_of_a_plane() const {
   constexpr int draws = 200;
   const std::size_t wands = std::max<std::size_t>(2, (4 + options_.markers - 1) / options_.markers);
   const double sigma = std::hypot(options_.sigma_a, options_.sigma_b);
   std::mt19937_64 engine(options_.seed);
-  std::size_t most = 0;
+  std::size_t maximum = 0;
   for (int i = 0; i < draws; ++i) {
     std::vector<Match> drawn;
     for (std::size_t w = 0; w < wands; ++w) {
       const std::size_t pair = draw_below(engine, pairs_.size());
-      const bool turned = options_.reversible && draw_below(engine, 2) == 1;
-      for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, turned));
+      const bool rotated = options_.reversible && draw_below(engine, 2) == 1;
+      for (std::size_t m = 0; m < options_.markers; ++m) drawn.push_back(match(pair, m, rotated));
     }
     Matrix<3> H = homography_of(drawn);
     for (int refit = 0; refit < 2; ++refit) {
       std::vector<Match> near;
       for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
-        for (const bool turned : {false, true}) {
+        for (const bool rotated : {false, true}) {
           std::vector<Match> wand;
-          for (std::size_t m = 0; m < options_.markers; ++m) wand.push_back(match(pair, m, turned));
-          if ((turned && !options_.reversible) || explained(wand, H, sigma) < 1) continue;
+          for (std::size_t m = 0; m < options_.markers; ++m) wand.push_back(match(pair, m, rotated));
+          if ((rotated && !options_.reversible) || explained(wand, H, sigma) < 1) continue;
           near.insert(near.end(), wand.begin(), wand.end());
           break;
         }
       }
-      most = std::max(most, near.size() / options_.markers);
+      maximum = std::max(maximum, near.size() / options_.markers);
       if (near.size() < 2 * drawn.size()) break;
       H = homography_of(near);
     }
-    if (most > 0.95 * static_cast<double>(pairs_.size())) break;
+    if (maximum > 0.95 * static_cast<double>(pairs_.size())) break;
   }
-  return static_cast<double>(most) / static_cast<double>(pairs_.size());
+  return static_cast<double>(maximum) / static_cast<double>(pairs_.size());
 }
 
 /// Depths along both rays where they are nearest, baseline `t` from a's frame turned into b's.
@@ -236,14 +236,14 @@ Rigid3 pose_of(const Matrix<3>& E, std::span<const Match> matches) {
   Matrix<3> W;
   W << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   Rigid3 best;
-  int most = -1;
+  int maximum = -1;
   for (const Matrix<3>& turn : {W, Matrix<3>(W.transpose())}) {
     for (const double sign : {1.0, -1.0}) {
       Rigid3 pose{svd.U * turn * svd.V.transpose(), sign * svd.U.col(2)};
       if (pose.rotation.determinant() < 0) pose.rotation = -pose.rotation;
       int ahead = 0;
       for (const Match& match : matches) ahead += (depths(pose, match).array() > 0).all() ? 1 : 0;
-      if (ahead > most) most = ahead, best = pose;
+      if (ahead > maximum) maximum = ahead, best = pose;
     }
   }
   return best;
@@ -255,12 +255,12 @@ TwoViews Relation::describe(const Matrix<3>& E) const {
   std::iota(all.begin(), all.end(), std::size_t{0});
   std::size_t count = 0;
   for (const std::size_t pair : all) {
-    bool turned = false;
-    views.inlier.push_back(error(E, pair, turned) <= kMatchGate * kMatchGate);
-    views.turned.push_back(turned);
+    bool rotated = false;
+    views.inlier.push_back(error(E, pair, rotated) <= kMatchGate * kMatchGate);
+    views.rotated.push_back(rotated);
     count += static_cast<std::size_t>(views.inlier.back());
   }
-  views.share = static_cast<double>(count) / static_cast<double>(pairs_.size());
+  views.fraction = static_cast<double>(count) / static_cast<double>(pairs_.size());
   const auto matches = inliers(E, all, kMatchGate);
   views.b_from_a = pose_of(E, matches);
   std::vector<double> angles;
@@ -271,7 +271,7 @@ TwoViews Relation::describe(const Matrix<3>& E) const {
   if (matches.empty()) return views;
   const double sigma = std::hypot(options_.sigma_a, options_.sigma_b);
   views.plane = explained(matches, homography_of(matches), sigma) > 0.95;
-  views.one_place = explained(matches, rotation_of(matches), sigma) > 0.95;
+  views.one_position = explained(matches, rotation_of(matches), sigma) > 0.95;
   return views;
 }
 
@@ -279,15 +279,15 @@ TwoViews Relation::describe(const Matrix<3>& E) const {
 
 std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options) {
   const Relation relation(pairs, options);
-  constexpr double good = 0.5, least = 0.25, plane = 0.8;
+  constexpr double good = 0.5, minimum = 0.25, plane = 0.8;
   const auto E = relation.search();
   std::optional<TwoViews> views;
   if (E) views = relation.describe(*E);
-  if ((!views || views->share < good) && pairs.size() * options.markers >= 8) {
-    const double share = relation.share_of_a_plane();
-    if (share > plane) return TwoViews{{}, {}, {}, share, 0, true, false};
+  if ((!views || views->fraction < good) && pairs.size() * options.markers >= 8) {
+    const double fraction = relation.fraction_of_a_plane();
+    if (fraction > plane) return TwoViews{{}, {}, {}, fraction, 0, true, false};
   }
-  if (views && views->share < least) return std::nullopt;
+  if (views && views->fraction < minimum) return std::nullopt;
   return views;
 }
 

@@ -22,7 +22,7 @@ namespace marey::calibrate {
 
 /// One instant of a wand as two cameras see it: bearings of length 1, marker by marker.
 struct WandPair {
-  std::array<Vector<3>, wand::WandShape::most> a, b;
+  std::array<Vector<3>, wand::WandShape::maximum> a, b;
 };
 
 struct TwoViewOptions {
@@ -30,20 +30,20 @@ struct TwoViewOptions {
   bool reversible = false;                ///< the order of b's markers is not known
   double sigma_a = 1e-3, sigma_b = 1e-3;  ///< rad: noise of a bearing
   std::uint64_t seed = 1;
-  int most_draws = 3000;  ///< of RANSAC, where little fits
+  int max_draws = 3000;  ///< of RANSAC, where little fits
 };
 
 struct TwoViews {
-  Rigid3 b_from_a;           ///< the distance of the cameras is 1
-  std::vector<char> inlier;  ///< for each pair
-  std::vector<char> turned;  ///< for each pair: b's markers are in the other order
-  double share = 0;          ///< of inliers
-  double parallax = 0;       ///< rad: median angle between the two rays to a marker
-  bool plane = false;        ///< a homography explains the inliers as well
-  bool one_place = false;    ///< a rotation does
+  Rigid3 b_from_a;            ///< the distance of the cameras is 1
+  std::vector<char> inlier;   ///< for each pair
+  std::vector<char> rotated;  ///< for each pair: b's markers are in the other order
+  double fraction = 0;        ///< of inliers
+  double parallax = 0;        ///< rad: median angle between the two rays to a marker
+  bool plane = false;         ///< a homography explains the inliers as well
+  bool one_position = false;  ///< a rotation does
 };
 
-/// Nothing where too few pairs are given (8 markers at least) or none of the drawn models explains a quarter of them. Of a plane,
+/// Nothing if too few pairs are given (8 markers at least) or none of the drawn models explains a quarter of them. Of a plane,
 /// where no essential matrix is determined, `plane` and `share` alone are set.
 std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options);
 

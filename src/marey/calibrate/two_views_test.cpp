@@ -23,12 +23,12 @@ std::vector<WandPair> pairs_of(const Two& cameras, const WandScene& scene, int c
   };
   for (int i = 0; i < count; ++i) {
     WandPair pair{};
-    const auto places = scene.markers(0.23 * i);
-    for (std::size_t m = 0; m < places.size(); ++m) {
-      Vector<3> place = places[m];
-      if (flatten) place.z() = 0.3;
-      pair.a[m] = bearing(cameras.a, place);
-      pair.b[m] = bearing(cameras.b, place);
+    const auto locations = scene.markers(0.23 * i);
+    for (std::size_t m = 0; m < locations.size(); ++m) {
+      Vector<3> location = locations[m];
+      if (flatten) location.z() = 0.3;
+      pair.a[m] = bearing(cameras.a, location);
+      pair.b[m] = bearing(cameras.b, location);
     }
     pairs.push_back(pair);
   }
@@ -53,9 +53,9 @@ TEST(TwoViews, FindsHowTheCamerasStand) {
     board::Noise noise(seed);
     const auto found = relate(pairs_of(of(scene), scene, 60, 0, noise), {.markers = 3, .seed = seed});
     ASSERT_TRUE(found);
-    EXPECT_EQ(found->share, 1);
+    EXPECT_EQ(found->fraction, 1);
     EXPECT_FALSE(found->plane);
-    EXPECT_FALSE(found->one_place);
+    EXPECT_FALSE(found->one_position);
     EXPECT_GT(found->parallax, 0.5);
     expect_relation(*found, of(scene), 1e-5);
   }
@@ -70,7 +70,7 @@ TEST(TwoViews, PairsThatDoNotBelongTogetherArePutOut) {
     for (std::size_t i = 0; i < pairs.size(); i += 3) pairs[i].b = pairs[(i + 40) % pairs.size()].b;
     const auto found = relate(pairs, {.markers = 3, .seed = seed});
     ASSERT_TRUE(found);
-    EXPECT_NEAR(found->share, 2.0 / 3, 0.08);
+    EXPECT_NEAR(found->fraction, 2.0 / 3, 0.08);
     expect_relation(*found, of(scene), 0.03);
   }
 }
@@ -82,10 +82,10 @@ TEST(TwoViews, TurnedWandsAreTurnedBack) {
   for (std::size_t i = 0; i < pairs.size(); i += 2) std::swap(pairs[i].b[0], pairs[i].b[2]);
   const auto found = relate(pairs, {.markers = 3, .reversible = true, .seed = 1});
   ASSERT_TRUE(found);
-  EXPECT_GT(found->share, 0.98);
+  EXPECT_GT(found->fraction, 0.98);
   expect_relation(*found, of(scene), 1e-3);
   int right = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) right += (found->turned[i] != 0) == (i % 2 == 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) right += (found->rotated[i] != 0) == (i % 2 == 0);
   EXPECT_GE(right, 58);
 }
 
@@ -95,11 +95,11 @@ TEST(TwoViews, APlaneAndOnePlaceAreSaid) {
   const auto flat = relate(pairs_of(of(scene), scene, 60, 1e-4, noise, true), {.markers = 3, .seed = 1});
   ASSERT_TRUE(flat);
   EXPECT_TRUE(flat->plane);
-  Two turned = of(scene);
-  turned.b = Rigid3{geometry::rotation_from({0.1, -0.2, 0.05}), Vector<3>::Zero()} * turned.a;
-  const auto same = relate(pairs_of(turned, scene, 60, 1e-4, noise), {.markers = 3, .seed = 1});
+  Two rotated = of(scene);
+  rotated.b = Rigid3{geometry::rotation_from({0.1, -0.2, 0.05}), Vector<3>::Zero()} * rotated.a;
+  const auto same = relate(pairs_of(rotated, scene, 60, 1e-4, noise), {.markers = 3, .seed = 1});
   ASSERT_TRUE(same);
-  EXPECT_TRUE(same->one_place || same->plane);
+  EXPECT_TRUE(same->one_position || same->plane);
   EXPECT_LT(same->parallax, 0.01);
 }
 
@@ -111,7 +111,7 @@ TEST(TwoViews, TooFewOrNothingInCommonGiveNothing) {
   for (WandPair& pair : pairs) {
     for (auto& bearing : pair.b) bearing = Vector<3>(noise.uniform(-1, 1), noise.uniform(-1, 1), 1).normalized();
   }
-  EXPECT_FALSE(relate(pairs, {.markers = 3, .most_draws = 300}));
+  EXPECT_FALSE(relate(pairs, {.markers = 3, .max_draws = 300}));
 }
 
 }  // namespace

@@ -54,13 +54,13 @@ bool onto_given_poses(bundle::Bundle& bundle, const Rig& rig, bool scale_known) 
   return true;
 }
 
-/// Upright as the cameras stand: most are held so that down in the picture is down.
+/// Upright as the cameras stand: most are held so that down in the image is down.
 void stand_upright(bundle::Bundle& bundle) {
   Vector<3> up = Vector<3>::Zero(), middle = Vector<3>::Zero();
   for (const bundle::BundleCamera& camera : bundle.cameras) up -= camera.camera_from_world.rotation.row(1).transpose();
   up = up.norm() > 1e-3 ? up.normalized() : Vector<3>(Vector<3>::UnitZ());
-  for (const bundle::BundleObservation& seen : bundle.observations) {
-    middle += bundle::marker_position(bundle, seen) / static_cast<double>(bundle.observations.size());
+  for (const bundle::BundleObservation& detected : bundle.observations) {
+    middle += bundle::marker_position(bundle, detected) / static_cast<double>(bundle.observations.size());
   }
   const Vector<3> right = bundle.cameras.front().camera_from_world.rotation.row(0).transpose();
   const Vector<3> x = (right - right.dot(up) * up).norm() > 1e-3 ? (right - right.dot(up) * up).normalized() : up.unitOrthogonal();

@@ -16,24 +16,24 @@ bundle::Bundle bundle_of(const WandScene& scene) {
   bundle.board = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}};
   for (const RigCamera& camera : scene.rig.cameras) bundle.cameras.push_back({*camera.lens, *camera.camera_from_world});
   for (int i = 0; i < 30; ++i) {
-    const auto places = scene.markers(0.2 * i);
-    const int last = static_cast<int>(places.size()) - 1;
-    if (i % 3 == 0) bundle.bodies.emplace_back(places[0]);
-    if (i % 3 == 1) bundle.bodies.emplace_back(bundle::WandPose{places[0], (places.back() - places[0]).normalized()});
-    if (i % 3 == 2) bundle.bodies.emplace_back(Rigid3{geometry::rotation_from({0.1 * i, 0.2, -0.1}), places[0]});
+    const auto locations = scene.markers(0.2 * i);
+    const int last = static_cast<int>(locations.size()) - 1;
+    if (i % 3 == 0) bundle.bodies.emplace_back(locations[0]);
+    if (i % 3 == 1) bundle.bodies.emplace_back(bundle::WandPose{locations[0], (locations.back() - locations[0]).normalized()});
+    if (i % 3 == 2) bundle.bodies.emplace_back(Rigid3{geometry::rotation_from({0.1 * i, 0.2, -0.1}), locations[0]});
     for (int c = 0; c < std::ssize(bundle.cameras); ++c) {
       for (int m = 0; m <= (i % 3 == 0 ? 0 : last); ++m) bundle.observations.push_back({c, i, m});
     }
   }
-  for (auto& seen : bundle.observations) seen.pixel = bundle::predicted_pixel(bundle, seen).value();
+  for (auto& detected : bundle.observations) detected.pixel = bundle::predicted_pixel(bundle, detected).value();
   return bundle;
 }
 
-void expect_same_pictures(const bundle::Bundle& moved, const bundle::Bundle& before) {
-  for (const auto& seen : before.observations) {
-    const auto pixel = bundle::predicted_pixel(moved, seen);
+void expect_same_images(const bundle::Bundle& moved, const bundle::Bundle& before) {
+  for (const auto& detected : before.observations) {
+    const auto pixel = bundle::predicted_pixel(moved, detected);
     ASSERT_TRUE(pixel);
-    EXPECT_LT((*pixel - seen.pixel).norm(), 1e-6);
+    EXPECT_LT((*pixel - detected.pixel).norm(), 1e-6);
   }
 }
 
@@ -59,7 +59,7 @@ TEST(WorldFrame, MovingKeepsThePictures) {
     const auto any = [&] { return Vector<3>(noise.uniform(-2, 2), noise.uniform(-2, 2), noise.uniform(-2, 2)); };
     const Rigid3 motion{geometry::rotation_from(any()), any()};
     move(bundle, motion, 1);
-    expect_same_pictures(bundle, before);
+    expect_same_images(bundle, before);
     EXPECT_LT(
         (bundle::marker_position(bundle, before.observations[0]) - motion * bundle::marker_position(before, before.observations[0]))
             .norm(),
@@ -96,11 +96,11 @@ TEST(WorldFrame, WithoutPosesItStandsUprightInTheMiddle) {
   std::vector<std::string> notes;
   put_into_world(bundle, input_of(scene, false), {}, notes);
   Vector<3> middle = Vector<3>::Zero();
-  for (const auto& seen : bundle.observations)
-    middle += bundle::marker_position(bundle, seen) / static_cast<double>(bundle.observations.size());
+  for (const auto& detected : bundle.observations)
+    middle += bundle::marker_position(bundle, detected) / static_cast<double>(bundle.observations.size());
   EXPECT_LT(middle.norm(), 1e-9);
   for (std::size_t c = 0; c < bundle.cameras.size(); ++c) EXPECT_GT(centre(bundle, c).z(), 0) << "the cameras hang above";
-  expect_same_pictures(bundle, bundle_of(scene));
+  expect_same_images(bundle, bundle_of(scene));
 }
 
 TEST(WorldFrame, ASingleLightsScaleComesFromADistance) {

@@ -6,7 +6,7 @@
 
 namespace marey {
 
-/// What a picture says of each point of a grid over it: whether something that does not belong to the scene is seen there.
+/// What an image says of each point of a grid over it: whether something that does not belong to the scene is seen there.
 struct BlobEvidence {
   Vector<2> origin = Vector<2>::Zero();  ///< px; of the grid's first point
   double step = 1;                       ///< px between neighbours

@@ -19,7 +19,7 @@ std::array<float, 3> srgb_from_lab(float lightness, float a, float b);
 /// a colour counts by its logarithm; hue counts whole. Of about the scale of L*a*b*; a deviation there is about half of it here.
 Vector<3> perceived(const Appearance& colour);
 
-/// The other way round: the colour at a point of that space.
+/// Vice versa: the colour at a point of that space.
 Appearance colour_at(const Vector<3>& point, double deviation);
 
 }  // namespace marey

@@ -17,15 +17,15 @@ TEST(Lab, AgreesWithOpenCv) {
   cv::Mat lab;
   cv::cvtColor(bgr, lab, cv::COLOR_BGR2Lab);
   for (int i = 0; i < bgr.cols; ++i) {
-    const cv::Vec3f seen = bgr.at<cv::Vec3f>(0, i) * 255;
-    const std::array<float, 3> ours = lab_from_srgb(seen[2], seen[1], seen[0]);
+    const cv::Vec3f detected = bgr.at<cv::Vec3f>(0, i) * 255;
+    const std::array<float, 3> ours = lab_from_srgb(detected[2], detected[1], detected[0]);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(ours[c], lab.at<cv::Vec3f>(0, i)[c], 0.5) << i;
     const std::array<float, 3> back = srgb_from_lab(ours[0], ours[1], ours[2]);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(back[c], seen[2 - c], 0.2) << i;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(back[c], detected[2 - c], 0.2) << i;
   }
 }
 
-TEST(Lab, WhatNoScreenShowsBecomesTheNearest) {
+TEST(Lab, ClampsOutOfGamutColours) {
   EXPECT_EQ(lab_from_srgb(300, 255, 255), lab_from_srgb(255, 255, 255));
   const std::array<float, 3> green = srgb_from_lab(60, -120, 100);
   for (const float part : green) {

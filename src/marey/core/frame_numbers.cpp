@@ -9,14 +9,14 @@
 namespace marey {
 namespace {
 
-constexpr std::size_t kMostSteps = 100'000;
+constexpr std::size_t kMaxSteps = 100'000;
 constexpr double kAgree = 0.5;  // of the median step
 
 }  // namespace
 
 void FrameNumbers::add(std::int64_t frame, std::optional<double> time) {
   if (count_ > 0 && frame == here_) return;
-  if (count_ > 0 && time && time_ && steps_.size() < kMostSteps) {
+  if (count_ > 0 && time && time_ && steps_.size() < kMaxSteps) {
     const auto frames = static_cast<double>(frame - here_);
     const double step = *time - *time_;
     if (step / frames > 0 && std::isfinite(step)) steps_.emplace_back(std::abs(frames), std::abs(step));
@@ -28,7 +28,7 @@ void FrameNumbers::add(std::int64_t frame, std::optional<double> time) {
 }
 
 void FrameNumbers::check(std::string_view name) const {
-  if (last_ - first_ - count_ <= kMostMissing) return;
+  if (last_ - first_ - count_ <= kMaxMissing) return;
   throw Error("{}: frames {} to {} are named, of which {} are there; a number must be wrong", name, first_, last_, count_);
 }
 

@@ -10,11 +10,11 @@
 namespace marey {
 
 /// How a file numbers its frames and when it says they were, gathered while it is read. One number that is wrong (frame
-/// 999,999,999, a time years ahead) is found before somebody walks through all the frames between, and does not change the rate.
+/// 999,999,999, a time years ahead) is found before a person walks through all the frames between, and does not change the rate.
 class FrameNumbers {
  public:
   /// More frames than this within a file's range and not there are a mistake: a day at 100 Hz.
-  static constexpr std::int64_t kMostMissing = 10'000'000;
+  static constexpr std::int64_t kMaxMissing = 10'000'000;
 
   /// A row of the file; rows of one frame stand together. `time` is s.
   void add(std::int64_t frame, std::optional<double> time = std::nullopt);
@@ -23,8 +23,8 @@ class FrameNumbers {
   /// read: of frames in any order each run of rows counts as one that is there.
   void check(std::string_view name) const;
 
-  /// Frames a second: that of the median step, as exactly as all steps tell that agree with it. Nothing where no two frames have
-  /// times that go the same way as their numbers.
+  /// Frames a second: that of the median step, as exactly as all steps tell that agree with it. Nothing if no two frames have
+  /// times that go likewise as their numbers.
   std::optional<double> rate_hz() const;
 
   std::int64_t count() const { return count_; }
@@ -32,7 +32,7 @@ class FrameNumbers {
  private:
   std::int64_t first_ = 0, last_ = 0, here_ = 0, count_ = 0;
   std::optional<double> time_;
-  std::vector<std::pair<double, double>> steps_;  // frames, s; so many of the first as settle the rate
+  std::vector<std::pair<double, double>> steps_;  // frames, s; this many of the first as settle the rate
 };
 
 }  // namespace marey

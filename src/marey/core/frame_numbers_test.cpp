@@ -9,7 +9,7 @@
 namespace marey {
 namespace {
 
-std::string said(const FrameNumbers& frames) {
+std::string stated(const FrameNumbers& frames) {
   try {
     frames.check("a.csv");
   } catch (const Error& error) {
@@ -18,18 +18,18 @@ std::string said(const FrameNumbers& frames) {
   return "";
 }
 
-TEST(FrameNumbers, OneWildNumberIsNamed) {
+TEST(FrameNumbers, ReportsOutlierNumber) {
   FrameNumbers frames;
   for (const std::int64_t frame : {0, 1, 1, 2, 3, 1'000'000'000}) frames.add(frame);
-  EXPECT_EQ(said(frames), "a.csv: frames 0 to 1000000000 are named, of which 5 are there; a number must be wrong");
+  EXPECT_EQ(stated(frames), "a.csv: frames 0 to 1000000000 are named, of which 5 are there; a number must be wrong");
 }
 
 TEST(FrameNumbers, GapsOfADayPassAndSoDoesNothing) {
   FrameNumbers frames;
-  EXPECT_EQ(said(frames), "");
+  EXPECT_EQ(stated(frames), "");
   frames.add(900'000'000);
-  frames.add(900'000'000 + FrameNumbers::kMostMissing);
-  EXPECT_EQ(said(frames), "");
+  frames.add(900'000'000 + FrameNumbers::kMaxMissing);
+  EXPECT_EQ(stated(frames), "");
 }
 
 TEST(FrameNumbers, TheRateIsThatOfTheMedianStepAndAsExactAsTheSpan) {
@@ -41,7 +41,7 @@ TEST(FrameNumbers, TheRateIsThatOfTheMedianStepAndAsExactAsTheSpan) {
   EXPECT_NEAR(frames.rate_hz().value(), 119.88, 2e-3);
 }
 
-TEST(FrameNumbers, OneWildTimeChangesNoRate) {
+TEST(FrameNumbers, OutlierTimeKeepsRate) {
   for (const double wild : {1e9, -1e9, 0.0}) {
     FrameNumbers frames;
     for (int i = 0; i < 100; ++i) frames.add(i, i == 99 || i == 40 ? wild : i / 25.0);

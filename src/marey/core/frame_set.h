@@ -10,10 +10,10 @@
 
 namespace marey {
 
-/// What one camera gave to one moment.
+/// What one camera gave to one instant.
 struct CameraFrame {
-  Frame frame;  ///< its time is by the run's clock; its picture is empty where detections come from another program
-  /// What was found in it, where the camera's feed knows that already: another program said so, or the feed looks for it itself.
+  Frame frame;  ///< its time is by the run's clock; its image is empty if detections come from another program
+  /// What was found in it, where the camera's feed knows that already: another program said so, or the feed searches for it itself.
   std::optional<std::vector<Detection>> detections;
   double decode_s = 0, detect_s = 0;  ///< what it took, s
 };
@@ -23,7 +23,7 @@ enum class FeedState {
   connecting,  ///< nothing has come yet
   live,        ///< it gives frames
   stalled,     ///< nothing came for a while
-  lost,        ///< nothing came for so long that nobody waits for it
+  lost,        ///< nothing came for so long that no person waits for it
   back,        ///< it gives frames again after it was stalled or lost, since a short while
   ended,       ///< nothing will come any more
 };
@@ -34,9 +34,9 @@ constexpr std::string_view to_string(FeedState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-/// What all cameras of a rig gave to one moment. A camera that had nothing is a gap.
+/// What all cameras of a rig gave to one instant. A camera that had nothing is a gap.
 struct FrameSet {
-  std::int64_t index = 0;                           ///< counts the moments
+  std::int64_t index = 0;                           ///< counts the instants
   Timestamp time{};                                 ///< by the run's clock
   std::vector<std::optional<CameraFrame>> cameras;  ///< CameraId i is cameras[i]
   std::vector<FeedState> states;                    ///< of each camera

@@ -13,17 +13,17 @@ GroundViews::GroundViews(std::vector<GroundView> views) {
 
 const GroundView& GroundViews::view_at(CameraId camera, Timestamp time) const {
   const OneCamera& one = cameras_.at(static_cast<std::size_t>(number(camera)));
-  const auto later =
-      std::upper_bound(one.turns.begin(), one.turns.end(), time, [](Timestamp t, const Turn& turn) { return t < turn.from; });
-  return later == one.turns.begin() ? one.first : std::prev(later)->view;
+  const auto later = std::upper_bound(one.rotations.begin(), one.rotations.end(), time,
+                                      [](Timestamp t, const Turn& turn) { return t < turn.from; });
+  return later == one.rotations.begin() ? one.first : std::prev(later)->view;
 }
 
 void GroundViews::turn(CameraId camera, Timestamp from, const GroundView& view) {
   OneCamera& one = cameras_.at(static_cast<std::size_t>(number(camera)));
-  if (!one.turns.empty() && from <= one.turns.back().from)
-    throw Error("camera {} is turned at {} s after it was turned at {} s; turns are told in the order of time", number(camera),
-                seconds(from), seconds(one.turns.back().from));
-  one.turns.push_back({from, view});
+  if (!one.rotations.empty() && from <= one.rotations.back().from)
+    throw Error("camera {} is turned at {} s after it was turned at {} s; turns are reported in the order of time", number(camera),
+                seconds(from), seconds(one.rotations.back().from));
+  one.rotations.push_back({from, view});
 }
 
 std::shared_ptr<GroundViews> ground_views(std::vector<GroundView> views) {

@@ -11,8 +11,8 @@
 
 namespace marey {
 
-/// How each camera of a rig sees the ground, at any time: whoever needs a view asks here, with the time of the frame or instant
-/// (by the rig's clock), so that a camera that turns needs no stage of its own. A camera that stands has one view for good.
+/// How each camera of a rig sees the ground, at any time: the one who needs a view asks here, with the time of the frame or instant
+/// (by the rig's clock), so that a PTZ camera needs no stage of its own. A static camera has one view permanently.
 ///
 /// Cameras are independent of each other: one thread a camera may turn it while others turn or are asked for theirs.
 class GroundViews {
@@ -37,12 +37,12 @@ class GroundViews {
   };
   struct OneCamera {
     GroundView first;
-    std::deque<Turn> turns;  // by time
+    std::deque<Turn> rotations;  // by time
   };
   std::vector<OneCamera> cameras_;
 };
 
-/// Of cameras that stand.
+/// Of static cameras.
 std::shared_ptr<GroundViews> ground_views(std::vector<GroundView> views);
 
 }  // namespace marey

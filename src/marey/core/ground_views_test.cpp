@@ -15,7 +15,7 @@ GroundView view_from(double left) {
 }
 
 double left_at(const GroundViews& views, int camera, double time) {
-  return views.view_at(CameraId{camera}, timestamp_from_seconds(time)).place({0, 0})->ground.x();
+  return views.view_at(CameraId{camera}, timestamp_from_seconds(time)).location({0, 0})->ground.x();
 }
 
 TEST(GroundViews, ACameraThatStandsHasOneViewForGood) {
@@ -36,7 +36,7 @@ TEST(GroundViews, ACameraThatTurnsIsAskedWithATime) {
   EXPECT_EQ(left_at(views, 0, 41.5), 41);
   EXPECT_EQ(left_at(views, 0, 1e4), 100);
   EXPECT_EQ(left_at(views, 1, 41.5), 7) << "another camera turned";
-  EXPECT_EQ(first.place({0, 0})->ground.x(), 0) << "a view that was given stays as it is";
+  EXPECT_EQ(first.location({0, 0})->ground.x(), 0) << "a view that was given stays as it is";
 }
 
 TEST(GroundViews, TurnsAreToldInTheOrderOfTime) {

@@ -1,4 +1,4 @@
-// How something long talks to whoever started it, the same for every job: how far it is, and whether it is to end.
+// How something long talks to the one who started it, the same for every job: how far it is, and whether it is to end.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace marey {
 /// How far something long is.
 struct Progress {
   std::string_view step;              ///< "tracking", "drawing", …: what is being done
-  std::int64_t done = 0;              ///< frames, pictures, …
+  std::int64_t done = 0;              ///< frames, images, …
   std::optional<std::int64_t> total;  ///< where it is known
 };
 

@@ -10,7 +10,7 @@ enum class CameraId : int {};
 /// Which cameras of a rig: bit i stands for CameraId i. A rig has 64 cameras at most.
 using CameraMask = std::uint64_t;
 
-/// A track's name for good: positive, given in the order of birth, never given twice.
+/// A track's name permanently: positive, given in the order of birth, never given twice.
 enum class TrackId : int {};
 
 /// A rigid body's or a segment's, positive.

@@ -28,7 +28,7 @@ struct Keypoint {
   double presence = 1;    ///< probability that it is within the image, in [0, 1]
 };
 
-/// The body points of one person in one image or in space, in the order of a KeypointSet; those that are not known are absent.
+/// The body points of one person in one image or in space, in the order of a KeypointSet; those that are not supported: absent.
 template <int D>
 struct Keypoints {
   std::vector<std::optional<Keypoint<D>>> points;

@@ -8,12 +8,12 @@ namespace marey {
 
 /// One line of a table of boxes: truth, a tracker's result, or a detector's. What files hold and what is evaluated.
 struct LabelledBox {
-  static constexpr std::int32_t nobody = -1;
+  static constexpr std::int32_t no_person = -1;
 
-  std::int32_t frame = 0;    ///< counts from 0
-  std::int32_t id = nobody;  ///< whose box; `nobody` for detections
-  Box box;                   ///< px
-  double score = 1;          ///< as the file has it, in the detector's own scale; 1 where it has none
+  std::int32_t frame = 0;       ///< counts from 0
+  std::int32_t id = no_person;  ///< whose box; `nobody` for detections
+  Box box;                      ///< px
+  double score = 1;             ///< as the file has it, in the detector's own scale; 1 where it has none
 
   bool operator==(const LabelledBox&) const = default;
 };

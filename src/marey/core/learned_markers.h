@@ -17,8 +17,8 @@ struct LearnedMarkers {
   };
 
   std::vector<std::string> labels;
-  std::vector<Vector<3>> places;    ///< m: one posture in which they were seen, in any right-handed frame with z up
-  std::vector<Distance> distances;  ///< of each two, a before b by rows: index_of(a, b)
+  std::vector<Vector<3>> locations;  ///< m: one posture in which they were seen, in any right-handed frame with z up
+  std::vector<Distance> distances;   ///< of each two, a before b by rows: index_of(a, b)
   /// Whether deviations tell what is rigid; false where the subject stood still, and everything was.
   bool moves = true;
   /// Whether it stems from subjects of other sizes than the one it is for: distances are of the mean size, and are to be scaled.

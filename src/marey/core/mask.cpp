@@ -8,22 +8,22 @@ namespace marey {
 namespace {
 
 /// Whether a place lies on the edge from `a` to `b`, by a hundredth of a pixel.
-bool on_edge(const Vector<2>& place, const Vector<2>& a, const Vector<2>& b) {
+bool on_edge(const Vector<2>& location, const Vector<2>& a, const Vector<2>& b) {
   const Vector<2> edge = b - a;
   const double length2 = edge.squaredNorm();
-  const double along = length2 > 0 ? std::clamp((place - a).dot(edge) / length2, 0.0, 1.0) : 0;
-  return (place - a - along * edge).norm() < 0.01;
+  const double along = length2 > 0 ? std::clamp((location - a).dot(edge) / length2, 0.0, 1.0) : 0;
+  return (location - a - along * edge).norm() < 0.01;
 }
 
 /// By the crossings of its edges with the ray to the right.
-bool in_polygon(const std::vector<cv::Point>& corners, const Vector<2>& place) {
+bool in_polygon(const std::vector<cv::Point>& corners, const Vector<2>& location) {
   bool within = false;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const cv::Point& from = corners[i > 0 ? i - 1 : corners.size() - 1];
     const Vector<2> a(from.x, from.y), b(corners[i].x, corners[i].y);
-    if (on_edge(place, a, b)) return true;
-    if ((a.y() > place.y()) == (b.y() > place.y())) continue;
-    if (place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) within = !within;
+    if (on_edge(location, a, b)) return true;
+    if ((a.y() > location.y()) == (b.y() > location.y())) continue;
+    if (location.x() < a.x() + (location.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) within = !within;
   }
   return within;
 }
@@ -42,12 +42,12 @@ Mask Mask::polygon(std::vector<cv::Point> corners) {
 }
 
 std::optional<Mask> Mask::of_numbers(std::span<const int> numbers) {
-  if (std::any_of(numbers.begin(), numbers.end(), [](int each) { return each < 0 || each > kFarthest; })) return std::nullopt;
+  if (std::any_of(numbers.begin(), numbers.end(), [](int each) { return each < 0 || each > kMaxDistance; })) return std::nullopt;
   if (numbers.size() == 4) {
     if (numbers[2] < 1 || numbers[3] < 1) return std::nullopt;
     return Mask(numbers[0], numbers[1], numbers[2], numbers[3]);
   }
-  if (numbers.size() < 6 || numbers.size() % 2 != 0 || numbers.size() > 2 * kMostCorners) return std::nullopt;
+  if (numbers.size() < 6 || numbers.size() % 2 != 0 || numbers.size() > 2 * kMaxCorners) return std::nullopt;
   std::vector<cv::Point> corners;
   for (std::size_t i = 0; i < numbers.size(); i += 2) corners.emplace_back(numbers[i], numbers[i + 1]);
   return polygon(std::move(corners));

@@ -29,18 +29,18 @@ TEST(Mask, OtherNumbersAreNone) {
                                           {1, 2, 3, 4, 5, 6, 7},
                                           {1, 2, 3, 4, 5, -6},
                                           {1, 2, 3, 4, 5, 100'001},
-                                          std::vector<int>(2 * Mask::kMostCorners + 2, 7)})
+                                          std::vector<int>(2 * Mask::kMaxCorners + 2, 7)})
     EXPECT_FALSE(Mask::of_numbers(numbers));
-  EXPECT_TRUE(Mask::of_numbers(std::vector<int>(2 * Mask::kMostCorners, 7)));
+  EXPECT_TRUE(Mask::of_numbers(std::vector<int>(2 * Mask::kMaxCorners, 7)));
 }
 
 TEST(Mask, APolygonHoldsWhatIsFilledOfIt) {
   const unsigned seed = std::random_device{}();
   std::mt19937 random(seed);
-  std::uniform_int_distribution<int> place(0, 63), count(3, 9);
+  std::uniform_int_distribution<int> location(0, 63), count(3, 9);
   for (int round = 0; round < 200; ++round) {
     std::vector<cv::Point> corners;
-    for (int i = count(random); i > 0; --i) corners.emplace_back(place(random), place(random));
+    for (int i = count(random); i > 0; --i) corners.emplace_back(location(random), location(random));
     const Mask mask = Mask::polygon(corners);
     cv::Mat filled(64, 64, CV_8UC1, cv::Scalar(0)), edges(64, 64, CV_8UC1, cv::Scalar(0));
     const std::vector<std::vector<cv::Point>> outline{corners};

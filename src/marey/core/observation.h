@@ -17,8 +17,8 @@ struct Observation {
   CameraId camera{};
   double score = 1;        ///< in [0, 1]; a weak one may continue a track, not begin one
   std::optional<Box> box;  ///< px, where the thing has an extent in the image
-  bool shared = false;     ///< part of a region that several targets share: its place is believed, its size is not
-  std::optional<Appearance> appearance = {};  ///< what a person wears, where pictures tell
+  bool shared = false;     ///< part of a region that several targets share: its place is trusted, its size is not
+  std::optional<Appearance> appearance = {};  ///< what a person wears, where images tell
 };
 
 /// What a detection of a small thing, a marker, is to a tracker: its centre.

@@ -8,14 +8,14 @@
 
 namespace marey {
 
-/// Where the outline of a target was looked for: a straight line across the predicted curve.
+/// Where the outline of a target was searched for: a straight line across the predicted curve.
 struct MeasurementLine {
   enum class Finding {
     found,    ///< the outline crosses it at `offset`
     nothing,  ///< nothing that could be the outline
     hidden,   ///< another target owns the pixels there, or something of the scene hides them
-    outlier,  ///< found, and not believed: it contradicts the other lines
-    outside,  ///< it leaves the picture
+    outlier,  ///< found, and not trusted: it contradicts the other lines
+    outside,  ///< it leaves the image
   };
 
   Vector<2> foot = Vector<2>::Zero();    ///< px; its middle, on the predicted curve
@@ -29,9 +29,9 @@ struct MeasurementLine {
 /// The outline of a target at one instant: a closed uniform B-spline (geometry/bspline.h), how it moves, and how well all is known.
 struct Outline {
   enum class State {
-    seen,    ///< most of it was found in this frame
-    partly,  ///< some of it; the rest is hidden, or was not found
-    held,    ///< it moves as before with its shape held: too little was found to say more
+    detected,  ///< most of it was found in this frame
+    partly,    ///< some of it; the rest is hidden, or was not found
+    held,      ///< it moves as before with its shape held: too little was found to say more
   };
 
   int order = 4;                                     ///< degree + 1
@@ -45,7 +45,7 @@ struct Outline {
   double scale_rate_deviation = 0;                   ///< 1/s
   std::optional<Vector<2>> silhouette;               ///< px; centre of the area that the detector saw of it alone, in this frame
   std::vector<MeasurementLine> lines;                ///< of this frame; empty in a target's first
-  State state = State::seen;
+  State state = State::detected;
   std::vector<TrackId> behind;  ///< targets that hide a part of it in this frame, ascending
   std::vector<int> hidden;      ///< control points that they hide, ascending: there the shape is as it was before
 };

@@ -21,7 +21,7 @@ bool is_new(const std::vector<std::int32_t>& at, std::int32_t instant) {
 std::string to_string(const FrameOfReference& frame) {
   switch (frame.kind) {
     case FrameOfReference::Kind::image:
-      return frame.camera ? fmt::format("px of camera {}'s pictures", number(*frame.camera) + 1) : "px of a picture";
+      return frame.camera ? fmt::format("px of camera {}'s images", number(*frame.camera) + 1) : "px of an image";
     case FrameOfReference::Kind::ground:
       return "m on the ground of the rig's world";
     case FrameOfReference::Kind::user_ground:
@@ -261,10 +261,10 @@ std::int64_t Recording::samples() const {
   return count;
 }
 
-std::span<const SeenPoint> Recording::seen(std::size_t instant) const {
-  if (instant >= seen_end_.size()) return {};
-  const std::size_t begin = instant == 0 ? 0 : seen_end_[instant - 1];
-  return {seen_.data() + begin, seen_end_[instant] - begin};
+std::span<const ImageObservation> Recording::detected(std::size_t instant) const {
+  if (instant >= observed_end_.size()) return {};
+  const std::size_t begin = instant == 0 ? 0 : observed_end_[instant - 1];
+  return {detected_.data() + begin, observed_end_[instant] - begin};
 }
 
 void Recording::add(const Instant& instant) {
@@ -275,10 +275,10 @@ void Recording::add(const Instant& instant) {
   for (const TrackName& name : instant.named) set_name(name);
   for (const Sample& sample : instant.samples) track_of(sample.track).add(at, sample);
   for (const BodyPose& pose : instant.bodies) body_of(pose.body).add(at, pose);
-  if (instant.seen.empty() && seen_end_.empty()) return;
-  seen_end_.resize(static_cast<std::size_t>(at), seen_.size());
-  seen_.insert(seen_.end(), instant.seen.begin(), instant.seen.end());
-  seen_end_.push_back(seen_.size());
+  if (instant.detected.empty() && observed_end_.empty()) return;
+  observed_end_.resize(static_cast<std::size_t>(at), detected_.size());
+  detected_.insert(detected_.end(), instant.detected.begin(), instant.detected.end());
+  observed_end_.push_back(detected_.size());
 }
 
 void Recording::set_name(const TrackName& name) {
@@ -290,22 +290,22 @@ void Recording::set_name(const TrackName& name) {
 }
 
 void Recording::shift_times(Duration shift) {
-  for (Moment& moment : instants_) moment.time += shift;
+  for (TimeStep& time_step : instants_) time_step.time += shift;
 }
 
 void Recording::put(TrackColumns track) {
-  TrackColumns& place = track_of(track.id());
-  place = std::move(track);
-  if (place.name.kind == TrackKind::unspecified) place.name.kind = header.track_kind;
+  TrackColumns& location = track_of(track.id());
+  location = std::move(track);
+  if (location.name.kind == TrackKind::unspecified) location.name.kind = header.track_kind;
 }
 
 void Recording::put(BodyColumns body) {
-  BodyColumns& place = body_of(body.body());
-  place = std::move(body);
+  BodyColumns& location = body_of(body.body());
+  location = std::move(body);
 }
 
-void Recording::erase_tracks_if(const std::function<bool(const TrackColumns&)>& leave_out) {
-  std::erase_if(tracks_, leave_out);
+void Recording::erase_tracks_if(const std::function<bool(const TrackColumns&)>& exclude) {
+  std::erase_if(tracks_, exclude);
 }
 
 InstantRows::InstantRows(const Recording& recording) : recording_(recording) {
@@ -321,9 +321,9 @@ std::span<const InstantRows::Row> InstantRows::at(std::size_t instant) {
   const std::vector<TrackColumns>& tracks = recording_.tracks();
   const auto now = static_cast<std::int32_t>(instant);
   for (; !waiting_.empty() && tracks[waiting_.back()].at().front() <= now; waiting_.pop_back()) {
-    const auto place = std::lower_bound(open_.begin(), open_.end(), waiting_.back(),
-                                        [](const Row& row, std::size_t track) { return row.track < track; });
-    open_.insert(place, {waiting_.back(), 0});
+    const auto location = std::lower_bound(open_.begin(), open_.end(), waiting_.back(),
+                                           [](const Row& row, std::size_t track) { return row.track < track; });
+    open_.insert(location, {waiting_.back(), 0});
   }
   rows_.clear();
   bool ended = false;
@@ -342,8 +342,8 @@ std::optional<Instant> InstantsOf::next() {
   Instant instant;
   instant.index = recording_.instants()[next_].index;
   instant.time = recording_.instants()[next_].time;
-  const auto seen = recording_.seen(next_);
-  instant.seen.assign(seen.begin(), seen.end());
+  const auto detected = recording_.detected(next_);
+  instant.detected.assign(detected.begin(), detected.end());
   for (std::size_t b = 0; b < body_rows_.size(); ++b) {
     const BodyColumns& body = recording_.bodies()[b];
     if (body_rows_[b] < body.size() && body.at()[body_rows_[b]] == static_cast<std::int32_t>(next_))
@@ -360,7 +360,7 @@ std::optional<Instant> InstantsOf::next() {
   return instant;
 }
 
-std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants) {
+std::optional<double> median_rate_hz(std::span<const Recording::TimeStep> instants) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < instants.size(); ++i) {
     const auto frames = static_cast<double>(instants[i].index - instants[i - 1].index);

@@ -24,7 +24,7 @@ namespace marey {
 /// a new recording.
 struct FrameOfReference {
   enum class Kind : std::uint8_t {
-    image,        ///< px of one camera's pictures, y down
+    image,        ///< px of one camera's images, y down
     ground,       ///< m on the ground in the rig's right-handed world, z up
     user_ground,  ///< m on the ground as the user has it: `Rig::ground_from_world` was applied
     space,        ///< m in the rig's right-handed world, z up
@@ -46,7 +46,7 @@ std::string to_string(const FrameOfReference& frame);
 struct MadeBy {
   struct Input {
     std::string name;  ///< without its folder
-    std::string hash;  ///< of its size, first and last MiB; empty where it is no regular file
+    std::string hash;  ///< of its size, first and last MiB; empty if it is not a regular file
     bool operator==(const Input&) const = default;
   };
   std::string program;                         ///< "marey track" and its version, or the system that a file came from
@@ -58,12 +58,12 @@ struct MadeBy {
 /// What is known of a recording before its first instant.
 struct RecordingHeader {
   std::string name;         ///< free text; by default the file's
-  std::string recorded_at;  ///< ISO 8601, UTC; empty where unknown
+  std::string recorded_at;  ///< ISO 8601, UTC; empty if unknown
   FrameOfReference frame;
   TimeBase time_base;
   TrackKind track_kind = TrackKind::unspecified;  ///< of tracks without a kind of their own
-  double rate_hz = 0;                             ///< instants a second, positive: the median step, where the file does not tell
-  std::optional<Rig> rig;                         ///< the cameras with their sources; nothing where a file brings positions alone
+  double rate_hz = 0;                             ///< instants a second, positive: the median step, where the file does not specify
+  std::optional<Rig> rig;                         ///< the cameras with their sources; nothing if a file brings positions alone
   std::vector<Body> bodies;                       ///< by id, parents before children; none where none were solved
   std::optional<KeypointSet> keypoints;           ///< which body points samples have, where they have some
   MadeBy made_by;
@@ -97,7 +97,7 @@ class OptionalColumn {
   std::span<const double> values() const { return values_; }
   /// Rows before `row` that were never set are unknown. Rows come in growing order.
   void set(std::size_t row, std::span<const double> values);
-  /// So many rows will come: where any is known, no more is taken than they need.
+  /// This many rows will come: where any is known, no more is taken than they need.
   void reserve(std::size_t rows) { rows_ = rows; }
   /// Rows from `first` on, as a file has them. `known` has a value for each of them, or none at all where all are known.
   void add_rows(std::size_t first, std::span<const double> values, const std::vector<bool>& known);
@@ -150,7 +150,7 @@ class TrackColumns {
   const Outlines& outlines() const { return outlines_; }  ///< by row
   const Bodies& keypoints() const { return keypoints_; }  ///< by row
 
-  Vector<2> place(std::size_t row) const { return {x_[row], y_[row]}; }
+  Vector<2> location(std::size_t row) const { return {x_[row], y_[row]}; }
   Vector<3> position(std::size_t row) const { return {x_[row], y_[row], z_.empty() ? 0 : z_[row]}; }
   std::optional<Vector<3>> velocity(std::size_t row) const;
   bool measured(std::size_t row) const { return provenance_[row] == Provenance::measured; }
@@ -160,9 +160,9 @@ class TrackColumns {
 
   /// `instant` is later than the last one's.
   void add(std::int32_t instant, const Sample& sample);
-  /// So many rows will come, so that memory is what they need. Without it, it is a quarter more at most.
+  /// This many rows will come, so that memory is what they need. Without it, it is a quarter more at most.
   void reserve(std::size_t rows);
-  /// Says of every row anew which instant it belongs to; as many as there are rows, growing.
+  /// Says of every row again which instant it belongs to; as many as there are rows, growing.
   void set_at(std::vector<std::int32_t> instants);
   void forget_velocities() { column(Optional::velocity).clear(); }
   /// Many rows at once, later than those that are there; what they have in optional columns is put into those afterwards.
@@ -206,7 +206,7 @@ class BodyColumns {
   void add(std::int32_t instant, const BodyPose& pose);
   /// What another one of this body holds, whose instants are later once `offset` is added to them.
   void append(const BodyColumns& other, std::int32_t offset);
-  /// Says of every row anew which instant it belongs to; as many as there are rows, growing.
+  /// Says of every row again which instant it belongs to; as many as there are rows, growing.
   void set_at(std::vector<std::int32_t> instants);
 
  private:
@@ -220,7 +220,7 @@ class BodyColumns {
 /// A whole recording in memory. What may be long and is only passed on is better streamed, instant by instant.
 class Recording {
  public:
-  struct Moment {
+  struct TimeStep {
     std::int64_t index = 0;
     Timestamp time{};
   };
@@ -233,16 +233,16 @@ class Recording {
   std::optional<std::int64_t> head;  ///< the edit whose branch counts; nothing: what was recorded, without any
 
   int dimensions() const { return header.frame.dimensions(); }
-  const std::vector<Moment>& instants() const { return instants_; }
+  const std::vector<TimeStep>& instants() const { return instants_; }
   const std::vector<TrackColumns>& tracks() const { return tracks_; }  ///< by id
   const TrackColumns* find(TrackId id) const;
   const std::vector<BodyColumns>& bodies() const { return bodies_; }  ///< by id; what they are says the header
   const BodyColumns* find(BodyId id) const;
   double seconds_at(std::size_t instant) const { return seconds(instants_[instant].time); }
   std::int64_t samples() const;
-  std::span<const SeenPoint> seen(std::size_t instant) const;
+  std::span<const ImageObservation> detected(std::size_t instant) const;
 
-  /// Its index is later than the last one's. Pictures are not kept.
+  /// Its index is later than the last one's. Images are not kept.
   void add(const Instant& instant);
   /// A track's label, team and, if specified, kind; it need not have samples yet.
   void set_name(const TrackName& name);
@@ -251,20 +251,20 @@ class Recording {
   void put(BodyColumns body);
   /// Takes all tracks out, so that another recording can be made of them without holding both.
   std::vector<TrackColumns> take_tracks() { return std::exchange(tracks_, {}); }
-  void add_moment(const Moment& moment) { instants_.push_back(moment); }
+  void add_time_step(const TimeStep& time_step) { instants_.push_back(time_step); }
   void shift_times(Duration shift);
-  /// Leaves out the tracks for which this says so.
-  void erase_tracks_if(const std::function<bool(const TrackColumns&)>& leave_out);
+  /// Omits the tracks for which this says so.
+  void erase_tracks_if(const std::function<bool(const TrackColumns&)>& exclude);
 
  private:
   TrackColumns& track_of(TrackId id);
   BodyColumns& body_of(BodyId id);
 
-  std::vector<Moment> instants_;
+  std::vector<TimeStep> instants_;
   std::vector<TrackColumns> tracks_;
   std::vector<BodyColumns> bodies_;
-  std::vector<SeenPoint> seen_;
-  std::vector<std::size_t> seen_end_;  // by instant; empty where nothing seen is kept
+  std::vector<ImageObservation> detected_;
+  std::vector<std::size_t> observed_end_;  // by instant; empty if nothing seen is kept
 };
 
 /// Who is there at one instant after the other, without copying samples. Cost: linear in the rows, and at each instant in the
@@ -303,9 +303,9 @@ class InstantsOf {
   std::vector<std::size_t> body_rows_;  // of each body, the next
 };
 
-/// The usual step between instants as a rate: the median, so that gaps and a slip in one number change nothing. Nothing for fewer
+/// The typical step between instants as a rate: the median, so that gaps and a slip in one number change nothing. Nothing for fewer
 /// than two instants.
-std::optional<double> median_rate_hz(std::span<const Recording::Moment> instants);
+std::optional<double> median_rate_hz(std::span<const Recording::TimeStep> instants);
 
 /// The same recording with its times by another clock. Both clocks are of the header's rig. Throws Error if there is no rig, or if
 /// one of them is not specified.

@@ -42,7 +42,7 @@ RecordingSummary summary_of(RecordingReader& reader) {
     }
     summary.last_index = instant->index;
     summary.last_time = instant->time;
-    summary.seen += static_cast<std::int64_t>(instant->seen.size());
+    summary.detected += static_cast<std::int64_t>(instant->detected.size());
     summary.samples += static_cast<std::int64_t>(instant->samples.size());
     for (const TrackName& name : instant->named) counts[name.id].name = name;
     for (const Sample& sample : instant->samples) {

@@ -24,7 +24,7 @@ class RecordingReader {
   virtual std::vector<TrackName> tracks() const = 0;
   virtual std::vector<Edit> edits() const { return {}; }
   virtual std::optional<std::int64_t> head() const { return std::nullopt; }
-  /// From the first instant to the last; nothing where only reading would tell. For progress.
+  /// From the first instant to the last; nothing if only reading would tell. For progress.
   virtual std::optional<std::int64_t> instant_count() const { return std::nullopt; }
 
   /// The next instant, by growing index; nothing at the end. `Instant::named` holds only what `tracks` did not have before. Throws
@@ -65,8 +65,8 @@ struct RecordingSummary {
     void add(std::int64_t index, Provenance provenance);
   };
 
-  std::int64_t instants = 0, seen = 0, samples = 0;
-  std::optional<std::int64_t> first_index, last_index;  ///< nothing where there is no instant
+  std::int64_t instants = 0, detected = 0, samples = 0;
+  std::optional<std::int64_t> first_index, last_index;  ///< nothing if there is no instant
   std::optional<Timestamp> first_time, last_time;
   std::vector<TrackCount> tracks;  ///< by id
   bool complete = false;           ///< false while it is being written, and where writing was cut off

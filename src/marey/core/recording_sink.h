@@ -10,13 +10,13 @@ namespace marey {
 /// Keeps what a run yields in memory.
 class RecordingSink final : public Sink {
  public:
-  /// `recording` must outlive the sink; it is begun anew.
+  /// `recording` must outlive the sink; it is begun again.
   explicit RecordingSink(Recording& recording) : recording_(recording) {}
 
   std::string name() const override { return "a recording in memory"; }
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     recording_ = Recording(header);
-    return {.seen = true};
+    return {.detected = true};
   }
   void write(const Instant& instant) override { recording_.add(instant); }
   void finish() override {}

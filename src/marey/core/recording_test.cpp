@@ -29,7 +29,7 @@ Sample sample_of(int track, double x) {
 void expect_same(const Instant& is, const Instant& was) {
   EXPECT_EQ(is.index, was.index);
   EXPECT_EQ(is.time, was.time);
-  EXPECT_EQ(is.seen, was.seen);
+  EXPECT_EQ(is.detected, was.detected);
   ASSERT_EQ(is.samples.size(), was.samples.size()) << was.index;
   for (std::size_t i = 0; i < was.samples.size(); ++i) {
     const Sample &a = is.samples[i], &b = was.samples[i];
@@ -67,7 +67,7 @@ TEST(Recording, GivesBackWhatWasPutIn) {
       sample.cameras = static_cast<CameraMask>(i);
       instant.samples.push_back(sample);
     }
-    if (i > 4) instant.seen.push_back({CameraId{1}, {i + 0.5, 2}, 0.1, {}, TrackId{1}});
+    if (i > 4) instant.detected.push_back({CameraId{1}, {i + 0.5, 2}, 0.1, {}, TrackId{1}});
     given.push_back(instant);
     recording.add(instant);
   }
@@ -183,14 +183,14 @@ TEST(Recording, InstantsMustGrow) {
 }
 
 TEST(Recording, RateIsTheMedianStep) {
-  std::vector<Recording::Moment> moments;
-  for (int i = 0; i < 11; ++i) moments.push_back({i, timestamp_from_seconds(0.04 * i)});
-  moments.push_back({999'999'999, timestamp_from_seconds(1)});
-  EXPECT_NEAR(median_rate_hz(moments).value(), 25, 1e-6);
-  EXPECT_FALSE(median_rate_hz(std::span(moments).first(1)));
+  std::vector<Recording::TimeStep> time_steps;
+  for (int i = 0; i < 11; ++i) time_steps.push_back({i, timestamp_from_seconds(0.04 * i)});
+  time_steps.push_back({999'999'999, timestamp_from_seconds(1)});
+  EXPECT_NEAR(median_rate_hz(time_steps).value(), 25, 1e-6);
+  EXPECT_FALSE(median_rate_hz(std::span(time_steps).first(1)));
 }
 
-TEST(Recording, WhoNeedsMetresRefusesPixels) {
+TEST(Recording, RejectsPixelsIfMetresRequired) {
   const Recording image(header_in(FrameOfReference::Kind::image)), space(header_in(FrameOfReference::Kind::space));
   EXPECT_THROW(require_metric(image, "measuring"), Error);
   EXPECT_NO_THROW(require_metric(space, "measuring"));
@@ -213,12 +213,12 @@ TEST(InstantRows, AreThoseThatAreThere) {
   for (const std::size_t step : {1, 3, 40}) {
     InstantRows rows(recording);
     for (std::size_t instant = 0; instant < 200; instant += step) {
-      std::vector<std::pair<std::size_t, std::size_t>> found, wanted;
+      std::vector<std::pair<std::size_t, std::size_t>> found, required;
       for (const auto& [track, row] : rows.at(instant)) found.emplace_back(track, row);
       for (std::size_t t = 0; t < recording.tracks().size(); ++t) {
-        if (const auto row = recording.tracks()[t].row_at(static_cast<std::int32_t>(instant))) wanted.emplace_back(t, *row);
+        if (const auto row = recording.tracks()[t].row_at(static_cast<std::int32_t>(instant))) required.emplace_back(t, *row);
       }
-      EXPECT_EQ(found, wanted) << instant << " by " << step;
+      EXPECT_EQ(found, required) << instant << " by " << step;
     }
   }
 }

@@ -52,7 +52,7 @@ void fit_to_size(RigCamera& camera, cv::Size found) {
   const bool same_shape = std::abs(camera.size->height * factor - found.height) <= std::max(1.0, factor);
   if (!same_shape) {
     throw Error(
-        "camera \"{}\": its pictures are {} x {}, but it is calibrated for {} x {}, which has another shape; calibrate it at {} x "
+        "camera \"{}\": its images are {} x {}, but it is calibrated for {} x {}, which has another shape; calibrate it at {} x "
         "{}",
         camera.name, found.width, found.height, camera.size->width, camera.size->height, found.width, found.height);
   }

@@ -14,14 +14,14 @@
 
 namespace marey {
 
-/// One camera of a rig: where its pictures come from, and as much of its calibration as is known so far.
+/// One camera of a rig: where its images come from, and as much of its calibration as is known so far.
 struct RigCamera {
   std::string name;                            ///< unique within the rig, not empty
-  std::string source;                          ///< a path as `open_source` takes it; empty where there is none
-  std::string detections;                      ///< in place of pictures, what another program detected; empty where there is none
-  std::optional<cv::Rect> region;              ///< px: the camera's part of a larger picture; pixels count from its corner
+  std::string source;                          ///< a path as `open_source` takes it; empty if there is none
+  std::string detections;                      ///< in place of images, what another program detected; empty if there is none
+  std::optional<cv::Rect> region;              ///< px: the camera's part of a larger image; pixels count from its corner
   std::optional<double> rate_hz;               ///< in place of what the source's header says
-  std::optional<double> offset_s;              ///< added to this camera's times gives the rig's, s; nothing where nobody said
+  std::optional<double> offset_s;              ///< added to this camera's times gives the rig's, s; nothing if no person said
   std::optional<cv::Size> size;                ///< px
   std::optional<geometry::Lens> lens;          ///< valid for `size`
   std::optional<Rigid3> camera_from_world;     ///< m
@@ -29,10 +29,10 @@ struct RigCamera {
   std::optional<double> rms_px;                ///< 2-D reprojection error of its calibration
   std::optional<double> exposure_ms = {};      ///< of a live camera; nothing: as its source or the camera itself has it
   std::optional<double> gain = {};             ///< likewise, in the camera's own unit
-  std::optional<double> threshold = {};        ///< grey level that a marker's pixels pass; nothing: from the picture's noise
-  std::vector<Mask> masks = {};                ///< px: parts of its picture in which there is no marker: lamps, reflections
+  std::optional<double> threshold = {};        ///< grey level that a marker's pixels pass; nothing: from the image's noise
+  std::vector<Mask> masks = {};                ///< px: parts of its image in which there is no marker: lamps, reflections
 
-  /// Everything that projecting needs; nothing where lens, pose or size is missing.
+  /// Everything that projecting needs; nothing if lens, pose or size is missing.
   std::optional<Camera> camera() const;
 
   /// How it sees the ground, `surface` being its rig's: by its camera, else by its homography, else not at all.
@@ -52,7 +52,7 @@ struct Rig {
 
   /// Ground coordinates as the user has them from the world's (x, y, 1): a reflection where the user's frame is left-handed.
   std::optional<Matrix<3>> ground_from_world;
-  geometry::GroundSurface ground = {};  ///< in the world; level where nobody knows better
+  geometry::GroundSurface ground = {};  ///< in the world; level where no person knows better
   std::optional<Calibration> calibration;
   std::vector<RigCamera> cameras;
 };
@@ -66,9 +66,9 @@ std::string camera_names(const Rig& rig);
 /// The camera of that name. Throws Error, with the names that there are, where there is none.
 RigCamera& camera_named(Rig& rig, const std::string& name);
 
-/// Makes a camera's calibration hold for pictures of `found` px: it is scaled, and its masks with it, where the shapes agree within
-/// a pixel. A camera without a size gets this one; so does one whose size is this one filled up to multiples of 16 px, as codecs do at
-/// the right and at the bottom. Throws Error where the shapes differ: then the camera has to be calibrated at that size.
+/// Makes a camera's calibration hold for images of `found` px: it is scaled, and its masks with it, where the shapes agree within
+/// a pixel. A camera without a size gets this one; so does one whose size is this one filled up to multiples of 16 px, as codecs do
+/// at the right and at the bottom. Throws Error if the shapes differ: then the camera has to be calibrated at that size.
 void fit_to_size(RigCamera& camera, cv::Size found);
 
 }  // namespace marey

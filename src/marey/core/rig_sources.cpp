@@ -11,7 +11,7 @@ void set_sources(Rig& rig, std::span<const std::string> pairs) {
   for (const std::string& pair : pairs) {
     const auto sign = pair.find('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == pair.size()) {
-      throw Error("\"{}\" is no source; write CAMERA=FILE with one of the rig's cameras: {}", pair, camera_names(rig));
+      throw Error("\"{}\" is not a source; write CAMERA=FILE with one of the rig's cameras: {}", pair, camera_names(rig));
     }
     RigCamera& camera = camera_named(rig, pair.substr(0, sign));
     if (!given.insert(camera.name).second) throw Error("camera \"{}\" is given two sources; keep one of them", camera.name);

@@ -38,9 +38,9 @@ TEST(FitToSize, ACalibrationIsScaledWhereTheShapeFits) {
   EXPECT_THROW(fit_to_size(left, {1440, 1080}), Error);
 
   RigCamera& far = rig.cameras[1];
-  const Vector<2> ground = far.ground_view({})->place({100.25, 300})->ground;
+  const Vector<2> ground = far.ground_view({})->location({100.25, 300})->ground;
   fit_to_size(far, {1280, 960});
-  EXPECT_LT((far.ground_view({})->place({200.5 + 0.5, 600.5})->ground - ground).norm(), 1e-12);
+  EXPECT_LT((far.ground_view({})->location({200.5 + 0.5, 600.5})->ground - ground).norm(), 1e-12);
 }
 
 TEST(FitToSize, MasksCoverWhatTheyCovered) {

@@ -18,7 +18,7 @@ double unwound(double angle, double near) {
 
 Rigid3 moved_along(const JointAxis& axis, double amount) {
   Rigid3 move;
-  if (axis.turns) {
+  if (axis.rotations) {
     move.rotation = Eigen::AngleAxisd(amount, axis.axis).toRotationMatrix();
   } else {
     move.translation = amount * axis.axis;
@@ -118,16 +118,16 @@ std::optional<std::pair<double, double>> CoordinateFunction::line() const {
   return std::pair(factor_ * slope, factor_ * offset);
 }
 
-std::optional<int> Skeleton::segment(std::string_view wanted) const {
+std::optional<int> Skeleton::segment(std::string_view required) const {
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (segments[i].name == wanted) return static_cast<int>(i);
+    if (segments[i].name == required) return static_cast<int>(i);
   }
   return std::nullopt;
 }
 
-std::optional<int> Skeleton::coordinate(std::string_view wanted) const {
+std::optional<int> Skeleton::coordinate(std::string_view required) const {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (coordinates[i].name == wanted) return static_cast<int>(i);
+    if (coordinates[i].name == required) return static_cast<int>(i);
   }
   return std::nullopt;
 }
@@ -148,19 +148,19 @@ void Skeleton::couple(std::span<double> values) const {
 }
 
 std::string_view kind_of(const Skeleton& skeleton, const Joint& joint) {
-  int turns = 0, shifts = 0;
+  int rotations = 0, shifts = 0;
   for (const JointAxis& axis : joint.axes) {
     if (!axis.coordinate) continue;
     const auto line = axis.amount.line();
     const Coordinate& coordinate = skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)];
-    if (!line || coordinate.coupling || coordinate.turns != axis.turns) return "custom";
+    if (!line || coordinate.coupling || coordinate.rotations != axis.rotations) return "custom";
     if (line->first == 0 || coordinate.locked) continue;
-    ++(axis.turns ? turns : shifts);
+    ++(axis.rotations ? rotations : shifts);
   }
-  if (shifts == 3 && turns == 3) return "free";
+  if (shifts == 3 && rotations == 3) return "free";
   if (shifts > 0) return "custom";
   constexpr std::array<std::string_view, 4> kinds = {"weld", "hinge", "universal", "ball"};
-  return turns <= 3 ? kinds[static_cast<std::size_t>(turns)] : "custom";
+  return rotations <= 3 ? kinds[static_cast<std::size_t>(rotations)] : "custom";
 }
 
 std::vector<Rigid3> pose_of(const Skeleton& skeleton, std::span<const double> coordinates) {
@@ -178,7 +178,7 @@ std::vector<Rigid3> pose_of(const Skeleton& skeleton, std::span<const double> co
   return world_from;
 }
 
-Vector<3> turns_about(const Matrix<3>& rotation, const Matrix<3>& axes, const Vector<3>& near) {
+Vector<3> rotations_about(const Matrix<3>& rotation, const Matrix<3>& axes, const Vector<3>& near) {
   // Seen along its own axes, which may be left-handed, every turn is one about x, y or z.
   const double hand = axes.determinant() < 0 ? -1 : 1;
   const Matrix<3> r = axes.transpose() * rotation * axes;
@@ -204,9 +204,9 @@ Vector<3> turns_about(const Matrix<3>& rotation, const Matrix<3>& axes, const Ve
 
 std::vector<Matrix<3>> rest_of(const Skeleton& skeleton) {
   const std::vector<double> rest = skeleton.rest();
-  std::vector<Matrix<3>> turned;
-  for (const Rigid3& pose : pose_of(skeleton, rest)) turned.push_back(pose.rotation);
-  return turned;
+  std::vector<Matrix<3>> rotated;
+  for (const Rigid3& pose : pose_of(skeleton, rest)) rotated.push_back(pose.rotation);
+  return rotated;
 }
 
 Rigid3 body_pose(const Rigid3& world_from_segment, const Matrix<3>& rest) {

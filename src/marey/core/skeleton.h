@@ -32,7 +32,7 @@ class CoordinateFunction {
   /// points.
   static CoordinateFunction spline(std::vector<double> x, std::vector<double> y);
 
-  /// The same, so many times.
+  /// The same, this many times.
   CoordinateFunction times(double factor) const;
   double value(double x) const;
   double slope(double x) const;
@@ -56,7 +56,7 @@ struct Coordinate {
   };
 
   std::string name;
-  bool turns = true;                      ///< an angle; otherwise a shift
+  bool rotations = true;                  ///< an angle; otherwise a shift
   double rest = 0;                        ///< where it is when the skeleton rests
   std::optional<double> lowest, highest;  ///< what the joint allows
   bool locked = false;                    ///< it stays at `rest`
@@ -67,7 +67,7 @@ struct Coordinate {
 
 /// One turn or shift of a joint.
 struct JointAxis {
-  bool turns = true;
+  bool rotations = true;
   Vector<3> axis = Vector<3>::UnitZ();  ///< of length 1
   CoordinateFunction amount;
   std::optional<int> coordinate;  ///< nothing: the amount at 0, always
@@ -126,7 +126,7 @@ std::vector<Rigid3> pose_of(const Skeleton& skeleton, std::span<const double> co
 /// A turn as three turns about axes that are perpendicular to each other, one after the other: R = R(a₁, θ₁)·R(a₂, θ₂)·R(a₃, θ₃),
 /// rad. Of all triples that say the same the one nearest to `near`; where the second turn brings the first and third axis together,
 /// the first stays as it is in `near`.
-Vector<3> turns_about(const Matrix<3>& rotation, const Matrix<3>& axes, const Vector<3>& near);
+Vector<3> rotations_about(const Matrix<3>& rotation, const Matrix<3>& axes, const Vector<3>& near);
 
 /// The skeleton as a recording holds it: its segments, with axes that are parallel to the world's at rest. Ids count from 1.
 std::vector<Body> bodies_of(const Skeleton& skeleton);

@@ -47,7 +47,7 @@ TEST(TurnsAbout, GiveTheRotationBackInAnyOrderAndHand) {
       for (int i = 0; i < 3; ++i) r = r * Eigen::AngleAxisd(by[i], axes.col(i)).toRotationMatrix();
       return r;
     };
-    const Vector<3> found = turns_about(rotation(angles), axes, angles);
+    const Vector<3> found = rotations_about(rotation(angles), axes, angles);
     EXPECT_LT((rotation(found) - rotation(angles)).norm(), 1e-7);
     if (round % 10 != 0 && std::abs(std::cos(angles[1])) > 1e-3) {
       EXPECT_LT((found - angles).norm(), 1e-7) << "the triple that is nearest is itself";

@@ -21,7 +21,7 @@ struct SourceInfo {
   std::optional<std::int64_t> frame_count;  ///< an estimate, for progress only
 };
 
-/// Where frames come from: video files, folders of pictures, cameras, the simulator.
+/// Where frames come from: video files, folders of images, cameras, the simulator.
 class Source {
  public:
   virtual ~Source() = default;
@@ -29,10 +29,10 @@ class Source {
   virtual const SourceInfo& info() const = 0;
 
   /// The next frame, in order, its time later than the last one's; nothing at the end. Never throws for a file that breaks
-  /// off or a frame that cannot be decoded: what was lost is told by `warnings`.
+  /// off or a frame that cannot be decoded: what was lost is reported by `warnings`.
   virtual std::optional<Frame> next() = 0;
 
-  /// What went wrong so far without stopping the source, one sentence each: where a file breaks off, what was left out.
+  /// What went wrong so far without stopping the source, one sentence each: where a file breaks off, what was omitted.
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
@@ -46,9 +46,9 @@ class LiveSource {
 
   /// What has come since the last call, of that the last few, in order; their times are by the run's clock. Never waits.
   virtual std::vector<CameraFrame> arrived() = 0;
-  /// Whether it is there now. One that is not is looked for again, without end.
+  /// Whether it is there now. One that is not is searched for again, without end.
   virtual bool connected() const { return true; }
-  /// Pictures of another size are not taken from now on.
+  /// Images of another size are not taken from now on.
   virtual void take_only(cv::Size /*size*/) {}
   /// Whether nothing will come any more.
   virtual bool ended() const = 0;

@@ -11,7 +11,7 @@ namespace marey {
 class StageTimes {
  public:
   void add(double seconds) {
-    const double bin = seconds > kLeast ? std::log(seconds / kLeast) / kStep : 0;
+    const double bin = seconds > kMinValue ? std::log(seconds / kMinValue) / kStep : 0;
     ++counts_[static_cast<std::size_t>(std::min<double>(bin, kBins - 1))];
     ++total_;
   }
@@ -19,20 +19,20 @@ class StageTimes {
   std::int64_t count() const { return total_; }
 
   /// s that `share` in (0, 1] of the frames did not take longer than, to 5 %; 0 where there was none.
-  double quantile(double share) const {
+  double quantile(double fraction) const {
     if (total_ == 0) return 0;
-    const auto wanted = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(total_)));
+    const auto required = static_cast<std::int64_t>(std::ceil(fraction * static_cast<double>(total_)));
     std::int64_t below = 0;
     for (std::size_t i = 0; i < kBins; ++i) {
       below += counts_[i];
-      if (below >= wanted) return kLeast * std::exp(kStep * (static_cast<double>(i) + 0.5));
+      if (below >= required) return kMinValue * std::exp(kStep * (static_cast<double>(i) + 0.5));
     }
-    return kLeast * std::exp(kStep * kBins);
+    return kMinValue * std::exp(kStep * kBins);
   }
 
  private:
   static constexpr std::size_t kBins = 440;
-  static constexpr double kLeast = 1e-7;  // s
+  static constexpr double kMinValue = 1e-7;  // s
   static constexpr double kStep = 0.05;
 
   std::array<std::int64_t, kBins> counts_{};

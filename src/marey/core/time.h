@@ -11,7 +11,7 @@ struct TakeClock {
   using rep = duration::rep;
   using period = duration::period;
   using time_point = std::chrono::time_point<TakeClock>;
-  static constexpr bool is_steady = true;
+  static constexpr bool is_stationary = true;
 };
 
 using Duration = TakeClock::duration;
@@ -29,7 +29,7 @@ inline Duration duration_from_seconds(double value) {
   return Duration(std::llround(value * 1e9));
 }
 /// Hz: what is counted at where neither a file nor its user tells a rate.
-inline constexpr double kUsualRate = 25;
+inline constexpr double kDefaultRate = 25;
 
 inline Timestamp timestamp_from_seconds(double value) {
   return Timestamp(duration_from_seconds(value));

@@ -29,7 +29,7 @@ std::string to_string(const TimeBase& base, const Rig& rig) {
 }
 
 Duration rig_time_offset(const TimeBase& base, const Rig& rig) {
-  if (base.kind == TimeBase::Kind::unspecified) throw Error("the recording does not state whose clock its times follow");
+  if (base.kind == TimeBase::Kind::unspecified) throw Error("the recording does not specify whose clock its times follow");
   if (base.kind == TimeBase::Kind::rig) return Duration{};
   return duration_from_seconds(camera_of(base, rig).offset_s.value_or(0));
 }

@@ -13,7 +13,7 @@ namespace marey {
 
 struct TimeBase {
   enum class Kind : std::uint8_t {
-    unspecified,  ///< the source does not state it
+    unspecified,  ///< the source does not specify it
     rig,          ///< the rig's: a camera's times with its `offset_s` added
     camera,       ///< one camera's own
   };

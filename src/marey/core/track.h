@@ -16,12 +16,12 @@ namespace marey {
 template <int D>
 struct Track {
   TrackId id{};
-  std::string label;  ///< empty where none was given
+  std::string label;  ///< empty if none was given
   Vector<D> position = Vector<D>::Zero();
   Vector<D> velocity = Vector<D>::Zero();
   Matrix<D> covariance = Matrix<D>::Identity();  ///< of `position`
   Provenance provenance = Provenance::measured;
-  std::optional<int> observation;  ///< index of what it was given of this instant's observations; nothing where it is predicted
+  std::optional<int> observation;  ///< index of what it was given of this instant's observations; nothing if it is predicted
   bool confirmed = true;           ///< false while evidence is still gathered that there is a target at all
   std::optional<Box> box;          ///< px, where the target has an extent in the image
   double score = 1;                ///< of the observation behind it, in [0, 1]

@@ -12,7 +12,7 @@ namespace marey {
 /// A recording's tracks have its header's kind, unless they are given one of their own. Labels are free text: they do not imply a
 /// kind.
 enum class TrackKind : std::uint8_t {
-  unspecified,  ///< the source does not state it
+  unspecified,  ///< the source does not specify it
   person,
   ball,  ///< among people on the ground: its positions have heights, theirs do not
   marker,

@@ -15,7 +15,7 @@ class TrackNames {
     for (const TrackName& name : named) names_[name.id] = name;
   }
 
-  /// Empty where the track has none.
+  /// Empty if the track has none.
   const std::string& label(TrackId id) const { return of(id).label; }
   const std::string& team(TrackId id) const { return of(id).team; }
   const TrackName& of(TrackId id) const {

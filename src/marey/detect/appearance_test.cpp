@@ -18,8 +18,8 @@ struct Scene {
 
   explicit Scene(int height, int left = 100, int top = 40) : bgr(400, 301, CV_8UC3, grass), mask(400, 301, CV_8UC1, cv::Scalar(0)) {
     const int width = height * 2 / 5;
-    const auto part = [&](double from, double to, double share, const cv::Scalar& colour) {
-      const int inset = static_cast<int>(width * (1 - share) / 2);
+    const auto part = [&](double from, double to, double fraction, const cv::Scalar& colour) {
+      const int inset = static_cast<int>(width * (1 - fraction) / 2);
       const cv::Rect rect(left + inset, top + static_cast<int>(from * height), width - 2 * inset,
                           static_cast<int>(to * height) - static_cast<int>(from * height));
       bgr(rect).setTo(colour);
@@ -37,7 +37,7 @@ struct Scene {
     person.box = {static_cast<double>(left), static_cast<double>(top), static_cast<double>(width), static_cast<double>(height)};
   }
 
-  std::optional<Appearance> seen() const { return upper_body(Picture::from_bgr(bgr), {.mask = mask}, {&person, 1}, 0); }
+  std::optional<Appearance> detected() const { return upper_body(Image::from_bgr(bgr), {.mask = mask}, {&person, 1}, 0); }
 };
 
 cv::Vec3f lab_of(const cv::Scalar& bgr) {
@@ -48,40 +48,40 @@ cv::Vec3f lab_of(const cv::Scalar& bgr) {
 
 TEST(UpperBody, IsTheShirtsColourFarAndNear) {
   for (const int height : {30, 60, 101, 300}) {
-    const auto seen = Scene(height).seen();
-    ASSERT_TRUE(seen) << height;
+    const auto detected = Scene(height).detected();
+    ASSERT_TRUE(detected) << height;
     const cv::Vec3f truth = lab_of(shirt);
-    EXPECT_NEAR(seen->lightness, truth[0], 5) << height;
-    EXPECT_NEAR(seen->a, truth[1], 6) << height;
-    EXPECT_NEAR(seen->b, truth[2], 6) << height;
-    EXPECT_LT(seen->deviation, 6) << height;
-    EXPECT_GE(seen->deviation, 2) << height;
+    EXPECT_NEAR(detected->lightness, truth[0], 5) << height;
+    EXPECT_NEAR(detected->a, truth[1], 6) << height;
+    EXPECT_NEAR(detected->b, truth[2], 6) << height;
+    EXPECT_LT(detected->deviation, 6) << height;
+    EXPECT_GE(detected->deviation, 2) << height;
   }
 }
 
-TEST(UpperBody, WhatIsNotForegroundIsNotLookedAt) {
+TEST(UpperBody, IgnoresBackgroundPixels) {
   Scene scene(100);
   scene.bgr(cv::Rect(100, 40, 20, 100)).setTo(cv::Scalar(0, 0, 255));
   scene.mask(cv::Rect(100, 40, 20, 100)).setTo(0);
-  const auto seen = scene.seen();
-  ASSERT_TRUE(seen);
-  EXPECT_NEAR(seen->b, lab_of(shirt)[2], 6);
+  const auto detected = scene.detected();
+  ASSERT_TRUE(detected);
+  EXPECT_NEAR(detected->b, lab_of(shirt)[2], 6);
 }
 
 TEST(UpperBody, NoColourIsToldWhereNoneIsSeen) {
-  EXPECT_FALSE(Scene(8).seen()) << "too small";
-  EXPECT_FALSE(Scene(200, 100, 0).seen()) << "the head may be outside the picture";
-  Scene nobody(100);
-  nobody.mask.setTo(0);
-  EXPECT_FALSE(nobody.seen());
+  EXPECT_FALSE(Scene(8).detected()) << "too small";
+  EXPECT_FALSE(Scene(200, 100, 0).detected()) << "the head may be outside the image";
+  Scene no_person(100);
+  no_person.mask.setTo(0);
+  EXPECT_FALSE(no_person.detected());
   const Scene grey(100);
   cv::Mat luma;
   cv::cvtColor(grey.bgr, luma, cv::COLOR_BGR2GRAY);
-  EXPECT_FALSE(upper_body(Picture(luma), {.mask = grey.mask}, {&grey.person, 1}, 0));
-  EXPECT_FALSE(upper_body(Picture::from_bgr(grey.bgr), {}, {&grey.person, 1}, 0));
+  EXPECT_FALSE(upper_body(Image(luma), {.mask = grey.mask}, {&grey.person, 1}, 0));
+  EXPECT_FALSE(upper_body(Image::from_bgr(grey.bgr), {}, {&grey.person, 1}, 0));
 }
 
-TEST(UpperBody, WhoIsBehindAnotherIsSeenBesideHim) {
+TEST(UpperBody, FindsPersonPartlyOccluded) {
   Scene scene(100);
   const cv::Rect before(124, 50, 40, 100);
   scene.bgr(before).setTo(cv::Scalar(0, 0, 255));
@@ -89,9 +89,9 @@ TEST(UpperBody, WhoIsBehindAnotherIsSeenBesideHim) {
   std::array<Detection, 2> both = {scene.person, scene.person};
   both[0].group = both[1].group = 3;
   both[1].box = {124, 50, 40, 100};
-  const Picture picture = Picture::from_bgr(scene.bgr);
-  const auto behind = upper_body(picture, {.mask = scene.mask}, both, 0);
-  const auto in_front = upper_body(picture, {.mask = scene.mask}, both, 1);
+  const Image image = Image::from_bgr(scene.bgr);
+  const auto behind = upper_body(image, {.mask = scene.mask}, both, 0);
+  const auto in_front = upper_body(image, {.mask = scene.mask}, both, 1);
   ASSERT_TRUE(behind && in_front);
   EXPECT_NEAR(behind->b, lab_of(shirt)[2], 6);
   EXPECT_GT(in_front->a, 60);
@@ -103,8 +103,8 @@ TEST(UpperBody, BoxesBeyondThePictureAreNoTrouble) {
   for (const Box& box : {Box{-50, 20, 60, 100}, Box{290, 390, 60, 100}, Box{5000, 5000, 10, 10}, Box{0, 20, 301, 380}}) {
     Detection person;
     person.box = box;
-    const auto seen = upper_body(Picture::from_bgr(scene.bgr), {.mask = scene.mask}, {&person, 1}, 0);
-    EXPECT_TRUE(!seen || std::isfinite(seen->deviation));
+    const auto detected = upper_body(Image::from_bgr(scene.bgr), {.mask = scene.mask}, {&person, 1}, 0);
+    EXPECT_TRUE(!detected || std::isfinite(detected->deviation));
   }
 }
 

@@ -16,7 +16,7 @@ namespace marey::detect {
 
 struct Detections {
   std::vector<Detection> detections;
-  Foreground foreground;  ///< empty where the detector has no background model
+  Foreground foreground;  ///< empty if the detector has no background model
   bool searched = true;   ///< false: a frame that the detector skipped; nothing follows from it
 };
 
@@ -28,7 +28,7 @@ struct DetectorTraits {
   bool knows_body_size = false;  ///< whether `body_at` answers, if not from the first frame on
 };
 
-/// What was seen and not reported, or reported with doubt, since the beginning; nothing where a detector does not count it.
+/// What was seen and not reported, or reported with doubt, since the beginning; nothing if a detector does not count it.
 struct DetectionCounts {
   std::optional<std::int64_t> noise;    ///< regions too small to be what is searched for, or a part of it
   std::optional<std::int64_t> misfits;  ///< regions that what is searched for does not explain
@@ -55,13 +55,13 @@ class Detector {
   /// For the summary of a run.
   virtual DetectionCounts detection_counts() const { return {}; }
 
-  /// The empty scene as a background model has it; empty where there is none that tells.
-  virtual Picture scene() const { return {}; }
+  /// The empty scene as a background model has it; empty if there is none that tells.
+  virtual Image scene() const { return {}; }
 
-  /// The picture shows the scene where `mask` (CV_8UC1, its upper left pixel at `corner`) is not 0: what was taken for it has gone.
-  virtual void believe(const Picture& /*picture*/, const cv::Mat& /*mask*/, cv::Point /*corner*/) {}
+  /// The image shows the scene where `mask` (CV_8UC1, its upper left pixel at `corner`) is not 0: what was taken for it has gone.
+  virtual void trust(const Image& /*image*/, const cv::Mat& /*mask*/, cv::Point /*corner*/) {}
 
-  /// The box, px, of a person whose feet are at this pixel; nothing where that is not known.
+  /// The box, px, of a person whose feet are at this pixel; nothing if that is not known.
   virtual std::optional<Box> body_at(const Vector<2>& /*foot*/) const { return std::nullopt; }
 };
 

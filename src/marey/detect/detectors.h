@@ -12,7 +12,7 @@
 
 namespace marey::detect {
 
-/// The register of detectors that look at pictures: which one, with its parameters. A new one is named here and made in
+/// The register of detectors that look at images: which one, with its parameters. A new one is named here and made in
 /// detectors.cpp, which does not compile before. Detections that another program found come through a source (pipeline).
 using DetectorOptions = std::variant<people::PeopleDetectorOptions, markers::MarkerOptions, network::NetworkDetectorOptions>;
 

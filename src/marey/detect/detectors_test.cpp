@@ -12,7 +12,7 @@ Frame frame_of(const cv::Mat& pixels, int index) {
   Frame frame;
   frame.index = index;
   frame.time = timestamp_from_seconds(index / 25.0);
-  frame.picture = Picture(pixels);
+  frame.image = Image(pixels);
   return frame;
 }
 

@@ -28,19 +28,19 @@ struct Region {
 };
 
 struct RegionOptions {
-  double min_area = 1;                                        ///< px²; smaller regions are left out
+  double min_area = 1;                                        ///< px²; smaller regions are omitted
   double max_hole = std::numeric_limits<double>::infinity();  ///< px²; larger holes stay open
 };
 
 /// The regions of `mask` (CV_8UC1, zero is background), ordered by their first pixel, row by row. A hole is background that
-/// is cut off from the border of the picture by regions, touching by edges only; it is filled.
+/// is cut off from the border of the image by regions, touching by edges only; it is filled.
 std::vector<Region> find_regions(const cv::Mat& mask, const RegionOptions& options = {});
 
 /// A region of the pixels in `runs`, which are in order and may come from several regions that were joined.
 Region region_of(std::vector<PixelRun> runs);
 
 /// Of the pixels in `runs`, which are in order, the part with the largest area whose pixels touch one another, by an edge or a
-/// corner; the first of several. Empty where `runs` is.
+/// corner; the first of several. Empty if `runs` is.
 std::vector<PixelRun> largest_part(std::span<const PixelRun> runs);
 
 /// The closed polygon round the pixels of a region, along their edges: corners lie half a pixel off the integers, each once,

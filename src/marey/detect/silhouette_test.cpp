@@ -133,7 +133,7 @@ TEST(Silhouette, SmallRegionsAndLargeHolesAreLeftAsAsked) {
   EXPECT_TRUE(find_regions(cv::Mat()).empty());
 }
 
-TEST(Silhouette, OnePixelIsASquareRoundItsCentre) {
+TEST(Silhouette, PixelIsSquareAroundCentre) {
   const std::vector<PixelRun> runs = {{3, 5, 6}};
   const std::vector<Vector<2>> outline = outline_of(runs);
   ASSERT_EQ(outline.size(), 4U);

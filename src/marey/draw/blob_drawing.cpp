@@ -10,7 +10,7 @@
 namespace marey::draw {
 namespace {
 
-constexpr Colour kSure{60, 230, 80}, kDoubtful{255, 150, 40};
+constexpr Colour kSure{60, 230, 80}, kAmbiguous{255, 150, 40};
 constexpr int kRingCorners = 24;
 
 void add_ring(std::vector<Canvas::Stroke>& strokes, const Vector<2>& centre, double radius) {
@@ -24,20 +24,20 @@ void add_ring(std::vector<Canvas::Stroke>& strokes, const Vector<2>& centre, dou
 
 }  // namespace
 
-Picture draw_blobs(const Picture& picture, std::span<const Detection> blobs) {
+Image draw_blobs(const Image& image, std::span<const Detection> blobs) {
   // Cameras of 12 bits fill a sixteenth of the range of 16.
-  Canvas canvas(with_white(picture, lightest(picture)));
-  const double unit = std::max(1.0, picture.size().height / 720.0);
+  Canvas canvas(with_white(image, lightest(image)));
+  const double unit = std::max(1.0, image.size().height / 720.0);
   for (const bool sure : {false, true}) {
     std::vector<cv::Point2f> centres;
     for (const Detection& blob : blobs) {
       if ((blob.score >= 0.5) != sure) continue;
       std::vector<Canvas::Stroke> ring;
       add_ring(ring, blob.centre, std::sqrt(std::max(0.0, blob.area) / std::numbers::pi) + 3 * unit);
-      canvas.strokes(ring, sure ? kSure : kDoubtful, 1.2 * unit);
+      canvas.strokes(ring, sure ? kSure : kAmbiguous, 1.2 * unit);
       centres.emplace_back(static_cast<float>(blob.centre.x()), static_cast<float>(blob.centre.y()));
     }
-    canvas.discs(centres, 0.8 * unit, sure ? kSure : kDoubtful);
+    canvas.discs(centres, 0.8 * unit, sure ? kSure : kAmbiguous);
   }
   return canvas.take();
 }

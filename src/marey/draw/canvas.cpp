@@ -74,27 +74,27 @@ Colour colour_of(const Appearance& appearance) {
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
 }
 
-Picture with_white(const Picture& picture, double white) {
-  if (picture.luma().depth() != CV_16U) return picture;
+Image with_white(const Image& image, double white) {
+  if (image.luma().depth() != CV_16U) return image;
   cv::Mat luma;
-  picture.luma().convertTo(luma, CV_16U, 65535 / std::max(1.0, white));
-  return Picture(luma);
+  image.luma().convertTo(luma, CV_16U, 65535 / std::max(1.0, white));
+  return Image(luma);
 }
 
-double lightest(const Picture& picture) {
-  double most = 0;
-  cv::minMaxLoc(picture.luma(), nullptr, &most);
-  return most;
+double lightest(const Image& image) {
+  double maximum = 0;
+  cv::minMaxLoc(image.luma(), nullptr, &maximum);
+  return maximum;
 }
 
-Canvas::Canvas(const Picture& picture) {
-  const bool full = picture.range() == Picture::Range::full;
-  const double luma_scale = (full ? 219.0 / 255.0 : 1.0) * (picture.luma().depth() == CV_16U ? 1.0 / 257.0 : 1.0);
-  picture.luma().convertTo(luma_, CV_8U, luma_scale, full ? 16 : 0);
-  if (picture.is_colour()) {
+Canvas::Canvas(const Image& image) {
+  const bool full = image.range() == Image::Range::full;
+  const double luma_scale = (full ? 219.0 / 255.0 : 1.0) * (image.luma().depth() == CV_16U ? 1.0 / 257.0 : 1.0);
+  image.luma().convertTo(luma_, CV_8U, luma_scale, full ? 16 : 0);
+  if (image.is_colour()) {
     const double chroma_scale = full ? 224.0 / 255.0 : 1.0;
-    picture.cb().convertTo(cb_, CV_8U, chroma_scale, 128 * (1 - chroma_scale));
-    picture.cr().convertTo(cr_, CV_8U, chroma_scale, 128 * (1 - chroma_scale));
+    image.cb().convertTo(cb_, CV_8U, chroma_scale, 128 * (1 - chroma_scale));
+    image.cr().convertTo(cr_, CV_8U, chroma_scale, 128 * (1 - chroma_scale));
   } else {
     cb_ = cv::Mat((luma_.rows + 1) / 2, (luma_.cols + 1) / 2, CV_8UC1, cv::Scalar(128));
     cr_ = cb_.clone();
@@ -208,8 +208,8 @@ void Canvas::tag(const std::string& text, cv::Point2f corner, const Colour& colo
   lay(stencil, part.tl(), light ? Colour{0, 0, 0} : Colour{255, 255, 255});
 }
 
-Picture Canvas::take() {
-  return {std::move(luma_), std::move(cb_), std::move(cr_), Picture::Range::limited};
+Image Canvas::take() {
+  return {std::move(luma_), std::move(cb_), std::move(cr_), Image::Range::limited};
 }
 
 }  // namespace marey::draw

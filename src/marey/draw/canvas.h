@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/appearance.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 
 namespace marey::draw {
 
@@ -19,16 +19,16 @@ Colour colour_of(int number);
 /// The colour of an appearance.
 Colour colour_of(const Appearance& appearance);
 
-/// Grey of 16 bits brought so that `white` becomes the lightest there is; other pictures as they are.
-Picture with_white(const Picture& picture, double white);
-/// The largest luma of a picture.
-double lightest(const Picture& picture);
+/// Grey of 16 bits brought so that `white` becomes the lightest there is; other images as they are.
+Image with_white(const Image& image, double white);
+/// The largest luma of an image.
+double lightest(const Image& image);
 
-/// A picture of one's own to paint on, in the planes that video is made of: nothing is converted to RGB and back. Coordinates
-/// are pixels; what lies outside is cut off. Full-range pictures are brought to video's range on the way in.
+/// An image of one's own to paint on, in the planes that video is made of: nothing is converted to RGB and back. Coordinates
+/// are pixels; what lies outside is cut off. Full-range images are brought to video's range on the way in.
 class Canvas {
  public:
-  explicit Canvas(const Picture& picture);
+  explicit Canvas(const Image& image);
 
   struct Stroke {
     cv::Point2f from, to;
@@ -44,16 +44,16 @@ class Canvas {
   void text(const std::string& text, cv::Point2f centre, const Colour& colour, double text_height);
   /// What `tag` would cover.
   cv::Rect tag_area(const std::string& text, cv::Point2f corner, double text_height) const;
-  /// Text on a filled tag whose bottom left corner is at `corner`; moved so that the whole tag is within the picture.
+  /// Text on a filled tag whose bottom left corner is at `corner`; moved so that the whole tag is within the image.
   void tag(const std::string& text, cv::Point2f corner, const Colour& colour, double text_height);
 
-  /// The picture as painted so far; colour, limited range. The canvas may not be used afterwards.
-  Picture take();
+  /// The image as painted so far; colour, limited range. The canvas may not be used afterwards.
+  Image take();
 
  private:
-  /// Lays `colour` over the picture where `stencil`, whose top left pixel lies at `at` (even), is above 0 (255 hides the picture).
+  /// Lays `colour` over the image where `stencil`, whose top left pixel lies at `at` (even), is above 0 (255 hides the image).
   void lay(const cv::Mat& stencil, cv::Point at, const Colour& colour);
-  /// An empty stencil, with even corners, that covers `where` as far as it is within the picture.
+  /// An empty stencil, with even corners, that covers `where` as far as it is within the image.
   cv::Rect even_part(const cv::Rect2f& where, double margin) const;
 
   cv::Mat luma_, cb_, cr_;

@@ -11,9 +11,9 @@
 namespace marey::draw {
 namespace {
 
-constexpr double kMostXTicks = 12;  // under a part of a page
+constexpr double kMaxXTicks = 12;  // under a part of a page
 constexpr double kHeight = 520, kLeft = 110, kTop = 44, kPlotHeight = 270, kBaseline = kTop + kPlotHeight;
-// Okabe & Ito's colours, which the colour-blind tell apart as well.
+// Okabe & Ito's colours, which the colour-blind distinguish as well.
 constexpr std::array<const char*, 8> kColours{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
                                               "#56b4e9", "#d55e00", "#999999", "#f0e442"};
 
@@ -31,8 +31,8 @@ struct Axis {
   Plot plot = {};
 
   double y(double value) const {
-    const double share = logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
-    return plot.baseline() - plot.height * std::clamp(share, 0.0, 1.0);
+    const double fraction = logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+    return plot.baseline() - plot.height * std::clamp(fraction, 0.0, 1.0);
   }
 };
 
@@ -97,21 +97,22 @@ class XScale {
   XScale(const LineChart& chart, const Plot& plot) : plot_(plot) {
     for (const auto& line : chart.lines) {
       for (const auto& [x, y] : line.points) {
-        least_ = std::min(least_, x);
-        most_ = std::max(most_, x);
+        minimum_ = std::min(minimum_, x);
+        maximum_ = std::max(maximum_, x);
       }
     }
   }
-  double least() const { return least_; }
-  double most() const { return most_; }
+  double minimum() const { return minimum_; }
+  double maximum() const { return maximum_; }
   double operator()(double x) const {
     constexpr double indent = 10;
-    return plot_.left + indent + (plot_.right - plot_.left - 2 * indent) * (most_ > least_ ? (x - least_) / (most_ - least_) : 0.5);
+    return plot_.left + indent +
+           (plot_.right - plot_.left - 2 * indent) * (maximum_ > minimum_ ? (x - minimum_) / (maximum_ - minimum_) : 0.5);
   }
 
  private:
   Plot plot_;
-  double least_ = HUGE_VAL, most_ = -HUGE_VAL;
+  double minimum_ = HUGE_VAL, maximum_ = -HUGE_VAL;
 };
 
 void add_lines(Svg& svg, const LineChart& chart, const Axis& axis, const XScale& scale) {
@@ -202,8 +203,8 @@ std::string part_svg(const LineChart& chart) {
   }
   const XScale x(chart, axis.plot);
   add_lines(svg, chart, axis, x);
-  const double step = std::ceil((x.most() - x.least() + 1) / kMostXTicks);
-  for (double value = x.least(); value <= x.most(); value += step)
+  const double step = std::ceil((x.maximum() - x.minimum() + 1) / kMaxXTicks);
+  for (double value = x.minimum(); value <= x.maximum(); value += step)
     svg.text({x(value), axis.plot.baseline() + 17}, fmt::format("{:g}", value), {{"class", "axis"}, {"text-anchor", "middle"}});
   svg.text({(axis.plot.left + axis.plot.right) / 2, axis.plot.baseline() + 34}, chart.x_label,
            {{"class", "axis"}, {"text-anchor", "middle"}});

@@ -21,7 +21,7 @@ struct BarChart {
   std::vector<std::string> series;  ///< what the bars of a group are
   struct Group {
     std::string name;
-    std::vector<std::optional<Bar>> bars;  ///< one for each series; nothing where there is no figure
+    std::vector<std::optional<Bar>> bars;  ///< one for each series; nothing if there is no figure
   };
   std::vector<Group> groups;
 };
@@ -37,7 +37,7 @@ struct LineChart {
   std::vector<Line> lines;
 };
 
-/// A self-contained SVG picture that a browser shows.
+/// A self-contained SVG image that a browser shows.
 std::string to_svg(const BarChart& chart);
 std::string to_svg(const LineChart& chart);
 

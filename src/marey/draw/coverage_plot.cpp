@@ -16,16 +16,16 @@ constexpr int kColumns = 10, kRows = 8;
 constexpr double kWidth = 900, kCoverageMargin = 20, kHead = 50;  // of the drawing
 constexpr int kFull = 20;                                         // marks in a field from which it is darkest
 
-/// How many times errors are magnified: a typical one becomes a hundredth of the picture's width.
+/// How many times errors are magnified: a typical one becomes a hundredth of the image's width.
 double magnification(const CoveragePlot& plot) {
   std::vector<double> sizes;
   for (const CoveragePlot::Mark& mark : plot.marks) {
     if (mark.used) sizes.push_back(mark.error.norm());
   }
   if (sizes.empty()) return 1;
-  const double wanted = 0.01 * plot.size.width / std::max(1e-3, geometry::median(sizes));
-  const double power = std::pow(10, std::floor(std::log10(wanted)));
-  return std::max(1.0, (wanted >= 5 * power ? 5 : wanted >= 2 * power ? 2 : 1) * power);
+  const double required = 0.01 * plot.size.width / std::max(1e-3, geometry::median(sizes));
+  const double power = std::pow(10, std::floor(std::log10(required)));
+  return std::max(1.0, (required >= 5 * power ? 5 : required >= 2 * power ? 2 : 1) * power);
 }
 
 void add_fields(Svg& svg, const CoveragePlot& plot, double scale) {
@@ -61,9 +61,9 @@ std::string to_svg(const CoveragePlot& plot) {
            {{"fill", "#555"}});
   add_fields(svg, plot, scale);
   for (const CoveragePlot::Mark& mark : plot.marks) {
-    const Vector<2> place = Vector<2>(kCoverageMargin, kHead) + scale * (mark.pixel + Vector<2>(0.5, 0.5));
-    svg.circle(place, 1.4, {{"fill", mark.used ? "#123" : "#d22"}});
-    if (mark.used) svg.line(place, place + scale * times * mark.error, {{"stroke", "#e07b00"}});
+    const Vector<2> location = Vector<2>(kCoverageMargin, kHead) + scale * (mark.pixel + Vector<2>(0.5, 0.5));
+    svg.circle(location, 1.4, {{"fill", mark.used ? "#123" : "#d22"}});
+    if (mark.used) svg.line(location, location + scale * times * mark.error, {{"stroke", "#e07b00"}});
   }
   return svg.str();
 }

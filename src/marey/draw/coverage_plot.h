@@ -9,10 +9,10 @@
 
 namespace marey::draw {
 
-/// Where in a camera's picture something was measured, and by how much it was off.
+/// Where in a camera's image something was measured, and by how much it was off.
 struct CoveragePlot {
   std::string title;
-  cv::Size size;  ///< px, of the picture
+  cv::Size size;  ///< px, of the image
   struct Mark {
     Vector<2> pixel = Vector<2>::Zero();
     Vector<2> error = Vector<2>::Zero();  ///< px: seen minus predicted
@@ -21,7 +21,7 @@ struct CoveragePlot {
   std::vector<Mark> marks;
 };
 
-/// A self-contained SVG: the picture's frame in 10 × 8 fields, darker where more marks are, each mark with its error magnified; the
+/// A self-contained SVG: the image's frame in 10 × 8 fields, darker where more marks are, each mark with its error magnified; the
 /// title says by how much.
 std::string to_svg(const CoveragePlot& plot);
 

@@ -4,10 +4,10 @@
 
 namespace marey::draw {
 
-void FadingTrails::add(int number, Timestamp now, cv::Point2f place, const Colour& colour) {
+void FadingTrails::add(int number, Timestamp now, cv::Point2f location, const Colour& colour) {
   Trail& trail = trails_[number];
   trail.colour = colour;
-  trail.steps.push_back({now, place});
+  trail.steps.push_back({now, location});
 }
 
 void FadingTrails::draw(Canvas& canvas, Timestamp now, double opacity, double width) {
@@ -22,7 +22,7 @@ void FadingTrails::draw(Canvas& canvas, Timestamp now, double opacity, double wi
     strokes.clear();
     for (std::size_t i = 1; i < steps.size(); ++i) {
       const double age = seconds(now - steps[i].time) / seconds(lasts_);
-      strokes.push_back({steps[i - 1].place, steps[i].place, opacity * (1 - age)});
+      strokes.push_back({steps[i - 1].location, steps[i].location, opacity * (1 - age)});
     }
     canvas.strokes(strokes, colour, width);
     ++trail;

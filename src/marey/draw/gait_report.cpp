@@ -97,7 +97,7 @@ PageTable events_of(const GaitReport& report) {
 
 std::string to_html(const GaitReport& report) {
   Page page(report.title);
-  page.add_sentence(
+  page.add_message(
       "Angles over the gait cycle: mean over the cycles, from a strike of the foot to its next; the band is one standard "
       "deviation.");
   page.add_legend({{"left", kLeftColour}, {"right", kRightColour}});

@@ -14,7 +14,7 @@ struct GaitReport {
   struct Panel {
     std::string title;  ///< "knee flexion"
     std::vector<std::pair<double, double>> left,
-        right;  ///< mean and deviation, degrees, evenly from a strike to the next; empty where not known
+        right;  ///< mean and deviation, degrees, evenly from a strike to the next; empty if not known
   };
   struct Figure {
     std::string name, unit;
@@ -26,7 +26,7 @@ struct GaitReport {
   };
 
   std::string title;
-  std::vector<std::string> notes;  ///< what the curves leave out
+  std::vector<std::string> notes;  ///< what the curves omit
   std::vector<Panel> panels;
   std::vector<Figure> figures;
   std::vector<Event> events;

@@ -10,7 +10,7 @@
 namespace marey::draw {
 namespace {
 
-constexpr int kMostJpegSide = 8192;  // px
+constexpr int kMaxJpegSide = 8192;  // px
 
 /// Luma whose width and height are even, as two by two of it to a chroma pixel are read; the last column and row twice.
 cv::Mat evened(const cv::Mat& luma) {
@@ -47,22 +47,22 @@ JpegEncoder::~JpegEncoder() {
   if (handle_ != nullptr) tjDestroy(handle_);
 }
 
-std::string JpegEncoder::encode(const Picture& picture, int most_width, int quality) {
-  if (handle_ == nullptr || picture.empty()) return {};
-  const cv::Size full = picture.size();
+std::string JpegEncoder::encode(const Image& image, int most_width, int quality) {
+  if (handle_ == nullptr || image.empty()) return {};
+  const cv::Size full = image.size();
   const double scale =
-      std::min({1.0, most_width / static_cast<double>(full.width), kMostJpegSide / static_cast<double>(full.height)});
+      std::min({1.0, most_width / static_cast<double>(full.width), kMaxJpegSide / static_cast<double>(full.height)});
   const cv::Size size(std::max(1, static_cast<int>(full.width * scale)), std::max(1, static_cast<int>(full.height * scale)));
   const cv::Size half((size.width + 1) / 2, (size.height + 1) / 2);
-  const bool limited = picture.range() == Picture::Range::limited;
-  const bool colour = picture.is_colour();
-  const cv::Mat plain = plane_for_jpeg(picture.luma(), size, limited, false), luma = colour ? evened(plain) : plain;
-  const cv::Mat cb = colour ? plane_for_jpeg(picture.cb(), half, limited, true) : cv::Mat();
-  const cv::Mat cr = colour ? plane_for_jpeg(picture.cr(), half, limited, true) : cv::Mat();
+  const bool limited = image.range() == Image::Range::limited;
+  const bool colour = image.is_colour();
+  const cv::Mat plain = plane_for_jpeg(image.luma(), size, limited, false), luma = colour ? evened(plain) : plain;
+  const cv::Mat cb = colour ? plane_for_jpeg(image.cb(), half, limited, true) : cv::Mat();
+  const cv::Mat cr = colour ? plane_for_jpeg(image.cr(), half, limited, true) : cv::Mat();
   std::array<const unsigned char*, 3> planes{luma.data, cb.data, cr.data};
   std::array<int, 3> strides{static_cast<int>(luma.step), static_cast<int>(cb.step), static_cast<int>(cr.step)};
   const int sampling = colour ? TJSAMP_420 : TJSAMP_GRAY;
-  const int exact = quality > kToBeSeen ? TJFLAG_ACCURATEDCT : TJFLAG_FASTDCT;
+  const int exact = quality > kToBeObserved ? TJFLAG_ACCURATEDCT : TJFLAG_FASTDCT;
   unsigned long bytes = tjBufSize(size.width, size.height, sampling);
   std::string jpeg(bytes, '\0');
   auto* to = reinterpret_cast<unsigned char*>(jpeg.data());

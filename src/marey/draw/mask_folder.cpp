@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/picture.h"
-#include "marey/draw/picture_file.h"
+#include "marey/core/image.h"
+#include "marey/draw/image_file.h"
 
 namespace marey::draw {
 namespace {
@@ -42,8 +42,8 @@ MaskFolder::~MaskFolder() {
 }
 
 void MaskFolder::add(std::int64_t index, const cv::Mat& mask, cv::Size size) {
-  const Picture picture(mask.empty() ? cv::Mat(size, CV_8UC1, cv::Scalar(0)) : mask);
-  write_picture(mask_path(folder_, index).string(), picture);
+  const Image image(mask.empty() ? cv::Mat(size, CV_8UC1, cv::Scalar(0)) : mask);
+  write_image(mask_path(folder_, index).string(), image);
   written_.push_back(index);
 }
 

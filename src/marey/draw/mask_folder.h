@@ -12,16 +12,16 @@ namespace marey::draw {
 /// not belong to the scene, else 0. Public benchmarks of background models (changedetection.net) call and count them so.
 class MaskFolder {
  public:
-  /// Throws Error where `folder` is there and holds something, or is none.
+  /// Throws Error if `folder` is there and holds something, or is not one.
   static void require_free(const std::string& folder);
-  /// Makes the folder. Throws Error where that cannot be, or it holds something already.
+  /// Makes the folder. Throws Error if that cannot be, or it holds something already.
   explicit MaskFolder(std::string folder);
   /// Without `finish` the masks go away again.
   ~MaskFolder();
   MaskFolder(const MaskFolder&) = delete;
   MaskFolder& operator=(const MaskFolder&) = delete;
 
-  /// The mask (CV_8UC1) of frame `index`; an empty one is black, of `size` px. Throws Error where it cannot be written.
+  /// The mask (CV_8UC1) of frame `index`; an empty one is black, of `size` px. Throws Error if it cannot be written.
   void add(std::int64_t index, const cv::Mat& mask, cv::Size size);
   void finish() { finished_ = true; }
 

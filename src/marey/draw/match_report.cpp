@@ -11,15 +11,15 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
 #include "marey/draw/pitch_svg.h"
 #include "marey/draw/svg.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::draw {
 namespace {
 
-constexpr int kDecimals = 2;           // of speeds that are drawn
-constexpr double kLongestPath = 2000;  // points drawn of a path: more is not seen
+constexpr int kDecimals = 2;       // of speeds that are drawn
+constexpr double kMaxPath = 2000;  // points drawn of a path: more is not seen
 
 constexpr double kTerritoryCell = 5;  // m
 constexpr double kTerritory = 0.5;    // of a team's time on the pitch is spent in its territory
@@ -41,7 +41,7 @@ class ReportPage {
 
   std::string write() {
     Page page(report_.title);
-    page.add_sentence(report_.lead);
+    page.add_message(report_.lead);
     page.add_list(report_.notes);
     add_people(page);
     for (PageTable table : report_.tables) {
@@ -122,7 +122,7 @@ class ReportPage {
     const int rows = static_cast<int>(std::ceil(report_.pitch.size.width / kTerritoryCell));
     const std::vector<double> seconds = territory_seconds(team, period, columns, rows);
     const std::vector<bool> full = fullest_cells(seconds, kTerritory);
-    const double most = *std::max_element(seconds.begin(), seconds.end());
+    const double maximum = *std::max_element(seconds.begin(), seconds.end());
     double area = 0;
     PitchSvg svg(report_.pitch);
     for (int row = 0; row < rows; ++row) {
@@ -131,7 +131,7 @@ class ReportPage {
         if (!full[cell]) continue;
         area += kTerritoryCell * kTerritoryCell;
         svg.field().rect(cell_at(column, row, kTerritoryCell),
-                         {{"fill", colours_.at(team)}, {"fill-opacity", 0.35 + 0.55 * seconds[cell] / most}});
+                         {{"fill", colours_.at(team)}, {"fill-opacity", 0.35 + 0.55 * seconds[cell] / maximum}});
       }
     }
     add("<figure>{}", svg.html());
@@ -143,7 +143,7 @@ class ReportPage {
   }
 
   static std::size_t step_of(std::size_t points) {
-    return static_cast<std::size_t>(std::ceil(std::max(1.0, static_cast<double>(points) / kLongestPath)));
+    return static_cast<std::size_t>(std::ceil(std::max(1.0, static_cast<double>(points) / kMaxPath)));
   }
 
   /// Paths that cover the pitch many times over are drawn fainter, so that one still sees where they lie closest.
@@ -170,13 +170,13 @@ class ReportPage {
   }
 
   void draw_heat(SvgElement& svg, const MatchReport::Person& person) const {
-    const double most = person.heat.empty() ? 0 : *std::max_element(person.heat.begin(), person.heat.end());
+    const double maximum = person.heat.empty() ? 0 : *std::max_element(person.heat.begin(), person.heat.end());
     for (int row = 0; row < person.heat_rows; ++row) {
       for (int column = 0; column < person.heat_columns; ++column) {
         const double seconds = person.heat[static_cast<std::size_t>(row) * person.heat_columns + column];
         if (seconds <= 0) continue;
         svg.rect(cell_at(column, row, person.heat_cell_m),
-                 {{"fill", "#ffd54a"}, {"fill-opacity", std::sqrt(seconds / most) * 0.85}});
+                 {{"fill", "#ffd54a"}, {"fill-opacity", std::sqrt(seconds / maximum) * 0.85}});
       }
     }
   }
@@ -187,8 +187,8 @@ class ReportPage {
   }
 
   /// The speeds that are known; `place(time, speed)` is where each is drawn.
-  template <typename Place>
-  static void draw_known(Svg& svg, const MatchReport::Person& person, const Place& place) {
+  template <typename Location>
+  static void draw_known(Svg& svg, const MatchReport::Person& person, const Location& location) {
     for (std::size_t p = 0; p < person.speeds.size(); ++p) {
       const auto& path = person.speeds[p];
       std::vector<Vector<2>> points;
@@ -197,8 +197,8 @@ class ReportPage {
         points.clear();
       };
       for (std::size_t i = 0; i < path.size(); i += step_of(path.size())) {
-        if (person.seen[p][i]) points.push_back(place(path[i].first, path[i].second));
-        if (!person.seen[p][i]) draw();
+        if (person.detected[p][i]) points.push_back(location(path[i].first, path[i].second));
+        if (!person.detected[p][i]) draw();
       }
       draw();
     }
@@ -211,17 +211,17 @@ class ReportPage {
       for (std::size_t i = 0; i < person.speeds[p].size(); ++i) {
         const auto& [time, speed] = person.speeds[p][i];
         begin = std::min(begin, time), end = std::max(end, time);
-        if (person.seen[p][i]) fastest = std::max(fastest, speed);
+        if (person.detected[p][i]) fastest = std::max(fastest, speed);
       }
     }
     if (!(end > begin)) return;
-    const auto place = [&](double time, double speed) {
+    const auto location = [&](double time, double speed) {
       return Vector<2>(left + (width - left) * (time - begin) / (end - begin), (height - bottom) * (1 - speed / fastest));
     };
     Svg svg({{"viewBox", fmt::format("-2 -4 {} {}", width + 4, height + 6)}, {"font-size", 3.2}, {"font-family", "sans-serif"}},
             kDecimals);
     for (double speed = 0; speed <= fastest; speed += 2) {
-      const double y = place(begin, speed).y();
+      const double y = location(begin, speed).y();
       svg.line({left, y}, {width, y}, {{"class", "grid"}, {"stroke-width", 0.2}});
       svg.text({left - 1, y + 1}, fmt::format("{:g}", speed), {{"class", "axis"}, {"text-anchor", "end"}});
     }
@@ -229,11 +229,11 @@ class ReportPage {
              {{"class", "axis"}});
     for (const auto& [from, to] : person.sprints) {
       constexpr double narrowest = 0.3;
-      const double x = place(from, 0).x();
-      svg.rect({x, 0, std::max(narrowest, place(to, 0).x() - x), height - bottom}, {{"class", "sprint"}})
+      const double x = location(from, 0).x();
+      svg.rect({x, 0, std::max(narrowest, location(to, 0).x() - x), height - bottom}, {{"class", "sprint"}})
           .add("title", {}, fmt::format("{:.1f} s to {:.1f} s", from, to));
     }
-    draw_known(svg, person, place);
+    draw_known(svg, person, location);
     text_ += svg.str();
   }
 
@@ -259,15 +259,15 @@ class ReportPage {
 
 }  // namespace
 
-std::vector<bool> fullest_cells(const std::vector<double>& seconds, double share) {
+std::vector<bool> fullest_cells(const std::vector<double>& seconds, double fraction) {
   std::vector<std::size_t> order(seconds.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seconds[a] > seconds[b]; });
-  const double wanted = share * std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  const double required = fraction * std::accumulate(seconds.begin(), seconds.end(), 0.0);
   std::vector<bool> full(seconds.size(), false);
   double sum = 0;
   for (const std::size_t cell : order) {
-    if (sum >= wanted) break;
+    if (sum >= required) break;
     full[cell] = true;
     sum += seconds[cell];
   }

@@ -16,13 +16,13 @@ namespace marey::draw {
 /// was in each half. Steps do not know each other, so that the caller says what stands in the table, and how the paths ran.
 struct MatchReport {
   struct Person {
-    int number = 0;  ///< as films and pictures have it
+    int number = 0;  ///< as videos and images have it
     std::string name, team;
     std::optional<Appearance> appearance = {};                   ///< what the team is drawn in; else it is given a colour
     std::vector<std::string> cells;                              ///< of its row, after number, name and team
     std::vector<std::vector<Vector<2>>> paths;                   ///< m on the pitch
     std::vector<std::vector<std::pair<double, double>>> speeds;  ///< s, m/s; a line a path, as many as that has places
-    std::vector<std::vector<bool>> seen;                         ///< of each of them whether it is known: else it is not drawn
+    std::vector<std::vector<bool>> detected;                     ///< of each of them whether it is known: else it is not drawn
     std::vector<std::pair<double, double>> sprints;              ///< s: when each began and ended
     int heat_columns = 0, heat_rows = 0;                         ///< cells along x and y
     double heat_cell_m = 2;
@@ -48,6 +48,6 @@ std::string to_html(const MatchReport& report);
 
 /// The fewest cells, the fullest first, in which `share` of all seconds were spent: by cell, whether it is one of them. Of equal
 /// cells the first.
-std::vector<bool> fullest_cells(const std::vector<double>& seconds, double share);
+std::vector<bool> fullest_cells(const std::vector<double>& seconds, double fraction);
 
 }  // namespace marey::draw

@@ -6,10 +6,10 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
 #include "marey/core/time.h"
 #include "marey/draw/mp4_file.h"
+#include "marey/files/c_deleter.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -70,7 +70,7 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   codec->gop_size = std::max(1, static_cast<int>(std::lround(kSecondsBetweenKeyFrames * rate)));
   codec->thread_count = quality == Quality::to_record && rate < kSlow ? 1 : kThreads;
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-  // Fast enough that the film is not what one waits for.
+  // Fast enough that the video is not what one waits for.
   av_opt_set(codec->priv_data, "preset", quality == Quality::to_record ? "ultrafast" : "superfast", 0);
   av_opt_set(codec->priv_data, "crf", quality == Quality::to_view ? "22" : "8", 0);
   if (const int code = avcodec_open2(codec.get(), encoder, nullptr); code < 0) {
@@ -97,9 +97,10 @@ MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<d
                          const std::string& sound_of)
     : parts_(std::make_unique<Parts>()) {
   std::error_code error;
-  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) throw Error("{}: is no place for a film; name a file", path);
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    throw Error("{}: is not a place for a video; name a file", path);
   parts_->path = path;
-  const double rate = rate_hz.value_or(kUsualRate);
+  const double rate = rate_hz.value_or(kDefaultRate);
   parts_->ticks_a_frame = std::max<std::int64_t>(1, std::llround(kTick.den / rate));
   parts_->open_codec(size, rate, quality);
   parts_->file.emplace(path, *parts_->codec, keep, sound_of);
@@ -107,7 +108,7 @@ MovieWriter::MovieWriter(const std::string& path, cv::Size size, std::optional<d
 
 MovieWriter::~MovieWriter() = default;
 
-void MovieWriter::write(const Picture& picture, Timestamp time) {
+void MovieWriter::write(const Image& image, Timestamp time) {
   Parts& p = *parts_;
   const FramePtr frame(allocated(av_frame_alloc()));
   frame->format = p.codec->pix_fmt;
@@ -115,11 +116,11 @@ void MovieWriter::write(const Picture& picture, Timestamp time) {
   frame->height = p.codec->height;
   const std::int64_t tick = std::llround(seconds(time) * kTick.den);
   frame->pts = p.last_tick = std::max(tick, p.last_tick + 1);
-  cv::Mat luma = picture.luma();
+  cv::Mat luma = image.luma();
   if (luma.cols != frame->width || luma.rows != frame->height) {
-    cv::copyMakeBorder(picture.luma(), luma, 0, frame->height - luma.rows, 0, frame->width - luma.cols, cv::BORDER_REPLICATE);
+    cv::copyMakeBorder(image.luma(), luma, 0, frame->height - luma.rows, 0, frame->width - luma.cols, cv::BORDER_REPLICATE);
   }
-  const cv::Mat* planes[] = {&luma, &picture.cb(), &picture.cr()};
+  const cv::Mat* planes[] = {&luma, &image.cb(), &image.cr()};
   for (int i = 0; i < 3; ++i) {
     frame->data[i] = planes[i]->data;  // the encoder copies what it does not own
     frame->linesize[i] = static_cast<int>(planes[i]->step);

@@ -6,12 +6,12 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/core/time.h"
 
 namespace marey::draw {
 
-/// Writes a film that browsers play: H.264, 4:2:0, in an MP4 whose index comes first. Until `finish` it is an MP4 of fragments, so
+/// Writes a video that browsers play: H.264, 4:2:0, in an MP4 whose index comes first. Until `finish` it is an MP4 of fragments, so
 /// that what a killed program wrote can be read.
 class MovieWriter {
  public:
@@ -22,14 +22,14 @@ class MovieWriter {
   };
 
   enum class Keep {
-    when_finished,  ///< it is written beside its name and gets it in `finish`: whole or not at all, unless the program is killed
+    when_finished,  ///< it is written beside its name and gets it in `finish`: atomically, unless the program is killed
     always,         ///< under its name from the first frame on, in place of an older file: of what cannot be recorded again
   };
 
   /// `rate_hz` is what most frames follow each other at; each is shown at its own time all the same.
-  /// `sound_of` is a film whose sound goes along unchanged, from its first picture on; where it has none that an MP4 holds, or none
+  /// `sound_of` is a video whose sound goes along unchanged, from its first image on; where it has none that an MP4 holds, or none
   /// is named, there is none.
-  /// Throws Error where the file cannot be written or no H.264 encoder is installed.
+  /// Throws Error if the file cannot be written or no H.264 encoder is installed.
   MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality = Quality::to_view,
               Keep keep = Keep::when_finished, const std::string& sound_of = {});
   /// Without `finish`, nothing is left behind, or with Keep::always what was written.
@@ -37,11 +37,11 @@ class MovieWriter {
   MovieWriter(const MovieWriter&) = delete;
   MovieWriter& operator=(const MovieWriter&) = delete;
 
-  /// One picture of the size given above, in limited range, as Canvas makes them. `time` grows from call to call; a time that does
-  /// not is moved to just after the last. Throws Error where the place is full.
-  void write(const Picture& picture, Timestamp time);
+  /// One image of the size given above, in limited range, as Canvas makes them. `time` grows from call to call; a time that does
+  /// not is moved to just after the last. Throws Error if the place is full.
+  void write(const Image& image, Timestamp time);
 
-  /// Throws Error where the place is full.
+  /// Throws Error if the place is full.
   void finish();
 
  private:

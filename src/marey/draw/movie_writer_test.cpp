@@ -15,11 +15,11 @@
 namespace marey::draw {
 namespace {
 
-Picture shade(cv::Size size, int level) {
-  return Canvas(Picture::from_bgr(cv::Mat(size, CV_8UC3, cv::Scalar::all(level)))).take();
+Image shade(cv::Size size, int level) {
+  return Canvas(Image::from_bgr(cv::Mat(size, CV_8UC3, cv::Scalar::all(level)))).take();
 }
 
-/// What ffprobe says of the film's frames: "time,time,…", and of its stream.
+/// What ffprobe says of the video's frames: "time,time,…", and of its stream.
 std::string probe(const test::TemporaryFolder& folder, const std::string& path, const std::string& what) {
   const std::string answer = folder / "probe.txt";
   const std::string command =
@@ -44,30 +44,30 @@ TEST(MovieWriter, WritesAFilmThatBrowsersPlay) {
   const std::string bytes = test::read_file(path);
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "the index comes first";
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2)
-      << "the film and the probe's answer, nothing else";
+      << "the video and the probe's answer, nothing else";
 }
 
 TEST(MovieWriter, ASoundGoesAlongUnchanged) {
   const test::TemporaryFolder folder;
-  const std::string source = folder / "source.mp4", film = folder / "film.mp4";
+  const std::string source = folder / "source.mp4", video = folder / "film.mp4";
   test::ffmpeg("-f lavfi -i color=gray:size=64x48:rate=10:duration=3 -f lavfi -i sine=frequency=440:duration=5 -c:a aac " + source);
-  MovieWriter writer(film, {64, 48}, 10, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, source);
+  MovieWriter writer(video, {64, 48}, 10, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, source);
   for (int i = 0; i < 30; ++i) writer.write(shade({64, 48}, 100), timestamp_from_seconds(0.1 * i));
   writer.finish();
   const auto sound = [&](const std::string& path) {
     test::ffmpeg("-i " + path + " -vn -t 2.5 -ac 1 -f s16le " + (folder / "sound.raw"));
     return test::read_file(folder / "sound.raw");
   };
-  const std::string heard = sound(film), there = sound(source);
-  EXPECT_NEAR(static_cast<double>(heard.size()), static_cast<double>(there.size()), 9000) << "of 220,500 bytes";
-  EXPECT_EQ(lines_of(probe(folder, film, "packet=pts_time")), 30) << "every picture is there";
+  const std::string received = sound(video), there = sound(source);
+  EXPECT_NEAR(static_cast<double>(received.size()), static_cast<double>(there.size()), 9000) << "of 220,500 bytes";
+  EXPECT_EQ(lines_of(probe(folder, video, "packet=pts_time")), 30) << "every image is there";
   const std::string length = folder / "length.txt";
-  EXPECT_EQ(std::system(("ffprobe -v error -show_entries format=duration -of csv=p=0 " + film + " > " + length).c_str()), 0);
-  EXPECT_NEAR(std::stod(test::read_file(length)), 3.0, 0.15) << "no longer than the pictures";
-  const std::string bytes = test::read_file(film);
+  EXPECT_EQ(std::system(("ffprobe -v error -show_entries format=duration -of csv=p=0 " + video + " > " + length).c_str()), 0);
+  EXPECT_NEAR(std::stod(test::read_file(length)), 3.0, 0.15) << "no longer than the images";
+  const std::string bytes = test::read_file(video);
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "the index comes first";
-  // A film without sound gives none, and nothing that is no film harms.
-  for (const std::string& silent : {film + "x", folder / "sound.raw"}) {
+  // A video without sound gives none, and nothing that is not a video harms.
+  for (const std::string& silent : {video + "x", folder / "sound.raw"}) {
     MovieWriter mute(folder / "mute.mp4", {64, 48}, 10, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, silent);
     mute.write(shade({64, 48}, 100), Timestamp{});
     mute.finish();
@@ -120,9 +120,10 @@ TEST(MovieWriter, FramesWrittenBeforeAKillCanBeRead) {
   EXPECT_GE(lines_of(times), 50) << "half a second is the most that is lost";
   EXPECT_EQ(times.substr(0, 27), "0.000000\n0.050000\n0.100000\n");
   std::ptrdiff_t before = 0;
-  for (const double share : {0.5, 0.7, 0.9}) {
-    const std::ptrdiff_t lines = lines_of(times_of_torn(folder, path, static_cast<std::size_t>(share * static_cast<double>(size))));
-    EXPECT_GE(lines, before + 5) << share;
+  for (const double fraction : {0.5, 0.7, 0.9}) {
+    const std::ptrdiff_t lines =
+        lines_of(times_of_torn(folder, path, static_cast<std::size_t>(fraction * static_cast<double>(size))));
+    EXPECT_GE(lines, before + 5) << fraction;
     before = lines;
   }
 }
@@ -143,14 +144,14 @@ TEST(MovieWriter, AFilmThatIsAlwaysKeptEndsAsAnyOther) {
   EXPECT_EQ(lines_of(times_of_torn(folder, folder / "kept.mp4", bytes.size())), 60);
 }
 
-TEST(MovieWriter, WhatIsAlwaysKeptStaysWithoutFinish) {
+TEST(MovieWriter, KeepsFileWithoutFinish) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "film.mp4";
   test::write_file(path, "the old one");
   {
     MovieWriter writer(path, {64, 48}, 10, MovieWriter::Quality::to_record, MovieWriter::Keep::always);
     for (int i = 0; i < 20; ++i) writer.write(shade({64, 48}, 10 * i), timestamp_from_seconds(0.1 * i));
-    EXPECT_THROW(MovieWriter(path, {64, 48}, 10), Error) << "another run cannot write it meanwhile";
+    EXPECT_THROW(MovieWriter(path, {64, 48}, 10), Error) << "another run cannot write it in the meantime";
   }
   EXPECT_GE(lines_of(times_of_torn(folder, path, std::filesystem::file_size(path))), 15);
 }

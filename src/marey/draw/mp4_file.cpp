@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
+#include "marey/files/c_deleter.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -59,7 +59,7 @@ Mp4File::Mp4File(const std::string& path, const AVCodecContext& codec, MovieWrit
   ticks_a_second_ = codec.time_base.den;
   rate_num_ = codec.framerate.num, rate_den_ = codec.framerate.den;
   fragments_path_ = keep == MovieWriter::Keep::always ? file_.target_path() : file_.temporary_path();
-  // What reads an older file of that name goes on reading it.
+  // What reads an older file of that name continues reading it.
   std::error_code ignored;
   if (keep == MovieWriter::Keep::always) std::filesystem::remove(fragments_path_, ignored);
   fragments_ = open(fragments_path_, *parameters_);
@@ -104,15 +104,15 @@ void Mp4File::close(Output& output) const {
 
 void Mp4File::finish() {
   close(fragments_);
-  const bool in_place = keep_ == MovieWriter::Keep::always;
-  const std::string ordinary = in_place ? file_.temporary_path() : file_.further_temporary_path();
+  const bool at_position = keep_ == MovieWriter::Keep::always;
+  const std::string ordinary = at_position ? file_.temporary_path() : file_.further_temporary_path();
   std::error_code ignored;
   try {
     rewrite(ordinary);
-    if (!in_place) std::filesystem::rename(ordinary, file_.temporary_path());
-  } catch (const std::exception&) {  // no room for both: the fragments are the whole film too, only slower to seek in
+    if (!at_position) std::filesystem::rename(ordinary, file_.temporary_path());
+  } catch (const std::exception&) {  // no room for both: the fragments are the whole video too, only slower to seek in
     std::filesystem::remove(ordinary, ignored);
-    if (in_place) return;
+    if (at_position) return;
   }
   file_.finish();
 }
@@ -160,7 +160,7 @@ void Mp4File::copy_sound(SoundTrack& sound, AVPacket& packet, std::int64_t until
 }
 
 void Mp4File::copy_packets(AVFormatContext& input, AVFormatContext& output, SoundTrack* sound) const {
-  const ReadPacket packet(allocated(av_packet_alloc())), heard(allocated(av_packet_alloc()));
+  const ReadPacket packet(allocated(av_packet_alloc())), received(allocated(av_packet_alloc()));
   for (std::int64_t i = 0; i < index_.packets; ++i) {
     check(av_read_frame(&input, packet.get()));
     packet->pos = -1;
@@ -172,7 +172,7 @@ void Mp4File::copy_packets(AVFormatContext& input, AVFormatContext& output, Soun
     av_packet_unref(packet.get());
     if (sound == nullptr) continue;
     const std::int64_t until = av_rescale_q(shown, output.streams[0]->time_base, {1, sound->ticks_a_second()});
-    copy_sound(*sound, *heard, until, output);
+    copy_sound(*sound, *received, until, output);
   }
 }
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "marey/core/whole_file.h"
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/sound_track.h"
+#include "marey/files/whole_file.h"
 
 struct AVCodecContext;
 struct AVCodecParameters;
@@ -15,12 +15,12 @@ struct AVPacket;
 
 namespace marey::draw {
 
-/// One stream of H.264 in an MP4, and in the finished one a film's sound beside it. It is written as fragments of a quarter of a
-/// second, so that at any time what was written can be read; `finish` rewrites it without encoding anew as an ordinary MP4 whose
+/// One stream of H.264 in an MP4, and in the finished one a video's sound beside it. It is written as fragments of a quarter of a
+/// second, so that at any time what was written can be read; `finish` rewrites it without encoding again as an ordinary MP4 whose
 /// index comes first.
 class Mp4File {
  public:
-  /// `codec` is open; `sound_of` is a film whose sound goes along, empty: none. Throws Error if the file cannot be written.
+  /// `codec` is open; `sound_of` is a video whose sound goes along, empty: none. Throws Error if the file cannot be written.
   Mp4File(const std::string& path, const AVCodecContext& codec, MovieWriter::Keep keep, std::string sound_of = {});
   /// Without `finish`, keeps the fragments or removes them.
   ~Mp4File();

@@ -48,11 +48,11 @@ void draw_lines(Canvas& canvas, const Outline& outline, double unit) {
 
 void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, double unit) {
   const std::vector<Vector<2>> corners = geometry::ClosedSpline(outline.order, outline.control_points).polygon();
-  const bool seen = outline.state != Outline::State::held;
+  const bool detected = outline.state != Outline::State::held;
   std::vector<Canvas::Stroke> curve;
   for (std::size_t i = 0; i < corners.size(); ++i)
-    curve.push_back({to_point(corners[i]), to_point(corners[(i + 1) % corners.size()]), seen ? 1.0 : 0.6});
-  canvas.strokes(curve, colour, seen ? 1.4 * unit : 1);
+    curve.push_back({to_point(corners[i]), to_point(corners[(i + 1) % corners.size()]), detected ? 1.0 : 0.6});
+  canvas.strokes(curve, colour, detected ? 1.4 * unit : 1);
   std::vector<cv::Point2f> points;
   for (const Vector<2>& point : outline.control_points) points.push_back(to_point(point));
   canvas.discs(points, 1.2 * unit, colour);
@@ -76,9 +76,9 @@ void draw_body(Canvas& canvas, const Keypoints<2>& body, const KeypointSet& set,
   for (const auto& [a, b] : set.bones) {
     const Keypoint<2>*from = shown(a), *to = shown(b);
     if (from == nullptr || to == nullptr) continue;
-    const double seen = std::min(from->visibility, to->visibility);
+    const double detected = std::min(from->visibility, to->visibility);
     bones[is_left(a) && is_left(b)].push_back(
-        {to_point(from->position), to_point(to->position), kFaintest + (1 - kFaintest) * seen});
+        {to_point(from->position), to_point(to->position), kFaintest + (1 - kFaintest) * detected});
   }
   for (int i = 0; i < static_cast<int>(std::min(set.points.size(), body.points.size())); ++i) {
     if (const Keypoint<2>* point = shown(i); point != nullptr && point->visibility >= kWithin)
@@ -91,7 +91,7 @@ void draw_body(Canvas& canvas, const Keypoints<2>& body, const KeypointSet& set,
   }
 }
 
-constexpr std::size_t kMostPlacedNames = 300;  // of a picture; the search for room grows with their square
+constexpr std::size_t kMaxLocatedNames = 300;  // of an image; the search for room grows with their square
 
 /// What a name is not to cover: a target's box, or what is round its point.
 cv::Rect2d body_of(const Sample& sample, double unit) {
@@ -125,22 +125,22 @@ Colour colour_of(const TrackName& name, TrackId id) {
   return {(*name.colour)[0], (*name.colour)[1], (*name.colour)[2]};
 }
 
-/// Cameras of 10 or 12 bits write pictures of 16, of which they fill the darkest part alone: white is the lightest that so many
-/// bits hold as the pictures have shown until now, so that it hardly ever changes.
-Picture Overlay::lightened(const Picture& picture) {
-  if (picture.luma().depth() != CV_16U) return picture;
-  const double most = lightest(picture);
-  while (white_ < most) white_ = 2 * white_ + 1;
-  return with_white(picture, white_);
+/// Cameras of 10 or 12 bits write images of 16, of which they fill the darkest part alone: white is the lightest that this many
+/// bits hold as the images have shown until now, so that it barely ever changes.
+Image Overlay::lightened(const Image& image) {
+  if (image.luma().depth() != CV_16U) return image;
+  const double maximum = lightest(image);
+  while (white_ < maximum) white_ = 2 * white_ + 1;
+  return with_white(image, white_);
 }
 
-Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names) {
-  Canvas canvas(lightened(picture));
-  // 2 px lines and numbers 11 px high in a picture of 576 rows; slower than the picture beyond, or they would hide people.
-  const double unit = std::max(1.0, std::sqrt(picture.size().height / 576.0));
+Image Overlay::draw(const Image& image, Timestamp now, std::span<const Sample> samples, const TrackNames& names) {
+  Canvas canvas(lightened(image));
+  // 2 px lines and numbers 11 px high in an image of 576 rows; slower than the image beyond, or they would hide people.
+  const double unit = std::max(1.0, std::sqrt(image.size().height / 576.0));
   for (const Sample& sample : samples) {
-    const Vector<2> place = options_.trail_of_centres ? centre_of(sample) : foot_of(sample);
-    trails_.add(number(sample.track), now, to_point(place), colour_of(names.of(sample.track), sample.track));
+    const Vector<2> location = options_.trail_of_centres ? centre_of(sample) : foot_of(sample);
+    trails_.add(number(sample.track), now, to_point(location), colour_of(names.of(sample.track), sample.track));
   }
   trails_.draw(canvas, now, 0.9, 2 * unit);
 
@@ -154,8 +154,8 @@ Picture Overlay::draw(const Picture& picture, Timestamp now, std::span<const Sam
     const bool has_body = sample.keypoints && options_.keypoints;
     if (has_body) draw_body(canvas, *sample.keypoints, *options_.keypoints, colour, unit);
     if (!sample.box) continue;
-    const bool seen = sample.measured() && !has_body;
-    canvas.rectangle(edge_of(*sample.box), colour, seen ? 2 * unit : 1, seen ? 1.0 : 0.7);
+    const bool detected = sample.measured() && !has_body;
+    canvas.rectangle(edge_of(*sample.box), colour, detected ? 2 * unit : 1, detected ? 1.0 : 0.7);
   }
   write_names(canvas, samples, names, unit);
   return canvas.take();
@@ -178,9 +178,9 @@ void Overlay::write_names(Canvas& canvas, std::span<const Sample> samples, const
     };
     const auto before = sides_.find(samples[i].track);
     std::size_t best = before != sides_.end() && before->second < corners.size() ? before->second : 0;
-    double least = covered(best);
-    for (std::size_t side = 0; side < corners.size() && least > 0 && samples.size() <= kMostPlacedNames; ++side) {
-      if (const double area = covered(side); area < least) best = side, least = area;
+    double minimum = covered(best);
+    for (std::size_t side = 0; side < corners.size() && minimum > 0 && samples.size() <= kMaxLocatedNames; ++side) {
+      if (const double area = covered(side); area < minimum) best = side, minimum = area;
     }
     canvas.tag(text, corners[best], colour_of(names.of(samples[i].track), samples[i].track), height);
     taken.emplace_back(canvas.tag_area(text, corners[best], height));

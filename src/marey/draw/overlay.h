@@ -6,8 +6,8 @@
 #include <span>
 
 #include "marey/core/ids.h"
+#include "marey/core/image.h"
 #include "marey/core/keypoints.h"
-#include "marey/core/picture.h"
 #include "marey/core/time.h"
 #include "marey/core/track_names.h"
 #include "marey/draw/canvas.h"
@@ -24,26 +24,26 @@ struct OverlayOptions {
 /// What a track is drawn in: its own colour, or one that is steady by its number.
 Colour colour_of(const TrackName& name, TrackId id);
 
-/// Draws what is tracked into the pictures of a recording: a box and a number for each target, thin where it is not seen but
+/// Draws what is tracked into the images of a recording: a box and a number for each target, thin where it is not seen but
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
 /// its control points, and the measurement lines across it: bright with a dot where the outline was found, faint where it was not.
 /// Body points are drawn with their bones, those on the left lighter, fainter where something may hide them; none where they
-/// are likely outside the picture. Colours are steady by number. Lines and numbers grow with the picture. A name stands where it
+/// are likely outside the image. Colours are steady by number. Lines and numbers grow with the image. A name stands where it
 /// covers neither another target nor another name, as near its own as there is room, and stays on that side while it can.
 class Overlay {
  public:
   explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}
 
   /// Instants come in order; px. Keeps trails of those targets alone that were seen within `trail`.
-  Picture draw(const Picture& picture, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
+  Image draw(const Image& image, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
 
  private:
-  Picture lightened(const Picture& picture);
+  Image lightened(const Image& image);
   void write_names(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit);
 
   OverlayOptions options_;
   FadingTrails trails_;
-  double white_ = 255;                    // of pictures of 16 bits
+  double white_ = 255;                    // of images of 16 bits
   std::map<TrackId, std::size_t> sides_;  // where each name stood last
 };
 

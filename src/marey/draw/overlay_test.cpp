@@ -9,8 +9,8 @@
 namespace marey::draw {
 namespace {
 
-Picture grey(int width, int height) {
-  return Picture(cv::Mat(height, width, CV_8UC1, cv::Scalar(128)));
+Image grey(int width, int height) {
+  return Image(cv::Mat(height, width, CV_8UC1, cv::Scalar(128)));
 }
 
 Sample box_of(int id, double left, double top, Provenance provenance = Provenance::measured) {
@@ -22,8 +22,8 @@ Sample box_of(int id, double left, double top, Provenance provenance = Provenanc
   return sample;
 }
 
-/// How many pixels of `part` differ between two pictures by more than a rounding.
-int changed(const Picture& a, const Picture& b, const cv::Rect& part) {
+/// How many pixels of `part` differ between two images by more than a rounding.
+int changed(const Image& a, const Image& b, const cv::Rect& part) {
   cv::Mat difference;
   cv::absdiff(a.luma()(part), b.luma()(part), difference);
   return cv::countNonZero(difference > 2);
@@ -42,9 +42,9 @@ TEST(Canvas, PaintsTheColourThatWasAsked) {
   EXPECT_NEAR(inside[2], 128, 2);
 }
 
-TEST(Canvas, WhatLiesOutsideIsCutOffAtAnySize) {
+TEST(Canvas, ClipsOutsideDrawingAtAnySize) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 5), cv::Size(65, 49)}) {
-    Canvas canvas(Picture::from_bgr(cv::Mat(size, CV_8UC3, cv::Scalar(1, 2, 3))));
+    Canvas canvas(Image::from_bgr(cv::Mat(size, CV_8UC3, cv::Scalar(1, 2, 3))));
     canvas.rectangle({-10, -10, 200, 200}, {255, 0, 0}, 3);
     canvas.rectangle({500, 500, 20, 20}, {255, 0, 0}, 3);
     canvas.strokes({{{-50, -50}, {100, 100}, 1}}, {0, 255, 0}, 2);
@@ -54,8 +54,8 @@ TEST(Canvas, WhatLiesOutsideIsCutOffAtAnySize) {
   }
 }
 
-/// How many of the pixels round each point, which are grey in the picture, show a name's plate.
-int covered(const Picture& before, const Picture& after, std::span<const Sample> samples) {
+/// How many of the pixels round each point, which are grey in the image, show a name's plate.
+int covered(const Image& before, const Image& after, std::span<const Sample> samples) {
   int count = 0;
   for (const Sample& sample : samples) {
     const cv::Rect round(cvRound(sample.position.x()) - 3, cvRound(sample.position.y()) - 3, 7, 7);
@@ -73,9 +73,9 @@ TEST(Overlay, DrawsBonesOfWhatIsInThePicture) {
   sample.keypoints = body;
   const KeypointSet set{
       .name = "three", .points = {"nose", "left_hip", "right_hip"}, .bones = {{0, 1}, {0, 2}}, .mirrored = {0, 2, 1}};
-  const Picture picture = grey(320, 240);
-  const Picture plain = Overlay().draw(picture, Timestamp{}, std::vector{sample}, {});
-  const Picture drawn = Overlay({.keypoints = set}).draw(picture, Timestamp{}, std::vector{sample}, {});
+  const Image image = grey(320, 240);
+  const Image plain = Overlay().draw(image, Timestamp{}, std::vector{sample}, {});
+  const Image drawn = Overlay({.keypoints = set}).draw(image, Timestamp{}, std::vector{sample}, {});
   EXPECT_GT(changed(plain, drawn, {30, 18, 20, 5}), 20);
   EXPECT_EQ(changed(plain, drawn, {15, 30, 10, 40}), 0) << "a point that is likely outside";
 }
@@ -88,8 +88,8 @@ TEST(Overlay, NamesOfMarkersCoverNoMarkers) {
     sample.position.head<2>() = Vector<2>(100 + 26 * (i % 4), 100 + 26 * (i / 4));
     samples.push_back(sample);
   }
-  const Picture picture = grey(320, 240);
-  const Picture empty = Overlay().draw(picture, Timestamp{}, {}, {}), drawn = Overlay().draw(picture, Timestamp{}, samples, {});
+  const Image image = grey(320, 240);
+  const Image empty = Overlay().draw(image, Timestamp{}, {}, {}), drawn = Overlay().draw(image, Timestamp{}, samples, {});
   EXPECT_EQ(covered(empty, drawn, samples), 0);
   EXPECT_GT(changed(empty, drawn, {0, 0, 320, 240}), 12 * 60) << "the names";
 }
@@ -105,8 +105,8 @@ TEST(Canvas, NeighbouringNumbersLookDifferent) {
 
 TEST(Overlay, EachTargetGetsABoxANumberAndATrailThatFades) {
   Overlay overlay;
-  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
-  Picture last;
+  const Image empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
+  Image last;
   for (int i = 0; i <= 10; ++i) {
     last = overlay.draw(grey(200, 120), timestamp_from_seconds(0.1 * i), std::vector{box_of(7, 20 + 10.0 * i, 40)}, {});
   }
@@ -121,38 +121,38 @@ TEST(Overlay, PicturesOfTwelveBitsAreAsLightAsOthers) {
   Overlay overlay;
   cv::Mat deep(48, 64, CV_16UC1, cv::Scalar(2048));
   deep.at<std::uint16_t>(3, 3) = 4000;
-  EXPECT_NEAR(overlay.draw(Picture(deep), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20), 16 + 219 / 2, 2);
-  // The next picture is darker, and is drawn so.
+  EXPECT_NEAR(overlay.draw(Image(deep), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20), 16 + 219 / 2, 2);
+  // The next image is darker, and is drawn so.
   EXPECT_NEAR(
-      overlay.draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1024))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      overlay.draw(Image(cv::Mat(48, 64, CV_16UC1, cv::Scalar(1024))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
       16 + 219 / 4, 2);
   EXPECT_NEAR(
-      Overlay().draw(Picture(cv::Mat(48, 64, CV_16UC1, cv::Scalar(65535))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
+      Overlay().draw(Image(cv::Mat(48, 64, CV_16UC1, cv::Scalar(65535))), Timestamp{}, {}, {}).luma().at<unsigned char>(20, 20),
       235, 1);
 }
 
 TEST(Overlay, AnOutlineTakesThePlaceOfTheBox) {
-  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
+  const Image empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
   Sample sample = box_of(1, 50, 40);
   auto outline = std::make_shared<Outline>();
   outline->control_points = {{60, 40}, {70, 65}, {60, 90}, {50, 65}};
   outline->deviations.assign(4, {1, 1});
   outline->centre = {60, 65};
   sample.outline = outline;
-  const Picture curve = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{sample}, {});
+  const Image curve = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{sample}, {});
   EXPECT_EQ(changed(empty, curve, {66, 80, 8, 11}), 0) << "no corner of a box";
   EXPECT_GT(changed(empty, curve, {52, 45, 16, 40}), 60);
   outline->lines.push_back({.foot = {66, 65}, .normal = {1, 0}, .reach = 30, .finding = MeasurementLine::Finding::found});
-  const Picture lines = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{sample}, {});
+  const Image lines = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{sample}, {});
   EXPECT_GT(changed(curve, lines, {74, 64, 22, 3}), 20) << "the measurement line, outside of the curve";
 }
 
-TEST(Overlay, WhatIsOnlyPredictedIsDrawnThinner) {
-  const Picture empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
+TEST(Overlay, DrawsPredictionThinner) {
+  const Image empty = Overlay().draw(grey(200, 120), Timestamp{}, {}, {});
   const cv::Rect all(0, 42, 200, 60);
-  const Picture seen = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{box_of(1, 50, 40)}, {});
-  const Picture predicted = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{box_of(1, 50, 40, Provenance::predicted)}, {});
-  EXPECT_LT(changed(empty, predicted, all), changed(empty, seen, all));
+  const Image detected = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{box_of(1, 50, 40)}, {});
+  const Image predicted = Overlay().draw(grey(200, 120), Timestamp{}, std::vector{box_of(1, 50, 40, Provenance::predicted)}, {});
+  EXPECT_LT(changed(empty, predicted, all), changed(empty, detected, all));
   EXPECT_GT(changed(empty, predicted, all), 50);
 }
 

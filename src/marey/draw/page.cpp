@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
 #include "marey/draw/page_style.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::draw {
 namespace {
 
-constexpr std::size_t kMostNarrow = 6, kMostHalf = 9;  // columns that fit on a phone, and on half a screen
+constexpr std::size_t kMaxNarrow = 6, kMaxHalf = 9;  // columns that fit on a phone, and on half a screen
 constexpr std::string_view kUnknown = "–", kPlusMinus = " ± ";
 
 /// The number of "7.5" and "7.5 ± 0.2".
@@ -29,13 +29,13 @@ std::optional<double> number_of(const std::string& cell) {
 struct PageColumn {
   std::size_t index = 0;
   bool numbers = false;
-  double least = 0, largest = 0;
+  double minimum = 0, largest = 0;
   std::string group;
 };
 
-/// Empty cells tell nothing; a column without any other is left out.
+/// Empty cells tell nothing; a column without any other is omitted.
 std::optional<PageColumn> column_of(const PageTable& table, std::size_t index) {
-  PageColumn column{.index = index, .numbers = true, .least = HUGE_VAL, .largest = 0, .group = {}};
+  PageColumn column{.index = index, .numbers = true, .minimum = HUGE_VAL, .largest = 0, .group = {}};
   if (index < table.groups.size()) column.group = table.groups[index];
   bool empty = true;
   for (const auto& row : table.rows) {
@@ -45,7 +45,7 @@ std::optional<PageColumn> column_of(const PageTable& table, std::size_t index) {
     const auto value = number_of(row[index]);
     column.numbers &= value.has_value();
     if (!value) continue;
-    column.least = std::min(column.least, *value);
+    column.minimum = std::min(column.minimum, *value);
     column.largest = std::max(column.largest, *value);
   }
   return empty ? std::nullopt : std::optional(column);
@@ -77,9 +77,9 @@ class TableHtml {
     const std::string title = xml_escaped(table_.title);
     text_ = table_.folded ? fmt::format("<details><summary>{}: {}</summary>", title, table_.rows.size())
                           : fmt::format("<h2>{}</h2>", title);
-    text_ += fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMostHalf     ? " class=\"wide cards\""
-                                                                   : columns_.size() > kMostNarrow ? " class=\"cards\""
-                                                                                                   : "");
+    text_ += fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMaxHalf     ? " class=\"wide cards\""
+                                                                   : columns_.size() > kMaxNarrow ? " class=\"cards\""
+                                                                                                  : "");
     write_groups();
     write_head();
     text_ += "</thead><tbody>\n";
@@ -127,7 +127,7 @@ class TableHtml {
     auto out = std::back_inserter(text_);
     const auto at = static_cast<int>(column.index);
     const auto number =
-        column.numbers && column.largest > std::max(0.0, column.least) && at >= table_.bars_from && at < table_.bars_end
+        column.numbers && column.largest > std::max(0.0, column.minimum) && at >= table_.bars_from && at < table_.bars_end
             ? number_of(cell)
             : std::nullopt;
     const auto colour = table_.colours.find(cell);
@@ -149,14 +149,14 @@ void Page::add_heading(const std::string& text) {
   body_ += "<h2>" + xml_escaped(text) + "</h2>\n";
 }
 
-void Page::add_sentence(const std::string& text) {
+void Page::add_message(const std::string& text) {
   body_ += "<p>" + xml_escaped(text) + "</p>\n";
 }
 
 void Page::add_list(const std::vector<std::string>& sentences) {
   if (sentences.empty()) return;
   body_ += "<ul>\n";
-  for (const std::string& sentence : sentences) body_ += "<li>" + xml_escaped(sentence) + "</li>\n";
+  for (const std::string& message_text : sentences) body_ += "<li>" + xml_escaped(message_text) + "</li>\n";
   body_ += "</ul>\n";
 }
 

@@ -13,7 +13,7 @@ namespace marey::draw {
 
 /// A table that its reader sorts by any column. A column of numbers alone gets bars, as long as its number's share of the largest,
 /// unless all are equal;
-/// "7 ± 2" and "–" are numbers too. Columns that are empty in every row are left out.
+/// "7 ± 2" and "–" are numbers too. Columns that are empty in every row are omitted.
 struct PageTable {
   std::string title;
   std::vector<std::string> head;
@@ -31,7 +31,7 @@ class Page {
   explicit Page(std::string title) : title_(std::move(title)) {}
 
   void add_heading(const std::string& text);
-  void add_sentence(const std::string& text);
+  void add_message(const std::string& text);
   void add_list(const std::vector<std::string>& sentences);
   /// Nothing for a table without rows.
   void add(const PageTable& table);

@@ -19,7 +19,7 @@ cv::Point2f point(const Vector<2>& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y())};
 }
 
-bool in_picture(const Vector<2>& pixel, cv::Size size) {
+bool in_image(const Vector<2>& pixel, cv::Size size) {
   return cv::Rect2d({-0.5, -0.5}, cv::Size2d(size)).contains({pixel.x(), pixel.y()});
 }
 
@@ -31,7 +31,7 @@ struct Shade {
 constexpr std::array<Shade, 6> kShades{
     {{0.03, "#1a9850"}, {0.06, "#91cf60"}, {0.12, "#d9ef8b"}, {0.25, "#fee08b"}, {0.5, "#fc8d59"}, {1e9, "#d73027"}}};
 
-constexpr const char* kUnseen = "#dddddd";
+constexpr const char* kUnobserved = "#dddddd";
 
 const char* shade_of(double metres) {
   return std::find_if(kShades.begin(), kShades.end(), [&](const Shade& shade) { return metres <= shade.metres; })->colour;
@@ -39,16 +39,16 @@ const char* shade_of(double metres) {
 
 }  // namespace
 
-Picture draw_pitch(const Picture& picture, const GroundView& view, const std::vector<geometry::PitchLine>& lines,
-                   const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks) {
-  Canvas canvas(picture);
-  const double unit = std::max(1.0, picture.size().width / 1500.0);
+Image draw_pitch(const Image& image, const GroundView& view, const std::vector<geometry::PitchLine>& lines,
+                 const std::vector<Vector<2>>& paint, const std::vector<DrawnClick>& clicks) {
+  Canvas canvas(image);
+  const double unit = std::max(1.0, image.size().width / 1500.0);
   std::vector<Canvas::Stroke> strokes;
   for (const geometry::PitchLine& line : lines) {
     std::optional<Vector<2>> last;
-    for (const Vector<2>& place : line.points) {
-      auto here = view.pixel(place);
-      if (here && !in_picture(*here, view.size())) here.reset();
+    for (const Vector<2>& location : line.points) {
+      auto here = view.pixel(location);
+      if (here && !in_image(*here, view.size())) here.reset();
       if (last && here) strokes.push_back({point(*last), point(*here)});
       last = here;
     }
@@ -79,8 +79,8 @@ std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& s
       svg.add("g", {{"transform", fmt::format("translate({},{}) scale({} {})", margin, origin, scale, y_down ? scale : -scale)}});
   for (double y = 0; y < size.width; y += cell) {
     for (double x = 0; x < size.length; x += cell) {
-      const auto worth = metres({x + cell / 2, y + cell / 2});
-      map.rect({x, y, cell * 1.02, cell * 1.02}, {{"fill", worth ? shade_of(*worth) : kUnseen}});
+      const auto merit = metres({x + cell / 2, y + cell / 2});
+      map.rect({x, y, cell * 1.02, cell * 1.02}, {{"fill", merit ? shade_of(*merit) : kUnobserved}});
     }
   }
   for (const geometry::PitchLine& line : geometry::pitch_lines(size, 0.1))
@@ -94,7 +94,7 @@ std::string pitch_map_svg(const std::string& title, const geometry::PitchSize& s
   for (const Shade& shade : std::span(kShades).first(kShades.size() - 1))
     add_key(shade.colour, fmt::format("up to {:g} m", shade.metres));
   add_key(kShades.back().colour, "more");
-  add_key(kUnseen, "not in view");
+  add_key(kUnobserved, "not in view");
   return svg.str();
 }
 

@@ -9,7 +9,7 @@ namespace marey::draw {
 struct PitchFrame {
   geometry::PitchSize size = {};
   Vector<2> corner = Vector<2>::Zero();  ///< m: its own with the least x and y
-  bool y_down = false;                   ///< else y grows upwards; see core/other_ground.h
+  bool y_down = false;                   ///< else y grows upwards; see core/ground_transform.h
 };
 
 }  // namespace marey::draw

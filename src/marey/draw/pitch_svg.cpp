@@ -13,8 +13,8 @@ namespace {
 constexpr double kPitchMargin = 3;  // m round the pitch
 constexpr int kPitchDecimals = 2;   // of metres that are drawn
 constexpr Colour kPageGrass{42, 93, 54};
-constexpr double kLeastContrast = 2.6;  // of luminances, as WCAG 2.2 counts them: black reaches it on this grass, and red stays red
-constexpr float kColourless = 12;       // chroma below which a shirt is white, grey or black
+constexpr double kMinContrast = 2.6;  // of luminances, as WCAG 2.2 counts them: black reaches it on this grass, and red stays red
+constexpr float kColourless = 12;     // chroma below which a shirt is white, grey or black
 constexpr float kWhite = 65, kBlack = 30;  // L* from which on a colourless shirt is one, in video
 constexpr float kPureWhite = 98, kPureBlack = 0, kVivid = 1.3F;
 
@@ -79,7 +79,7 @@ std::string colour_on_grass(const Appearance& shirt) {
     shown.a *= kVivid;
     shown.b *= kVivid;
   }
-  while (contrast_to_grass(colour_of(shown)) < kLeastContrast && shown.lightness < kPureWhite) shown.lightness += 1;
+  while (contrast_to_grass(colour_of(shown)) < kMinContrast && shown.lightness < kPureWhite) shown.lightness += 1;
   return css_of(colour_of(shown));
 }
 

@@ -6,9 +6,9 @@ namespace marey::draw {
 namespace {
 
 constexpr Colour kGrass{52, 110, 58}, kStripe{57, 118, 63}, kLinePaint{235, 240, 235}, kInk{15, 15, 15};
-constexpr double kStripeWidth = 5.25;  // m; twenty to the usual length
+constexpr double kStripeWidth = 5.25;  // m; twenty to the typical length
 constexpr double kGrid = 5;            // m
-constexpr double kDisc = 0.011;        // radius, of the picture's width
+constexpr double kDisc = 0.011;        // radius, of the image's width
 
 cv::Mat plane(cv::Size size, double value) {
   return {size, CV_8UC1, cv::Scalar(value)};
@@ -26,13 +26,13 @@ PitchView::PitchView(const PitchViewOptions& options) : options_(options), trail
   scale_ = options.width / extent.x();
   const int height = std::max(2, static_cast<int>(std::lround(scale_ * extent.y() / 2)) * 2);
   const cv::Size size(options.width & ~1, height);
-  ground_ = Picture(plane(size, 0), plane(size / 2, 128), plane(size / 2, 128), Picture::Range::limited);
+  ground_ = Image(plane(size, 0), plane(size / 2, 128), plane(size / 2, 128), Image::Range::limited);
   draw_ground();
 }
 
-cv::Point2f PitchView::pixel(const Vector<2>& place) const {
-  const double across = (place.x() - options_.low.x()) * scale_;
-  const double down = (options_.y_down ? place.y() - options_.low.y() : options_.high.y() - place.y()) * scale_;
+cv::Point2f PitchView::pixel(const Vector<2>& location) const {
+  const double across = (location.x() - options_.low.x()) * scale_;
+  const double down = (options_.y_down ? location.y() - options_.low.y() : options_.high.y() - location.y()) * scale_;
   return {static_cast<float>(across - 0.5), static_cast<float>(down - 0.5)};
 }
 
@@ -60,13 +60,13 @@ void PitchView::draw_ground() {
   ground_ = canvas.take();
 }
 
-Picture PitchView::draw(Timestamp now, std::span<const Mark> marks) {
+Image PitchView::draw(Timestamp now, std::span<const Mark> marks) {
   Canvas canvas(ground_);
   const double radius = kDisc * ground_.size().width;
-  for (const Mark& mark : marks) trails_.add(mark.number, now, pixel(mark.place), mark.colour);
+  for (const Mark& mark : marks) trails_.add(mark.number, now, pixel(mark.location), mark.colour);
   trails_.draw(canvas, now, 0.8, 0.3 * radius);
   for (const Mark& mark : marks) {
-    const cv::Point2f at = pixel(mark.place);
+    const cv::Point2f at = pixel(mark.location);
     canvas.discs({at}, radius, mark.observed ? kInk : mark.colour);
     canvas.discs({at}, 0.86 * radius, mark.observed ? mark.colour : kGrass);
     canvas.text(mark.text, at, is_light(mark.colour) && mark.observed ? kInk : kLinePaint, 0.85 * radius);

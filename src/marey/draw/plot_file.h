@@ -4,19 +4,19 @@
 #include <utility>
 
 #include "marey/core/sink.h"
-#include "marey/core/whole_file.h"
 #include "marey/draw/trajectory_plot.h"
+#include "marey/files/whole_file.h"
 
 namespace marey::draw {
 
 /// A plot of trajectories that becomes a file at the end of a run; that it can be written shows at the beginning.
 class PlotFile final : public Sink {
  public:
-  /// Throws Error where nothing can be written at `path`.
+  /// Throws Error if nothing can be written at `path`.
   explicit PlotFile(const std::string& path) : path_(path), file_(path) {}
 
   std::string name() const override { return path_; }
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     title_ = "Trajectories in " + header.name;
     return {};
   }

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::draw {
 namespace {
@@ -20,8 +20,8 @@ void append_number(std::string& text, double number, int decimals) {
 
 }  // namespace
 
-double round_step(double least) {
-  const double power = std::pow(10, std::floor(std::log10(least))), ratio = least / power;
+double round_step(double minimum) {
+  const double power = std::pow(10, std::floor(std::log10(minimum))), ratio = minimum / power;
   return power * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
 }
 

@@ -1,4 +1,4 @@
-// SVG pictures, element by element: pugixml keeps them well-formed whatever their texts are.
+// SVG images, element by element: pugixml keeps them well-formed whatever their texts are.
 #pragma once
 
 #include <initializer_list>
@@ -15,9 +15,9 @@
 namespace marey::draw {
 
 /// The least of 1, 2 and 5 times a power of ten that is `least` or more: a round step of an axis.
-double round_step(double least);
+double round_step(double minimum);
 
-/// A text, or a number that is written with as many decimals as its picture has, without zeros at its end.
+/// A text, or a number that is written with as many decimals as its image has, without zeros at its end.
 struct SvgAttribute {
   SvgAttribute(const char* attribute, double number) : name(attribute), value(number) {}
   SvgAttribute(const char* attribute, std::string text) : name(attribute), value(std::move(text)) {}
@@ -26,8 +26,8 @@ struct SvgAttribute {
   std::variant<double, std::string> value;
 };
 
-/// An element of a picture, which its Svg holds. What is added to it is drawn over what was added before. Texts become plain
-/// (core/text_safety.h).
+/// An element of an image, which its Svg holds. What is added to it is drawn over what was added before. Texts become plain
+/// (files/text_safety.h).
 class SvgElement {
  public:
   using Attributes = std::initializer_list<SvgAttribute>;
@@ -50,7 +50,7 @@ class SvgElement {
   int decimals_;
 };
 
-/// A picture.
+/// An image.
 class Svg : public SvgElement {
  public:
   explicit Svg(Attributes attributes, int decimals = 1);

@@ -12,42 +12,42 @@
 namespace marey::draw {
 namespace {
 
-constexpr double kShortest = 0.5;     // px; a step
-constexpr double kLongestSide = 900;  // units of the picture
-constexpr double kLeastSpan = 20;     // px shown at least, where nobody moves
+constexpr double kMinLength = 0.5;      // px; a step
+constexpr double kMaxSideLength = 900;  // units of the image
+constexpr double kMinSpan = 20;         // px shown at least, where no person moves
 constexpr double kPlotMargin = 56, kPlotTop = 40, kPlotBottom = 48;
 
 /// The part of the image that is shown: what the ways span, and a twentieth more on each side.
 Box window_of(const Vector<2>& low, const Vector<2>& high) {
   const Vector<2> middle = (low + high) / 2;
-  const Vector<2> span = (1.1 * (high - low)).cwiseMax(kLeastSpan);
+  const Vector<2> span = (1.1 * (high - low)).cwiseMax(kMinSpan);
   return {middle.x() - span.x() / 2, middle.y() - span.y() / 2, span.x(), span.y()};
 }
 
 class PlotPage : public Svg {
  public:
-  explicit PlotPage(const Box& window) : PlotPage(window, kLongestSide / std::max(window.width, window.height)) {}
+  explicit PlotPage(const Box& window) : PlotPage(window, kMaxSideLength / std::max(window.width, window.height)) {}
 
   /// Where a pixel is drawn.
-  Vector<2> place(const Vector<2>& pixel) const {
+  Vector<2> location(const Vector<2>& pixel) const {
     return Vector<2>(kPlotMargin, kPlotTop) + scale_ * (pixel - Vector<2>(window_.left, window_.top));
   }
 
   void axes(const std::string& title) {
     text({kPlotMargin, 22}, title, {{"font-size", 15}, {"font-weight", "bold"}});
-    const Vector<2> end = place({window_.right(), window_.bottom()});
+    const Vector<2> end = location({window_.right(), window_.bottom()});
     for (const double tick : ticks(window_.left, window_.right())) {
-      const double x = place({tick, 0}).x();
+      const double x = location({tick, 0}).x();
       line({x, kPlotTop}, {x, end.y()}, {{"stroke", "#ddd"}});
       text({x, end.y() + 16}, fmt::format("{:g}", tick), {{"text-anchor", "middle"}});
     }
     for (const double tick : ticks(window_.top, window_.bottom())) {
-      const double y = place({0, tick}).y();
+      const double y = location({0, tick}).y();
       line({kPlotMargin, y}, {end.x(), y}, {{"stroke", "#ddd"}});
       text({kPlotMargin - 6, y + 4}, fmt::format("{:g}", tick), {{"text-anchor", "end"}});
     }
     rect({kPlotMargin, kPlotTop, scale_ * window_.width, scale_ * window_.height}, {{"fill", "none"}, {"stroke", "#888"}});
-    const Vector<2> middle = place({window_.left + window_.width / 2, window_.top + window_.height / 2});
+    const Vector<2> middle = location({window_.left + window_.width / 2, window_.top + window_.height / 2});
     text({middle.x(), end.y() + 36}, "x, px", {{"text-anchor", "middle"}});
     add("text", {{"transform", fmt::format("translate(14 {:.1f}) rotate(-90)", middle.y())}, {"text-anchor", "middle"}},
         "y, px (down)");
@@ -79,44 +79,44 @@ std::string css(const Colour& colour) {
 void TrajectoryPlot::add(const Instant& instant) {
   names_.add(instant.named);
   for (const Sample& sample : instant.samples) {
-    const Vector<2> place = sample.outline ? sample.outline->centre : Vector<2>(sample.position.head<2>());
-    Way& way = ways_[sample.track];
-    if (way.pieces.empty() || way.last_frame + 1 != instant.index) {
-      if (!way.pieces.empty() && way.pieces.back().back() != way.last) way.pieces.back().push_back(way.last);
-      way.pieces.push_back({place});
-      way.name = names_.shown(sample.track);
-    } else if ((place - way.pieces.back().back()).norm() >= kShortest) {
-      way.pieces.back().push_back(place);
+    const Vector<2> location = sample.outline ? sample.outline->centre : Vector<2>(sample.position.head<2>());
+    Trajectory& method = methods_[sample.track];
+    if (method.pieces.empty() || method.last_frame + 1 != instant.index) {
+      if (!method.pieces.empty() && method.pieces.back().back() != method.last) method.pieces.back().push_back(method.last);
+      method.pieces.push_back({location});
+      method.name = names_.shown(sample.track);
+    } else if ((location - method.pieces.back().back()).norm() >= kMinLength) {
+      method.pieces.back().push_back(location);
     }
-    way.last = place;
-    way.last_frame = instant.index;
+    method.last = location;
+    method.last_frame = instant.index;
   }
 }
 
 std::string TrajectoryPlot::to_svg(const std::string& title) const {
   Vector<2> low(HUGE_VAL, HUGE_VAL), high(-HUGE_VAL, -HUGE_VAL);
-  for (const auto& [id, way] : ways_) {
-    for (const auto& piece : way.pieces) {
-      for (const Vector<2>& place : piece) {
-        low = low.cwiseMin(place);
-        high = high.cwiseMax(place);
+  for (const auto& [id, method] : methods_) {
+    for (const auto& piece : method.pieces) {
+      for (const Vector<2>& location : piece) {
+        low = low.cwiseMin(location);
+        high = high.cwiseMax(location);
       }
     }
   }
-  if (ways_.empty()) low = high = Vector<2>::Zero();
+  if (methods_.empty()) low = high = Vector<2>::Zero();
   PlotPage page(window_of(low, high));
   page.axes(title);
-  for (const auto& [id, way] : ways_) {
+  for (const auto& [id, method] : methods_) {
     const std::string colour = css(colour_of(number(id)));
-    for (std::size_t i = 0; i < way.pieces.size(); ++i) {
+    for (std::size_t i = 0; i < method.pieces.size(); ++i) {
       std::vector<Vector<2>> points;
-      for (const Vector<2>& pixel : way.pieces[i]) points.push_back(page.place(pixel));
-      if (i + 1 == way.pieces.size() && way.pieces[i].back() != way.last) points.push_back(page.place(way.last));
+      for (const Vector<2>& pixel : method.pieces[i]) points.push_back(page.location(pixel));
+      if (i + 1 == method.pieces.size() && method.pieces[i].back() != method.last) points.push_back(page.location(method.last));
       page.polyline(points, {{"stroke", colour}, {"stroke-width", 1.6}, {"stroke-linejoin", "round"}});
     }
-    const Vector<2> begin = page.place(way.pieces.front().front());
+    const Vector<2> begin = page.location(method.pieces.front().front());
     page.circle(begin, 3, {{"fill", colour}});
-    page.text(begin + Vector<2>(5, -4), way.name, {{"fill", colour}});
+    page.text(begin + Vector<2>(5, -4), method.name, {{"fill", colour}});
   }
   return page.str();
 }

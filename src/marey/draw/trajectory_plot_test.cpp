@@ -59,7 +59,7 @@ TEST(TrajectoryPlot, AnOutlineTellsTheCentre) {
   EXPECT_EQ(one.to_svg(""), other.to_svg(""));
 }
 
-TEST(TrajectoryPlot, WhoStandsCostsNoMemoryAndEndsWhereLastSeen) {
+TEST(TrajectoryPlot, StandingPersonUsesNoMemoryAndEndsAtLastObservation) {
   TrajectoryPlot plot;
   for (int frame = 0; frame < 10'000; ++frame) plot.add(instant_of(frame, {point_of(1, 10 + 0.1 * (frame % 3), 10)}));
   EXPECT_LT(plot.to_svg("").size(), 4000u);

@@ -6,9 +6,9 @@
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
 #include "marey/edit/fill_gap.h"
 #include "marey/edit/lowpass.h"
+#include "marey/files/text_safety.h"
 #include "marey/geometry/median.h"
 
 namespace marey::edit {
@@ -16,7 +16,7 @@ namespace {
 
 using Kind = Operation::Kind;
 
-constexpr double kUsualCutoff_hz = 6;  // of walking (Winter), where a path is too short to propose one
+constexpr double kDefaultCutoff_hz = 6;  // of walking (Winter), where a path is too short to propose one
 
 TrackId track_named(const std::string& name, const std::vector<TrackName>& names) {
   if (name.starts_with('#')) {
@@ -63,20 +63,20 @@ double cutoff_of(Tracks& tracks, TrackId track) {
     if (end - begin > best_end - best_begin) best_begin = begin, best_end = end;
     begin = end;
   }
-  if (best_end - best_begin < 2) return kUsualCutoff_hz;
+  if (best_end - best_begin < 2) return kDefaultCutoff_hz;
   std::vector<Vector<3>> path;
   for (std::size_t row = best_begin; row < best_end; ++row) path.push_back(rows[row].sample.position);
-  const double rate_hz = rate_between(tracks.moments(), rows[best_begin].at, rows[best_end - 1].at);
-  return proposed_cutoff(path, rate_hz).value_or(kUsualCutoff_hz);
+  const double rate_hz = rate_between(tracks.time_steps(), rows[best_begin].at, rows[best_end - 1].at);
+  return proposed_cutoff(path, rate_hz).value_or(kDefaultCutoff_hz);
 }
 
-/// Throws Error where a filter would do nothing at this cut-off: two passes at half the rate or above.
+/// Throws Error if a filter would do nothing at this cut-off: two passes at half the rate or above.
 double require_cutoff(double cutoff_hz, const Tracks& tracks) {
-  const auto moments = tracks.moments();
+  const auto time_steps = tracks.time_steps();
   std::vector<double> steps_s;
-  for (std::size_t i = 1; i < moments.size(); ++i) steps_s.push_back(seconds(moments[i].time - moments[i - 1].time));
+  for (std::size_t i = 1; i < time_steps.size(); ++i) steps_s.push_back(seconds(time_steps[i].time - time_steps[i - 1].time));
   if (steps_s.empty()) return cutoff_hz;
-  const auto median = geometry::median(steps_s);  // instants may be left out
+  const auto median = geometry::median(steps_s);  // instants may be omitted
   if (!(median > 0)) return cutoff_hz;
   const double rate_hz = 1 / median;
   if (cutoff_hz < highest_cutoff(rate_hz)) return cutoff_hz;
@@ -86,8 +86,8 @@ double require_cutoff(double cutoff_hz, const Tracks& tracks) {
 
 /// A range that ends after the recording is a slip of the pen; one without an end goes as far as there is.
 void require_frames(const Request& request, const Tracks& tracks) {
-  if (!request.frames || request.frames->last == FrameRange::kToTheEnd || tracks.moments().empty()) return;
-  const std::int64_t last = tracks.moments().back().index;
+  if (!request.frames || request.frames->last == FrameRange::kToTheEnd || tracks.time_steps().empty()) return;
+  const std::int64_t last = tracks.time_steps().back().index;
   if (request.frames->last > last)
     throw Error("{}: frame {} is named, and the last one is {}", name_of(request.kind), request.frames->last, last);
 }
@@ -97,7 +97,7 @@ void require_rows(const Request& request, Tracks& tracks, const std::vector<Trac
   const auto within = [&](TrackId track) {
     const auto& rows = tracks.rows(track);
     return std::any_of(rows.begin(), rows.end(), [&](const Tracks::Row& row) {
-      const std::int64_t index = tracks.moments()[static_cast<std::size_t>(row.at)].index;
+      const std::int64_t index = tracks.time_steps()[static_cast<std::size_t>(row.at)].index;
       return request.kind == Kind::split ? index >= request.frames->first : request.frames->holds(index);
     });
   };
@@ -109,7 +109,7 @@ void require_rows(const Request& request, Tracks& tracks, const std::vector<Trac
 void require_free_name(const Request& request, Tracks& tracks, TrackId named, const std::vector<TrackName>& names) {
   if (request.label.empty()) return;
   const auto begins = [&](const Tracks::Row& row) {
-    return request.kind != Kind::split || tracks.moments()[static_cast<std::size_t>(row.at)].index >= request.frames->first;
+    return request.kind != Kind::split || tracks.time_steps()[static_cast<std::size_t>(row.at)].index >= request.frames->first;
   };
   for (const TrackName& other : names) {
     if (other.id == named || other.label != request.label) continue;
@@ -121,7 +121,7 @@ void require_free_name(const Request& request, Tracks& tracks, TrackId named, co
         throw Error(
             "{}: #{} is called \"{}\" already and is there at the same time, as in frame {}; rename, join or delete it first",
             name_of(request.kind), number(other.id), plain_text(request.label),
-            tracks.moments()[static_cast<std::size_t>(row.at)].index);
+            tracks.time_steps()[static_cast<std::size_t>(row.at)].index);
     }
   }
 }
@@ -135,7 +135,8 @@ std::string words_of(const OpenGaps& open, const Request& request) {
   if (open.too_far_off > 0)
     why.push_back(fmt::format("{} expected to be filled with an error of more than {:g} mm (within=)", open.too_far_off,
                               1e3 * request.within_m));
-  if (open.untold > 0) why.push_back(fmt::format("{} for which there is too little to tell the position from", open.untold));
+  if (open.unreported > 0)
+    why.push_back(fmt::format("{} for which there is too little to tell the position from", open.unreported));
   return fmt::format("{} {} open: {}", open.all(), open.all() == 1 ? "gap stays" : "gaps stay", fmt::join(why, ", "));
 }
 
@@ -146,7 +147,7 @@ Operation decide(const Request& request, Tracks& tracks, OpenGaps* open) {
   require_frames(request, tracks);
   require_rows(request, tracks, operation.tracks);
   if (!operation.tracks.empty() && request.kind != Kind::team) require_free_name(request, tracks, operation.tracks.front(), names);
-  if (request.kind == Kind::split) operation.born = tracks.unused_id();
+  if (request.kind == Kind::split) operation.initiated = tracks.unused_id();
   if (request.kind == Kind::filter) {
     for (const TrackId track : operation.tracks)
       operation.cutoffs_hz.push_back(request.cutoff_hz ? require_cutoff(*request.cutoff_hz, tracks) : cutoff_of(tracks, track));

@@ -9,10 +9,10 @@
 
 namespace marey::edit {
 
-/// What a request means for these tracks: names become tracks, and what is left to the program (how each gap is filled, how
-/// strongly each path is smoothed) is decided now, so that replaying decides nothing. Throws Error where a track is not there, a
+/// What a request means for these tracks: names become tracks, and the rest to the program (how each gap is filled, how
+/// strongly each path is smoothed) is decided now, so that replaying decides nothing. Throws Error if a track is not there, a
 /// name means several, or there is nothing to be done. With `open`, which gets the gaps that a fill leaves open, a fill without
-/// a gap that it can fill is no Error but an operation without gaps.
+/// a gap that it can fill is not an Error but an operation without gaps.
 Operation decide(const Request& request, Tracks& tracks, OpenGaps* open = nullptr);
 
 /// "2 gaps stay open: 1 longer than 1 s, …"; that there is none, if there is none.

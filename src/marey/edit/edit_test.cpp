@@ -61,7 +61,7 @@ std::string error_of(Recording recording, const std::string& text) {
 }
 
 /// "A:111222" says whose place, by x, the track called A has in each frame, and "." where it has none.
-std::string picture(const Recording& recording) {
+std::string image(const Recording& recording) {
   std::string all;
   for (const TrackColumns& track : recording.tracks()) {
     std::string row(recording.instants().size(), '.');
@@ -75,27 +75,27 @@ std::string picture(const Recording& recording) {
 TEST(Edit, SwapExchangesWhatLiesInTheFrames) {
   Recording recording = letters(2, 6);
   edit(recording, "swap A B 2:3");
-  EXPECT_EQ(picture(edited(recording)), "A:112211 B:221122 ");
-  EXPECT_EQ(picture(recording), "A:111111 B:222222 ") << "what was recorded is as it was";
+  EXPECT_EQ(image(edited(recording)), "A:112211 B:221122 ");
+  EXPECT_EQ(image(recording), "A:111111 B:222222 ") << "what was recorded is as it was";
 }
 
 TEST(Edit, SwapOfOneThatIsNotThere) {
   Recording recording = letters(2, 6);
   edit(recording, "delete B 2:5");
   edit(recording, "swap A B 1:3");
-  EXPECT_EQ(picture(edited(recording)), "A:12..11 B:2111.. ");
+  EXPECT_EQ(image(edited(recording)), "A:12..11 B:2111.. ");
 }
 
 TEST(Edit, SplitJoinRenameDelete) {
   Recording recording = letters(2, 6);
   edit(recording, "split A 4 \"A two\"");
   edit(recording, "delete B 3:");
-  EXPECT_EQ(picture(edited(recording)), "A:1111.. B:222... A two:....11 ");
+  EXPECT_EQ(image(edited(recording)), "A:1111.. B:222... A two:....11 ");
   edit(recording, "join B \"A two\"");
   edit(recording, "rename B \"one, two\"");
-  EXPECT_EQ(picture(edited(recording)), "A:1111.. one, two:222.11 ");
+  EXPECT_EQ(image(edited(recording)), "A:1111.. one, two:222.11 ");
   edit(recording, "delete \"one, two\"");
-  EXPECT_EQ(picture(edited(recording)), "A:1111.. ");
+  EXPECT_EQ(image(edited(recording)), "A:1111.. ");
 }
 
 /// What was found when a fill was decided stays with the edit: who then wants one track reads that one alone.
@@ -117,21 +117,21 @@ TEST(Edit, FillsKeepTheirPlaces) {
     if (operation.kind == Operation::Kind::fill) {
       EXPECT_EQ(read, (std::vector{TrackId{1}, TrackId{2}}));
       ASSERT_EQ(operation.gaps.size(), 2U);
-      EXPECT_EQ(operation.gaps[1].places.size(), 4U);
+      EXPECT_EQ(operation.gaps[1].locations.size(), 4U);
     }
     tracks.apply(operation);
   }
   EXPECT_EQ(tracks.rows(TrackId{1}).size(), 60U);
-  EXPECT_EQ(read.size(), 2U) << "nobody wanted the others";
+  EXPECT_EQ(read.size(), 2U) << "no person wanted the others";
   for (const TrackId track : {TrackId{1}, TrackId{2}}) {
     const TrackColumns now = tracks.columns(track, 3);
     for (std::size_t row = 0; row < 60; ++row) EXPECT_EQ(now.sample(row).position, whole.find(track)->sample(row).position);
   }
-  // Edits of before have no places: they are found anew, and are the same.
+  // Edits of before have no places: they are found again, and are the same.
   Recording older = recording;
   for (Edit& one : older.edits) {
     Operation operation = operation_of(one).value();
-    for (FilledGap& gap : operation.gaps) gap.places.clear();
+    for (FilledGap& gap : operation.gaps) gap.locations.clear();
     one.payload = edit_of(operation).payload;
   }
   const Recording again = edited(older);
@@ -140,7 +140,7 @@ TEST(Edit, FillsKeepTheirPlaces) {
     EXPECT_EQ(again.find(TrackId{2})->sample(row).position, whole.find(TrackId{2})->sample(row).position);
   }
   Operation damaged = operation_of(recording.edits.back()).value();
-  damaged.gaps.front().places.pop_back();
+  damaged.gaps.front().locations.pop_back();
   recording.edits.back().payload = edit_of(damaged).payload;
   EXPECT_THROW(edited(recording), Error);
 }
@@ -163,7 +163,7 @@ TEST(Edit, PiecesOfOneMarkerMayShareItsName) {
   EXPECT_EQ(error_of(recording, "delete A 4:5"), "delete: nothing is there in frames 4 to 5");
   EXPECT_NE(error_of(recording, "split B 2 A"), "") << "both are there in frame 2";
   edit(recording, "split B 3 A");
-  EXPECT_EQ(picture(edited(recording)), "A:111... B:222... A:...222 ");
+  EXPECT_EQ(image(edited(recording)), "A:111... B:222... A:...222 ");
 }
 
 TEST(Edit, UndoRedoAndBranches) {
@@ -171,24 +171,24 @@ TEST(Edit, UndoRedoAndBranches) {
   edit(recording, "rename A C");
   edit(recording, "rename C D");
   recording.head = undone(recording.edits, recording.head, 1);
-  EXPECT_EQ(picture(edited(recording)), "C:111 B:222 ");
+  EXPECT_EQ(image(edited(recording)), "C:111 B:222 ");
   edit(recording, "rename B E");  // another branch: nothing of the first is lost
-  EXPECT_EQ(picture(edited(recording)), "C:111 E:222 ");
+  EXPECT_EQ(image(edited(recording)), "C:111 E:222 ");
   recording.head = undone(recording.edits, recording.head, 9);
   EXPECT_FALSE(recording.head);
   EXPECT_EQ(redone(recording.edits, recording.head, 9), 3);
   recording.head = 2;
-  EXPECT_EQ(picture(edited(recording)), "D:111 B:222 ");
+  EXPECT_EQ(image(edited(recording)), "D:111 B:222 ");
 }
 
-TEST(Edit, WhatCannotBeDoneIsSaid) {
+TEST(Edit, ReportsImpossibleEdit) {
   const Recording recording = letters(3, 6);
   EXPECT_EQ(error_of(recording, "swp A B"),
-            "\"swp\" is no edit; rename, swap, split, join, delete, fill, filter and team are known");
+            "\"swp\" is not an edit; rename, swap, split, join, delete, fill, filter and team are known");
   EXPECT_EQ(error_of(recording, "swap A X"), "there is no track called \"X\"");
   EXPECT_EQ(error_of(recording, "swap A A"), "swap: \"A\" is named twice");
   EXPECT_EQ(error_of(recording, "swap A"), "swap: the second track is missing");
-  EXPECT_EQ(error_of(recording, "swap A B 5:2"), "\"5:2\" are no frames; write FIRST:LAST, counted from 0");
+  EXPECT_EQ(error_of(recording, "swap A B 5:2"), "\"5:2\" are not frames; write FIRST:LAST, counted from 0");
   EXPECT_EQ(error_of(recording, "swap A B 1:2 C"), "swap: \"C\" is too much");
   EXPECT_EQ(error_of(recording, "join A B"), "\"A\" and \"B\" are both there in frame 0; split or delete one of them first");
   EXPECT_EQ(error_of(recording, "delete A 3:200"), "delete: frame 200 is named, and the last one is 5");
@@ -197,7 +197,7 @@ TEST(Edit, WhatCannotBeDoneIsSaid) {
             "rename: #3 is called \"C\" already and is there at the same time, as in frame 0; rename, join or delete it first");
   EXPECT_EQ(error_of(recording, "rename #7 B"), "there is no track #7");
   EXPECT_EQ(error_of(recording, "rename \"A B"), "a name begins with \" and does not end");
-  EXPECT_EQ(error_of(recording, "filter A -3"), "filter: \"-3\" is no cut-off; it is in Hz, above 0, or auto");
+  EXPECT_EQ(error_of(recording, "filter A -3"), "filter: \"-3\" is not a cut-off; it is in Hz, above 0, or auto");
   EXPECT_EQ(error_of(recording, "filter A 500"),
             "filter: at 100 frames a second a cut-off of 500 Hz would change nothing; it lies below 40.1 Hz");
   EXPECT_EQ(error_of(recording, "filter A 41"),
@@ -229,7 +229,7 @@ TEST(Edit, AHeadOrAParentThatIsNotThere) {
 /// The slow twin: a table of frames × tracks, without ranges of rows.
 struct Table {
   std::vector<std::vector<int>> x;  // by track, by frame; 0: none
-  std::string picture() const {
+  std::string image() const {
     std::string all;
     for (std::size_t track = 0; track < x.size(); ++track) {
       std::string row;
@@ -250,7 +250,7 @@ TEST(Edit, ManyRandomEditsLeaveWhatASlowTableLeavesAndAreUndone) {
   std::mt19937 random(seed);
   constexpr int kTracks = 4, kFrames = 40;
   Recording recording = letters(kTracks, kFrames);
-  const std::string before = picture(edited(recording));
+  const std::string before = image(edited(recording));
   Table table{std::vector(kTracks, std::vector<int>(kFrames))};
   for (int track = 0; track < kTracks; ++track)
     std::fill(table.x[static_cast<std::size_t>(track)].begin(), table.x[static_cast<std::size_t>(track)].end(), track + 1);
@@ -277,9 +277,9 @@ TEST(Edit, ManyRandomEditsLeaveWhatASlowTableLeavesAndAreUndone) {
     }
   }
   EXPECT_GT(recording.edits.size(), 100u);
-  EXPECT_EQ(picture(edited(recording)), table.picture());
+  EXPECT_EQ(image(edited(recording)), table.image());
   recording.head = undone(recording.edits, recording.head, 1000);
-  EXPECT_EQ(picture(edited(recording)), before);
+  EXPECT_EQ(image(edited(recording)), before);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace {
 
 using Path = std::vector<Vector<3>>;
 
-constexpr double kAround_s = 20;           // of the recording on either side of a gap, that is looked at
-constexpr std::size_t kMostFrames = 4000;  // of it
+constexpr double kAround_s = 20;          // of the recording on either side of a gap, that is inspected
+constexpr std::size_t kMaxFrames = 4000;  // of it
 
 /// A gap by the recording's instants, both ends included.
 struct Gap {
@@ -25,54 +25,54 @@ struct Gap {
 /// A piece of the recording round a gap, and the gap in it.
 struct Surroundings {
   std::int32_t begin = 0;  // the instant that is frame 0 of the piece
-  Places places;
+  Locations locations;
   Hole hole;
 };
 
 Surroundings surroundings_of(Tracks& tracks, const std::vector<TrackId>& markers, const Gap& gap) {
-  const auto moments = tracks.moments();
-  const double rate_hz = rate_between(moments, gap.first - 1, gap.last + 1);
-  const auto around = static_cast<std::int32_t>(std::min(kAround_s * rate_hz, static_cast<double>(kMostFrames) / 2));
+  const auto time_steps = tracks.time_steps();
+  const double rate_hz = rate_between(time_steps, gap.first - 1, gap.last + 1);
+  const auto around = static_cast<std::int32_t>(std::min(kAround_s * rate_hz, static_cast<double>(kMaxFrames) / 2));
   const std::int32_t begin = std::max(0, gap.first - around);
-  const std::int32_t end = std::min(static_cast<std::int32_t>(moments.size()), gap.last + 1 + around);
+  const std::int32_t end = std::min(static_cast<std::int32_t>(time_steps.size()), gap.last + 1 + around);
   Surroundings piece{.begin = begin,
-                     .places = {.rate_hz = rate_hz, .markers = {}},
+                     .locations = {.rate_hz = rate_hz, .markers = {}},
                      .hole = {static_cast<std::size_t>(gap.first - begin), static_cast<std::size_t>(gap.last - begin)}};
   const auto frames = static_cast<std::size_t>(end - begin);
   for (const TrackId track : markers) {
-    Places::Marker marker{.place = Path(frames, Vector<3>::Zero()), .known = std::vector<char>(frames, 0)};
+    Locations::Marker marker{.location = Path(frames, Vector<3>::Zero()), .known = std::vector<char>(frames, 0)};
     const Tracks::Rows& rows = tracks.rows(track);
     auto row =
         std::lower_bound(rows.begin(), rows.end(), begin, [](const Tracks::Row& one, std::int32_t at) { return one.at < at; });
     for (; row != rows.end() && row->at < end; ++row) {
       if (!row->sample.measured()) continue;
-      marker.place[static_cast<std::size_t>(row->at - begin)] = row->sample.position;
+      marker.location[static_cast<std::size_t>(row->at - begin)] = row->sample.position;
       marker.known[static_cast<std::size_t>(row->at - begin)] = 1;
     }
-    piece.places.markers.push_back(std::move(marker));
+    piece.locations.markers.push_back(std::move(marker));
   }
   return piece;
 }
 
 std::optional<FilledGap> decide(Tracks& tracks, TrackId track, const Gap& gap, const std::vector<TrackId>& markers,
-                                std::optional<FillMethod> wanted) {
+                                std::optional<FillMethod> required) {
   const Surroundings piece = surroundings_of(tracks, markers, gap);
-  const std::vector<std::size_t> donors = donors_of(piece.places, 0, piece.hole);
-  const FillTrials trials(piece.places, piece.hole, donors);
+  const std::vector<std::size_t> donors = donors_of(piece.locations, 0, piece.hole);
+  const FillTrials trials(piece.locations, piece.hole, donors);
   std::optional<std::pair<FillMethod, FillScore>> best;
   for (const FillMethod method : {FillMethod::spline, FillMethod::rigid, FillMethod::pattern}) {
-    if ((wanted && method != *wanted) || !filled(method, piece.places, piece.hole, donors, piece.hole)) continue;
+    if ((required && method != *required) || !filled(method, piece.locations, piece.hole, donors, piece.hole)) continue;
     const FillScore score = trials.score(method);
     if (!best || score.mean_square < best->second.mean_square) best = {method, score};
   }
   if (!best) return std::nullopt;
-  const auto index = [&](std::int32_t at) { return tracks.moments()[static_cast<std::size_t>(at)].index; };
+  const auto index = [&](std::int32_t at) { return tracks.time_steps()[static_cast<std::size_t>(at)].index; };
   FilledGap decided{.track = track,
                     .frames = {index(gap.first), index(gap.last)},
                     .method = best->first,
                     .donors = {},
                     .expected_m = best->second.expected_m,
-                    .places = *filled(best->first, piece.places, piece.hole, donors, piece.hole)};
+                    .locations = *filled(best->first, piece.locations, piece.hole, donors, piece.hole)};
   if (decided.method != FillMethod::spline) {
     for (const std::size_t donor : donors) decided.donors.push_back(markers[donor]);
   }
@@ -80,10 +80,10 @@ std::optional<FilledGap> decide(Tracks& tracks, TrackId track, const Gap& gap, c
 }
 
 std::int32_t instant_of(const Tracks& tracks, std::int64_t index) {
-  const auto moments = tracks.moments();
-  const auto found =
-      std::partition_point(moments.begin(), moments.end(), [&](const Recording::Moment& moment) { return moment.index < index; });
-  return static_cast<std::int32_t>(found - moments.begin());
+  const auto time_steps = tracks.time_steps();
+  const auto found = std::partition_point(time_steps.begin(), time_steps.end(),
+                                          [&](const Recording::TimeStep& time_step) { return time_step.index < index; });
+  return static_cast<std::int32_t>(found - time_steps.begin());
 }
 
 }  // namespace
@@ -97,11 +97,11 @@ std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::op
   }
   std::vector<FilledGap> fills;
   const Tracks::Rows& rows = tracks.rows(track);
-  const auto moments = tracks.moments();
+  const auto time_steps = tracks.time_steps();
   for (std::size_t row = 1; row < rows.size(); ++row) {
     const Gap gap{rows[row - 1].at + 1, rows[row].at - 1};
     if (gap.last < gap.first) continue;
-    const auto &from = moments[static_cast<std::size_t>(gap.first)], &to = moments[static_cast<std::size_t>(gap.last)];
+    const auto &from = time_steps[static_cast<std::size_t>(gap.first)], &to = time_steps[static_cast<std::size_t>(gap.last)];
     if (frames && !(frames->holds(from.index) && frames->holds(to.index))) continue;
     if (seconds(to.time - from.time) > options.longest_s) {
       ++left.too_long;
@@ -109,7 +109,7 @@ std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::op
     }
     auto fill = decide(tracks, track, gap, markers, options.method);
     if (!fill) {
-      ++left.untold;
+      ++left.unreported;
     } else if (fill->expected_m > options.within_m) {
       ++left.too_far_off;
     } else {
@@ -119,7 +119,7 @@ std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::op
   if (open != nullptr) {
     open->too_long += left.too_long;
     open->too_far_off += left.too_far_off;
-    open->untold += left.untold;
+    open->unreported += left.unreported;
   }
   return fills;
 }
@@ -138,9 +138,9 @@ Path found_again(Tracks& tracks, const FilledGap& gap, const Gap& at) {
   const Surroundings piece = surroundings_of(tracks, markers, at);
   std::vector<std::size_t> donors(gap.donors.size());
   for (std::size_t i = 0; i < donors.size(); ++i) donors[i] = i + 1;
-  const bool told =
-      std::all_of(donors.begin(), donors.end(), [&](std::size_t one) { return piece.places.markers[one].spans(piece.hole); });
-  auto path = told ? filled(gap.method, piece.places, piece.hole, donors, piece.hole) : std::nullopt;
+  const bool reported =
+      std::all_of(donors.begin(), donors.end(), [&](std::size_t one) { return piece.locations.markers[one].spans(piece.hole); });
+  auto path = reported ? filled(gap.method, piece.locations, piece.hole, donors, piece.hole) : std::nullopt;
   if (!path) fail_to_fill(tracks, gap);
   return std::move(*path);
 }
@@ -149,14 +149,14 @@ Path found_again(Tracks& tracks, const FilledGap& gap, const Gap& at) {
 
 Tracks::Rows rows_in_gap(Tracks& tracks, const FilledGap& gap) {
   const Gap at{instant_of(tracks, gap.frames.first), instant_of(tracks, gap.frames.last + 1) - 1};
-  if (at.first <= 0 || at.last < at.first || at.last + 1 >= std::ssize(tracks.moments())) fail_to_fill(tracks, gap);
-  const bool kept = std::ssize(gap.places) == at.last - at.first + 1;
-  if (!kept && !gap.places.empty()) fail_to_fill(tracks, gap);
-  const Path path = kept ? gap.places : found_again(tracks, gap, at);
+  if (at.first <= 0 || at.last < at.first || at.last + 1 >= std::ssize(tracks.time_steps())) fail_to_fill(tracks, gap);
+  const bool kept = std::ssize(gap.locations) == at.last - at.first + 1;
+  if (!kept && !gap.locations.empty()) fail_to_fill(tracks, gap);
+  const Path path = kept ? gap.locations : found_again(tracks, gap, at);
   Tracks::Rows rows;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const double share = static_cast<double>(i + 1) / static_cast<double>(path.size() + 1);
-    const double variance = gap.expected_m * gap.expected_m * 4 * share * (1 - share) / 3;  // of each coordinate
+    const double fraction = static_cast<double>(i + 1) / static_cast<double>(path.size() + 1);
+    const double variance = gap.expected_m * gap.expected_m * 4 * fraction * (1 - fraction) / 3;  // of each coordinate
     Sample sample;
     sample.track = gap.track;
     sample.position = path[i];

@@ -19,9 +19,9 @@ struct FillOptions {
 /// Gaps that stay open, by why.
 struct OpenGaps {
   int too_long = 0, too_far_off = 0;
-  int untold = 0;  ///< no method could say anything
+  int unreported = 0;  ///< no method could say anything
 
-  int all() const { return too_long + too_far_off + untold; }
+  int all() const { return too_long + too_far_off + unreported; }
 };
 
 /// The gaps of a track between its first and its last place, within `frames`, that can be filled, and how. What other tracks have

@@ -35,7 +35,7 @@ Instant instant_at(int frame) {
 }
 
 /// A body of five markers that swings and walks, and a sixth that hangs on it and swings by itself in time with a seventh.
-Vector<3> place_of(int marker, int frame) {
+Vector<3> position_of(int marker, int frame) {
   const double t = frame / kRate, swing = std::sin(2 * std::numbers::pi * 0.9 * t);
   const geometry::Rigid3 body{geometry::rotation_from({0.2 * swing, 0.3 * std::cos(t), 0.5 * swing}),
                               {1.2 * t, 0.05 * swing, 1 + 0.03 * std::sin(11 * t)}};
@@ -58,7 +58,7 @@ Recording walk(double noise_m, unsigned seed, int frames = kFrames) {
       const Vector<3> off(noise(random), noise(random), noise(random));
       instant.samples.emplace_back();
       instant.samples.back().track = TrackId{marker + 1};
-      instant.samples.back().position = place_of(marker, frame) + off;
+      instant.samples.back().position = position_of(marker, frame) + off;
     }
     recording.add(instant);
   }
@@ -75,7 +75,7 @@ void cut(Tracks& tracks, int marker, int first, int last) {
   tracks.apply({.kind = Operation::Kind::remove, .tracks = {TrackId{marker + 1}}, .frames = FrameRange{first, last}});
 }
 
-/// Fills, applies, and returns how far each filled place is from the true one, with the deviation that was told of it.
+/// Fills, applies, and returns how far each filled place is from the true one, with the deviation that was reported of it.
 std::vector<std::pair<double, double>> errors(Tracks& tracks, int marker, const FillOptions& options,
                                               FillMethod* method = nullptr) {
   const auto fills = decide_fills(tracks, TrackId{marker + 1}, std::nullopt, options);
@@ -85,7 +85,7 @@ std::vector<std::pair<double, double>> errors(Tracks& tracks, int marker, const 
   std::vector<std::pair<double, double>> all;
   for (const Tracks::Row& row : tracks.rows(TrackId{marker + 1})) {
     if (row.sample.provenance != Provenance::filled) continue;
-    all.emplace_back((row.sample.position - place_of(marker, row.at)).norm(), std::sqrt(row.sample.covariance->trace()));
+    all.emplace_back((row.sample.position - position_of(marker, row.at)).norm(), std::sqrt(row.sample.covariance->trace()));
   }
   return all;
 }
@@ -124,13 +124,13 @@ TEST(FillGap, AMarkerThatSwingsInTimeWithAnotherIsToldByIt) {
   cut(tracks, 5, 500, 569);
   cut(rigid, 5, 500, 569);
   FillMethod method{};
-  const double told = rms(errors(tracks, 5, {}, &method)),
+  const double reported = rms(errors(tracks, 5, {}, &method)),
                carried = rms(errors(rigid, 5, {.method = FillMethod::rigid, .within_m = 10}));
   EXPECT_EQ(method, FillMethod::pattern);
-  EXPECT_LT(told, 0.5 * carried);
+  EXPECT_LT(reported, 0.5 * carried);
 }
 
-TEST(FillGap, WhatItIsExpectedToBeOffCoversTheTruth) {
+TEST(FillGap, StatedErrorCoversTruth) {
   const unsigned seed = std::random_device()();
   SCOPED_TRACE(fmt::format("seed {}", seed));
   std::mt19937 random(seed);
@@ -198,7 +198,7 @@ TEST(FillGap, GapsThatStayOpenAreCounted) {
   EXPECT_EQ(open.all(), 3);
 }
 
-TEST(FillGap, WhatIsTooLongOrHasNoEndStaysOpen) {
+TEST(FillGap, KeepsLongAndOpenEndedGaps) {
   const Recording recording = walk(1e-9, 4);
   Tracks tracks = tracks_of(recording);
   cut(tracks, 0, 0, 50);
@@ -214,7 +214,7 @@ TEST(FillGap, ReplayingGivesTheSameBytesAndWithoutPlacesWhatIsGoneIsSaid) {
   const auto fills = decide_fills(tracks, TrackId{6}, std::nullopt, {});
   ASSERT_EQ(fills.size(), 1u);
   FilledGap bare = fills[0];
-  bare.places.clear();  // as takes of older versions have them
+  bare.locations.clear();  // as takes of older versions have them
   const auto first = rows_in_gap(tracks, fills[0]), second = rows_in_gap(tracks, bare);
   ASSERT_EQ(first.size(), 70u);
   ASSERT_EQ(second.size(), 70u);

@@ -16,7 +16,7 @@
 namespace marey::edit {
 
 /// The hole's places by one method, as the functions of gap_methods.h have them.
-std::optional<std::vector<Vector<3>>> filled(FillMethod method, const Places& places, const Hole& hole,
+std::optional<std::vector<Vector<3>>> filled(FillMethod method, const Locations& locations, const Hole& hole,
                                              std::span<const std::size_t> donors, const Hole& hidden);
 
 struct FillScore {
@@ -27,7 +27,7 @@ struct FillScore {
 class FillTrials {
  public:
   /// Of the first marker of `places`. The arguments must outlive it.
-  FillTrials(const Places& places, const Hole& gap, std::span<const std::size_t> donors);
+  FillTrials(const Locations& locations, const Hole& gap, std::span<const std::size_t> donors);
 
   FillScore score(FillMethod method) const;
 
@@ -45,7 +45,7 @@ class FillTrials {
   FillScore scaled(FillMethod method) const;
   FillScore untried(FillMethod method) const;
 
-  const Places& places_;
+  const Locations& locations_;
   Hole gap_;
   std::span<const std::size_t> donors_;
   std::vector<Group> groups_;  // inside what was seen; of the gap's length, a half, a quarter

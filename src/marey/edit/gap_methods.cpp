@@ -15,7 +15,7 @@ namespace {
 using Path = std::vector<Vector<3>>;
 using Dense = Eigen::MatrixXd;
 
-constexpr std::size_t kMostDonors = 12;
+constexpr std::size_t kMaxDonors = 12;
 constexpr std::size_t kFrameDonors = 5;  // whose frame the marker is carried in
 constexpr double kWeightFloor = 1e-3;    // m: donors more rigid than this count alike
 
@@ -23,22 +23,22 @@ constexpr double kWeightFloor = 1e-3;    // m: donors more rigid than this count
 void bend(Path& path, const Vector<3>& at_first, const Vector<3>& at_last) {
   const double steps = static_cast<double>(path.size()) + 1;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const double share = static_cast<double>(i + 1) / steps;
-    path[i] += (1 - share) * at_first + share * at_last;
+    const double fraction = static_cast<double>(i + 1) / steps;
+    path[i] += (1 - fraction) * at_first + fraction * at_last;
   }
 }
 
-bool has_ends(const Places& places, std::size_t marker, const Hole& hole) {
-  const auto& known = places.markers[marker].known;
-  return hole.first > 0 && hole.last + 1 < places.size() && known[hole.first - 1] != 0 && known[hole.last + 1] != 0;
+bool has_ends(const Locations& locations, std::size_t marker, const Hole& hole) {
+  const auto& known = locations.markers[marker].known;
+  return hole.first > 0 && hole.last + 1 < locations.size() && known[hole.first - 1] != 0 && known[hole.last + 1] != 0;
 }
 
-/// How far two markers' distance wanders, as a standard deviation; nothing where few frames have both.
-std::optional<double> distance_deviation(const Places::Marker& a, const Places::Marker& b) {
+/// How far two markers' distance wanders, as a standard deviation; nothing if few frames have both.
+std::optional<double> distance_deviation(const Locations::Marker& a, const Locations::Marker& b) {
   double count = 0, sum = 0, squares = 0;
-  for (std::size_t i = 0; i < a.place.size(); ++i) {
+  for (std::size_t i = 0; i < a.location.size(); ++i) {
     if (a.known[i] == 0 || b.known[i] == 0) continue;
-    const double distance = (a.place[i] - b.place[i]).norm();
+    const double distance = (a.location[i] - b.location[i]).norm();
     ++count;
     sum += distance;
     squares += distance * distance;
@@ -51,11 +51,11 @@ std::optional<double> distance_deviation(const Places::Marker& a, const Places::
 class Carrier {
  public:
   /// The shape is the mean of the donors just before and after the hole.
-  Carrier(const Places& places, std::size_t marker, std::span<const std::size_t> donors, const Hole& hole)
-      : places_(&places),
+  Carrier(const Locations& locations, std::size_t marker, std::span<const std::size_t> donors, const Hole& hole)
+      : locations_(&locations),
         donors_(donors.begin(), donors.begin() + static_cast<std::ptrdiff_t>(std::min(donors.size(), kFrameDonors))) {
     for (const std::size_t donor : donors_) {
-      const double wander = distance_deviation(places.markers[marker], places.markers[donor]).value_or(1);
+      const double wander = distance_deviation(locations.markers[marker], locations.markers[donor]).value_or(1);
       weights_.push_back(1 / (wander * wander + kWeightFloor * kWeightFloor));
     }
     shape_ = config(hole.first - 1);
@@ -65,19 +65,19 @@ class Carrier {
     }
   }
 
-  /// world_from_shape; nothing where the donors lie on one line.
+  /// world_from_shape; nothing if the donors lie on one line.
   std::optional<geometry::Rigid3> at(std::size_t frame) const { return fit(shape_, config(frame)); }
 
   bool knows(std::size_t frame) const {
     return std::all_of(donors_.begin(), donors_.end(),
-                       [&](std::size_t donor) { return places_->markers[donor].known[frame] != 0; });
+                       [&](std::size_t donor) { return locations_->markers[donor].known[frame] != 0; });
   }
 
  private:
   Path config(std::size_t frame) const {
-    Path places;
-    for (const std::size_t donor : donors_) places.push_back(places_->markers[donor].place[frame]);
-    return places;
+    Path locations;
+    for (const std::size_t donor : donors_) locations.push_back(locations_->markers[donor].location[frame]);
+    return locations;
   }
 
   /// to ≈ fit · from, by weighted least squares (Kabsch 1976).
@@ -104,7 +104,7 @@ class Carrier {
     return result;
   }
 
-  const Places* places_;
+  const Locations* locations_;
   std::vector<std::size_t> donors_;
   std::vector<double> weights_;
   Path shape_;
@@ -114,8 +114,8 @@ class Carrier {
 class Regression {
  public:
   /// Rows are frames.
-  Regression(const Dense& features, const Dense& places)
-      : feature_mean_(features.colwise().mean()), place_mean_(places.colwise().mean()) {
+  Regression(const Dense& features, const Dense& locations)
+      : feature_mean_(features.colwise().mean()), position_mean_(locations.colwise().mean()) {
     const Dense centred = features.rowwise() - feature_mean_.transpose();
     const double frames = static_cast<double>(features.rows());
     const auto principal = geometry::eigenpairs<Eigen::Dynamic>(centred.transpose() * centred / frames);
@@ -129,43 +129,43 @@ class Regression {
     const Dense scores = centred * basis_;
     Dense normal = scores.transpose() * scores;
     normal.diagonal().array() += frames * kNoise * kNoise;
-    map_ = geometry::solve_symmetric(normal, scores.transpose() * (places.rowwise() - place_mean_.transpose()));
+    map_ = geometry::solve_symmetric(normal, scores.transpose() * (locations.rowwise() - position_mean_.transpose()));
   }
 
   Vector<3> operator()(const Eigen::VectorXd& features) const {
-    return place_mean_ + map_.transpose() * (basis_.transpose() * (features - feature_mean_));
+    return position_mean_ + map_.transpose() * (basis_.transpose() * (features - feature_mean_));
   }
 
  private:
   static constexpr double kNoise = 1e-3;  // m, of a feature
 
   Eigen::VectorXd feature_mean_;
-  Vector<3> place_mean_;
+  Vector<3> position_mean_;
   Dense basis_, map_;
 };
 
 /// The donors' places in the carrier's frame.
-Eigen::VectorXd features_at(const Places& places, std::span<const std::size_t> donors, const geometry::Rigid3& shape_from_world,
-                            std::size_t frame) {
+Eigen::VectorXd features_at(const Locations& locations, std::span<const std::size_t> donors,
+                            const geometry::Rigid3& shape_from_world, std::size_t frame) {
   Eigen::VectorXd features(3 * std::ssize(donors));
   for (std::size_t i = 0; i < donors.size(); ++i)
-    features.segment<3>(3 * static_cast<Eigen::Index>(i)) = shape_from_world * places.markers[donors[i]].place[frame];
+    features.segment<3>(3 * static_cast<Eigen::Index>(i)) = shape_from_world * locations.markers[donors[i]].location[frame];
   return features;
 }
 
 /// Frames that have the marker and all donors, outside both holes: six hundred at most, spread evenly.
-std::vector<std::size_t> frames_to_learn_from(const Places& places, std::size_t marker, std::span<const std::size_t> donors,
+std::vector<std::size_t> frames_to_learn_from(const Locations& locations, std::size_t marker, std::span<const std::size_t> donors,
                                               const Hole& hole, const Hole& hidden) {
   std::vector<std::size_t> frames;
-  for (std::size_t frame = 0; frame < places.size(); ++frame) {
+  for (std::size_t frame = 0; frame < locations.size(); ++frame) {
     const auto in = [&](const Hole& one) { return one.first <= frame && frame <= one.last; };
-    const auto known = [&](std::size_t one) { return places.markers[one].known[frame] != 0; };
+    const auto known = [&](std::size_t one) { return locations.markers[one].known[frame] != 0; };
     if (!in(hole) && !in(hidden) && known(marker) && std::all_of(donors.begin(), donors.end(), known)) frames.push_back(frame);
   }
-  constexpr std::size_t kMost = 600;
-  if (frames.size() <= kMost) return frames;
+  constexpr std::size_t kMaxCount = 600;
+  if (frames.size() <= kMaxCount) return frames;
   std::vector<std::size_t> fewer;
-  for (std::size_t i = 0; i < kMost; ++i) fewer.push_back(frames[i * frames.size() / kMost]);
+  for (std::size_t i = 0; i < kMaxCount; ++i) fewer.push_back(frames[i * frames.size() / kMaxCount]);
   return fewer;
 }
 
@@ -188,29 +188,30 @@ Vector<3> value_of(const Dense& polynomial, double t) {
 
 }  // namespace
 
-bool Places::Marker::spans(const Hole& hole) const {
+bool Locations::Marker::spans(const Hole& hole) const {
   if (hole.first == 0 || hole.last + 1 >= known.size()) return false;
   const auto begin = known.begin() + static_cast<std::ptrdiff_t>(hole.first) - 1;
   return std::all_of(begin, begin + static_cast<std::ptrdiff_t>(hole.size()) + 2, [](char one) { return one != 0; });
 }
 
-std::vector<std::size_t> donors_of(const Places& places, std::size_t marker, const Hole& hole) {
+std::vector<std::size_t> donors_of(const Locations& locations, std::size_t marker, const Hole& hole) {
   std::vector<std::pair<double, std::size_t>> ranked;
-  for (std::size_t other = 0; other < places.markers.size(); ++other) {
-    if (other == marker || !places.markers[other].spans(hole)) continue;
-    if (const auto wander = distance_deviation(places.markers[marker], places.markers[other])) ranked.emplace_back(*wander, other);
+  for (std::size_t other = 0; other < locations.markers.size(); ++other) {
+    if (other == marker || !locations.markers[other].spans(hole)) continue;
+    if (const auto wander = distance_deviation(locations.markers[marker], locations.markers[other]))
+      ranked.emplace_back(*wander, other);
   }
   std::sort(ranked.begin(), ranked.end());
   std::vector<std::size_t> donors;
   for (const auto& [wander, donor] : ranked) {
-    if (donors.size() < kMostDonors) donors.push_back(donor);
+    if (donors.size() < kMaxDonors) donors.push_back(donor);
   }
   return donors;
 }
 
-std::optional<Path> spline_fill(const Places& places, std::size_t marker, const Hole& hole) {
-  if (!has_ends(places, marker, hole)) return std::nullopt;
-  const Places::Marker& seen = places.markers[marker];
+std::optional<Path> spline_fill(const Locations& locations, std::size_t marker, const Hole& hole) {
+  if (!has_ends(locations, marker, hole)) return std::nullopt;
+  const Locations::Marker& detected = locations.markers[marker];
   const std::size_t reach = std::clamp<std::size_t>(hole.size() / 2 + 1, 4, 16);
   const double middle = 0.5 * static_cast<double>(hole.first + hole.last),
                scale = 0.5 * static_cast<double>(hole.size()) + static_cast<double>(reach);
@@ -218,33 +219,34 @@ std::optional<Path> spline_fill(const Places& places, std::size_t marker, const 
   std::vector<double> t;
   Path path;
   const auto take = [&](std::size_t frame) {
-    if (seen.known[frame] == 0) return false;
+    if (detected.known[frame] == 0) return false;
     t.push_back(scaled(frame));
-    path.push_back(seen.place[frame]);
+    path.push_back(detected.location[frame]);
     return true;
   };
   for (std::size_t i = 1; i <= reach && i <= hole.first && take(hole.first - i); ++i) {
   }
   const std::size_t before = t.size();
-  for (std::size_t i = 1; i <= reach && hole.last + i < places.size() && take(hole.last + i); ++i) {
+  for (std::size_t i = 1; i <= reach && hole.last + i < locations.size() && take(hole.last + i); ++i) {
   }
   const std::size_t fewer = std::min(before, t.size() - before);
   const Dense polynomial = fitted(t, path, fewer >= 4 ? 5 : fewer >= 2 ? 3 : 1);
   Path filled;
   for (std::size_t frame = hole.first; frame <= hole.last; ++frame) filled.push_back(value_of(polynomial, scaled(frame)));
-  bend(filled, seen.place[hole.first - 1] - value_of(polynomial, scaled(hole.first - 1)),
-       seen.place[hole.last + 1] - value_of(polynomial, scaled(hole.last + 1)));
+  bend(filled, detected.location[hole.first - 1] - value_of(polynomial, scaled(hole.first - 1)),
+       detected.location[hole.last + 1] - value_of(polynomial, scaled(hole.last + 1)));
   return filled;
 }
 
-std::optional<Path> rigid_fill(const Places& places, std::size_t marker, const Hole& hole, std::span<const std::size_t> donors) {
-  if (donors.size() < 3 || !has_ends(places, marker, hole)) return std::nullopt;
-  const Places::Marker& seen = places.markers[marker];
-  const Carrier carrier(places, marker, donors, hole);
+std::optional<Path> rigid_fill(const Locations& locations, std::size_t marker, const Hole& hole,
+                               std::span<const std::size_t> donors) {
+  if (donors.size() < 3 || !has_ends(locations, marker, hole)) return std::nullopt;
+  const Locations::Marker& detected = locations.markers[marker];
+  const Carrier carrier(locations, marker, donors, hole);
   const auto before = carrier.at(hole.first - 1), after = carrier.at(hole.last + 1);
   if (!before || !after) return std::nullopt;
-  Path filled(hole.size(), before->inverse() * seen.place[hole.first - 1]);
-  bend(filled, Vector<3>::Zero(), after->inverse() * seen.place[hole.last + 1] - filled.front());
+  Path filled(hole.size(), before->inverse() * detected.location[hole.first - 1]);
+  bend(filled, Vector<3>::Zero(), after->inverse() * detected.location[hole.last + 1] - filled.front());
   for (std::size_t i = 0; i < filled.size(); ++i) {
     const auto pose = carrier.at(hole.first + i);
     if (!pose) return std::nullopt;
@@ -253,12 +255,12 @@ std::optional<Path> rigid_fill(const Places& places, std::size_t marker, const H
   return filled;
 }
 
-std::optional<Path> pattern_fill(const Places& places, std::size_t marker, const Hole& hole, std::span<const std::size_t> donors,
-                                 const Hole& hidden) {
-  if (donors.size() < 4 || !has_ends(places, marker, hole)) return std::nullopt;
-  const Places::Marker& seen = places.markers[marker];
-  const Carrier carrier(places, marker, donors, hole);
-  const std::vector<std::size_t> frames = frames_to_learn_from(places, marker, donors, hole, hidden);
+std::optional<Path> pattern_fill(const Locations& locations, std::size_t marker, const Hole& hole,
+                                 std::span<const std::size_t> donors, const Hole& hidden) {
+  if (donors.size() < 4 || !has_ends(locations, marker, hole)) return std::nullopt;
+  const Locations::Marker& detected = locations.markers[marker];
+  const Carrier carrier(locations, marker, donors, hole);
+  const std::vector<std::size_t> frames = frames_to_learn_from(locations, marker, donors, hole, hidden);
   if (frames.size() < 40) return std::nullopt;
   Dense features(std::ssize(frames), 3 * std::ssize(donors)), targets(std::ssize(frames), 3);
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -266,20 +268,20 @@ std::optional<Path> pattern_fill(const Places& places, std::size_t marker, const
     if (!pose) return std::nullopt;
     const geometry::Rigid3 shape_from_world = pose->inverse();
     const auto row = static_cast<Eigen::Index>(i);
-    features.row(row) = features_at(places, donors, shape_from_world, frames[i]).transpose();
-    targets.row(row) = (shape_from_world * seen.place[frames[i]]).transpose();
+    features.row(row) = features_at(locations, donors, shape_from_world, frames[i]).transpose();
+    targets.row(row) = (shape_from_world * detected.location[frames[i]]).transpose();
   }
-  const Regression told(features, targets);
+  const Regression reported(features, targets);
   Path filled;
   std::vector<geometry::Rigid3> poses;
   for (std::size_t frame = hole.first - 1; frame <= hole.last + 1; ++frame) {
     const auto pose = carrier.at(frame);
     if (!pose) return std::nullopt;
     poses.push_back(*pose);
-    filled.push_back(told(features_at(places, donors, pose->inverse(), frame)));
+    filled.push_back(reported(features_at(locations, donors, pose->inverse(), frame)));
   }
-  const Vector<3> at_first = poses.front().inverse() * seen.place[hole.first - 1] - filled.front();
-  const Vector<3> at_last = poses.back().inverse() * seen.place[hole.last + 1] - filled.back();
+  const Vector<3> at_first = poses.front().inverse() * detected.location[hole.first - 1] - filled.front();
+  const Vector<3> at_last = poses.back().inverse() * detected.location[hole.last + 1] - filled.back();
   filled.erase(filled.begin());
   filled.pop_back();
   bend(filled, at_first, at_last);

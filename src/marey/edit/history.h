@@ -9,8 +9,8 @@
 
 namespace marey::edit {
 
-/// What counts: the edits from the first to `head`, in the order they were made. Throws Error where the head is no edit, or an edit
-/// follows none that was made before it.
+/// What counts: the edits from the first to `head`, in the order they were made. Throws Error if the head is not an edit, or an
+/// edit follows none that was made before it.
 std::vector<Edit> branch_of(const std::vector<Edit>& edits, std::optional<std::int64_t> head);
 
 /// The head `steps` edits before, at most before all of them.

@@ -55,9 +55,9 @@ std::optional<double> proposed_cutoff(std::span<const Vector<3>> path, double ra
   return cutoffs.back();
 }
 
-double rate_between(std::span<const Recording::Moment> moments, std::int32_t first, std::int32_t last) {
+double rate_between(std::span<const Recording::TimeStep> time_steps, std::int32_t first, std::int32_t last) {
   if (first == last) return 1;
-  const auto &a = moments[static_cast<std::size_t>(first)], &b = moments[static_cast<std::size_t>(last)];
+  const auto &a = time_steps[static_cast<std::size_t>(first)], &b = time_steps[static_cast<std::size_t>(last)];
   return (last - first) / seconds(b.time - a.time);
 }
 

@@ -19,11 +19,11 @@ void lowpass(std::span<Vector<3>> path, double rate_hz, double cutoff_hz);
 /// Below it `lowpass` changes something: the cut-off of a single pass lies below half the rate.
 double highest_cutoff(double rate_hz);
 
-/// The cut-off that residual analysis proposes: where what is taken away falls to what noise alone would leave. Nothing where the
+/// The cut-off that residual analysis proposes: where what is taken away falls to what noise alone would leave. Nothing if the
 /// path is too short (a second at least).
 std::optional<double> proposed_cutoff(std::span<const Vector<3>> path, double rate_hz);
 
 /// Instants a second between two of them; 1 where they are one.
-double rate_between(std::span<const Recording::Moment> moments, std::int32_t first, std::int32_t last);
+double rate_between(std::span<const Recording::TimeStep> time_steps, std::int32_t first, std::int32_t last);
 
 }  // namespace marey::edit

@@ -20,9 +20,9 @@ std::vector<Vector<3>> wave(double hz, int frames) {
 }
 
 double amplitude(const std::vector<Vector<3>>& path) {
-  double most = 0;
-  for (std::size_t i = path.size() / 4; i < 3 * path.size() / 4; ++i) most = std::max(most, std::abs(path[i].x()));
-  return most;
+  double maximum = 0;
+  for (std::size_t i = path.size() / 4; i < 3 * path.size() / 4; ++i) maximum = std::max(maximum, std::abs(path[i].x()));
+  return maximum;
 }
 
 TEST(Lowpass, HalfOfThePowerPassesAtTheCutoff) {
@@ -56,9 +56,9 @@ TEST(Lowpass, TheProposedCutoffTakesNoiseAndLeavesMotion) {
   SCOPED_TRACE(fmt::format("seed {}", seed));
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.01);
-  std::vector<Vector<3>> truth = wave(2, 600), seen = truth;
-  for (Vector<3>& place : seen) place += Vector<3>(noise(random), noise(random), noise(random));
-  const auto cutoff = proposed_cutoff(seen, kSamplesASecond);
+  std::vector<Vector<3>> truth = wave(2, 600), detected = truth;
+  for (Vector<3>& location : detected) location += Vector<3>(noise(random), noise(random), noise(random));
+  const auto cutoff = proposed_cutoff(detected, kSamplesASecond);
   ASSERT_TRUE(cutoff);
   EXPECT_GT(*cutoff, 2);
   EXPECT_LT(*cutoff, 15);
@@ -67,9 +67,9 @@ TEST(Lowpass, TheProposedCutoffTakesNoiseAndLeavesMotion) {
     for (std::size_t i = 0; i < path.size(); ++i) sum += (path[i] - truth[i]).squaredNorm();
     return std::sqrt(sum);
   };
-  std::vector<Vector<3>> smooth = seen;
+  std::vector<Vector<3>> smooth = detected;
   lowpass(smooth, kSamplesASecond, *cutoff);
-  EXPECT_LT(off(smooth), 0.6 * off(seen));
+  EXPECT_LT(off(smooth), 0.6 * off(detected));
 }
 
 }  // namespace

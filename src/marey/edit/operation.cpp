@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/core/limits.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/limits.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::edit {
 namespace {
@@ -72,12 +72,12 @@ double positive(const json& value) {
 }
 
 /// Sixteen hexadecimal digits a number, its bits from the highest on: exact, and read at once where there are many.
-std::string digits_of(const std::vector<Vector<3>>& places) {
+std::string digits_of(const std::vector<Vector<3>>& locations) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text;
-  text.reserve(48 * places.size());
-  for (const Vector<3>& place : places) {
-    for (const double value : place) {
+  text.reserve(48 * locations.size());
+  for (const Vector<3>& location : locations) {
+    for (const double value : location) {
       const auto bits = std::bit_cast<std::uint64_t>(value);
       for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[(bits >> shift) & 15];
     }
@@ -85,13 +85,13 @@ std::string digits_of(const std::vector<Vector<3>>& places) {
   return text;
 }
 
-std::vector<Vector<3>> places_of(const json& value) {
+std::vector<Vector<3>> positions_of(const json& value) {
   const auto& text = value.get_ref<const std::string&>();
   if (text.size() % 48 != 0) throw json::other_error::create(500, "places", &value);
-  std::vector<Vector<3>> places(text.size() / 48);
+  std::vector<Vector<3>> locations(text.size() / 48);
   std::size_t at = 0;
-  for (Vector<3>& place : places) {
-    for (double& coordinate : place) {
+  for (Vector<3>& location : locations) {
+    for (double& coordinate : location) {
       std::uint64_t bits = 0;
       for (int digit = 0; digit < 16; ++digit, ++at) {
         const char c = text[at];
@@ -101,9 +101,9 @@ std::vector<Vector<3>> places_of(const json& value) {
       }
       coordinate = std::bit_cast<double>(bits);
     }
-    if (!place.allFinite()) throw json::other_error::create(500, "places", &value);
+    if (!location.allFinite()) throw json::other_error::create(500, "places", &value);
   }
-  return places;
+  return locations;
 }
 
 FilledGap gap_of(const json& value) {
@@ -114,12 +114,12 @@ FilledGap gap_of(const json& value) {
   const auto method = method_named(value.at("method").get<std::string>());
   if (!method) throw json::other_error::create(500, "a method", &value);
   gap.method = *method;
-  if (value.contains("places")) gap.places = places_of(value["places"]);
+  if (value.contains("places")) gap.locations = positions_of(value["places"]);
   return gap;
 }
 
 /// How many tracks an operation names at least, and at most.
-std::pair<std::size_t, std::size_t> tracks_wanted(Kind kind) {
+std::pair<std::size_t, std::size_t> tracks_required(Kind kind) {
   if (kind == Kind::rename || kind == Kind::split) return {1, 1};
   if (kind == Kind::swap || kind == Kind::join) return {2, 2};
   if (kind == Kind::fill) return {0, 0};
@@ -132,12 +132,12 @@ Operation parsed(Kind kind, const json& payload) {
   if (payload.contains("frames")) operation.frames = range_of(payload["frames"]);
   operation.label = plain_text(payload.value("label", std::string()));
   if (operation.label.size() > Limits::in_force().label_bytes) throw json::other_error::create(500, "a name", &payload);
-  if (payload.contains("born")) operation.born = track_of(payload["born"]);
+  if (payload.contains("born")) operation.initiated = track_of(payload["born"]);
   for (const json& gap : payload.value("gaps", json::array())) operation.gaps.push_back(gap_of(gap));
   for (const json& cutoff : payload.value("cutoffs_hz", json::array())) operation.cutoffs_hz.push_back(positive(cutoff));
-  const auto [fewest, most] = tracks_wanted(kind);
-  const bool whole = operation.tracks.size() >= fewest && operation.tracks.size() <= most &&
-                     (kind != Kind::split || (operation.born && operation.frames)) &&
+  const auto [lowest_count, maximum] = tracks_required(kind);
+  const bool whole = operation.tracks.size() >= lowest_count && operation.tracks.size() <= maximum &&
+                     (kind != Kind::split || (operation.initiated && operation.frames)) &&
                      (kind != Kind::fill || !operation.gaps.empty()) &&
                      (kind != Kind::filter || operation.cutoffs_hz.size() == operation.tracks.size());
   if (!whole) throw json::other_error::create(500, "its parts", &payload);
@@ -167,14 +167,14 @@ Edit edit_of(const Operation& operation) {
   if (!operation.tracks.empty()) payload["tracks"] = ids(operation.tracks);
   if (operation.frames) payload["frames"] = {operation.frames->first, operation.frames->last};
   if (!operation.label.empty()) payload["label"] = operation.label;
-  if (operation.born) payload["born"] = number(*operation.born);
+  if (operation.initiated) payload["born"] = number(*operation.initiated);
   for (const FilledGap& gap : operation.gaps) {
     json entry{{"track", number(gap.track)},
                {"frames", {gap.frames.first, gap.frames.last}},
                {"method", name_of(gap.method)},
                {"expected_m", gap.expected_m}};
     if (!gap.donors.empty()) entry["donors"] = ids(gap.donors);
-    if (!gap.places.empty()) entry["places"] = digits_of(gap.places);
+    if (!gap.locations.empty()) entry["places"] = digits_of(gap.locations);
     payload["gaps"].push_back(std::move(entry));
   }
   if (!operation.cutoffs_hz.empty()) payload["cutoffs_hz"] = operation.cutoffs_hz;

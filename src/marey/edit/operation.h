@@ -26,14 +26,15 @@ struct FrameRange {
 /// How the place of a marker within a gap is found (fill_gap.h).
 enum class FillMethod { spline, rigid, pattern };
 
-/// One gap of one track, with what was decided when it was filled: replaying decides nothing anew.
+/// One gap of one track, with what was decided when it was filled: replaying decides nothing again.
 struct FilledGap {
   TrackId track{};
   FrameRange frames;
   FillMethod method{};
-  std::vector<TrackId> donors;  ///< of `rigid` and `pattern`: the markers that it is told by
+  std::vector<TrackId> donors;  ///< of `rigid` and `pattern`: the markers that it is reported by
   double expected_m = 0;        ///< standard deviation of a filled place's distance from the true one, in the middle of the gap
-  std::vector<Vector<3>> places = {};  ///< instant by instant, as found when it was decided; empty in edits of before: found anew
+  std::vector<Vector<3>> locations =
+      {};  ///< instant by instant, as found when it was decided; empty in edits of before: found again
 
   bool operator==(const FilledGap&) const = default;
 };
@@ -44,7 +45,7 @@ struct Operation {
     swap,    ///< tracks[0] and tracks[1] exchange what they have within `frames`
     split,   ///< what tracks[0] has from frames->first on becomes `born`, called `label`
     join,    ///< tracks[0] gets what tracks[1] has, which ends
-    remove,  ///< what the tracks have within `frames` is left out
+    remove,  ///< what the tracks have within `frames` is omitted
     fill,    ///< `gaps`
     team,    ///< tracks are of the team that `label` is called
     filter,  ///< tracks[i] is smoothed with `cutoffs_hz[i]` within `frames`
@@ -54,7 +55,7 @@ struct Operation {
   std::vector<TrackId> tracks = {};
   std::optional<FrameRange> frames = {};  ///< nothing: all of them
   std::string label = {};
-  std::optional<TrackId> born = {};
+  std::optional<TrackId> initiated = {};
   std::vector<FilledGap> gaps = {};
   std::vector<double> cutoffs_hz = {};  ///< Hz; of both passes together
 
@@ -74,7 +75,7 @@ Edit edit_of(const Operation& operation);
 /// Whether an edit says what this version can do: an operation, or a note, which changes nothing.
 bool is_known(const Edit& edit);
 
-/// The operation that an edit holds; nothing for a note, and where it is not known. Throws Error where its payload is not what it
+/// The operation that an edit holds; nothing for a note, and where it is not known. Throws Error if its payload is not what it
 /// should be.
 std::optional<Operation> operation_of(const Edit& edit);
 

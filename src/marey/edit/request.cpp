@@ -6,8 +6,8 @@
 #include <span>
 
 #include "marey/core/error.h"
-#include "marey/core/limits.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/limits.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::edit {
 namespace {
@@ -110,12 +110,12 @@ std::optional<FillMethod> method_in(const Word& word) {
 }
 
 /// "NAME=NUMBER".
-std::optional<double> setting_in(const Word& word, std::string_view name, double most, std::string_view unit) {
+std::optional<double> setting_in(const Word& word, std::string_view name, double maximum, std::string_view unit) {
   if (word.quoted || !word.text.starts_with(name) || word.text.size() <= name.size() || word.text[name.size()] != '=')
     return std::nullopt;
   const auto value = number_in<double>(std::string_view(word.text).substr(name.size() + 1));
-  if (!value || !(*value > 0 && *value <= most))
-    throw Error("fill: {} is none; {} is above 0, up to {:g} {}", plain_text(word.text), name, most, unit);
+  if (!value || !(*value > 0 && *value <= maximum))
+    throw Error("fill: {} is not one; {} is above 0, up to {:g} {}", plain_text(word.text), name, maximum, unit);
   return value;
 }
 
@@ -131,7 +131,7 @@ std::optional<double> cutoff_in(const Word& word) {
   if (word.quoted || word.text.find(':') != std::string::npos) return std::nullopt;
   const auto value = number_in<double>(word.text);
   if (!value || !(*value > 0 && *value <= 10'000))
-    throw Error("filter: \"{}\" is no cut-off; it is in Hz, above 0, or auto", plain_text(word.text));
+    throw Error("filter: \"{}\" is not a cut-off; it is in Hz, above 0, or auto", plain_text(word.text));
   return value;
 }
 
@@ -167,8 +167,8 @@ void read_filter(Reader& words, Request& request) {
 
 std::string new_name(Reader& words) {
   std::string name = plain_text(words.name("its new name"));
-  const std::size_t most = Limits::in_force().label_bytes;
-  if (name.size() > most) throw Error("a name has {} bytes; they have at most {} (the limit label_bytes)", name.size(), most);
+  const std::size_t maximum = Limits::in_force().label_bytes;
+  if (name.size() > maximum) throw Error("a name has {} bytes; they have at most {} (the limit label_bytes)", name.size(), maximum);
   return name;
 }
 
@@ -221,7 +221,7 @@ std::optional<FrameRange> parse_range(std::string_view text) {
   const auto end = last.empty() ? std::optional<std::int64_t>(FrameRange::kToTheEnd) : number_in<std::int64_t>(last);
   if (!begin || !end) return std::nullopt;
   if (*begin < 0 || *end < *begin || *end > FrameRange::kToTheEnd)
-    throw Error("\"{}\" are no frames; write FIRST:LAST, counted from 0", plain_text(text));
+    throw Error("\"{}\" are not frames; write FIRST:LAST, counted from 0", plain_text(text));
   return FrameRange{*begin, *end};
 }
 
@@ -230,7 +230,7 @@ Request parse_request(std::string_view text) {
   if (words.empty()) throw Error("an edit is empty; {}", kKnown);
   const std::string& word = words.front().front().text;
   const auto kind = words.front().size() == 1 ? kind_named(word) : std::nullopt;
-  if (!kind) throw Error("\"{}\" is no edit; {}", plain_text(word), kKnown);
+  if (!kind) throw Error("\"{}\" is not an edit; {}", plain_text(word), kKnown);
   Request request{.kind = *kind};
   Reader rest(word, std::span(words).subspan(1));
   read(rest, request);

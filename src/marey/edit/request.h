@@ -26,7 +26,7 @@ struct Request {
   std::optional<double> cutoff_hz = {};   ///< of filter; nothing: what residual analysis proposes for each track
 };
 
-/// FIRST:LAST alone; nothing for what is no range. Throws Error for one that ends before it begins.
+/// FIRST:LAST alone; nothing for what is not a range. Throws Error for one that ends before it begins.
 std::optional<FrameRange> parse_range(std::string_view text);
 
 /// Throws Error, saying what is wrong and what is valid.

@@ -29,9 +29,9 @@ Rows cut(Rows& rows, std::span<const Tracks::Row> part) {
 /// Puts rows of instants that `rows` does not have into it.
 void put_in(Rows& rows, Rows more) {
   if (more.empty()) return;
-  const auto place = std::lower_bound(rows.begin(), rows.end(), more.front().at,
-                                      [](const Tracks::Row& row, std::int32_t at) { return row.at < at; });
-  const auto middle = rows.insert(place, std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  const auto location = std::lower_bound(rows.begin(), rows.end(), more.front().at,
+                                         [](const Tracks::Row& row, std::int32_t at) { return row.at < at; });
+  const auto middle = rows.insert(location, std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   const auto after = middle + std::ssize(more);
   if (after != rows.end() && after->at < std::prev(after)->at) {
     std::inplace_merge(middle, after, rows.end(), [](const Tracks::Row& a, const Tracks::Row& b) { return a.at < b.at; });
@@ -40,8 +40,8 @@ void put_in(Rows& rows, Rows more) {
 
 }  // namespace
 
-Tracks::Tracks(std::vector<Recording::Moment> moments, const std::vector<TrackName>& names, Load load)
-    : moments_(std::move(moments)), load_(std::move(load)) {
+Tracks::Tracks(std::vector<Recording::TimeStep> time_steps, const std::vector<TrackName>& names, Load load)
+    : time_steps_(std::move(time_steps)), load_(std::move(load)) {
   for (const TrackName& name : names) {
     tracks_[name.id] = {.name = name, .rows = {}, .changed = false};
     last_id_ = std::max(last_id_, name.id);
@@ -72,16 +72,16 @@ bool Tracks::changed(TrackId track) const {
 }
 
 Rows& Tracks::rows(TrackId track) {
-  Entry& wanted = entry(track);
-  if (!wanted.rows) {
+  Entry& required = entry(track);
+  if (!required.rows) {
     const TrackColumns columns = load_(track);
-    wanted.rows.emplace();
-    wanted.rows->reserve(columns.size());
-    wanted.dimensions = columns.dimensions();
-    for (std::size_t row = 0; row < columns.size(); ++row) wanted.rows->push_back({columns.at()[row], columns.sample(row)});
-    for (const FilledGap& gap : std::exchange(wanted.due, {})) put_in(*wanted.rows, rows_in_gap(*this, gap));
+    required.rows.emplace();
+    required.rows->reserve(columns.size());
+    required.dimensions = columns.dimensions();
+    for (std::size_t row = 0; row < columns.size(); ++row) required.rows->push_back({columns.at()[row], columns.sample(row)});
+    for (const FilledGap& gap : std::exchange(required.due, {})) put_in(*required.rows, rows_in_gap(*this, gap));
   }
-  return *wanted.rows;
+  return *required.rows;
 }
 
 TrackId Tracks::unused_id() const {
@@ -90,7 +90,7 @@ TrackId Tracks::unused_id() const {
 
 std::span<Tracks::Row> Tracks::within(Rows& rows, const std::optional<FrameRange>& frames) const {
   if (!frames) return rows;
-  const auto index = [&](const Row& row) { return moments_[static_cast<std::size_t>(row.at)].index; };
+  const auto index = [&](const Row& row) { return time_steps_[static_cast<std::size_t>(row.at)].index; };
   const auto begin = std::partition_point(rows.begin(), rows.end(), [&](const Row& row) { return index(row) < frames->first; });
   const auto end = std::partition_point(begin, rows.end(), [&](const Row& row) { return index(row) <= frames->last; });
   return {begin, end};
@@ -134,12 +134,12 @@ void Tracks::swap(const Operation& operation) {
 
 void Tracks::split(const Operation& operation) {
   Rows& whole = rows(operation.tracks[0]);
-  if (has(*operation.born)) throw Error("track {} is there already", number(*operation.born));
-  const FrameRange later{operation.frames->first, moments_.empty() ? operation.frames->first : moments_.back().index};
+  if (has(*operation.initiated)) throw Error("track {} is there already", number(*operation.initiated));
+  const FrameRange later{operation.frames->first, time_steps_.empty() ? operation.frames->first : time_steps_.back().index};
   Rows part = cut(whole, within(whole, later));
   entry(operation.tracks[0]).changed = true;
   TrackName name = entry(operation.tracks[0]).name;
-  name.id = *operation.born;
+  name.id = *operation.initiated;
   name.label = operation.label;
   tracks_[name.id] = {.name = name, .rows = std::move(part), .changed = true};
   last_id_ = std::max(last_id_, name.id);
@@ -155,7 +155,7 @@ void Tracks::join(const Operation& operation) {
   const auto twice = std::adjacent_find(both.begin(), both.end(), [](const Row& x, const Row& y) { return x.at == y.at; });
   if (twice != both.end())
     throw Error("{} and {} are both there in frame {}; split or delete one of them first", shown_name(name(kept)),
-                shown_name(name(used_up)), moments_[static_cast<std::size_t>(twice->at)].index);
+                shown_name(name(used_up)), time_steps_[static_cast<std::size_t>(twice->at)].index);
   a = std::move(both);
   entry(kept).changed = true;
   tracks_.erase(used_up);
@@ -174,7 +174,7 @@ void Tracks::fill(const Operation& operation) {
   std::vector<Rows> filled(operation.gaps.size());  // a marker that is filled tells nothing of another
   for (std::size_t i = 0; i < filled.size(); ++i) {
     Entry& own = entry(operation.gaps[i].track);
-    if (operation.gaps[i].places.empty() || own.rows) {
+    if (operation.gaps[i].locations.empty() || own.rows) {
       filled[i] = rows_in_gap(*this, operation.gaps[i]);
     } else {
       own.due.push_back(operation.gaps[i]);
@@ -195,7 +195,7 @@ void Tracks::filter(const Operation& operation) {
       while (end < part.size() && part[end].at == part[end - 1].at + 1) ++end;
       std::vector<Vector<3>> path;
       for (std::size_t row = begin; row < end; ++row) path.push_back(part[row].sample.position);
-      const double rate_hz = rate_between(moments_, part[begin].at, part[end - 1].at);
+      const double rate_hz = rate_between(time_steps_, part[begin].at, part[end - 1].at);
       lowpass(path, rate_hz, operation.cutoffs_hz[i]);
       for (std::size_t row = begin; row < end; ++row) {
         part[row].sample.position = path[row - begin];

@@ -25,14 +25,14 @@ class Tracks {
   /// A track as it was recorded.
   using Load = std::function<TrackColumns(TrackId)>;
 
-  /// The moments and tracks of a recording; `load` gives a track's columns when they are wanted first.
-  Tracks(std::vector<Recording::Moment> moments, const std::vector<TrackName>& names, Load load);
+  /// The instants and tracks of a recording; `load` gives a track's columns when they are wanted first.
+  Tracks(std::vector<Recording::TimeStep> time_steps, const std::vector<TrackName>& names, Load load);
 
-  std::span<const Recording::Moment> moments() const { return moments_; }
+  std::span<const Recording::TimeStep> time_steps() const { return time_steps_; }
   /// By id, without those that an operation has used up.
   std::vector<TrackName> names() const;
   bool has(TrackId track) const { return tracks_.contains(track); }
-  /// Throws Error where there is no such track.
+  /// Throws Error if there is no such track.
   const TrackName& name(TrackId track) const;
   Rows& rows(TrackId track);
   /// An id that no track has had.
@@ -40,7 +40,7 @@ class Tracks {
   /// Whether an operation has changed it.
   bool changed(TrackId track) const;
 
-  /// Throws Error where a track is missing, or two tracks that are joined are both there at one instant.
+  /// Throws Error if a track is missing, or two tracks that are joined are both there at one instant.
   void apply(const Operation& operation);
 
   /// The track's columns now.
@@ -65,7 +65,7 @@ class Tracks {
   void fill(const Operation& operation);
   void filter(const Operation& operation);
 
-  std::vector<Recording::Moment> moments_;
+  std::vector<Recording::TimeStep> time_steps_;
   Load load_;
   std::map<TrackId, Entry> tracks_;
   TrackId last_id_{};

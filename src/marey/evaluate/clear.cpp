@@ -101,8 +101,8 @@ void ClearCounter::count_unmatched(const FramePairs& frame) {
 ClearScores ClearCounter::scores() const {
   ClearScores scores = counts_;
   for (const Object& object : objects_) {
-    const double share = static_cast<double>(object.found) / static_cast<double>(object.frames);
-    ++(share >= 0.8 ? scores.mostly_tracked : share >= 0.2 ? scores.partially_tracked : scores.mostly_lost);
+    const double fraction = static_cast<double>(object.found) / static_cast<double>(object.frames);
+    ++(fraction >= 0.8 ? scores.mostly_tracked : fraction >= 0.2 ? scores.partially_tracked : scores.mostly_lost);
   }
   const auto true_boxes = static_cast<double>(scores.matches + scores.misses);
   const auto track_boxes = static_cast<double>(scores.matches + scores.false_positives);

@@ -12,14 +12,14 @@ namespace marey::evaluate {
 /// Counts CLEAR-MOT events frame by frame.
 class ClearCounter {
  public:
-  /// What lies farther than `most_distance` is no match.
+  /// What lies farther than `most_distance` is not a match.
   ClearCounter(int objects, int tracks, double most_distance)
-      : most_distance_(most_distance), objects_(objects), column_of_track_(tracks, assign::kNoIndex) {}
+      : max_distance_(most_distance), objects_(objects), column_of_track_(tracks, assign::kNoIndex) {}
 
   void add(const FramePairs& frame);
   ClearScores scores() const;
 
-  /// What became of one object.
+  /// What happened to one object.
   struct Object {
     int track = assign::kNoIndex;  ///< its last match
     std::int64_t frames = 0;
@@ -32,14 +32,14 @@ class ClearCounter {
   std::span<const int> column_of_row() const { return column_of_row_; }
 
  private:
-  bool close_enough(double distance) const { return !(distance > most_distance_); }
+  bool close_enough(double distance) const { return !(distance > max_distance_); }
   void keep_last_matches(const FramePairs& frame);
   void match_the_rest(const FramePairs& frame);
   bool fill_costs(const FramePairs& frame);
   void match(const FramePairs& frame, std::size_t row, std::size_t column);
   void count_unmatched(const FramePairs& frame);
 
-  double most_distance_;
+  double max_distance_;
   std::vector<Object> objects_;
   std::vector<int> column_of_track_;  // in the frame at hand
   std::vector<int> column_of_row_;

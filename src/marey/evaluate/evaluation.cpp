@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "marey/evaluate/judge.h"
+#include "marey/evaluate/evaluate_tracks.h"
 
 namespace marey::evaluate {
 namespace {
@@ -37,7 +37,7 @@ Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const Labelled
   assert(std::is_sorted(tracks.begin(), tracks.end(), boxes_by_frame) && "tracks are ordered by frame");
   assert(least_overlap > 0 && least_overlap <= 1 && "an overlap from which a box counts as found");
   // The threshold is written as the reference has it: its rounding decides draws.
-  return judge(truth, tracks, 1 - least_overlap, closeness, [](const auto&, const ClearCounter&) {}, limits).scores;
+  return assess(truth, tracks, 1 - least_overlap, closeness, [](const auto&, const ClearCounter&) {}, limits).scores;
 }
 
 }  // namespace marey::evaluate

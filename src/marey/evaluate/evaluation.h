@@ -5,7 +5,7 @@
 #include <span>
 
 #include "marey/core/labelled_box.h"
-#include "marey/core/limits.h"
+#include "marey/files/limits.h"
 
 namespace marey::evaluate {
 
@@ -26,7 +26,7 @@ struct ClearScores {
   std::optional<double> precision;  ///< matches / reported boxes
 };
 
-/// Ristani et al. 2016, as py-motmetrics counts: each object is given one track for good, so that most boxes agree.
+/// Ristani et al. 2016, as py-motmetrics counts: each object is given one track permanently, so that most boxes agree.
 struct IdentityScores {
   std::int64_t true_positives = 0;
   std::int64_t false_positives = 0;
@@ -53,10 +53,10 @@ struct Evaluation {
   HotaScores hota;
 };
 
-/// Judges tracks against the truth. Both are ordered by frame, and an id stands once a frame; `least_overlap`, in (0, 1], is the
+/// Evaluates tracks against the truth. Both are ordered by frame, and an id stands once a frame; `least_overlap`, in (0, 1], is the
 /// IoU from which CLEAR and identity scores let a box count as found. Two passes over the boxes, frame by frame; memory grows with
 /// the pairs of ids that ever overlap, not with the frames. Cost: truth × tracks of each frame, and an assignment where boxes
-/// crowd. Throws Error where a frame is crowded beyond `limits`.
+/// crowd. Throws Error if a frame is crowded beyond `limits`.
 Evaluation evaluate(std::span<const LabelledBox> truth, std::span<const LabelledBox> tracks, double least_overlap = 0.5,
                     const Limits& limits = Limits::in_force());
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "marey/core/error.h"
-#include "marey/core/limits.h"
 #include "marey/core/stop.h"
+#include "marey/files/limits.h"
 
 namespace marey::evaluate {
 
@@ -67,7 +67,7 @@ class FramePairs {
 };
 
 /// Goes through truth and tracks together, one frame that either has at a time. Both are ordered by frame; `close` is
-/// Closeness(const Item& truth, const Item& track). Throws Error where a frame is crowded beyond `Limits::pairs_a_frame`.
+/// Closeness(const Item& truth, const Item& track). Throws Error if a frame is crowded beyond `Limits::pairs_a_frame`.
 template <Labelled Item, typename Close>
 class FrameWalk : public FramePairs {
  public:
@@ -78,7 +78,7 @@ class FrameWalk : public FramePairs {
         objects_numbers_(objects),
         track_numbers_(track_numbers),
         close_(close),
-        most_pairs_(limits.pairs_a_frame) {}
+        max_pairs_(limits.pairs_a_frame) {}
 
   /// Steps to the next frame; false at the end. Throws Stopped.
   bool next() {
@@ -89,7 +89,7 @@ class FrameWalk : public FramePairs {
                                         next_track_ < tracks_.size() ? tracks_[next_track_].frame : never);
     rows_ = take_frame(truth_, next_true_, frame);
     columns_ = take_frame(tracks_, next_track_, frame);
-    if (!rows_.empty() && columns_.size() > most_pairs_ / rows_.size()) refuse(frame);
+    if (!rows_.empty() && columns_.size() > max_pairs_ / rows_.size()) refuse(frame);
     fill();
     return true;
   }
@@ -109,7 +109,7 @@ class FrameWalk : public FramePairs {
     throw Error(
         "frame {} holds {} of the truth and {} that were tracked; at most {} pairs of one frame are compared (the limit "
         "pairs_a_frame)",
-        frame + 1, rows_.size(), columns_.size(), most_pairs_);
+        frame + 1, rows_.size(), columns_.size(), max_pairs_);
   }
 
   void fill() {
@@ -132,7 +132,7 @@ class FrameWalk : public FramePairs {
   const IdNumbers& objects_numbers_;
   const IdNumbers& track_numbers_;
   Close close_;
-  std::size_t most_pairs_;
+  std::size_t max_pairs_;
   std::size_t next_true_ = 0;
   std::size_t next_track_ = 0;
 };

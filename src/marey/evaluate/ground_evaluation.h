@@ -10,21 +10,21 @@
 namespace marey::evaluate {
 
 /// Where a person or a marker was at one instant. On the ground the third coordinate is 0.
-struct TargetPlace {
+struct TargetPosition {
   std::int32_t frame = 0;
   std::int32_t id = 0;
-  Vector<3> place = Vector<3>::Zero();     ///< m
+  Vector<3> location = Vector<3>::Zero();  ///< m
   std::optional<Vector<3>> velocity = {};  ///< m/s
 };
 
-inline Vector<3> on_ground(const Vector<2>& place) {
-  return {place.x(), place.y(), 0};
+inline Vector<3> on_ground(const Vector<2>& location) {
+  return {location.x(), location.y(), 0};
 }
 
-/// What became of one true target.
+/// What happened to one true target.
 struct TargetFate {
   int id = 0;
-  std::optional<int> track;  ///< the one that the identity scores give them for good
+  std::optional<int> track;  ///< the one that the identity scores give them permanently
   std::int64_t frames = 0;
   std::int64_t found = 0;     ///< frames in which some track was near
   std::int64_t agreeing = 0;  ///< frames in which their own track was
@@ -48,8 +48,8 @@ struct GroundEvaluation {
   std::optional<ErrorSpread> velocity;  ///< of the difference of the velocities, m/s, likewise
 };
 
-/// Judges places by their distance: up to `farthest` m they may match, and for HOTA the similarity is 1 − distance / farthest.
+/// Evaluates places by their distance: up to `farthest` m they may match, and for HOTA the similarity is 1 − distance / farthest.
 /// Both are ordered by frame, and an id stands once a frame. Cost as of `evaluate`.
-GroundEvaluation evaluate_ground(std::span<const TargetPlace> truth, std::span<const TargetPlace> tracks, double farthest);
+GroundEvaluation evaluate_ground(std::span<const TargetPosition> truth, std::span<const TargetPosition> tracks, double farthest);
 
 }  // namespace marey::evaluate

@@ -8,18 +8,18 @@
 namespace marey::evaluate {
 namespace {
 
-TargetPlace place_at(int frame, int id, double x, double y = 0) {
+TargetPosition position_at(int frame, int id, double x, double y = 0) {
   return {frame, id, {x, y, 0}, Vector<3>(1, 0, 0)};
 }
 
 TEST(GroundEvaluation, ErrorsAreInMetres) {
-  std::vector<TargetPlace> truth, tracks;
+  std::vector<TargetPosition> truth, tracks;
   for (int frame = 0; frame < 10; ++frame) {
-    truth.push_back(place_at(frame, 1, 0.1 * frame));
-    truth.push_back(place_at(frame, 2, 50));
-    tracks.push_back(place_at(frame, 7, 0.1 * frame, 0.3));
+    truth.push_back(position_at(frame, 1, 0.1 * frame));
+    truth.push_back(position_at(frame, 2, 50));
+    tracks.push_back(position_at(frame, 7, 0.1 * frame, 0.3));
     tracks.back().velocity = {1, 1, 0};
-    tracks.push_back(place_at(frame, 8, 50, 0.4));
+    tracks.push_back(position_at(frame, 8, 50, 0.4));
   }
   const GroundEvaluation result = evaluate_ground(truth, tracks, 1.5);
   EXPECT_EQ(result.scores.clear.matches, 20);
@@ -34,7 +34,7 @@ TEST(GroundEvaluation, ErrorsAreInMetres) {
 }
 
 TEST(GroundEvaluation, FarthestIsStillAMatchAndFartherIsNot) {
-  const std::vector<TargetPlace> truth{place_at(0, 1, 0)}, near{place_at(0, 1, 1.5)}, far{place_at(0, 1, 1.5001)};
+  const std::vector<TargetPosition> truth{position_at(0, 1, 0)}, near{position_at(0, 1, 1.5)}, far{position_at(0, 1, 1.5001)};
   EXPECT_EQ(evaluate_ground(truth, near, 1.5).scores.clear.matches, 1);
   const GroundEvaluation missed = evaluate_ground(truth, far, 1.5);
   EXPECT_EQ(missed.scores.clear.matches, 0);
@@ -43,14 +43,14 @@ TEST(GroundEvaluation, FarthestIsStillAMatchAndFartherIsNot) {
 }
 
 TEST(GroundEvaluation, ATrackThatChangesThePersonKeepsNobody) {
-  std::vector<TargetPlace> truth, tracks;
+  std::vector<TargetPosition> truth, tracks;
   for (int frame = 0; frame < 10; ++frame) {
     for (int id : {1, 2}) {
-      truth.push_back(place_at(frame, id, 10 * id));
-      tracks.push_back(place_at(frame, frame < 5 ? id : 3 - id, 10 * id));
+      truth.push_back(position_at(frame, id, 10 * id));
+      tracks.push_back(position_at(frame, frame < 5 ? id : 3 - id, 10 * id));
     }
-    truth.push_back(place_at(frame, 3, 90));
-    if (frame < 7) tracks.push_back(place_at(frame, 3, 90));
+    truth.push_back(position_at(frame, 3, 90));
+    if (frame < 7) tracks.push_back(position_at(frame, 3, 90));
   }
   std::sort(tracks.begin(), tracks.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
   const GroundEvaluation result = evaluate_ground(truth, tracks, 1);
@@ -61,7 +61,7 @@ TEST(GroundEvaluation, ATrackThatChangesThePersonKeepsNobody) {
 
 TEST(GroundEvaluation, NothingToJudge) {
   EXPECT_FALSE(evaluate_ground({}, {}, 1).position);
-  const std::vector<TargetPlace> truth{place_at(0, 1, 0)};
+  const std::vector<TargetPosition> truth{position_at(0, 1, 0)};
   const GroundEvaluation none = evaluate_ground(truth, {}, 1);
   EXPECT_FALSE(none.people[0].track);
   EXPECT_FALSE(none.people[0].kept());

@@ -23,7 +23,7 @@ int levels_reached(double overlap) {
 
 }  // namespace
 
-void HotaCounter::see(const FramePairs& frame) {
+void HotaCounter::observe_frame(const FramePairs& frame) {
   for (const int object : frame.objects()) ++object_frames_[object];
   for (const int track : frame.tracks()) ++track_frames_[track];
   row_sums_.assign(frame.objects().size(), 0);

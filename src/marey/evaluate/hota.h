@@ -13,10 +13,10 @@ namespace marey::evaluate {
 /// Counts HOTA in two passes: `see` every frame, `align` once, `match` every frame.
 class HotaCounter {
  public:
-  /// `pairs` is shared with whoever else counts by pairs of ids, and outlives this.
+  /// `pairs` is shared with the one who else counts by pairs of ids, and outlives this.
   HotaCounter(int objects, int tracks, PairTable& pairs) : pairs_(pairs), object_frames_(objects), track_frames_(tracks) {}
 
-  void see(const FramePairs& frame);
+  void observe_frame(const FramePairs& frame);
   void align();
   void match(const FramePairs& frame);
   HotaScores scores() const;

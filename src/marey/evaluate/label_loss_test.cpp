@@ -5,7 +5,7 @@
 namespace marey::evaluate {
 namespace {
 
-using Frames = std::vector<std::vector<NamedPlace>>;
+using Frames = std::vector<std::vector<NamedPosition>>;
 
 /// Marker A walks right along y = 0, B along y = 100.
 Frames walk(int frames) {
@@ -24,7 +24,7 @@ Frames named(Frames frames, const std::string& a, const std::string& b) {
 
 TEST(LabelLoss, NamesThatStayAreKept) {
   const Frames truth = walk(20);
-  for (const LabelFate& fate : judge_labels(truth, named(truth, "one", "two"), 5)) {
+  for (const LabelFate& fate : evaluate_labels(truth, named(truth, "one", "two"), 5)) {
     EXPECT_FALSE(fate.lost());
     EXPECT_EQ(fate.named, 20);
   }
@@ -34,22 +34,22 @@ TEST(LabelLoss, NamesThatChangePlacesForGoodAreBothLost) {
   const Frames truth = walk(20);
   Frames tracks = named(truth, "one", "two");
   for (int i = 15; i < 20; ++i) std::swap(tracks[i][0].name, tracks[i][1].name);
-  for (const LabelFate& fate : judge_labels(truth, tracks, 5)) EXPECT_TRUE(fate.lost());
+  for (const LabelFate& fate : evaluate_labels(truth, tracks, 5)) EXPECT_TRUE(fate.lost());
 }
 
 TEST(LabelLoss, AMissOfOneFrameInTwentyIsForgivenAndOfThreeIsNot) {
   const Frames truth = walk(20);
   Frames tracks = named(truth, "one", "two");
-  tracks[7][0].place.y() = 50;
-  EXPECT_FALSE(judge_labels(truth, tracks, 5)[0].lost());
-  tracks[8][0].place.y() = 50;
-  tracks[9][0].place.y() = 50;
-  EXPECT_TRUE(judge_labels(truth, tracks, 5)[0].lost());
+  tracks[7][0].location.y() = 50;
+  EXPECT_FALSE(evaluate_labels(truth, tracks, 5)[0].lost());
+  tracks[8][0].location.y() = 50;
+  tracks[9][0].location.y() = 50;
+  EXPECT_TRUE(evaluate_labels(truth, tracks, 5)[0].lost());
 }
 
 TEST(LabelLoss, AMarkerThatWasNeverNamedIsLost) {
   const Frames truth = walk(3);
-  const LabelFate fate = judge_labels(truth, Frames(3), 5)[0];
+  const LabelFate fate = evaluate_labels(truth, Frames(3), 5)[0];
   EXPECT_TRUE(fate.lost());
   EXPECT_EQ(fate.given, "");
 }

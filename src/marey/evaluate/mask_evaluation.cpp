@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "marey/evaluate/judge.h"
+#include "marey/evaluate/evaluate_tracks.h"
 
 namespace marey::evaluate {
 
@@ -28,7 +28,7 @@ MaskEvaluation evaluate_masks(std::span<const LabelledMask> truth, std::span<con
     return Closeness{1 - overlap, overlap};
   };
   MaskEvaluation result;
-  result.scores = judge(truth, tracks, 1 - min_iou, closeness, [](const auto&, const ClearCounter&) {}, limits).scores;
+  result.scores = assess(truth, tracks, 1 - min_iou, closeness, [](const auto&, const ClearCounter&) {}, limits).scores;
   const ClearScores& clear = result.scores.clear;
   double overlaps = 0;
   if (clear.motp) {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "marey/core/limits.h"
 #include "marey/core/run_mask.h"
 #include "marey/evaluate/evaluation.h"
+#include "marey/files/limits.h"
 
 namespace marey::evaluate {
 

@@ -70,10 +70,10 @@ TEST(RunMask, OfAPolygonHasThePixelsWhoseCentreIsInside) {
   const std::uint64_t seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937_64 random(seed);
-  std::uniform_real_distribution<> place(-5, 25);
+  std::uniform_real_distribution<> location(-5, 25);
   for (int trial = 0; trial < 100; ++trial) {
     std::vector<Vector<2>> polygon(3 + trial % 5);
-    for (Vector<2>& corner : polygon) corner = {place(random), place(random)};
+    for (Vector<2>& corner : polygon) corner = {location(random), location(random)};
     Pixels inside;
     for (int x = 0; x < 20; ++x) {
       for (int y = 0; y < 17; ++y) {

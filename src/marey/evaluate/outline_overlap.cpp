@@ -31,10 +31,10 @@ double OutlineOverlap::iou() const {
 }
 
 OutlineOverlap visible_overlap(std::span<const Vector<2>> polygon, std::span<const std::vector<Vector<2>>> nearer,
-                               const SilhouetteMask& truth, const cv::Size& picture) {
+                               const SilhouetteMask& truth, const cv::Size& image) {
   // What nearer ones cover is cut from both the curve and, where it is counted, the silhouette's share inside it.
   const double unit = 1.0 / (static_cast<double>(truth.samples) * truth.samples);
-  const cv::Rect counted(0, 0, picture.width * truth.samples, picture.height * truth.samples);
+  const cv::Rect counted(0, 0, image.width * truth.samples, image.height * truth.samples);
   const cv::Rect lattice(truth.corner, truth.mask.size());
   OutlineOverlap result;
   const cv::Rect kept = lattice & counted;
@@ -70,12 +70,12 @@ OutlineOverlap visible_overlap(std::span<const Vector<2>> polygon, std::span<con
   return result;
 }
 
-OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* picture) {
+OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* image) {
   const double unit = 1.0 / (static_cast<double>(truth.samples) * truth.samples);
   const cv::Rect lattice(truth.corner, truth.mask.size());
   constexpr int kFar = std::numeric_limits<int>::max() / 4;
   cv::Rect counted(-kFar, -kFar, 2 * kFar, 2 * kFar);
-  if (picture != nullptr) counted = {0, 0, picture->width * truth.samples, picture->height * truth.samples};
+  if (image != nullptr) counted = {0, 0, image->width * truth.samples, image->height * truth.samples};
   OutlineOverlap result;
   const cv::Rect kept = lattice & counted;
   if (!kept.empty()) result.silhouette = unit * cv::countNonZero(truth.mask(kept - lattice.tl()));

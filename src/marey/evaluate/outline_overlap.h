@@ -27,11 +27,11 @@ struct OutlineOverlap {
 };
 
 /// Lays a closed polygon (px; inside is where a ray crosses it an odd number of times) over a silhouette, lattice point by lattice
-/// point. With `picture`, only what lies in a picture of that size counts. Cost: the lattice points of both boxes.
-OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* picture = nullptr);
+/// point. With `picture`, only what lies in an image of that size counts. Cost: the lattice points of both boxes.
+OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* image = nullptr);
 
-/// The same of what is left of the polygon where `nearer` curves do not cover it: what is visible of it.
+/// The same of the rest of the polygon where `nearer` curves do not cover it: what is visible of it.
 OutlineOverlap visible_overlap(std::span<const Vector<2>> polygon, std::span<const std::vector<Vector<2>>> nearer,
-                               const SilhouetteMask& truth, const cv::Size& picture);
+                               const SilhouetteMask& truth, const cv::Size& image);
 
 }  // namespace marey::evaluate

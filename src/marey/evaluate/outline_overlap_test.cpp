@@ -21,12 +21,12 @@ bool inside(const std::vector<Vector<2>>& polygon, double x, double y) {
   return odd;
 }
 
-OutlineOverlap by_brute_force(const std::vector<Vector<2>>& polygon, const SilhouetteMask& truth, const cv::Size* picture) {
+OutlineOverlap by_brute_force(const std::vector<Vector<2>>& polygon, const SilhouetteMask& truth, const cv::Size* image) {
   OutlineOverlap result;
   const double unit = 1.0 / (truth.samples * truth.samples);
   for (int row = -40 * truth.samples; row < 60 * truth.samples; ++row) {
     for (int column = -40 * truth.samples; column < 60 * truth.samples; ++column) {
-      if (picture != nullptr && !cv::Rect({0, 0}, *picture * truth.samples).contains({column, row})) continue;
+      if (image != nullptr && !cv::Rect({0, 0}, *image * truth.samples).contains({column, row})) continue;
       const cv::Point in_mask = cv::Point(column, row) - truth.corner;
       const bool a = inside(polygon, (column + 0.5) / truth.samples - 0.5, (row + 0.5) / truth.samples - 0.5);
       const bool b = cv::Rect({0, 0}, truth.mask.size()).contains(in_mask) && truth.mask.at<std::uint8_t>(in_mask) != 0;
@@ -41,9 +41,9 @@ OutlineOverlap by_brute_force(const std::vector<Vector<2>>& polygon, const Silho
 TEST(OutlineOverlap, AgreesWithBruteForceOnRandomPolygons) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> place(-12, 32);
+    std::uniform_real_distribution<double> location(-12, 32);
     std::vector<Vector<2>> polygon(3 + seed % 9);
-    for (auto& corner : polygon) corner = {place(random), place(random)};
+    for (auto& corner : polygon) corner = {location(random), location(random)};
     SilhouetteMask truth;
     truth.samples = 1 + static_cast<int>(seed % 4);
     truth.corner = cv::Point(-3, 2) * truth.samples;
@@ -52,8 +52,8 @@ TEST(OutlineOverlap, AgreesWithBruteForceOnRandomPolygons) {
       for (int column = 0; column < truth.mask.cols; ++column)
         truth.mask.at<std::uint8_t>(row, column) = random() % 3 == 0 ? 0 : 255;
     }
-    const cv::Size picture(18, 21);
-    for (const cv::Size* within : {static_cast<const cv::Size*>(nullptr), &picture}) {
+    const cv::Size image(18, 21);
+    for (const cv::Size* within : {static_cast<const cv::Size*>(nullptr), &image}) {
       const OutlineOverlap fast = overlap(polygon, truth, within);
       const OutlineOverlap slow = by_brute_force(polygon, truth, within);
       EXPECT_NEAR(fast.shared, slow.shared, 1e-9) << "seed " << seed;

@@ -20,15 +20,15 @@ bool alike(double a, double b) {
 /// Which of `others` is the same instant: index into it.
 std::vector<std::optional<std::size_t>> partners(const InstantClock& clock, const InstantClock& others, bool by_time) {
   std::vector<std::optional<std::size_t>> result;
-  const auto key = [by_time](const Recording::Moment& moment) {
-    return by_time ? seconds(moment.time) : static_cast<double>(moment.index);
+  const auto key = [by_time](const Recording::TimeStep& time_step) {
+    return by_time ? seconds(time_step.time) : static_cast<double>(time_step.index);
   };
   const double reach = by_time ? std::min(clock.period, others.period) / 2 + 1e-9 : 0;
   const auto begin = others.instants.begin(), end = others.instants.end();
-  for (const Recording::Moment& moment : clock.instants) {
-    auto next = std::lower_bound(begin, end, key(moment), [&](const Recording::Moment& a, double b) { return key(a) < b; });
-    if (next != begin && (next == end || key(*next) - key(moment) > key(moment) - key(*(next - 1)))) --next;
-    const bool near = next != end && std::abs(key(*next) - key(moment)) <= reach;
+  for (const Recording::TimeStep& time_step : clock.instants) {
+    auto next = std::lower_bound(begin, end, key(time_step), [&](const Recording::TimeStep& a, double b) { return key(a) < b; });
+    if (next != begin && (next == end || key(*next) - key(time_step) > key(time_step) - key(*(next - 1)))) --next;
+    const bool near = next != end && std::abs(key(*next) - key(time_step)) <= reach;
     result.push_back(near ? std::optional(static_cast<std::size_t>(next - begin)) : std::nullopt);
   }
   return result;
@@ -36,19 +36,19 @@ std::vector<std::optional<std::size_t>> partners(const InstantClock& clock, cons
 
 /// CommonNumbers in the order of `leader`'s instants, given to `follower`'s partners too. Where `all`, the follower's instants that
 /// have no partner get numbers of their own.
-void number(const InstantClock& leader, const InstantClock& follower, bool by_time, bool all, CommonNumbers& leading,
-            CommonNumbers& following) {
-  const auto partner = partners(leader, follower, by_time);
+void number(const InstantClock& leader, const InstantClock& tracker, bool by_time, bool all, CommonNumbers& leading,
+            CommonNumbers& tracking) {
+  const auto partner = partners(leader, tracker, by_time);
   leading.assign(leader.instants.size(), std::nullopt);
-  following.assign(follower.instants.size(), std::nullopt);
+  tracking.assign(tracker.instants.size(), std::nullopt);
   std::int32_t next = 0;
   for (std::size_t i = 0; i < leading.size(); ++i) {
     leading[i] = next;
-    if (partner[i] && !following[*partner[i]]) following[*partner[i]] = next;
+    if (partner[i] && !tracking[*partner[i]]) tracking[*partner[i]] = next;
     ++next;
   }
-  for (std::size_t i = 0; all && i < following.size(); ++i) {
-    if (!following[i]) following[i] = next++;
+  for (std::size_t i = 0; all && i < tracking.size(); ++i) {
+    if (!tracking[i]) tracking[i] = next++;
   }
 }
 
@@ -90,7 +90,7 @@ InstantPairing pair_instants(const InstantClock& truth, const InstantClock& trac
       number(tracks, truth, pairing.by_time, false, pairing.tracks, pairing.truth);
     }
     pairing.warnings.push_back(
-        fmt::format("the truth has an instant every {:.3g} s, the tracks every {:.3g} s; judged are those of {}", truth.period,
+        fmt::format("the truth has an instant every {:.3g} s, the tracks every {:.3g} s; evaluated are those of {}", truth.period,
                     tracks.period, truth_leads ? "the truth" : "the tracks"));
   }
   if (const double apart = pairing.by_time ? 0 : time_between(truth, tracks);

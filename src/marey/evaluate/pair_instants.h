@@ -11,7 +11,7 @@ namespace marey::evaluate {
 
 /// How the instants of a recording follow each other. The recording must outlive it.
 struct InstantClock {
-  const std::vector<Recording::Moment>& instants;
+  const std::vector<Recording::TimeStep>& instants;
   double period = 0;   ///< s, the median between two instants; 0 where there are fewer than two
   double frame_s = 0;  ///< s a frame number, likewise
 
@@ -20,7 +20,7 @@ struct InstantClock {
 
 InstantClock clock_of(const Recording& recording);
 
-/// The common number of each instant of a recording; those that are not judged have none.
+/// The common number of each instant of a recording; those that are not evaluated have none.
 using CommonNumbers = std::vector<std::optional<std::int32_t>>;
 
 /// Which instants of two recordings are the same.
@@ -31,7 +31,7 @@ struct InstantPairing {
 };
 
 /// Instants go together by frame number where frames mean the same time in both, else by time, the nearest within half a period;
-/// where one recording has instants more often, the other's instants alone are judged.
+/// where one recording has instants more often, the other's instants alone are evaluated.
 InstantPairing pair_instants(const InstantClock& truth, const InstantClock& tracks);
 
 }  // namespace marey::evaluate

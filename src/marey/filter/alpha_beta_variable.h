@@ -15,18 +15,18 @@ class AlphaBetaVariable;
 
 /// Lengths in px where the filter runs in the image, in m on the ground and in space.
 struct AlphaBetaVariableOptions {
-  double alpha = 1.0;          ///< share of the residual that position takes, in (0, 1]
-  double beta = 0.8;           ///< share that velocity takes, in (0, 4 − 2 alpha)
-  double first_radius = 40;    ///< before the speed is known, px or m
-  double least_radius = 15;    ///< of a target that stands still, px or m
-  double share_of_path = 2.0;  ///< of the path expected since the last measurement, added to the least radius
+  double alpha = 1.0;             ///< share of the residual that position takes, in (0, 1]
+  double beta = 0.8;              ///< share that velocity takes, in (0, 4 − 2 alpha)
+  double first_radius = 40;       ///< before the speed is known, px or m
+  double min_radius = 15;         ///< of a target that stands still, px or m
+  double fraction_of_path = 2.0;  ///< of the path expected since the last measurement, added to the least radius
 
   template <int D>
   using Model = AlphaBetaVariable<D>;
 
   /// The same filter where one unit of length is `factor` of the new ones.
   AlphaBetaVariableOptions scaled(double factor) const {
-    return {alpha, beta, first_radius * factor, least_radius * factor, share_of_path};
+    return {alpha, beta, first_radius * factor, min_radius * factor, fraction_of_path};
   }
 };
 
@@ -57,7 +57,7 @@ class AlphaBetaVariable {
 
   double search_radius() const {
     if (!speed_known_) return options_.first_radius;
-    return options_.least_radius + options_.share_of_path * since_correction_ * filter_.velocity().norm();
+    return options_.min_radius + options_.fraction_of_path * since_correction_ * filter_.velocity().norm();
   }
 
   /// The search area is a circle (a ball) of `search_radius()`.

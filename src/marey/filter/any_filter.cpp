@@ -34,10 +34,10 @@ struct AnyFilter<D>::CallsOf {
     read(filter, estimate);
   }
 
-  static void predict_unseen(void* model, double dt, Estimate& estimate) {
+  static void predict_unobserved(void* model, double dt, Estimate& estimate) {
     F& filter = *static_cast<F*>(model);
-    if constexpr (requires { filter.predict_unseen(dt); }) {
-      filter.predict_unseen(dt);
+    if constexpr (requires { filter.predict_unobserved(dt); }) {
+      filter.predict_unobserved(dt);
     } else {
       filter.predict(dt);
     }
@@ -92,7 +92,7 @@ struct AnyFilter<D>::CallsOf {
                                   .gate_distance = gate_distance,
                                   .search_reach = search_reach,
                                   .log_likelihood = log_likelihood,
-                                  .predict_unseen = predict_unseen,
+                                  .predict_unobserved = predict_unobserved,
                                   .scale_noise = scale_noise};
 };
 

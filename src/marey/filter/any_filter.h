@@ -43,7 +43,7 @@ class AnyFilter {
 
   void predict(double dt) { calls_->predict(model_, dt, estimate_); }
   /// The same while the target is hidden; like `predict` where the method makes no difference.
-  void predict_unseen(double dt) { calls_->predict_unseen(model_, dt, estimate_); }
+  void predict_unobserved(double dt) { calls_->predict_unobserved(model_, dt, estimate_); }
   void correct(const Vector<D>& z, const Matrix<D>& R) { calls_->correct(model_, z, R, estimate_); }
 
   /// What drives the target becomes `factor` times as strong as in the options; without effect where the method has no such noise.
@@ -79,7 +79,7 @@ class AnyFilter {
     double (*gate_distance)(const void* model, const Vector<D>& z, const Matrix<D>& R);
     double (*search_reach)(const void* model, double variance);
     double (*log_likelihood)(const void* model, const Vector<D>& z, const Matrix<D>& R);
-    void (*predict_unseen)(void* model, double dt, Estimate& estimate);
+    void (*predict_unobserved)(void* model, double dt, Estimate& estimate);
     void (*scale_noise)(void* model, double factor);
   };
 

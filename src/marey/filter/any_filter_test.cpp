@@ -16,19 +16,19 @@ struct FirstDifference {
   template <typename F>
   std::optional<int> operator()(const typename F::Options& chosen) const {
     const Matrix<D> R = 0.3 * Matrix<D>::Identity();
-    Vector<D> place = Vector<D>::Constant(10);
-    F model(chosen, place, R);
-    AnyFilter<D> any(options, place, R);
+    Vector<D> location = Vector<D>::Constant(10);
+    F model(chosen, location, R);
+    AnyFilter<D> any(options, location, R);
     for (int k = 0; k < 50; ++k) {
       const double dt = k % 3 == 0 ? 0.02 : 0.05;
-      place += Vector<D>::LinSpaced(1, 2) * (k < 25 ? 1 : -0.5);
+      location += Vector<D>::LinSpaced(1, 2) * (k < 25 ? 1 : -0.5);
       model.predict(dt);
       any.predict(dt);
-      if (!same(model, any, place, R)) return k;
+      if (!same(model, any, location, R)) return k;
       if (k % 7 == 3) continue;
-      model.correct(place, R);
-      any.correct(place, R);
-      if (!same(model, any, place, R)) return k;
+      model.correct(location, R);
+      any.correct(location, R);
+      if (!same(model, any, location, R)) return k;
     }
     return std::nullopt;
   }
@@ -76,7 +76,7 @@ TEST(AnyFilter, ACopyGoesOnAlikeAndByItself) {
   }
 }
 
-/// Every kind takes over every other's place: what it held is released (the address sanitizer looks), and it goes on as that one.
+/// Every kind takes over every other's place: what it held is released (the address sanitizer looks), and it continues as that one.
 TEST(AnyFilter, IsAssignedAcrossKinds) {
   for (const NamedFilter& from : named_filters()) {
     for (const NamedFilter& to : named_filters()) {

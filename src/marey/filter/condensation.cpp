@@ -21,16 +21,16 @@ template <int D>
 Condensation<D>::Condensation(const Options& options, const Vector<D>& z, const Matrix<D>& R)
     : options_(options), random_(own_seed<D>(options.seed, z)), position_(z), covariance_(R), last_estimate_(z) {
   const int n = options_.particles = std::max(1, options.particles);
-  places_ = Cloud::Zero(D, n);
-  diffuse(places_, options_.initial_spread);
-  places_.colwise() -= places_.rowwise().mean().eval();
-  places_.colwise() += z;
+  locations_ = Cloud::Zero(D, n);
+  diffuse(locations_, options_.initial_spread);
+  locations_.colwise() -= locations_.rowwise().mean().eval();
+  locations_.colwise() += z;
   if (options_.with_velocity) {
     velocities_ = Cloud::Zero(D, n);
     diffuse(velocities_, options_.initial_speed);
     velocities_.colwise() -= velocities_.rowwise().mean().eval();
   }
-  selected_ = places_;
+  selected_ = locations_;
   weights_ = Eigen::RowVectorXd::Constant(n, 1.0 / n);
   chosen_.resize(static_cast<std::size_t>(n));
   summarise();
@@ -43,11 +43,11 @@ void Condensation<D>::select() {
   if (even_) return;
   const auto n = static_cast<std::size_t>(options_.particles);
   const double step = 1.0 / static_cast<double>(n);
-  double wanted = random_.uniform() * step;
+  double required = random_.uniform() * step;
   double reached = weights_[0];
   int source = 0;
-  for (std::size_t i = 0; i < n; ++i, wanted += step) {
-    while (reached < wanted && source + 1 < options_.particles) reached += weights_[++source];
+  for (std::size_t i = 0; i < n; ++i, required += step) {
+    while (reached < required && source + 1 < options_.particles) reached += weights_[++source];
     chosen_[i] = source;
   }
   const auto gather = [&](Cloud& cloud) {
@@ -56,7 +56,7 @@ void Condensation<D>::select() {
     }
     cloud.swap(selected_);
   };
-  gather(places_);
+  gather(locations_);
   if (options_.with_velocity) gather(velocities_);
   weights_.setConstant(step);
   even_ = true;
@@ -83,11 +83,11 @@ void Condensation<D>::predict(double dt) {
   const double root = std::sqrt(dt);
   if (options_.with_velocity) {
     // The mean of the velocity before and after its kick: what white acceleration does to the position, to first order.
-    places_ += (0.5 * dt) * velocities_;
+    locations_ += (0.5 * dt) * velocities_;
     diffuse(velocities_, options_.velocity_diffusion * root);
-    places_ += (0.5 * dt) * velocities_;
+    locations_ += (0.5 * dt) * velocities_;
   }
-  diffuse(places_, options_.diffusion * root);
+  diffuse(locations_, options_.diffusion * root);
   summarise();
 }
 
@@ -96,7 +96,7 @@ void Condensation<D>::correct(const Vector<D>& z, const Matrix<D>& R) {
   const Matrix<D> wide = R + options_.likelihood_sigma * options_.likelihood_sigma * Matrix<D>::Identity();
   const Matrix<D> inverse = wide.inverse();
   for (int i = 0; i < options_.particles; ++i) {
-    const Vector<D> residual = z - places_.col(i);
+    const Vector<D> residual = z - locations_.col(i);
     weights_[i] = -0.5 * residual.dot(inverse * residual) + (even_ ? 0 : std::log(weights_[i]));
   }
   const double largest = weights_.maxCoeff();
@@ -112,10 +112,10 @@ void Condensation<D>::correct(const Vector<D>& z, const Matrix<D>& R) {
 
 template <int D>
 void Condensation<D>::summarise() {
-  position_ = places_ * weights_.transpose();
+  position_ = locations_ * weights_.transpose();
   covariance_.setZero();
   for (int i = 0; i < options_.particles; ++i) {
-    const Vector<D> residual = places_.col(i) - position_;
+    const Vector<D> residual = locations_.col(i) - position_;
     covariance_ += weights_[i] * residual * residual.transpose();
   }
   if (options_.with_velocity) velocity_ = velocities_ * weights_.transpose();

@@ -96,8 +96,8 @@ class Condensation {
 
   Options options_;
   RandomStream random_;
-  Cloud places_;
-  Cloud velocities_;  // empty where a particle has none
+  Cloud locations_;
+  Cloud velocities_;  // empty if a particle has none
   Cloud selected_;    // scratch
   Eigen::RowVectorXd weights_;
   std::vector<int> chosen_;  // scratch

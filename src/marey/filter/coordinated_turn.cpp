@@ -49,17 +49,17 @@ Matrix<3> cross_matrix(const Vector<3>& a) {
 }
 
 /// v + A (θ × v) + B (θ × (θ × v)) and its derivatives, A and B being functions of |θ|.
-struct Turned {
+struct Rotated {
   Vector<3> value;
   Matrix<3> by_v;
   Matrix<3> by_angle;
 };
 
-Turned turned(const Vector<3>& v, const Vector<3>& angle, double A, double B, double dA, double dB) {
+Rotated rotated(const Vector<3>& v, const Vector<3>& angle, double A, double B, double dA, double dB) {
   const Vector<3> once = angle.cross(v);
   const Vector<3> twice = angle.cross(once);
   const Matrix<3> cross = cross_matrix(angle);
-  Turned result;
+  Rotated result;
   result.value = v + A * once + B * twice;
   result.by_v = Matrix<3>::Identity() + A * cross + B * cross * cross;
   result.by_angle = (dA * once + dB * twice) * angle.transpose() - A * cross_matrix(v) +
@@ -83,20 +83,20 @@ typename CoordinatedTurn<D>::State CoordinatedTurn<D>::move(const State& x, doub
 
   const Vector<3> angle = rate * dt;
   const Coefficients c = coefficients(angle.squaredNorm());
-  const Turned velocity = turned(v, angle, c.A, c.B, c.dA, c.dB);
-  const Turned way = turned(v, angle, c.B, c.C, c.dB, c.dC);
+  const Rotated velocity = rotated(v, angle, c.A, c.B, c.dA, c.dB);
+  const Rotated method = rotated(v, angle, c.B, c.C, c.dB, c.dC);
   const double fade = fading(dt, noise);
 
   State moved;
-  moved.template head<D>() = x.template head<D>() + dt * way.value.template head<D>();
+  moved.template head<D>() = x.template head<D>() + dt * method.value.template head<D>();
   moved.template segment<D>(D) = velocity.value.template head<D>();
   moved.template tail<kTurn>() = fade * x.template tail<kTurn>();
   if (jacobian != nullptr) {
     Square& F = *jacobian;
     F.setIdentity();
-    F.template block<D, D>(0, D) = dt * way.by_v.template topLeftCorner<D, D>();
+    F.template block<D, D>(0, D) = dt * method.by_v.template topLeftCorner<D, D>();
     F.template block<D, D>(D, D) = velocity.by_v.template topLeftCorner<D, D>();
-    F.template block<D, kTurn>(0, 2 * D) = dt * dt * way.by_angle.template topRightCorner<D, kTurn>();
+    F.template block<D, kTurn>(0, 2 * D) = dt * dt * method.by_angle.template topRightCorner<D, kTurn>();
     F.template block<D, kTurn>(D, 2 * D) = dt * velocity.by_angle.template topRightCorner<D, kTurn>();
     F.template bottomRightCorner<kTurn, kTurn>().diagonal().setConstant(fade);
   }

@@ -165,11 +165,11 @@ struct Twin {
 };
 
 template <typename F>
-class TurningFilter : public testing::Test, public RandomMeasurements<F::dimension> {};
-using Turning = testing::Types<ExtendedKalman<2>, ExtendedKalman<3>, UnscentedKalman<2>, UnscentedKalman<3>>;
-TYPED_TEST_SUITE(TurningFilter, Turning);
+class AxisConvertingFilter : public testing::Test, public RandomMeasurements<F::dimension> {};
+using Ptz = testing::Types<ExtendedKalman<2>, ExtendedKalman<3>, UnscentedKalman<2>, UnscentedKalman<3>>;
+TYPED_TEST_SUITE(AxisConvertingFilter, Ptz);
 
-TYPED_TEST(TurningFilter, AgreesWithItsTwin) {
+TYPED_TEST(AxisConvertingFilter, AgreesWithItsTwin) {
   constexpr int D = TypeParam::dimension;
   constexpr bool unscented = std::is_same_v<TypeParam, UnscentedKalman<D>>;
   typename TypeParam::Options options;
@@ -207,30 +207,30 @@ TYPED_TEST(TurningFilter, AgreesWithItsTwin) {
   }
 }
 
-TYPED_TEST(TurningFilter, LearnsATurnAndFollowsItThroughAGap) {
+TYPED_TEST(AxisConvertingFilter, LearnsATurnAndFollowsItThroughAGap) {
   constexpr int D = TypeParam::dimension;
   typename TypeParam::Options options;
   options.noise = {.acceleration_noise = 5, .turn_sigma = 3, .turn_time = 2000};
   const double rate = 2;  // rad/s
   const double radius = 100;
   const Matrix<D> R = 0.01 * Matrix<D>::Identity();
-  const auto place = [&](double t) {
+  const auto location = [&](double t) {
     Vector<D> p = Vector<D>::Zero();
     p[0] = radius * std::cos(rate * t);
     p[1] = radius * std::sin(rate * t);
     if constexpr (D == 3) p = (Vector<3>(1, 0, 0) * p[0] + Vector<3>(0, 0.6, 0.8) * p[1]).eval();  // a tilted plane
     return p;
   };
-  TypeParam filter(options, place(0), R);
+  TypeParam filter(options, location(0), R);
   double t = 0;
   while (t < 2) {
     t += 0.02;
     filter.predict(0.02);
-    filter.correct(place(t) + this->random_vector(0.1), R);
+    filter.correct(location(t) + this->random_vector(0.1), R);
   }
   EXPECT_NEAR(filter.turn().norm(), rate, 0.1);
   filter.predict(0.5);  // a straight line would be 48 px off
-  EXPECT_LE((filter.position() - place(t + 0.5)).norm(), 5);
+  EXPECT_LE((filter.position() - location(t + 0.5)).norm(), 5);
 }
 
 TEST(UnscentedKalman, TheRootGivesItsSquareBackEvenWhereItIsSingular) {

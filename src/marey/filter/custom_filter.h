@@ -1,8 +1,8 @@
 // A filter that is brought from outside, at run time: by a program that links the library, or by Python.
 //
-// What is brought is a CustomModel, made anew for each target; it says where the target is, how fast it moves and how sure that is.
-// The search area is an ellipse of its covariance and the measurement's together, `gate_sigmas` standard deviations wide.
-// Cost: one allocation a target and copy, a virtual call each step.
+// What is brought is a CustomModel, made again for each target; it says where the target is, how fast it moves and how sure that
+// is. The search area is an ellipse of its covariance and the measurement's together, `gate_sigmas` standard deviations wide. Cost:
+// one allocation a target and copy, a virtual call each step.
 #pragma once
 
 #include <functional>
@@ -35,7 +35,7 @@ class CustomModel {
 };
 
 /// Begins at a first measurement z with covariance R. `unit`: how many px or m its lengths of 1 are: the height of a person in
-/// a picture, 1 elsewhere.
+/// an image, 1 elsewhere.
 template <int D>
 using MakeCustomModel = std::function<std::unique_ptr<CustomModel<D>>(const Vector<D>& z, const Matrix<D>& R, double unit)>;
 
@@ -44,7 +44,7 @@ class CustomFilter;
 
 struct CustomFilterOptions {
   std::string name = "custom";
-  MakeCustomModel<2> plane = {};  ///< for targets in pictures and on the ground
+  MakeCustomModel<2> plane = {};  ///< for targets in images and on the ground
   MakeCustomModel<3> space = {};
   double gate_sigmas = 3.5;
   double unit = 1;
@@ -74,7 +74,7 @@ class CustomFilter {
   using Options = CustomFilterOptions;
   static constexpr int dimension = D;
 
-  /// Throws Error where the options bring no model of D dimensions, and where an estimate is not finite, here and below.
+  /// Throws Error if the options bring no model of D dimensions, and where an estimate is not finite, here and below.
   CustomFilter(const Options& options, const Vector<D>& z, const Matrix<D>& R)
       : name_(std::make_shared<const std::string>(options.name)), gate_sigmas_(options.gate_sigmas) {
     if (!options.make<D>()) throw Error("the filter \"{}\" follows nothing in {} dimensions", options.name, D);

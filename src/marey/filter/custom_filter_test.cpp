@@ -38,19 +38,19 @@ CustomFilterOptions brought() {
 template <int D>
 void expect_the_same(const FilterOptions& own, const FilterOptions& custom) {
   const Matrix<D> R = 0.3 * Matrix<D>::Identity();
-  Vector<D> place = Vector<D>::Constant(10);
-  AnyFilter<D> a(own, place, R), b(custom, place, R);
+  Vector<D> location = Vector<D>::Constant(10);
+  AnyFilter<D> a(own, location, R), b(custom, location, R);
   for (int k = 0; k < 50; ++k) {
-    place += Vector<D>::LinSpaced(1, 2) * (k < 25 ? 1 : -0.5);
+    location += Vector<D>::LinSpaced(1, 2) * (k < 25 ? 1 : -0.5);
     for (AnyFilter<D>* filter : {&a, &b}) {
       filter->predict(k % 3 == 0 ? 0.02 : 0.05);
-      if (k % 7 != 3) filter->correct(place, R);
+      if (k % 7 != 3) filter->correct(location, R);
     }
     ASSERT_EQ(a.position(), b.position()) << k;
     ASSERT_EQ(a.velocity(), b.velocity()) << k;
     ASSERT_EQ(a.covariance(), b.covariance()) << k;
-    const Vector<D> beside = place + Vector<D>::Constant(3);
-    ASSERT_NEAR(a.gate_distance(beside, R), b.gate_distance(beside, R), 1e-12 * a.gate_distance(beside, R)) << k;
+    const Vector<D> next_to = location + Vector<D>::Constant(3);
+    ASSERT_NEAR(a.gate_distance(next_to, R), b.gate_distance(next_to, R), 1e-12 * a.gate_distance(next_to, R)) << k;
     if (k == 30) b = AnyFilter<D>(b);
   }
 }

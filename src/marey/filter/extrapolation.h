@@ -39,26 +39,26 @@ class Extrapolation {
   static constexpr int dimension = D;
   static constexpr bool unsmoothed = true;
 
-  Extrapolation(const Options& options, const Vector<D>& z, const Matrix<D>& R) : options_(options) { places_[0] = {z, R, 0}; }
+  Extrapolation(const Options& options, const Vector<D>& z, const Matrix<D>& R) : options_(options) { locations_[0] = {z, R, 0}; }
 
   void predict(double dt) { ahead_ += dt; }
 
   /// Where no time went by since the last measurement, the new one takes its place.
   void correct(const Vector<D>& z, const Matrix<D>& R) {
     if (ahead_ > 0) {
-      places_[2] = places_[1];
-      places_[1] = places_[0];
-      places_[0].step = ahead_;
+      locations_[2] = locations_[1];
+      locations_[1] = locations_[0];
+      locations_[0].step = ahead_;
       known_ = std::min(known_ + 1, 3);
     }
-    places_[0].z = z;
-    places_[0].R = R;
+    locations_[0].z = z;
+    locations_[0].R = R;
     ahead_ = 0;
   }
 
   Vector<D> position() const {
     const auto w = weights();
-    return w[0] * places_[0].z + w[1] * places_[1].z + w[2] * places_[2].z;
+    return w[0] * locations_[0].z + w[1] * locations_[1].z + w[2] * locations_[2].z;
   }
 
   /// The slope of the curve at the present.
@@ -66,14 +66,14 @@ class Extrapolation {
     Vector<D> slope = Vector<D>::Zero();
     if (known_ < 2) return slope;
     slope = difference(0);
-    if (known_ == 3) slope += (2 * ahead_ + places_[0].step) * bend();
+    if (known_ == 3) slope += (2 * ahead_ + locations_[0].step) * bend();
     return slope;
   }
 
   /// What the places' own noise makes of the extrapolated one; that the curve may be the wrong one is not in it.
   Matrix<D> covariance() const {
     const auto w = weights();
-    return w[0] * w[0] * places_[0].R + w[1] * w[1] * places_[1].R + w[2] * w[2] * places_[2].R;
+    return w[0] * w[0] * locations_[0].R + w[1] * w[1] * locations_[1].R + w[2] * w[2] * locations_[2].R;
   }
   Matrix<D> innovation_covariance(const Matrix<D>& R) const { return covariance() + R; }
 
@@ -83,23 +83,23 @@ class Extrapolation {
   }
 
  private:
-  struct Place {
+  struct Location {
     Vector<D> z = Vector<D>::Zero();
     Matrix<D> R = Matrix<D>::Zero();
     double step = 0;  // s since the place before
   };
 
-  Vector<D> difference(std::size_t i) const { return (places_[i].z - places_[i + 1].z) / places_[i].step; }
-  Vector<D> bend() const { return (options_.bend / (places_[0].step + places_[1].step)) * (difference(0) - difference(1)); }
+  Vector<D> difference(std::size_t i) const { return (locations_[i].z - locations_[i + 1].z) / locations_[i].step; }
+  Vector<D> bend() const { return (options_.bend / (locations_[0].step + locations_[1].step)) * (difference(0) - difference(1)); }
 
   /// The extrapolated place as a weighted sum of the known ones, the latest first.
   std::array<double, 3> weights() const {
     if (known_ < 2 || ahead_ == 0) return {1, 0, 0};
-    const double line = ahead_ / places_[0].step;
+    const double line = ahead_ / locations_[0].step;
     std::array<double, 3> w = {1 + line, -line, 0};
     if (known_ == 3) {
-      const double h0 = places_[0].step;
-      const double h1 = places_[1].step;
+      const double h0 = locations_[0].step;
+      const double h1 = locations_[1].step;
       const double arc = options_.bend * ahead_ * (ahead_ + h0) / (h0 + h1);
       w[0] += arc / h0;
       w[1] -= arc / h0 + arc / h1;
@@ -109,7 +109,7 @@ class Extrapolation {
   }
 
   Options options_;
-  std::array<Place, 3> places_;  // the latest first
+  std::array<Location, 3> locations_;  // the latest first
   int known_ = 1;
   double ahead_ = 0;  // s since the latest
 };

@@ -17,7 +17,7 @@ namespace {
 
 /// Of a filter, what its invariants depend on.
 struct FilterKind {
-  bool mixture = false;     ///< the estimate is the mean of several hypotheses or of particles, which a measurement weighs anew
+  bool mixture = false;     ///< the estimate is the mean of several hypotheses or of particles, which a measurement weighs again
   bool sampled = false;     ///< the estimate carries the noise of random particles
   bool unsmoothed = false;  ///< the velocity is that of the last few measurements as they are, noise and all
 };
@@ -34,7 +34,7 @@ struct FindKind {
 
 /// The register's, but for particles: enough of them, and little enough diffusion, that what is asked is not lost in their
 /// noise.
-FilterOptions asked(const NamedFilter& filter) {
+FilterOptions requested(const NamedFilter& filter) {
   FilterOptions options = filter.options;
   if (auto* particles = std::get_if<CondensationOptions>(&options)) {
     particles->particles = 2000;
@@ -93,7 +93,7 @@ class FilterInvariants : public testing::TestWithParam<NamedFilter> {
     check(space);
   }
 
-  const FilterOptions options_ = asked(GetParam());
+  const FilterOptions options_ = requested(GetParam());
   const FilterKind kind_ = with_filter<2>(options_, FindKind{});
 };
 

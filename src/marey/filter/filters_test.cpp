@@ -30,7 +30,7 @@ TEST(Filters, AnUnknownNameListsTheKnownOnes) {
 // Through AnyFilter, which is compiled once and has each model's bits (any_filter_test.cpp): instantiating every model here would
 // cost half a minute of the compiler.
 template <int D>
-double error_of_steady_target(const FilterOptions& options) {
+double error_of_stationary_target(const FilterOptions& options) {
   const Vector<D> velocity = Vector<D>::Constant(30);
   AnyFilter<D> filter(options, Vector<D>::Zero(), Matrix<D>::Identity());
   Vector<D> x = Vector<D>::Zero();
@@ -46,8 +46,8 @@ TEST(Filters, EachIsReachedThroughTheRegisterInBothDimensions) {
   for (const NamedFilter& filter : named_filters()) {
     // A hundred particles that know no velocity are few, above all in space.
     const double allowed = filter.name == "condensation" ? 30 : 5;
-    EXPECT_LE(error_of_steady_target<2>(filter.options), allowed) << filter.name;
-    EXPECT_LE(error_of_steady_target<3>(filter.options), allowed) << filter.name;
+    EXPECT_LE(error_of_stationary_target<2>(filter.options), allowed) << filter.name;
+    EXPECT_LE(error_of_stationary_target<3>(filter.options), allowed) << filter.name;
   }
 }
 
@@ -81,7 +81,7 @@ TEST(Filters, NoneKnowsTheUnitOfLength) {
 }
 
 TEST(AlphaBetaVariable, TheSearchAreaGrowsWithTheSpeedAndTheGap) {
-  AlphaBetaVariable<2> filter({.first_radius = 50, .least_radius = 10, .share_of_path = 2}, {0, 0}, kR);
+  AlphaBetaVariable<2> filter({.first_radius = 50, .min_radius = 10, .fraction_of_path = 2}, {0, 0}, kR);
   filter.predict(0.1);
   EXPECT_EQ(filter.search_radius(), 50);
   filter.correct({10, 0}, kR);  // β = 0.8: 80 px/s
@@ -134,18 +134,18 @@ TEST(KalmanAcceleration, FollowsAThrowWithoutLag) {
 }
 
 TEST(Extrapolation, IsExactOnAParabolaWithUnevenSteps) {
-  const auto place = [](double t) { return Vector<2>(3 - 4 * t + 5 * t * t, 2 * t * t); };
+  const auto location = [](double t) { return Vector<2>(3 - 4 * t + 5 * t * t, 2 * t * t); };
   const auto slope = [](double t) { return Vector<2>(-4 + 10 * t, 4 * t); };
-  Extrapolation<2> filter({}, place(0), kR);
+  Extrapolation<2> filter({}, location(0), kR);
   double t = 0;
   for (const double dt : {0.1, 0.3, 0.05, 0.2}) {
     t += dt;
     filter.predict(dt);
-    filter.correct(place(t), kR);
+    filter.correct(location(t), kR);
   }
   EXPECT_LE((filter.velocity() - slope(t)).norm(), 1e-9);
   filter.predict(0.15);
-  EXPECT_LE((filter.position() - place(t + 0.15)).norm(), 1e-9);
+  EXPECT_LE((filter.position() - location(t + 0.15)).norm(), 1e-9);
   EXPECT_LE((filter.velocity() - slope(t + 0.15)).norm(), 1e-9);
 }
 

@@ -8,7 +8,7 @@
 namespace marey::filter {
 namespace {
 
-constexpr std::size_t kFewest = 10;
+constexpr std::size_t kMinCount = 10;
 
 struct Scored {
   double log_likelihood = 0;
@@ -61,11 +61,11 @@ template <typename F>
 double maximise(F&& f, double low, double high, int grid) {
   const double width = (high - low) / grid;
   double best = low;
-  double most = f(low);
+  double maximum = f(low);
   for (int i = 1; i <= grid; ++i) {
     const double x = low + i * width;
-    if (const double value = f(x); value > most) {
-      most = value;
+    if (const double value = f(x); value > maximum) {
+      maximum = value;
       best = x;
     }
   }
@@ -115,7 +115,7 @@ std::optional<NoiseFit> fit_noise(std::span<const MeasuredPath<D>> paths) {
   const auto ratio = [&](double exponent) { return unit * std::exp(exponent); };
   const double exponent = maximise([&](double e) { return score<D>(paths, ratio(e)).log_likelihood; }, -25, 20, 30);
   const Scored best = score<D>(paths, ratio(exponent));
-  if (best.innovations < kFewest || !(best.measurement_variance > 0)) return std::nullopt;
+  if (best.innovations < kMinCount || !(best.measurement_variance > 0)) return std::nullopt;
 
   NoiseFit fit;
   fit.measurement_sigma = std::sqrt(best.measurement_variance);

@@ -33,7 +33,7 @@ struct NoiseFit {
   std::size_t innovations = 0;    ///< how many positions were informative
 };
 
-/// Nothing where the paths together have fewer than 10 positions beyond the first two of each, or nothing in them moves or errs.
+/// Nothing if the paths together have fewer than 10 positions beyond the first two of each, or nothing in them moves or errs.
 template <int D>
 std::optional<NoiseFit> fit_noise(std::span<const MeasuredPath<D>> paths);
 

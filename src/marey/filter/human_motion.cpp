@@ -10,22 +10,23 @@
 namespace marey::filter {
 namespace {
 
-constexpr std::size_t kFewestPlaces = 5;  // places that a parabola is laid through: with four, one wrong place is believed
+constexpr std::size_t kMinPositionCount = 5;  // places that a parabola is laid through: with four, one wrong place is trusted
 constexpr double kBangBang = 2.0 / 3;  // of the greatest acceleration of the cubic between two states: what the gentlest way needs
 
 /// Place, velocity and acceleration at one instant, with their covariance.
 struct LocalMotion {
-  Vector<2> place, velocity, acceleration;
+  Vector<2> location, velocity, acceleration;
   Matrix<6> covariance;
 };
 
-class HumanJudge {
+class HumanEvaluate {
  public:
-  HumanJudge(std::span<const TimedPlace> places, const HumanMotionOptions& options) : places_(places), options_(options) {}
+  HumanEvaluate(std::span<const TimedPosition> locations, const HumanMotionOptions& options)
+      : locations_(locations), options_(options) {}
 
   std::vector<ImpossiblePiece> pieces() const {
     std::vector<ImpossiblePiece> found;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
+    for (std::size_t i = 0; i < locations_.size(); ++i) {
       const auto broken = broken_at(i);
       if (!broken) continue;
       if (!found.empty() && time(broken->first) - time(found.back().last) <= options_.reach) {
@@ -39,34 +40,34 @@ class HumanJudge {
   }
 
  private:
-  double time(std::size_t i) const { return places_[i].time; }
+  double time(std::size_t i) const { return locations_[i].time; }
 
-  /// Nothing where a person can do what is done at this place.
+  /// Nothing if a person can do what is done at this place.
   std::optional<ImpossiblePiece> broken_at(std::size_t i) const {
     if (i > 0 && jumps(i - 1, i)) return ImpossiblePiece{i, i};
-    const auto motion = motion_at(time(i), time(i) - options_.reach, time(i) + options_.reach, kFewestPlaces);
+    const auto motion = motion_at(time(i), time(i) - options_.reach, time(i) + options_.reach, kMinPositionCount);
     if (motion && breaks(*motion)) return ImpossiblePiece{i, i};
     return std::nullopt;
   }
 
-  /// Whether nobody is as fast from one place to the next, where too few are near to lay a parabola through them.
+  /// Whether no person is as fast from one place to the next, where too few are near to lay a parabola through them.
   bool jumps(std::size_t a, std::size_t b) const {
     if (time(b) - time(a) <= options_.reach / 2) return false;
-    const Vector<2> way = places_[b].place - places_[a].place;
-    const double length = way.norm();
+    const Vector<2> method = locations_[b].location - locations_[a].location;
+    const double length = method.norm();
     const double far = options_.limits.speed * (time(b) - time(a));
     if (length <= far) return false;
-    const Matrix<2> both = places_[a].covariance + places_[b].covariance;
-    return length - far > options_.sigmas * std::sqrt(way.dot(both * way)) / length;
+    const Matrix<2> both = locations_[a].covariance + locations_[b].covariance;
+    return length - far > options_.sigmas * std::sqrt(method.dot(both * method)) / length;
   }
 
-  /// The parabola at time `at` through the places of a stretch of time; nothing where they are too few or lie to one side.
-  std::optional<LocalMotion> motion_at(double at, double from, double to, std::size_t fewest) const {
-    const auto earlier = [](const TimedPlace& one, double sought) { return one.time < sought; };
-    const auto begin = std::lower_bound(places_.begin(), places_.end(), from - 1e-9, earlier);
-    const auto end = std::lower_bound(begin, places_.end(), to + 1e-9, earlier);
+  /// The parabola at time `at` through the places of a stretch of time; nothing if they are too few or lie to one side.
+  std::optional<LocalMotion> motion_at(double at, double from, double to, std::size_t lowest_count) const {
+    const auto earlier = [](const TimedPosition& one, double sought) { return one.time < sought; };
+    const auto begin = std::lower_bound(locations_.begin(), locations_.end(), from - 1e-9, earlier);
+    const auto end = std::lower_bound(begin, locations_.end(), to + 1e-9, earlier);
     const auto count = static_cast<std::size_t>(end - begin);
-    if (count < fewest || std::prev(end)->time - begin->time < (to - from) / 2) return std::nullopt;
+    if (count < lowest_count || std::prev(end)->time - begin->time < (to - from) / 2) return std::nullopt;
     Matrix<6> N = Matrix<6>::Zero();
     Vector<6> v = Vector<6>::Zero();
     for (auto one = begin; one != end; ++one) {
@@ -74,7 +75,7 @@ class HumanJudge {
       const Vector<3> basis(1, t, t * t / 2);
       const Matrix<2> W = one->covariance.inverse();
       for (int r = 0; r < 3; ++r) {
-        v.segment<2>(2 * r) += basis[r] * (W * one->place);
+        v.segment<2>(2 * r) += basis[r] * (W * one->location);
         for (int c = 0; c < 3; ++c) N.block<2, 2>(2 * r, 2 * c) += basis[r] * basis[c] * W;
       }
     }
@@ -101,30 +102,30 @@ class HumanJudge {
 
   /// Whether one body can have gone over the piece, from how it moved before to how it moves after.
   bool bridged(const ImpossiblePiece& piece) const {
-    if (piece.first == 0 || piece.last + 1 >= places_.size()) return true;  // nobody lies on the other side
+    if (piece.first == 0 || piece.last + 1 >= locations_.size()) return true;  // no person lies on the other side
     const double begin = time(piece.first - 1), end = time(piece.last + 1), span = 2 * options_.reach;
     const auto before = motion_at(begin, begin - span, begin, 3), after = motion_at(end, end, end + span, 3);
     if (!before || !after) return true;
     const double T = end - begin;
-    const Vector<2> way = after->place - before->place;
-    const Vector<2> first = 6 * way / (T * T) - (4 * before->velocity + 2 * after->velocity) / T;
-    const Vector<2> last = -6 * way / (T * T) + (2 * before->velocity + 4 * after->velocity) / T;
-    const Matrix<2> places = before->covariance.topLeftCorner<2, 2>() + after->covariance.topLeftCorner<2, 2>();
+    const Vector<2> method = after->location - before->location;
+    const Vector<2> first = 6 * method / (T * T) - (4 * before->velocity + 2 * after->velocity) / T;
+    const Vector<2> last = -6 * method / (T * T) + (2 * before->velocity + 4 * after->velocity) / T;
+    const Matrix<2> locations = before->covariance.topLeftCorner<2, 2>() + after->covariance.topLeftCorner<2, 2>();
     const Matrix<2> speeds = before->covariance.block<2, 2>(2, 2) + after->covariance.block<2, 2>(2, 2);
-    const double unsure = std::sqrt(36 * places.trace() / 2 / std::pow(T, 4) + 10 * speeds.trace() / 2 / (T * T));
+    const double unsure = std::sqrt(36 * locations.trace() / 2 / std::pow(T, 4) + 10 * speeds.trace() / 2 / (T * T));
     const double needed = kBangBang * std::max(first.norm(), last.norm());
     return needed - kBangBang * options_.sigmas * unsure <= options_.limits.acceleration &&
-           way.norm() <= options_.limits.speed * T + options_.sigmas * std::sqrt(places.trace());
+           method.norm() <= options_.limits.speed * T + options_.sigmas * std::sqrt(locations.trace());
   }
 
-  std::span<const TimedPlace> places_;
+  std::span<const TimedPosition> locations_;
   const HumanMotionOptions& options_;
 };
 
 }  // namespace
 
-std::vector<ImpossiblePiece> impossible_pieces(std::span<const TimedPlace> places, const HumanMotionOptions& options) {
-  return HumanJudge(places, options).pieces();
+std::vector<ImpossiblePiece> impossible_pieces(std::span<const TimedPosition> locations, const HumanMotionOptions& options) {
+  return HumanEvaluate(locations, options).pieces();
 }
 
 }  // namespace marey::filter

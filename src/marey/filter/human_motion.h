@@ -1,17 +1,17 @@
-// What nobody can have done: pieces of a path over the ground that are faster, or change velocity faster, than people can.
+// What no person can have done: pieces of a path over the ground that are faster, or change velocity faster, than people can.
 //
 // Round each instant a parabola is laid through the places within reach, weighed by their covariances; its velocity and
-// acceleration are held against what the fastest people do. Nobody exceeds a top speed; legs push with so much in any direction,
-// braking and turning included; and forwards with the less, the faster one is already, down to nothing at the top speed (the
-// acceleration-speed profile of sprinters, nearly a straight line: Morin et al., "Individual acceleration-speed profile in-situ",
-// J. Biomech. 123, 2021). A piece is impossible only where it is so by more than its uncertainty, so that noise at the far side of
-// a pitch is none.
+// acceleration are held against what the fastest people do. No person exceeds a top speed; legs push with this much in any
+// direction, braking and turning included; and forwards with the less, the faster one is already, down to nothing at the top speed
+// (the acceleration-speed profile of sprinters, nearly a straight line: Morin et al., "Individual acceleration-speed profile
+// in-situ", J. Biomech. 123, 2021). A piece is impossible only where it is so by more than its uncertainty, so that noise at the
+// far side of a pitch is not one.
 //
-// Whoever follows people by what cameras see breaks these limits in two ways, which are told apart by leaving the piece out. Where
-// one body can have gone from where it was before to where it is after, the places between were wrong: a foot that was hidden, a
-// shadow. Where it cannot, those before and after are two people: a box has slid from one to the other.
-// Assumes that errors of places persist for some hundredths of a second. Cost: one solution of six unknowns an instant, over the
-// places within reach.
+// The one who follows people by what cameras see breaks these limits in two ways, which are distinguished by leaving the piece out.
+// Where one body can have gone from where it was before to where it is after, the places between were wrong: a foot that was
+// hidden, a shadow. Where it cannot, those before and after are two people: a box has slid from one to the other. Assumes that
+// errors of places persist for some hundredths of a second. Cost: one solution of six unknowns an instant, over the places within
+// reach.
 #pragma once
 
 #include <cstddef>
@@ -35,10 +35,10 @@ struct HumanMotionOptions {
   double sigmas = 3;           ///< standard deviations by which limits must be broken
 };
 
-/// Where somebody was.
-struct TimedPlace {
+/// Where a person was.
+struct TimedPosition {
   double time = 0;                               ///< s
-  Vector<2> place = Vector<2>::Zero();           ///< m
+  Vector<2> location = Vector<2>::Zero();        ///< m
   Matrix<2> covariance = Matrix<2>::Identity();  ///< m²
 };
 
@@ -49,7 +49,7 @@ struct ImpossiblePiece {
 };
 
 /// By time; pieces do not touch. `places` by growing time. Where places are farther apart than the reach nothing is known of speed
-/// between them, but that nobody exceeds the limit.
-std::vector<ImpossiblePiece> impossible_pieces(std::span<const TimedPlace> places, const HumanMotionOptions& options = {});
+/// between them, but that no person exceeds the limit.
+std::vector<ImpossiblePiece> impossible_pieces(std::span<const TimedPosition> locations, const HumanMotionOptions& options = {});
 
 }  // namespace marey::filter

@@ -8,7 +8,7 @@ namespace {
 
 using kinematics::State;
 
-/// Moves position and velocity straight on; the acceleration is one drawn anew, of this standard deviation.
+/// Moves position and velocity straight on; the acceleration is one drawn again, of this standard deviation.
 template <int D>
 void predict_straight(State<D, 3>& state, double dt, const Matrix<2>& Q, double acceleration) {
   state.mean[0] += dt * state.mean[1];
@@ -26,7 +26,7 @@ void predict_straight(State<D, 3>& state, double dt, const Matrix<2>& Q, double 
   state.cov(2, 2) = (acceleration * acceleration) * Matrix<D>::Identity();
 }
 
-/// A jump of the velocity, of this standard deviation, at any moment of the step alike.
+/// A jump of the velocity, of this standard deviation, at any instant of the step alike.
 Matrix<2> jump(double dt, double sigma) {
   Matrix<2> Q;
   Q << dt * dt / 3, dt / 2, dt / 2, 1;
@@ -83,7 +83,7 @@ double turn_rate(const Vector<D>& velocity, const Matrix<D>& covariance, const V
 template <int D>
 InteractingModels<D>::InteractingModels(const Options& options, const Vector<D>& z, const Matrix<D>& R)
     : options_(options),
-      probabilities_({options.shares[kSteady], options.shares[kPull], options.shares[kTurn], 0}),
+      probabilities_({options.fractions[kStationary], options.fractions[kPull], options.fractions[kTurn], 0}),
       position_(z),
       covariance_(R) {
   states_.fill(kinematics::at_rest<D, 3>(z, R, {options.initial_speed, options.acceleration}));
@@ -93,8 +93,8 @@ InteractingModels<D>::InteractingModels(const Options& options, const Vector<D>&
 template <int D>
 double InteractingModels<D>::chance_of_change(std::size_t from, std::size_t to, double keep, double swerve) const {
   if (to == kSwerve) return swerve;
-  if (from == kSwerve) return (1 - swerve) * options_.shares[to];
-  return (1 - swerve) * ((from == to ? keep : 0) + (1 - keep) * options_.shares[to]);
+  if (from == kSwerve) return (1 - swerve) * options_.fractions[to];
+  return (1 - swerve) * ((from == to ? keep : 0) + (1 - keep) * options_.fractions[to]);
 }
 
 template <int D>
@@ -122,25 +122,25 @@ template <int D>
 void InteractingModels<D>::predict(double dt) {
   if (dt == 0) return;
   mix(dt);
-  const double swerve_sigma = options_.swerve_speed + options_.swerve_share * velocity_.norm();
+  const double swerve_sigma = options_.swerve_speed + options_.swerve_fraction * velocity_.norm();
   move(dt, jump(dt, swerve_sigma));
 }
 
 template <int D>
-void InteractingModels<D>::predict_unseen(double dt) {
+void InteractingModels<D>::predict_unobserved(double dt) {
   if (dt == 0) return;
-  move(dt, kinematics::constant_velocity(dt, options_.steady_noise * options_.steady_noise).Q);
+  move(dt, kinematics::constant_velocity(dt, options_.constant_noise * options_.constant_noise).Q);
 }
 
 /// Each model by itself; `swerve` is what the one that swerves adds to position and velocity.
 template <int D>
 void InteractingModels<D>::move(double dt, const Matrix<2>& swerve) {
   const double acceleration = options_.acceleration + options_.agility * velocity_.norm();
-  const State& turning = states_[kTurn];
-  const double rate = turn_rate<D>(turning.mean[1], turning.cov(1, 1), turning.mean[2], options_.turn_limit);
+  const State& ptz = states_[kTurn];
+  const double rate = turn_rate<D>(ptz.mean[1], ptz.cov(1, 1), ptz.mean[2], options_.turn_limit);
   const double jerk_density = 2 * acceleration * acceleration / options_.acceleration_time;
-  const double steady_density = options_.steady_noise * options_.steady_noise;
-  predict_straight(states_[kSteady], dt, kinematics::constant_velocity(dt, steady_density).Q, acceleration);
+  const double steady_density = options_.constant_noise * options_.constant_noise;
+  predict_straight(states_[kStationary], dt, kinematics::constant_velocity(dt, steady_density).Q, acceleration);
   kinematics::predict(states_[kPull], kinematics::singer(dt, acceleration, options_.acceleration_time));
   kinematics::predict(states_[kTurn], kinematics::turn(dt, rate, jerk_density));
   predict_straight(states_[kSwerve], dt, swerve, acceleration);
@@ -150,20 +150,20 @@ void InteractingModels<D>::move(double dt, const Matrix<2>& swerve) {
 template <int D>
 void InteractingModels<D>::correct(const Vector<D>& z, const Matrix<D>& R) {
   std::array<kinematics::Innovation, kModels> innovations;
-  double least = std::numeric_limits<double>::max();
+  double minimum = std::numeric_limits<double>::max();
   for (std::size_t j = 0; j < kModels; ++j) {
     innovations[j] = is_curved(j) ? kinematics::correct(states_[j], z, R) : correct_straight(states_[j], z, R);
-    least = std::min(least, innovations[j].squared);
+    minimum = std::min(minimum, innovations[j].squared);
   }
   double sum = 0;
   for (std::size_t j = 0; j < kModels; ++j) {
-    probabilities_[j] *= std::exp(-0.5 * (innovations[j].squared - least)) / std::sqrt(innovations[j].determinant);
+    probabilities_[j] *= std::exp(-0.5 * (innovations[j].squared - minimum)) / std::sqrt(innovations[j].determinant);
     sum += probabilities_[j];
   }
   if (sum > 0 && std::isfinite(sum)) {
     for (double& probability : probabilities_) probability /= sum;
   } else {  // so far from all that doubles cannot tell which is nearest
-    probabilities_ = {options_.shares[kSteady], options_.shares[kPull], options_.shares[kTurn], 0};
+    probabilities_ = {options_.fractions[kStationary], options_.fractions[kPull], options_.fractions[kTurn], 0};
   }
   summarise();
 }
@@ -189,11 +189,11 @@ double InteractingModels<D>::log_likelihood(const Vector<D>& z, const Matrix<D>&
 
 template <int D>
 double InteractingModels<D>::gate_distance(const Vector<D>& z, const Matrix<D>& R) const {
-  double least = std::numeric_limits<double>::max();
+  double minimum = std::numeric_limits<double>::max();
   for (std::size_t j = 0; j < kModels; ++j) {
-    if (probabilities_[j] > 0) least = std::min(least, mahalanobis<D>(z - states_[j].mean[0], states_[j].cov(0, 0) + R));
+    if (probabilities_[j] > 0) minimum = std::min(minimum, mahalanobis<D>(z - states_[j].mean[0], states_[j].cov(0, 0) + R));
   }
-  return least / options_.gate_sigmas;
+  return minimum / options_.gate_sigmas;
 }
 
 template <int D>

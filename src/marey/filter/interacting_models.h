@@ -36,17 +36,17 @@ class InteractingModels;
 
 /// Lengths in px where the filter runs in the image, in m on the ground and in space.
 struct InteractingModelsOptions {
-  double steady_noise = 20;        ///< white acceleration of the steady model, square root of its density, px/s^1.5
+  double constant_noise = 20;      ///< white acceleration of the steady model, square root of its density, px/s^1.5
   double acceleration = 100;       ///< standard deviation of the acceleration at rest, px/s²
   double agility = 8;              ///< what is added to it for each unit of speed, 1/s
   double acceleration_time = 0.3;  ///< how long an acceleration lasts, s
   double turn_limit = 20;          ///< the fastest turn, rad/s
   double swerve_rate = 1;          ///< how often the velocity jumps, 1/s
   double swerve_speed = 250;       ///< standard deviation of a jump at rest, per axis, px/s
-  double swerve_share = 0.7;       ///< what is added to it for each unit of speed
+  double swerve_fraction = 0.7;    ///< what is added to it for each unit of speed
   double mode_time = 0.5;          ///< how long a target keeps to one of steady, pull, turn, s
-  std::array<double, 3> shares = {0.5, 0.35, 0.15};  ///< of the time spent in each of them; they add up to 1
-  double initial_speed = 1000;                       ///< standard deviation per axis before anything is known, px/s
+  std::array<double, 3> fractions = {0.5, 0.35, 0.15};  ///< of the time spent in each of them; they add up to 1
+  double initial_speed = 1000;                          ///< standard deviation per axis before anything is known, px/s
   double gate_sigmas = 4;  ///< border of the search area, in standard deviations of the innovation of each model
 
   template <int D>
@@ -55,7 +55,7 @@ struct InteractingModelsOptions {
   /// The same filter where one unit of length is `factor` of the new ones.
   InteractingModelsOptions scaled(double factor) const {
     InteractingModelsOptions options = *this;
-    options.steady_noise *= factor;
+    options.constant_noise *= factor;
     options.acceleration *= factor;
     options.swerve_speed *= factor;
     options.initial_speed *= factor;
@@ -70,14 +70,14 @@ class InteractingModels {
   static constexpr int dimension = D;
   static constexpr bool mixture = true;
   static constexpr std::size_t kModels = 4;
-  enum : std::size_t { kSteady, kPull, kTurn, kSwerve };
+  enum : std::size_t { kStationary, kPull, kTurn, kSwerve };
 
   InteractingModels(const Options& options, const Vector<D>& z, const Matrix<D>& R);
 
   void predict(double dt);
   /// The same while the target is hidden: the models run on side by side, unmixed, and none swerves. What was known of a steady
   /// target thus stays as sharp as it was, however many steps nothing is seen of it.
-  void predict_unseen(double dt);
+  void predict_unobserved(double dt);
   void correct(const Vector<D>& z, const Matrix<D>& R);
 
   Vector<D> position() const { return position_; }

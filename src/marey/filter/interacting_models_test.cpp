@@ -22,7 +22,7 @@ struct TextbookMixture {
   std::array<double, 4> mu;
 
   TextbookMixture(const InteractingModelsOptions& o, const Vector<D>& z, const Matrix<D>& R)
-      : options(o), mu({o.shares[0], o.shares[1], o.shares[2], 0}) {
+      : options(o), mu({o.fractions[0], o.fractions[1], o.fractions[2], 0}) {
     for (std::size_t j = 0; j < 4; ++j) {
       x[j].setZero();
       x[j].template head<D>() = z;
@@ -57,8 +57,8 @@ struct TextbookMixture {
     Matrix<4> change;
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 3; ++j) {
-        const double share = options.shares[static_cast<std::size_t>(j)];
-        change(i, j) = (1 - swerve) * (i == 3 ? share : (1 - stay) * share + (i == j ? stay : 0));
+        const double fraction = options.fractions[static_cast<std::size_t>(j)];
+        change(i, j) = (1 - swerve) * (i == 3 ? fraction : (1 - stay) * fraction + (i == j ? stay : 0));
       }
       change(i, 3) = swerve;
     }
@@ -80,14 +80,14 @@ struct TextbookMixture {
     const double rate =
         turn_rate<D>(x[2].template segment<D>(D), P[2].template block<D, D>(D, D), x[2].template tail<D>(), options.turn_limit);
     std::array<kinematics::Model<3>, 4> models;
-    const auto straight = kinematics::constant_velocity(dt, options.steady_noise * options.steady_noise);
+    const auto straight = kinematics::constant_velocity(dt, options.constant_noise * options.constant_noise);
     models[0].F.setZero();
     models[0].F.topLeftCorner<2, 2>() = straight.F;
     models[0].Q.topLeftCorner<2, 2>() = straight.Q;
     models[0].Q(2, 2) = sigma * sigma;
     models[1] = kinematics::singer(dt, sigma, options.acceleration_time);
     models[2] = kinematics::turn(dt, rate, 2 * sigma * sigma / options.acceleration_time);
-    const double jump = options.swerve_speed + options.swerve_share * speed;
+    const double jump = options.swerve_speed + options.swerve_fraction * speed;
     models[3] = models[0];
     models[3].Q.topLeftCorner<2, 2>() << dt * dt / 3, dt / 2, dt / 2, 1;
     models[3].Q.topLeftCorner<2, 2>() *= jump * jump;
@@ -125,22 +125,22 @@ TYPED_TEST(InteractingTwin, AgreesWithTheTextbook) {
   const Matrix<D> R0 = this->random_covariance(0.3) + 0.1 * Matrix<D>::Identity();
   TypeParam fast(options, Vector<D>::Constant(10), R0);
   TextbookMixture<D> slow(options, Vector<D>::Constant(10), R0);
-  Vector<D> place = Vector<D>::Constant(10);
+  Vector<D> location = Vector<D>::Constant(10);
   Vector<D> velocity = this->random_vector(200);
   for (int step = 0; step < 200; ++step) {
     const double dt = 0.01 * (1 + step % 5);
     if (step % 40 == 0) velocity = this->random_vector(300);
-    place += dt * velocity;
+    location += dt * velocity;
     fast.predict(dt);
     slow.predict(dt);
-    EXPECT_LE((fast.position() - slow.mean().template head<D>()).norm(), 1e-9 * (1 + place.norm())) << step;
+    EXPECT_LE((fast.position() - slow.mean().template head<D>()).norm(), 1e-9 * (1 + location.norm())) << step;
     if (step % 7 != 6) {
-      const Vector<D> z = place + this->random_vector(0.3);
+      const Vector<D> z = location + this->random_vector(0.3);
       const Matrix<D> R = this->random_covariance(0.3) + 0.1 * Matrix<D>::Identity();
       fast.correct(z, R);
       slow.correct(z, R);
     }
-    EXPECT_LE((fast.position() - slow.mean().template head<D>()).norm(), 1e-9 * (1 + place.norm())) << step;
+    EXPECT_LE((fast.position() - slow.mean().template head<D>()).norm(), 1e-9 * (1 + location.norm())) << step;
     EXPECT_LE((fast.velocity() - slow.mean().template segment<D>(D)).norm(), 1e-8 * (1 + velocity.norm())) << step;
     const Matrix<D> covariance = slow.covariance().template topLeftCorner<D, D>();
     EXPECT_LE((fast.covariance() - covariance).norm(), 1e-8 * covariance.norm()) << step;
@@ -149,28 +149,28 @@ TYPED_TEST(InteractingTwin, AgreesWithTheTextbook) {
 }
 
 /// Follows `place` for `duration` seconds at 100 Hz.
-template <typename Place>
-InteractingModels<2> followed(Place place, double duration, const InteractingModelsOptions& options = {}) {
+template <typename Location>
+InteractingModels<2> tracked(Location location, double duration, const InteractingModelsOptions& options = {}) {
   std::mt19937 random(8);
   std::normal_distribution<double> normal(0, 0.1);
   const Matrix<2> R = 0.01 * Matrix<2>::Identity();
-  InteractingModels<2> filter(options, place(0), R);
+  InteractingModels<2> filter(options, location(0), R);
   for (int i = 1; i <= std::lround(100 * duration); ++i) {
     filter.predict(0.01);
-    filter.correct(place(0.01 * i) + Vector<2>(normal(random), normal(random)), R);
+    filter.correct(location(0.01 * i) + Vector<2>(normal(random), normal(random)), R);
   }
   return filter;
 }
 
 TEST(InteractingModels, KnowsWhatTheTargetIsDoing) {
-  const auto steady = followed([](double t) { return Vector<2>(100 * t, 50 * t); }, 1.5);
-  EXPECT_GT(steady.probabilities()[InteractingModels<2>::kSteady], 0.6);
+  const auto stabilise = tracked([](double t) { return Vector<2>(100 * t, 50 * t); }, 1.5);
+  EXPECT_GT(stabilise.probabilities()[InteractingModels<2>::kStationary], 0.6);
   const InteractingModelsOptions calm{.acceleration = 600, .agility = 1};
-  const auto pulling = followed([](double t) { return Vector<2>(600 * t * t, 0); }, 1.5, calm);
-  EXPECT_LT(pulling.probabilities()[InteractingModels<2>::kSteady], 0.4);
-  const auto turning = followed([](double t) { return Vector<2>(100 * std::cos(4 * t), 100 * std::sin(4 * t)); }, 1.5);
-  EXPECT_LT(turning.probabilities()[InteractingModels<2>::kSteady], 0.4);
-  EXPECT_NEAR(turning.velocity().norm(), 400, 20);
+  const auto pulling = tracked([](double t) { return Vector<2>(600 * t * t, 0); }, 1.5, calm);
+  EXPECT_LT(pulling.probabilities()[InteractingModels<2>::kStationary], 0.4);
+  const auto ptz = tracked([](double t) { return Vector<2>(100 * std::cos(4 * t), 100 * std::sin(4 * t)); }, 1.5);
+  EXPECT_LT(ptz.probabilities()[InteractingModels<2>::kStationary], 0.4);
+  EXPECT_NEAR(ptz.velocity().norm(), 400, 20);
 }
 
 TEST(InteractingModels, ACornerIsInsideTheSearchAreaAndRecognised) {
@@ -184,7 +184,7 @@ TEST(InteractingModels, ACornerIsInsideTheSearchAreaAndRecognised) {
       filter.correct(zigzag(k / rate), R);
       const auto& probabilities = filter.probabilities();
       if (k == rate) {
-        EXPECT_GT(probabilities[InteractingModels<2>::kSteady], 0.6);
+        EXPECT_GT(probabilities[InteractingModels<2>::kStationary], 0.6);
       } else if (k == rate + 1) {
         EXPECT_GT(probabilities[InteractingModels<2>::kSwerve], 0.9);
       }
@@ -211,7 +211,7 @@ TEST(InteractingModels, TheLikelihoodIsADensity) {
 
 TEST(InteractingModels, AModelWithoutAShareOfTheTimeStaysOut) {
   InteractingModelsOptions options;
-  options.shares = {1, 0, 0};
+  options.fractions = {1, 0, 0};
   options.swerve_rate = 0;
   InteractingModels<2> filter(options, {0, 0}, Matrix<2>::Identity());
   for (int i = 0; i < 50; ++i) {

@@ -26,7 +26,7 @@ struct KalmanPaperOptions {
   double r_yy = 0.0455;                    ///< of R, px²
   double initial_velocity_variance = 100;  ///< per axis, (px/frame)²
   double noise_per_speed = 0.013;          ///< variance of the velocity gained each frame, for each px/frame of speed
-  double least_noise = 0.06;               ///< the same at rest, (px/frame)²
+  double min_noise = 0.06;                 ///< the same at rest, (px/frame)²
   double search_factor = 100;              ///< search radius over the mean standard deviation of the predicted velocity
 
   template <int D>
@@ -41,7 +41,7 @@ struct KalmanPaperOptions {
             r_yy * squared,
             initial_velocity_variance * squared,
             noise_per_speed * factor,
-            least_noise * squared,
+            min_noise * squared,
             search_factor};
   }
 };
@@ -66,7 +66,7 @@ class KalmanPaper {
     P_.template topRows<D>() += frames * P_.template bottomRows<D>();  // eq. 5
     P_.template leftCols<D>() += (frames * P_.template rightCols<D>()).eval();
     for (int axis = 0; axis < D; ++axis) {
-      const double noise = options_.noise_per_speed * std::abs(x_[D + axis]) + options_.least_noise;
+      const double noise = options_.noise_per_speed * std::abs(x_[D + axis]) + options_.min_noise;
       P_(D + axis, D + axis) += frames * noise;
     }
   }

@@ -64,8 +64,8 @@ constexpr std::array<std::array<double, 6>, kTerms> singer_series() {
     doubled *= 2;
     const std::array<double, 6> bracket = {4.0 * n - doubled, doubled - 2 - 2.0 * n, 2.0 * n - doubled,
                                            4 - doubled,       doubled - 2,           -doubled};
-    constexpr std::array<int, 6> kLowest = {5, 4, 3, 3, 2, 1};
-    for (std::size_t k = 0; k < 6; ++k) series[static_cast<std::size_t>(n)][k] = n < kLowest[k] ? 0 : sign * bracket[k];
+    constexpr std::array<int, 6> kMinLevel = {5, 4, 3, 3, 2, 1};
+    for (std::size_t k = 0; k < 6; ++k) series[static_cast<std::size_t>(n)][k] = n < kMinLevel[k] ? 0 : sign * bracket[k];
   }
   return series;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 // Random numbers for particle filters: the n-th number is a hash of the seed and n, so a stream is two integers, copies of a
-// filter go on alike, and no state is shared. Hash: the finaliser of Steele, Lea, Flood, "Fast splittable pseudorandom number
+// filter continue alike, and no state is shared. Hash: the finaliser of Steele, Lea, Flood, "Fast splittable pseudorandom number
 // generators", OOPSLA 2014. Normal numbers by Box and Muller's transform.
 
 #include <cmath>

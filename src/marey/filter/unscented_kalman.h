@@ -5,9 +5,9 @@
 //
 // Source: Julier, Uhlmann, "A new extension of the Kalman filter to nonlinear systems", Proc. SPIE 3068, 1997: points at
 // ± the columns of Cholesky's root of (N + kappa) P, weights kappa/(N + kappa) and 1/(2 (N + kappa)). They propose kappa = 3 − N,
-// which is negative here (N = 5 in the plane, 9 in space) and can make a covariance that is none; with the default of 0 no weight
-// is negative and P stays positive. A measurement of the position is linear, so the update is Kalman's own, which the points
-// drawn anew after the noise was added would give as well.
+// which is negative here (N = 5 in the plane, 9 in space) and can make a covariance that is not one; with the default of 0 no
+// weight is negative and P stays positive. A measurement of the position is linear, so the update is Kalman's own, which the points
+// drawn again after the noise was added would give as well.
 // Cost: 2N + 1 moves of the state, a root and 2N + 1 outer products a step.
 
 #include "marey/filter/coordinated_turn.h"

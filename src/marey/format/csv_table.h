@@ -13,7 +13,7 @@ class CsvTable {
   class Row {
    public:
     Row(std::map<std::string, std::string> fields, std::string where) : fields_(std::move(fields)), where_(std::move(where)) {}
-    /// Without blanks and quotes; empty where the file has no such column.
+    /// Without blanks and quotes; empty if the file has no such column.
     std::string text(const std::string& column) const {
       const auto found = fields_.find(column);
       return found == fields_.end() ? std::string() : found->second;
@@ -25,8 +25,8 @@ class CsvTable {
     std::string where_;
   };
 
-  /// Throws Error where a column that is required is missing, or a row has more fields than the first. Columns of other names are
-  /// passed over. Lines that are empty, or begin with #, are no rows.
+  /// Throws Error if a column that is required is missing, or a row has more fields than the first. Columns of other names are
+  /// skipped. Lines that are empty, or begin with #, are not rows.
   CsvTable(std::string_view text, const std::string& name, const std::vector<std::string>& required,
            const std::vector<std::string>& optional);
 

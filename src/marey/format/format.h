@@ -14,7 +14,7 @@
 #include "marey/core/recording_reader.h"
 #include "marey/core/rig.h"
 #include "marey/core/sink.h"
-#include "marey/format/beside_points.h"
+#include "marey/format/auxiliary_data.h"
 #include "marey/geometry/pitch.h"
 
 namespace marey::format {
@@ -25,7 +25,7 @@ struct GroundMatch;
 
 /// What a file holds. The first three are recordings, by their frame of reference.
 enum class Content : std::uint8_t {
-  image = 1,          ///< tracks in a picture
+  image = 1,          ///< tracks in an image
   ground = 2,         ///< people on the ground
   space = 4,          ///< points in space
   rig = 8,            ///< a calibration
@@ -58,16 +58,16 @@ Content content_of(const FrameOfReference& frame);
 /// Which axis a file's world has up. Inside Marey it is always z; (x, y, z) with y up becomes (x, −z, y).
 enum class UpAxis { y, z };
 
-/// What a reader must be told where the file does not tell it.
+/// What a reader must be reported where the file does not specify it.
 struct ReadOptions {
   std::string metadata;       ///< the file that belongs to a match, or an AMC file's .asf; empty: beside it, under a like name
   geometry::PitchSize pitch;  ///< of a match
   double rate_hz = 25;
-  bool as_recorded = false;  ///< of a take: without its edits, which are then told beside it
+  bool as_recorded = false;  ///< of a take: without its edits, which are then reported beside it
   // Of a skeleton's motion, whose joints are the points: its z is up when it is read.
   double skeleton_unit_m = 0.01;   ///< of a BVH file: how many metres its unit has
   UpAxis skeleton_up = UpAxis::y;  ///< the axis that is up in a BVH or ASF file
-  double amc_rate_hz = 120;        ///< of an AMC file, which does not say
+  double amc_rate_hz = 120;        ///< of an AMC file, which does not specify
   std::optional<UpAxis> up = {};   ///< of points in space, the axis that is up in the file; nothing: as the file says, else z
 };
 
@@ -83,7 +83,7 @@ struct Beginning {
   bool has(std::string_view part) const { return bytes.find(part) != std::string::npos; }
 };
 
-/// Without bytes of what is neither file nor folder. Throws Error where there is no such file or folder, or it may not be read.
+/// Without bytes of what is neither file nor folder. Throws Error if there is no such file or folder, or it may not be read.
 Beginning beginning_of(const std::string& path);
 
 /// What is known of a recording in a file before its first instant.
@@ -92,9 +92,9 @@ struct FileInfo {
   std::vector<TrackName> tracks;            ///< by id; those that an instant may name
   std::vector<Edit> edits;                  ///< a take's
   std::optional<std::int64_t> head;         ///< of the edits
-  std::optional<std::int64_t> frame_count;  ///< from the first frame to the last; nothing where only reading would tell
+  std::optional<std::int64_t> frame_count;  ///< from the first frame to the last; nothing if only reading would tell
   std::optional<UpAxis> up;                 ///< what the file itself says of its world, where it says anything
-  BesidePoints beside = {};                 ///< of a C3D file
+  AuxiliaryData next_to = {};               ///< of a C3D file
 };
 
 /// A file that is read instant by instant. Units and axes are Marey's.
@@ -116,7 +116,7 @@ struct WritePlan {
   FileInfo info;
   std::int64_t first_frame = 0, last_frame = -1;  ///< indices; last < first where there are none
   double farthest_m = 0;                          ///< the largest coordinate by amount
-  bool tells_measured = false;                    ///< some point is filled or predicted, or brings a residual or its cameras
+  bool reports_measured = false;                  ///< some point is filled or predicted, or brings a residual or its cameras
   UpAxis up = UpAxis::z;                          ///< of the file's world; instants come turned
   std::optional<MotionFindings> found = {};       ///< for C3D; others hold no such thing
 };
@@ -143,9 +143,9 @@ struct Format {
   std::unique_ptr<FileReader> (*open)(const std::string& path, const ReadOptions& options) = nullptr;  ///< instant by instant
   match::GroundMatch (*read)(const std::string& path, const ReadOptions& options) = nullptr;           ///< whole
   Rig (*read_rig)(const std::string& path) = nullptr;
-  std::vector<Fact> (*facts)(const std::string& path) = nullptr;  ///< of what is no recording and no rig
+  std::vector<Fact> (*facts)(const std::string& path) = nullptr;  ///< of what is not a recording and no rig
 
-  // Writing: one of these, or none. All throw Error where the format cannot hold it, or it cannot be written.
+  // Writing: one of these, or none. All throw Error if the format cannot hold it, or it cannot be written.
   std::unique_ptr<Sink> (*create)(const std::string& path, const WritePlan& plan) = nullptr;  ///< instant by instant
   /// Whole; says what a user should know of what the format could not hold.
   std::vector<std::string> (*write)(const match::GroundMatch& match, const std::string& path) = nullptr;
@@ -156,7 +156,7 @@ struct Format {
   /// It holds bodies' poses beside points.
   bool poses = false;
   /// It holds what stands beside points in a C3D file.
-  bool beside_points = false;
+  bool auxiliary_data = false;
   /// Its places on the ground count from the corner of the pitch that is below on the left when it is seen from above with the home
   /// stand at the bottom, y upwards; those of others are as the user has them.
   bool from_corner = false;
@@ -165,7 +165,7 @@ struct Format {
   /// A skeleton's motion: y is up in it unless the user says otherwise.
   bool skeleton = false;
   /// Files come in pairs: the endings of a name and of the file that is beside it.
-  std::vector<std::pair<std::string_view, std::string_view>> beside = {};
+  std::vector<std::pair<std::string_view, std::string_view>> next_to = {};
 
   bool is_read() const { return open != nullptr || read != nullptr || read_rig != nullptr || facts != nullptr; }
   bool is_written() const { return create != nullptr || write != nullptr || write_rig != nullptr; }

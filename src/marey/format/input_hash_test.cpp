@@ -19,10 +19,10 @@ TEST(InputHash, IsOfSizeBeginningAndEnd) {
     return input_of(path).hash;
   };
   const std::string large(3 << 20, 'x');
-  for (const std::size_t place : {std::size_t{0}, std::size_t{1} << 19, large.size() - 1}) {
+  for (const std::size_t location : {std::size_t{0}, std::size_t{1} << 19, large.size() - 1}) {
     std::string other = large;
-    other[place] = 'y';
-    EXPECT_TRUE(hashes.insert(hash_of(other)).second) << place;
+    other[location] = 'y';
+    EXPECT_TRUE(hashes.insert(hash_of(other)).second) << location;
   }
   EXPECT_TRUE(hashes.insert(hash_of(large)).second);
   EXPECT_TRUE(hashes.insert(hash_of(large + "x")).second);

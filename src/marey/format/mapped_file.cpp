@@ -33,7 +33,7 @@ MappedFile::MappedFile(const std::string& path) {
   }
   const int error = errno;
   close(file);
-  if (!regular) throw Error("{}: is no file", path);
+  if (!regular) throw Error("{}: is not a file", path);
   if (data_ == MAP_FAILED) {
     data_ = nullptr;
     throw Error("{}: cannot be read ({})", path, std::generic_category().message(error));

@@ -7,11 +7,11 @@
 
 namespace marey::format {
 
-/// A file's bytes as memory, without reading it: pages come when they are touched, and go when memory is short. What is no file,
+/// A file's bytes as memory, without reading it: pages come when they are touched, and go when memory is short. What is not a file,
 /// such as a pipe, is read to its end first.
 class MappedFile {
  public:
-  /// Throws Error where it cannot be read, and for a folder; Stopped where a pipe was waited for.
+  /// Throws Error if it cannot be read, and for a folder; Stopped where a pipe was waited for.
   explicit MappedFile(const std::string& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
@@ -21,7 +21,7 @@ class MappedFile {
   std::string_view text() const { return data_ == nullptr ? read_ : std::string_view(static_cast<const char*>(data_), size_); }
 
  private:
-  std::string read_;      // of what is no file
+  std::string read_;      // of what is not a file
   void* data_ = nullptr;  // of a file, unless it is empty
   std::size_t size_ = 0;
 };

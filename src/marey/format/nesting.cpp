@@ -1,5 +1,5 @@
 // One walk over the bytes for each notation, which knows as much of it as is needed to see where levels begin and end: strings,
-// comments, brackets. In doubt a level is counted: what a scanner believes to be a comment, a parser may not.
+// comments, brackets. Uncertain a level is counted: what a scanner trusts to be a comment, a parser may not.
 #include "marey/format/nesting.h"
 
 #include <algorithm>
@@ -24,9 +24,9 @@ class Scanner {
   bool begins(std::string_view word) const { return text_.substr(at_).starts_with(word); }
 
   void check(int depth) const {
-    if (depth <= kDeepestNesting) return;
+    if (depth <= kMaxNestingDepth) return;
     const auto line = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size())), '\n') + 1;
-    throw Error("{}:{}: is nested more than {} deep, as no file of its kind is; it must be damaged", name_, line, kDeepestNesting);
+    throw Error("{}:{}: is nested more than {} deep, as no file of its kind is; it must be damaged", name_, line, kMaxNestingDepth);
   }
 
   void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }

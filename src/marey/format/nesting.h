@@ -14,11 +14,11 @@ enum class Notation {
 
 /// What no file of this kind needs. Parsers and destructors call themselves once or several times a level; the stack bears this
 /// many.
-inline constexpr int kDeepestNesting = 100;
+inline constexpr int kMaxNestingDepth = 100;
 
-/// Throws Error, `name:line: ...`, where a text is nested deeper than `kDeepestNesting`. To be asked before a parser sees the text:
-/// it does not tell whether the text is right otherwise, and where it is not may count more levels than there are. Time is linear,
-/// memory bounded.
+/// Throws Error, `name:line: ...`, where a text is nested deeper than `kMaxNestingDepth`. To be asked before a parser sees the
+/// text: it does not specify whether the text is right otherwise, and where it is not may count more levels than there are. Time is
+/// linear, memory bounded.
 void check_nesting(std::string_view text, Notation notation, const std::string& name);
 
 }  // namespace marey::format

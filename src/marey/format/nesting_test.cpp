@@ -30,11 +30,11 @@ bool passes(const std::string& text, Notation notation) {
 constexpr int kMany = 200'000;
 
 TEST(Nesting, TheLimitItselfPassesAndOneMoreDoesNot) {
-  for (const int depth : {kDeepestNesting, kDeepestNesting + 1}) {
-    const bool wanted = depth == kDeepestNesting;
-    EXPECT_EQ(passes(times("[", depth) + times("]", depth), Notation::json), wanted) << depth;
-    EXPECT_EQ(passes(times("[", depth, "a = ") + times("]", depth), Notation::toml), wanted) << depth;
-    EXPECT_EQ(passes(times("<a>", depth) + times("</a>", depth), Notation::xml), wanted) << depth;
+  for (const int depth : {kMaxNestingDepth, kMaxNestingDepth + 1}) {
+    const bool required = depth == kMaxNestingDepth;
+    EXPECT_EQ(passes(times("[", depth) + times("]", depth), Notation::json), required) << depth;
+    EXPECT_EQ(passes(times("[", depth, "a = ") + times("]", depth), Notation::toml), required) << depth;
+    EXPECT_EQ(passes(times("<a>", depth) + times("</a>", depth), Notation::xml), required) << depth;
   }
 }
 
@@ -48,7 +48,7 @@ TEST(Nesting, EachWayToNestIsSeen) {
   EXPECT_FALSE(passes(times("<a", kMany), Notation::xml));
 }
 
-TEST(Nesting, WhatClosesInAStringOrCommentClosesNothing) {
+TEST(Nesting, IgnoresBracketsInStringsAndComments) {
   EXPECT_FALSE(passes(times("[\"]\",", kMany), Notation::json));
   EXPECT_FALSE(passes(times("[ # ]\n", kMany, "x = "), Notation::toml));
   EXPECT_FALSE(passes(times("[ ']', ", kMany, "x = "), Notation::toml));
@@ -69,7 +69,7 @@ TEST(Nesting, TheMessageNamesTheLine) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), fmt::format("rig.toml:3: is nested more than {} deep, as no file of its kind is; it must be damaged",
-                                           kDeepestNesting)
+                                           kMaxNestingDepth)
                                    .c_str());
   }
 }

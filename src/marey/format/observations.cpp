@@ -14,7 +14,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/input_file.h"
+#include "marey/files/input_file.h"
 #include "marey/format/format.h"
 #include "marey/format/rig/self_cal_folder.h"
 #include "marey/format/take_observations.h"
@@ -23,7 +23,7 @@
 namespace marey::format {
 namespace {
 
-constexpr double kFarthest = 1e7;  // px
+constexpr double kMaxDistance = 1e7;  // px
 constexpr std::int64_t kLastFrame = 1LL << 40;
 
 /// One row of the table, still by name.
@@ -31,7 +31,7 @@ struct Row {
   std::string_view camera, marker;
   std::int64_t frame = 0;
   Vector<2> pixel = Vector<2>::Zero();
-  bool seen = true;  ///< false where x and y are blank or NaN
+  bool detected = true;  ///< false where x and y are blank or NaN
 };
 
 std::string_view bare_field(std::string_view text) {
@@ -93,7 +93,7 @@ class Table {
       if (!frame || *frame != std::floor(*frame) || *frame < 0 || *frame > kLastFrame)
         fail(fmt::format("frame is {}; it must be a whole number from 0", shown(field(1))));
       row.frame = static_cast<std::int64_t>(*frame);
-      row.pixel = {coordinate(2, row.seen), coordinate(3, row.seen)};
+      row.pixel = {coordinate(2, row.detected), coordinate(3, row.detected)};
       if (columns_[4] && *columns_[4] < fields_.size()) row.marker = fields_[*columns_[4]];
       return true;
     }
@@ -109,14 +109,14 @@ class Table {
     return fields_[at];
   }
 
-  double coordinate(std::size_t column, bool& seen) const {
+  double coordinate(std::size_t column, bool& detected) const {
     const std::string_view text = field(column);
     const auto value = number(text);
     if (text.empty() || (value && std::isnan(*value))) {
-      seen = false;
+      detected = false;
       return 0;
     }
-    if (!value || !(std::abs(*value) < kFarthest))
+    if (!value || !(std::abs(*value) < kMaxDistance))
       fail(fmt::format("{} is {}; it must be a number of px", kNames[column], shown(text)));
     return *value;
   }
@@ -144,9 +144,9 @@ bool sorted_by_frame(const std::string& path) {
   return sorted;
 }
 
-void in_order(SeenFrame& frame) {
+void in_order(ObservedFrame& frame) {
   std::stable_sort(frame.points.begin(), frame.points.end(),
-                   [](const SeenPoint& a, const SeenPoint& b) { return a.camera < b.camera; });
+                   [](const ImageObservation& a, const ImageObservation& b) { return a.camera < b.camera; });
 }
 
 /// Which of the rig's cameras each of the folder's is: by name where all names agree, else in order.
@@ -165,25 +165,26 @@ std::vector<CameraId> cameras_of(const rig::SelfCalFolder& folder, const std::st
   return result;
 }
 
-std::vector<SeenFrame> frames_of_folder(const std::string& path, const Rig& rig) {
+std::vector<ObservedFrame> frames_of_folder(const std::string& path, const Rig& rig) {
   const rig::SelfCalFolder folder(path);
   const std::vector<CameraId> cameras = cameras_of(folder, path, rig);
   if (!folder.has_points())
     throw Error("{}: there are no observations in this folder: neither points.dat nor camN.points4cal.dat", path);
-  std::vector<SeenFrame> frames;
+  std::vector<ObservedFrame> frames;
   for (const rig::SelfCalFolder::Point& point : folder.points()) {
     if (frames.empty() || frames.back().frame != point.frame) frames.push_back({.frame = point.frame});
     frames.back().points.push_back({cameras[static_cast<std::size_t>(point.camera)], point.pixel, ""});
   }
-  for (SeenFrame& frame : frames) in_order(frame);
+  for (ObservedFrame& frame : frames) in_order(frame);
   return frames;
 }
 
 }  // namespace
 
-std::span<const SeenPoint> SeenFrame::of(CameraId camera) const {
-  const auto [begin, end] = std::equal_range(points.begin(), points.end(), SeenPoint{.camera = camera},
-                                             [](const SeenPoint& a, const SeenPoint& b) { return a.camera < b.camera; });
+std::span<const ImageObservation> ObservedFrame::of(CameraId camera) const {
+  const auto [begin, end] =
+      std::equal_range(points.begin(), points.end(), ImageObservation{.camera = camera},
+                       [](const ImageObservation& a, const ImageObservation& b) { return a.camera < b.camera; });
   return {begin, end};
 }
 
@@ -191,27 +192,27 @@ struct ObservationReader::Parts {
   // One of the three: a take or a table that is read as it goes, or all frames.
   std::optional<TakeObservations> take;
   std::optional<Table> table;
-  std::vector<SeenFrame> frames;
+  std::vector<ObservedFrame> frames;
   std::size_t at = 0;
 
   std::map<std::string, CameraId, std::less<>> cameras;
   std::string camera_names;
-  std::optional<SeenFrame> pending;  // begun by the row that ended the last one
+  std::optional<ObservedFrame> pending;  // begun by the row that ended the last one
 
-  void add(const Row& row, SeenFrame& frame) const {
+  void add(const Row& row, ObservedFrame& frame) const {
     const auto camera = cameras.find(row.camera);
     if (camera == cameras.end())
       table->fail(fmt::format("the rig has no camera {}; there are: {}", shown(row.camera), camera_names));
     frame.points.push_back({camera->second, row.pixel, std::string(row.marker)});
   }
 
-  std::optional<SeenFrame> next_of_table() {
-    std::optional<SeenFrame> frame = std::exchange(pending, std::nullopt);
+  std::optional<ObservedFrame> next_of_table() {
+    std::optional<ObservedFrame> frame = std::exchange(pending, std::nullopt);
     for (Row row; table->next(row);) {
-      if (!row.seen) continue;
+      if (!row.detected) continue;
       const bool other = frame && frame->frame != row.frame;
-      std::optional<SeenFrame>& into = other ? pending : frame;
-      if (!into) into = SeenFrame{.frame = row.frame};
+      std::optional<ObservedFrame>& into = other ? pending : frame;
+      if (!into) into = ObservedFrame{.frame = row.frame};
       add(row, *into);
       if (other) break;
     }
@@ -220,10 +221,10 @@ struct ObservationReader::Parts {
   }
 
   void read_all() {
-    std::map<std::int64_t, SeenFrame> by_frame;
+    std::map<std::int64_t, ObservedFrame> by_frame;
     for (Row row; table->next(row);) {
-      if (!row.seen) continue;
-      SeenFrame& frame = by_frame[row.frame];
+      if (!row.detected) continue;
+      ObservedFrame& frame = by_frame[row.frame];
       frame.frame = row.frame;
       add(row, frame);
     }
@@ -258,7 +259,7 @@ ObservationReader::~ObservationReader() = default;
 ObservationReader::ObservationReader(ObservationReader&&) noexcept = default;
 ObservationReader& ObservationReader::operator=(ObservationReader&&) noexcept = default;
 
-std::optional<SeenFrame> ObservationReader::next() {
+std::optional<ObservedFrame> ObservationReader::next() {
   if (parts_->take) return parts_->take->next();
   if (parts_->table) return parts_->next_of_table();
   if (parts_->at == parts_->frames.size()) return std::nullopt;
@@ -270,9 +271,9 @@ std::optional<double> ObservationReader::rate_hz() const {
   return std::nullopt;
 }
 
-std::vector<SeenFrame> read_observations(const std::string& path, const Rig& rig) {
+std::vector<ObservedFrame> read_observations(const std::string& path, const Rig& rig) {
   ObservationReader reader(path, rig);
-  std::vector<SeenFrame> frames;
+  std::vector<ObservedFrame> frames;
   while (auto frame = reader.next()) frames.push_back(std::move(*frame));
   return frames;
 }
@@ -306,9 +307,9 @@ ObservationWriter::ObservationWriter(const std::string& path, const Rig& rig, bo
   file_.write(with_markers ? "camera,frame,x,y,marker\n" : "camera,frame,x,y\n");
 }
 
-void ObservationWriter::write(const SeenFrame& frame) {
+void ObservationWriter::write(const ObservedFrame& frame) {
   lines_.clear();
-  for (const SeenPoint& point : frame.points) {
+  for (const ImageObservation& point : frame.points) {
     fmt::format_to(std::back_inserter(lines_), "{},{},{:.4f},{:.4f}", cameras_[static_cast<std::size_t>(number(point.camera))],
                    frame.frame, point.pixel.x(), point.pixel.y());
     if (with_markers_) (lines_ += ',') += point.marker;
@@ -332,20 +333,20 @@ std::vector<Fact> facts_of_observations(const std::string& path) {
   ObservationReader reader(path, rig);
   std::int64_t frames = 0, points = 0, first = 0, last = 0;
   std::set<std::string> markers;
-  std::vector<std::int64_t> seen(rig.cameras.size());
+  std::vector<std::int64_t> detected(rig.cameras.size());
   while (const auto frame = reader.next()) {
     if (frames++ == 0) first = frame->frame;
     last = frame->frame;
     points += std::ssize(frame->points);
-    for (const SeenPoint& point : frame->points) {
-      ++seen[static_cast<std::size_t>(marey::number(point.camera))];
+    for (const ImageObservation& point : frame->points) {
+      ++detected[static_cast<std::size_t>(marey::number(point.camera))];
       if (!point.marker.empty()) markers.insert(point.marker);
     }
   }
   std::vector<std::string> names, counts;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
+  for (std::size_t i = 0; i < detected.size(); ++i) {
     names.push_back(rig.cameras[i].name);
-    counts.push_back(fmt::format("{}: {} points", rig.cameras[i].name, seen[i]));
+    counts.push_back(fmt::format("{}: {} points", rig.cameras[i].name, detected[i]));
   }
   std::vector<Fact> facts{{"cameras", names, fmt::format("{} ({})", names.size(), fmt::join(counts, ", "))},
                           {"points", points},

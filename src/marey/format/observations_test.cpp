@@ -64,7 +64,7 @@ TEST(Observations, SortedOrNotAndColumnsInAnyOrderReadTheSame) {
   EXPECT_EQ(frames[0].points[1].pixel, Vector<2>(3, 4));
   EXPECT_EQ(frames[1].points[0].pixel, Vector<2>(5, 6));
   ObservationWriter writer(folder / "b.csv", two_cameras(), false);
-  for (const SeenFrame& frame : frames) writer.write(frame);
+  for (const ObservedFrame& frame : frames) writer.write(frame);
   writer.finish();
   EXPECT_EQ(test::read_file(folder / "b.csv"),
             "camera,frame,x,y\nleft,0,1.0000,2.0000\nright,0,3.0000,4.0000\nleft,1,5.0000,6.0000\nright,1,7.0000,8.0000\n");
@@ -125,7 +125,8 @@ TEST(SelfCalFolder, RowsOfOnePointInSpaceAreOneInstant) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(frames[i].frame, static_cast<std::int64_t>(i));
     ASSERT_EQ(frames[i].points.size(), 2u);
-    for (const SeenPoint& point : frames[i].points) EXPECT_EQ(static_cast<int>(point.pixel.x()) / 10, static_cast<int>(i) + 1);
+    for (const ImageObservation& point : frames[i].points)
+      EXPECT_EQ(static_cast<int>(point.pixel.x()) / 10, static_cast<int>(i) + 1);
   }
 }
 
@@ -162,11 +163,11 @@ TEST(SelfCalFolder, ReadsTheSetsOfLights) {
   const auto frames5 = read_observations(five, rig5);
   EXPECT_EQ(frames5.size(), 506u) << "cameras 1 and 4 saw all";
   std::size_t points = 0;
-  for (const SeenFrame& frame : frames5) points += frame.points.size();
+  for (const ObservedFrame& frame : frames5) points += frame.points.size();
   EXPECT_EQ(points, 506u + 414 + 456 + 506 + 240);
 }
 
-TEST(Observations, OneWildFrameIsNamed) {
+TEST(Observations, ReportsOutlierFrame) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.csv", "camera,frame,x,y\nleft,0,1,2\nleft,1,1,2\nleft,999999999,1,2\n");
   Rig rig;

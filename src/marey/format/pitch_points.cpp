@@ -38,15 +38,15 @@ constexpr std::array<std::array<std::string_view, 4>, 4> kColumnNames = {{{"x", 
                                                                           {"u", "image_x", "px", "pixel_x"},
                                                                           {"v", "image_y", "py", "pixel_y"}}};
 
-/// Where x, y, u, v stand, by the header; nothing where the line is none.
+/// Where x, y, u, v stand, by the header; nothing if the line is not one.
 std::optional<std::array<std::size_t, 4>> columns_of(const std::vector<std::string_view>& header) {
   std::array<std::size_t, 4> columns{};
-  for (std::size_t wanted = 0; wanted < 4; ++wanted) {
+  for (std::size_t required = 0; required < 4; ++required) {
     const auto found = std::find_if(header.begin(), header.end(), [&](std::string_view name) {
-      return std::find(kColumnNames[wanted].begin(), kColumnNames[wanted].end(), name) != kColumnNames[wanted].end();
+      return std::find(kColumnNames[required].begin(), kColumnNames[required].end(), name) != kColumnNames[required].end();
     });
     if (found == header.end()) return std::nullopt;
-    columns[wanted] = static_cast<std::size_t>(found - header.begin());
+    columns[required] = static_cast<std::size_t>(found - header.begin());
   }
   return columns;
 }
@@ -56,7 +56,7 @@ std::optional<std::int64_t> frame_of(const std::vector<std::string_view>& fields
                                      const std::string& where) {
   if (!column) return std::nullopt;
   const auto frame = *column < fields.size() ? whole_number_of(fields[*column]) : std::nullopt;
-  if (!frame || *frame < 0) throw Error("{}: its frame is no whole number from 0 on", where);
+  if (!frame || *frame < 0) throw Error("{}: its frame is not a whole number from 0 on", where);
   return frame;
 }
 
@@ -96,7 +96,7 @@ PitchClicks parse_csv(std::string_view text, const std::string& name) {
 
 // --- CVAT ----------------------------------------------------------------------------------------------------------------
 
-/// Continuous coordinates from the top left corner of the picture to ours, whose integers are pixel centres.
+/// Continuous coordinates from the top left corner of the image to ours, whose integers are pixel centres.
 std::optional<std::vector<Vector<2>>> cvat_pixels(std::string_view text) {
   std::vector<Vector<2>> pixels;
   for (const std::string_view one : parts_of(text, ';')) {
@@ -117,10 +117,10 @@ PitchClicks parse_cvat(std::string_view text, const std::string& name) {
       const std::string_view kind = node.name(), label = node.attribute("label").value();
       if (kind != "points" && kind != "polyline") continue;
       const auto pixels = cvat_pixels(node.attribute("points").value());
-      if (!pixels) throw Error("{}: <{} label={}>: its points are no numbers", name, kind, shown(label));
+      if (!pixels) throw Error("{}: <{} label={}>: its points are not numbers", name, kind, shown(label));
       if (kind == "points") {
         const auto ground = pair(label);
-        if (!ground) throw Error("{}: the label {} is no place on the pitch; it must read (x,y), in m", name, shown(label));
+        if (!ground) throw Error("{}: the label {} is not a place on the pitch; it must read (x,y), in m", name, shown(label));
         const auto frame = whole_number_of(image.node().attribute("id").value());
         for (const Vector<2>& pixel : *pixels) clicks.points.push_back({*ground, pixel, std::string(label), frame});
         continue;
@@ -129,7 +129,7 @@ PitchClicks parse_cvat(std::string_view text, const std::string& name) {
       const auto from = middle == std::string_view::npos ? std::nullopt : pair(label.substr(0, middle + 1));
       const auto to = middle == std::string_view::npos ? std::nullopt : pair(label.substr(middle + 2));
       if (!from || !to || (*from - *to).norm() < 1e-6)
-        throw Error("{}: the label {} is no line of the pitch; it must read (x,y)-(x,y), in m", name, shown(label));
+        throw Error("{}: the label {} is not a line of the pitch; it must read (x,y)-(x,y), in m", name, shown(label));
       clicks.lines.push_back({*from, *to, *pixels, std::string(label)});
     }
   }

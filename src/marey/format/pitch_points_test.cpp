@@ -35,7 +35,7 @@ TEST(PitchPoints, CvatPointsAndLines) {
   EXPECT_EQ(clicks.lines[0].pixels[1], Vector<2>(30, 40));
 }
 
-TEST(PitchPoints, WhatIsNotReadIsSaidWithItsLine) {
+TEST(PitchPoints, ReportsUnreadableLine) {
   const auto message = [](const char* text) {
     try {
       parse_pitch_clicks(text, "clicks");

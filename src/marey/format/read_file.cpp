@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "marey/core/input_file.h"
+#include "marey/files/input_file.h"
 
 namespace marey::format {
 

@@ -6,8 +6,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/limits.h"
 #include "marey/edit/edited.h"
+#include "marey/files/limits.h"
 #include "marey/format/register.h"
 
 namespace marey::format {
@@ -33,13 +33,14 @@ void turn(Instant& instant, const Matrix<3>& rotation) {
 }
 
 /// Turns a world whose y is up so that its z is. `told` is a warning, or empty.
-class TurningReader : public FileReader {
+class AxisConvertingReader : public FileReader {
  public:
-  TurningReader(std::unique_ptr<FileReader> reader, std::string told) : reader_(std::move(reader)), told_(std::move(told)) {}
+  AxisConvertingReader(std::unique_ptr<FileReader> reader, std::string reported)
+      : reader_(std::move(reader)), reported_(std::move(reported)) {}
   const FileInfo& info() const override { return reader_->info(); }
   std::vector<std::string> warnings() const override {
     std::vector<std::string> warnings = reader_->warnings();
-    if (!told_.empty()) warnings.push_back(told_);
+    if (!reported_.empty()) warnings.push_back(reported_);
     return warnings;
   }
   std::optional<Instant> next() override {
@@ -50,19 +51,19 @@ class TurningReader : public FileReader {
 
  private:
   std::unique_ptr<FileReader> reader_;
-  std::string told_;
+  std::string reported_;
 };
 
 /// And back.
-class TurningSink : public Sink {
+class AxisConvertingSink : public Sink {
  public:
-  explicit TurningSink(std::unique_ptr<Sink> sink) : sink_(std::move(sink)) {}
+  explicit AxisConvertingSink(std::unique_ptr<Sink> sink) : sink_(std::move(sink)) {}
   std::string name() const override { return sink_->name(); }
-  Wants begin(const RecordingHeader& header) override { return sink_->begin(header); }
+  SinkRequirements begin(const RecordingHeader& header) override { return sink_->begin(header); }
   void write(const Instant& instant) override {
-    Instant turned = instant;
-    turn(turned, z_up_from_y_up().transpose());
-    sink_->write(turned);
+    Instant rotated = instant;
+    turn(rotated, z_up_from_y_up().transpose());
+    sink_->write(rotated);
   }
   void finish() override { sink_->finish(); }
 
@@ -71,10 +72,10 @@ class TurningSink : public Sink {
 };
 
 void require_short_labels(const FileInfo& info, const std::string& path) {
-  const std::size_t most = Limits::in_force().label_bytes;
+  const std::size_t maximum = Limits::in_force().label_bytes;
   for (const TrackName& track : info.tracks) {
-    if (track.label.size() > most)
-      throw Error("{}: a name has {} bytes; they have at most {} (the limit label_bytes)", path, track.label.size(), most);
+    if (track.label.size() > maximum)
+      throw Error("{}: a name has {} bytes; they have at most {} (the limit label_bytes)", path, track.label.size(), maximum);
   }
 }
 
@@ -88,7 +89,7 @@ class WholeReader : public FileReader {
              .head = recording.head,
              .frame_count = reader_.instant_count(),
              .up = {},
-             .beside = {}};
+             .next_to = {}};
   }
   const FileInfo& info() const override { return info_; }
   std::optional<Instant> next() override { return reader_.next(); }
@@ -117,7 +118,7 @@ class GatheringSink : public Sink {
   GatheringSink(std::string path, const Format& format, std::vector<std::string>* lost)
       : path_(std::move(path)), format_(&format), lost_(lost) {}
   std::string name() const override { return path_; }
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     match_.recording = Recording(header);
     return {};
   }
@@ -158,22 +159,22 @@ std::unique_ptr<FileReader> edited(std::unique_ptr<FileReader> reader, const std
 
 }  // namespace
 
-UpAxis up_axis(const FileInfo& info, const std::optional<UpAxis>& said) {
-  return said.value_or(info.up.value_or(UpAxis::z));
+UpAxis up_axis(const FileInfo& info, const std::optional<UpAxis>& stated) {
+  return stated.value_or(info.up.value_or(UpAxis::z));
 }
 
 std::unique_ptr<FileReader> open_recording(const std::string& path, const Format& format, const ReadOptions& options) {
   if (format.read != nullptr) return std::make_unique<MatchReader>(read_whole(path, format, options));
-  if (format.open == nullptr) throw Error("{}: is {}, which is no recording", path, format.title);
+  if (format.open == nullptr) throw Error("{}: is {}, which is not a recording", path, format.title);
   auto reader = format.open(path, options);
   require_short_labels(reader->info(), path);
   if (!options.as_recorded) reader = edited(std::move(reader), path);
   if (format.z_up || up_axis(reader->info(), options.up) == UpAxis::z) return reader;
-  std::string told;
+  std::string reported;
   if (!options.up)
-    told = fmt::format("{}: its y is taken for up, as the file says; if z is up in it, say --up z (`marey convert`: --from-up z)",
-                       path);
-  return std::make_unique<TurningReader>(std::move(reader), std::move(told));
+    reported = fmt::format(
+        "{}: its y is taken for up, as the file says; if z is up in it, say --up z (`marey convert`: --from-up z)", path);
+  return std::make_unique<AxisConvertingReader>(std::move(reader), std::move(reported));
 }
 
 std::unique_ptr<FileReader> open_recording(const std::string& path, const ReadOptions& options) {
@@ -196,13 +197,14 @@ match::GroundMatch read_whole(const std::string& path, const Format& format, con
 }
 
 match::GroundMatch read_match(const std::string& path, const ReadOptions& options) {
-  // What is no format at all is told by the reader of ours, which says what it wants.
+  // What is not a format at all is reported by the reader of ours, which says what it wants.
   const Format* format = path == "-" ? nullptr : format_of_content(path);
   if (format == nullptr && std::filesystem::is_directory(path)) throw Error("{}: is a folder, not a file", path);
   if (format == nullptr || !format->holds.any_of(kRecordings)) format = format_named("ground", Content::ground);
-  // Boxes in a picture are told by the reader of the same text with places.
-  if (const Format* places = format_named(format->name, Content::ground); !format->holds.has(Content::ground) && places != nullptr)
-    format = places;
+  // Boxes in an image are reported by the reader of the same text with places.
+  if (const Format* locations = format_named(format->name, Content::ground);
+      !format->holds.has(Content::ground) && locations != nullptr)
+    format = locations;
   match::GroundMatch match = read_whole(path, *format, options);
   require_ground(match.recording, "a match");
   return match;
@@ -221,7 +223,7 @@ WritePlan plan_of(FileReader& reader, const std::string& name) {
     plan.last_frame = instant->index;
     for (const Sample& sample : instant->samples) {
       plan.farthest_m = std::max(plan.farthest_m, sample.position.cwiseAbs().maxCoeff());
-      plan.tells_measured |= !sample.measured() || sample.cameras != 0 || sample.residual_m.has_value();
+      plan.reports_measured |= !sample.measured() || sample.cameras != 0 || sample.residual_m.has_value();
     }
   }
   numbers.check(name);
@@ -237,7 +239,7 @@ std::unique_ptr<Sink> create_recording(const std::string& path, const Format& fo
   require_short_labels(plan.info, path);  // what is written is read again
   auto sink = format.create(path, plan);
   if (plan.up == UpAxis::z || format.z_up) return sink;
-  return std::make_unique<TurningSink>(std::move(sink));
+  return std::make_unique<AxisConvertingSink>(std::move(sink));
 }
 
 std::vector<std::string> write_whole(const std::string& path, const Format& format, const match::GroundMatch& match, UpAxis up) {
@@ -259,12 +261,12 @@ std::optional<std::string> poses_lost(const RecordingHeader& header, const std::
       format.title, header.bodies.size(), header.bodies.size() == 1 ? "body" : "bodies");
 }
 
-std::optional<std::string> beside_lost(const BesidePoints& beside, const std::string& path, const Format& format) {
-  if (!beside.any() || format.beside_points) return std::nullopt;
-  const std::string channels = beside.channels > 0 ? fmt::format("{} analog channels (forces, EMG)", beside.channels) : "";
-  const std::string events = beside.events > 0 ? fmt::format("{} events", beside.events) : "";
+std::optional<std::string> next_to_lost(const AuxiliaryData& next_to, const std::string& path, const Format& format) {
+  if (!next_to.any() || format.auxiliary_data) return std::nullopt;
+  const std::string channels = next_to.channels > 0 ? fmt::format("{} analog channels (forces, EMG)", next_to.channels) : "";
+  const std::string events = next_to.events > 0 ? fmt::format("{} events", next_to.events) : "";
   return fmt::format("{}: {} holds none of the {}{}{} of {}; they go along into .c3d alone", path, format.title, channels,
-                     channels.empty() || events.empty() ? "" : " and ", events, beside.path);
+                     channels.empty() || events.empty() ? "" : " and ", events, next_to.path);
 }
 
 }  // namespace marey::format

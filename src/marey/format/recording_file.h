@@ -13,7 +13,7 @@
 namespace marey::format {
 
 /// The axis of a file of points that is taken for up: what the user says, else what the file says, else z.
-UpAxis up_axis(const FileInfo& info, const std::optional<UpAxis>& said);
+UpAxis up_axis(const FileInfo& info, const std::optional<UpAxis>& stated);
 
 /// Opens a recording instant by instant, whatever its format. Where its y is up, it is turned so that z is; a warning says so where
 /// the file alone said it. Throws Error for what cannot be read.
@@ -23,10 +23,10 @@ std::unique_ptr<FileReader> open_recording(const std::string& path, const ReadOp
 
 /// A whole recording, with what formats of matches tell beyond it.
 match::GroundMatch read_whole(const std::string& path, const Format& format, const ReadOptions& options = {});
-/// One of people on the ground, known by its content; "-" is CSV from standard input. Throws Error where it is not of the ground.
+/// One of people on the ground, known by its content; "-" is CSV from standard input. Throws Error if it is not of the ground.
 match::GroundMatch read_match(const std::string& path, const ReadOptions& options = {});
 
-/// A reader in memory; what formats of matches tell beyond the recording is left out. The recording must outlive it.
+/// A reader in memory; what formats of matches tell beyond the recording is omitted. The recording must outlive it.
 std::unique_ptr<FileReader> reader_of(const Recording& recording);
 
 /// What a writer must know beforehand. Reads all of it. Throws Error, with `name` for the file, where millions of frames are
@@ -38,11 +38,11 @@ WritePlan plan_of(FileReader& reader, const std::string& name);
 std::unique_ptr<Sink> create_recording(const std::string& path, const Format& format, const WritePlan& plan = {},
                                        std::vector<std::string>* lost = nullptr);
 
-/// What a user should know where a recording has bodies and `format` holds no poses; nothing where it does, or there are none.
+/// What a user should know where a recording has bodies and `format` holds no poses; nothing if it does, or there are none.
 std::optional<std::string> poses_lost(const RecordingHeader& header, const std::string& path, const Format& format);
 
 /// The same of what stood beside the points of a file that was read.
-std::optional<std::string> beside_lost(const BesidePoints& beside, const std::string& path, const Format& format);
+std::optional<std::string> next_to_lost(const AuxiliaryData& next_to, const std::string& path, const Format& format);
 
 /// Writes a recording that is whole, and says what the format could not hold.
 std::vector<std::string> write_whole(const std::string& path, const Format& format, const match::GroundMatch& match,

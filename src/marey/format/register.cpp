@@ -65,7 +65,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLookedAt = std::size_t{64} << 10;
+constexpr std::size_t kInspectedAt = std::size_t{64} << 10;
 constexpr std::array kContents = {Content::space,        Content::image,      Content::ground, Content::rig,
                                   Content::observations, Content::detections, Content::labels};
 
@@ -91,10 +91,10 @@ std::string listed(const std::vector<std::string>& words, std::string_view betwe
 }
 
 template <typename Wanted>
-std::string names_of(Wanted&& wanted) {
+std::string names_of(Wanted&& required) {
   std::vector<std::string> names;
   for (const Format& format : formats()) {
-    if (wanted(format) && std::find(names.begin(), names.end(), format.name) == names.end()) names.emplace_back(format.name);
+    if (required(format) && std::find(names.begin(), names.end(), format.name) == names.end()) names.emplace_back(format.name);
   }
   return listed(names);
 }
@@ -124,7 +124,7 @@ Content content_of(const FrameOfReference& frame) {
 std::string_view words_of(Content content) {
   switch (content) {
     case Content::image:
-      return "tracks in a picture";
+      return "tracks in an image";
     case Content::ground:
       return "people on the ground";
     case Content::space:
@@ -162,7 +162,7 @@ Beginning beginning_of(const std::string& path) {
   if (!fs::is_regular_file(status)) return beginning;  // what is read of a pipe is gone
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error("{}: cannot be read; have you the right to?", path);
-  beginning.bytes.resize(kLookedAt);
+  beginning.bytes.resize(kInspectedAt);
   in.read(beginning.bytes.data(), std::ssize(beginning.bytes));
   beginning.bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
   return beginning;
@@ -181,29 +181,29 @@ const Format* format_of_content(const std::string& path) {
   return known == formats().end() ? nullptr : &*known;
 }
 
-const Format& format_to_read(const std::string& path, Contents wanted) {
+const Format& format_to_read(const std::string& path, Contents required) {
   const Format* format = format_of_content(path);
   if (format == nullptr && !fs::is_regular_file(path) && !fs::is_directory(path))
-    throw Error("{}: is no file, and is looked at more than once; write what it says to a file first", path);
-  if (format == nullptr) throw Error("{}: is none of the files that Marey knows: {}", path, names_of_read(kAll));
-  if (!format->holds.any_of(wanted))
-    throw Error("{}: is {}; {} are wanted: {}", path, format->title, words_of_all(wanted), names_of_read(wanted));
+    throw Error("{}: is not a file, and is inspected more than once; write what it says to a file first", path);
+  if (format == nullptr) throw Error("{}: is not one of the files that Marey knows: {}", path, names_of_read(kAll));
+  if (!format->holds.any_of(required))
+    throw Error("{}: is {}; {} are wanted: {}", path, format->title, words_of_all(required), names_of_read(required));
   return *format;
 }
 
-const Format* format_named(std::string_view name, Contents wanted) {
+const Format* format_named(std::string_view name, Contents required) {
   for (const Format& format : formats()) {
-    if (format.name == name && format.holds.any_of(wanted)) return &format;
+    if (format.name == name && format.holds.any_of(required)) return &format;
   }
-  return name.find_first_of("./_") == std::string_view::npos ? format_of_name(fmt::format(".{}", name), wanted) : nullptr;
+  return name.find_first_of("./_") == std::string_view::npos ? format_of_name(fmt::format(".{}", name), required) : nullptr;
 }
 
-const Format* format_of_name(std::string_view path, Contents wanted) {
+const Format* format_of_name(std::string_view path, Contents required) {
   const std::string lower = lower_case(path);
   const Format* found = nullptr;
   std::size_t longest = 0;  // "_home.csv" before ".csv"
   for (const Format& format : formats()) {
-    if (!format.is_written() || !format.holds.any_of(wanted)) continue;
+    if (!format.is_written() || !format.holds.any_of(required)) continue;
     for (const std::string_view ending : words_in(format.endings)) {
       if (ending.size() <= longest || !lower.ends_with(ending)) continue;
       found = &format;
@@ -223,7 +223,7 @@ const Format& format_to_write(const std::string& path, std::string_view name, Co
     if (const Format* other = format_named(name, kAll); other != nullptr && !path.empty()) refuse(path, *other, content);
     if (format_named(name, kAll) != nullptr)
       throw WrongFormat("\"{}\" holds no {}; these can be written: {}", name, words_of(content), names_of_written(content));
-    throw WrongFormat("\"{}\" is no format; these can be written: {}", name, names_of_written(kAll));
+    throw WrongFormat("\"{}\" is not a format; these can be written: {}", name, names_of_written(kAll));
   }
   if (const Format* format = format_of_name(path, content)) return *format;
   if (const Format* other = format_of_name(path, kAll)) refuse(path, *other, content);
@@ -233,26 +233,26 @@ const Format& format_to_write(const std::string& path, std::string_view name, Co
 
 void check_written_name(const std::string& name) {
   if (format_named(name, kAll) == nullptr)
-    throw WrongFormat("\"{}\" is no format; these can be written: {}", name, names_of_written(kAll));
+    throw WrongFormat("\"{}\" is not a format; these can be written: {}", name, names_of_written(kAll));
 }
 
-std::string names_of_read(Contents wanted) {
-  // Of some recordings it is told what they hold, and no more; that counts where everything is asked for.
-  const bool only_told = wanted.has(Content::labels);
+std::string names_of_read(Contents required) {
+  // Of some recordings it is reported what they hold, and no more; that counts where everything is asked for.
+  const bool only_told = required.has(Content::labels);
   return names_of([&](const Format& format) {
     const bool recording = format.open != nullptr || format.read != nullptr;
-    return format.is_read() && format.holds.any_of(wanted) && (recording || only_told || !format.holds.any_of(kRecordings));
+    return format.is_read() && format.holds.any_of(required) && (recording || only_told || !format.holds.any_of(kRecordings));
   });
 }
 
-std::string names_of_written(Contents wanted) {
-  return names_of([&](const Format& format) { return format.is_written() && format.holds.any_of(wanted); });
+std::string names_of_written(Contents required) {
+  return names_of([&](const Format& format) { return format.is_written() && format.holds.any_of(required); });
 }
 
-std::string endings_of_written(Contents wanted) {
+std::string endings_of_written(Contents required) {
   std::vector<std::string> all;
   for (const Format& format : formats()) {
-    if (!format.is_written() || !format.holds.any_of(wanted)) continue;
+    if (!format.is_written() || !format.holds.any_of(required)) continue;
     const auto endings = words_in(format.endings);
     all.push_back(endings.empty() ? fmt::format("--format {}", format.name) : fmt::format("{} ({})", endings.front(), format.name));
   }
@@ -270,9 +270,9 @@ std::string first_ending(const Format& format) {
   return endings.empty() ? std::string() : std::string(endings.front());
 }
 
-std::string file_beside(const std::string& path) {
+std::string file_next_to(const std::string& path) {
   for (const Format& format : formats()) {
-    for (const auto& [ending, other] : format.beside) {
+    for (const auto& [ending, other] : format.next_to) {
       if (path.ends_with(ending)) return path.substr(0, path.size() - ending.size()).append(other);
     }
   }
@@ -281,11 +281,11 @@ std::string file_beside(const std::string& path) {
 
 std::string format_table() {
   std::string table = "| holds | format | ending | read | written | in detail |\n| --- | --- | --- | --- | --- | --- |\n";
-  std::vector<const Format*> told;
+  std::vector<const Format*> reported;
   for (const Content content : kContents) {
     for (const Format& format : formats()) {
-      if (!format.holds.has(content) || std::find(told.begin(), told.end(), &format) != told.end()) continue;
-      told.push_back(&format);
+      if (!format.holds.has(content) || std::find(reported.begin(), reported.end(), &format) != reported.end()) continue;
+      reported.push_back(&format);
       const char* written = !format.is_written()                                    ? "no"
                             : format.while_recording || format.write_rig != nullptr ? "yes"
                                                                                     : "at the end";

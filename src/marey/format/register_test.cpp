@@ -37,13 +37,13 @@ TEST(Register, TheTableInTheDocumentsIsTheRegisters) {
 TEST(Register, AnEndingIsOfTheFormatThatHoldsTheContent) {
   EXPECT_EQ(format_to_write("a/b.csv", "", Content::space).title, "a CSV file of points, one row each");
   EXPECT_EQ(format_to_write("b.csv", "", Content::ground).name, "ground");
-  EXPECT_EQ(format_to_write("b.csv", "", Content::image).title, "tracks in a picture, one row each");
+  EXPECT_EQ(format_to_write("b.csv", "", Content::image).title, "tracks in an image, one row each");
   EXPECT_EQ(format_to_write("b_home.csv", "", Content::ground).name, "metrica");
   EXPECT_EQ(format_to_write("B.MAREY", "", Content::image).name, "take");
   EXPECT_EQ(format_to_write("b.txt", "csv", Content::ground).name, "ground");
   EXPECT_EQ(format_to_write("b.qca.txt", "", Content::rig).name, "qualisys");
-  EXPECT_EQ(file_beside("b_home.csv"), "b_away.csv");
-  EXPECT_EQ(file_beside("b.csv"), "");
+  EXPECT_EQ(file_next_to("b_home.csv"), "b_away.csv");
+  EXPECT_EQ(file_next_to("b.csv"), "");
 }
 
 std::string refusal(const std::string& path, const std::string& name, Content content) {
@@ -55,7 +55,7 @@ std::string refusal(const std::string& path, const std::string& name, Content co
   return "taken";
 }
 
-TEST(Register, WhatCannotBeWrittenIsRefusedWithWhatCan) {
+TEST(Register, RejectsUnknownFormatWithList) {
   EXPECT_EQ(refusal("b.xyz", "", Content::image),
             "b.xyz: unknown ending; these can be written: .marey (take), .csv (csv), .jsonl (jsonl), --format mots, "
             "--format coco, .txt (mot); or name a format "
@@ -64,7 +64,7 @@ TEST(Register, WhatCannotBeWrittenIsRefusedWithWhatCan) {
             "b.c3d: a C3D file holds points in space, and not people on the ground; these can be written: .marey (take), .mcap "
             "(mcap), .csv (ground), .json (soccernet), .dat (tracab), .xml (epts), _home.csv (metrica), .txt (mot)");
   EXPECT_NE(refusal("b.csv", "nexus", Content::space).find("is read only"), std::string::npos);
-  EXPECT_NE(refusal("b.csv", "word", Content::space).find("\"word\" is no format"), std::string::npos);
+  EXPECT_NE(refusal("b.csv", "word", Content::space).find("\"word\" is not a format"), std::string::npos);
 }
 
 TEST(Register, AFileIsKnownByItsContent) {
@@ -77,7 +77,7 @@ TEST(Register, AFileIsKnownByItsContent) {
   EXPECT_EQ(known("camera,frame,x,y\na,0,1,2\n"), "observations of markers, one row each");
   EXPECT_EQ(known("frame,id,x,y,z\n"), "a CSV file of points, one row each");
   EXPECT_EQ(known("frame,id,x,y\n"), "people on the ground, one row each");
-  EXPECT_EQ(known("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n"), "tracks in a picture, one row each");
+  EXPECT_EQ(known("frame,time,id,label,x,y,vx,vy,left,top,width,height,state\n"), "tracks in an image, one row each");
   EXPECT_EQ(known("1,-1,10,20,30,40,0.5\n2,-1,10,20,30,40,0.5\n"), "another program's detections, MOTChallenge text");
   EXPECT_EQ(known("1,1,10,20,30,40,1,-1,-1,-1\n"), "MOTChallenge text with boxes");
   EXPECT_EQ(known("1 1 10 20 30 40\n"), "MOTChallenge text with boxes");

@@ -21,28 +21,28 @@ CameraId camera_of_name(const std::string& name, const Rig& rig, const std::stri
 
 TakeObservations::TakeObservations(const std::string& path, const Rig& rig) : reader_(path) {
   const Rig own = rig_of_take(path);
-  if (reader_.summary().seen == 0)
+  if (reader_.summary().detected == 0)
     throw Error("{}: holds nothing that cameras saw, so it cannot be solved again; a take of marey reconstruct does", path);
   for (const RigCamera& camera : own.cameras) cameras_.push_back(camera_of_name(camera.name, rig, path));
 }
 
-std::optional<SeenFrame> TakeObservations::next() {
+std::optional<ObservedFrame> TakeObservations::next() {
   const auto instant = reader_.next();
   if (!instant) return std::nullopt;
-  SeenFrame frame{.frame = instant->index, .time = instant->time};
-  for (const marey::SeenPoint& seen : instant->seen) {
-    const auto camera = static_cast<std::size_t>(number(seen.camera));
+  ObservedFrame frame{.frame = instant->index, .time = instant->time};
+  for (const marey::ImageObservation& detected : instant->detected) {
+    const auto camera = static_cast<std::size_t>(number(detected.camera));
     if (camera >= cameras_.size()) continue;
-    frame.points.push_back({.camera = cameras_[camera], .pixel = seen.pixel, .sigma = seen.sigma, .area = seen.area});
+    frame.points.push_back({.camera = cameras_[camera], .pixel = detected.pixel, .sigma = detected.sigma, .area = detected.area});
   }
   std::stable_sort(frame.points.begin(), frame.points.end(),
-                   [](const SeenPoint& a, const SeenPoint& b) { return a.camera < b.camera; });
+                   [](const ImageObservation& a, const ImageObservation& b) { return a.camera < b.camera; });
   return frame;
 }
 
 Rig rig_of_take(const std::string& path) {
-  const take::TakeReader reader(path, {.seen = false});
-  if (!reader.header().rig) throw Error("{}: this take does not say which cameras recorded it; give a rig file", path);
+  const take::TakeReader reader(path, {.detected = false});
+  if (!reader.header().rig) throw Error("{}: this take does not specify which cameras recorded it; give a rig file", path);
   return *reader.header().rig;
 }
 

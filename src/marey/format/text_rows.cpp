@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "marey/core/stop.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::format {
 namespace {

@@ -9,7 +9,7 @@
 
 namespace marey::format {
 
-/// The lines of a text, with either line ending; a byte order mark is passed over. Nothing is copied.
+/// The lines of a text, with either line ending; a byte order mark is skipped. Nothing is copied.
 class TextLines {
  public:
   explicit TextLines(std::string_view text);
@@ -20,7 +20,7 @@ class TextLines {
   /// Whether the line given last ended with a line feed, as whole files' lines do.
   bool ended() const { return ended_; }
   std::string_view rest() const { return text_; }
-  /// Goes on at `rest`, a later part of the same text, whose first line has this number.
+  /// Continues at `rest`, a later part of the same text, whose first line has this number.
   void go_to(std::string_view rest, std::size_t number);
 
  private:
@@ -43,11 +43,11 @@ void for_each_line(std::string_view text, const std::string& name, Take&& take) 
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
 /// A field without its quotes (RFC 4180), and without the apostrophe that `quoted_field` sets.
 std::string unquoted(std::string_view field);
-/// A text as a field: plain text (core/text_safety.h), in quotes where it must be. A text that a spreadsheet would compute, for it
+/// A text as a field: plain text (files/text_safety.h), in quotes where it must be. A text that a spreadsheet would compute, for it
 /// begins with = + - or @ and is no number, gets an apostrophe before it, as spreadsheets themselves mark text.
 std::string quoted_field(const std::string& text);
 
-/// A finite number; nothing for what is none.
+/// A finite number; nothing for what is not one.
 std::optional<double> number_of(std::string_view field);
 std::optional<std::int64_t> whole_number_of(std::string_view field);
 

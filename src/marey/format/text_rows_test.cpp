@@ -5,7 +5,7 @@
 namespace marey::format {
 namespace {
 
-TEST(TextRows, WhatASpreadsheetWouldComputeIsMarkedAndReadsBack) {
+TEST(TextRows, EscapesFormulasAndReadsThemBack) {
   for (const std::string text : {"=1+1", "+cmd", "-x", "@SUM(A1)", "=\"a\",b", "'=x", "''-x"}) {
     const std::string field = quoted_field(text);
     EXPECT_TRUE(field.starts_with('\'') || field.starts_with("\"'")) << field;

@@ -7,10 +7,10 @@
 
 namespace marey::format {
 
-/// A text as XML. Throws Error, with the file's name and what is wrong where, for what is none.
+/// A text as XML. Throws Error, with the file's name and what is wrong where, for what is not one.
 pugi::xml_document parse_xml(std::string_view text, const std::string& name);
 
-/// A document as text, indented, its texts made plain (core/text_safety.h).
+/// A document as text, indented, its texts made plain (files/text_safety.h).
 std::string to_text(const pugi::xml_document& document);
 
 /// Adds an element that holds a text.

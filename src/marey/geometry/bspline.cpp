@@ -28,25 +28,25 @@ void span_weights(int order, double t, double* value, double* derivative) {
     if (degree == order - 1) {
       for (int j = 0; j <= degree; ++j) derivative[j] = (j > 0 ? value[j - 1] : 0) - (j < degree ? value[j] : 0);
     }
-    const double share = 1.0 / degree;
-    value[degree] = share * t * value[degree - 1];
-    for (int j = degree - 1; j > 0; --j) value[j] = share * ((t + degree - j) * value[j - 1] + (1 - t + j) * value[j]);
-    value[0] *= share * (1 - t);
+    const double fraction = 1.0 / degree;
+    value[degree] = fraction * t * value[degree - 1];
+    for (int j = degree - 1; j > 0; --j) value[j] = fraction * ((t + degree - j) * value[j - 1] + (1 - t + j) * value[j]);
+    value[0] *= fraction * (1 - t);
   }
 }
 
 /// Weights at fixed places within a span, and what each place counts in an integral over the span.
 struct SpanTable {
   struct Row {
-    double share = 0;
+    double fraction = 0;
     double value[kMaxOrder] = {};
     double derivative[kMaxOrder] = {};
   };
   std::vector<Row> rows;
 
-  void add(int order, double t, double share) {
+  void add(int order, double t, double fraction) {
     rows.emplace_back();
-    rows.back().share = share;
+    rows.back().fraction = fraction;
     span_weights(order, t, rows.back().value, rows.back().derivative);
   }
 };
@@ -69,7 +69,7 @@ SpanTable quadrature_table(int order) {
   return table;
 }
 
-/// Evenly spaced places, the end of the span left out.
+/// Evenly spaced places, the end of the span omitted.
 SpanTable even_table(int order, int count) {
   SpanTable table;
   for (int i = 0; i < count; ++i) table.add(order, static_cast<double>(i) / count, 1.0 / count);
@@ -112,7 +112,7 @@ Vector<2> weighted(std::span<const Vector<2>> points, int first, int order, cons
 
 /// Calls `visit` with every place of the table on every span: first control point, row, point and derivative of the curve.
 template <typename Visit>
-void for_each_place(const ClosedSpline& spline, const SpanTable& table, const Visit& visit) {
+void for_each_position(const ClosedSpline& spline, const SpanTable& table, const Visit& visit) {
   const std::span<const Vector<2>> points = spline.control_points();
   for (int first = 0; first < spline.count(); ++first) {
     for (const SpanTable::Row& row : table.rows) {
@@ -123,20 +123,20 @@ void for_each_place(const ClosedSpline& spline, const SpanTable& table, const Vi
 }
 
 /// Area and its first moments round the first control point, where digits are not lost.
-struct Moments {
+struct TimeSteps {
   double area = 0;
   Vector<2> first = Vector<2>::Zero();
 };
 
-Moments moments(const ClosedSpline& spline, const Vector<2>& origin) {
-  Moments sum;
-  for_each_place(spline, quadrature(spline.order()),
-                 [&](int, const SpanTable::Row& row, const Vector<2>& at, const Vector<2>& slope) {
-                   const Vector<2> p = at - origin;
-                   sum.area += row.share * p.x() * slope.y();
-                   sum.first.x() += row.share * 0.5 * p.x() * p.x() * slope.y();
-                   sum.first.y() -= row.share * 0.5 * p.y() * p.y() * slope.x();
-                 });
+TimeSteps time_steps(const ClosedSpline& spline, const Vector<2>& origin) {
+  TimeSteps sum;
+  for_each_position(spline, quadrature(spline.order()),
+                    [&](int, const SpanTable::Row& row, const Vector<2>& at, const Vector<2>& slope) {
+                      const Vector<2> p = at - origin;
+                      sum.area += row.fraction * p.x() * slope.y();
+                      sum.first.x() += row.fraction * 0.5 * p.x() * p.x() * slope.y();
+                      sum.first.y() -= row.fraction * 0.5 * p.y() * p.y() * slope.x();
+                    });
   return sum;
 }
 
@@ -145,9 +145,9 @@ bool has_area(double area, double scale) {
 }
 
 double spread(std::span<const Vector<2>> points) {
-  double most = 0;
-  for (const Vector<2>& point : points) most = std::max(most, (point - points.front()).cwiseAbs().maxCoeff());
-  return most;
+  double maximum = 0;
+  for (const Vector<2>& point : points) maximum = std::max(maximum, (point - points.front()).cwiseAbs().maxCoeff());
+  return maximum;
 }
 
 Vector<2> mean(std::span<const Vector<2>> points) {
@@ -192,11 +192,11 @@ std::optional<Vector<2>> ClosedSpline::normal(double u) const {
 }
 
 double ClosedSpline::area() const {
-  return moments(*this, points_.front()).area;
+  return time_steps(*this, points_.front()).area;
 }
 
 Vector<2> ClosedSpline::centroid() const {
-  const Moments sum = moments(*this, points_.front());
+  const TimeSteps sum = time_steps(*this, points_.front());
   if (!has_area(sum.area, spread(points_))) return mean(points_);
   return points_.front() + sum.first / sum.area;
 }
@@ -209,18 +209,19 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> ClosedSpline::centroid_gradient() const
     return gradient;
   }
   const Vector<2> centre = centroid();  // the origin: there the first moments vanish, and the area's own gradient with them
-  for_each_place(*this, quadrature(order_), [&](int first, const SpanTable::Row& row, const Vector<2>& at, const Vector<2>& slope) {
-    const Vector<2> p = at - centre;
-    const double share = row.share / area;
-    for (int j = 0; j < order_; ++j) {
-      const int i = first + j < count() ? first + j : first + j - count();
-      const double value = share * row.value[j], derivative = share * row.derivative[j];
-      gradient(0, 2 * i) += p.x() * value * slope.y();
-      gradient(0, 2 * i + 1) += 0.5 * p.x() * p.x() * derivative;
-      gradient(1, 2 * i) -= 0.5 * p.y() * p.y() * derivative;
-      gradient(1, 2 * i + 1) -= p.y() * value * slope.x();
-    }
-  });
+  for_each_position(*this, quadrature(order_),
+                    [&](int first, const SpanTable::Row& row, const Vector<2>& at, const Vector<2>& slope) {
+                      const Vector<2> p = at - centre;
+                      const double fraction = row.fraction / area;
+                      for (int j = 0; j < order_; ++j) {
+                        const int i = first + j < count() ? first + j : first + j - count();
+                        const double value = fraction * row.value[j], derivative = fraction * row.derivative[j];
+                        gradient(0, 2 * i) += p.x() * value * slope.y();
+                        gradient(0, 2 * i + 1) += 0.5 * p.x() * p.x() * derivative;
+                        gradient(1, 2 * i) -= 0.5 * p.y() * p.y() * derivative;
+                        gradient(1, 2 * i + 1) -= p.y() * value * slope.x();
+                      }
+                    });
   return gradient;
 }
 
@@ -228,7 +229,7 @@ double ClosedSpline::length() const {
   double sum = 0;
   std::optional<Vector<2>> before;
   Vector<2> start = points_.front();
-  for_each_place(*this, fine(order_), [&](int first, const SpanTable::Row&, const Vector<2>& at, const Vector<2>&) {
+  for_each_position(*this, fine(order_), [&](int first, const SpanTable::Row&, const Vector<2>& at, const Vector<2>&) {
     if (before) {
       sum += (at - *before).norm();
     } else if (first == 0) {
@@ -239,7 +240,7 @@ double ClosedSpline::length() const {
   return sum + (start - *before).norm();
 }
 
-void ClosedSpline::evenly_spaced(std::span<double> places) const {
+void ClosedSpline::evenly_spaced(std::span<double> locations) const {
   const SpanTable& table = coarse(order_);
   const int steps = count() * kCoarse;
   // Table rows begin at control point 0's span, which is u = order / 2 − 1 before wrapping: walk from there, from u = 0 on.
@@ -256,21 +257,21 @@ void ClosedSpline::evenly_spaced(std::span<double> places) const {
     total += (at - before).norm();
     before = at;
   }
-  const double spacing = total / static_cast<double>(places.size());
+  const double spacing = total / static_cast<double>(locations.size());
   double walked = 0;
   std::size_t next = 0;
   before = point(0);
-  for (int step = 1; step <= steps && next < places.size(); ++step) {
+  for (int step = 1; step <= steps && next < locations.size(); ++step) {
     const Vector<2> at = point(step);
     const double chord = (at - before).norm();
-    for (; next < places.size() && spacing * static_cast<double>(next) <= walked + chord; ++next) {
+    for (; next < locations.size() && spacing * static_cast<double>(next) <= walked + chord; ++next) {
       const double part = chord > 0 ? (spacing * static_cast<double>(next) - walked) / chord : 0;
-      places[next] = (step - 1 + part) / kCoarse;
+      locations[next] = (step - 1 + part) / kCoarse;
     }
     walked += chord;
     before = at;
   }
-  for (; next < places.size(); ++next) places[next] = 0;  // rounding, or a curve that is a point
+  for (; next < locations.size(); ++next) locations[next] = 0;  // rounding, or a curve that is a point
 }
 
 std::vector<Vector<2>> ClosedSpline::polygon(int per_span) const {
@@ -282,12 +283,12 @@ std::vector<Vector<2>> ClosedSpline::polygon(int per_span) const {
 
 Box ClosedSpline::box() const {
   constexpr double kHuge = std::numeric_limits<double>::infinity();
-  Vector<2> least(kHuge, kHuge), most(-kHuge, -kHuge);
-  for_each_place(*this, coarse(order_), [&](int, const SpanTable::Row&, const Vector<2>& at, const Vector<2>&) {
-    least = least.cwiseMin(at);
-    most = most.cwiseMax(at);
+  Vector<2> minimum(kHuge, kHuge), maximum(-kHuge, -kHuge);
+  for_each_position(*this, coarse(order_), [&](int, const SpanTable::Row&, const Vector<2>& at, const Vector<2>&) {
+    minimum = minimum.cwiseMin(at);
+    maximum = maximum.cwiseMax(at);
   });
-  return {least.x() + 0.5, least.y() + 0.5, most.x() - least.x(), most.y() - least.y()};
+  return {minimum.x() + 0.5, minimum.y() + 0.5, maximum.x() - minimum.x(), maximum.y() - minimum.y()};
 }
 
 double polygon_area(std::span<const Vector<2>> polygon) {

@@ -38,7 +38,7 @@ class ClosedSpline {
 
   Vector<2> at(double u) const;
   Vector<2> derivative(double u) const;
-  /// Unit length; out of a curve that runs clockwise. Nothing where the derivative vanishes (a cusp).
+  /// Unit length; out of a curve that runs clockwise. Nothing if the derivative vanishes (a cusp).
   std::optional<Vector<2>> normal(double u) const;
 
   /// px²; exact. Positive for a curve that runs clockwise on the screen; where it crosses itself, loops count by their sense.
@@ -51,7 +51,7 @@ class ClosedSpline {
   /// px; of the polygon of 32 points a span.
   double length() const;
   /// Parameters of `places.size()` places evenly spaced along the curve, the first at u = 0, to a hundredth of a span.
-  void evenly_spaced(std::span<double> places) const;
+  void evenly_spaced(std::span<double> locations) const;
 
   /// `per_span` ≥ 1 points for each control point, in the order of u from 0.
   std::vector<Vector<2>> polygon(int per_span = 8) const;
@@ -66,21 +66,21 @@ class ClosedSpline {
 /// How a polygon becomes a spline.
 struct SplineFitOptions {
   int order = 4;           ///< 2 … SplineWeights::max_order
-  int least = 8;           ///< control points to begin with
-  int most = 24;           ///< and to end with; both are raised to what the order needs
+  int minimum = 8;         ///< control points to begin with
+  int maximum = 24;        ///< and to end with; both are raised to what the order needs
   double tolerance = 0.5;  ///< px, RMS distance between polygon and curve; the fewest control points that reach it are taken
   int rounds = 4;          ///< that the parameter of the samples is corrected; 0 for the plain fit by arc length
 };
 
 /// The least-squares spline of a closed polygon (ordered corners, edges counted by their length); its parameter goes with arc
 /// length, from the polygon's topmost corner (of several the leftmost) clockwise on the screen. It has no more control points than
-/// the polygon has px of length. Nothing where that is fewer than the order needs, or the polygon has fewer than 3 corners, no
+/// the polygon has px of length. Nothing if that is fewer than the order needs, or the polygon has fewer than 3 corners, no
 /// area, or a corner that is not finite.
 std::optional<ClosedSpline> fit_spline(std::span<const Vector<2>> polygon, const SplineFitOptions& options = {});
 
 /// Area by the shoelace formula, px²: positive where the corners run clockwise on the screen.
 double polygon_area(std::span<const Vector<2>> polygon);
-/// Centre of the area; nothing where there is none.
+/// Centre of the area; nothing if there is none.
 std::optional<Vector<2>> polygon_centroid(std::span<const Vector<2>> polygon);
 
 }  // namespace marey::geometry

@@ -15,9 +15,9 @@
 namespace marey::geometry {
 namespace {
 
-constexpr int kPerSpan = 4;       // samples of the polygon
-constexpr double kEager = 1.5;    // times Newton's step: the steps of neighbours help one another
-constexpr double kSteady = 1e-9;  // keeps a control point that no sample is near from running away
+constexpr int kPerSpan = 4;           // samples of the polygon
+constexpr double kEager = 1.5;        // times Newton's step: the steps of neighbours help one another
+constexpr double kStationary = 1e-9;  // keeps a control point that no sample is near from running away
 
 /// The polygon from its topmost, then leftmost corner, clockwise on the screen.
 std::vector<Vector<2>> in_order(std::span<const Vector<2>> polygon, bool clockwise) {
@@ -67,12 +67,12 @@ struct Fit {
 
 /// The least-squares curve through the samples at parameters `places`. The normal matrix is banded but for its corners, where the
 /// curve closes; only its lower half is filled in.
-void solve(const Eigen::MatrixX2d& samples, std::span<const double> places, int order, Fit& fit) {
+void solve(const Eigen::MatrixX2d& samples, std::span<const double> locations, int order, Fit& fit) {
   const int count = static_cast<int>(fit.points.rows());
   fit.normal.setZero(count, count);
   fit.points.setZero();
   for (int s = 0; s < samples.rows(); ++s) {
-    const SplineWeights w = spline_weights(order, count, places[s]);
+    const SplineWeights w = spline_weights(order, count, locations[s]);
     for (int a = 0; a < order; ++a) {
       const int i = w.first + a < count ? w.first + a : w.first + a - count;
       fit.points(i, 0) += w.value[a] * samples(s, 0);
@@ -83,19 +83,19 @@ void solve(const Eigen::MatrixX2d& samples, std::span<const double> places, int 
       }
     }
   }
-  fit.normal.diagonal().array() += kSteady;
+  fit.normal.diagonal().array() += kStationary;
   fit.solver.compute(fit.normal);
   fit.solver.solveInPlace(fit.points);
 }
 
 /// Moves each sample's parameter to the place on the curve that is nearest to it, by one step of Newton's method, and never past
 /// its neighbours. Returns the RMS distance there.
-double correct_places(const Eigen::MatrixX2d& samples, int order, const Eigen::MatrixX2d& points, std::span<double> places) {
+double correct_positions(const Eigen::MatrixX2d& samples, int order, const Eigen::MatrixX2d& points, std::span<double> locations) {
   const int count = static_cast<int>(points.rows());
-  const double most = 0.5 * count / static_cast<double>(samples.rows());
+  const double maximum = 0.5 * count / static_cast<double>(samples.rows());
   double sum = 0;
   for (int s = 0; s < samples.rows(); ++s) {
-    const SplineWeights w = spline_weights(order, count, places[s]);
+    const SplineWeights w = spline_weights(order, count, locations[s]);
     Eigen::RowVector2d at = Eigen::RowVector2d::Zero(), slope = Eigen::RowVector2d::Zero();
     for (int a = 0; a < order; ++a) {
       const int i = w.first + a < count ? w.first + a : w.first + a - count;
@@ -105,19 +105,19 @@ double correct_places(const Eigen::MatrixX2d& samples, int order, const Eigen::M
     const Eigen::RowVector2d gap = samples.row(s) - at;
     sum += gap.squaredNorm();
     const double speed = slope.squaredNorm();
-    if (speed > 0) places[s] += std::clamp(kEager * gap.dot(slope) / speed, -most, most);
+    if (speed > 0) locations[s] += std::clamp(kEager * gap.dot(slope) / speed, -maximum, maximum);
   }
   return std::sqrt(sum / static_cast<double>(samples.rows()));
 }
 
 Fit fit(std::span<const Vector<2>> corners, double length, int order, int count, int rounds) {
   const Eigen::MatrixX2d samples = sampled(corners, length, count * kPerSpan);
-  std::vector<double> places(samples.rows());
-  for (std::size_t s = 0; s < places.size(); ++s) places[s] = static_cast<double>(s) / kPerSpan;
+  std::vector<double> locations(samples.rows());
+  for (std::size_t s = 0; s < locations.size(); ++s) locations[s] = static_cast<double>(s) / kPerSpan;
   Fit result{.points = Eigen::MatrixX2d(count, 2), .normal = {}, .solver = {}};
   for (int round = 0; round <= rounds; ++round) {
-    solve(samples, places, order, result);
-    result.rms = correct_places(samples, order, result.points, places);
+    solve(samples, locations, order, result);
+    result.rms = correct_positions(samples, order, result.points, locations);
   }
   return result;
 }
@@ -132,8 +132,8 @@ std::optional<ClosedSpline> fit_spline(std::span<const Vector<2>> polygon, const
   const double length = perimeter(corners);
   const int needed = std::max(options.order, 3);
   if (!(length >= needed)) return std::nullopt;
-  const int most = std::min(std::max(options.most, needed), static_cast<int>(std::min(length, 1e6)));
-  int low = std::clamp(options.least, needed, most), high = std::max(low, most);
+  const int maximum = std::min(std::max(options.maximum, needed), static_cast<int>(std::min(length, 1e6)));
+  int low = std::clamp(options.minimum, needed, maximum), high = std::max(low, maximum);
   Fit best = fit(corners, length, options.order, high, options.rounds);
   if (low < high && best.rms <= options.tolerance) {
     // The fewest that are enough, by bisection: more control points come nearer, but for a hair.

@@ -19,7 +19,7 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-/// Control points about a circle of 20 px, each up to 6 px off: a curve that seldom crosses itself.
+/// Control points about a circle of 20 px, each up to 6 px off: a curve that rarely crosses itself.
 ClosedSpline random_spline(int order, int count, Dice& dice) {
   std::vector<Vector<2>> points;
   for (int i = 0; i < count; ++i) {
@@ -112,11 +112,11 @@ TEST_P(ClosedSplineOf, EvenlySpacedPlacesAreEvenlySpaced) {
   Dice dice(4);
   for (int repeat = 0; repeat < 10; ++repeat) {
     const ClosedSpline spline = random_spline(GetParam(), 8 + repeat, dice);
-    std::vector<double> places(24);
-    spline.evenly_spaced(places);
-    EXPECT_NEAR(places[0], 0, 1e-12);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const double from = places[i], to = i + 1 < places.size() ? places[i + 1] : spline.count();
+    std::vector<double> locations(24);
+    spline.evenly_spaced(locations);
+    EXPECT_NEAR(locations[0], 0, 1e-12);
+    for (std::size_t i = 0; i < locations.size(); ++i) {
+      const double from = locations[i], to = i + 1 < locations.size() ? locations[i + 1] : spline.count();
       double length = 0;
       for (int step = 0; step < 500; ++step) {
         length += (spline.at(from + (to - from) * (step + 1) / 500) - spline.at(from + (to - from) * step / 500)).norm();
@@ -132,9 +132,9 @@ TEST(ClosedSpline, ACurveThatIsAPointHasACentreAndNoNormal) {
   EXPECT_NEAR((spline.centroid() - Vector<2>(3, 4)).norm(), 0, 1e-12);
   EXPECT_TRUE(spline.centroid_gradient().allFinite());
   EXPECT_FALSE(spline.normal(1.3).has_value());
-  std::vector<double> places(7);
-  spline.evenly_spaced(places);
-  for (const double place : places) EXPECT_TRUE(std::isfinite(place));
+  std::vector<double> locations(7);
+  spline.evenly_spaced(locations);
+  for (const double location : locations) EXPECT_TRUE(std::isfinite(location));
 }
 
 TEST(FitSpline, ASplinesOwnPolygonGivesItBack) {
@@ -146,7 +146,7 @@ TEST(FitSpline, ASplinesOwnPolygonGivesItBack) {
       circle.emplace_back(50 + 30 * std::sin(i * std::numbers::pi / 6), 60 - 30 * std::cos(i * std::numbers::pi / 6));
     }
     const ClosedSpline spline(order, circle);
-    const auto fitted = fit_spline(spline.polygon(200), {.order = order, .least = 12, .most = 12});
+    const auto fitted = fit_spline(spline.polygon(200), {.order = order, .minimum = 12, .maximum = 12});
     ASSERT_TRUE(fitted.has_value());
     for (int i = 0; i < 12; ++i) EXPECT_NEAR((fitted->control_points()[i] - circle[i]).norm(), 0, 0.02) << order << " " << i;
   }
@@ -169,17 +169,17 @@ TEST(FitSpline, FewestPointsWithinTheToleranceAreTaken) {
 TEST(FitSpline, TheSenseOfThePolygonDoesNotMatter) {
   Dice dice(7);
   auto polygon = random_spline(4, 10, dice).polygon(20);
-  const auto one = fit_spline(polygon, {.least = 10, .most = 10});
+  const auto one = fit_spline(polygon, {.minimum = 10, .maximum = 10});
   std::reverse(polygon.begin(), polygon.end());
-  const auto other = fit_spline(polygon, {.least = 10, .most = 10});
+  const auto other = fit_spline(polygon, {.minimum = 10, .maximum = 10});
   ASSERT_TRUE(one && other);
   for (int i = 0; i < 10; ++i) EXPECT_NEAR((one->control_points()[i] - other->control_points()[i]).norm(), 0, 1e-9);
   EXPECT_GT(one->area(), 0);
 }
 
-TEST(FitSpline, OnePixelAndNoPolygonAtAll) {
+TEST(FitSpline, FitsSinglePixelAndEmptyPolygon) {
   const std::vector<Vector<2>> pixel = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
-  const auto fitted = fit_spline(pixel, {.least = 24, .most = 24});
+  const auto fitted = fit_spline(pixel, {.minimum = 24, .maximum = 24});
   ASSERT_TRUE(fitted.has_value());
   EXPECT_EQ(fitted->count(), 4) << "no more control points than px of length";
   EXPECT_NEAR(fitted->centroid().norm(), 0, 1e-9);

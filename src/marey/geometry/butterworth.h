@@ -16,7 +16,7 @@ namespace marey::geometry {
 struct Butterworth {
   double b0, b1, b2, a1, a2;
 
-  /// By the bilinear transform, its frequency put right. `cutoff` as a share of the rate, in (0, ½).
+  /// By the bilinear transform, its frequency corrected. `cutoff` as a share of the rate, in (0, ½).
   explicit Butterworth(double cutoff) {
     const double w = std::tan(std::numbers::pi * cutoff), root = std::numbers::sqrt2 * w, n = 1 / (1 + root + w * w);
     b0 = b2 = w * w * n;

@@ -45,7 +45,7 @@ TEST(Butterworth, NothingLagsAndEachAxisIsOnItsOwn) {
     EXPECT_NEAR(backwards[199 - i], x[i], 1e-3) << "what is turned round comes out turned round";
 }
 
-TEST(Butterworth, WhatMovesEvenlyStaysAsItIs) {
+TEST(Butterworth, KeepsUniformMotion) {
   std::vector<double> line;
   for (int i = 0; i < 100; ++i) line.push_back(3 - 0.25 * i);
   std::vector<double> smooth = line, one{7};

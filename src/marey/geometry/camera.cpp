@@ -10,7 +10,7 @@
 namespace marey::geometry {
 namespace {
 
-/// Distorted radius of a ray at `x` (tangent of its angle to the axis; the angle itself for a fisheye), tangential terms left out.
+/// Distorted radius of a ray at `x` (tangent of its angle to the axis; the angle itself for a fisheye), tangential terms omitted.
 double radius(const BrownLens& lens, double x) {
   const auto& k = lens.distortion;
   const double r2 = x * x;
@@ -37,10 +37,10 @@ double widest(const Model& lens, double end) {
   return end;
 }
 
-constexpr double kWidestTangent = 20;  // 87°: nothing flat is seen further aside
+constexpr double kMaxTangent = 20;  // 87°: nothing flat is seen further aside
 
 double widest(const BrownLens& lens) {
-  return widest(lens, kWidestTangent);
+  return widest(lens, kMaxTangent);
 }
 double widest(const FisheyeLens& lens) {
   return widest(lens, std::numbers::pi);
@@ -49,7 +49,7 @@ double widest(const FisheyeLens& lens) {
 /// undistorted(d) = d (1 + κ d²) grows up to d² = -1 / 3κ.
 double widest(const TsaiLens& lens) {
   const double k = lens.distortion[0];
-  return k < 0 ? std::min(kWidestTangent, 2.0 / 3.0 / std::sqrt(-3 * k)) : kWidestTangent;
+  return k < 0 ? std::min(kMaxTangent, 2.0 / 3.0 / std::sqrt(-3 * k)) : kMaxTangent;
 }
 
 template <typename T>
@@ -64,7 +64,7 @@ Eigen::Matrix<T, 2, 1> pixel_of(const Lens& lens, const Eigen::Matrix<T, 3, 1>& 
       lens);
 }
 
-constexpr int kMostSteps = 50;
+constexpr int kMaxSteps = 50;
 constexpr double kCloseEnough = 1e-14;
 
 /// Newton's method for the undistorted place whose distorted one is `d`, steps halved where they lead away.
@@ -78,7 +78,7 @@ std::optional<Vector<3>> undistort(const BrownLens& lens, const Vector<2>& d, do
   Vector<2> u = d;
   if (u.norm() > end) u *= end / u.norm();
   double off = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const auto at = distorted(u);
     const Vector<2> error(at.x().a - d.x(), at.y().a - d.y());
     off = error.norm();
@@ -98,14 +98,14 @@ std::optional<Vector<3>> undistort(const BrownLens& lens, const Vector<2>& d, do
 }
 
 std::optional<Vector<3>> undistort(const FisheyeLens& lens, const Vector<2>& d, double end) {
-  const double wanted = d.norm();
-  if (wanted < kCloseEnough) return Vector<3>(d.x(), d.y(), 1);
-  if (wanted > radius(lens, end)) return std::nullopt;
+  const double required = d.norm();
+  if (required < kCloseEnough) return Vector<3>(d.x(), d.y(), 1);
+  if (required > radius(lens, end)) return std::nullopt;
   double low = 0, high = end;  // Newton's method kept within a bracket
-  double angle = std::min(wanted, end);
+  double angle = std::min(required, end);
   const auto& k = lens.distortion;
-  for (int i = 0; i < kMostSteps; ++i) {
-    const double error = radius(lens, angle) - wanted;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const double error = radius(lens, angle) - required;
     if (std::abs(error) < kCloseEnough) break;
     (error > 0 ? high : low) = angle;
     const double a2 = angle * angle;
@@ -113,7 +113,7 @@ std::optional<Vector<3>> undistort(const FisheyeLens& lens, const Vector<2>& d, 
     const double next = angle - error / slope;
     angle = next > low && next < high ? next : (low + high) / 2;
   }
-  const Vector<2> aside = d / wanted * std::sin(angle);
+  const Vector<2> aside = d / required * std::sin(angle);
   return Vector<3>(aside.x(), aside.y(), std::cos(angle));
 }
 

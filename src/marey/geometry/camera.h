@@ -15,10 +15,10 @@ struct Ray {
   Vector<3> direction = Vector<3>::UnitZ();
 };
 
-/// A calibrated camera: lens, pose and picture size. The camera's frame has x right, y down, z ahead.
+/// A calibrated camera: lens, pose and image size. The camera's frame has x right, y down, z ahead.
 class Camera {
  public:
-  /// Focal lengths positive, `camera_from_world` a rigid motion; `size` in px, for those who ask whether a pixel is in the picture.
+  /// Focal lengths positive, `camera_from_world` a rigid motion; `size` in px, for those who ask whether a pixel is in the image.
   Camera(const Lens& lens, const Rigid3& camera_from_world, cv::Size size);
 
   const Lens& lens() const { return lens_; }
@@ -26,7 +26,7 @@ class Camera {
   cv::Size size() const { return size_; }
   const Vector<3>& centre() const { return centre_; }  ///< in the world, m
 
-  /// The pixel of a point of the world, inside the picture or not; nothing where the point lies behind the camera or so far
+  /// The pixel of a point of the world, inside the image or not; nothing if the point lies behind the camera or so far
   /// aside that the lens model folds back.
   std::optional<Vector<2>> project(const Vector<3>& world) const;
 
@@ -36,13 +36,13 @@ class Camera {
   };
   std::optional<Projection> project_with_jacobian(const Vector<3>& world) const;
 
-  /// Direction of length 1 in the camera's frame that is seen at `pixel`; nothing where the lens shows nothing there.
+  /// Direction of length 1 in the camera's frame that is seen at `pixel`; nothing if the lens shows nothing there.
   std::optional<Vector<3>> bearing(const Vector<2>& pixel) const;
 
   /// The same as a half-line in the world.
   std::optional<Ray> ray(const Vector<2>& pixel) const;
 
-  bool in_picture(const Vector<2>& pixel) const {
+  bool in_image(const Vector<2>& pixel) const {
     return pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < size_.width - 0.5 && pixel.y() < size_.height - 0.5;
   }
 

@@ -102,13 +102,13 @@ TEST(Camera, JacobianAgreesWithDifferences) {
   for (const Lens& lens : lenses()) {
     const Camera camera(lens, pose(), {1280, 720});
     for (const Vector<3>& point : points_before(50)) {
-      const auto seen = camera.project_with_jacobian(point);
-      ASSERT_TRUE(seen);
-      EXPECT_LT((seen->pixel - *camera.project(point)).norm(), 1e-9);
+      const auto detected = camera.project_with_jacobian(point);
+      ASSERT_TRUE(detected);
+      EXPECT_LT((detected->pixel - *camera.project(point)).norm(), 1e-9);
       for (int axis = 0; axis < 3; ++axis) {
         const Vector<3> step = 1e-6 * Vector<3>::Unit(axis);
         const Vector<2> slope = (*camera.project(point + step) - *camera.project(point - step)) / 2e-6;
-        EXPECT_LT((slope - seen->by_world.col(axis)).norm(), 1e-4 * (1 + slope.norm())) << name_of(lens);
+        EXPECT_LT((slope - detected->by_world.col(axis)).norm(), 1e-4 * (1 + slope.norm())) << name_of(lens);
       }
     }
   }

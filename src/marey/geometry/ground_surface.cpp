@@ -2,17 +2,17 @@
 
 namespace marey::geometry {
 
-double GroundSurface::height(const Vector<2>& place) const {
+double GroundSurface::height(const Vector<2>& location) const {
   if (flat()) return 0;
   const std::array<double, kTerms> t = terms();
-  return height_at(relative(place), t.data());
+  return height_at(relative(location), t.data());
 }
 
-Vector<2> GroundSurface::slope(const Vector<2>& place) const {
+Vector<2> GroundSurface::slope(const Vector<2>& location) const {
   if (flat()) return Vector<2>::Zero();
-  const Vector<2> at = relative(place);
+  const Vector<2> at = relative(location);
   const auto steepness = [&](double t) {
-    if (std::abs(t) >= kFarthest) return 0.0;
+    if (std::abs(t) >= kMaxDistance) return 0.0;
     const double of_roof = t / std::sqrt(t * t + kRound * kRound) / (std::sqrt(1 + kRound * kRound) - kRound);
     return 2 * t + ridge * (of_roof - 2 * t);
   };

@@ -18,8 +18,8 @@
 namespace marey::geometry {
 
 struct GroundSurface {
-  static constexpr int kTerms = 4;       ///< across, along, dome, ridge
-  static constexpr double kHighest = 2;  ///< m, that any height may be: more is a hill, and rays may meet it twice
+  static constexpr int kTerms = 4;        ///< across, along, dome, ridge
+  static constexpr double kMaxLevel = 2;  ///< m, that any height may be: more is a hill, and rays may meet it twice
 
   Vector<2> middle = Vector<2>::Zero();    ///< m, in the world
   Vector<2> half = Vector<2>(52.5, 34);    ///< m, from the middle to the lines along x and along y; positive
@@ -29,16 +29,16 @@ struct GroundSurface {
   bool flat() const { return across == 0 && along == 0 && dome == 0; }
 
   /// m above z = 0.
-  double height(const Vector<2>& place) const;
+  double height(const Vector<2>& location) const;
   /// ∂height/∂place.
-  Vector<2> slope(const Vector<2>& place) const;
+  Vector<2> slope(const Vector<2>& location) const;
 
   std::array<double, kTerms> terms() const { return {across, along, dome, ridge}; }
   void set_terms(const std::array<double, kTerms>& t) { across = t[0], along = t[1], dome = t[2], ridge = t[3]; }
 
   /// Place from the middle, in half sizes, held where the ground is level again.
-  Vector<2> relative(const Vector<2>& place) const {
-    return (place - middle).cwiseQuotient(half).cwiseMax(-kFarthest).cwiseMin(kFarthest);
+  Vector<2> relative(const Vector<2>& location) const {
+    return (location - middle).cwiseQuotient(half).cwiseMax(-kMaxDistance).cwiseMin(kMaxDistance);
   }
   /// Height at `relative`, of any terms: a solver differentiates by them.
   template <typename T>
@@ -48,8 +48,8 @@ struct GroundSurface {
   }
 
  private:
-  static constexpr double kFarthest = 1.2;  // half sizes, up to which the ground falls
-  static constexpr double kRound = 0.1;     // half sizes: how rounded a ridge is
+  static constexpr double kMaxDistance = 1.2;  // half sizes, up to which the ground falls
+  static constexpr double kRound = 0.1;        // half sizes: how rounded a ridge is
 
   static double roof(double t) { return (std::sqrt(t * t + kRound * kRound) - kRound) / (std::sqrt(1 + kRound * kRound) - kRound); }
   template <typename T>

@@ -8,7 +8,7 @@
 
 namespace marey::geometry {
 
-/// Where a ray meets the ground, from whichever side; nothing where it rises from it, or grazes it.
+/// Where a ray meets the ground, from whichever side; nothing if it rises from it, or grazes it.
 std::optional<Vector<2>> ground_met(const Ray& ray, const GroundSurface& surface);
 
 /// How a view meets the ground, the plane z = 0 of the world or a surface near it: a whole camera, or a bare homography where
@@ -20,15 +20,15 @@ class GroundView {
   /// `ground_from_image`: (x, y, 1) in px to homogeneous ground coordinates in m; invertible, of any scale. `size` in px.
   GroundView(const Matrix<3>& ground_from_image, cv::Size size);
 
-  struct Place {
+  struct Location {
     Vector<2> ground;    ///< m
     Matrix<2> by_pixel;  ///< ∂ground/∂pixel, m/px: far away a pixel is a metre
   };
 
   /// Where on the ground the thing stands whose foot is seen at `pixel`; nothing at or above the horizon.
-  std::optional<Place> place(const Vector<2>& pixel) const;
+  std::optional<Location> location(const Vector<2>& pixel) const;
 
-  /// The pixel of a point of the ground; nothing where it lies behind the camera.
+  /// The pixel of a point of the ground; nothing if it lies behind the camera.
   std::optional<Vector<2>> pixel(const Vector<2>& ground) const;
 
   /// The whole camera, where it is known.

@@ -5,7 +5,7 @@
 namespace marey::geometry {
 namespace {
 
-/// 6 m above the ground, 10 m before the touchline, looking across the pitch and 15° down.
+/// 6 m above the ground, 10 m before the touchline, facing across the pitch and 15° down.
 Camera over_the_pitch(const Lens& lens) {
   const double tilt = 15 * M_PI / 180;
   Matrix<3> camera_from_world;  // x along the pitch, y away from the camera, z up
@@ -22,13 +22,13 @@ void expect_round_trip(const GroundView& view) {
     for (double y = 5; y <= 65; y += 6) {
       const auto pixel = view.pixel({x, y});
       ASSERT_TRUE(pixel);
-      const auto place = view.place(*pixel);
-      ASSERT_TRUE(place);
-      EXPECT_LT((place->ground - Vector<2>(x, y)).norm(), 1e-6);
+      const auto location = view.location(*pixel);
+      ASSERT_TRUE(location);
+      EXPECT_LT((location->ground - Vector<2>(x, y)).norm(), 1e-6);
       for (int axis = 0; axis < 2; ++axis) {
         const Vector<2> step = 1e-4 * Vector<2>::Unit(axis);
-        const Vector<2> slope = (view.place(*pixel + step)->ground - view.place(*pixel - step)->ground) / 2e-4;
-        EXPECT_LT((slope - place->by_pixel.col(axis)).norm(), 1e-4 * (1 + slope.norm()));
+        const Vector<2> slope = (view.location(*pixel + step)->ground - view.location(*pixel - step)->ground) / 2e-4;
+        EXPECT_LT((slope - location->by_pixel.col(axis)).norm(), 1e-4 * (1 + slope.norm()));
       }
     }
   }
@@ -58,7 +58,7 @@ TEST(GroundView, ACrownedGroundLeadsThereAndBack) {
     const auto pixel = view.pixel({0, 34});
     ASSERT_TRUE(pixel);
     EXPECT_LT((*pixel - *camera.project({0, 34, 0.6})).norm(), 1e-9);
-    EXPECT_GT((GroundView(camera).place(*pixel)->ground - Vector<2>(0, 34)).norm(), 3) << "or a plane would do";
+    EXPECT_GT((GroundView(camera).location(*pixel)->ground - Vector<2>(0, 34)).norm(), 3) << "or a plane would do";
   }
 }
 
@@ -68,7 +68,7 @@ TEST(GroundView, ALevelSurfaceIsThePlaneToTheLastBit) {
   level.middle = {3, 7}, level.half = {40, 20}, level.ridge = 0.5;
   for (double x = 0; x < 1920; x += 190) {
     for (double y = 0; y < 1080; y += 107) {
-      const auto plane = GroundView(camera).place({x, y}), surface = GroundView(camera, level).place({x, y});
+      const auto plane = GroundView(camera).location({x, y}), surface = GroundView(camera, level).location({x, y});
       ASSERT_EQ(plane.has_value(), surface.has_value());
       if (!plane) continue;
       EXPECT_EQ(plane->ground, surface->ground);
@@ -79,7 +79,7 @@ TEST(GroundView, ALevelSurfaceIsThePlaneToTheLastBit) {
 
 TEST(GroundView, NothingStandsInTheSkyOrBehindTheCamera) {
   const Camera camera = over_the_pitch(kLens);
-  EXPECT_FALSE(GroundView(camera).place({960, 0}));
+  EXPECT_FALSE(GroundView(camera).location({960, 0}));
   EXPECT_FALSE(GroundView(camera).pixel({0, -30}));
 }
 
@@ -92,7 +92,7 @@ TEST(GroundView, ACameraBelowItsZAxisSeesTheGroundToo) {
   const GroundView below(Camera(kLens, above.camera_from_world() * flip, {1920, 1080}));
   const auto pixel = below.pixel({3, -20});
   ASSERT_TRUE(pixel);
-  EXPECT_LT((below.place(*pixel)->ground - Vector<2>(3, -20)).norm(), 1e-6);
+  EXPECT_LT((below.location(*pixel)->ground - Vector<2>(3, -20)).norm(), 1e-6);
 }
 
 }  // namespace

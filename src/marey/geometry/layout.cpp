@@ -13,9 +13,9 @@
 namespace marey::geometry {
 namespace {
 
-constexpr double kFlattest = 0.1;        // height of the triangle over its base, at least
-constexpr int kMostTriangles = 200'000;  // that are tried
-constexpr double kAsGood = 1.5;          // misfits within this factor count as equal
+constexpr double kFlattest = 0.1;       // height of the triangle over its base, at least
+constexpr int kMaxTriangles = 200'000;  // that are tried
+constexpr double kAsGood = 1.5;         // misfits within this factor count as equal
 
 /// The two markers farthest apart, and the one farthest from their line, `without` one that may be hidden.
 std::optional<std::array<int, 3>> largest_triangle(std::span<const Vector<3>> layout, int without) {
@@ -46,9 +46,9 @@ LayoutMatch assign(std::span<const Vector<3>> layout, std::span<const Vector<3>>
   };
   std::vector<Pair> pairs;
   for (int m = 0; m < std::ssize(layout); ++m) {
-    const Vector<3> place = motion * layout[m];
+    const Vector<3> location = motion * layout[m];
     for (int p = 0; p < std::ssize(points); ++p) {
-      if (const double distance = (points[p] - place).norm(); distance < tolerance) pairs.push_back({distance, m, p});
+      if (const double distance = (points[p] - location).norm(); distance < tolerance) pairs.push_back({distance, m, p});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
@@ -98,11 +98,11 @@ std::optional<LayoutMatch> match_triangle(std::span<const Vector<3>> layout, std
   for (int p = 0; p < std::ssize(points); ++p) {
     for (int q = 0; q < std::ssize(points); ++q) {
       if (p == q || !near(p, q, ab)) continue;
-      for (int r = 0; r < std::ssize(points) && tried < kMostTriangles; ++r) {
+      for (int r = 0; r < std::ssize(points) && tried < kMaxTriangles; ++r) {
         if (r == p || r == q || !near(p, r, ac) || !near(q, r, bc)) continue;
         ++tried;
-        const std::array<Vector<3>, 3> seen = {points[p], points[q], points[r]};
-        LayoutMatch match = refine(layout, points, assign(layout, points, rigid_fit(corners, seen), 2 * tolerance), tolerance);
+        const std::array<Vector<3>, 3> detected = {points[p], points[q], points[r]};
+        LayoutMatch match = refine(layout, points, assign(layout, points, rigid_fit(corners, detected), 2 * tolerance), tolerance);
         if (!best || better(match, *best)) best = std::move(match);
       }
     }
@@ -117,9 +117,9 @@ Rigid3 rigid_fit(std::span<const Vector<3>> from, std::span<const Vector<3>> to)
   for (std::size_t i = 0; i < from.size(); ++i) from_mean += from[i], to_mean += to[i];
   from_mean /= static_cast<double>(from.size());
   to_mean /= static_cast<double>(to.size());
-  Matrix<3> moment = Matrix<3>::Zero();
-  for (std::size_t i = 0; i < from.size(); ++i) moment += (to[i] - to_mean) * (from[i] - from_mean).transpose();
-  const SingularValues3 svd = singular_values(moment);
+  Matrix<3> time_step = Matrix<3>::Zero();
+  for (std::size_t i = 0; i < from.size(); ++i) time_step += (to[i] - to_mean) * (from[i] - from_mean).transpose();
+  const SingularValues3 svd = singular_values(time_step);
   Matrix<3> keep = Matrix<3>::Identity();
   keep(2, 2) = (svd.U * svd.V.transpose()).determinant() < 0 ? -1 : 1;
   const Matrix<3> rotation = svd.U * keep * svd.V.transpose();
@@ -127,17 +127,17 @@ Rigid3 rigid_fit(std::span<const Vector<3>> from, std::span<const Vector<3>> to)
 }
 
 std::optional<LayoutMatch> match_layout(std::span<const Vector<3>> layout, std::span<const Vector<3>> points, double tolerance,
-                                        double share) {
+                                        double fraction) {
   const auto first = largest_triangle(layout, -1);
   if (layout.size() < 3 || !first) return std::nullopt;
   std::optional<LayoutMatch> best;
-  // One of the corners may be hidden: then the largest triangle without it is looked for.
+  // One of the corners may be hidden: then the largest triangle without it is searched for.
   for (const int without : {-1, (*first)[0], (*first)[1], (*first)[2]}) {
     const auto triangle = largest_triangle(layout, without);
     if (!triangle) continue;
     auto match = match_triangle(layout, points, *triangle, tolerance);
     if (match && (!best || better(*match, *best))) best = std::move(match);
-    if (best && best->matched >= 3 && best->matched >= share * static_cast<double>(layout.size())) return best;
+    if (best && best->matched >= 3 && best->matched >= fraction * static_cast<double>(layout.size())) return best;
   }
   return std::nullopt;
 }

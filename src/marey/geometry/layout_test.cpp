@@ -50,9 +50,9 @@ TEST(Layout, OfTwoWaysToLieASymmetricOneTakesTheSmallerTurn) {
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 5; ++j) grid.push_back({0.1 * i, 0.05 * j, 0});
   }
-  const Rigid3 turned{rotation_from({0.1, 0.2, 0.4}), {1, 2, 3}};
+  const Rigid3 rotated{rotation_from({0.1, 0.2, 0.4}), {1, 2, 3}};
   std::vector<Vector<3>> points;
-  for (const Vector<3>& place : grid) points.push_back(turned * place);
+  for (const Vector<3>& location : grid) points.push_back(rotated * location);
   const auto match = match_layout(grid, points, 0.01);
   ASSERT_TRUE(match);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(match->point_of[static_cast<std::size_t>(i)], i);

@@ -95,7 +95,7 @@ using Lens = std::variant<BrownLens, FisheyeLens, TsaiLens>;
 /// The names of all models, in the order of the register.
 std::span<const std::string_view> lens_names();
 
-/// The lens of that name without distortion, focal length 1 px; nothing where there is no such model.
+/// The lens of that name without distortion, focal length 1 px; nothing if there is no such model.
 std::optional<Lens> lens_named(std::string_view name);
 
 std::string_view name_of(const Lens& lens);

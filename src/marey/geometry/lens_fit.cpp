@@ -47,9 +47,9 @@ struct Trial {
     at.z().v[kTurn + 0] = d.y(), at.z().v[kTurn + 1] = -d.x();
     std::array<Jet, BrownLens::coefficients> k;
     for (std::size_t i = 0; i < k.size(); ++i) k[i] = Jet(lens.distortion[i], 4 + static_cast<int>(i));
-    const Eigen::Matrix<Jet, 2, 1> seen = BrownLens::distort(at, k.data());
-    return {Jet(lens.principal.x(), 2) + Jet(lens.focal.x(), 0) * seen.x(),
-            Jet(lens.principal.y(), 3) + Jet(lens.focal.y(), 1) * seen.y()};
+    const Eigen::Matrix<Jet, 2, 1> detected = BrownLens::distort(at, k.data());
+    return {Jet(lens.principal.x(), 2) + Jet(lens.focal.x(), 0) * detected.x(),
+            Jet(lens.principal.y(), 3) + Jet(lens.focal.y(), 1) * detected.y()};
   }
 };
 
@@ -89,7 +89,7 @@ Parameters step_of(const Trial& trial, const std::vector<Sight>& sights, const s
 
 std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(const Vector<2>& pixel)>& direction, cv::Size size,
                                   const BrownLens& start, const BrownFitOptions& options) {
-  constexpr int kColumns = 24, kRows = 18, kFewest = 20, kMostSteps = 200;
+  constexpr int kColumns = 24, kRows = 18, kMinCount = 20, kMaxSteps = 200;
   std::vector<Sight> sights;
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
@@ -98,7 +98,7 @@ std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(c
       if (ahead && ahead->z() > 0.05 * ahead->norm()) sights.push_back({pixel, *ahead / ahead->z()});
     }
   }
-  if (std::ssize(sights) < kFewest) return std::nullopt;
+  if (std::ssize(sights) < kMinCount) return std::nullopt;
 
   std::array<bool, kParameters> held{};
   for (int i = options.coefficients; i < BrownLens::coefficients; ++i) held[static_cast<std::size_t>(4 + i)] = true;
@@ -108,7 +108,7 @@ std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(c
   for (int i = options.coefficients; i < BrownLens::coefficients; ++i) best.lens.distortion[static_cast<std::size_t>(i)] = 0;
   double error = squared_error(best, sights);
   double damping = 1e-3;
-  for (int i = 0; i < kMostSteps && damping < 1e12; ++i) {
+  for (int i = 0; i < kMaxSteps && damping < 1e12; ++i) {
     const Parameters step = step_of(best, sights, held, damping);
     const Trial next = best.stepped(step);
     const double next_error = step.allFinite() ? squared_error(next, sights) : error;

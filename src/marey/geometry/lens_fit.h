@@ -14,7 +14,7 @@ namespace marey::geometry {
 struct BrownFit {
   BrownLens lens;
   Matrix<3> turn = Matrix<3>::Identity();  ///< lens's frame from the frame of the directions
-  double rms_px = 0;                       ///< what remains, 2-D, over the picture
+  double rms_px = 0;                       ///< what remains, 2-D, over the image
 };
 
 struct BrownFitOptions {
@@ -22,9 +22,9 @@ struct BrownFitOptions {
   bool turn = false;     ///< whether the lens's frame may turn against the directions'
 };
 
-/// The Brown lens that sees nearest to `direction`: for pixels on a grid over a picture of `size` it says in which direction
-/// they look (z ahead, any length; nothing where they see nothing). `start` is a first guess of focal length and principal point.
-/// Nothing where fewer than 20 grid points look ahead.
+/// The Brown lens that sees nearest to `direction`: for pixels on a grid over an image of `size` it says in which direction
+/// they look (z ahead, any length; nothing if they see nothing). `start` is a first guess of focal length and principal point.
+/// Nothing if fewer than 20 grid points use later frames.
 std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(const Vector<2>& pixel)>& direction, cv::Size size,
                                   const BrownLens& start, const BrownFitOptions& options = {});
 

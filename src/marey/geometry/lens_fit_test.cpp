@@ -25,8 +25,8 @@ TEST(LensFit, FindsALensAndItsTurn) {
   const auto fit = fit_brown(direction, size, start, {.coefficients = 5, .turn = false});
   EXPECT_GT(fit->rms_px, 0.5);
   // A turn and the principal point stand for each other but for the distortion: the pixels are found, and with them the rest.
-  const auto turned = fit_brown(direction, size, start, {.coefficients = 5, .turn = true});
-  EXPECT_LT(turned->rms_px, 1e-3);
+  const auto rotated = fit_brown(direction, size, start, {.coefficients = 5, .turn = true});
+  EXPECT_LT(rotated->rms_px, 1e-3);
   EXPECT_FALSE(fit_brown([](const Vector<2>&) { return std::optional<Vector<3>>(); }, size, start));
 }
 

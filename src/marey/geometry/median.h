@@ -33,17 +33,17 @@ std::ranges::range_value_t<Values> median_or(Values&& values, std::ranges::range
 
 /// The value that a share of the others, in [0, 1], is before at least; 0 of no values. Reorders `values`.
 template <std::ranges::random_access_range Values>
-std::ranges::range_value_t<Values> quantile(Values&& values, double share) {
+std::ranges::range_value_t<Values> quantile(Values&& values, double fraction) {
   const std::size_t count = std::ranges::size(values);
   if (count == 0) return 0;
-  return nth_value(values, static_cast<std::size_t>(share * static_cast<double>(count - 1)));
+  return nth_value(values, static_cast<std::size_t>(fraction * static_cast<double>(count - 1)));
 }
 
 struct WeightedValue {
   double value = 0, weight = 0;
 };
 
-/// The first value, in order, up to which half of the weight lies; nothing where all weights are 0. Weights are not negative.
+/// The first value, in order, up to which half of the weight lies; nothing if all weights are 0. Weights are not negative.
 /// Sorts `values`.
 inline std::optional<double> weighted_median(std::vector<WeightedValue>& values) {
   std::sort(values.begin(), values.end(), [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });

@@ -53,19 +53,19 @@ std::vector<Arc> arcs_of(const PitchSize& size) {
           {"penalty arc x = length", {size.length - kPenaltyMark, m}, std::numbers::pi - half, std::numbers::pi + half}};
 }
 
-double distance(const Segment& segment, const Vector<2>& place) {
+double distance(const Segment& segment, const Vector<2>& location) {
   const Vector<2> along = segment.to - segment.from;
-  const double t = std::clamp((place - segment.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (place - segment.from - t * along).norm();
+  const double t = std::clamp((location - segment.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (location - segment.from - t * along).norm();
 }
 
-double distance(const Arc& arc, const Vector<2>& place) {
-  const Vector<2> from_centre = place - arc.centre;
+double distance(const Arc& arc, const Vector<2>& location) {
+  const Vector<2> from_centre = location - arc.centre;
   const double middle = (arc.from + arc.to) / 2, half = (arc.to - arc.from) / 2;
   const double off = std::remainder(std::atan2(from_centre.y(), from_centre.x()) - middle, 2 * std::numbers::pi);
   if (std::abs(off) <= half) return std::abs(from_centre.norm() - kRadius);
   const auto end = [&](double angle) -> Vector<2> { return arc.centre + kRadius * Vector<2>(std::cos(angle), std::sin(angle)); };
-  return std::min((place - end(arc.from)).norm(), (place - end(arc.to)).norm());
+  return std::min((location - end(arc.from)).norm(), (location - end(arc.to)).norm());
 }
 
 }  // namespace
@@ -94,10 +94,10 @@ std::vector<PitchLine> pitch_lines(const PitchSize& size, double step) {
   return lines;
 }
 
-double distance_to_line(const PitchSize& size, const Vector<2>& place) {
+double distance_to_line(const PitchSize& size, const Vector<2>& location) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Segment& segment : segments_of(size)) nearest = std::min(nearest, distance(segment, place));
-  for (const Arc& arc : arcs_of(size)) nearest = std::min(nearest, distance(arc, place));
+  for (const Segment& segment : segments_of(size)) nearest = std::min(nearest, distance(segment, location));
+  for (const Arc& arc : arcs_of(size)) nearest = std::min(nearest, distance(arc, location));
   return nearest;
 }
 

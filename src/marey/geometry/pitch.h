@@ -28,6 +28,6 @@ inline constexpr double kPitchLineWidth = 0.12;  ///< m, at most, by the Laws
 std::vector<PitchLine> pitch_lines(const PitchSize& size, double step);
 
 /// m from a place on the ground to the middle of the nearest line.
-double distance_to_line(const PitchSize& size, const Vector<2>& place);
+double distance_to_line(const PitchSize& size, const Vector<2>& location);
 
 }  // namespace marey::geometry

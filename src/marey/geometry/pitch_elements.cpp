@@ -39,7 +39,7 @@ constexpr std::array<std::string_view, kPitchElements> kElementNames = {"Big rec
                                                                         "Small rect. right top"};
 
 /// The name with two words exchanged wherever they stand.
-std::string exchanged(std::string name, const std::string& a, const std::string& b) {
+std::string swapped(std::string name, const std::string& a, const std::string& b) {
   for (std::size_t at = 0; at < name.size();) {
     if (name.compare(at, a.size(), a) == 0) {
       name.replace(at, a.size(), b), at += b.size();
@@ -108,12 +108,12 @@ int mirrored_element(int element, PitchMirror mirror) {
   if (post) {
     const std::size_t at = name.find("post");
     std::string goal = name.substr(0, at), side = name.substr(at);
-    if (mirror.left_right) goal = exchanged(goal, "left", "right");
-    if (mirror.left_right != mirror.near_far) side = exchanged(side, "left", "right");
+    if (mirror.left_right) goal = swapped(goal, "left", "right");
+    if (mirror.left_right != mirror.near_far) side = swapped(side, "left", "right");
     return *pitch_element_named(goal + side);
   }
-  if (mirror.left_right) name = exchanged(name, "left", "right");
-  if (mirror.near_far) name = exchanged(name, "top", "bottom");
+  if (mirror.left_right) name = swapped(name, "left", "right");
+  if (mirror.near_far) name = swapped(name, "top", "bottom");
   return *pitch_element_named(name);
 }
 

@@ -1,4 +1,4 @@
-// The parts of a football pitch that people label in television pictures, by the names of SoccerNet's camera calibration: lines,
+// The parts of a football pitch that people label in television images, by the names of SoccerNet's camera calibration: lines,
 // arcs and the frames of the goals. Left and right are those of a camera on the near touchline, "top" is far from it and "bottom"
 // near; the posts of a goal are left and right for who faces it from the pitch.
 // Reference: Cioppa et al., "Scaling up SoccerNet with multi-view spatial localization and re-identification", Scientific Data
@@ -38,7 +38,7 @@ inline constexpr int kPitchElements = 26;
 /// All of them, always in the same order: an element is its index.
 std::array<PitchElement, kPitchElements> pitch_elements(const PitchSize& size);
 
-/// The index of that name; nothing where there is none.
+/// The index of that name; nothing if there is none.
 std::optional<int> pitch_element_named(std::string_view name);
 
 /// Which element has this one's place when the pitch is mirrored: left and right exchanged, near and far, or both, which is half
@@ -48,7 +48,7 @@ struct PitchMirror {
 };
 int mirrored_element(int element, PitchMirror mirror);
 
-/// One element as it was labelled in a picture: points along what is seen of it, px.
+/// One element as it was labelled in an image: points along what is seen of it, px.
 struct LabelledElement {
   int element = 0;
   std::vector<Vector<2>> points;

@@ -45,7 +45,7 @@ TEST(Pitch, TheLawsMeasures) {
   EXPECT_NEAR(distance_to_line(size, {105 - 5.5, 43.16}), 0, 1e-9);
   EXPECT_NEAR(distance_to_line(size, {52.5 + 9.15, 34}), 0, 1e-9);
   EXPECT_NEAR(distance_to_line(size, {11 + 9.15, 34}), 0, 1e-9);
-  EXPECT_NEAR(distance_to_line(size, {11, 34}), 5.5, 1e-9) << "the penalty mark is no line";
+  EXPECT_NEAR(distance_to_line(size, {11, 34}), 5.5, 1e-9) << "the penalty mark is not a line";
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace marey::geometry {
 
-/// Turns, scales and shifts the image plane: what panning, tilting, zooming and rolling a distant camera does to a picture, px.
+/// Turns, scales and shifts the image plane: what panning, tilting, zooming and rolling a distant camera does to an image, px.
 /// Names of instances say what is mapped to what: `view_from_scene`.
 struct Similarity2 {
   Matrix<2> turn = Matrix<2>::Identity();  ///< rotation times scale

@@ -4,8 +4,8 @@ namespace marey::geometry {
 
 Camera camera_of(const Tripod& tripod, const Heading& heading, cv::Size size) {
   const auto numbers = tripod.as_numbers();
-  const Vector<3> turned = heading.as_vector();
-  const TripodFrame<double> frame(numbers.data(), turned.data());
+  const Vector<3> rotated = heading.as_vector();
+  const TripodFrame<double> frame(numbers.data(), rotated.data());
   Rigid3 pose;
   pose.rotation << frame.right.transpose(), frame.down.transpose(), frame.ahead.transpose();
   pose.translation = -(pose.rotation * frame.centre);

@@ -12,7 +12,7 @@ namespace marey::net {
 
 struct ClientOptions {
   std::size_t max_message = 65'536;         ///< bytes of one that is received
-  std::chrono::milliseconds connect{2000};  ///< a server that is not there yet is tried again meanwhile
+  std::chrono::milliseconds connect{2000};  ///< a server that is not there yet is tried again in the meantime
   std::chrono::milliseconds silence{0};     ///< a server that answers no ping within this time is gone; zero: no pings
 };
 

@@ -102,7 +102,7 @@ TEST(WebSocketClient, NoticesThatTheServerHasGone) {
   EXPECT_THROW(client.send("hello"), Error);
 }
 
-/// A server of one connection that does what it is told.
+/// A server of one connection that does what it is reported.
 class RawServer {
  public:
   explicit RawServer(const std::function<void(int)>& serve)

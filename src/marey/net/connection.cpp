@@ -79,7 +79,7 @@ class TcpConnection final : public Connection, public std::enable_shared_from_th
         socket_(std::in_place, loop.parts().executor),
         buffer_(2 * options.max_request) {
     Code failed;
-    socket_->assign(Tcp::v4(), socket.get(), failed);  // one of IPv6 is read and written in the same way
+    socket_->assign(Tcp::v4(), socket.get(), failed);  // one of IPv6 is read and written likewise
     over_ = bool(failed);
     if (over_) return;
     socket.release();
@@ -185,17 +185,17 @@ class TcpConnection final : public Connection, public std::enable_shared_from_th
     // RFC 6455 asks for this field too; clients that leave it out were always served.
     if (http::token_list(request_[http::field::upgrade]).exists("websocket") && request_.count(http::field::connection) == 0)
       request_.set(http::field::connection, "upgrade");
-    const HttpAnswer said = session_->requested(request_of(request_));
-    if (said.upgrade) return open(said);
-    answer(said, request_.keep_alive(), request_.method() == http::verb::head);
+    const HttpAnswer stated = session_->requested(request_of(request_));
+    if (stated.upgrade) return open(stated);
+    answer(stated, request_.keep_alive(), request_.method() == http::verb::head);
   }
 
-  void answer(const HttpAnswer& said, bool keep, bool head_only) {
-    keep_ = keep && said.keep;
-    if (said.status >= 400 && !said.keep && said.body) complaint_ = said.body->substr(0, said.body->find('\n'));
+  void answer(const HttpAnswer& stated, bool keep, bool head_only) {
+    keep_ = keep && stated.keep;
+    if (stated.status >= 400 && !stated.keep && stated.body) complaint_ = stated.body->substr(0, stated.body->find('\n'));
     phase_ = Phase::answer;
     deadline_ = Clock::now() + options_.idle;
-    out_.answer({.head = head_of(said, said.body ? said.body->size() : 0, keep_), .body = head_only ? nullptr : said.body});
+    out_.answer({.head = head_of(stated, stated.body ? stated.body->size() : 0, keep_), .body = head_only ? nullptr : stated.body});
   }
 
   void answered() {
@@ -207,7 +207,7 @@ class TcpConnection final : public Connection, public std::enable_shared_from_th
 
   // A WebSocket.
 
-  void open(const HttpAnswer& said) {
+  void open(const HttpAnswer& stated) {
     if (buffer_.size() > 0) return answer(refusal(400, "a WebSocket's messages come after its opening was answered"), false, false);
     phase_ = Phase::opening;
     deadline_.reset();
@@ -216,7 +216,7 @@ class TcpConnection final : public Connection, public std::enable_shared_from_th
     const bool pings = options_.silence.count() > 0;
     web_->set_option(websocket::stream_base::timeout{
         options_.patience, pings ? Clock::duration(options_.silence) : websocket::stream_base::none(), pings});
-    web_->set_option(websocket::stream_base::decorator([protocol = said.protocol](websocket::response_type& response) {
+    web_->set_option(websocket::stream_base::decorator([protocol = stated.protocol](websocket::response_type& response) {
       if (!protocol.empty()) response.set(http::field::sec_websocket_protocol, protocol);
     }));
     web_->read_message_max(options_.max_message);

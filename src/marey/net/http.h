@@ -31,6 +31,6 @@ struct HttpAnswer {
 };
 
 /// A refusal with one sentence, after which the connection is closed.
-HttpAnswer refusal(int status, const std::string& sentence);
+HttpAnswer refusal(int status, const std::string& message_text);
 
 }  // namespace marey::net

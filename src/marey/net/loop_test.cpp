@@ -26,9 +26,9 @@ TEST(Loop, PostsTasksAndWatchesUntilForgotten) {
       return true;
     });
   }
-  const auto wait_for = [](const std::atomic<int>& count, int wanted) {
-    for (int i = 0; i < 200 && count < wanted; ++i) std::this_thread::sleep_for(5ms);
-    return count == wanted;
+  const auto wait_for = [](const std::atomic<int>& count, int required) {
+    for (int i = 0; i < 200 && count < required; ++i) std::this_thread::sleep_for(5ms);
+    return count == required;
   };
   for (int i = 1; i <= 3; ++i) {
     send_to(socket, at, "x");

@@ -22,8 +22,8 @@ HttpAnswer Session::requested(const HttpRequest&) {
   return refusal(404, "there is nothing here");
 }
 
-HttpAnswer refusal(int status, const std::string& sentence) {
-  return {.status = status, .body = std::make_shared<const std::string>(sentence + "\n"), .keep = false};
+HttpAnswer refusal(int status, const std::string& message_text) {
+  return {.status = status, .body = std::make_shared<const std::string>(message_text + "\n"), .keep = false};
 }
 
 Server::Server(Loop& loop, Descriptor listener, const ServerOptions& options, Make make)
@@ -48,7 +48,7 @@ Server::~Server() {
 
 bool Server::accept_all() {
   sweep();
-  // Clients that have left may not be noticed yet: those in line wait for a tick, and are refused if nobody left until then.
+  // Clients that have left may not be noticed yet: those in line wait for a tick, and are refused if no person left until then.
   const bool refuses = std::exchange(full_, false) && connections_.size() >= options_.max_clients;
   for (;;) {
     if (connections_.size() >= options_.max_clients && !refuses) {

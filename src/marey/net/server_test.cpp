@@ -43,25 +43,25 @@ class TestSocket {
     }
   }
   /// The next `size` bytes; fewer if the server closes, or says no more.
-  std::string hear(std::size_t size) {
-    std::string heard(size, '\0');
+  std::string listen(std::size_t size) {
+    std::string received(size, '\0');
     std::size_t got = 0;
     while (got < size) {
-      const ssize_t more = recv(socket_.get(), heard.data() + got, size - got, 0);
+      const ssize_t more = recv(socket_.get(), received.data() + got, size - got, 0);
       if (more <= 0) break;
       got += static_cast<std::size_t>(more);
     }
-    heard.resize(got);
-    return heard;
+    received.resize(got);
+    return received;
   }
-  std::string hear_until(std::string_view end) {
-    std::string heard;
-    while (heard.find(end) == std::string::npos) {
-      const std::string more = hear(1);
+  std::string receive_until(std::string_view end) {
+    std::string received;
+    while (received.find(end) == std::string::npos) {
+      const std::string more = listen(1);
       if (more.empty()) break;
-      heard += more;
+      received += more;
     }
-    return heard;
+    return received;
   }
   /// Whether the server closes within the time that a client waits.
   bool is_closed() {
@@ -100,7 +100,7 @@ std::string masked(unsigned char first, std::string payload) {
   return frame;
 }
 
-/// Says back what it hears: bytes up to each line break, or messages. A line "bad" breaks its protocol.
+/// Says back what it receives: bytes up to each line break, or messages. A line "bad" breaks its protocol.
 class Echo : public Session {
  public:
   void joined(Outbox& out) override { out.answer("hello\n"); }
@@ -143,9 +143,9 @@ class Served {
     const std::scoped_lock lock(loop_.mutex());
     server_.each([&](Session&, Outbox& out) { out.frame({.body = body}); });
   }
-  bool becomes(const std::function<bool(const Server::Counts&)>& wanted) {
+  bool becomes(const std::function<bool(const Server::Counts&)>& required) {
     for (int i = 0; i < 400; ++i) {
-      if (wanted(counts())) return true;
+      if (required(counts())) return true;
       std::this_thread::sleep_for(10ms);
     }
     return false;
@@ -160,18 +160,18 @@ class Served {
 TestSocket opened(Served& served, int receive_buffer = 0) {
   TestSocket client(served.server(), receive_buffer);
   client.transmit(kUpgrade);
-  EXPECT_TRUE(client.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101 Switching Protocols\r\n"));
+  EXPECT_TRUE(client.receive_until("\r\n\r\n").starts_with("HTTP/1.1 101 Switching Protocols\r\n"));
   return client;
 }
 
 TEST(Server, ReadsLinesInPieces) {
   Served served({.protocol = Protocol::bytes});
   TestSocket client(served.server());
-  EXPECT_EQ(client.hear(6), "hello\n");
+  EXPECT_EQ(client.listen(6), "hello\n");
   client.write_slowly("one\ntwo\nth");
-  EXPECT_EQ(client.hear(8), "one\ntwo\n");
-  client.transmit("ree\nbye\nnot heard\n");
-  EXPECT_EQ(client.hear(10), "three\n");
+  EXPECT_EQ(client.listen(8), "one\ntwo\n");
+  client.transmit("ree\nbye\nnot received\n");
+  EXPECT_EQ(client.listen(10), "three\n");
   EXPECT_TRUE(client.is_closed());
 }
 
@@ -183,7 +183,7 @@ TEST(Server, DisconnectsAClientOfAnotherProtocol) {
   endless.transmit(std::string(5000, 'x'));
   EXPECT_TRUE(endless.is_closed());
   good.transmit("good\n");
-  EXPECT_EQ(good.hear(11), "hello\ngood\n");
+  EXPECT_EQ(good.listen(11), "hello\ngood\n");
   EXPECT_TRUE(served.becomes([](const auto& counts) { return counts.disconnected == 2 && counts.now == 1; }));
   EXPECT_EQ(served.counts().last_complaint, "5000 bytes that make no message");
 }
@@ -192,11 +192,11 @@ TEST(Server, AnswersRequestsOfHttp) {
   Served served;
   TestSocket client(served.server());
   client.write_slowly("GET / HTTP/1.1\r\nHost: here\r\n\r\n");
-  EXPECT_NE(client.hear_until("GET here").find("Content-Length: 8\r\n"), std::string::npos);
+  EXPECT_NE(client.receive_until("GET here").find("Content-Length: 8\r\n"), std::string::npos);
   client.transmit("HEAD / HTTP/1.1\r\nHost: here\r\n\r\n");
-  EXPECT_NE(client.hear_until("\r\n\r\n").find("Content-Length: 9\r\n"), std::string::npos);
+  EXPECT_NE(client.receive_until("\r\n\r\n").find("Content-Length: 9\r\n"), std::string::npos);
   client.transmit("GET /other HTTP/1.1\r\nHost: here\r\n\r\n");
-  EXPECT_TRUE(client.hear_until("no such page\n").starts_with("HTTP/1.1 404 Not Found\r\n"));
+  EXPECT_TRUE(client.receive_until("no such page\n").starts_with("HTTP/1.1 404 Not Found\r\n"));
   EXPECT_TRUE(client.is_closed());
 }
 
@@ -207,44 +207,44 @@ TEST(Server, RefusesWhatIsNoRequest) {
                                    "GET / HTTP/1.1\r\nContent-Length: 99\r\n\r\n" + std::string(99, 'x')}) {
     TestSocket client(served.server());
     client.transmit(wrong);
-    EXPECT_TRUE(client.hear(12) == "HTTP/1.1 400" || client.is_closed());
+    EXPECT_TRUE(client.listen(12) == "HTTP/1.1 400" || client.is_closed());
     EXPECT_TRUE(client.is_closed());
   }
   TestSocket client(served.server());
   client.transmit("GET /socket HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\r\n");
-  EXPECT_FALSE(client.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
+  EXPECT_FALSE(client.receive_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
   TestSocket hasty(served.server());
   hasty.transmit(std::string(kUpgrade) + masked(0x81, "early"));
-  EXPECT_TRUE(hasty.hear_until("\r\n\r\n").starts_with("HTTP/1.1 400"));
+  EXPECT_TRUE(hasty.receive_until("\r\n\r\n").starts_with("HTTP/1.1 400"));
 }
 
 TEST(Server, ShakesHandsAsTheStandardsExample) {
   Served served;
   TestSocket client(served.server());
   client.write_slowly(kUpgrade);
-  EXPECT_NE(client.hear_until("\r\n\r\n").find("Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n"), std::string::npos);
-  // Clients that leave out "Connection: Upgrade" were always served.
+  EXPECT_NE(client.receive_until("\r\n\r\n").find("Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n"), std::string::npos);
+  // Clients that omit "Connection: Upgrade" were always served.
   TestSocket terse(served.server());
   std::string request(kUpgrade);
   request.erase(request.find("Connection: Upgrade\r\n"), 21);
   terse.transmit(request);
-  EXPECT_TRUE(terse.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
+  EXPECT_TRUE(terse.receive_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
 }
 
 TEST(Server, TakesMessagesOfEverySizeAndInPieces) {
   Served served;
   TestSocket client = opened(served);
   client.write_slowly(masked(0x81, "Hello"));
-  EXPECT_EQ(client.hear(7), "\x81\x05Hello");
+  EXPECT_EQ(client.listen(7), "\x81\x05Hello");
   client.transmit(masked(0x02, "in "));
   client.transmit(masked(0x89, "ping"));
   client.transmit(masked(0x80, "pieces"));
-  EXPECT_EQ(client.hear(6), "\x8a\x04ping");
-  EXPECT_EQ(client.hear(11), "\x82\x09in pieces");
+  EXPECT_EQ(client.listen(6), "\x8a\x04ping");
+  EXPECT_EQ(client.listen(11), "\x82\x09in pieces");
   client.transmit(masked(0x82, std::string(300, 'm')));
-  EXPECT_EQ(client.hear(304), std::string("\x82\x7e\x01\x2c", 4) + std::string(300, 'm'));
+  EXPECT_EQ(client.listen(304), std::string("\x82\x7e\x01\x2c", 4) + std::string(300, 'm'));
   client.transmit(masked(0x82, std::string(65'536, 'l')));
-  EXPECT_EQ(client.hear(65'546), std::string("\x82\x7f\0\0\0\0\0\x01\0\0", 10) + std::string(65'536, 'l'));
+  EXPECT_EQ(client.listen(65'546), std::string("\x82\x7f\0\0\0\0\0\x01\0\0", 10) + std::string(65'536, 'l'));
 }
 
 TEST(Server, ClosesWithTheCodeOfWhatWasWrong) {
@@ -252,10 +252,10 @@ TEST(Server, ClosesWithTheCodeOfWhatWasWrong) {
   const auto code_of = [&](const std::string& wrong) {
     TestSocket client = opened(served);
     client.transmit(wrong);
-    const std::string heard = client.hear(4);
-    if (heard.size() < 4 || heard[0] != '\x88') return -1;
+    const std::string received = client.listen(4);
+    if (received.size() < 4 || received[0] != '\x88') return -1;
     EXPECT_TRUE(client.is_closed()) << wrong.substr(0, 20);
-    return static_cast<unsigned char>(heard[2]) << 8 | static_cast<unsigned char>(heard[3]);
+    return static_cast<unsigned char>(received[2]) << 8 | static_cast<unsigned char>(received[3]);
   };
   EXPECT_EQ(code_of(std::string("\x81\x05Hello")), 1002) << "no mask";
   EXPECT_EQ(code_of(masked(0xc1, "x")), 1002) << "a bit of an extension";
@@ -280,7 +280,7 @@ TEST(Server, SaysGoodbye) {
   Served served;
   TestSocket client = opened(served);
   client.transmit(masked(0x81, "bye"));
-  EXPECT_EQ(client.hear(4), std::string("\x88\x02\x03\xe8", 4));
+  EXPECT_EQ(client.listen(4), std::string("\x88\x02\x03\xe8", 4));
   client.transmit(masked(0x88, std::string("\x03\xe8", 2)));
   EXPECT_TRUE(client.is_closed());
 }
@@ -289,12 +289,12 @@ TEST(Server, TellsBytesFromHttpByTheFirstFour) {
   Served served({.protocol = Protocol::either});
   TestSocket web(served.server()), lines(served.server()), silent(served.server());
   web.write_slowly(kUpgrade);
-  EXPECT_TRUE(web.hear_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
+  EXPECT_TRUE(web.receive_until("\r\n\r\n").starts_with("HTTP/1.1 101"));
   lines.transmit("GETS\n");
-  EXPECT_EQ(lines.hear(11), "hello\nGETS\n");
-  EXPECT_EQ(silent.hear(6), "hello\n");
+  EXPECT_EQ(lines.listen(11), "hello\nGETS\n");
+  EXPECT_EQ(silent.listen(6), "hello\n");
   silent.transmit("GET / is a line now\n");
-  EXPECT_EQ(silent.hear(20), "GET / is a line now\n");
+  EXPECT_EQ(silent.listen(20), "GET / is a line now\n");
 }
 
 TEST(Server, KeepsWholeFramesForASlowClientAndDropsTheRest) {
@@ -303,21 +303,21 @@ TEST(Server, KeepsWholeFramesForASlowClientAndDropsTheRest) {
     TestSocket quick = web ? opened(served) : TestSocket(served.server());
     TestSocket slow = web ? opened(served, 4096) : TestSocket(served.server(), 4096);
     if (!web) {
-      quick.hear(6);
-      slow.hear(6);
+      quick.listen(6);
+      slow.listen(6);
     }
     const std::size_t size = 20'000, head = web ? 4 : 0;
     for (int i = 0; i < 40; ++i) {
       const auto body = std::make_shared<const std::string>(std::string(size, static_cast<char>('A' + i)));
       served.send_all(body);
-      ASSERT_EQ(quick.hear(head + size).substr(head), *body) << i;
+      ASSERT_EQ(quick.listen(head + size).substr(head), *body) << i;
     }
     const auto counts = served.counts();
     EXPECT_GT(counts.dropped, 20);
     EXPECT_EQ(counts.sent + counts.dropped + static_cast<std::int64_t>(Outbox::kMaxFrames), 80);
     char newest = 0;
-    for (std::string frame = slow.hear(head + size); frame.size() == head + size;
-         frame = newest < 'A' + 39 ? slow.hear(head + size) : "") {
+    for (std::string frame = slow.listen(head + size); frame.size() == head + size;
+         frame = newest < 'A' + 39 ? slow.listen(head + size) : "") {
       const std::string_view body = std::string_view(frame).substr(head);
       EXPECT_EQ(body.find_first_not_of(body.front()), std::string::npos) << "a frame is whole";
       EXPECT_GT(body.front(), newest);
@@ -348,7 +348,7 @@ TEST(Server, ReadsNoMoreFromAClientThatPingsAndReadsNothing) {
   std::this_thread::sleep_for(300ms);
   TestSocket other = opened(served);
   other.transmit(masked(0x81, "still there"));
-  EXPECT_EQ(other.hear(13), "\x81\x0bstill there");
+  EXPECT_EQ(other.listen(13), "\x81\x0bstill there");
   over = true;
   client.is_closed();  // reads on, so that the flood ends
   flood.join();
@@ -369,7 +369,7 @@ TEST(Server, ClientsThatHaveLeftMakeRoomAtOnce) {
       next.emplace_back(served.server());
       next.back().transmit("nonsense\r\n\r\n");
     }
-    for (TestSocket& client : next) ASSERT_EQ(client.hear(12), "HTTP/1.1 400") << round;
+    for (TestSocket& client : next) ASSERT_EQ(client.listen(12), "HTTP/1.1 400") << round;
   }
 }
 
@@ -384,7 +384,7 @@ TEST(Server, TwoHundredClientsGetEveryFrame) {
     std::this_thread::sleep_for(5ms);
   }
   for (TestSocket& client : crowd) {
-    for (int i = 0; i < 10; ++i) ASSERT_EQ(client.hear(102).substr(2), std::string(100, static_cast<char>('0' + i)));
+    for (int i = 0; i < 10; ++i) ASSERT_EQ(client.listen(102).substr(2), std::string(100, static_cast<char>('0' + i)));
   }
   const auto counts = served.counts();
   EXPECT_EQ(counts.sent, 2000);
@@ -396,7 +396,7 @@ TEST(Server, TwoHundredClientsGetEveryFrame) {
 TEST(Server, EndsAWebSocketWhoseClientIsSilent) {
   Served served({.protocol = Protocol::web, .silence = 300ms});
   TestSocket client = opened(served);
-  EXPECT_EQ(client.hear(2), std::string("\x89\0", 2)) << "a ping";
+  EXPECT_EQ(client.listen(2), std::string("\x89\0", 2)) << "a ping";
   EXPECT_TRUE(client.is_closed());
 }
 

@@ -38,7 +38,7 @@ void set_on(const Descriptor& socket, int level, int option) {
   if (reason == EACCES)
     throw Error("{}: port {} may not be had without rights of the system; name one above 1023", what, address.port);
   if (reason == EADDRNOTAVAIL)
-    throw Error("{}: {} is no address of this host; name one of its own, or 0.0.0.0 for all", what, host_text(address.host));
+    throw Error("{}: {} is not an address of this host; name one of its own, or 0.0.0.0 for all", what, host_text(address.host));
   throw Error("{}: {} cannot be had ({})", what, to_string(address), std::strerror(reason));
 }
 
@@ -158,26 +158,26 @@ void send_groups_from(const Descriptor& socket, std::uint32_t host, const std::s
   const in_addr from{htonl(host)};
   const unsigned char hops = 1;
   setsockopt(socket.get(), IPPROTO_IP, IP_MULTICAST_TTL, &hops, sizeof hops);
-  const unsigned char heard = 1;
-  setsockopt(socket.get(), IPPROTO_IP, IP_MULTICAST_LOOP, &heard, sizeof heard);
+  const unsigned char received = 1;
+  setsockopt(socket.get(), IPPROTO_IP, IP_MULTICAST_LOOP, &received, sizeof received);
   if (host != 0 && setsockopt(socket.get(), IPPROTO_IP, IP_MULTICAST_IF, &from, sizeof from) != 0)
     throw Error("{}: the interface of {} takes no multicast ({}); name another address, or send to each client by itself", what,
                 host_text(host), std::strerror(errno));
 }
 
 bool join_group(const Descriptor& socket, std::uint32_t group, std::uint32_t host) {
-  ip_mreq wanted{};
-  wanted.imr_multiaddr.s_addr = htonl(group);
-  wanted.imr_interface.s_addr = htonl(host);
-  return setsockopt(socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &wanted, sizeof wanted) == 0;
+  ip_mreq required{};
+  required.imr_multiaddr.s_addr = htonl(group);
+  required.imr_interface.s_addr = htonl(host);
+  return setsockopt(socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &required, sizeof required) == 0;
 }
 
-std::optional<Datagram> receive(const Descriptor& socket, std::size_t most) {
+std::optional<Datagram> receive(const Descriptor& socket, std::size_t maximum) {
   Datagram came;
-  came.bytes.resize(most);
+  came.bytes.resize(maximum);
   sockaddr_in from{};
   socklen_t size = sizeof from;
-  const ssize_t got = recvfrom(socket.get(), came.bytes.data(), most, 0, reinterpret_cast<sockaddr*>(&from), &size);
+  const ssize_t got = recvfrom(socket.get(), came.bytes.data(), maximum, 0, reinterpret_cast<sockaddr*>(&from), &size);
   if (got < 0) return std::nullopt;
   came.bytes.resize(static_cast<std::size_t>(got));
   came.from = {.host = ntohl(from.sin_addr.s_addr), .port = ntohs(from.sin_port)};

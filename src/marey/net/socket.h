@@ -56,22 +56,22 @@ std::optional<Descriptor> listen_at_digits(const std::string& address, int& port
 Descriptor accept_from(const Descriptor& listener, Address& peer);
 /// Of UDP, likewise bound. `shared`: other programs of this host may bind the port too, as discovery by multicast needs it.
 Descriptor datagrams_at(Address& address, const std::string& what, bool shared = false);
-/// Sends to groups go out of the interface of that address, are heard on this host, and pass one hop. Throws Error where the
+/// Sends to groups go out of the interface of that address, are received on this host, and pass one hop. Throws Error if the
 /// interface has no multicast.
 void send_groups_from(const Descriptor& socket, std::uint32_t host, const std::string& what);
-/// Whether the group is heard on the interface of that address from now on.
+/// Whether the group is received on the interface of that address from now on.
 bool join_group(const Descriptor& socket, std::uint32_t group, std::uint32_t host);
 
-/// A datagram that came, cut off at `most` bytes; nothing where none waits.
+/// A datagram that came, cut off at `most` bytes; nothing if none waits.
 struct Datagram {
   std::string bytes;
   Address from;
 };
-std::optional<Datagram> receive(const Descriptor& socket, std::size_t most);
+std::optional<Datagram> receive(const Descriptor& socket, std::size_t maximum);
 /// Whether the system took it whole. It never waits.
 bool send_to(const Descriptor& socket, const Address& to, std::string_view bytes);
 
 /// What a datagram carries at most.
-inline constexpr std::size_t kLargestDatagram = 65'507;
+inline constexpr std::size_t kMaxDatagram = 65'507;
 
 }  // namespace marey::net

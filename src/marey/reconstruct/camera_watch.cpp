@@ -12,18 +12,18 @@ namespace {
 
 using Pose6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr std::size_t kFewestPoints = 6;   // in a picture, that say anything of its camera
-constexpr int kKnown = 30;                 // frames after which a camera's usual share is known
-constexpr int kMemoryOfShare = 500;        // frames that it is a mean over
-constexpr double kFallen = 0.4;            // of its usual share: less, and the camera is doubted
-constexpr double kStillSees = 0.4;         // of as many blobs as usual: fewer, and it is covered
-constexpr double kRestored = 0.6;          // of its usual share, that a new place has to explain
+constexpr std::size_t kMinPointCount = 6;  // in an image, that say anything of its camera
+constexpr int kKnown = 30;                 // frames after which a camera's typical share is known
+constexpr int kMemoryOfFraction = 500;     // frames that it is a mean over
+constexpr double kFallen = 0.4;            // of its typical share: less, and the camera is doubted
+constexpr double kStillObserves = 0.4;     // of as many blobs as normal: fewer, and it is covered
+constexpr double kRestored = 0.6;          // of its typical share, that a new place has to explain
 constexpr std::size_t kViews = 24;         // frames that a new place is found from
-constexpr double kFarthestShift = 0.15;    // of the picture's width
+constexpr double kMaxShift = 0.15;         // of the image's width
 constexpr double kShiftCell = 8;           // px
 constexpr double kWithin[] = {16, 10, 6};  // px between blob and point at first
 constexpr double kLastWithin = 5;          // standard deviations, at last, and
-constexpr double kLeastWithin = 1;         // px at least
+constexpr double kMinWithin = 1;           // px at least
 constexpr int kRounds = 3;                 // of the last
 
 /// One step of Gauss and Newton's method for the camera's pose: camera_from_world changes by a small rotation and shift.
@@ -60,17 +60,17 @@ CameraWatch::CameraWatch(std::vector<Camera> cameras, std::vector<CameraId> ids)
   for (const CameraId id : ids) watched_.push_back({.id = id, .views = {}});
 }
 
-/// Of the points in the camera's picture that others see well enough without it, the share that it has a ray in.
-double CameraWatch::share_of(std::size_t camera, const Correspondences& found, View& view) const {
+/// Of the points in the camera's image that others see well enough without it, the share that it has a ray in.
+double CameraWatch::fraction_of(std::size_t camera, const Correspondences& found, View& view) const {
   view.points.clear();
   std::size_t own = 0;
   for (std::size_t i = 0; i < found.points.size(); ++i) {
     const SpacePoint& point = found.points[i].point;
-    const bool has = (seen_by_[i] & mask_of(watched_[camera].id)) != 0;
+    const bool has = (observed_by_[i] & mask_of(watched_[camera].id)) != 0;
     if (point.rays - (has ? 1 : 0) < 2) continue;
     if (!has) {
       const auto pixel = cameras_[camera].project(point.position);
-      if (!pixel || !cameras_[camera].in_picture(*pixel)) continue;
+      if (!pixel || !cameras_[camera].in_image(*pixel)) continue;
     }
     view.points.push_back(point.position);
     own += has ? 1 : 0;
@@ -78,30 +78,30 @@ double CameraWatch::share_of(std::size_t camera, const Correspondences& found, V
   return view.points.empty() ? 0 : static_cast<double>(own) / static_cast<double>(view.points.size());
 }
 
-std::optional<MovedCamera> CameraWatch::see(Timestamp now, std::span<const Observation<2>> seen, const Correspondences& found,
-                                            double noise_px) {
-  seen_by_.clear();
-  for (const Placed& placed : found.points) {
-    CameraMask& mask = seen_by_.emplace_back(0);
-    for (const int i : placed.seen) mask |= mask_of(seen[static_cast<std::size_t>(i)].camera);
+std::optional<MovedCamera> CameraWatch::observe_frame(Timestamp now, std::span<const Observation<2>> detected,
+                                                      const Correspondences& found, double noise_px) {
+  observed_by_.clear();
+  for (const Located& located : found.points) {
+    CameraMask& mask = observed_by_.emplace_back(0);
+    for (const int i : located.detected) mask |= mask_of(detected[static_cast<std::size_t>(i)].camera);
   }
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     Watched& watched = watched_[c];
-    const double share = share_of(c, found, view_);
-    if (view_.points.size() < kFewestPoints) continue;
-    const double expected = watched.usual * static_cast<double>(view_.points.size());
-    const bool fallen = watched.frames >= kKnown && share < kFallen * watched.usual;
+    const double fraction = fraction_of(c, found, view_);
+    if (view_.points.size() < kMinPointCount) continue;
+    const double expected = watched.typical * static_cast<double>(view_.points.size());
+    const bool fallen = watched.frames >= kKnown && fraction < kFallen * watched.typical;
     if (!fallen) {
       watched.views.clear();
-      watched.frames = std::min(watched.frames + 1, kMemoryOfShare);
-      watched.usual += (share - watched.usual) / watched.frames;
+      watched.frames = std::min(watched.frames + 1, kMemoryOfFraction);
+      watched.typical += (fraction - watched.typical) / watched.frames;
       continue;
     }
     view_.blobs.clear();
-    for (const Observation<2>& blob : seen) {
+    for (const Observation<2>& blob : detected) {
       if (blob.camera == watched.id) view_.blobs.push_back(blob.value);
     }
-    if (static_cast<double>(view_.blobs.size()) >= kStillSees * expected) {
+    if (static_cast<double>(view_.blobs.size()) >= kStillObserves * expected) {
       if (watched.views.empty()) watched.since = now;
       watched.views.push_back(view_);
       if (watched.views.size() % kViews != 0) continue;
@@ -113,9 +113,9 @@ std::optional<MovedCamera> CameraWatch::see(Timestamp now, std::span<const Obser
   return std::nullopt;
 }
 
-/// The shift of the camera's picture under which most points find a blob.
+/// The shift of the camera's image under which most points find a blob.
 std::optional<Vector<2>> CameraWatch::common_shift(std::size_t camera) const {
-  const double farthest = kFarthestShift * cameras_[camera].size().width;
+  const double farthest = kMaxShift * cameras_[camera].size().width;
   const int cells = 2 * static_cast<int>(std::ceil(farthest / kShiftCell)) + 3;
   std::vector<int> votes(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells), 0);
   const auto at = [&](int column, int row) -> int& { return votes[static_cast<std::size_t>(row * cells + column)]; };
@@ -131,7 +131,7 @@ std::optional<Vector<2>> CameraWatch::common_shift(std::size_t camera) const {
       }
     }
   }
-  int most = 0;
+  int maximum = 0;
   Vector<2> best = Vector<2>::Zero();
   for (int row = 1; row + 1 < cells; ++row) {
     for (int column = 1; column + 1 < cells; ++column) {
@@ -139,12 +139,12 @@ std::optional<Vector<2>> CameraWatch::common_shift(std::size_t camera) const {
       for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) sum += at(column + x, row + y);
       }
-      if (sum <= most) continue;
-      most = sum;
+      if (sum <= maximum) continue;
+      maximum = sum;
       best = {(column - cells / 2 + 0.5) * kShiftCell, (row - cells / 2 + 0.5) * kShiftCell};
     }
   }
-  return most > 0 ? std::optional(best) : std::nullopt;
+  return maximum > 0 ? std::optional(best) : std::nullopt;
 }
 
 /// Each point with the blob nearest to where the camera should see it.
@@ -172,7 +172,7 @@ std::optional<MovedCamera> CameraWatch::find(std::size_t camera, double noise_px
   auto shift = common_shift(camera);
   if (!shift) return std::nullopt;
   std::vector<double> radii(std::begin(kWithin), std::end(kWithin));
-  radii.insert(radii.end(), kRounds, std::max(kLastWithin * noise_px, kLeastWithin));
+  radii.insert(radii.end(), kRounds, std::max(kLastWithin * noise_px, kMinWithin));
   Camera moved = cameras_[camera];
   std::vector<Vector<3>> points;
   std::vector<Vector<2>> blobs;
@@ -183,7 +183,7 @@ std::optional<MovedCamera> CameraWatch::find(std::size_t camera, double noise_px
       points.push_back(pair.point);
       blobs.push_back(pair.blob);
     }
-    if (points.size() < kFewestPoints) return std::nullopt;
+    if (points.size() < kMinPointCount) return std::nullopt;
     for (int step = 0; step < 4; ++step) {
       const auto better = nudged(moved, points, blobs, within / 3);
       if (!better) return std::nullopt;
@@ -194,7 +194,7 @@ std::optional<MovedCamera> CameraWatch::find(std::size_t camera, double noise_px
   const auto pairs = pairs_of(watched, moved, Vector<2>::Zero(), radii.back());
   std::size_t all = 0;
   for (const View& view : watched.views) all += view.points.size();
-  if (static_cast<double>(pairs.size()) < kRestored * watched.usual * static_cast<double>(all)) return std::nullopt;
+  if (static_cast<double>(pairs.size()) < kRestored * watched.typical * static_cast<double>(all)) return std::nullopt;
   MovedCamera result{watched.id, watched.since, moved.camera_from_world(), 0, 0, 0, static_cast<int>(pairs.size())};
   for (const Pair& pair : pairs) {
     if (const auto pixel = moved.project(pair.point)) result.rms_px += (*pixel - pair.blob).squaredNorm();

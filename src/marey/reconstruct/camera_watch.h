@@ -3,8 +3,8 @@
 // A camera that is pushed still sees its markers, but where the others' rays meet it has no blob any more: its share in the points
 // falls from nearly all to nearly none within a frame, while it has as many blobs as before. A camera that is covered has none; a
 // marker that is hidden costs one point. From some frames after the fall the motion is found: every blob proposes, with every point
-// near it, a shift of the whole picture; the shift that most agree on pairs points and blobs; the pose that explains the pairs best
-// (Gauss and Newton's method, Huber's weights) pairs them anew, ever more narrowly. It is believed where it explains as large a
+// near it, a shift of the whole image; the shift that most agree on pairs points and blobs; the pose that explains the pairs best
+// (Gauss and Newton's method, Huber's weights) pairs them again, ever more narrowly. It is trusted where it explains as large a
 // share of the points as the camera had before.
 // Assumes that the lens stayed as it is, and that one camera is moved at a time. Cost: points × cameras a frame; the search is
 // points × blobs × frames, once.
@@ -38,8 +38,8 @@ class CameraWatch {
 
   /// Takes in what was seen at one instant and the points that were found in it; `noise_px` as the corresponder has it. Says that a
   /// camera was moved as soon as its new place is known; from then on cameras() has it there.
-  std::optional<MovedCamera> see(Timestamp now, std::span<const Observation<2>> seen, const Correspondences& found,
-                                 double noise_px);
+  std::optional<MovedCamera> observe_frame(Timestamp now, std::span<const Observation<2>> detected, const Correspondences& found,
+                                           double noise_px);
 
   const std::vector<Camera>& cameras() const { return cameras_; }
 
@@ -51,7 +51,7 @@ class CameraWatch {
   };
   struct Watched {
     CameraId id{};
-    double usual = 0;         // share of the points in its picture that it has a ray in
+    double typical = 0;       // share of the points in its image that it has a ray in
     int frames = 0;           // that `usual` is a mean of
     Timestamp since{};        // when that fell
     std::vector<View> views;  // since then
@@ -61,7 +61,7 @@ class CameraWatch {
     Vector<2> blob;
   };
 
-  double share_of(std::size_t camera, const Correspondences& found, View& view) const;
+  double fraction_of(std::size_t camera, const Correspondences& found, View& view) const;
   std::optional<MovedCamera> find(std::size_t camera, double noise_px);
   std::optional<Vector<2>> common_shift(std::size_t camera) const;
   static std::vector<Pair> pairs_of(const Watched& watched, const Camera& camera, const Vector<2>& shift, double within);
@@ -69,7 +69,7 @@ class CameraWatch {
   std::vector<Camera> cameras_;
   std::vector<Watched> watched_;
   View view_;
-  std::vector<CameraMask> seen_by_;  // by point
+  std::vector<CameraMask> observed_by_;  // by point
 };
 
 }  // namespace marey::reconstruct

@@ -11,9 +11,9 @@ namespace {
 constexpr double kNoise = 0.1;  // px
 
 /// What the cameras see of points, a tenth of it missed.
-std::vector<Observation<2>> seen_by(const std::vector<Camera>& cameras, const std::vector<Vector<3>>& points, int covered,
-                                    room::Random& random) {
-  std::vector<Observation<2>> seen;
+std::vector<Observation<2>> observed_by(const std::vector<Camera>& cameras, const std::vector<Vector<3>>& points, int covered,
+                                        room::Random& random) {
+  std::vector<Observation<2>> detected;
   for (int c = 0; c < std::ssize(cameras); ++c) {
     for (const Vector<3>& point : points) {
       const auto pixel = cameras[static_cast<std::size_t>(c)].project(point);
@@ -22,10 +22,10 @@ std::vector<Observation<2>> seen_by(const std::vector<Camera>& cameras, const st
       blob.value = *pixel + random.gaussian_2d(kNoise);
       blob.covariance.reset();
       blob.camera = CameraId{c};
-      seen.push_back(blob);
+      detected.push_back(blob);
     }
   }
-  return seen;
+  return detected;
 }
 
 std::vector<Vector<3>> swarm_at(int frame, const std::vector<Vector<3>>& middles) {
@@ -49,13 +49,14 @@ struct Watching {
   }
 
   /// Frames of a rig of which some camera may be covered; what the watch says.
-  std::optional<MovedCamera> see(int first, int last, const std::vector<Camera>& rig, int covered = -1) {
+  std::optional<MovedCamera> observe_frame(int first, int last, const std::vector<Camera>& rig, int covered = -1) {
     CorrespondOptions options;
     options.noise_px = kNoise;
     Corresponder corresponder(watch.cameras(), options);
     for (int frame = first; frame < last; ++frame) {
-      const auto seen = seen_by(rig, swarm_at(frame, middles), covered, random);
-      if (auto moved = watch.see(timestamp_from_seconds(0.01 * frame), seen, corresponder.match(seen), kNoise)) return moved;
+      const auto detected = observed_by(rig, swarm_at(frame, middles), covered, random);
+      if (auto moved = watch.observe_frame(timestamp_from_seconds(0.01 * frame), detected, corresponder.match(detected), kNoise))
+        return moved;
     }
     return std::nullopt;
   }
@@ -66,12 +67,12 @@ TEST(CameraWatch, FindsWhichCameraWasMovedWhenAndWhereTo) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(fmt::format("turned by {} rad, seed {}", angle, seed));
       Watching scene(seed);
-      EXPECT_FALSE(scene.see(0, 60, scene.cameras));
+      EXPECT_FALSE(scene.observe_frame(0, 60, scene.cameras));
       std::vector<Camera> after = scene.cameras;
       const Vector<3> about = Vector<3>(scene.random.uniform(-1, 1), scene.random.uniform(-1, 1), 0.5).normalized();
       const Rigid3 push{geometry::rotation_from(angle * about), angle * Vector<3>(0.5, -0.5, 0.7)};
       after[2] = Camera(after[2].lens(), push * after[2].camera_from_world(), after[2].size());
-      const auto moved = scene.see(60, 120, after);
+      const auto moved = scene.observe_frame(60, 120, after);
       ASSERT_TRUE(moved);
       EXPECT_EQ(moved->camera, CameraId{2});
       EXPECT_NEAR(seconds(moved->since), 0.6, 0.03);
@@ -82,15 +83,15 @@ TEST(CameraWatch, FindsWhichCameraWasMovedWhenAndWhereTo) {
       for (const Vector<3>& point : swarm_at(200, scene.middles)) {
         EXPECT_LT((*found.project(point) - *after[2].project(point)).norm(), 0.25);
       }
-      EXPECT_FALSE(scene.see(120, 180, after)) << "it is said once";
+      EXPECT_FALSE(scene.observe_frame(120, 180, after)) << "it is said once";
     }
   }
 }
 
 TEST(CameraWatch, ACoveredCameraWasNotMoved) {
   Watching scene(4);
-  EXPECT_FALSE(scene.see(0, 60, scene.cameras));
-  EXPECT_FALSE(scene.see(60, 160, scene.cameras, 2));
+  EXPECT_FALSE(scene.observe_frame(0, 60, scene.cameras));
+  EXPECT_FALSE(scene.observe_frame(60, 160, scene.cameras, 2));
 }
 
 }  // namespace

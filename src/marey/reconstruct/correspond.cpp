@@ -1,7 +1,7 @@
 #include "marey/reconstruct/correspond.h"
 
 #include "marey/core/error.h"
-#include "marey/core/limits.h"
+#include "marey/files/limits.h"
 #include "marey/reconstruct/frame_rays.h"
 #include "marey/reconstruct/ray_groups.h"
 #include "marey/reconstruct/ray_intersections.h"
@@ -18,20 +18,20 @@ class Corresponder::Impl {
         track_matches_(options.sigmas, triangulator_),
         intersections_(frame_.all_cameras(), options.sigmas, triangulator_) {}
 
-  const Correspondences& match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
-    const std::size_t most = options_.most_observations.value_or(Limits::in_force().observations);
-    if (seen.size() > most) {
+  const Correspondences& match(std::span<const Observation<2>> detected, std::span<const Track<3>> expected) {
+    const std::size_t maximum = options_.max_observations.value_or(Limits::in_force().observations);
+    if (detected.size() > maximum) {
       throw Error(
           "the cameras see {} blobs at one instant; at most {} are matched (the limit observations): is the threshold too low?",
-          seen.size(), most);
+          detected.size(), maximum);
     }
-    frame_.build(seen, options_.noise_px);
+    frame_.build(detected, options_.noise_px);
     groups_.clear(frame_);
     track_matches_.match(frame_, expected, groups_, result_.missed);
     intersections_.find(frame_, groups_);
     const auto sure = groups_.groups().size();
     intersections_.find_pairs(frame_, groups_);
-    report(seen.size(), options_.fewest_rays > 2 ? sure : groups_.groups().size());
+    report(detected.size(), options_.min_rays > 2 ? sure : groups_.groups().size());
     return result_;
   }
 
@@ -40,19 +40,19 @@ class Corresponder::Impl {
  private:
   /// Groups from `sure` on are reported apart.
   void report(std::size_t observations, std::size_t sure) {
-    seen_.clear();
+    detected_.clear();
     result_.points.clear();
     result_.by_two_rays.clear();
     for (const RayGroups::Group& group : groups_.groups()) {
-      for (const int ray : groups_.members(group)) seen_.push_back(frame_.observation(ray));
+      for (const int ray : groups_.members(group)) detected_.push_back(frame_.observation(ray));
     }
     std::size_t begin = 0, index = 0;
     for (const RayGroups::Group& group : groups_.groups()) {
-      const std::span<const int> seen = std::span(seen_).subspan(begin, static_cast<std::size_t>(group.count));
-      begin += seen.size();
-      (index++ < sure ? result_.points : result_.by_two_rays).push_back({group.point, seen, group.expected});
+      const std::span<const int> detected = std::span(detected_).subspan(begin, static_cast<std::size_t>(group.count));
+      begin += detected.size();
+      (index++ < sure ? result_.points : result_.by_two_rays).push_back({group.point, detected, group.expected});
     }
-    result_.unexplained = static_cast<int>(observations - seen_.size());
+    result_.unexplained = static_cast<int>(observations - detected_.size());
   }
 
   CorrespondOptions options_;
@@ -61,7 +61,7 @@ class Corresponder::Impl {
   TrackMatches track_matches_;
   RayIntersections intersections_;
   RayGroups groups_;
-  std::vector<int> seen_;
+  std::vector<int> detected_;
   Correspondences result_;
 };
 
@@ -81,8 +81,8 @@ void Corresponder::set_noise(double px) {
   impl_->set_noise(px);
 }
 
-const Correspondences& Corresponder::match(std::span<const Observation<2>> seen, std::span<const Track<3>> expected) {
-  return impl_->match(seen, expected);
+const Correspondences& Corresponder::match(std::span<const Observation<2>> detected, std::span<const Track<3>> expected) {
+  return impl_->match(detected, expected);
 }
 
 }  // namespace marey::reconstruct

@@ -19,7 +19,7 @@ using room::Random;
 struct Scene {
   std::vector<Camera> cameras;
   std::vector<Vector<3>> markers;
-  std::vector<Observation<2>> seen;
+  std::vector<Observation<2>> detected;
   std::vector<int> owner;
   std::vector<int> views;  // by marker
 };
@@ -34,7 +34,7 @@ void add_blob(Scene& scene, int camera, const Vector<2>& pixel, int owner) {
   blob.value = pixel;
   blob.covariance.reset();
   blob.camera = CameraId{camera};
-  scene.seen.push_back(blob);
+  scene.detected.push_back(blob);
   scene.owner.push_back(owner);
 }
 
@@ -46,7 +46,7 @@ Scene make_scene(const SceneOptions& options, Random& random) {
   for (int c = 0; c < options.cameras; ++c) {
     for (int m = 0; m < options.markers; ++m) {
       const auto pixel = scene.cameras[c].project(scene.markers[m]);
-      if (!pixel || !scene.cameras[c].in_picture(*pixel) || random.chance(options.dropped)) continue;
+      if (!pixel || !scene.cameras[c].in_image(*pixel) || random.chance(options.dropped)) continue;
       add_blob(scene, c, *pixel + random.gaussian_2d(options.noise), m);
       ++scene.views[m];
     }
@@ -63,10 +63,10 @@ struct Score {
 
 void count(const Scene& scene, const Correspondences& result, Score& score) {
   std::set<int> found;
-  for (const Placed& placed : result.points) {
-    const int owner = scene.owner[placed.seen.front()];
+  for (const Located& located : result.points) {
+    const int owner = scene.owner[located.detected.front()];
     const bool pure =
-        owner >= 0 && std::all_of(placed.seen.begin(), placed.seen.end(), [&](int i) { return scene.owner[i] == owner; });
+        owner >= 0 && std::all_of(located.detected.begin(), located.detected.end(), [&](int i) { return scene.owner[i] == owner; });
     ++score.groups;
     score.pure += pure;
     if (pure) found.insert(owner);
@@ -81,7 +81,7 @@ TEST(Correspond, FindsAndKeepsApartTwoHundredMarkers) {
   for (int i = 0; i < 20; ++i) {
     const Scene scene = make_scene({}, random);
     Corresponder corresponder(scene.cameras);
-    count(scene, corresponder.match(scene.seen), score);
+    count(scene, corresponder.match(scene.detected), score);
   }
   EXPECT_GE(score.pure, 0.998 * score.groups);
   EXPECT_GE(score.found, 0.995 * score.to_find);
@@ -91,21 +91,21 @@ TEST(Correspond, GivesEveryBlobAwayOnceAndCountsTheRest) {
   Random random(12);
   const Scene scene = make_scene({.cameras = 6, .markers = 80}, random);
   Corresponder corresponder(scene.cameras);
-  const Correspondences& result = corresponder.match(scene.seen);
+  const Correspondences& result = corresponder.match(scene.detected);
   std::set<int> used;
-  const auto check = [&](const std::vector<Placed>& points) {
-    for (const Placed& placed : points) {
+  const auto check = [&](const std::vector<Located>& points) {
+    for (const Located& located : points) {
       std::set<int> cameras;
-      for (const int i : placed.seen) {
+      for (const int i : located.detected) {
         EXPECT_TRUE(used.insert(i).second);
-        EXPECT_TRUE(cameras.insert(number(scene.seen[i].camera)).second);
+        EXPECT_TRUE(cameras.insert(number(scene.detected[i].camera)).second);
       }
-      EXPECT_EQ(static_cast<int>(placed.seen.size()), placed.point.rays);
+      EXPECT_EQ(static_cast<int>(located.detected.size()), located.point.rays);
     }
   };
   check(result.points);
   check(result.by_two_rays);
-  EXPECT_EQ(result.unexplained, static_cast<int>(scene.seen.size() - used.size()));
+  EXPECT_EQ(result.unexplained, static_cast<int>(scene.detected.size() - used.size()));
 }
 
 /// The slow and obvious twin: every choice of one blob or none of each camera, three at least, those of most rays first, then those
@@ -117,7 +117,7 @@ std::set<std::set<int>> exhaustively(const Scene& scene, const CorrespondOptions
   };
   std::vector<Group> groups;
   std::vector<std::vector<int>> of_camera(scene.cameras.size());
-  for (int i = 0; i < std::ssize(scene.seen); ++i) of_camera[number(scene.seen[i].camera)].push_back(i);
+  for (int i = 0; i < std::ssize(scene.detected); ++i) of_camera[number(scene.detected[i].camera)].push_back(i);
   std::vector<int> chosen;
   const auto choose = [&](const auto& self, std::size_t camera) -> void {
     if (camera < scene.cameras.size()) {
@@ -132,8 +132,8 @@ std::set<std::set<int>> exhaustively(const Scene& scene, const CorrespondOptions
     if (chosen.size() < 3) return;
     std::vector<SightLine> lines;
     for (const int i : chosen) {
-      const int c = number(scene.seen[i].camera);
-      lines.push_back(sight_line(scene.cameras[c], c, scene.seen[i].value, options.noise_px).value());
+      const int c = number(scene.detected[i].camera);
+      lines.push_back(sight_line(scene.cameras[c], c, scene.detected[i].value, options.noise_px).value());
     }
     TriangulateOptions all_or_nothing = options.triangulate;
     all_or_nothing.reject = false;
@@ -164,7 +164,8 @@ TEST(Correspond, AgreesWithTryingEverything) {
     CorrespondOptions options;
     Corresponder corresponder(scene.cameras, options);
     std::set<std::set<int>> found;
-    for (const Placed& placed : corresponder.match(scene.seen).points) found.insert({placed.seen.begin(), placed.seen.end()});
+    for (const Located& located : corresponder.match(scene.detected).points)
+      found.insert({located.detected.begin(), located.detected.end()});
     const auto truth = exhaustively(scene, options);
     all += static_cast<int>(truth.size());
     for (const auto& group : truth) same += found.contains(group);
@@ -190,12 +191,12 @@ TEST(Correspond, PredictionsClaimTheirBlobs) {
   const Scene scene = make_scene({.cameras = 8, .markers = 50, .dropped = 0.05, .ghosts = 0.05}, random);
   const auto expected = predictions(scene, 0.003, random);
   Corresponder corresponder(scene.cameras);
-  const Correspondences& result = corresponder.match(scene.seen, expected);
+  const Correspondences& result = corresponder.match(scene.detected, expected);
   int right = 0;
-  for (const Placed& placed : result.points) {
-    if (!placed.expected) continue;
-    for (const int i : placed.seen) EXPECT_EQ(scene.owner[i], *placed.expected);
-    right += (placed.point.position - scene.markers[*placed.expected]).norm() < 0.002;
+  for (const Located& located : result.points) {
+    if (!located.expected) continue;
+    for (const int i : located.detected) EXPECT_EQ(scene.owner[i], *located.expected);
+    right += (located.point.position - scene.markers[*located.expected]).norm() < 0.002;
   }
   EXPECT_EQ(right, 50);
 }
@@ -204,14 +205,14 @@ TEST(Correspond, ClaimsWithTwoRaysAndSaysWhyNotWithOne) {
   Random random(14);
   Scene scene = make_scene({.cameras = 4, .markers = 3, .dropped = 0, .ghosts = 0}, random);
   const auto expected = predictions(scene, 0.002, random);
-  std::vector<Observation<2>> seen;
-  for (std::size_t i = 0; i < scene.seen.size(); ++i) {
-    const int camera = number(scene.seen[i].camera);
+  std::vector<Observation<2>> detected;
+  for (std::size_t i = 0; i < scene.detected.size(); ++i) {
+    const int camera = number(scene.detected[i].camera);
     if (scene.owner[i] == 0 || (scene.owner[i] == 1 && camera < 2) || (scene.owner[i] == 2 && camera < 1))
-      seen.push_back(scene.seen[i]);
+      detected.push_back(scene.detected[i]);
   }
   Corresponder corresponder(scene.cameras);
-  const Correspondences& result = corresponder.match(seen, expected);
+  const Correspondences& result = corresponder.match(detected, expected);
   ASSERT_EQ(result.points.size(), 2);
   EXPECT_EQ(result.points[1].expected, 1);
   EXPECT_TRUE(result.points[1].by_two_rays());
@@ -224,11 +225,11 @@ TEST(Correspond, ReportsPairsOfRaysApart) {
   Random random(15);
   const Scene scene = make_scene({.cameras = 2, .markers = 12, .dropped = 0, .ghosts = 0}, random);
   Corresponder apart(scene.cameras);
-  const Correspondences& two = apart.match(scene.seen);
+  const Correspondences& two = apart.match(scene.detected);
   EXPECT_TRUE(two.points.empty());
   EXPECT_GT(two.by_two_rays.size(), 6);
-  Corresponder together(scene.cameras, {.fewest_rays = 2});
-  EXPECT_GT(together.match(scene.seen).points.size(), 6);
+  Corresponder together(scene.cameras, {.min_rays = 2});
+  EXPECT_GT(together.match(scene.detected).points.size(), 6);
 }
 
 TEST(Correspond, TakesOddInput) {
@@ -238,11 +239,11 @@ TEST(Correspond, TakesOddInput) {
   EXPECT_TRUE(corresponder.match({}).points.empty());
   Observation<2> odd;
   odd.value = {std::nan(""), 3};
-  scene.seen.push_back(odd);
+  scene.detected.push_back(odd);
   odd.value = {3, 4};
   odd.camera = CameraId{77};
-  scene.seen.push_back(odd);
-  const Correspondences& result = corresponder.match(scene.seen);
+  scene.detected.push_back(odd);
+  const Correspondences& result = corresponder.match(scene.detected);
   EXPECT_EQ(result.points.size(), 5);
   EXPECT_EQ(result.unexplained, 2);
   EXPECT_THROW(Corresponder(std::vector<Camera>{scene.cameras[0]}), Error);
@@ -250,7 +251,7 @@ TEST(Correspond, TakesOddInput) {
 
 TEST(Correspond, TooManyBlobsAtOneInstantAreRefused) {
   CorrespondOptions options;
-  options.most_observations = 3;
+  options.max_observations = 3;
   const Camera camera(geometry::BrownLens{}, Rigid3{}, {640, 480});
   Corresponder corresponder({camera, camera}, options);
   EXPECT_THROW(corresponder.match(std::vector<Observation<2>>(4)), Error);

@@ -6,9 +6,9 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr double kLeastBaseline = 1e-6;  // m
-constexpr double kLeastSine = 0.03;      // rays closer to the line of centres, or to each other, give no depth
-constexpr double kTurn = 4;              // numbers on the pencil go round once in this
+constexpr double kMinBaseline = 1e-6;  // m
+constexpr double kMinSine = 0.03;      // rays closer to the line of centres, or to each other, give no depth
+constexpr double kTurn = 4;            // numbers on the pencil go round once in this
 
 /// A number that grows with the angle of (x, y) as atan2 does, from −2 to 2, without its cost.
 double turn_of(double x, double y) {
@@ -25,7 +25,7 @@ Vector<3> axis_of(const Camera& camera) {
 EpipolarMatcher::EpipolarMatcher(const Camera& a, int number_a, const Camera& b, int number_b) : a_(number_a), b_(number_b) {
   const Vector<3> between = b.centre() - a.centre();
   baseline_ = between.norm();
-  if (baseline_ < kLeastBaseline) return;
+  if (baseline_ < kMinBaseline) return;
   along_ = between / baseline_;
   const Vector<3> ahead = axis_of(a) + axis_of(b);
   aside_ = ahead - ahead.dot(along_) * along_;
@@ -42,7 +42,7 @@ void EpipolarMatcher::list(const FrameRays& frame, std::span<const char> taken, 
     const SightLine& line = frame.line(ray);
     const double x = line.direction.dot(aside_), y = line.direction.dot(up_);
     const double aside = std::hypot(x, y);
-    if (aside < kLeastSine) continue;
+    if (aside < kMinSine) continue;
     const double sum = std::abs(x) + std::abs(y);
     // Noise across the half-plane turns it by noise / sine; the number changes with the angle by (aside / sum)².
     const double tolerance = line.sigma / line.scale() * aside / (sum * sum);
@@ -52,18 +52,18 @@ void EpipolarMatcher::list(const FrameRays& frame, std::span<const char> taken, 
 }
 
 void EpipolarMatcher::match(const FrameRays& frame, std::span<const char> taken, double sigmas, std::vector<EpipolarPair>& pairs) {
-  if (baseline_ < kLeastBaseline) return;
+  if (baseline_ < kMinBaseline) return;
   list(frame, taken, a_, of_a_);
   list(frame, taken, b_, of_b_);
   double widest = 0;
   for (const Entry& entry : of_b_) widest = std::max(widest, entry.tolerance);
-  const auto consider = [&](const Entry& p, double low, double high, double turned) {
+  const auto consider = [&](const Entry& p, double low, double high, double rotated) {
     auto from = std::lower_bound(of_b_.begin(), of_b_.end(), low, [](const Entry& q, double value) { return q.plane < value; });
     for (; from != of_b_.end() && from->plane <= high; ++from) {
-      const double difference = from->plane - p.plane + turned;
+      const double difference = from->plane - p.plane + rotated;
       if (difference * difference > sigmas * sigmas * (p.tolerance * p.tolerance + from->tolerance * from->tolerance)) continue;
       const double sine = from->aside * p.along - from->along * p.aside;  // of the angle at which they meet
-      if (sine < kLeastSine) continue;
+      if (sine < kMinSine) continue;
       const double depth = baseline_ * from->aside / sine;
       const SightLine& line = frame.line(p.ray);
       pairs.push_back({p.ray, from->ray, line.origin + depth * line.direction, sine});

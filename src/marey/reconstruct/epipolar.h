@@ -23,7 +23,7 @@ class EpipolarMatcher {
 
   int a() const { return a_; }
   int b() const { return b_; }
-  /// How well pairs of the two give depth: the sine of the angle at which their axes meet, 0 where they look along one line.
+  /// How well pairs of the two give depth: the sine of the angle at which their axes meet, 0 where they face along one line.
   double quality() const { return quality_; }
 
   /// Appends the partners among the rays that are not `taken`, within `sigmas` standard deviations, in the order of camera a's rays

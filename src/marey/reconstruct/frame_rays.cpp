@@ -8,8 +8,8 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr double kSmallestCell = 8;  // px
-constexpr int kMostCells = 4096;     // a camera
+constexpr double kMinCell = 8;       // px
+constexpr int kMaxCells = 4096;      // a camera
 constexpr std::size_t kGrain = 512;  // blobs: lens inversions that are worth a task (unswept)
 
 double sigma_of(const Observation<2>& one, double noise_px) {
@@ -27,7 +27,7 @@ FrameRays::FrameRays(std::vector<Camera> cameras, std::span<const CameraId> ids)
   }
 }
 
-void FrameRays::build(std::span<const Observation<2>> seen, double noise_px) {
+void FrameRays::build(std::span<const Observation<2>> detected, double noise_px) {
   lines_.clear();
   pixels_.clear();
   observations_.clear();
@@ -36,36 +36,36 @@ void FrameRays::build(std::span<const Observation<2>> seen, double noise_px) {
     const auto id = static_cast<std::size_t>(number(one.camera));
     return id < number_of_.size() && one.value.allFinite() ? number_of_[id] : std::nullopt;
   };
-  for (const Observation<2>& one : seen) {
+  for (const Observation<2>& one : detected) {
     if (const auto camera = camera_of(one)) ++starts_[*camera + 1];
   }
   for (std::size_t c = 0; c < cameras_.size(); ++c) starts_[c + 1] += starts_[c];
   by_camera_.resize(static_cast<std::size_t>(starts_.back()));
-  for (int i = 0; i < std::ssize(seen); ++i) {
-    if (const auto camera = camera_of(seen[i])) by_camera_[starts_[*camera]++] = i;
+  for (int i = 0; i < std::ssize(detected); ++i) {
+    if (const auto camera = camera_of(detected[i])) by_camera_[starts_[*camera]++] = i;
   }
-  found_.assign(seen.size(), std::nullopt);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seen.size(), kGrain), [&](const auto& range) {
+  found_.assign(detected.size(), std::nullopt);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, detected.size(), kGrain), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      if (const auto camera = camera_of(seen[i]))
-        found_[i] = sight_line(cameras_[*camera], *camera, seen[i].value, sigma_of(seen[i], noise_px));
+      if (const auto camera = camera_of(detected[i]))
+        found_[i] = sight_line(cameras_[*camera], *camera, detected[i].value, sigma_of(detected[i], noise_px));
     }
   });
   // Each start has moved to the next one's.
   for (int c = 0, begin = 0; c < cameras(); begin = starts_[c++]) {
     order_.assign(by_camera_.begin() + begin, by_camera_.begin() + starts_[c]);
-    lay_grid(c, seen);
+    lay_grid(c, detected);
     Grid& grid = grids_[c];
     grid.begin = size();
     grid.largest_sigma = 0;
-    int left_out = 0;
+    int excluded = 0;
     std::size_t cell = 0;
     for (int k = 0; k < std::ssize(order_); ++k) {
-      while (cell < grid.starts.size() && grid.starts[cell] <= k) grid.starts[cell++] += grid.begin - left_out;
-      const Observation<2>& one = seen[order_[k]];
+      while (cell < grid.starts.size() && grid.starts[cell] <= k) grid.starts[cell++] += grid.begin - excluded;
+      const Observation<2>& one = detected[order_[k]];
       const auto& line = found_[static_cast<std::size_t>(order_[k])];
       if (!line) {
-        ++left_out;
+        ++excluded;
         continue;
       }
       lines_.push_back(*line);
@@ -73,26 +73,26 @@ void FrameRays::build(std::span<const Observation<2>> seen, double noise_px) {
       observations_.push_back(order_[k]);
       grid.largest_sigma = std::max(grid.largest_sigma, line->sigma);
     }
-    while (cell < grid.starts.size()) grid.starts[cell++] += grid.begin - left_out;
+    while (cell < grid.starts.size()) grid.starts[cell++] += grid.begin - excluded;
     grid.end = size();
   }
 }
 
 /// Sorts `order_` by cells; `starts` then counts from the camera's first blob.
-void FrameRays::lay_grid(int camera, std::span<const Observation<2>> seen) {
+void FrameRays::lay_grid(int camera, std::span<const Observation<2>> detected) {
   Grid& grid = grids_[camera];
   const cv::Size size = cameras_[camera].size();
   const double area = std::max(1.0, static_cast<double>(size.width) * size.height);
-  const double cells = std::clamp<double>(static_cast<double>(order_.size()), 1, kMostCells);
-  grid.cell = std::max(kSmallestCell, std::sqrt(area / cells));
+  const double cells = std::clamp<double>(static_cast<double>(order_.size()), 1, kMaxCells);
+  grid.cell = std::max(kMinCell, std::sqrt(area / cells));
   grid.columns = static_cast<int>(size.width / grid.cell) + 1;
   grid.rows = static_cast<int>(size.height / grid.cell) + 1;
   grid.starts.assign(static_cast<std::size_t>(grid.columns) * grid.rows + 1, 0);
-  for (const int i : order_) ++grid.starts[grid.cell_of(seen[i].value) + 1];
+  for (const int i : order_) ++grid.starts[grid.cell_of(detected[i].value) + 1];
   for (std::size_t i = 1; i < grid.starts.size(); ++i) grid.starts[i] += grid.starts[i - 1];
   starts_of_cells_.assign(grid.starts.begin(), grid.starts.end());
   sorted_.resize(order_.size());
-  for (const int i : order_) sorted_[starts_of_cells_[grid.cell_of(seen[i].value)]++] = i;
+  for (const int i : order_) sorted_[starts_of_cells_[grid.cell_of(detected[i].value)]++] = i;
   order_.swap(sorted_);
 }
 

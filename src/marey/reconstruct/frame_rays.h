@@ -11,16 +11,16 @@
 namespace marey::reconstruct {
 
 /// Everything that the cameras of a rig saw at one instant, as sight lines: those of one camera side by side, and within a camera
-/// those of one cell of a grid over its picture, so that the blobs near a pixel are found by looking at a few cells.
+/// those of one cell of a grid over its image, so that the blobs near a pixel are found by looking at a few cells.
 /// Steady state allocates nothing. Cost: one lens inversion a blob, and a counting sort.
 class FrameRays {
  public:
   /// `ids[i]` is what observations call cameras[i].
   FrameRays(std::vector<Camera> cameras, std::span<const CameraId> ids);
 
-  /// Takes in what was seen. Blobs that no direction leads to, and those of cameras that the rig does not have, are left out.
+  /// Takes in what was seen. Blobs that no direction leads to, and those of cameras that the rig does not have, are omitted.
   /// `noise_px` is the standard deviation, along each axis, of what an observation's own covariance does not cover.
-  void build(std::span<const Observation<2>> seen, double noise_px);
+  void build(std::span<const Observation<2>> detected, double noise_px);
 
   std::span<const Camera> all_cameras() const { return cameras_; }
   int cameras() const { return static_cast<int>(cameras_.size()); }
@@ -57,14 +57,14 @@ class FrameRays {
     double largest_sigma = 0;
     std::vector<int> starts;  // of each cell, row by row, and the end
 
-    /// What lies outside the picture belongs to a border cell.
+    /// What lies outside the image belongs to a border cell.
     int column(double x) const { return clamped(x / cell, columns); }
     int row(double y) const { return clamped(y / cell, rows); }
     static int clamped(double cell, int count) { return cell > 0 ? cell < count ? static_cast<int>(cell) : count - 1 : 0; }
     int cell_of(const Vector<2>& pixel) const { return row(pixel.y()) * columns + column(pixel.x()); }
   };
 
-  void lay_grid(int camera, std::span<const Observation<2>> seen);
+  void lay_grid(int camera, std::span<const Observation<2>> detected);
 
   std::vector<Camera> cameras_;
   std::vector<std::optional<int>> number_of_;  // by CameraId, the camera's place in `cameras_`

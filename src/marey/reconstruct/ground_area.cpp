@@ -18,7 +18,7 @@ TrackColumns rows_in(const GroundArea& area, const TrackColumns& track) {
   TrackColumns kept(track.name, 2);
   kept.reserve(track.size());
   for (std::size_t row = 0; row < track.size(); ++row) {
-    if (area.holds(track.place(row))) kept.add(track.at()[row], track.sample(row));
+    if (area.holds(track.location(row))) kept.add(track.at()[row], track.sample(row));
   }
   return kept;
 }
@@ -41,14 +41,14 @@ bool contains(const std::vector<Vector<2>>& corners, const Vector<2>& at) {
 
 /// m to the nearest edge.
 double distance_to(const std::vector<Vector<2>>& corners, const Vector<2>& at) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vector<2>& a = corners[i];
     const Vector<2> edge = corners[(i + 1) % corners.size()] - a;
     const double along = std::clamp((at - a).dot(edge) / std::max(edge.squaredNorm(), 1e-12), 0.0, 1.0);
-    least = std::min(least, (at - a - along * edge).norm());
+    minimum = std::min(minimum, (at - a - along * edge).norm());
   }
-  return least;
+  return minimum;
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ Vector<2> GroundArea::ground_velocity(const Vector<2>& velocity) const {
 }
 
 GroundChange GroundArea::change() const {
-  return {[this](const Vector<2>& place) { return ground(place); }, ground_from_world_.topLeftCorner<2, 2>()};
+  return {[this](const Vector<2>& location) { return ground(location); }, ground_from_world_.topLeftCorner<2, 2>()};
 }
 
 Vector<2> GroundArea::world(const Vector<2>& ground) const {

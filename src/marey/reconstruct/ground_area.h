@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "marey/core/geometry.h"
-#include "marey/core/other_ground.h"
+#include "marey/core/ground_transform.h"
 #include "marey/core/recording.h"
 #include "marey/core/rig.h"
 #include "marey/geometry/pitch.h"
@@ -55,7 +55,7 @@ struct KeptPeople {
   std::map<TrackId, TrackId> now;  ///< what each track that is kept is called
 };
 
-/// Leaves out places that do not count, and who was nowhere else; the others are numbered anew from 1, by their first instant. What
+/// Omits places that do not count, and who was nowhere else; the others are numbered again from 1, by their first instant. What
 /// is kept is in the user's frame of reference. `recording` is of the world's ground and used up track by track. Throws Error for
 /// another frame.
 KeptPeople people_in(const GroundArea& area, Recording recording);

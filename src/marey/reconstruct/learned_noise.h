@@ -24,10 +24,10 @@ class LearnedNoise {
   bool learn(const Correspondences& found) {
     if (given_) return false;
     ratios_.clear();
-    for (const Placed& placed : found.points) {
-      if (placed.point.rays > 2) ratios_.push_back(placed.point.chi_square / (2 * placed.point.rays - 3));
+    for (const Located& located : found.points) {
+      if (located.point.rays > 2) ratios_.push_back(located.point.chi_square / (2 * located.point.rays - 3));
     }
-    if (std::ssize(ratios_) < kFewest) return false;
+    if (std::ssize(ratios_) < kMinCount) return false;
     const double median = geometry::median(ratios_);
     double sum = 0;
     int count = 0;
@@ -39,20 +39,20 @@ class LearnedNoise {
     std::nth_element(ratios_.begin(), tail, ratios_.end());
     const double ratio = std::max(sum / count, *tail / kTail);
     // The sums of squares hold the blobs' own noise too; where that is small, as it is, their root is the factor to be applied.
-    const double wanted = std::clamp(px_ * std::sqrt(ratio), kLeast, kMost);
-    const double share = learned_ ? kShare : 1;
+    const double required = std::clamp(px_ * std::sqrt(ratio), kMinValue, kMaxCount);
+    const double fraction = learned_ ? kFraction : 1;
     learned_ = true;
     const double before = px_;
-    px_ += share * (wanted - px_);
+    px_ += fraction * (required - px_);
     return std::abs(px_ - before) > 0.001 * before;
   }
 
  private:
-  static constexpr double kFirst = 0.5, kLeast = 0.03, kMost = 2;  // px
-  static constexpr int kFewest = 4;                                // points
-  static constexpr double kFarOff = 6;                             // times the median
-  static constexpr double kTail = 2.08;   // what 90 % of three rays' ratios stay below, of a plain Gaussian
-  static constexpr double kShare = 0.02;  // a frame
+  static constexpr double kFirst = 0.5, kMinValue = 0.03, kMaxCount = 2;  // px
+  static constexpr int kMinCount = 4;                                     // points
+  static constexpr double kFarOff = 6;                                    // times the median
+  static constexpr double kTail = 2.08;      // what 90 % of three rays' ratios stay below, of a plain Gaussian
+  static constexpr double kFraction = 0.02;  // a frame
 
   double px_;
   bool given_;

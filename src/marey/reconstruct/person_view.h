@@ -14,7 +14,7 @@ struct PersonShape {
 };
 
 /// The box of a person whose feet are at `foot` (m, in the world), as the camera sees it, px: also where it lies outside the
-/// picture. Nothing where the person is behind the camera or beyond what the lens shows.
+/// image. Nothing if the person is behind the camera or beyond what the lens shows.
 std::optional<Box> person_box(const Camera& camera, const Vector<3>& foot, const PersonShape& shape = {});
 
 }  // namespace marey::reconstruct

@@ -7,7 +7,7 @@
 namespace marey::reconstruct {
 namespace {
 
-/// 10 m up at the origin, looking along y and 20° down.
+/// 10 m up at the origin, facing along y and 20° down.
 Camera camera_on_a_mast() {
   const double down = 20 * M_PI / 180;
   Matrix<3> R;
@@ -19,11 +19,11 @@ Camera camera_on_a_mast() {
 TEST(PersonView, TheBoxGoesFromTheFeetToTheCrown) {
   const Camera camera = camera_on_a_mast();
   const PersonShape shape;
-  for (const Vector<2>& place : {Vector<2>(0, 25), Vector<2>(5, 40), Vector<2>(-15, 60)}) {
-    const auto box = person_box(camera, {place.x(), place.y(), 0}, shape);
+  for (const Vector<2>& location : {Vector<2>(0, 25), Vector<2>(5, 40), Vector<2>(-15, 60)}) {
+    const auto box = person_box(camera, {location.x(), location.y(), 0}, shape);
     ASSERT_TRUE(box);
-    const auto feet = camera.project({place.x(), place.y(), 0});
-    const auto crown = camera.project({place.x(), place.y(), shape.height});
+    const auto feet = camera.project({location.x(), location.y(), 0});
+    const auto crown = camera.project({location.x(), location.y(), shape.height});
     EXPECT_NEAR(box->foot().y(), feet->y(), 0.51);
     EXPECT_NEAR(box->top, crown->y(), 0.51);
     EXPECT_NEAR(box->centre().x(), (feet->x() + crown->x()) / 2, 1e-9);
@@ -31,7 +31,7 @@ TEST(PersonView, TheBoxGoesFromTheFeetToTheCrown) {
   }
 }
 
-TEST(PersonView, NobodyIsSeenBehindTheCamera) {
+TEST(PersonView, RejectsPositionsBehindCamera) {
   EXPECT_FALSE(person_box(camera_on_a_mast(), {0, -30, 0}));
 }
 

@@ -9,28 +9,28 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr double at_border = 1.5;     // px: a box that comes this near to the picture's border is cut by it
+constexpr double at_border = 1.5;     // px: a box that comes this near to the image's border is cut by it
 constexpr double inconsistent = 9;    // squared standard deviations by which foot and head contradict each other
 constexpr double group_across = 0.3;  // of its width: where in a shared region one of its people stands, standard deviation
 constexpr int kStepsToGround = 4;     // each leaves a few hundredths of the error in height that it began with
 constexpr double group_along = 0.15;  // of its height
 
 struct Placement {
-  Vector<2> place = Vector<2>::Zero();
+  Vector<2> location = Vector<2>::Zero();
   Matrix<2> covariance = Matrix<2>::Identity();
 };
 
-/// Which edges of a box the picture's border cuts.
+/// Which edges of a box the image's border cuts.
 struct Cut {
   bool side = false, top = false, bottom = false;
 };
 
-class Placer {
+class GroundLocaliser {
  public:
-  Placer(std::span<const Detection> detections, const GroundView& view, const PlacePeopleOptions& options)
+  GroundLocaliser(std::span<const Detection> detections, const GroundView& view, const LocalisePeopleOptions& options)
       : detections_(detections), view_(view), options_(options) {}
 
-  std::optional<Placement> place(std::size_t index) const {
+  std::optional<Placement> location(std::size_t index) const {
     const Detection& one = detections_[index];
     if (one.box.empty()) return std::nullopt;
     const Cut cut = cut_of(one.box);
@@ -65,13 +65,13 @@ class Placer {
 
   std::optional<Placement> by_foot(std::size_t index, const Cut& cut) const {
     const Detection& one = detections_[index];
-    const auto place = view_.place(one.box.foot());
-    if (!place) return std::nullopt;
+    const auto location = view_.location(one.box.foot());
+    if (!location) return std::nullopt;
     double along = edge_variance(one.box);
     if (one.group) along += std::pow(group_along * one.box.height, 2);
     if (cut.bottom) along += std::pow(one.box.height / 2, 2);
-    const Vector<2> away = -place->by_pixel.col(1).normalized();
-    return Placement{place->ground + options_.toe * away, on_ground(place->by_pixel, across_variance(one, cut), along)};
+    const Vector<2> away = -location->by_pixel.col(1).normalized();
+    return Placement{location->ground + options_.toe * away, on_ground(location->by_pixel, across_variance(one, cut), along)};
   }
 
   Matrix<2> on_ground(const Matrix<2>& by_pixel, double across, double along) const {
@@ -87,30 +87,31 @@ class Placer {
   /// A camera below the ground is one whose world has z down (GroundView).
   static double up(const Camera& camera) { return camera.centre().z() < 0 ? -1 : 1; }
   /// m, of the top of who stands there, in the world.
-  double head_height(const Camera& camera, const Vector<2>& place) const {
-    return view_.surface().height(place) + up(camera) * options_.height;
+  double head_height(const Camera& camera, const Vector<2>& location) const {
+    return view_.surface().height(location) + up(camera) * options_.height;
   }
 
   std::optional<Placement> by_head(const Camera& camera, std::size_t index, const Cut& cut) const {
     const auto ray = camera.ray(head_of(index));
     if (!ray) return std::nullopt;
     double crown = up(camera) * options_.height;
-    Vector<2> place = Vector<2>::Zero();
+    Vector<2> location = Vector<2>::Zero();
     for (int step = 0; step < kStepsToGround; ++step) {  // one is enough where the ground is level
       const double length = (crown - ray->origin.z()) / ray->direction.z();
       if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
-      place = ray->origin.head<2>() + length * ray->direction.head<2>();
-      if (crown == head_height(camera, place)) break;
-      crown = head_height(camera, place);
+      location = ray->origin.head<2>() + length * ray->direction.head<2>();
+      if (crown == head_height(camera, location)) break;
+      crown = head_height(camera, location);
     }
-    const auto seen = camera.project_with_jacobian({place.x(), place.y(), crown});
-    if (!seen) return std::nullopt;
-    const Matrix<2> by_ground = seen->by_world.leftCols<2>();
+    const auto detected = camera.project_with_jacobian({location.x(), location.y(), crown});
+    if (!detected) return std::nullopt;
+    const Matrix<2> by_ground = detected->by_world.leftCols<2>();
     if (!(std::abs(by_ground.determinant()) > 1e-12)) return std::nullopt;
     const Vector<2> by_height = ray->direction.head<2>() / std::abs(ray->direction.z()) * options_.height_spread;
     const Matrix<2> by_pixel = by_ground.inverse();
-    return Placement{place, on_ground(by_pixel, across_variance(detections_[index], cut), edge_variance(detections_[index].box)) +
-                                by_height * by_height.transpose()};
+    return Placement{location,
+                     on_ground(by_pixel, across_variance(detections_[index], cut), edge_variance(detections_[index].box)) +
+                         by_height * by_height.transpose()};
   }
 
   /// The foot's place corrected by the row in which the head is seen.
@@ -118,18 +119,18 @@ class Placer {
     const double row = head_of(index).y();
     Placement both = foot;
     for (int i = 0; i < 2; ++i) {
-      const auto head = camera.project_with_jacobian({both.place.x(), both.place.y(), head_height(camera, both.place)});
+      const auto head = camera.project_with_jacobian({both.location.x(), both.location.y(), head_height(camera, both.location)});
       if (!head) return foot;
       const Vector<2> slope = head->by_world.row(1).head<2>();
       const double spread = head->by_world(1, 2) * options_.height_spread;
-      const double residual = row - head->pixel.y() - slope.dot(foot.place - both.place);
+      const double residual = row - head->pixel.y() - slope.dot(foot.location - both.location);
       const double S = slope.dot(foot.covariance * slope) + edge_variance(detections_[index].box) + spread * spread;
       if (residual * residual > inconsistent * S) {
         if (residual < 0 || !legs_hidden(index)) return foot;
         return by_head(camera, index, cut);
       }
       const Vector<2> K = foot.covariance * slope / S;
-      both.place = foot.place + K * residual;
+      both.location = foot.location + K * residual;
       both.covariance = foot.covariance - K * S * K.transpose();
     }
     return both;
@@ -147,30 +148,30 @@ class Placer {
 
   std::span<const Detection> detections_;
   const GroundView& view_;
-  const PlacePeopleOptions& options_;
+  const LocalisePeopleOptions& options_;
 };
 
 }  // namespace
 
-PlacedPeople place_people(std::span<const Detection> detections, const GroundView& view, CameraId camera,
-                          const PlacePeopleOptions& options) {
-  const Placer placer(detections, view, options);
-  PlacedPeople placed;
-  placed.seen.reserve(detections.size());
-  placed.detection.reserve(detections.size());
+LocatedPeople localise_people(std::span<const Detection> detections, const GroundView& view, CameraId camera,
+                              const LocalisePeopleOptions& options) {
+  const GroundLocaliser placer(detections, view, options);
+  LocatedPeople located;
+  located.detected.reserve(detections.size());
+  located.detection.reserve(detections.size());
   for (std::size_t i = 0; i < detections.size(); ++i) {
-    const auto at = placer.place(i);
+    const auto at = placer.location(i);
     if (!at) continue;
-    auto& one = placed.seen.emplace_back();
-    one.value = at->place;
+    auto& one = located.detected.emplace_back();
+    one.value = at->location;
     one.covariance = at->covariance;
     one.camera = camera;
     one.score = detections[i].score;
     one.box = detections[i].box;
     one.shared = detections[i].group.has_value();
-    placed.detection.push_back(static_cast<int>(i));
+    located.detection.push_back(static_cast<int>(i));
   }
-  return placed;
+  return located;
 }
 
 }  // namespace marey::reconstruct

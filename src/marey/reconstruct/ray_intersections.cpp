@@ -9,7 +9,7 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr double kSmallestSine = 0.15;  // sine of the angle below which two rays give a place, but not for a third camera
+constexpr double kMinSineOfAngle = 0.15;  // sine of the angle below which two rays give a place, but not for a third camera
 
 }  // namespace
 
@@ -70,13 +70,13 @@ void RayIntersections::extend(const FrameRays& frame, const EpipolarPair& pair, 
   const SightLine& b = frame.line(pair.b);
   // Noise of the meeting point, m: across the rays, and more along them the flatter they meet.
   const double across = std::hypot(a.sigma / a.scale() * a.depth(pair.position), b.sigma / b.scale() * b.depth(pair.position));
-  const double spread = across / std::max(pair.crossing_sine, kSmallestSine);
+  const double spread = across / std::max(pair.crossing_sine, kMinSineOfAngle);
   for (int c = 0; c < frame.cameras(); ++c) {
     if (c == cameras.a()) list_.add(frame, pair.a);
     if (c == cameras.b()) list_.add(frame, pair.b);
     if (c == cameras.a() || c == cameras.b() || frame.first(c) == frame.last(c)) continue;
     const auto pixel = frame.camera(c).project(pair.position);
-    if (!pixel || !frame.camera(c).in_picture(*pixel)) continue;
+    if (!pixel || !frame.camera(c).in_image(*pixel)) continue;
     const double depth = (pair.position - frame.camera(c).centre()).norm();
     double nearest = sigmas_ * std::hypot(frame.largest_sigma(c), spread * frame.line(frame.first(c)).scale() / depth);
     int best = assign::kNoIndex;

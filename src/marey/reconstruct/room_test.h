@@ -31,7 +31,7 @@ class Random {
 };
 
 /// At `centre`, looking at `target`, with a little distortion: 1280 × 1024 px, 60° wide.
-inline Camera looking(const Vector<3>& centre, const Vector<3>& target) {
+inline Camera facing(const Vector<3>& centre, const Vector<3>& target) {
   const Vector<3> z = (target - centre).normalized();
   const Vector<3> x = z.cross(Vector<3>::UnitZ()).normalized();
   Matrix<3> rotation;
@@ -48,7 +48,7 @@ inline std::vector<Camera> cameras_round(int count) {
   std::vector<Camera> cameras;
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * i / count + 0.1;
-    cameras.push_back(looking({4 * std::cos(angle), 4 * std::sin(angle), i % 2 == 0 ? 2.5 : 1.7}, {0, 0, 1}));
+    cameras.push_back(facing({4 * std::cos(angle), 4 * std::sin(angle), i % 2 == 0 ? 2.5 : 1.7}, {0, 0, 1}));
   }
   return cameras;
 }

@@ -18,16 +18,16 @@ namespace marey::reconstruct {
 class SetLabels {
  public:
   explicit SetLabels(const MarkerSet& set) : set_(set) {
-    if (!set_.has_places()) return;
-    double nearest = kWidest;
-    for (std::size_t a = 0; a < set_.places.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) nearest = std::min(nearest, (set_.places[a] - set_.places[b]).norm() / 3);
+    if (!set_.has_positions()) return;
+    double nearest = kMaxWidth;
+    for (std::size_t a = 0; a < set_.locations.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) nearest = std::min(nearest, (set_.locations[a] - set_.locations[b]).norm() / 3);
     }
-    tolerance_ = std::max(nearest, kNarrowest);
+    tolerance_ = std::max(nearest, kMinWidth);
   }
 
   void give(std::span<const Track<3>> tracks) {
-    if (!set_.has_places() || label_of_.size() == set_.labels.size() || frames_++ > kFrames) return;
+    if (!set_.has_positions() || label_of_.size() == set_.labels.size() || frames_++ > kFrames) return;
     points_.clear();
     ids_.clear();
     for (const Track<3>& track : tracks) {
@@ -35,7 +35,7 @@ class SetLabels {
       points_.push_back(track.position);
       ids_.push_back(track.id);
     }
-    const auto match = geometry::match_layout(set_.places, points_, tolerance_);
+    const auto match = geometry::match_layout(set_.locations, points_, tolerance_);
     if (!match) return;
     for (std::size_t m = 0; m < set_.labels.size(); ++m) {
       if (!match->point_of[m] || !given_.insert(m).second) continue;
@@ -50,12 +50,12 @@ class SetLabels {
   }
 
  private:
-  static constexpr double kWidest = 0.03, kNarrowest = 0.001;  // m
-  static constexpr int kFrames = 2000;                         // that are looked at
+  static constexpr double kMaxWidth = 0.03, kMinWidth = 0.001;  // m
+  static constexpr int kFrames = 2000;                          // that are inspected
 
   MarkerSet set_;
   std::string none_;
-  double tolerance_ = kWidest;
+  double tolerance_ = kMaxWidth;
   int frames_ = 0;
   std::vector<Vector<3>> points_;
   std::vector<TrackId> ids_;

@@ -33,7 +33,7 @@ struct SightLine {
   }
 };
 
-/// The half-line behind `pixel`, whose noise is `sigma` > 0 px along each axis; nothing where the lens shows nothing there.
+/// The half-line behind `pixel`, whose noise is `sigma` > 0 px along each axis; nothing if the lens shows nothing there.
 std::optional<SightLine> sight_line(const Camera& camera, int number, const Vector<2>& pixel, double sigma);
 
 }  // namespace marey::reconstruct

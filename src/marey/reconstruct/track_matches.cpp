@@ -11,10 +11,10 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kMostCandidates = 3;   // blobs for a prediction in one picture
+constexpr int kMaxCandidates = 3;    // blobs for a prediction in one image
 constexpr std::size_t kTask = 1000;  // pairs of cameras and predictions: projections, or rays to intersect, that are worth a task
 
-/// Cameras or predictions that make a task, where each has so many of the other.
+/// Cameras or predictions that make a task, where each has this many of the other.
 std::size_t grain_of(std::size_t others) {
   return std::max<std::size_t>(1, kTask / std::max<std::size_t>(1, others));
 }
@@ -38,7 +38,7 @@ void TrackMatches::match(const FrameRays& frame, std::span<const Track<3>> expec
   for_all(cameras, expected.size(), [&](std::size_t c) { match_in(frame, static_cast<int>(c), expected, in_camera_[c]); });
   if (first_.size() < expected.size()) first_.resize(expected.size());
   for_all(expected.size(), cameras, [&](std::size_t i) { intersect(frame, i, expected[i], first_[i]); });
-  for (int i = 0; i < std::ssize(expected); ++i) missed[i] = place(frame, i, expected[i], groups);
+  for (int i = 0; i < std::ssize(expected); ++i) missed[i] = location(frame, i, expected[i], groups);
 }
 
 /// One camera: the assignment of blobs to predictions that is the likeliest as a whole.
@@ -67,7 +67,7 @@ void TrackMatches::match_in(const FrameRays& frame, int camera, std::span<const 
       ++found;
       contested |= ++work.contenders[ray - first] > 1 || found > 1;
     });
-    if (found > kMostCandidates) work.pairs.resize(before);  // a guess among so many would take what is another's
+    if (found > kMaxCandidates) work.pairs.resize(before);  // a guess among this many would take what is another's
   }
   const auto cameras = static_cast<std::size_t>(frame.cameras());
   const auto give = [&](int row, int column) { matched_[static_cast<std::size_t>(row) * cameras + camera] = first + column; };
@@ -92,7 +92,7 @@ void TrackMatches::intersect(const FrameRays& frame, std::size_t index, const Tr
   result.point = triangulator_(result.list.lines(), expected.position);
 }
 
-std::optional<NoPoint> TrackMatches::place(const FrameRays& frame, int index, const Track<3>& expected, RayGroups& groups) {
+std::optional<NoPoint> TrackMatches::location(const FrameRays& frame, int index, const Track<3>& expected, RayGroups& groups) {
   Intersected& first = first_[static_cast<std::size_t>(index)];
   const std::span<const int> rays = first.list.rays();
   if (std::any_of(rays.begin(), rays.end(), [&](int ray) { return groups.taken(ray); })) {

@@ -35,7 +35,7 @@ class TrackMatches {
 
   void match_in(const FrameRays& frame, int camera, std::span<const Track<3>> expected, InCamera& work);
   void intersect(const FrameRays& frame, std::size_t index, const Track<3>& expected, Intersected& result) const;
-  std::optional<NoPoint> place(const FrameRays& frame, int index, const Track<3>& expected, RayGroups& groups);
+  std::optional<NoPoint> location(const FrameRays& frame, int index, const Track<3>& expected, RayGroups& groups);
   bool complete(const FrameRays& frame, const RayList& list, const SpacePoint& point, const RayGroups& groups);
 
   double sigmas_;

@@ -11,12 +11,12 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kMostSteps = 25;
-constexpr double kSmallStep = 1e-3;   // standard deviations of the point: far below noise
-constexpr double kFarthest = 1e6;     // m
-constexpr double kClearlyBetter = 3;  // a left-out ray is known for the wrong one where any other fits worse by this factor
+constexpr int kMaxSteps = 25;
+constexpr double kSmallStep = 1e-3;      // standard deviations of the point: far below noise
+constexpr double kMaxDistance = 1e6;     // m
+constexpr double kDistinctlyBetter = 3;  // a left-out ray is known for the wrong one where any other fits worse by this factor
 
-/// The point with the least sum of squared distances to the half-lines' lines; nothing where they are parallel.
+/// The point with the least sum of squared distances to the half-lines' lines; nothing if they are parallel.
 std::optional<Vector<3>> nearest_to_all(std::span<const SightLine> rays, std::uint64_t used) {
   Matrix<3> A = Matrix<3>::Zero();
   Vector<3> b = Vector<3>::Zero();
@@ -32,14 +32,14 @@ std::optional<Vector<3>> nearest_to_all(std::span<const SightLine> rays, std::ui
 }
 
 /// Cosine of the angle between a ray and the ray farthest from it: within a factor of two of the widest angle of all.
-bool wide_enough(std::span<const SightLine> rays, std::uint64_t used, double least_angle) {
+bool wide_enough(std::span<const SightLine> rays, std::uint64_t used, double min_angle) {
   const Vector<3>& first = rays[std::countr_zero(used)].direction;
   double least_cosine = 1;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Opposite rays fix a point along their common line no better than parallel ones.
     if (used >> i & 1) least_cosine = std::min(least_cosine, std::abs(first.dot(rays[i].direction)));
   }
-  return least_cosine < std::cos(least_angle);
+  return least_cosine < std::cos(min_angle);
 }
 
 double limit_of(int rays, double false_alarm) {
@@ -70,7 +70,7 @@ struct Triangulator::Rejection {
 };
 
 Triangulator::Triangulator(const TriangulateOptions& options) : options_(options) {
-  for (int rays = 2; rays <= kMostRays; ++rays) limits_[rays] = limit_of(rays, options.false_alarm);
+  for (int rays = 2; rays <= kMaxRays; ++rays) limits_[rays] = limit_of(rays, options.false_alarm);
 }
 
 /// Gauss and Newton's method with Huber's weights.
@@ -78,7 +78,7 @@ std::variant<Triangulator::Fit, NoPoint> Triangulator::fit(std::span<const Sight
                                                            const Vector<3>& start) const {
   const double huber = options_.huber;
   Fit fit{start, Matrix<3>::Zero(), 0};
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     Matrix<3> H = Matrix<3>::Zero();
     Vector<3> g = Vector<3>::Zero();
     fit.chi_square = 0;
@@ -103,20 +103,20 @@ std::variant<Triangulator::Fit, NoPoint> Triangulator::fit(std::span<const Sight
     const Vector<3> move = H.inverse() * g;
     const double size = move.dot(g);  // squared, in standard deviations of the point
     fit.position -= move;
-    if (!(fit.position.squaredNorm() < kFarthest * kFarthest)) return NoPoint::no_solution;
+    if (!(fit.position.squaredNorm() < kMaxDistance * kMaxDistance)) return NoPoint::no_solution;
     if (size < kSmallStep * kSmallStep) break;
   }
   return fit;  // rays far apart approach their compromise slowly; their sum of squares shows that they do not meet
 }
 
-/// The best fit without one of the rays, and which; nothing where none is sound, or two could be the wrong one.
+/// The best fit without one of the rays, and which; nothing if none is sound, or two could be the wrong one.
 std::optional<Triangulator::Rejection> Triangulator::without_one(std::span<const SightLine> rays, std::uint64_t used) const {
   std::optional<Rejection> best;
   double second = std::numeric_limits<double>::infinity();
   for (std::uint64_t left = used; left != 0; left &= left - 1) {
     const std::uint64_t rest = used & ~(left & ~(left - 1));
     const auto start = nearest_to_all(rays, rest);
-    if (!start || !wide_enough(rays, rest, options_.least_angle)) continue;
+    if (!start || !wide_enough(rays, rest, options_.min_angle)) continue;
     const auto tried = fit(rays, rest, *start);
     const Fit* found = std::get_if<Fit>(&tried);
     if (!found) continue;
@@ -129,8 +129,8 @@ std::optional<Triangulator::Rejection> Triangulator::without_one(std::span<const
   }
   if (!best) return std::nullopt;
   // Two rays nearly always meet somewhere: of three, it must be plain that the other pairs do not.
-  const double limit = most_chi_square(std::popcount(best->used));
-  if (best->fit.chi_square <= limit && std::popcount(best->used) == 2 && second < kClearlyBetter * limit) return std::nullopt;
+  const double limit = max_chi_square(std::popcount(best->used));
+  if (best->fit.chi_square <= limit && std::popcount(best->used) == 2 && second < kDistinctlyBetter * limit) return std::nullopt;
   return best;
 }
 
@@ -153,13 +153,13 @@ Triangulation Triangulator::solve(std::span<const SightLine> rays, std::uint64_t
   const auto first = fit(rays, used, start);
   if (const auto* reason = std::get_if<NoPoint>(&first); reason && (!options_.reject || std::popcount(used) < 3)) return *reason;
   const Fit* sound = std::get_if<Fit>(&first);
-  if (sound && sound->chi_square <= most_chi_square(std::popcount(used))) return point_of(rays, used, *sound);
+  if (sound && sound->chi_square <= max_chi_square(std::popcount(used))) return point_of(rays, used, *sound);
   if (!options_.reject) return NoPoint::rays_disagree;
   while (std::popcount(used) > 2) {
     const auto better = without_one(rays, used);
     if (!better) break;
     used = better->used;
-    if (better->fit.chi_square <= most_chi_square(std::popcount(used))) return point_of(rays, used, better->fit);
+    if (better->fit.chi_square <= max_chi_square(std::popcount(used))) return point_of(rays, used, better->fit);
   }
   return NoPoint::rays_disagree;
 }
@@ -181,20 +181,20 @@ std::string_view meaning(NoPoint reason) {
 }
 
 Triangulation Triangulator::operator()(std::span<const SightLine> rays) const {
-  if (rays.size() > kMostRays) rays = rays.first(kMostRays);
+  if (rays.size() > kMaxRays) rays = rays.first(kMaxRays);
   if (rays.size() < 2) return NoPoint::too_few_rays;
   const std::uint64_t used = all_of(rays);
-  if (!wide_enough(rays, used, options_.least_angle)) return NoPoint::parallel_rays;
+  if (!wide_enough(rays, used, options_.min_angle)) return NoPoint::parallel_rays;
   const auto start = nearest_to_all(rays, used);
   if (!start) return NoPoint::parallel_rays;
   return solve(rays, used, *start);
 }
 
 Triangulation Triangulator::operator()(std::span<const SightLine> rays, const Vector<3>& near) const {
-  if (rays.size() > kMostRays) rays = rays.first(kMostRays);
+  if (rays.size() > kMaxRays) rays = rays.first(kMaxRays);
   if (rays.size() < 2) return NoPoint::too_few_rays;
   const std::uint64_t used = all_of(rays);
-  if (!wide_enough(rays, used, options_.least_angle)) return NoPoint::parallel_rays;
+  if (!wide_enough(rays, used, options_.min_angle)) return NoPoint::parallel_rays;
   return solve(rays, used, near);
 }
 

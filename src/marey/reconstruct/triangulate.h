@@ -2,7 +2,7 @@
 // least sum of squares, by Gauss and Newton's method from the point nearest to all half-lines.
 //
 // Errors beyond `huber` standard deviations weigh less than their square (Huber 1964). Where the sum is still more than noise
-// explains, the ray without which it falls the most is left out, and so on, while enough rays remain to tell which of them is the
+// explains, the ray without which it falls the most is omitted, and so on, while enough rays remain to tell which of them is the
 // wrong one. With Gaussian noise the estimate reaches the Cramér-Rao bound: nothing that is unbiased does better.
 // Cost: about 60 ns a ray with three to five steps. References: Hartley & Zisserman, "Multiple View Geometry", 2004, 12.4; Huber,
 // "Robust estimation of a location parameter", 1964.
@@ -44,11 +44,11 @@ using Triangulation = std::variant<SpacePoint, NoPoint>;
 struct TriangulateOptions {
   double huber = 3;           ///< standard deviations from which an error weighs less than its square; > 0
   double false_alarm = 1e-4;  ///< share of sound points of which a ray is doubted, in (0, 1)
-  double least_angle = 0.01;  ///< rad between the two rays farthest apart
-  bool reject = true;         ///< leave out wrong rays; else they make the whole point disagree
+  double min_angle = 0.01;    ///< rad between the two rays farthest apart
+  bool reject = true;         ///< omit wrong rays; else they make the whole point disagree
 };
 
-/// Triangulates again and again under the same options. At most 64 rays: those after them are not looked at. Deterministic, and
+/// Triangulates again and again under the same options. At most 64 rays: those after them are not inspected. Deterministic, and
 /// allocates nothing.
 class Triangulator {
  public:
@@ -59,9 +59,9 @@ class Triangulator {
   /// The same from a point that is known to be near, such as a prediction: saves the first guess.
   Triangulation operator()(std::span<const SightLine> rays, const Vector<3>& near) const;
 
-  /// The number that the sum of squares of so many sound rays stays below with the probability 1 − `false_alarm`. Wilson and
+  /// The number that the sum of squares of this many sound rays stays below with the probability 1 − `false_alarm`. Wilson and
   /// Hilferty's approximation, good to a few per cent; rays in [2, 64].
-  double most_chi_square(int rays) const { return limits_[rays]; }
+  double max_chi_square(int rays) const { return limits_[rays]; }
 
  private:
   struct Fit;
@@ -71,10 +71,10 @@ class Triangulator {
   std::optional<Rejection> without_one(std::span<const SightLine> rays, std::uint64_t used) const;
   static SpacePoint point_of(std::span<const SightLine> rays, std::uint64_t used, const Fit& fit);
 
-  static constexpr int kMostRays = 64;
+  static constexpr int kMaxRays = 64;
 
   TriangulateOptions options_;
-  std::array<double, kMostRays + 1> limits_{};
+  std::array<double, kMaxRays + 1> limits_{};
 };
 
 /// One point, once.

@@ -14,7 +14,7 @@ namespace {
 using room::cameras_round;
 using room::Random;
 
-std::vector<SightLine> seen(const std::vector<Camera>& cameras, const Vector<3>& point, double sigma, Random& random) {
+std::vector<SightLine> detected(const std::vector<Camera>& cameras, const Vector<3>& point, double sigma, Random& random) {
   std::vector<SightLine> rays;
   for (int i = 0; i < std::ssize(cameras); ++i) {
     const auto pixel = cameras[i].project(point);
@@ -42,7 +42,7 @@ TEST(Triangulate, ExactRaysMeetInTheirPoint) {
   const auto cameras = cameras_round(6);
   for (int i = 0; i < 50; ++i) {
     const Vector<3> point = random.in_room();
-    const auto result = triangulate(seen(cameras, point, 0, random));
+    const auto result = triangulate(detected(cameras, point, 0, random));
     const auto* found = std::get_if<SpacePoint>(&result);
     ASSERT_TRUE(found);
     EXPECT_LT((found->position - point).norm(), 1e-8);
@@ -96,7 +96,7 @@ TEST(Triangulate, ReachesTheCramerRaoBound) {
   double error = 0, bound = 0;
   for (int i = 0; i < 4000; ++i) {
     const Vector<3> point = random.in_room();
-    const auto result = triangulate(seen(cameras, point, 0.05, random));
+    const auto result = triangulate(detected(cameras, point, 0.05, random));
     const auto* found = std::get_if<SpacePoint>(&result);
     ASSERT_TRUE(found);
     error += (found->position - point).squaredNorm();
@@ -116,7 +116,7 @@ TEST(Triangulate, LeavesOutWrongRays) {
   const auto cameras = cameras_round(8);
   for (int i = 0; i < 200; ++i) {
     const Vector<3> point = random.in_room();
-    auto rays = seen(cameras, point, 0.1, random);
+    auto rays = detected(cameras, point, 0.1, random);
     const Vector<2> pixel = cameras[i % 8].project(point).value();
     rays[i % 8] = sight_line(cameras[i % 8], i % 8, pixel + Vector<2>(9, -7), 0.1).value();
     const auto result = triangulate(rays);
@@ -132,7 +132,7 @@ TEST(Triangulate, SaysWhyThereIsNoPoint) {
   Random random(6);
   const auto cameras = cameras_round(4);
   const Vector<3> point(0.2, -0.3, 1);
-  auto rays = seen(cameras, point, 0, random);
+  auto rays = detected(cameras, point, 0, random);
   EXPECT_EQ(std::get<NoPoint>(triangulate(std::span(rays).first(1))), NoPoint::too_few_rays);
   const std::vector<SightLine> twice = {rays[0], rays[0]};
   EXPECT_EQ(std::get<NoPoint>(triangulate(twice)), NoPoint::parallel_rays);
@@ -151,13 +151,13 @@ TEST(Triangulate, SaysWhyThereIsNoPoint) {
 TEST(Triangulate, DoubtsFewSoundPoints) {
   Random random(7);
   const auto cameras = cameras_round(4);
-  int doubted = 0;
+  int flagged = 0;
   for (int i = 0; i < 5000; ++i) {
-    const auto result = triangulate(seen(cameras, random.in_room(), 0.2, random), {.false_alarm = 0.01});
+    const auto result = triangulate(detected(cameras, random.in_room(), 0.2, random), {.false_alarm = 0.01});
     const auto* found = std::get_if<SpacePoint>(&result);
-    doubted += !found || found->rays < 4;
+    flagged += !found || found->rays < 4;
   }
-  EXPECT_NEAR(doubted / 5000.0, 0.01, 0.005);
+  EXPECT_NEAR(flagged / 5000.0, 0.01, 0.005);
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ namespace {
 constexpr int kWaves = 24;
 constexpr double kSlowest = 0.3, kFastest = 8;      // Hz, of the wind
 constexpr double kOwnRate = 2.2, kOwnWidth = 0.25;  // Hz and e-folds: where a mast swings by itself
-constexpr double kRollShare = 1.0 / 3;
+constexpr double kRollFraction = 1.0 / 3;
 constexpr double kStepEvery = 5, kStepRings = 0.3, kStepRate = 6;  // s, s, Hz
 constexpr double kStepSize = 2;                                    // in what the wind does
 
 }  // namespace
 
 CameraShake::CameraShake(double rms_px, double focal, double reach, std::uint64_t seed)
-    : rms_(rms_px / focal, rms_px / focal, kRollShare * rms_px / reach), seed_(seed) {
+    : rms_(rms_px / focal, rms_px / focal, kRollFraction * rms_px / reach), seed_(seed) {
   Random random(seed * 2654435761U + 77);
   for (int axis = 0; axis < 3; ++axis) {
     double sum = 0;
@@ -52,7 +52,7 @@ Vector<3> CameraShake::turn(double time) const {
   return turn;
 }
 
-std::function<Vector<2>(const Vector<2>&)> turned_pixels(const Vector<3>& turn, double focal, const Vector<2>& principal) {
+std::function<Vector<2>(const Vector<2>&)> rotated_pixels(const Vector<3>& turn, double focal, const Vector<2>& principal) {
   const Matrix<3> rotation =
       turn.isZero() ? Matrix<3>::Identity().eval() : Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
   return [rotation, focal, principal](const Vector<2>& pixel) -> Vector<2> {

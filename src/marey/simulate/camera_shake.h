@@ -13,7 +13,7 @@ namespace marey::simulate {
 /// rest. The same for the same seed.
 class CameraShake {
  public:
-  /// `rms_px` is what pan and tilt each move the picture's middle by, root mean square without the jolts; `focal` px; roll moves a
+  /// `rms_px` is what pan and tilt each move the image's middle by, root mean square without the jolts; `focal` px; roll moves a
   /// place `reach` px off the middle by a third of that.
   CameraShake(double rms_px, double focal, double reach, std::uint64_t seed);
 
@@ -30,6 +30,6 @@ class CameraShake {
 };
 
 /// Where what is seen at a pixel is seen after the turn `turn` of the scene about a pinhole camera.
-std::function<Vector<2>(const Vector<2>&)> turned_pixels(const Vector<3>& turn, double focal, const Vector<2>& principal);
+std::function<Vector<2>(const Vector<2>&)> rotated_pixels(const Vector<3>& turn, double focal, const Vector<2>& principal);
 
 }  // namespace marey::simulate

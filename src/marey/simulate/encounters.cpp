@@ -14,13 +14,13 @@
 namespace marey::simulate {
 namespace {
 
-constexpr double turning = 0.25;  // s, standard deviation: how long it takes to change one's velocity
-constexpr double apart = 1.5;     // s: from a meeting's begin or end to being on one's own
-constexpr double between = 4;     // s, on one's own
+constexpr double ptz = 0.25;   // s, standard deviation: how long it takes to change one's velocity
+constexpr double apart = 1.5;  // s: from a meeting's begin or end to being on one's own
+constexpr double between = 4;  // s, on one's own
 
 struct Waypoint {
   double time = 0;
-  Vector<2> place = Vector<2>::Zero();
+  Vector<2> location = Vector<2>::Zero();
 };
 using Path = std::vector<Waypoint>;
 
@@ -54,46 +54,46 @@ double meet(Random& random, double time, const EncounterOptions& options, Path& 
     path->push_back({begin, meets});
     if (lasts > 0) path->push_back({end, centre + ahead + side_of * across});
     const double leaving = kind == Encounter::cross ? speed : random.uniform(2, 5);
-    path->push_back({end + apart, path->back().place + leaving * apart * direction(to)});
+    path->push_back({end + apart, path->back().location + leaving * apart * direction(to)});
     first_sign = -1;
   }
   return end + apart;
 }
 
 /// Where the path is at `time`, without smoothing.
-Vector<2> place_at(const Path& path, double time) {
+Vector<2> position_at(const Path& path, double time) {
   const auto after = std::lower_bound(path.begin(), path.end(), time, [](const Waypoint& one, double t) { return one.time < t; });
-  if (after == path.begin()) return path.front().place;
-  if (after == path.end()) return path.back().place;
+  if (after == path.begin()) return path.front().location;
+  if (after == path.end()) return path.back().location;
   const Waypoint& before = *(after - 1);
-  return before.place + (time - before.time) / (after->time - before.time) * (after->place - before.place);
+  return before.location + (time - before.time) / (after->time - before.time) * (after->location - before.location);
 }
 
-Vector<2> smooth_place_at(const Path& path, double time) {
+Vector<2> smooth_position_at(const Path& path, double time) {
   Vector<2> sum = Vector<2>::Zero();
   double weights = 0;
   for (int i = -12; i <= 12; ++i) {
     const double sigmas = i / 4.0;
     const double weight = std::exp(-sigmas * sigmas / 2);
-    sum += weight * place_at(path, time + sigmas * turning);
+    sum += weight * position_at(path, time + sigmas * ptz);
     weights += weight;
   }
   return sum / weights;
 }
 
 /// Who is nearer than `merged` to another is seen with it as one: groups by chains of such.
-std::vector<Vector<2>> blend(const std::vector<Vector<2>>& places, double merged) {
+std::vector<Vector<2>> blend(const std::vector<Vector<2>>& locations, double merged) {
   std::vector<Vector<2>> blended;
-  std::vector<char> done(places.size(), 0);
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  std::vector<char> done(locations.size(), 0);
+  for (std::size_t i = 0; i < locations.size(); ++i) {
     if (done[i]) continue;
     std::vector<std::size_t> group{i};
     done[i] = 1;
     Vector<2> sum = Vector<2>::Zero();
     for (std::size_t next = 0; next < group.size(); ++next) {
-      sum += places[group[next]];
-      for (std::size_t j = 0; j < places.size(); ++j) {
-        if (done[j] || (places[j] - places[group[next]]).norm() >= merged) continue;
+      sum += locations[group[next]];
+      for (std::size_t j = 0; j < locations.size(); ++j) {
+        if (done[j] || (locations[j] - locations[group[next]]).norm() >= merged) continue;
         done[j] = 1;
         group.push_back(j);
       }
@@ -103,44 +103,46 @@ std::vector<Vector<2>> blend(const std::vector<Vector<2>>& places, double merged
   return blended;
 }
 
-std::vector<Observation<2>> observe(Random& random, const std::vector<Vector<2>>& places, double noise,
+std::vector<Observation<2>> observe(Random& random, const std::vector<Vector<2>>& locations, double noise,
                                     const EncounterOptions& options) {
-  std::vector<Observation<2>> seen;
-  const auto add = [&](const Vector<2>& place) {
-    Observation<2>& one = seen.emplace_back();
-    one.value = place;
+  std::vector<Observation<2>> detected;
+  const auto add = [&](const Vector<2>& location) {
+    Observation<2>& one = detected.emplace_back();
+    one.value = location;
     one.covariance = noise * noise * Matrix<2>::Identity();
     one.score = 0.9;
   };
-  for (const Vector<2>& place : blend(places, options.merged)) {
+  for (const Vector<2>& location : blend(locations, options.merged)) {
     const Vector<2> error(random.gaussian(0, noise), random.gaussian(0, noise));
-    if (!random.chance(options.missed)) add(place + error);
+    if (!random.chance(options.missed)) add(location + error);
   }
   double rest = options.clutter;
   for (; rest > 0; --rest) {
     if (random.chance(rest)) add({random.uniform(0, options.side), random.uniform(0, options.side)});
   }
-  for (std::size_t i = seen.size(); i > 1; --i) std::swap(seen[i - 1], seen[random.integer(0, static_cast<int>(i) - 1)]);
-  return seen;
+  for (std::size_t i = detected.size(); i > 1; --i)
+    std::swap(detected[i - 1], detected[random.integer(0, static_cast<int>(i) - 1)]);
+  return detected;
 }
 
 }  // namespace
 
 EncounterScene simulate_encounters(std::uint64_t seed, const EncounterOptions& options) {
   Random random(seed);
-  EncounterScene scene{options, random.uniform(options.least_noise, options.most_noise), {}, {}};
+  EncounterScene scene{options, random.uniform(options.min_noise, options.max_noise), {}, {}};
   std::vector<Path> paths(2 * static_cast<std::size_t>(options.pairs));
   double end = 0;
   for (std::size_t i = 0; i < paths.size(); i += 2) {
     double time = random.uniform(-1, 1);
-    for (int meeting = 0; meeting < options.meetings; ++meeting) time = meet(random, time, options, paths[i], paths[i + 1]);
+    for (int close_encounter = 0; close_encounter < options.close_encounters; ++close_encounter)
+      time = meet(random, time, options, paths[i], paths[i + 1]);
     end = std::max(end, time);
   }
   const int frames = static_cast<int>(end * options.rate_hz);
   for (int frame = 0; frame < frames; ++frame) {
-    std::vector<Vector<2>>& places = scene.truth.emplace_back();
-    for (const Path& path : paths) places.push_back(smooth_place_at(path, frame / options.rate_hz));
-    scene.seen.push_back(observe(random, places, scene.noise, options));
+    std::vector<Vector<2>>& locations = scene.truth.emplace_back();
+    for (const Path& path : paths) locations.push_back(smooth_position_at(path, frame / options.rate_hz));
+    scene.detected.push_back(observe(random, locations, scene.noise, options));
   }
   return scene;
 }

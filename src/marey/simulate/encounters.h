@@ -16,12 +16,12 @@ enum class Encounter {
 };
 
 struct EncounterOptions {
-  int pairs = 4;     ///< of people; each pair meets again and again
-  int meetings = 4;  ///< of each pair
+  int pairs = 4;             ///< of people; each pair meets again and again
+  int close_encounters = 4;  ///< of each pair
   double rate_hz = 25;
   std::optional<Encounter> kind = {};  ///< of all meetings; nothing: drawn for each
-  double least_noise = 0.1;            ///< m, standard deviation of a place, per axis: drawn for each scene
-  double most_noise = 0.4;
+  double min_noise = 0.1;              ///< m, standard deviation of a place, per axis: drawn for each scene
+  double max_noise = 0.4;
   double missed = 0.1;   ///< probability that a person is not seen in a frame
   double clutter = 0.5;  ///< false observations a frame
   double merged = 0.5;   ///< m: two nearer than this are seen as one, between them
@@ -31,9 +31,9 @@ struct EncounterOptions {
 /// People who meet and part, as one camera sees their places on the ground, with the truth.
 struct EncounterScene {
   EncounterOptions options;
-  double noise = 0;                               ///< m
-  std::vector<std::vector<Vector<2>>> truth;      ///< by frame, by person; all are there in all frames; m
-  std::vector<std::vector<Observation<2>>> seen;  ///< by frame
+  double noise = 0;                                   ///< m
+  std::vector<std::vector<Vector<2>>> truth;          ///< by frame, by person; all are there in all frames; m
+  std::vector<std::vector<Observation<2>>> detected;  ///< by frame
 };
 
 /// Draws a scene from `seed`, the same on every machine. People run at 2 to 6 m/s, and accelerate by no more than about 6 m/s²;

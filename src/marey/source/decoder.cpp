@@ -1,5 +1,5 @@
-// OpenCV's reader is not used because it converts every picture to BGR (half of the decoding time of a large one), counts
-// time as index / rate, does not tell a file that ends from one that breaks off, and loads 244 shared libraries.
+// OpenCV's reader is not used because it converts every image to BGR (half of the decoding time of a large one), counts
+// time as index / rate, does not specify a file that ends from one that breaks off, and loads 244 shared libraries.
 #include "marey/source/decoder.h"
 
 #include <cmath>
@@ -9,11 +9,11 @@
 
 #include <tbb/global_control.h>
 
-#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
-#include "marey/core/input_file.h"
-#include "marey/core/limits.h"
-#include "marey/source/decoded_picture.h"
+#include "marey/files/c_deleter.h"
+#include "marey/files/input_file.h"
+#include "marey/files/limits.h"
+#include "marey/source/decoded_image.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -29,8 +29,8 @@ using CodecPtr = std::unique_ptr<AVCodecContext, CDeleter<AVCodecContext, avcode
 using DecodedFrame = std::unique_ptr<AVFrame, CDeleter<AVFrame, av_frame_free>>;
 using PacketPtr = std::unique_ptr<AVPacket, CDeleter<AVPacket, av_packet_free>>;
 
-/// A decoder that is out of packets may refuse this many pictures in a row before it is given up.
-constexpr int kMostErrorsWhileDraining = 64;
+/// A decoder that is out of packets may refuse this many images in a row before it is given up.
+constexpr int kMaxErrorsWhileDraining = 64;
 
 std::string reason(int code) {
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
@@ -43,7 +43,7 @@ void check_memory(int code) {
   if (code == AVERROR(ENOMEM)) throw std::bad_alloc();
 }
 
-/// Degrees clockwise that a camera held askew asks its pictures to be turned by: 0, 90, 180 or 270.
+/// Degrees clockwise that a camera held askew asks its images to be turned by: 0, 90, 180 or 270.
 int turn_of(const AVStream& stream) {
   std::size_t size = 0;
   const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
@@ -54,7 +54,7 @@ int turn_of(const AVStream& stream) {
   return ((quarters % 4 + 4) % 4) * 90;
 }
 
-/// What is no file, for FFmpeg: its own reading could not be left while a writer is silent.
+/// What is not a file, for FFmpeg: its own reading could not be left while a writer is silent.
 class PipeBytes {
  public:
   explicit PipeBytes(const std::string& path) : file_(path) {
@@ -69,10 +69,10 @@ class PipeBytes {
  private:
   static constexpr int kBuffer = 1 << 16;
 
-  static int read(void* self, std::uint8_t* to, int most) {
+  static int read(void* self, std::uint8_t* to, int maximum) {
     auto& pipe = *static_cast<PipeBytes*>(self);
     try {
-      const std::size_t got = pipe.file_.read({reinterpret_cast<char*>(to), static_cast<std::size_t>(most)});
+      const std::size_t got = pipe.file_.read({reinterpret_cast<char*>(to), static_cast<std::size_t>(maximum)});
       return got > 0 ? static_cast<int>(got) : AVERROR_EOF;
     } catch (const Stopped&) {
       pipe.stopped_ = true;
@@ -117,20 +117,20 @@ FormatPtr open_format(const std::string& path, PipeBytes* pipe) {
   return FormatPtr(opened);
 }
 
-std::int64_t largest_picture() {
-  return static_cast<std::int64_t>(Limits::in_force().picture_px);
+std::int64_t largest_image() {
+  return static_cast<std::int64_t>(Limits::in_force().image_px);
 }
 
 void check_size(const cv::Size& size, const std::string& path) {
-  if (std::int64_t{size.width} * size.height <= largest_picture()) return;
-  throw Error("{}: its pictures have {} x {} px, more than {} in all (the limit picture_px); make them smaller first", path,
-              size.width, size.height, largest_picture());
+  if (std::int64_t{size.width} * size.height <= largest_image()) return;
+  throw Error("{}: its images have {} x {} px, more than {} in all (the limit picture_px); make them smaller first", path,
+              size.width, size.height, largest_image());
 }
 
-/// Which streams there are. It decodes their first pictures, within the limit.
+/// Which streams there are. It decodes their first images, within the limit.
 int find_streams(AVFormatContext& format) {
   std::vector<AVDictionary*> options(format.nb_streams, nullptr);
-  for (AVDictionary*& each : options) av_dict_set_int(&each, "max_pixels", largest_picture(), 0);
+  for (AVDictionary*& each : options) av_dict_set_int(&each, "max_pixels", largest_image(), 0);
   const int code = avformat_find_stream_info(&format, options.data());
   for (AVDictionary*& each : options) av_dict_free(&each);
   return code;
@@ -145,7 +145,7 @@ struct Decoder::Parts {
   AVStream* stream = nullptr;
   PacketPtr packet{allocated(av_packet_alloc())};
   DecodedFrame frame{allocated(av_frame_alloc())};
-  PictureMaker maker;
+  ImageConverter maker;
   cv::Size coded_size;
   int turn = 0;
   bool drained = false;
@@ -168,7 +168,7 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
   const AVCodec* codec = nullptr;
   const int stream = av_find_best_stream(p.format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
   if (stream < 0 || codec == nullptr)
-    throw Error("{}: holds no video that can be decoded; give a video file or a folder of pictures", path);
+    throw Error("{}: holds no video that can be decoded; give a video file or a folder of images", path);
   p.stream = p.format->streams[stream];
   check_size({p.stream->codecpar->width, p.stream->codecpar->height}, path);
   p.codec.reset(allocated(avcodec_alloc_context3(codec)));
@@ -176,14 +176,14 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
   p.codec->log_level_offset = AV_LOG_TRACE;  // what is damaged is counted; the host program's log gets nothing of ours
   const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   p.codec->thread_count = threads > 0 ? threads : static_cast<int>(allowed);
-  p.codec->max_pixels = largest_picture();  // of pictures that change their size on the way too
+  p.codec->max_pixels = largest_image();  // of images that change their size on the way too
   if (const int code = avcodec_open2(p.codec.get(), codec, nullptr); code < 0) {
     throw Error("{}: its video ({}) cannot be decoded ({})", path, codec->long_name, reason(code));
   }
   p.coded_size = {p.codec->width, p.codec->height};
   if (p.coded_size.width <= 0 || p.coded_size.height <= 0) {
-    throw Error("{}: cannot be read as a video (its pictures have no size, or more than {} px in all: the limit picture_px)", path,
-                largest_picture());
+    throw Error("{}: cannot be read as a video (its images have no size, or more than {} px in all: the limit picture_px)", path,
+                largest_image());
   }
   check_size(p.coded_size, path);
   p.turn = turn_of(*p.stream);
@@ -232,13 +232,13 @@ std::optional<Decoder::Decoded> Decoder::next() {
       result.stamp_ns = av_rescale_q(stamp, p.stream->time_base, AVRational{1, 1'000'000'000});
     }
     av_frame_unref(p.frame.get());
-    if (!result.picture.empty()) return result;
+    if (!result.image.empty()) return result;
     ++p.trouble.undecodable;
   }
   return std::nullopt;
 }
 
-/// Puts the next decoded picture into `frame`; false at the end.
+/// Puts the next decoded image into `frame`; false at the end.
 bool Decoder::Parts::receive() {
   for (;;) {
     const int code = avcodec_receive_frame(codec.get(), frame.get());
@@ -246,7 +246,7 @@ bool Decoder::Parts::receive() {
     if (code == AVERROR_EOF) return false;
     check_memory(code);
     if (code != AVERROR(EAGAIN)) ++trouble.undecodable;
-    if (drained && ++errors_while_draining > kMostErrorsWhileDraining) return false;
+    if (drained && ++errors_while_draining > kMaxErrorsWhileDraining) return false;
     if (!drained) feed();
   }
 }

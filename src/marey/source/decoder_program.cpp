@@ -1,7 +1,7 @@
 // The decoder of a build without FFmpeg's libraries (MAREY_FFMPEG=OFF): a Python wheel that would carry them is four times as
-// large, and under another licence. It asks the programs `ffprobe` and `ffmpeg`, where they are installed: what a film is, then its
-// pictures as raw bytes through a pipe. Their times come out of ffmpeg's log (its filter `showinfo`), which a thread reads beside.
-// What is damaged is passed over by ffmpeg and not counted.
+// large, and under another licence. It asks the programs `ffprobe` and `ffmpeg`, where they are installed: what a video is, then
+// its images as raw bytes through a pipe. Their times come out of ffmpeg's log (its filter `showinfo`), which a thread reads
+// beside. What is damaged is skipped by ffmpeg and not counted.
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -20,8 +20,8 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
-#include "marey/core/limits.h"
 #include "marey/core/stop.h"
+#include "marey/files/limits.h"
 #include "marey/source/decoder.h"
 
 extern char** environ;
@@ -51,7 +51,7 @@ class Program {
     process_ = -1;
     shut();
     throw Error(
-        "{} cannot be started ({}); this build of Marey reads films by it: install the package ffmpeg, or give frames as arrays",
+        "{} cannot be started ({}); this build of Marey reads videos by it: install the package ffmpeg, or give frames as arrays",
         words.front(), std::strerror(failed));
   }
   ~Program() {
@@ -120,20 +120,20 @@ Facts facts_of(const std::string& path) {
        "stream=width,height,pix_fmt,color_range,avg_frame_rate,r_frame_rate,nb_frames,duration,time_base:stream_side_data=rotation:"
        "format=duration",
        "-of", "default=noprint_wrappers=1", "file:" + path});
-  const std::string said = read_text(probe.out());
+  const std::string stated = read_text(probe.out());
   std::string why = read_text(probe.err());
   probe.wait();
   Facts facts;
-  for (std::size_t begin = 0; begin < said.size();) {
-    const std::size_t end = std::min(said.find('\n', begin), said.size());
-    const std::string line = said.substr(begin, end - begin);
+  for (std::size_t begin = 0; begin < stated.size();) {
+    const std::size_t end = std::min(stated.find('\n', begin), stated.size());
+    const std::string line = stated.substr(begin, end - begin);
     if (const std::size_t equals = line.find('='); equals != std::string::npos && line.substr(equals + 1) != "N/A")
       facts.try_emplace(line.substr(0, equals), line.substr(equals + 1));
     begin = end + 1;
   }
   if (facts.contains("width") && facts.contains("height")) return facts;
   if (const std::size_t line = why.find('\n'); line != std::string::npos) why.resize(line);
-  throw Error("{}: cannot be read as a video or picture{}{}", path, why.empty() ? "" : ": ", why);
+  throw Error("{}: cannot be read as a video or image{}{}", path, why.empty() ? "" : ": ", why);
 }
 
 }  // namespace
@@ -143,11 +143,11 @@ struct Decoder::Parts {
     size = {static_cast<int>(*number_in(facts["width"])), static_cast<int>(*number_in(facts["height"]))};
     const int turn = static_cast<int>(number_in(facts["rotation"]).value_or(0));
     if (turn % 180 != 0) std::swap(size.width, size.height);
-    if (size.area() <= 0 || static_cast<std::size_t>(size.area()) > Limits::in_force().picture_px)
-      throw Error("{}: its pictures have {}x{} px, more than the limit picture_px", path, size.width, size.height);
+    if (size.area() <= 0 || static_cast<std::size_t>(size.area()) > Limits::in_force().image_px)
+      throw Error("{}: its images have {}x{} px, more than the limit picture_px", path, size.width, size.height);
     grey = facts["pix_fmt"].starts_with("gray");
     const bool full = facts["color_range"] == "pc" || facts["pix_fmt"].starts_with("yuvj");
-    range = full ? Picture::Range::full : Picture::Range::limited;
+    range = full ? Image::Range::full : Image::Range::limited;
     // rawvideo's planes: the conversion from RGB and to 8 bits is ffmpeg's own.
     program.emplace(std::vector<std::string>{"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "info", "-i", "file:" + path,
                                              "-map", "0:v:0", "-vf", "showinfo=checksum=0", "-fps_mode", "passthrough", "-f",
@@ -163,7 +163,7 @@ struct Decoder::Parts {
     if (listener.joinable()) listener.join();
   }
 
-  /// Keeps the times that ffmpeg's log tells, in the order of the pictures.
+  /// Keeps the times that ffmpeg's log tells, in the order of the images.
   void listen() {
     std::string line;
     std::array<char, 4096> bytes{};
@@ -223,7 +223,7 @@ struct Decoder::Parts {
   Facts facts;
   cv::Size size;
   bool grey = false;
-  Picture::Range range = Picture::Range::limited;
+  Image::Range range = Image::Range::limited;
   std::optional<Program> program;
   std::thread listener;
   std::mutex guard;
@@ -267,12 +267,12 @@ std::optional<Decoder::Decoded> Decoder::next() {
     return std::nullopt;
   }
   std::uint8_t* data = bytes->data();
-  Decoded decoded{.picture = {}, .stamp_ns = parts_->next_stamp()};
+  Decoded decoded{.image = {}, .stamp_ns = parts_->next_stamp()};
   if (parts_->grey) {
-    decoded.picture = Picture(cv::Mat(size, CV_8UC1, data).clone());
+    decoded.image = Image(cv::Mat(size, CV_8UC1, data).clone());
   } else {
-    decoded.picture = Picture(cv::Mat(size, CV_8UC1, data), cv::Mat(half, CV_8UC1, data + luma),
-                              cv::Mat(half, CV_8UC1, data + luma + chroma), parts_->range, bytes);
+    decoded.image = Image(cv::Mat(size, CV_8UC1, data), cv::Mat(half, CV_8UC1, data + luma),
+                          cv::Mat(half, CV_8UC1, data + luma + chroma), parts_->range, bytes);
   }
   return decoded;
 }

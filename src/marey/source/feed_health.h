@@ -11,7 +11,7 @@ namespace marey::source {
 /// How a live camera is, by when its frames came.
 class FeedHealth {
  public:
-  void saw_frame(Timestamp now, const LivePolicy& policy) {
+  void observed_frame(Timestamp now, const LivePolicy& policy) {
     if (last_ && seconds(now - *last_) >= policy.stalled_s) back_since_ = now;
     last_ = now;
   }

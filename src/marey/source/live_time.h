@@ -7,7 +7,7 @@
 
 namespace marey::source {
 
-/// What time it is by the run's clock, and waiting for it to go on. Tests have one of their own.
+/// What time it is by the run's clock, and waiting for it to continue. Tests have one of their own.
 class LiveTime {
  public:
   virtual ~LiveTime() = default;
@@ -24,8 +24,8 @@ std::shared_ptr<LiveTime> steady_time();
 /// When a live camera counts as what.
 struct LivePolicy {
   std::shared_ptr<LiveTime> time;  ///< never null
-  double late_s = 0.1;             ///< a moment waits so long for its frames, then it goes on without
-  double stalled_s = 1;            ///< a camera that gave nothing for so long is stalled: nothing waits for it
+  double late_s = 0.1;             ///< an instant waits this long for its frames, then it continues without
+  double stalled_s = 1;            ///< a camera that gave nothing for this long is stalled: nothing waits for it
   double lost_s = 5;               ///< likewise lost
 };
 

@@ -7,14 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/source/picture_files.h"
+#include "marey/source/image_sequence.h"
 
 #include "support/files.h"
 
 namespace marey::source {
 namespace {
 
-/// Five pictures, shot_8.png to shot_12.png, each one grey level.
+/// Five images, shot_8.png to shot_12.png, each one grey level.
 void shoot(const test::TemporaryFolder& folder) {
   for (int i = 8; i <= 12; ++i) {
     test::ffmpeg("-f lavfi -i color=gray:size=32x24 -frames:v 1 " + (folder / ("shot_" + std::to_string(i) + ".png")));
@@ -32,7 +32,7 @@ TEST(OpenSource, APictureFolderIsSortedAsAPersonWould) {
   for (const char* name : {"b.png", "a10.png", "a9.PNG", "a010x.png", "notes.txt", ".hidden.png", "a2.jpg"})
     test::write_file(folder / name, "x");
   std::vector<std::string> names;
-  for (const std::string& path : find_pictures(folder.path())) names.push_back(std::filesystem::path(path).filename());
+  for (const std::string& path : find_images(folder.path())) names.push_back(std::filesystem::path(path).filename());
   EXPECT_EQ(names, (std::vector<std::string>{"a2.jpg", "a9.PNG", "a10.png", "a010x.png", "b.png"}));
 }
 
@@ -46,7 +46,7 @@ TEST(OpenSource, FoldersAndPatternsNameTheSamePictures) {
     EXPECT_EQ(count(*source), 5u) << name;
     EXPECT_TRUE(source->warnings().empty());
   }
-  EXPECT_EQ(find_pictures(folder / "shot_?.png").size(), 2u);
+  EXPECT_EQ(find_images(folder / "shot_?.png").size(), 2u);
   EXPECT_EQ(count(*open_source(folder / "shot_10.png")), 1u);
 }
 
@@ -54,14 +54,14 @@ TEST(OpenSource, PicturesThatLieInAFolderByChanceAreNoSequence) {
   const test::TemporaryFolder folder;
   shoot(folder);
   test::ffmpeg("-f lavfi -i color=gray:size=16x12 -frames:v 1 " + (folder / "thumbnail.png"));
-  std::string said;
+  std::string stated;
   try {
     open_source(folder.path());
   } catch (const Error& error) {
-    said = error.what();
+    stated = error.what();
   }
-  EXPECT_NE(said.find("its 6 pictures are no sequence"), std::string::npos) << said;
-  EXPECT_NE(said.find("there are shot_8.png and thumbnail.png"), std::string::npos) << said;
+  EXPECT_NE(stated.find("its 6 images are not sequence"), std::string::npos) << stated;
+  EXPECT_NE(stated.find("there are shot_8.png and thumbnail.png"), std::string::npos) << stated;
   EXPECT_EQ(open_source(folder / "shot_%d.png", 5.0)->info().frame_count, 5);
   EXPECT_EQ(open_source(folder / "*.png", 5.0)->info().frame_count, 6) << "who names them all gets them all";
 }
@@ -78,7 +78,7 @@ TEST(OpenSource, FoldersOfTargaAndOfDeepTiffAreRead) {
   const auto deep = open_source(folder / "b");
   const auto frame = deep->next();
   ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->picture.luma().depth(), CV_16U);
+  EXPECT_EQ(frame->image.luma().depth(), CV_16U);
 }
 
 TEST(OpenSource, PicturesWithoutARateSayWhatWasAssumed) {
@@ -93,14 +93,14 @@ TEST(OpenSource, PicturesWithoutARateSayWhatWasAssumed) {
 TEST(OpenSource, APictureThatCannotBeUsedIsLeftOutAndItsTimePasses) {
   const test::TemporaryFolder folder;
   shoot(folder);
-  test::write_file(folder / "shot_9.png", "not a picture");
+  test::write_file(folder / "shot_9.png", "not an image");
   test::ffmpeg("-f lavfi -i color=gray:size=16x16 -frames:v 1 " + (folder / "shot_10.png"));
   const auto source = open_source(folder.path(), 10.0);
   std::vector<double> times;
   while (auto frame = source->next()) times.push_back(seconds(frame->time));
   EXPECT_EQ(times, (std::vector<double>{0.0, 0.3, 0.4}));
   ASSERT_EQ(source->warnings().size(), 1u);
-  EXPECT_NE(source->warnings()[0].find("2 of 5 pictures left out; the first: shot_9.png cannot be read"), std::string::npos);
+  EXPECT_NE(source->warnings()[0].find("2 of 5 images omitted; the first: shot_9.png cannot be read"), std::string::npos);
 }
 
 TEST(OpenSource, DeepPicturesStayDeep) {
@@ -108,15 +108,15 @@ TEST(OpenSource, DeepPicturesStayDeep) {
   test::ffmpeg("-f lavfi -i color=white:size=32x24 -frames:v 1 -pix_fmt gray16be " + (folder / "deep.png"));
   const auto frame = open_source(folder / "deep.png", 1.0)->next();
   ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->picture.luma().type(), CV_16UC1);
-  EXPECT_GT(cv::mean(frame->picture.luma())[0], 60000);
+  EXPECT_EQ(frame->image.luma().type(), CV_16UC1);
+  EXPECT_GT(cv::mean(frame->image.luma())[0], 60000);
 }
 
 TEST(OpenSource, NothingToReadIsSaidInOneSentence) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directory(folder / "nothing");
   std::filesystem::create_directory(folder / "bad");
-  test::write_file(folder / "bad/picture.png", "not a picture");
+  test::write_file(folder / "bad/picture.png", "not an image");
   for (const std::string name : {"nothing", "bad", "missing", "missing/shot_%d.png", "*.jpg"}) {
     EXPECT_THROW(open_source(folder / name), Error) << name;
   }

@@ -13,7 +13,7 @@ class RegionSource final : public Source {
     info_ = source_->info();
     const cv::Rect whole({}, info_.size);
     if (region.width <= 0 || region.height <= 0 || (region & whole) != region) {
-      throw Error("{}: the region [{}, {}, {}, {}] does not lie within its pictures of {}×{} px; correct it in the rig", info_.name,
+      throw Error("{}: the region [{}, {}, {}, {}] does not lie within its images of {}×{} px; correct it in the rig", info_.name,
                   region.x, region.y, region.width, region.height, info_.size.width, info_.size.height);
     }
     info_.size = region.size();
@@ -23,18 +23,18 @@ class RegionSource final : public Source {
 
   std::optional<Frame> next() override {
     auto frame = source_->next();
-    while (frame && !frame->picture.empty() && (region_ & cv::Rect({}, frame->picture.size())) != region_) {
-      ++left_out_;
+    while (frame && !frame->image.empty() && (region_ & cv::Rect({}, frame->image.size())) != region_) {
+      ++excluded_;
       frame = source_->next();
     }
-    if (frame && !frame->picture.empty()) frame->picture = frame->picture.part(region_);
+    if (frame && !frame->image.empty()) frame->image = frame->image.part(region_);
     return frame;
   }
 
   std::vector<std::string> warnings() const override {
     auto all = source_->warnings();
-    if (left_out_ > 0) {
-      all.push_back(fmt::format("{}: {} pictures were too small for the camera's region and were left out", info_.name, left_out_));
+    if (excluded_ > 0) {
+      all.push_back(fmt::format("{}: {} images were too small for the camera's region and were omitted", info_.name, excluded_));
     }
     return all;
   }
@@ -43,7 +43,7 @@ class RegionSource final : public Source {
   std::unique_ptr<Source> source_;
   cv::Rect region_;
   SourceInfo info_;
-  std::int64_t left_out_ = 0;
+  std::int64_t excluded_ = 0;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/source/decoder.h"
 #include "marey/source/rates.h"
 
@@ -38,13 +38,13 @@ class VideoSource final : public Source {
   std::optional<Frame> next() override {
     auto decoded = decoder_.next();
     if (!decoded) {
-      tell_the_end();
+      report_the_end();
       return std::nullopt;
     }
     Frame frame;
     frame.index = next_index_++;
     frame.time = time_of(decoded->stamp_ns, frame.index);
-    frame.picture = std::move(decoded->picture);
+    frame.image = std::move(decoded->image);
     return frame;
   }
 
@@ -57,18 +57,18 @@ class VideoSource final : public Source {
       return last_time_;
     }
     const Timestamp stamped{Duration(stamp_ns.value_or(first_stamp_) - first_stamp_)};
-    const Timestamp nominal = last_time_ + duration_from_seconds(1.0 / info_.rate_hz.value_or(kUsualRate));
+    const Timestamp nominal = last_time_ + duration_from_seconds(1.0 / info_.rate_hz.value_or(kDefaultRate));
     last_time_ = stamped > last_time_ ? stamped : nominal;
     return last_time_;
   }
 
-  void tell_the_end() {
+  void report_the_end() {
     if (std::exchange(ended_, true)) return;
     const Decoder::Trouble& trouble = decoder_.trouble();
     const auto warn = [&](const std::string& text) { warnings_.push_back(info_.name + ": " + text); };
-    if (trouble.rescaled > 0) warn(fmt::format("pictures scaled to the size of the first: {}", trouble.rescaled));
-    if (trouble.damaged > 0) warn(fmt::format("damaged pictures, used as far as they could be decoded: {}", trouble.damaged));
-    if (trouble.undecodable > 0) warn(fmt::format("pictures left out because they could not be decoded: {}", trouble.undecodable));
+    if (trouble.rescaled > 0) warn(fmt::format("images scaled to the size of the first: {}", trouble.rescaled));
+    if (trouble.damaged > 0) warn(fmt::format("damaged images, used as far as they could be decoded: {}", trouble.damaged));
+    if (trouble.undecodable > 0) warn(fmt::format("images omitted because they could not be decoded: {}", trouble.undecodable));
     if (!trouble.stopped && (!trouble.broken.empty() || is_short())) {
       const auto count = decoder_.frame_count();
       const std::string whole = count ? fmt::format(" of {}", *count) : std::string();
@@ -78,7 +78,7 @@ class VideoSource final : public Source {
   }
 
   /// Whether the header promised more than came. A few frames that a decoder keeps to itself, and a second of rounding or of
-  /// sound after the last picture, are no loss.
+  /// sound after the last image, are not loss.
   bool is_short() const {
     if (const auto count = decoder_.frame_count()) return next_index_ + decoder_.trouble().undecodable + 2 + *count / 100 < *count;
     const auto duration = decoder_.duration_s();

@@ -32,9 +32,9 @@ Reading read_all(const std::string& path, std::optional<double> rate = std::null
   return reading;
 }
 
-/// A moving test picture: `seconds` at `rate`, encoded as `encoding` says.
-std::string film(const test::TemporaryFolder& folder, const std::string& name, const std::string& encoding, int seconds = 2,
-                 int rate = 10) {
+/// A moving test image: `seconds` at `rate`, encoded as `encoding` says.
+std::string video(const test::TemporaryFolder& folder, const std::string& name, const std::string& encoding, int seconds = 2,
+                  int rate = 10) {
   const std::string path = folder / name;
   ffmpeg("-f lavfi -i testsrc2=size=64x48:rate=" + std::to_string(rate) + " -t " + std::to_string(seconds) + " " + encoding + " " +
          path);
@@ -43,12 +43,12 @@ std::string film(const test::TemporaryFolder& folder, const std::string& name, c
 
 /// Means of blue, green and red.
 cv::Scalar colour_of(const Frame& frame) {
-  return cv::mean(frame.picture.bgr());
+  return cv::mean(frame.image.bgr());
 }
 
 TEST(VideoSource, ReadsEveryFrameInOrder) {
   const test::TemporaryFolder folder;
-  const Reading reading = read_all(film(folder, "plain.avi", "-c:v mpeg4"));
+  const Reading reading = read_all(video(folder, "plain.avi", "-c:v mpeg4"));
   EXPECT_EQ(reading.info.size, cv::Size(64, 48));
   EXPECT_EQ(reading.info.rate_hz, 10.0);
   EXPECT_EQ(reading.info.frame_count, 20);
@@ -62,7 +62,7 @@ TEST(VideoSource, ReadsEveryFrameInOrder) {
 
 TEST(VideoSource, FramesOutliveTheSource) {
   const test::TemporaryFolder folder;
-  const std::string path = film(folder, "plain.mp4", "-c:v libx264 -pix_fmt yuv420p");
+  const std::string path = video(folder, "plain.mp4", "-c:v libx264 -pix_fmt yuv420p");
   const Reading reading = read_all(path);
   const cv::Scalar before = colour_of(reading.frames.front());
   EXPECT_GT(before[1], 10);
@@ -70,7 +70,7 @@ TEST(VideoSource, FramesOutliveTheSource) {
 
 TEST(VideoSource, AGivenRateOverridesTheHeader) {
   const test::TemporaryFolder folder;
-  const Reading reading = read_all(film(folder, "plain.avi", "-c:v mpeg4"), 4.0);
+  const Reading reading = read_all(video(folder, "plain.avi", "-c:v mpeg4"), 4.0);
   EXPECT_EQ(reading.info.rate_hz, 4.0);
   EXPECT_EQ(reading.frames.at(8).time, timestamp_from_seconds(2.0));
 }
@@ -78,7 +78,7 @@ TEST(VideoSource, AGivenRateOverridesTheHeader) {
 TEST(VideoSource, TimesFollowAVariableRate) {
   const test::TemporaryFolder folder;
   const Reading reading =
-      read_all(film(folder, "variable.mkv", "-vf \"select='not(eq(n,3)+eq(n,6)+eq(n,7))'\" -fps_mode vfr -c:v mpeg4"));
+      read_all(video(folder, "variable.mkv", "-vf \"select='not(eq(n,3)+eq(n,6)+eq(n,7))'\" -fps_mode vfr -c:v mpeg4"));
   ASSERT_EQ(reading.frames.size(), 17u);
   EXPECT_NEAR(seconds(reading.frames[2].time), 0.2, 2e-3);
   EXPECT_NEAR(seconds(reading.frames[3].time), 0.4, 2e-3);
@@ -89,14 +89,14 @@ TEST(VideoSource, TimesFollowAVariableRate) {
 
 TEST(VideoSource, FramesThatAreStoredOutOfOrderComeInOrder) {
   const test::TemporaryFolder folder;
-  const Reading reading = read_all(film(folder, "b_frames.mp4", "-c:v libx264 -bf 3 -pix_fmt yuv420p"));
+  const Reading reading = read_all(video(folder, "b_frames.mp4", "-c:v libx264 -bf 3 -pix_fmt yuv420p"));
   ASSERT_EQ(reading.frames.size(), 20u);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(seconds(reading.frames[i].time), 0.1 * static_cast<double>(i), 1e-6);
 }
 
 TEST(VideoSource, EveryWayToStoreAPictureGivesTheSameColours) {
   const test::TemporaryFolder folder;
-  const cv::Scalar wanted = colour_of(read_all(film(folder, "reference.avi", "-c:v rawvideo -pix_fmt bgr24", 1)).frames.at(3));
+  const cv::Scalar required = colour_of(read_all(video(folder, "reference.avi", "-c:v rawvideo -pix_fmt bgr24", 1)).frames.at(3));
   const std::vector<std::pair<std::string, std::string>> encodings = {
       {"limited.mkv", "-c:v ffv1 -pix_fmt yuv420p"},
       {"4_2_2.mkv", "-c:v ffv1 -pix_fmt yuv422p"},
@@ -108,33 +108,34 @@ TEST(VideoSource, EveryWayToStoreAPictureGivesTheSameColours) {
       {"rgb.mkv", "-c:v ffv1 -pix_fmt bgr0"},
   };
   for (const auto& [name, encoding] : encodings) {
-    const Reading reading = read_all(film(folder, name, encoding, 1));
+    const Reading reading = read_all(video(folder, name, encoding, 1));
     ASSERT_EQ(reading.frames.size(), 10u) << name;
-    const cv::Scalar seen = colour_of(reading.frames[3]);
-    for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(seen[channel], wanted[channel], 3) << name << ", channel " << channel;
+    const cv::Scalar detected = colour_of(reading.frames[3]);
+    for (int channel = 0; channel < 3; ++channel)
+      EXPECT_NEAR(detected[channel], required[channel], 3) << name << ", channel " << channel;
   }
 }
 
 TEST(VideoSource, GreyStaysGreyAndDeepGreyStaysDeep) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(read_all(film(folder, "grey.mkv", "-c:v ffv1 -pix_fmt gray", 1)).frames.at(0).picture.luma().type(), CV_8UC1);
-  const Reading deep = read_all(film(folder, "deep.mkv", "-c:v ffv1 -pix_fmt gray16le", 1));
-  EXPECT_EQ(deep.frames.at(0).picture.luma().type(), CV_16UC1);
-  EXPECT_FALSE(deep.frames.at(0).picture.is_colour());
+  EXPECT_EQ(read_all(video(folder, "grey.mkv", "-c:v ffv1 -pix_fmt gray", 1)).frames.at(0).image.luma().type(), CV_8UC1);
+  const Reading deep = read_all(video(folder, "deep.mkv", "-c:v ffv1 -pix_fmt gray16le", 1));
+  EXPECT_EQ(deep.frames.at(0).image.luma().type(), CV_16UC1);
+  EXPECT_FALSE(deep.frames.at(0).image.is_colour());
 }
 
 TEST(VideoSource, AFilmHeldUprightIsUpright) {
   const test::TemporaryFolder folder;
-  const std::string plain = film(folder, "plain.mp4", "-c:v libx264 -pix_fmt yuv420p", 1);
+  const std::string plain = video(folder, "plain.mp4", "-c:v libx264 -pix_fmt yuv420p", 1);
   const std::string upright = folder / "upright.mp4";
   ffmpeg("-i " + plain + " -c copy -metadata:s:v rotate=90 " + upright);
   const Reading reading = read_all(upright);
   EXPECT_EQ(reading.info.size, cv::Size(48, 64));
   const std::string reference = folder / "reference.mkv";  // ffmpeg itself turns what it converts
   ffmpeg("-i " + upright + " -c:v ffv1 " + reference);
-  const Reading wanted = read_all(reference);
-  ASSERT_EQ(wanted.info.size, reading.info.size);
-  EXPECT_EQ(cv::norm(wanted.frames.at(0).picture.luma(), reading.frames.at(0).picture.luma(), cv::NORM_INF), 0);
+  const Reading required = read_all(reference);
+  ASSERT_EQ(required.info.size, reading.info.size);
+  EXPECT_EQ(cv::norm(required.frames.at(0).image.luma(), reading.frames.at(0).image.luma(), cv::NORM_INF), 0);
 }
 
 TEST(VideoSource, AFileThatBreaksOffIsReadAsFarAsItGoes) {
@@ -143,7 +144,7 @@ TEST(VideoSource, AFileThatBreaksOffIsReadAsFarAsItGoes) {
            {"cut.avi", "-c:v mpeg4"},
            {"cut.mp4", "-c:v libx264 -pix_fmt yuv420p -crf 10 -g 10 -movflags +faststart"},
            {"cut.mkv", "-c:v mpeg4"}}) {
-    const std::string path = film(folder, name, encoding, 8);
+    const std::string path = video(folder, name, encoding, 8);
     test::cut_file(path, 0.5);
     const Reading reading = read_all(path);
     EXPECT_GT(reading.frames.size(), 20u) << name;
@@ -156,7 +157,7 @@ TEST(VideoSource, AFileThatBreaksOffIsReadAsFarAsItGoes) {
 
 TEST(VideoSource, AnMp4WithoutItsIndexIsRefused) {
   const test::TemporaryFolder folder;
-  const std::string path = film(folder, "cut.mp4", "-c:v libx264 -pix_fmt yuv420p");
+  const std::string path = video(folder, "cut.mp4", "-c:v libx264 -pix_fmt yuv420p");
   test::cut_file(path, 0.5);
   EXPECT_THROW(open_video(path), Error);
 }
@@ -169,7 +170,7 @@ TEST(VideoSource, APictureThatChangesSizeIsScaledToTheFirst) {
   test::write_file(both, test::read_file(small) + test::read_file(large));
   const Reading reading = read_all(both);
   EXPECT_EQ(reading.frames.size(), 20u);
-  for (const Frame& frame : reading.frames) EXPECT_EQ(frame.picture.size(), cv::Size(64, 48));
+  for (const Frame& frame : reading.frames) EXPECT_EQ(frame.image.size(), cv::Size(64, 48));
   ASSERT_FALSE(reading.warnings.empty());
   EXPECT_NE(reading.warnings.front().find("size of the first: 10"), std::string::npos) << reading.warnings.front();
 }
@@ -187,7 +188,7 @@ TEST(VideoSource, APictureOfOnePixel) {
 
 TEST(VideoSource, DamageInTheMiddleDoesNotEndTheFilm) {
   const test::TemporaryFolder folder;
-  const std::string path = film(folder, "damaged.avi", "-c:v mpeg4 -g 5", 8);
+  const std::string path = video(folder, "damaged.avi", "-c:v mpeg4 -g 5", 8);
   std::string bytes = test::read_file(path);
   for (std::size_t i = bytes.size() / 3; i < bytes.size() / 3 + 2000; ++i) bytes[i] = static_cast<char>(i * 131);
   test::write_file(path, bytes);
@@ -195,9 +196,9 @@ TEST(VideoSource, DamageInTheMiddleDoesNotEndTheFilm) {
   EXPECT_GT(reading.frames.size(), 60u);
 }
 
-TEST(VideoSource, WhatIsNoVideoIsRefusedInOneSentence) {
+TEST(VideoSource, RejectsNonVideo) {
   const test::TemporaryFolder folder;
-  test::write_file(folder / "text.avi", "This is a letter, not a film.\n");
+  test::write_file(folder / "text.avi", "This is a letter, not a video.\n");
   test::write_file(folder / "empty.mp4", "");
   for (const std::string name : {"text.avi", "empty.mp4", "missing.mp4", ""}) {
     try {

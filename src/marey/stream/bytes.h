@@ -63,14 +63,14 @@ class BytesIn {
 using LittleBytes = BytesIn<std::endian::little>;
 using BigBytes = BytesIn<std::endian::big>;
 
-/// The number that stands at `at`; nothing where the bytes end before it does.
+/// The number that stands at `at`; nothing if the bytes end before it does.
 template <typename T, std::endian order = std::endian::little>
 std::optional<T> number_at(std::string_view bytes, std::size_t at) {
   if (at > bytes.size() || bytes.size() - at < sizeof(T)) return std::nullopt;
   T value;
   std::memcpy(&value, bytes.data() + at, sizeof(T));
-  const auto turned = bytes_of<order, T>(value);
-  std::memcpy(&value, turned.data(), sizeof(T));
+  const auto rotated = bytes_of<order, T>(value);
+  std::memcpy(&value, rotated.data(), sizeof(T));
   return value;
 }
 

@@ -18,7 +18,7 @@ TEST(Bytes, NumbersStandInTheOrderOfTheWire) {
   EXPECT_EQ(number_at<std::uint32_t>(little.str(), 0), 7u);
 }
 
-TEST(Bytes, WhatTheEndCutsOffIsNoNumber) {
+TEST(Bytes, RejectsTruncatedNumber) {
   EXPECT_FALSE(number_at<std::uint32_t>("abc", 0));
   EXPECT_FALSE(number_at<std::uint16_t>("abc", 2));
   EXPECT_FALSE(number_at<std::uint16_t>("abc", std::size_t(-1)));

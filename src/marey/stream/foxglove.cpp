@@ -11,14 +11,14 @@
 #include "marey/format/mcap/foxglove_messages.h"
 #include "marey/net/server.h"
 #include "marey/stream/foxglove_requests.h"
+#include "marey/stream/protocols.h"
 #include "marey/stream/web_access.h"
-#include "marey/stream/wires.h"
 
 namespace marey::stream {
 namespace {
 
 constexpr int kStatusTicks = 10;  // a second between two sentences
-constexpr std::size_t kMostSubscriptions = 64;
+constexpr std::size_t kMaxSubscriptions = 64;
 
 class FoxgloveSession : public net::Session {
  public:
@@ -29,16 +29,16 @@ class FoxgloveSession : public net::Session {
   }
 
   void opened(net::Outbox& out) override {
-    say(foxglove_server_info("Marey", session_), out);
-    say(foxglove_advertisement(), out);
+    announce(foxglove_server_info("Marey", session_), out);
+    announce(foxglove_advertisement(), out);
   }
 
   void message(std::string_view text, net::Kind, net::Outbox& out) override {
     const auto request = foxglove_request(text);
     if (!request) return;
     for (const auto& [id, channel] : request->subscribe) {
-      if (channel < 1 || channel > format::mcap::topics().size() || topic_of_.size() >= kMostSubscriptions) {
-        say(foxglove_status(1, fmt::format("there is no channel {} to subscribe to", channel)), out);
+      if (channel < 1 || channel > format::mcap::topics().size() || topic_of_.size() >= kMaxSubscriptions) {
+        announce(foxglove_status(1, fmt::format("there is no channel {} to subscribe to", channel)), out);
         continue;
       }
       topic_of_[id] = channel - 1;
@@ -48,13 +48,13 @@ class FoxgloveSession : public net::Session {
 
   void tick(net::Outbox& out) override {
     if (++ticks_ % kStatusTicks != 0) return;
-    const std::int64_t lost = out.frames_dropped() - told_;
+    const std::int64_t lost = out.frames_dropped() - reported_;
     if (lost <= 0) return;
-    told_ = out.frames_dropped();
-    say(foxglove_status(1, fmt::format("{} messages were dropped, because this client is too slow for them", lost)), out);
+    reported_ = out.frames_dropped();
+    announce(foxglove_status(1, fmt::format("{} messages were dropped, because this client is too slow for them", lost)), out);
   }
 
-  /// `message_of` makes a topic's message where anybody wants it.
+  /// `message_of` makes a topic's message where any person wants it.
   template <typename MessageOf>
   void frame(std::uint64_t time_ns, const MessageOf& message_of, net::Outbox& out) const {
     for (const auto& [id, topic] : topic_of_) {
@@ -65,22 +65,22 @@ class FoxgloveSession : public net::Session {
   }
 
  private:
-  static void say(const std::string& text, net::Outbox& out) { out.answer(text, net::Kind::text); }
+  static void announce(const std::string& text, net::Outbox& out) { out.answer(text, net::Kind::text); }
 
   const std::string& session_;
   std::map<std::uint32_t, std::size_t> topic_of_;  // of a subscription
   int ticks_ = 0;
-  std::int64_t told_ = 0;
+  std::int64_t reported_ = 0;
 };
 
-class FoxgloveWire : public WireSink {
+class FoxgloveProtocol : public ProtocolSink {
  public:
-  FoxgloveWire(const Target& target, StreamOptions options)
-      : WireSink("foxglove", std::move(options)),
+  FoxgloveProtocol(const Target& target, StreamOptions options)
+      : ProtocolSink("foxglove", std::move(options)),
         session_(fmt::format("{}", wall_now_ns())),
         server_(loop(), target.address("foxglove"), "foxglove", {.protocol = net::Protocol::web},
                 [this](const net::Address&) { return std::make_unique<FoxgloveSession>(session_); }) {}
-  ~FoxgloveWire() override { loop().stop(); }
+  ~FoxgloveProtocol() override { loop().stop(); }
 
   std::string where() const override { return to_string(server_.address()); }
 
@@ -106,7 +106,7 @@ class FoxgloveWire : public WireSink {
   }
 
   void drain() override { server_.drain(kDrainMs); }
-  void fill(WireReport& report) const override { take_counts(report, server_.counts()); }
+  void fill(StreamReport& report) const override { take_counts(report, server_.counts()); }
 
  private:
   std::string session_;
@@ -116,15 +116,15 @@ class FoxgloveWire : public WireSink {
 
 }  // namespace
 
-Wire foxglove_wire() {
+StreamProtocol foxglove_protocol() {
   return {.name = "foxglove",
           .title = "Foxglove WebSocket",
           .port = 8765,
           .detail =
               "`/marey/points` (PointCloud), `/tf` (FrameTransforms), `/marey/scene` (SceneUpdate), protobuf; `/marey/times` "
               "(JSON); m, z up",
-          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
-            return std::make_unique<FoxgloveWire>(target, options);
+          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<ProtocolSink> {
+            return std::make_unique<FoxgloveProtocol>(target, options);
           }};
 }
 

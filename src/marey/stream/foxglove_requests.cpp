@@ -11,17 +11,17 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostAtOnce = 256;
-constexpr int kMostNesting = 16;
+constexpr std::size_t kMaxAtOnce = 256;
+constexpr int kMaxNesting = 16;
 
 /// The parser goes down by recursion of its own stack, but what it builds is taken apart by ours.
-bool is_nested_beyond(std::string_view text, int most) {
+bool is_nested_beyond(std::string_view text, int maximum) {
   int depth = 0, deepest = 0;
   for (const char c : text) {
     if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
     if (c == ']' || c == '}') --depth;
   }
-  return deepest > most;
+  return deepest > maximum;
 }
 
 template <typename T>
@@ -48,18 +48,18 @@ std::string base64(std::string_view bytes) {
 }
 
 std::optional<FoxgloveRequest> foxglove_request(std::string_view text) {
-  if (is_nested_beyond(text, kMostNesting)) throw Error("a message that is nested too deep");
+  if (is_nested_beyond(text, kMaxNesting)) throw Error("a message that is nested too deep");
   const json message = json::parse(text, nullptr, false);
-  if (!message.is_object()) throw Error("a message that is no JSON object");
+  if (!message.is_object()) throw Error("a message that is not a JSON object");
   const auto op = message.find("op");
   if (op == message.end() || !op->is_string()) throw Error("a message without its op");
   FoxgloveRequest request;
   if (*op == "subscribe") {
-    const auto wanted = message.find("subscriptions");
-    if (wanted == message.end() || !wanted->is_array()) throw Error("a subscription of nothing");
-    if (wanted->size() > kMostAtOnce) throw Error("{} subscriptions at once", wanted->size());
-    for (const json& each : *wanted) {
-      if (!each.is_object()) throw Error("a subscription that is no object");
+    const auto required = message.find("subscriptions");
+    if (required == message.end() || !required->is_array()) throw Error("a subscription of nothing");
+    if (required->size() > kMaxAtOnce) throw Error("{} subscriptions at once", required->size());
+    for (const json& each : *required) {
+      if (!each.is_object()) throw Error("a subscription that is not an object");
       const auto id = whole_in<std::uint32_t>(each, "id");
       const auto channel = whole_in<std::uint64_t>(each, "channelId");
       if (!id || !channel) throw Error("a subscription without its numbers");
@@ -68,9 +68,10 @@ std::optional<FoxgloveRequest> foxglove_request(std::string_view text) {
     return request;
   }
   if (*op == "unsubscribe") {
-    const auto wanted = message.find("subscriptionIds");
-    if (wanted == message.end() || !wanted->is_array() || wanted->size() > kMostAtOnce) throw Error("an unsubscription of nothing");
-    for (const json& each : *wanted) {
+    const auto required = message.find("subscriptionIds");
+    if (required == message.end() || !required->is_array() || required->size() > kMaxAtOnce)
+      throw Error("an unsubscription of nothing");
+    for (const json& each : *required) {
       if (each.is_number_unsigned() && each.get<std::uint64_t>() <= 0xffffffffu)
         request.unsubscribe.push_back(each.get<std::uint32_t>());
     }
@@ -98,8 +99,8 @@ std::string foxglove_advertisement() {
   return json{{"op", "advertise"}, {"channels", channels}}.dump();
 }
 
-std::string foxglove_status(int level, std::string_view sentence) {
-  return json{{"op", "status"}, {"level", level}, {"message", sentence}}.dump(-1, ' ', false, json::error_handler_t::replace);
+std::string foxglove_status(int level, std::string_view message_text) {
+  return json{{"op", "status"}, {"level", level}, {"message", message_text}}.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 std::string foxglove_data_head(std::uint32_t subscription, std::uint64_t time_ns) {

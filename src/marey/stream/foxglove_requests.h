@@ -18,8 +18,8 @@ struct FoxgloveRequest {
   std::vector<std::uint32_t> unsubscribe;
 };
 
-/// Of a text message. Nothing for what asks for something else. Throws Error for what is no JSON, and for more than a few hundred
-/// subscriptions.
+/// Of a text message. Nothing for what asks for something else. Throws Error for what is not a JSON, and for more than a few
+/// hundred subscriptions.
 std::optional<FoxgloveRequest> foxglove_request(std::string_view text);
 
 /// RFC 4648, with padding: how schemas are advertised.
@@ -29,7 +29,7 @@ std::string base64(std::string_view bytes);
 std::string foxglove_server_info(std::string_view name, std::string_view session);
 std::string foxglove_advertisement();
 /// A sentence for the user: level 0 tells, 1 warns.
-std::string foxglove_status(int level, std::string_view sentence);
+std::string foxglove_status(int level, std::string_view message_text);
 
 /// What stands before a message of a subscription: opcode 1, its id, ns.
 std::string foxglove_data_head(std::uint32_t subscription, std::uint64_t time_ns);

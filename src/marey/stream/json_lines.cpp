@@ -5,8 +5,8 @@
 
 #include "marey/net/server.h"
 #include "marey/stream/json_text.h"
+#include "marey/stream/protocols.h"
 #include "marey/stream/web_access.h"
-#include "marey/stream/wires.h"
 
 namespace marey::stream {
 namespace {
@@ -40,35 +40,36 @@ class JsonSession : public net::Session {
   bool greeted_ = false;
 };
 
-class JsonWire : public WireSink {
+class JsonProtocol : public ProtocolSink {
  public:
-  JsonWire(const Target& target, StreamOptions options)
-      : WireSink("json", std::move(options)),
+  JsonProtocol(const Target& target, StreamOptions options)
+      : ProtocolSink("json", std::move(options)),
         server_(loop(), target.address("json"), "json", {.protocol = net::Protocol::either},
                 [this](const net::Address&) { return std::make_unique<JsonSession>(line_); }) {}
-  ~JsonWire() override { loop().stop(); }
+  ~JsonProtocol() override { loop().stop(); }
 
   std::string where() const override { return to_string(server_.address()); }
 
  protected:
   bool takes_pixels() const override { return true; }
   void start() override {
-    line_ = json_header(header(), cast()) + "\n";
+    line_ = json_header(header(), channel_layout()) + "\n";
     loop().on_tick([this] { server_.tick(); });
   }
   void labels_grew() override {
-    line_ = json_header(header(), cast()) + "\n";
+    line_ = json_header(header(), channel_layout()) + "\n";
     server_.each([](net::Session& session, net::Outbox& out) { static_cast<JsonSession&>(session).header_changed(out); });
   }
   void send(const Instant& instant, FrameTimes times) override {
-    std::shared_ptr<const std::string> line;  // made where anybody is there
+    std::shared_ptr<const std::string> line;  // made where any person is there
     server_.each([&](net::Session& session, net::Outbox& out) {
-      if (line == nullptr) line = std::make_shared<const std::string>(json_frame(header(), cast(), instant, times) + "\n");
+      if (line == nullptr)
+        line = std::make_shared<const std::string>(json_frame(header(), channel_layout(), instant, times) + "\n");
       static_cast<JsonSession&>(session).frame(line, out);
     });
   }
   void drain() override { server_.drain(kDrainMs); }
-  void fill(WireReport& report) const override { take_counts(report, server_.counts()); }
+  void fill(StreamReport& report) const override { take_counts(report, server_.counts()); }
 
  private:
   std::string line_;
@@ -77,15 +78,15 @@ class JsonWire : public WireSink {
 
 }  // namespace
 
-Wire json_wire() {
+StreamProtocol json_protocol() {
   return {
       .name = "json",
       .title = "JSON lines over TCP, or a WebSocket",
       .port = 8766,
       .detail =
-          "one object a line: a header, then a frame each with points, bodies and its times; positions in m, z up (px of pictures)",
-      .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
-        return std::make_unique<JsonWire>(target, options);
+          "one object a line: a header, then a frame each with points, bodies and its times; positions in m, z up (px of images)",
+      .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<ProtocolSink> {
+        return std::make_unique<JsonProtocol>(target, options);
       }};
 }
 

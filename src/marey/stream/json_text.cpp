@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::stream {
 namespace {
@@ -23,10 +23,10 @@ std::string_view frame_word(const FrameOfReference& frame) {
   return "space";
 }
 
-void append_point(std::string& text, const RecordingHeader& header, const Cast& cast, const Sample& sample) {
+void append_point(std::string& text, const RecordingHeader& header, const ChannelLayout& channel_layout, const Sample& sample) {
   auto out = std::back_inserter(text);
   fmt::format_to(out, R"({{"id":{})", number(sample.track));
-  if (const std::string_view label = cast.label_of(sample.track); !label.empty())
+  if (const std::string_view label = channel_layout.label_of(sample.track); !label.empty())
     fmt::format_to(out, R"(,"label":{})", json_quoted(label));
   fmt::format_to(out, R"(,"x":{:.6f},"y":{:.6f})", sample.position.x(), sample.position.y());
   if (header.frame.dimensions() == 3) fmt::format_to(out, R"(,"z":{:.6f})", sample.position.z());
@@ -61,13 +61,13 @@ std::string json_quoted(std::string_view text) {
   return quoted + '"';
 }
 
-std::string json_header(const RecordingHeader& header, const Cast& cast) {
+std::string json_header(const RecordingHeader& header, const ChannelLayout& channel_layout) {
   std::string text =
       fmt::format(R"({{"type":"header","version":1,"name":{},"frame":"{}","unit":"{}","rate_hz":{:.6g})", json_quoted(header.name),
                   frame_word(header.frame), header.frame.metric() ? "m" : "px", header.rate_hz);
   if (header.frame.metric()) text += R"(,"up":"z")";
   text += R"(,"labels":[)";
-  for (const std::string& label : cast.labels()) text += (text.ends_with('[') ? "" : ",") + json_quoted(label);
+  for (const std::string& label : channel_layout.labels()) text += (text.ends_with('[') ? "" : ",") + json_quoted(label);
   text += R"(],"bodies":[)";
   for (const Body& body : header.bodies) {
     if (!text.ends_with('[')) text += ',';
@@ -79,7 +79,8 @@ std::string json_header(const RecordingHeader& header, const Cast& cast) {
   return text + "]}";
 }
 
-std::string json_frame(const RecordingHeader& header, const Cast& cast, const Instant& instant, const FrameTimes& times) {
+std::string json_frame(const RecordingHeader& header, const ChannelLayout& channel_layout, const Instant& instant,
+                       const FrameTimes& times) {
   std::string text;
   text.reserve(160 + 96 * instant.samples.size() + 192 * instant.bodies.size());
   fmt::format_to(std::back_inserter(text),
@@ -89,7 +90,7 @@ std::string json_frame(const RecordingHeader& header, const Cast& cast, const In
   for (const Sample& sample : instant.samples) {
     if (!first) text += ',';
     first = false;
-    append_point(text, header, cast, sample);
+    append_point(text, header, channel_layout, sample);
   }
   text += ']';
   if (!header.bodies.empty()) {

@@ -5,7 +5,7 @@
 
 #include "marey/core/instant.h"
 #include "marey/core/recording.h"
-#include "marey/stream/cast.h"
+#include "marey/stream/channel_layout.h"
 #include "marey/stream/stream_clock.h"
 
 namespace marey::stream {
@@ -14,8 +14,9 @@ namespace marey::stream {
 std::string json_quoted(std::string_view text);
 
 /// What is said once: `{"type":"header",…}` with the frame, the unit, the rate and the bodies. One line, without its end.
-std::string json_header(const RecordingHeader& header, const Cast& cast);
-/// A moment: `{"type":"frame",…}`, all points and bodies with their names.
-std::string json_frame(const RecordingHeader& header, const Cast& cast, const Instant& instant, const FrameTimes& times);
+std::string json_header(const RecordingHeader& header, const ChannelLayout& channel_layout);
+/// An instant: `{"type":"frame",…}`, all points and bodies with their names.
+std::string json_frame(const RecordingHeader& header, const ChannelLayout& channel_layout, const Instant& instant,
+                       const FrameTimes& times);
 
 }  // namespace marey::stream

@@ -12,8 +12,8 @@
 
 #include "marey/net/server.h"
 #include "marey/stream/lsl_messages.h"
+#include "marey/stream/protocols.h"
 #include "marey/stream/track_slots.h"
-#include "marey/stream/wires.h"
 
 namespace marey::stream {
 namespace {
@@ -90,10 +90,10 @@ class LslSession : public net::Session {
   bool feeding_ = false;
 };
 
-class LslWire : public WireSink {
+class LslProtocol : public ProtocolSink {
  public:
-  LslWire(const Target& target, StreamOptions options)
-      : WireSink("lsl", std::move(options)),
+  LslProtocol(const Target& target, StreamOptions options)
+      : ProtocolSink("lsl", std::move(options)),
         at_(free_port(target.address("lsl"))),
         server_(loop(), at_, "lsl", {.max_clients = 32, .max_bytes = 8192},
                 [this](const net::Address&) { return std::make_unique<LslSession>(shared_); }) {
@@ -102,7 +102,7 @@ class LslWire : public WireSink {
     loop().watch(service_.get(), [this] { return answer_datagrams(service_); });
     listen_for_searches();
   }
-  ~LslWire() override { loop().stop(); }
+  ~LslProtocol() override { loop().stop(); }
 
   std::string where() const override { return to_string(at_); }
 
@@ -115,22 +115,22 @@ class LslWire : public WireSink {
 
   void send(const Instant& instant, FrameTimes times) override {
     if (!shared_.begun) begin_outlet();
-    cast().place(instant, scene_);
-    const auto channels = lsl_channels(shared_.outlet.layout, cast(), scene_, instant, slotted(instant));
+    channel_layout().location(instant, scene_);
+    const auto channels = lsl_channels(shared_.outlet.layout, channel_layout(), scene_, instant, slotted(instant));
     const auto sample = std::make_shared<const std::string>(lsl_sample(1e-9 * static_cast<double>(times.capture), channels));
     server_.each([&](net::Session& session, net::Outbox& out) { static_cast<LslSession&>(session).frame(sample, out); });
   }
 
   void drain() override { server_.drain(kDrainMs); }
 
-  void fill(WireReport& report) const override {
+  void fill(StreamReport& report) const override {
     take_counts(report, server_.counts());
     if (!note_.empty()) report.notes.push_back(note_);
     const LslLayout& layout = shared_.outlet.layout;
     if (!shared_.begun) return;
-    if (layout.slots == 0 && cast().labels().size() > layout.labels.size()) {
+    if (layout.slots == 0 && channel_layout().labels().size() > layout.labels.size()) {
       report.notes.push_back(fmt::format("{} labels came after the first moment and have no channels; an outlet's are fixed",
-                                         cast().labels().size() - layout.labels.size()));
+                                         channel_layout().labels().size() - layout.labels.size()));
     }
     if (slots_.without_slot() > 0) {
       report.notes.push_back(fmt::format("{} positions of unlabelled tracks were not sent: more than {} tracks at once",
@@ -143,14 +143,14 @@ class LslWire : public WireSink {
   const std::vector<const Sample*>& slotted(const Instant& instant) {
     all_.clear();
     for (const Sample& sample : instant.samples) all_.push_back(&sample);
-    return slots_.place(all_);
+    return slots_.location(all_);
   }
 
-  /// liblsl looks for an outlet at the first port that is free from 16572 on.
-  static net::Address free_port(net::Address wanted) {
-    if (wanted.port != kFirstPort) return wanted;
+  /// liblsl searches for an outlet at the first port that is free from 16572 on.
+  static net::Address free_port(net::Address required) {
+    if (required.port != kFirstPort) return required;
     for (std::uint16_t port = kFirstPort; port < kFirstPort + 32; ++port) {
-      net::Address at{.host = wanted.host, .port = port};
+      net::Address at{.host = required.host, .port = port};
       try {
         const net::Descriptor tcp = listen_at(at, "lsl"), udp = datagrams_at(at, "lsl");
         return at;
@@ -158,7 +158,7 @@ class LslWire : public WireSink {
         continue;
       }
     }
-    return wanted;
+    return required;
   }
 
   void begin_outlet() {
@@ -172,7 +172,7 @@ class LslWire : public WireSink {
     outlet.rate_hz = header().rate_hz;
     outlet.created_at = steady_seconds();
     outlet.port = at_.port;
-    outlet.layout = {.labels = cast().labels(),
+    outlet.layout = {.labels = channel_layout().labels(),
                      .bodies = header().bodies,
                      .metric = header().frame.metric(),
                      .flat = header().frame.dimensions() == 2};
@@ -224,7 +224,7 @@ class LslWire : public WireSink {
   net::Server server_;
   net::Descriptor service_, searches_;
   std::vector<std::uint32_t> hosts_;
-  Cast::Scene scene_;
+  ChannelLayout::Scene scene_;
   TrackSlots slots_;
   std::vector<const Sample*> all_;
   std::string note_;
@@ -232,15 +232,15 @@ class LslWire : public WireSink {
 
 }  // namespace
 
-Wire lsl_wire() {
+StreamProtocol lsl_protocol() {
   return {.name = "lsl",
           .title = "Lab Streaming Layer, an outlet of type MoCap",
           .port = kFirstPort,
           .detail =
               "one channel a coordinate of every labelled point and every body, times of capture by the steady clock; m (px of "
-              "pictures), z up; missing is NaN; without labels and bodies 64 slots, each a track's ID and coordinates",
-          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
-            return std::make_unique<LslWire>(target, options);
+              "images), z up; missing is NaN; without labels and bodies 64 slots, each a track's ID and coordinates",
+          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<ProtocolSink> {
+            return std::make_unique<LslProtocol>(target, options);
           }};
 }
 

@@ -11,14 +11,14 @@
 #include <pugixml.hpp>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/stream/bytes.h"
 
 namespace marey::stream {
 namespace {
 
-constexpr std::size_t kMostQuery = 1024;
-constexpr std::size_t kMostRequest = 8192;
+constexpr std::size_t kMaxQuery = 1024;
+constexpr std::size_t kMaxRequest = 8192;
 
 void append_channel(std::string& xml, std::string_view label, std::string_view marker, std::string_view object,
                     std::string_view type, std::string_view unit) {
@@ -60,7 +60,7 @@ std::string description_xml(const LslLayout& layout) {
          "<setup><name>Marey</name></setup></desc>";
 }
 
-/// The next line, without its end; nothing where it has none yet.
+/// The next line, without its end; nothing if it has none yet.
 std::optional<std::string_view> next_line(std::string_view& rest) {
   const std::size_t end = rest.find("\r\n");
   if (end == std::string_view::npos) return std::nullopt;
@@ -108,7 +108,7 @@ std::string lsl_info_xml(const LslOutlet& outlet, bool full) {
 }
 
 bool lsl_matches(const std::string& info_xml, std::string_view query) {
-  if (query.size() > kMostQuery || query.find('\0') != std::string_view::npos) return false;
+  if (query.size() > kMaxQuery || query.find('\0') != std::string_view::npos) return false;
   // One level of brackets is what queries have; thousands would be walked by recursion.
   if (std::count(query.begin(), query.end(), '(') > 32 || std::count(query.begin(), query.end(), '[') > 32) return false;
   pugi::xml_document document;
@@ -145,7 +145,7 @@ std::optional<std::string> lsl_time_answer(std::string_view datagram, double cam
 }
 
 std::optional<LslRequest> lsl_request(std::string_view bytes) {
-  if (bytes.size() > kMostRequest) throw Error("a request of more than {} bytes", kMostRequest);
+  if (bytes.size() > kMaxRequest) throw Error("a request of more than {} bytes", kMaxRequest);
   std::string_view rest = bytes;
   const auto method = next_line(rest);
   if (!method) return std::nullopt;
@@ -185,8 +185,8 @@ std::string lsl_sample(double time, const std::vector<float>& channels) {
   return std::move(bytes).str();
 }
 
-std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const Cast::Scene& scene, const Instant& instant,
-                                std::span<const Sample* const> slotted) {
+std::vector<float> lsl_channels(const LslLayout& layout, const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene,
+                                const Instant& instant, std::span<const Sample* const> slotted) {
   std::vector<float> channels(layout.channels(), std::numeric_limits<float>::quiet_NaN());
   std::size_t at = 0;
   const std::size_t axes = layout.axes();
@@ -195,7 +195,7 @@ std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const
       channels[channel + axis] = static_cast<float>(sample->position[static_cast<Eigen::Index>(axis)]);
   };
   for (std::size_t i = 0; i < layout.labels.size(); ++i, at += axes)
-    put_position(i < scene.labelled.size() && cast.labels()[i] == layout.labels[i] ? scene.labelled[i] : nullptr, at);
+    put_position(i < scene.labelled.size() && channel_layout.labels()[i] == layout.labels[i] ? scene.labelled[i] : nullptr, at);
   for (const Body& body : layout.bodies) {
     if (const BodyPose* pose = pose_of(instant, body.id); pose != nullptr && pose->tracked) {
       const Eigen::Quaterniond turn(pose->world_from_body.rotation);

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/stream/cast.h"
+#include "marey/stream/channel_layout.h"
 
 namespace marey::stream {
 
@@ -36,8 +36,8 @@ struct LslOutlet {
 
 /// `<info>` with what a search sees; `full` with all channels.
 std::string lsl_info_xml(const LslOutlet& outlet, bool full);
-/// Whether the stream that this `<info>` tells of is meant: the query is a condition in XPath, as "type='MoCap'". What is none is
-/// not met.
+/// Whether the stream that this `<info>` tells of is meant: the query is a condition in XPath, as "type='MoCap'". What is not one
+/// is not met.
 bool lsl_matches(const std::string& info_xml, std::string_view query);
 
 /// "LSL:shortinfo", as a datagram.
@@ -46,10 +46,10 @@ struct LslSearch {
   std::uint16_t port = 0;  ///< where the answer goes
 };
 std::optional<LslSearch> lsl_search(std::string_view datagram);
-/// "LSL:timedata": answers with when it came and when it was answered, s; nothing where it is none.
+/// "LSL:timedata": answers with when it came and when it was answered, s; nothing if it is not one.
 std::optional<std::string> lsl_time_answer(std::string_view datagram, double came, double answered);
 
-/// A request by TCP: nothing while it is not whole. Throws Error where it is none.
+/// A request by TCP: nothing while it is not whole. Throws Error if it is not one.
 struct LslRequest {
   enum class Kind { short_info, full_info, feed };
   Kind kind = Kind::short_info;
@@ -65,7 +65,7 @@ std::string lsl_feed_head(const LslOutlet& outlet);
 std::string lsl_sample(double time, const std::vector<float>& channels);
 
 /// An instant's channels; `slotted` has the sample in each slot, null where there is none.
-std::vector<float> lsl_channels(const LslLayout& layout, const Cast& cast, const Cast::Scene& scene, const Instant& instant,
-                                std::span<const Sample* const> slotted = {});
+std::vector<float> lsl_channels(const LslLayout& layout, const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene,
+                                const Instant& instant, std::span<const Sample* const> slotted = {});
 
 }  // namespace marey::stream

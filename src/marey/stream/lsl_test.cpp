@@ -82,13 +82,13 @@ TEST(Lsl, AFeedBeginsWithTwoTestSamples) {
 }
 
 TEST(Lsl, ChannelsAreNaNWhereNothingIs) {
-  Cast cast;
-  cast.begin(test::header_of_moving_bodies());
-  cast.add(test::moving_bodies(0).named);
+  ChannelLayout channel_layout;
+  channel_layout.begin(test::header_of_moving_bodies());
+  channel_layout.add(test::moving_bodies(0).named);
   const Instant instant = test::moving_bodies(5);
-  Cast::Scene scene;
-  cast.place(instant, scene);
-  const auto channels = lsl_channels(outlet_of_bodies().layout, cast, scene, instant);
+  ChannelLayout::Scene scene;
+  channel_layout.location(instant, scene);
+  const auto channels = lsl_channels(outlet_of_bodies().layout, channel_layout, scene, instant);
   ASSERT_EQ(channels.size(), 13u);
   EXPECT_FLOAT_EQ(channels[0], 0.005F);
   EXPECT_TRUE(std::isnan(channels[3]));
@@ -108,7 +108,7 @@ TEST(Lsl, SendsUnlabelledTracksInSlots) {
   sample.track = TrackId{41};
   sample.position = {1, 2, 3};
   const std::vector<const Sample*> slotted{nullptr, &sample};
-  const auto channels = lsl_channels(layout, Cast(), {}, Instant(), slotted);
+  const auto channels = lsl_channels(layout, ChannelLayout(), {}, Instant(), slotted);
   ASSERT_EQ(channels.size(), 8u);
   EXPECT_TRUE(std::isnan(channels[0]) && std::isnan(channels[3]));
   EXPECT_EQ(channels[4], 41);

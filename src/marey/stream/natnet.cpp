@@ -1,5 +1,5 @@
 // NatNet 4.1, which OptiTrack's clients speak: commands by UDP at its port, frames to the port above it of a multicast group, or to
-// each client that connected. Clients of both kinds look alike when they connect, so each kind is a wire of its own.
+// each client that connected. Clients of both kinds appear alike when they connect, so each kind is a wire of its own.
 #include <chrono>
 #include <map>
 #include <memory>
@@ -9,26 +9,26 @@
 #include <fmt/format.h>
 
 #include "marey/stream/natnet_packets.h"
-#include "marey/stream/wires.h"
+#include "marey/stream/protocols.h"
 
 namespace marey::stream {
 namespace {
 
 constexpr std::uint16_t kCommandPort = 1510;
 constexpr std::uint32_t kGroup = 0xefff2a63;  // 239.255.42.99
-constexpr std::size_t kMostClients = 10;
-constexpr std::int64_t kForgottenNs = 30'000'000'000;  // a client that said nothing for so long is gone
+constexpr std::size_t kMaxClients = 10;
+constexpr std::int64_t kForgottenNs = 30'000'000'000;  // a client that said nothing for this long is gone
 
-class NatNetWire : public WireSink {
+class NatNetProtocol : public ProtocolSink {
  public:
-  NatNetWire(const Target& target, StreamOptions options, bool multicast)
-      : WireSink(target.wire, std::move(options)), at_(target.address(target.wire)), multicast_(multicast) {
-    commands_ = datagrams_at(at_, wire());
+  NatNetProtocol(const Target& target, StreamOptions options, bool multicast)
+      : ProtocolSink(target.protocol, std::move(options)), at_(target.address(target.protocol)), multicast_(multicast) {
+    commands_ = datagrams_at(at_, protocol());
     data_port_ = static_cast<std::uint16_t>(at_.port == 65'535 ? 1024 : at_.port + 1);
-    if (multicast_) send_groups_from(commands_, at_.host, wire());
+    if (multicast_) send_groups_from(commands_, at_.host, protocol());
     loop().watch(commands_.get(), [this] { return answer_all(); });
   }
-  ~NatNetWire() override { loop().stop(); }
+  ~NatNetProtocol() override { loop().stop(); }
 
   std::string where() const override {
     return multicast_ ? fmt::format("{}, frames to {}:{}", to_string(at_), net::host_text(kGroup), data_port_) : to_string(at_);
@@ -41,19 +41,19 @@ class NatNetWire : public WireSink {
   }
 
   void send(const Instant& instant, FrameTimes times) override {
-    cast().place(instant, scene_);
-    newest_ = natnet_frame(cast(), scene_, instant, times);
+    channel_layout().location(instant, scene_);
+    newest_ = natnet_frame(channel_layout(), scene_, instant, times);
     if (newest_.empty()) {
       ++too_large_;
       return;
     }
     if (multicast_) count(send_to(commands_, {.host = kGroup, .port = data_port_}, newest_));
     if (!multicast_) {
-      for (const auto& [client, heard] : clients_) count(send_to(commands_, client, newest_));
+      for (const auto& [client, received] : clients_) count(send_to(commands_, client, newest_));
     }
   }
 
-  void fill(WireReport& report) const override {
+  void fill(StreamReport& report) const override {
     report.clients = came_;
     report.now = std::ssize(clients_);
     report.sent = sent_;
@@ -77,19 +77,19 @@ class NatNetWire : public WireSink {
   void answer(const NatNetReceived& message, const net::Address& from) {
     switch (message.message) {
       case NatNetMessage::connect:
-        if (!hear(from)) return;
+        if (!listen(from)) return;
         send_to(commands_, from, natnet_server_info(data_port_, multicast_ ? std::optional(kGroup) : std::nullopt));
         return;
       case NatNetMessage::keep_alive:
-        hear(from);
+        listen(from);
         return;
       case NatNetMessage::request:
         send_to(commands_, from, natnet_response(message.payload));
         return;
-      case NatNetMessage::ask_definitions:
-        if (clients_.contains(from)) send_to(commands_, from, natnet_definitions(cast()));
+      case NatNetMessage::query_definitions:
+        if (clients_.contains(from)) send_to(commands_, from, natnet_definitions(channel_layout()));
         return;
-      case NatNetMessage::ask_frame:
+      case NatNetMessage::query_frame:
         if (clients_.contains(from)) send_to(commands_, from, newest_);
         return;
       case NatNetMessage::disconnect:
@@ -101,9 +101,9 @@ class NatNetWire : public WireSink {
   }
 
   /// Who speaks is a client, unless there are too many.
-  bool hear(const net::Address& from) {
+  bool listen(const net::Address& from) {
     const auto known = clients_.find(from);
-    if (known == clients_.end() && clients_.size() >= kMostClients) {
+    if (known == clients_.end() && clients_.size() >= kMaxClients) {
       ++refused_;
       return false;
     }
@@ -116,20 +116,20 @@ class NatNetWire : public WireSink {
   bool multicast_;
   net::Descriptor commands_;
   std::uint16_t data_port_ = 0;
-  std::map<net::Address, std::int64_t> clients_;  // when they were heard last
-  Cast::Scene scene_;
+  std::map<net::Address, std::int64_t> clients_;  // when they were received last
+  ChannelLayout::Scene scene_;
   std::string newest_;
   std::int64_t came_ = 0, refused_ = 0, sent_ = 0, dropped_ = 0, too_large_ = 0;
 };
 
 template <bool multicast>
-std::unique_ptr<WireSink> open_natnet(const Target& target, const StreamOptions& options) {
-  return std::make_unique<NatNetWire>(target, options, multicast);
+std::unique_ptr<ProtocolSink> open_natnet(const Target& target, const StreamOptions& options) {
+  return std::make_unique<NatNetProtocol>(target, options, multicast);
 }
 
 }  // namespace
 
-Wire natnet_wire() {
+StreamProtocol natnet_protocol() {
   return {
       .name = "natnet",
       .title = "NatNet 4.1 by multicast",
@@ -138,7 +138,7 @@ Wire natnet_wire() {
       .open = open_natnet<true>};
 }
 
-Wire natnet_unicast_wire() {
+StreamProtocol natnet_unicast_protocol() {
   return {.name = "natnet-unicast",
           .title = "NatNet 4.1 to each client that connects",
           .port = kCommandPort,

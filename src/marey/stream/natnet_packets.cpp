@@ -10,7 +10,7 @@
 namespace marey::stream {
 namespace {
 
-constexpr std::size_t kMostPayload = 65'503;
+constexpr std::size_t kMaxPayload = 65'503;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr std::int32_t kMarkerSetKind = 0, kBodyKind = 1, kSkeletonKind = 2;
 
@@ -22,9 +22,9 @@ Vector<3> y_up(const Vector<3>& at) {
   return {at.x(), at.z(), -at.y()};
 }
 
-void put_place(LittleBytes& bytes, const Vector<3>& at) {
-  const Vector<3> turned = y_up(at);
-  for (int i = 0; i < 3; ++i) bytes.put<float>(static_cast<float>(turned[i]));
+void put_position(LittleBytes& bytes, const Vector<3>& at) {
+  const Vector<3> rotated = y_up(at);
+  for (int i = 0; i < 3; ++i) bytes.put<float>(static_cast<float>(rotated[i]));
 }
 
 void put_unknown(LittleBytes& bytes, int count) {
@@ -52,7 +52,7 @@ void put_pose(LittleBytes& bytes, std::int32_t id, const Rigid3* pose, double er
   if (pose == nullptr) {
     put_unknown(bytes, 7);
   } else {
-    put_place(bytes, pose->translation);
+    put_position(bytes, pose->translation);
     const Eigen::Quaterniond turn(pose->rotation);
     const Vector<3> axis = y_up(turn.vec());
     for (int i = 0; i < 3; ++i) bytes.put<float>(static_cast<float>(axis[i]));
@@ -66,23 +66,23 @@ void put_body(LittleBytes& bytes, std::int32_t id, const BodyPose* pose) {
            pose != nullptr && pose->tracked);
 }
 
-void put_marker_set(LittleBytes& bytes, const Cast& cast, const Cast::Scene& scene) {
-  const Section section(bytes, cast.labels().empty() ? 0 : 1);
-  if (cast.labels().empty()) return;
+void put_marker_set(LittleBytes& bytes, const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene) {
+  const Section section(bytes, channel_layout.labels().empty() ? 0 : 1);
+  if (channel_layout.labels().empty()) return;
   bytes.text(kNatNetMarkerSet).put<std::int32_t>(static_cast<std::int32_t>(scene.labelled.size()));
   for (const Sample* sample : scene.labelled) {
     if (sample == nullptr) {
       put_unknown(bytes, 3);
     } else {
-      put_place(bytes, sample->position);
+      put_position(bytes, sample->position);
     }
   }
 }
 
-void put_skeletons_natnet(LittleBytes& bytes, const Cast& cast, const Instant& instant) {
-  const Section section(bytes, cast.skeletons().size());
+void put_skeletons_natnet(LittleBytes& bytes, const ChannelLayout& channel_layout, const Instant& instant) {
+  const Section section(bytes, channel_layout.skeletons().size());
   std::int32_t id = 0;
-  for (const Skeleton& skeleton : cast.skeletons()) {
+  for (const Skeleton& skeleton : channel_layout.skeletons()) {
     bytes.put<std::int32_t>(++id).put<std::int32_t>(static_cast<std::int32_t>(skeleton.segments.size()));
     std::int32_t bone = 0;
     for (const Body& segment : skeleton.segments) {
@@ -104,14 +104,15 @@ void put_marker(LittleBytes& bytes, std::int32_t id, const Sample& sample, std::
   if (sample.provenance == Provenance::filled || sample.provenance == Provenance::solved) flags |= kModelFilled;
   if (sample.measured()) flags |= kPointCloud;
   bytes.put<std::int32_t>(id);
-  put_place(bytes, sample.position);
+  put_position(bytes, sample.position);
   bytes.put<float>(0).put<std::int16_t>(flags).put<float>(static_cast<float>(sample.residual_m.value_or(0)));
 }
 
 /// A labelled one's number is its place in the marker set, from 1; another's is its track's.
-void put_markers(LittleBytes& bytes, const Cast::Scene& scene) {
-  const auto seen = std::count_if(scene.labelled.begin(), scene.labelled.end(), [](const Sample* each) { return each != nullptr; });
-  const Section section(bytes, static_cast<std::size_t>(seen) + scene.others.size());
+void put_markers(LittleBytes& bytes, const ChannelLayout::Scene& scene) {
+  const auto detected =
+      std::count_if(scene.labelled.begin(), scene.labelled.end(), [](const Sample* each) { return each != nullptr; });
+  const Section section(bytes, static_cast<std::size_t>(detected) + scene.others.size());
   for (std::size_t i = 0; i < scene.labelled.size(); ++i) {
     if (scene.labelled[i] != nullptr) put_marker(bytes, static_cast<std::int32_t>(i + 1) & 0xffff, *scene.labelled[i], 0);
   }
@@ -128,9 +129,9 @@ void put_suffix(LittleBytes& bytes, const Instant& instant, const FrameTimes& ti
 /// A body's definition, with what its markers are called.
 void put_definition(LittleBytes& bytes, const std::string& name, std::int32_t id, std::int32_t parent, const Body& body) {
   bytes.text(name).put<std::int32_t>(id).put<std::int32_t>(parent);
-  put_place(bytes, body.offset);
+  put_position(bytes, body.offset);
   bytes.put<std::int32_t>(static_cast<std::int32_t>(body.markers.size()));
-  for (const BodyMarker& marker : body.markers) put_place(bytes, marker.position);
+  for (const BodyMarker& marker : body.markers) put_position(bytes, marker.position);
   for (std::size_t i = 0; i < body.markers.size(); ++i) bytes.put<std::int32_t>(static_cast<std::int32_t>(i + 1));
   for (const BodyMarker& marker : body.markers) bytes.text(marker.label);
 }
@@ -150,7 +151,7 @@ void put_skeleton_definition(LittleBytes& bytes, const Skeleton& skeleton, std::
 }  // namespace
 
 std::string natnet_message(NatNetMessage message, std::string_view payload) {
-  if (payload.size() > kMostPayload) return {};
+  if (payload.size() > kMaxPayload) return {};
   LittleBytes bytes;
   bytes.put<std::uint16_t>(static_cast<std::uint16_t>(message)).put<std::uint16_t>(static_cast<std::uint16_t>(payload.size()));
   bytes.raw(payload);
@@ -161,7 +162,7 @@ std::optional<NatNetReceived> natnet_received(std::string_view datagram) {
   const auto id = number_at<std::uint16_t>(datagram, 0);
   const auto size = number_at<std::uint16_t>(datagram, 2);
   if (!id || !size) return std::nullopt;
-  // Some say 0 bytes and carry one, some the other way round: what came is what counts.
+  // Some say 0 bytes and carry one, some vice versa: what came is what counts.
   return NatNetReceived{.message = static_cast<NatNetMessage>(*id), .payload = datagram.substr(4)};
 }
 
@@ -191,37 +192,38 @@ std::string natnet_response(std::string_view request) {
   return natnet_message(NatNetMessage::response, zero.str());
 }
 
-std::string natnet_definitions(const Cast& cast) {
+std::string natnet_definitions(const ChannelLayout& channel_layout) {
   LittleBytes bytes;
-  const std::size_t sets = cast.labels().empty() ? 0 : 1;
-  bytes.put<std::int32_t>(static_cast<std::int32_t>(sets + cast.bodies().size() + cast.skeletons().size()));
+  const std::size_t sets = channel_layout.labels().empty() ? 0 : 1;
+  bytes.put<std::int32_t>(static_cast<std::int32_t>(sets + channel_layout.bodies().size() + channel_layout.skeletons().size()));
   if (sets > 0) {
     const Section section(bytes, kMarkerSetKind);
-    bytes.text(kNatNetMarkerSet).put<std::int32_t>(static_cast<std::int32_t>(cast.labels().size()));
-    for (const std::string& label : cast.labels()) bytes.text(label);
+    bytes.text(kNatNetMarkerSet).put<std::int32_t>(static_cast<std::int32_t>(channel_layout.labels().size()));
+    for (const std::string& label : channel_layout.labels()) bytes.text(label);
   }
-  for (const Body& body : cast.bodies()) {
+  for (const Body& body : channel_layout.bodies()) {
     const Section section(bytes, kBodyKind);
     put_definition(bytes, body.label, number(body.id), -1, body);
   }
   std::int32_t id = 0;
-  for (const Skeleton& skeleton : cast.skeletons()) put_skeleton_definition(bytes, skeleton, ++id);
+  for (const Skeleton& skeleton : channel_layout.skeletons()) put_skeleton_definition(bytes, skeleton, ++id);
   return natnet_message(NatNetMessage::definitions, bytes.str());
 }
 
-std::string natnet_frame(const Cast& cast, const Cast::Scene& scene, const Instant& instant, const FrameTimes& times) {
+std::string natnet_frame(const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene, const Instant& instant,
+                         const FrameTimes& times) {
   LittleBytes bytes;
   bytes.put<std::int32_t>(static_cast<std::int32_t>(instant.index));
-  put_marker_set(bytes, cast, scene);
+  put_marker_set(bytes, channel_layout, scene);
   {
     const Section unlabelled(bytes, scene.others.size());
-    for (const Sample* sample : scene.others) put_place(bytes, sample->position);
+    for (const Sample* sample : scene.others) put_position(bytes, sample->position);
   }
   {
-    const Section bodies(bytes, cast.bodies().size());
-    for (const Body& body : cast.bodies()) put_body(bytes, number(body.id), pose_of(instant, body.id));
+    const Section bodies(bytes, channel_layout.bodies().size());
+    for (const Body& body : channel_layout.bodies()) put_body(bytes, number(body.id), pose_of(instant, body.id));
   }
-  put_skeletons_natnet(bytes, cast, instant);
+  put_skeletons_natnet(bytes, channel_layout, instant);
   {
     const Section assets(bytes, 0);
   }

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "marey/stream/cast.h"
+#include "marey/stream/channel_layout.h"
 #include "marey/stream/stream_clock.h"
 
 namespace marey::stream {
@@ -19,9 +19,9 @@ enum class NatNetMessage : std::uint16_t {
   server_info = 1,
   request = 2,
   response = 3,
-  ask_definitions = 4,
+  query_definitions = 4,
   definitions = 5,
-  ask_frame = 6,
+  query_frame = 6,
   frame = 7,
   text = 8,
   disconnect = 9,
@@ -32,7 +32,7 @@ enum class NatNetMessage : std::uint16_t {
 /// With its head. A payload beyond a datagram's 65,503 bytes makes an empty one: it cannot be sent.
 std::string natnet_message(NatNetMessage message, std::string_view payload);
 
-/// A client's datagram: nothing where it is none.
+/// A client's datagram: nothing if it is not one.
 struct NatNetReceived {
   NatNetMessage message = NatNetMessage::unknown;
   std::string_view payload;
@@ -45,9 +45,10 @@ std::string natnet_server_info(std::uint16_t data_port, std::optional<std::uint3
 std::string natnet_response(std::string_view request);
 
 /// What there is: the labelled markers as one set, bodies, skeletons.
-std::string natnet_definitions(const Cast& cast);
-/// A moment.
-std::string natnet_frame(const Cast& cast, const Cast::Scene& scene, const Instant& instant, const FrameTimes& times);
+std::string natnet_definitions(const ChannelLayout& channel_layout);
+/// An instant.
+std::string natnet_frame(const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene, const Instant& instant,
+                         const FrameTimes& times);
 
 inline constexpr std::string_view kNatNetMarkerSet = "Markers";
 

@@ -46,19 +46,19 @@ class NatNetReader {
   std::size_t at_;
 };
 
-Cast cast_of_bodies() {
-  Cast cast;
-  cast.begin(test::header_of_moving_bodies());
-  cast.add(test::moving_bodies(0).named);
-  return cast;
+ChannelLayout layout_of_bodies() {
+  ChannelLayout channel_layout;
+  channel_layout.begin(test::header_of_moving_bodies());
+  channel_layout.add(test::moving_bodies(0).named);
+  return channel_layout;
 }
 
 TEST(NatNet, AFrameReadsSectionBySection) {
-  const Cast cast = cast_of_bodies();
+  const ChannelLayout channel_layout = layout_of_bodies();
   const Instant instant = test::moving_bodies(10);
-  Cast::Scene scene;
-  cast.place(instant, scene);
-  const std::string frame = natnet_frame(cast, scene, instant, {.capture = 1, .solve = 2, .send = 3});
+  ChannelLayout::Scene scene;
+  channel_layout.location(instant, scene);
+  const std::string frame = natnet_frame(channel_layout, scene, instant, {.capture = 1, .solve = 2, .send = 3});
   EXPECT_EQ(*number_at<std::uint16_t>(frame, 0), 7);
   EXPECT_EQ(*number_at<std::uint16_t>(frame, 2), frame.size() - 4);
   NatNetReader reader(frame);
@@ -105,7 +105,7 @@ TEST(NatNet, AFrameReadsSectionBySection) {
 }
 
 TEST(NatNet, DefinitionsNameMarkersBodiesAndBones) {
-  const std::string bytes = natnet_definitions(cast_of_bodies());
+  const std::string bytes = natnet_definitions(layout_of_bodies());
   NatNetReader reader(bytes);
   EXPECT_EQ(reader.next<std::int32_t>(), 3);
   std::size_t end = 0;

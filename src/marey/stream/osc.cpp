@@ -10,11 +10,11 @@
 namespace marey::stream {
 namespace {
 
-constexpr std::size_t kMostBundle = 8192;
+constexpr std::size_t kMaxBundle = 8192;
 
-class OscWire : public DatagramWire {
+class OscProtocol : public UdpProtocol {
  public:
-  using DatagramWire::DatagramWire;
+  using UdpProtocol::UdpProtocol;
 
  protected:
   bool takes_pixels() const override { return true; }
@@ -31,7 +31,7 @@ class OscWire : public DatagramWire {
       const Vector<3>& at = sample.position;
       messages.push_back(OscMessage("/marey/point")
                              .i(number(sample.track))
-                             .s(cast().label_of(sample.track))
+                             .s(channel_layout().label_of(sample.track))
                              .f(at.x())
                              .f(at.y())
                              .f(at.z())
@@ -41,7 +41,7 @@ class OscWire : public DatagramWire {
     for (const Body& body : header().bodies) {
       if (const BodyPose* pose = pose_of(instant, body.id)) messages.push_back(message_of(body, *pose));
     }
-    put_out(osc_bundles(messages, kMostBundle));
+    put_out(osc_bundles(messages, kMaxBundle));
   }
 
  private:
@@ -65,14 +65,14 @@ class OscWire : public DatagramWire {
 
 }  // namespace
 
-Wire osc_wire() {
+StreamProtocol osc_protocol() {
   return {.name = "osc",
           .title = "Open Sound Control over UDP",
           .port = 9000,
           .listens = false,
-          .detail = "`/marey/frame` with times, `/marey/point`, `/marey/body`; m (px of pictures), z up",
-          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
-            return std::make_unique<OscWire>(target, options);
+          .detail = "`/marey/frame` with times, `/marey/point`, `/marey/body`; m (px of images), z up",
+          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<ProtocolSink> {
+            return std::make_unique<OscProtocol>(target, options);
           }};
 }
 

@@ -52,11 +52,11 @@ std::string OscMessage::bytes() const {
   return padded(address_) + padded(tags_) + arguments_.str();
 }
 
-std::vector<std::string> osc_bundles(const std::vector<std::string>& messages, std::size_t most) {
+std::vector<std::string> osc_bundles(const std::vector<std::string>& messages, std::size_t maximum) {
   std::vector<std::string> bundles;
   const std::string head = bundle_head();
   for (const std::string& message : messages) {
-    if (bundles.empty() || (bundles.back().size() > head.size() && bundles.back().size() + 4 + message.size() > most))
+    if (bundles.empty() || (bundles.back().size() > head.size() && bundles.back().size() + 4 + message.size() > maximum))
       bundles.push_back(head);
     const auto size = bytes_of<std::endian::big>(static_cast<std::uint32_t>(message.size()));
     bundles.back().append(size.data(), size.size()).append(message);

@@ -29,6 +29,6 @@ class OscMessage {
 
 /// Messages together in as many bundles as it takes: each at most `most` bytes where no single message is larger, to be heeded at
 /// once.
-std::vector<std::string> osc_bundles(const std::vector<std::string>& messages, std::size_t most);
+std::vector<std::string> osc_bundles(const std::vector<std::string>& messages, std::size_t maximum);
 
 }  // namespace marey::stream

@@ -1,5 +1,5 @@
 // Qualisys' real-time protocol: what QTM's clients speak (qtm-rt, qualisys_cpp_sdk, ROS drivers). TCP on the little-endian port,
-// and frames over UDP where a client asks for them; found by those that look for servers.
+// and frames over UDP where a client asks for them; found by those that search for servers.
 #include <map>
 #include <memory>
 #include <optional>
@@ -9,29 +9,29 @@
 
 #include "marey/core/error.h"
 #include "marey/stream/bytes.h"
+#include "marey/stream/protocols.h"
 #include "marey/stream/qtm_session.h"
-#include "marey/stream/wires.h"
 
 namespace marey::stream {
 namespace {
 
 constexpr std::uint16_t kLittleEndianPort = 22'223, kDiscoveryPort = 22'226;
 
-class QtmWire : public WireSink {
+class QtmProtocol : public ProtocolSink {
  public:
-  QtmWire(const Target& target, StreamOptions options)
-      : WireSink("qtm", std::move(options)),
-        server_(loop(), target.address("qtm"), "qtm", {.max_clients = 10, .max_bytes = kQtmMostBytes},
+  QtmProtocol(const Target& target, StreamOptions options)
+      : ProtocolSink("qtm", std::move(options)),
+        server_(loop(), target.address("qtm"), "qtm", {.max_clients = 10, .max_bytes = kQtmMaxBytes},
                 [this](const net::Address& client) { return std::make_unique<QtmSession>(state_, client); }) {
     net::Address any{.host = server_.address().host, .port = 0};
     datagrams_ = datagrams_at(any, "qtm");
     state_.header = &header();
-    state_.cast = &cast();
+    state_.channel_layout = &channel_layout();
     state_.allow_control = this->options().allow_control;
     state_.record = this->options().record;
     if (server_.address().port == kLittleEndianPort) listen_for_searches();
   }
-  ~QtmWire() override { loop().stop(); }
+  ~QtmProtocol() override { loop().stop(); }
 
   std::string where() const override { return to_string(server_.address()); }
 
@@ -53,7 +53,7 @@ class QtmWire : public WireSink {
     state_.newest->time = instant.time;
     state_.newest->samples = instant.samples;
     state_.newest->bodies = instant.bodies;
-    cast().place(instant, scene_);
+    channel_layout().location(instant, scene_);
     packets_.clear();
     server_.each([&](net::Session& session, net::Outbox& out) {
       auto& client = static_cast<QtmSession&>(session);
@@ -61,12 +61,12 @@ class QtmWire : public WireSink {
       const auto packet = packet_of(client.streaming()->components, instant);
       const auto to = client.datagrams_to();
       if (!to) return out.frame({.body = packet});
-      (packet->size() <= net::kLargestDatagram && send_to(datagrams_, *to, *packet) ? udp_sent_ : udp_dropped_) += 1;
+      (packet->size() <= net::kMaxDatagram && send_to(datagrams_, *to, *packet) ? udp_sent_ : udp_dropped_) += 1;
     });
     begun_ = true;
   }
 
-  void say_goodbye() override {
+  void report_goodbye() override {
     server_.each([](net::Session& session, net::Outbox& out) {
       if (static_cast<QtmSession&>(session).streaming()) out.answer(qtm_packet(QtmPacket::no_more_data, {}));
       out.answer(qtm_event_packet(QtmEvent::shutting_down));
@@ -76,7 +76,7 @@ class QtmWire : public WireSink {
 
   void drain() override { server_.drain(kDrainMs); }
 
-  void fill(WireReport& report) const override {
+  void fill(StreamReport& report) const override {
     take_counts(report, server_.counts());
     report.sent += udp_sent_;
     report.dropped += udp_dropped_;
@@ -86,8 +86,9 @@ class QtmWire : public WireSink {
  private:
   /// Clients mostly ask for the same: a packet is made once for all of them.
   std::shared_ptr<const std::string> packet_of(const QtmComponents& components, const Instant& instant) {
-    auto& packet = packets_[{components.wanted, components.global_skeletons}];
-    if (packet == nullptr) packet = std::make_shared<const std::string>(qtm_data_packet(cast(), scene_, instant, components));
+    auto& packet = packets_[{components.required, components.global_skeletons}];
+    if (packet == nullptr)
+      packet = std::make_shared<const std::string>(qtm_data_packet(channel_layout(), scene_, instant, components));
     return packet;
   }
 
@@ -120,8 +121,8 @@ class QtmWire : public WireSink {
   QtmState state_;
   net::Server server_;
   net::Descriptor datagrams_, searches_;
-  Cast::Scene scene_;
-  std::map<std::pair<std::vector<QtmComponent>, bool>, std::shared_ptr<const std::string>> packets_;  // of this moment
+  ChannelLayout::Scene scene_;
+  std::map<std::pair<std::vector<QtmComponent>, bool>, std::shared_ptr<const std::string>> packets_;  // of this instant
   std::int64_t udp_sent_ = 0, udp_dropped_ = 0;
   std::string note_;
   bool begun_ = false;
@@ -129,13 +130,13 @@ class QtmWire : public WireSink {
 
 }  // namespace
 
-Wire qtm_wire() {
+StreamProtocol qtm_protocol() {
   return {.name = "qtm",
           .title = "Qualisys RT 1.25 (TCP, UDP)",
           .port = kLittleEndianPort,
           .detail = "labelled and other points (3D, 3DRes, 3DNoLabels), bodies (6D, 6DEuler), skeletons; mm, z up; lost is NaN",
-          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
-            return std::make_unique<QtmWire>(target, options);
+          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<ProtocolSink> {
+            return std::make_unique<QtmProtocol>(target, options);
           }};
 }
 

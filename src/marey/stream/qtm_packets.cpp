@@ -32,12 +32,12 @@ float residual_mm(const std::optional<double>& residual_m) {
   return residual_m ? static_cast<float>(*residual_m) * kMm : kLost;
 }
 
-/// All marker and body components begin so; nothing is dropped or out of sync that is told here.
+/// All marker and body components begin so; nothing is dropped or out of sync that is reported here.
 void put_count(LittleBytes& bytes, std::size_t count) {
   bytes.put<std::uint32_t>(static_cast<std::uint32_t>(count)).put<std::uint16_t>(0).put<std::uint16_t>(0);
 }
 
-void put_points(LittleBytes& bytes, const Cast::Scene& scene, bool with_residual) {
+void put_points(LittleBytes& bytes, const ChannelLayout::Scene& scene, bool with_residual) {
   put_count(bytes, scene.labelled.size());
   for (const Sample* sample : scene.labelled) {
     if (sample == nullptr) {
@@ -49,7 +49,7 @@ void put_points(LittleBytes& bytes, const Cast::Scene& scene, bool with_residual
   }
 }
 
-void put_other_points(LittleBytes& bytes, const Cast::Scene& scene, bool with_residual) {
+void put_other_points(LittleBytes& bytes, const ChannelLayout::Scene& scene, bool with_residual) {
   put_count(bytes, scene.others.size());
   for (const Sample* sample : scene.others) {
     put_vector(bytes, kMm * sample->position);
@@ -58,9 +58,9 @@ void put_other_points(LittleBytes& bytes, const Cast::Scene& scene, bool with_re
   }
 }
 
-void put_bodies(LittleBytes& bytes, const Cast& cast, const Instant& instant, bool euler, bool with_residual) {
-  put_count(bytes, cast.bodies().size());
-  for (const Body& body : cast.bodies()) {
+void put_bodies(LittleBytes& bytes, const ChannelLayout& channel_layout, const Instant& instant, bool euler, bool with_residual) {
+  put_count(bytes, channel_layout.bodies().size());
+  for (const Body& body : channel_layout.bodies()) {
     const BodyPose* pose = pose_of(instant, body.id);
     if (pose == nullptr || !pose->tracked) {
       put_lost(bytes, (euler ? 6 : 12) + (with_residual ? 1 : 0));
@@ -76,9 +76,9 @@ void put_bodies(LittleBytes& bytes, const Cast& cast, const Instant& instant, bo
   }
 }
 
-void put_skeletons(LittleBytes& bytes, const Cast& cast, const Instant& instant, bool global) {
-  bytes.put<std::uint32_t>(static_cast<std::uint32_t>(cast.skeletons().size()));
-  for (const Skeleton& skeleton : cast.skeletons()) {
+void put_skeletons(LittleBytes& bytes, const ChannelLayout& channel_layout, const Instant& instant, bool global) {
+  bytes.put<std::uint32_t>(static_cast<std::uint32_t>(channel_layout.skeletons().size()));
+  for (const Skeleton& skeleton : channel_layout.skeletons()) {
     bytes.put<std::uint32_t>(static_cast<std::uint32_t>(skeleton.segments.size()));
     for (const Body& segment : skeleton.segments) {
       bytes.put<std::int32_t>(number(segment.id));
@@ -98,7 +98,7 @@ void put_skeletons(LittleBytes& bytes, const Cast& cast, const Instant& instant,
 
 struct Named {
   std::string_view name;
-  std::optional<QtmComponent> component;  // nothing where this program never has any
+  std::optional<QtmComponent> component;  // nothing if this program never has any
 };
 constexpr std::array<Named, 24> kComponents{{{"3d", QtmComponent::points},
                                              {"3dres", QtmComponent::points_residual},
@@ -150,12 +150,12 @@ bool take_rate(std::string_view word, QtmStreamRequest& request) {
   const auto number_behind = [&](std::string_view name) -> std::optional<std::int64_t> {
     return word.starts_with(name) ? whole_of<std::int64_t>(word.substr(name.size())) : std::nullopt;
   };
-  const auto most = std::int64_t{1'000'000};
-  if (const auto divisor = number_behind("frequencydivisor:"); divisor && *divisor > 0 && *divisor <= most) {
+  const auto maximum = std::int64_t{1'000'000};
+  if (const auto divisor = number_behind("frequencydivisor:"); divisor && *divisor > 0 && *divisor <= maximum) {
     request.divisor = *divisor;
     return true;
   }
-  if (const auto frequency = number_behind("frequency:"); frequency && *frequency > 0 && *frequency <= most) {
+  if (const auto frequency = number_behind("frequency:"); frequency && *frequency > 0 && *frequency <= maximum) {
     request.frequency = static_cast<double>(*frequency);
     return true;
   }
@@ -186,13 +186,14 @@ Vector<3> qtm_euler_degrees(const Matrix<3>& rotation) {
   return Vector<3>(roll, pitch, yaw) * (180 / std::numbers::pi);
 }
 
-std::string qtm_data_packet(const Cast& cast, const Cast::Scene& scene, const Instant& instant, const QtmComponents& components) {
+std::string qtm_data_packet(const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene, const Instant& instant,
+                            const QtmComponents& components) {
   LittleBytes bytes;
   bytes.put<std::uint32_t>(0).put<std::uint32_t>(static_cast<std::uint32_t>(QtmPacket::data));
   bytes.put<std::int64_t>(instant.time.time_since_epoch().count() / 1000);
   bytes.put<std::uint32_t>(static_cast<std::uint32_t>(instant.index + 1));
-  bytes.put<std::uint32_t>(static_cast<std::uint32_t>(components.wanted.size()));
-  for (const QtmComponent component : components.wanted) {
+  bytes.put<std::uint32_t>(static_cast<std::uint32_t>(components.required.size()));
+  for (const QtmComponent component : components.required) {
     const std::size_t begin = bytes.size();
     bytes.put<std::uint32_t>(0).put<std::uint32_t>(static_cast<std::uint32_t>(component));
     switch (component) {
@@ -206,14 +207,14 @@ std::string qtm_data_packet(const Cast& cast, const Cast::Scene& scene, const In
         break;
       case QtmComponent::bodies:
       case QtmComponent::bodies_residual:
-        put_bodies(bytes, cast, instant, false, component == QtmComponent::bodies_residual);
+        put_bodies(bytes, channel_layout, instant, false, component == QtmComponent::bodies_residual);
         break;
       case QtmComponent::bodies_euler:
       case QtmComponent::bodies_euler_residual:
-        put_bodies(bytes, cast, instant, true, component == QtmComponent::bodies_euler_residual);
+        put_bodies(bytes, channel_layout, instant, true, component == QtmComponent::bodies_euler_residual);
         break;
       case QtmComponent::skeletons:
-        put_skeletons(bytes, cast, instant, components.global_skeletons);
+        put_skeletons(bytes, channel_layout, instant, components.global_skeletons);
         break;
     }
     bytes.set<std::uint32_t>(begin, static_cast<std::uint32_t>(bytes.size() - begin));
@@ -225,7 +226,7 @@ std::string qtm_data_packet(const Cast& cast, const Cast::Scene& scene, const In
 std::optional<QtmReceived> qtm_received(std::string_view bytes) {
   const auto size = number_at<std::uint32_t>(bytes, 0);
   if (!size) return std::nullopt;
-  if (*size < 8 || *size > kQtmMostBytes) throw Error("a packet of {} bytes; 8 to {} are taken", *size, kQtmMostBytes);
+  if (*size < 8 || *size > kQtmMaxBytes) throw Error("a packet of {} bytes; 8 to {} are taken", *size, kQtmMaxBytes);
   if (bytes.size() < *size) return std::nullopt;
   return QtmReceived{.type = *number_at<std::uint32_t>(bytes, 4), .body = bytes.substr(8, *size - 8), .size = *size};
 }
@@ -251,8 +252,8 @@ std::optional<QtmComponents> qtm_components(const std::vector<std::string>& word
     if (known == kComponents.end() && !analog) return std::nullopt;
     if (word == "skeleton:global") components.global_skeletons = true;
     if (analog || !known->component) continue;
-    if (std::find(components.wanted.begin(), components.wanted.end(), *known->component) == components.wanted.end())
-      components.wanted.push_back(*known->component);
+    if (std::find(components.required.begin(), components.required.end(), *known->component) == components.required.end())
+      components.required.push_back(*known->component);
   }
   return components;
 }

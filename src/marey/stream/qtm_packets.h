@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/stream/cast.h"
+#include "marey/stream/channel_layout.h"
 
 namespace marey::stream {
 
@@ -38,8 +38,8 @@ enum class QtmComponent : std::uint32_t {
 
 /// What a client asked a data packet to hold.
 struct QtmComponents {
-  std::vector<QtmComponent> wanted;  ///< in its order; what this program has
-  bool global_skeletons = false;     ///< segments in the world's frame, not in their parents'
+  std::vector<QtmComponent> required;  ///< in its order; what this program has
+  bool global_skeletons = false;       ///< segments in the world's frame, not in their parents'
 };
 
 /// With a size before it.
@@ -48,8 +48,9 @@ std::string qtm_packet(QtmPacket kind, std::string_view body);
 std::string qtm_text_packet(QtmPacket kind, std::string_view text);
 std::string qtm_event_packet(QtmEvent event);
 
-/// A moment as a data packet.
-std::string qtm_data_packet(const Cast& cast, const Cast::Scene& scene, const Instant& instant, const QtmComponents& components);
+/// An instant as a data packet.
+std::string qtm_data_packet(const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene, const Instant& instant,
+                            const QtmComponents& components);
 
 /// Roll, pitch and yaw in degrees, of R = Rx·Ry·Rz.
 Vector<3> qtm_euler_degrees(const Matrix<3>& rotation);
@@ -60,20 +61,20 @@ struct QtmReceived {
   std::string_view body;  ///< of the bytes it was read from
   std::size_t size = 0;   ///< with its head
 };
-inline constexpr std::size_t kQtmMostBytes = 16'384;
-/// Nothing where it is not whole yet. Throws Error where its size is none.
+inline constexpr std::size_t kQtmMaxBytes = 16'384;
+/// Nothing if it is not whole yet. Throws Error if its size is not one.
 std::optional<QtmReceived> qtm_received(std::string_view bytes);
 
 /// A command's words, in lower case: clients differ in case, in blanks at the end and in whether a NUL is there.
 std::vector<std::string> qtm_words(std::string_view command);
-/// "3D", "6DEuler", "Skeleton:global": nothing where a word is no component; those that this program never has are left out.
+/// "3D", "6DEuler", "Skeleton:global": nothing if a word is not a component; those that this program never has are omitted.
 std::optional<QtmComponents> qtm_components(const std::vector<std::string>& words, std::size_t first);
 
 /// `StreamFrames …`, understood.
 struct QtmStreamRequest {
   bool stop = false;
   double frequency = 0;      ///< Hz; 0: all frames
-  std::int64_t divisor = 1;  ///< every so many frames
+  std::int64_t divisor = 1;  ///< every this many frames
   std::optional<std::uint16_t> udp_port;
   std::string udp_host;  ///< empty: the client's own
   QtmComponents components;

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/stream/qtm_packets.h"
 
 namespace marey::stream {
@@ -26,10 +26,10 @@ std::string general_xml(const RecordingHeader& header, int minor) {
   return xml + R"(<EulerAngles First="Roll" Second="Pitch" Third="Yaw"/></General>)";
 }
 
-std::string points_xml(const Cast& cast) {
+std::string points_xml(const ChannelLayout& channel_layout) {
   std::string xml = fmt::format("<The_3D><AxisUpwards>+Z</AxisUpwards><CalibrationTime></CalibrationTime><Labels>{}</Labels>",
-                                cast.labels().size());
-  for (const std::string& label : cast.labels()) {
+                                channel_layout.labels().size());
+  for (const std::string& label : channel_layout.labels()) {
     fmt::format_to(std::back_inserter(xml),
                    "<Label><Name>{}</Name><RGBColor>65280</RGBColor><Trajectory_Type>Measured</Trajectory_Type></Label>",
                    xml_escaped(label));
@@ -37,9 +37,9 @@ std::string points_xml(const Cast& cast) {
   return xml + "<Bones/></The_3D>";
 }
 
-std::string bodies_xml_to_20(const Cast& cast) {
-  std::string xml = fmt::format("<The_6D><Bodies>{}</Bodies>", cast.bodies().size());
-  for (const Body& body : cast.bodies()) {
+std::string bodies_xml_to_20(const ChannelLayout& channel_layout) {
+  std::string xml = fmt::format("<The_6D><Bodies>{}</Bodies>", channel_layout.bodies().size());
+  for (const Body& body : channel_layout.bodies()) {
     fmt::format_to(std::back_inserter(xml), "<Body><Name>{}</Name><RGBColor>65280</RGBColor>", xml_escaped(body.label));
     for (const BodyMarker& marker : body.markers) {
       const Vector<3> at = kMmOfM * marker.position;
@@ -50,9 +50,9 @@ std::string bodies_xml_to_20(const Cast& cast) {
   return xml + "<Euler><First>Roll</First><Second>Pitch</Second><Third>Yaw</Third></Euler></The_6D>";
 }
 
-std::string bodies_xml_from_21(const Cast& cast) {
+std::string bodies_xml_from_21(const ChannelLayout& channel_layout) {
   std::string xml = "<The_6D>";
-  for (const Body& body : cast.bodies()) {
+  for (const Body& body : channel_layout.bodies()) {
     auto out = std::back_inserter(xml);
     fmt::format_to(
         out,
@@ -86,9 +86,9 @@ void append_segment(std::string& xml, const Skeleton& skeleton, const Body& segm
   xml += "</Segment>";
 }
 
-std::string skeletons_xml(const Cast& cast) {
+std::string skeletons_xml(const ChannelLayout& channel_layout) {
   std::string xml = "<Skeletons>";
-  for (const Skeleton& skeleton : cast.skeletons()) {
+  for (const Skeleton& skeleton : channel_layout.skeletons()) {
     xml += fmt::format(R"(<Skeleton Name="{}"><Scale>100</Scale><Segments>)", xml_escaped(skeleton.name));
     for (const Body& segment : skeleton.segments) {
       if (!segment.parent) append_segment(xml, skeleton, segment);
@@ -100,12 +100,13 @@ std::string skeletons_xml(const Cast& cast) {
 
 }  // namespace
 
-std::string qtm_parameters_xml(const RecordingHeader& header, const Cast& cast, const QtmSettings& wanted, int minor) {
+std::string qtm_parameters_xml(const RecordingHeader& header, const ChannelLayout& channel_layout, const QtmSettings& required,
+                               int minor) {
   std::string xml = fmt::format("<QTM_Parameters_Ver_1.{}>", minor);
-  if (wanted.general) xml += general_xml(header, minor);
-  if (wanted.points) xml += points_xml(cast);
-  if (wanted.bodies) xml += minor >= 21 ? bodies_xml_from_21(cast) : bodies_xml_to_20(cast);
-  if (wanted.skeletons && minor >= 21) xml += skeletons_xml(cast);
+  if (required.general) xml += general_xml(header, minor);
+  if (required.points) xml += points_xml(channel_layout);
+  if (required.bodies) xml += minor >= 21 ? bodies_xml_from_21(channel_layout) : bodies_xml_to_20(channel_layout);
+  if (required.skeletons && minor >= 21) xml += skeletons_xml(channel_layout);
   return xml + fmt::format("</QTM_Parameters_Ver_1.{}>", minor);
 }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "marey/stream/cast.h"
+#include "marey/stream/channel_layout.h"
 
 namespace marey::stream {
 
@@ -12,6 +12,7 @@ struct QtmSettings {
 };
 
 /// The settings as XML, which the Qualisys C++ SDK reads. To version 1.20 bodies had another form (`minor` is what follows "1.").
-std::string qtm_parameters_xml(const RecordingHeader& header, const Cast& cast, const QtmSettings& wanted, int minor);
+std::string qtm_parameters_xml(const RecordingHeader& header, const ChannelLayout& channel_layout, const QtmSettings& required,
+                               int minor);
 
 }  // namespace marey::stream

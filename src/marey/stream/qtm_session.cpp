@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kNewestMinor = 25;
 
-std::string say(std::string_view text) {
+std::string announce(std::string_view text) {
   return qtm_text_packet(QtmPacket::command, text);
 }
 std::string refuse(std::string_view text) {
@@ -36,7 +36,7 @@ QtmSession::~QtmSession() {
 }
 
 void QtmSession::joined(net::Outbox& out) {
-  out.answer(say("QTM RT Interface connected"));
+  out.answer(announce("QTM RT Interface connected"));
 }
 
 std::size_t QtmSession::received(std::string_view bytes, net::Outbox& out) {
@@ -63,15 +63,15 @@ std::vector<std::string> QtmSession::answer_known(const std::vector<std::string>
   const std::string& verb = words.front();
   const auto one = [](std::string reply) { return reply.empty() ? std::vector<std::string>{} : std::vector{std::move(reply)}; };
   if (verb == "version") return one(version(words));
-  if (verb == "qtmversion") return one(say("QTM Version is 2.17 (build 4000)"));  // a client matches this shape
-  if (verb == "byteorder") return one(say("Byte order is little endian"));
+  if (verb == "qtmversion") return one(announce("QTM Version is 2.17 (build 4000)"));  // a client matches this shape
+  if (verb == "byteorder") return one(announce("Byte order is little endian"));
   if (verb == "getstate") return one(qtm_event_packet(state_->last_event));
   if (verb == "getlastevent") return one(qtm_event_packet(state_->last_event));
   if (verb == "getparameters") return one(parameters(words));
   if (verb == "getcurrentframe") return one(current_frame(words));
   if (verb == "streamframes") return one(stream(words));
   if (verb == "takecontrol" || verb == "releasecontrol") return one(control(words));
-  if (verb == "checklicense") return one(say("License pass"));
+  if (verb == "checklicense") return one(announce("License pass"));
   if (verb == "quit") {
     closing_ = true;
     return {};
@@ -84,34 +84,34 @@ std::vector<std::string> QtmSession::answer_known(const std::vector<std::string>
 }
 
 std::string QtmSession::version(const std::vector<std::string>& words) {
-  if (words.size() == 1) return say(fmt::format("Version is 1.{}", minor_));
+  if (words.size() == 1) return announce(fmt::format("Version is 1.{}", minor_));
   const auto minor = minor_of(words[1]);
   if (!minor || *minor < 1 || *minor > kNewestMinor) return refuse("Version NOT supported");
   minor_ = *minor;
-  return say(fmt::format("Version set to 1.{}", minor_));
+  return announce(fmt::format("Version set to 1.{}", minor_));
 }
 
 std::string QtmSession::parameters(const std::vector<std::string>& words) const {
-  QtmSettings wanted;
+  QtmSettings required;
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::string& word = words[i];
     const bool all = word == "all";
-    wanted.general |= all || word == "general";
-    wanted.points |= all || word == "3d";
-    wanted.bodies |= all || word == "6d";
-    wanted.skeletons |= all || word == "skeleton" || word == "skeleton:global";
+    required.general |= all || word == "general";
+    required.points |= all || word == "3d";
+    required.bodies |= all || word == "6d";
+    required.skeletons |= all || word == "skeleton" || word == "skeleton:global";
   }
-  if (!wanted.general && !wanted.points && !wanted.bodies && !wanted.skeletons) return refuse("Parameters not available");
-  return qtm_text_packet(QtmPacket::xml, qtm_parameters_xml(*state_->header, *state_->cast, wanted, minor_));
+  if (!required.general && !required.points && !required.bodies && !required.skeletons) return refuse("Parameters not available");
+  return qtm_text_packet(QtmPacket::xml, qtm_parameters_xml(*state_->header, *state_->channel_layout, required, minor_));
 }
 
 std::string QtmSession::current_frame(const std::vector<std::string>& words) const {
   const auto components = qtm_components(words, 1);
   if (!components || words.size() < 2) return refuse("Parse error");
   if (!state_->newest) return qtm_packet(QtmPacket::no_more_data, {});
-  Cast::Scene scene;
-  state_->cast->place(*state_->newest, scene);
-  return qtm_data_packet(*state_->cast, scene, *state_->newest, *components);
+  ChannelLayout::Scene scene;
+  state_->channel_layout->location(*state_->newest, scene);
+  return qtm_data_packet(*state_->channel_layout, scene, *state_->newest, *components);
 }
 
 std::string QtmSession::stream(const std::vector<std::string>& words) {
@@ -123,7 +123,7 @@ std::string QtmSession::stream(const std::vector<std::string>& words) {
   streaming_.reset();
   if (request->stop) return {};
   streaming_ = request;
-  seen_ = 0;
+  detected_ = 0;
   due_.reset();
   return state_->newest ? std::string() : qtm_packet(QtmPacket::no_more_data, {});
 }
@@ -131,36 +131,36 @@ std::string QtmSession::stream(const std::vector<std::string>& words) {
 std::string QtmSession::control(const std::vector<std::string>& words) {
   if (words.front() == "releasecontrol") {
     if (state_->master == this) state_->master = nullptr;
-    return say("You are now a regular client");
+    return announce("You are now a regular client");
   }
   if (!state_->allow_control) return refuse("Client control disabled in QTM");
-  if (state_->master == this) return say("You are already master");
+  if (state_->master == this) return announce("You are already master");
   if (state_->master != nullptr) return refuse("Another client is already master");
   state_->master = this;
-  return say("You are now master");
+  return announce("You are now master");
 }
 
 std::string QtmSession::as_master(const std::vector<std::string>& words) {
   if (state_->master != this) return refuse("You must be master to issue this command");
   const std::string& verb = words.front();
-  if (verb == "new") return say("Creating new connection");
-  if (verb == "close") return say("Closing connection");
-  if (verb == "trig") return say("Trig ok");
-  if (verb == "setqtmevent" || verb == "event") return say("Event set");
-  if (verb == "start" && words.size() > 1 && words[1] == "rtfromfile") return say("Starting RT from file");
+  if (verb == "new") return announce("Creating new connection");
+  if (verb == "close") return announce("Closing connection");
+  if (verb == "trig") return announce("Trig ok");
+  if (verb == "setqtmevent" || verb == "event") return announce("Event set");
+  if (verb == "start" && words.size() > 1 && words[1] == "rtfromfile") return announce("Starting RT from file");
   if (verb == "start" || verb == "stop") {
     const bool on = verb == "start";
     if (!state_->record || !state_->record(on))
       return refuse(on ? "Measurement could not be started" : "No measurement is running");
     state_->last_event = on ? QtmEvent::capture_started : QtmEvent::capture_stopped;
-    return say(on ? "Starting measurement" : "Stopping measurement");
+    return announce(on ? "Starting measurement" : "Stopping measurement");
   }
   return refuse("Parse error");
 }
 
 bool QtmSession::is_due(const Instant& instant) {
   if (!streaming_) return false;
-  if (seen_++ % streaming_->divisor != 0) return false;
+  if (detected_++ % streaming_->divisor != 0) return false;
   if (streaming_->frequency <= 0) return true;
   const Duration period = duration_from_seconds(1 / streaming_->frequency);
   const Duration half = duration_from_seconds(0.5 / state_->header->rate_hz);

@@ -17,11 +17,11 @@ namespace marey::stream {
 /// What all clients share.
 struct QtmState {
   const RecordingHeader* header = nullptr;
-  const Cast* cast = nullptr;
+  const ChannelLayout* channel_layout = nullptr;
   bool allow_control = false;
   std::function<bool(bool on)> record;  ///< may be empty
   const void* master = nullptr;         ///< the session in control
-  std::optional<Instant> newest;        ///< the last moment that was sent
+  std::optional<Instant> newest;        ///< the last instant that was sent
   QtmEvent last_event = QtmEvent::connected;
 };
 
@@ -37,7 +37,7 @@ class QtmSession : public net::Session {
 
   /// What it streams; nothing while it does not.
   const std::optional<QtmStreamRequest>& streaming() const { return streaming_; }
-  /// Whether this moment is due to it; then it counts as given.
+  /// Whether this instant is due to it; then it counts as given.
   bool is_due(const Instant& instant);
   /// Over UDP, where to.
   std::optional<net::Address> datagrams_to() const;
@@ -56,7 +56,7 @@ class QtmSession : public net::Session {
   int minor_ = 1;
   bool closing_ = false;
   std::optional<QtmStreamRequest> streaming_;
-  std::int64_t seen_ = 0;
+  std::int64_t detected_ = 0;
   std::optional<Timestamp> due_;
 };
 

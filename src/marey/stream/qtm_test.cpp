@@ -13,20 +13,20 @@ namespace {
 
 struct QtmScene {
   RecordingHeader header = test::header_of_moving_bodies();
-  Cast cast;
+  ChannelLayout channel_layout;
   QtmState state;
   Instant instant;
 
   explicit QtmScene(int k = 1) : instant(test::moving_bodies(k)) {
-    cast.begin(header);
-    cast.add(test::moving_bodies(0).named);
+    channel_layout.begin(header);
+    channel_layout.add(test::moving_bodies(0).named);
     state.header = &header;
-    state.cast = &cast;
+    state.channel_layout = &channel_layout;
   }
-  std::string packet(const std::vector<QtmComponent>& wanted, bool global = false) const {
-    Cast::Scene scene;
-    cast.place(instant, scene);
-    return qtm_data_packet(cast, scene, instant, {.wanted = wanted, .global_skeletons = global});
+  std::string packet(const std::vector<QtmComponent>& required, bool global = false) const {
+    ChannelLayout::Scene scene;
+    channel_layout.location(instant, scene);
+    return qtm_data_packet(channel_layout, scene, instant, {.required = required, .global_skeletons = global});
   }
 };
 
@@ -60,7 +60,7 @@ TEST(Qtm, ADataPacketHasItsHeadAndPointsInMillimetres) {
   EXPECT_FLOAT_EQ(float_at(packet, 56), 250);
 }
 
-TEST(Qtm, WhatIsMissingIsNaNInItsPlace) {
+TEST(Qtm, WritesNaNForMissing) {
   const std::string packet = QtmScene(5).packet({QtmComponent::points_residual, QtmComponent::bodies});
   EXPECT_FLOAT_EQ(float_at(packet, 52), 0.5F);  // mm
   for (std::size_t at = 56; at < 72; at += 4) EXPECT_TRUE(std::isnan(float_at(packet, at)));
@@ -108,28 +108,28 @@ TEST(Qtm, ASegmentIsInItsParentsFrameUnlessTheWorldsIsAskedFor) {
 TEST(Qtm, CommandsAreAnsweredWordForWord) {
   QtmScene scene;
   QtmSession session(scene.state, {});
-  const auto said = [&](std::string_view command) { return text_of_reply(session.answer(command)); };
-  EXPECT_EQ(said(std::string_view("Version 1.19\0", 13)), "1 Version set to 1.19");
-  EXPECT_EQ(said("version 1.28"), "0 Version NOT supported");
-  EXPECT_EQ(said("version 1.25"), "1 Version set to 1.25");
-  EXPECT_EQ(said("QTMVersion"), "1 QTM Version is 2.17 (build 4000)");
-  EXPECT_EQ(said("ByteOrder"), "1 Byte order is little endian");
-  EXPECT_EQ(said("takecontrol "), "0 Client control disabled in QTM");
-  EXPECT_EQ(said("start"), "0 You must be master to issue this command");
-  EXPECT_EQ(said("StreamFrames AllFrames nonsense"), "0 Parse error");
-  EXPECT_EQ(said("StreamFrames AllFrames UDP:10.0.0.1:99 3D"), "0 UDP goes to the client's own address");
-  EXPECT_EQ(said("GetParameters Analog"), "0 Parameters not available");
-  EXPECT_EQ(said("what"), "0 Parse error");
+  const auto stated = [&](std::string_view command) { return text_of_reply(session.answer(command)); };
+  EXPECT_EQ(stated(std::string_view("Version 1.19\0", 13)), "1 Version set to 1.19");
+  EXPECT_EQ(stated("version 1.28"), "0 Version NOT supported");
+  EXPECT_EQ(stated("version 1.25"), "1 Version set to 1.25");
+  EXPECT_EQ(stated("QTMVersion"), "1 QTM Version is 2.17 (build 4000)");
+  EXPECT_EQ(stated("ByteOrder"), "1 Byte order is little endian");
+  EXPECT_EQ(stated("takecontrol "), "0 Client control disabled in QTM");
+  EXPECT_EQ(stated("start"), "0 You must be master to issue this command");
+  EXPECT_EQ(stated("StreamFrames AllFrames nonsense"), "0 Parse error");
+  EXPECT_EQ(stated("StreamFrames AllFrames UDP:10.0.0.1:99 3D"), "0 UDP goes to the client's own address");
+  EXPECT_EQ(stated("GetParameters Analog"), "0 Parameters not available");
+  EXPECT_EQ(stated("what"), "0 Parse error");
   EXPECT_EQ(session.answer("GetState").at(0), std::string("\x09\0\0\0\x06\0\0\0\x01", 9));
   EXPECT_EQ(session.answer("GetCurrentFrame 3D").at(0), std::string("\x08\0\0\0\x04\0\0\0", 8));
-  EXPECT_EQ(said("StreamFrames Stop"), "nothing");
+  EXPECT_EQ(stated("StreamFrames Stop"), "nothing");
 }
 
-TEST(Qtm, WhoMayControlRecords) {
+TEST(Qtm, ControllingClientRecords) {
   QtmScene scene;
   scene.state.allow_control = true;
-  std::vector<bool> asked;
-  scene.state.record = [&](bool on) { return asked.push_back(on), true; };
+  std::vector<bool> requested;
+  scene.state.record = [&](bool on) { return requested.push_back(on), true; };
   QtmSession first(scene.state, {});
   {
     QtmSession second(scene.state, {});
@@ -141,7 +141,7 @@ TEST(Qtm, WhoMayControlRecords) {
     EXPECT_EQ(text_of_reply(second.answer("takecontrol")), "1 You are now master");
   }
   EXPECT_EQ(text_of_reply(first.answer("takecontrol")), "1 You are now master");  // who is gone is no master
-  EXPECT_EQ(asked, (std::vector{true, false}));
+  EXPECT_EQ(requested, (std::vector{true, false}));
 }
 
 TEST(Qtm, ParametersNameLabelsAndBodies) {

@@ -3,24 +3,24 @@
 #include <string>
 #include <vector>
 
-#include "marey/stream/wires.h"
+#include "marey/stream/protocols.h"
 
 namespace marey::stream {
 
-/// A wire that sends datagrams to one address, whether anybody is there or not.
-class DatagramWire : public WireSink {
+/// A wire that sends datagrams to one address, whether any person is there or not.
+class UdpProtocol : public ProtocolSink {
  public:
   /// Throws Error, which begins with the wire's name, where there is no such host.
-  DatagramWire(const Target& target, StreamOptions options);
-  ~DatagramWire() override { loop().stop(); }
+  UdpProtocol(const Target& target, StreamOptions options);
+  ~UdpProtocol() override { loop().stop(); }
 
   std::string where() const override { return to_string(to_); }
 
  protected:
   void start() override {}
-  /// Each to be sent alone. A moment counts as sent where all of it was taken.
+  /// Each to be sent alone. An instant counts as sent where all of it was taken.
   void put_out(const std::vector<std::string>& datagrams);
-  void fill(WireReport& report) const override;
+  void fill(StreamReport& report) const override;
 
  private:
   net::Address to_;

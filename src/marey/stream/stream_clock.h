@@ -22,8 +22,8 @@ struct FrameTimes {
   std::int64_t send = 0;     ///< its bytes were made
 };
 
-/// When an instant was captured. Whoever captures or plays sets it; where nobody does, the least delay that was seen counts as
-/// none.
+/// When an instant was captured. The one who captures or plays sets it; where no person does, the least delay that was seen counts
+/// as none.
 class CaptureClock {
  public:
   /// `time` is at `steady_ns`, and time goes `speed` times as fast.

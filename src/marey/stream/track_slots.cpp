@@ -4,7 +4,7 @@
 
 namespace marey::stream {
 
-const std::vector<const Sample*>& TrackSlots::place(const std::vector<const Sample*>& samples) {
+const std::vector<const Sample*>& TrackSlots::location(const std::vector<const Sample*>& samples) {
   samples_.assign(slots_.size(), nullptr);
   ++instant_;
   const auto put = [&](std::size_t slot, const Sample& sample) {

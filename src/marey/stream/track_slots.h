@@ -16,7 +16,7 @@ class TrackSlots {
   explicit TrackSlots(std::size_t count = 0) : slots_(count) {}
 
   /// One per slot: its track's sample at this instant, null where there is none. Valid as long as `samples`.
-  const std::vector<const Sample*>& place(const std::vector<const Sample*>& samples);
+  const std::vector<const Sample*>& location(const std::vector<const Sample*>& samples);
 
   std::size_t size() const { return slots_.size(); }
   /// Samples that had no slot, over all instants.

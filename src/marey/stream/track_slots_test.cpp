@@ -12,7 +12,7 @@ std::vector<int> slots_after(TrackSlots& slots, const std::vector<int>& tracks) 
   std::vector<const Sample*> pointers;
   for (const Sample& sample : samples) pointers.push_back(&sample);
   std::vector<int> found;
-  for (const Sample* sample : slots.place(pointers)) found.push_back(sample == nullptr ? 0 : number(sample->track));
+  for (const Sample* sample : slots.location(pointers)) found.push_back(sample == nullptr ? 0 : number(sample->track));
   return found;
 }
 

@@ -17,7 +17,7 @@ namespace marey::stream {
 
 namespace {
 
-constexpr std::size_t kMostVmcBundle = 1472;  // with its heads one Ethernet frame
+constexpr std::size_t kMaxVmcBundle = 1472;  // with its heads one Ethernet frame
 
 struct BoneName {
   std::string_view unity;
@@ -50,7 +50,7 @@ bool is_among(std::string_view word, std::string_view words) {
   return false;
 }
 
-/// Unity's name of a segment; empty where it has none there. "LeftUpLeg", "left_thigh", "LThigh" and "thigh_l" are one.
+/// Unity's name of a segment; empty if it has none there. "LeftUpLeg", "left_thigh", "LThigh" and "thigh_l" are one.
 std::string unity_bone(std::string_view label) {
   std::string word;
   for (const char c : label.substr(label.find_last_of(':') == std::string_view::npos ? 0 : label.find_last_of(':') + 1)) {
@@ -77,21 +77,21 @@ std::string unity_bone(std::string_view label) {
   return {};
 }
 
-std::string placed(std::string_view address, std::string_view name, const Rigid3& pose) {
+std::string located(std::string_view address, std::string_view name, const Rigid3& pose) {
   const Vector<3>& at = pose.translation;
   const Eigen::Quaterniond turn(pose.rotation);
   return OscMessage(address).s(name).f(at.x()).f(at.z()).f(at.y()).f(-turn.x()).f(-turn.z()).f(-turn.y()).f(turn.w()).bytes();
 }
 
-class VmcWire : public DatagramWire {
+class VmcProtocol : public UdpProtocol {
  public:
-  using DatagramWire::DatagramWire;
+  using UdpProtocol::UdpProtocol;
 
  protected:
   void start() override {
     bones_.clear();
-    if (cast().skeletons().empty()) return;
-    for (const Body& segment : cast().skeletons().front().segments) {  // one performer a port
+    if (channel_layout().skeletons().empty()) return;
+    for (const Body& segment : channel_layout().skeletons().front().segments) {  // one performer a port
       if (std::string bone = unity_bone(segment.label); !bone.empty())
         bones_.push_back({segment, std::move(bone), parent_bone(segment)});
     }
@@ -110,7 +110,7 @@ class VmcWire : public DatagramWire {
                            .bytes());
     put_bones(instant, messages);
     put_trackers(instant, messages);
-    put_out(osc_bundles(messages, kMostVmcBundle));
+    put_out(osc_bundles(messages, kMaxVmcBundle));
   }
 
  private:
@@ -124,7 +124,7 @@ class VmcWire : public DatagramWire {
     const auto parent =
         std::find_if(bones_.begin(), bones_.end(), [&](const Bone& bone) { return bone.segment.id == segment.parent; });
     if (parent != bones_.end()) return parent->segment.id;
-    for (const Body& above : cast().skeletons().front().segments) {  // parents come before children
+    for (const Body& above : channel_layout().skeletons().front().segments) {  // parents come before children
       if (segment.parent && above.id == *segment.parent) return parent_bone(above);
     }
     return std::nullopt;
@@ -132,26 +132,26 @@ class VmcWire : public DatagramWire {
 
   void put_bones(const Instant& instant, std::vector<std::string>& messages) const {
     if (bones_.empty()) return;
-    messages.push_back(placed("/VMC/Ext/Root/Pos", "root", {}));
+    messages.push_back(located("/VMC/Ext/Root/Pos", "root", {}));
     for (const Bone& bone : bones_) {
       const BodyPose* pose = pose_of(instant, bone.segment.id);
       const BodyPose* parent = bone.parent ? pose_of(instant, *bone.parent) : nullptr;
       if (pose == nullptr || (bone.parent && parent == nullptr)) continue;
       messages.push_back(
-          placed("/VMC/Ext/Bone/Pos", bone.name, parent == nullptr ? pose->world_from_body : in_parent(*parent, *pose)));
+          located("/VMC/Ext/Bone/Pos", bone.name, parent == nullptr ? pose->world_from_body : in_parent(*parent, *pose)));
     }
   }
 
   /// Bodies; where a recording has none at all, its labelled points, which do not turn.
   void put_trackers(const Instant& instant, std::vector<std::string>& messages) const {
-    for (const Body& body : cast().bodies()) {
+    for (const Body& body : channel_layout().bodies()) {
       const BodyPose* pose = pose_of(instant, body.id);
-      if (pose != nullptr && pose->tracked) messages.push_back(placed("/VMC/Ext/Tra/Pos", body.label, pose->world_from_body));
+      if (pose != nullptr && pose->tracked) messages.push_back(located("/VMC/Ext/Tra/Pos", body.label, pose->world_from_body));
     }
     if (!header().bodies.empty()) return;
     for (const Sample& sample : instant.samples) {
-      const std::string_view label = cast().label_of(sample.track);
-      if (!label.empty()) messages.push_back(placed("/VMC/Ext/Tra/Pos", label, {.translation = sample.position}));
+      const std::string_view label = channel_layout().label_of(sample.track);
+      if (!label.empty()) messages.push_back(located("/VMC/Ext/Tra/Pos", label, {.translation = sample.position}));
     }
   }
 
@@ -160,7 +160,7 @@ class VmcWire : public DatagramWire {
 
 }  // namespace
 
-Wire vmc_wire() {
+StreamProtocol vmc_protocol() {
   return {.name = "vmc",
           .title = "VMC (OSC over UDP)",
           .port = 39'539,
@@ -168,8 +168,8 @@ Wire vmc_wire() {
           .detail =
               "a skeleton's bones under Unity's names, bodies as trackers (of a recording without bodies its labelled points); "
               "Unity's frame: m, left-handed, y up",
-          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<WireSink> {
-            return std::make_unique<VmcWire>(target, options);
+          .open = [](const Target& target, const StreamOptions& options) -> std::unique_ptr<ProtocolSink> {
+            return std::make_unique<VmcProtocol>(target, options);
           }};
 }
 

@@ -10,7 +10,7 @@
 
 namespace marey::track {
 
-/// Throws Error where a frame does not come after the one `before` it.
+/// Throws Error if a frame does not come after the one `before` it.
 inline void check_time(Timestamp now, std::optional<Timestamp> before) {
   if (before && now <= *before) {
     throw Error("the frame at {:.6f} s does not come after the one at {:.6f} s; the times of frames must grow", seconds(now),
@@ -20,8 +20,8 @@ inline void check_time(Timestamp now, std::optional<Timestamp> before) {
 
 /// Throws Error if an observation contains a value that is not finite, or has no covariance.
 template <int D>
-void check_finite(Timestamp now, std::span<const Observation<D>> seen) {
-  for (const Observation<D>& observation : seen) {
+void check_finite(Timestamp now, std::span<const Observation<D>> detected) {
+  for (const Observation<D>& observation : detected) {
     const bool box_is_finite =
         !observation.box || (std::isfinite(observation.box->left) && std::isfinite(observation.box->top) &&
                              std::isfinite(observation.box->width) && std::isfinite(observation.box->height));

@@ -7,9 +7,9 @@ namespace marey::track {
 /// Birth and death of targets, the same in an image and on the ground.
 struct EvidenceOptions {
   double confident = 0.5;           ///< a target begins with scores of at least this; weaker ones only continue one
-  double least_score = 0.05;        ///< observations with scores below this are ignored
-  double confirm = 3;               ///< evidence that confirms a target: about so many confident observations
-  double most = 10;                 ///< evidence that is counted, at most
+  double min_score = 0.05;          ///< observations with scores below this are ignored
+  double confirm = 3;               ///< evidence that confirms a target: about this many confident observations
+  double maximum = 10;              ///< evidence that is counted, at most
   double miss = 0.7;                ///< evidence that the misses of one instant cost, at most
   double newcomer_cost = 1;         ///< log-likelihood by which a target that is not confirmed comes after one that is
   double tentative_patience = 0.4;  ///< s unseen after which a target that is not confirmed is given up
@@ -17,7 +17,7 @@ struct EvidenceOptions {
 
   /// How long a confirmed target that should be seen and is not is waited for, s: no longer than it had been followed before,
   /// `followed` s, and a little more.
-  double patience(double patience, double followed) const { return std::min(patience, followed + tentative_patience); }
+  double patience(double patience, double tracked) const { return std::min(patience, tracked + tentative_patience); }
 };
 
 /// How sure it is that there is a target at all: grows with each observation, by its score, and shrinks with each miss.
@@ -26,8 +26,8 @@ class Evidence {
   /// Begins with a first observation.
   Evidence(double score, const EvidenceOptions& options) : value_(of(score)), confirmed_(value_ >= options.confirm) {}
 
-  void see(double score, const EvidenceOptions& options) {
-    value_ = std::min(options.most, value_ + of(score));
+  void observe_frame(double score, const EvidenceOptions& options) {
+    value_ = std::min(options.maximum, value_ + of(score));
     if (value_ >= options.confirm) confirmed_ = true;
   }
   void miss(double cost) { value_ -= cost; }

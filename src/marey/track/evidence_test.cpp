@@ -9,7 +9,7 @@ TEST(Evidence, AboutThreeConfidentObservationsConfirm) {
   const EvidenceOptions options;
   Evidence evidence(0.9, options);
   int observations = 1;
-  for (; !evidence.confirmed() && observations < 10; ++observations) evidence.see(0.9, options);
+  for (; !evidence.confirmed() && observations < 10; ++observations) evidence.observe_frame(0.9, options);
   EXPECT_EQ(observations, 3);
 }
 
@@ -17,7 +17,7 @@ TEST(Evidence, MissesRefuteSoonerWhatWasSeenLess) {
   const EvidenceOptions options;
   const auto misses_until_refuted = [&](int observations) {
     Evidence evidence(1, options);
-    for (int i = 1; i < observations; ++i) evidence.see(1, options);
+    for (int i = 1; i < observations; ++i) evidence.observe_frame(1, options);
     int misses = 0;
     for (; !evidence.refuted() && misses < 1000; ++misses) evidence.miss(options.miss);
     return misses;
@@ -29,7 +29,7 @@ TEST(Evidence, MissesRefuteSoonerWhatWasSeenLess) {
 TEST(Evidence, OnceConfirmedAlways) {
   const EvidenceOptions options;
   Evidence evidence(1, options);
-  for (int i = 0; i < 5; ++i) evidence.see(1, options);
+  for (int i = 0; i < 5; ++i) evidence.observe_frame(1, options);
   evidence.miss(100);
   EXPECT_TRUE(evidence.confirmed());
   EXPECT_TRUE(evidence.refuted());
@@ -38,7 +38,7 @@ TEST(Evidence, OnceConfirmedAlways) {
 TEST(Evidence, OfTwoThatAreOneTheBetterCounts) {
   const EvidenceOptions options;
   Evidence young(1, options), old(1, options);
-  for (int i = 0; i < 5; ++i) old.see(1, options);
+  for (int i = 0; i < 5; ++i) old.observe_frame(1, options);
   young.absorb(old);
   EXPECT_TRUE(young.confirmed());
 }

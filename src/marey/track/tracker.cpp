@@ -15,7 +15,7 @@ void check(bool good, const char* name, double value, const char* domain) {
 void check(const TrackerOptions& o) {
   check(o.gate_probability > 0 && o.gate_probability < 1, "gate_probability", o.gate_probability, "between 0 and 1");
   check(o.max_speed > 0, "max_speed", o.max_speed, "positive");
-  check(o.place_noise > 0, "place_noise", o.place_noise, "positive");
+  check(o.position_noise > 0, "place_noise", o.position_noise, "positive");
   check(o.size_noise > 0, "size_noise", o.size_noise, "positive");
   check(o.size_drift >= 0, "size_drift", o.size_drift, "0 or more");
   check(o.fading > 0, "fading", o.fading, "positive");
@@ -26,14 +26,14 @@ void check(const TrackerOptions& o) {
 }  // namespace
 
 TrackerOptions box_tracker_options(TrackerOptions options) {
-  const TrackerOptions usual;
-  const auto* usual_filter = std::get_if<filter::KalmanOptions>(&usual.filter);
+  const TrackerOptions typical;
+  const auto* usual_filter = std::get_if<filter::KalmanOptions>(&typical.filter);
   auto* kalman = std::get_if<filter::KalmanOptions>(&options.filter);
   if (kalman != nullptr && usual_filter != nullptr && kalman->acceleration_noise == usual_filter->acceleration_noise)
     kalman->acceleration_noise = 0.15;
-  if (options.place_noise == usual.place_noise) options.place_noise = 0.05;
-  if (options.size_noise == usual.size_noise) options.size_noise = 0.2;
-  if (options.fading == usual.fading) options.fading = 2.5;
+  if (options.position_noise == typical.position_noise) options.position_noise = 0.05;
+  if (options.size_noise == typical.size_noise) options.size_noise = 0.2;
+  if (options.fading == typical.fading) options.fading = 2.5;
   options.learn_noise = true;
   return options;
 }

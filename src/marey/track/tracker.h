@@ -19,8 +19,8 @@ namespace marey::track {
 template <int D>
 struct CameraObservations {
   CameraId camera{};
-  Timestamp time{};                           ///< of the frame, by the rig's clock: near the instant's, seldom equal
-  std::span<const Observation<D>> seen = {};  ///< `box` in px of this camera
+  Timestamp time{};                               ///< of the frame, by the rig's clock: near the instant's, rarely equal
+  std::span<const Observation<D>> detected = {};  ///< `box` in px of this camera
 };
 
 /// Which track an observation of the last step belongs to.
@@ -40,7 +40,7 @@ struct Decision {
 
 /// Follows many targets: observations of one instant in, tracks out. D = 2 in the image (px) and on the ground (m), 3 in space.
 ///
-/// What `step` and `matches` give at once is the best guess of the moment: a live run takes that. A recording takes `decided`: a
+/// What `step` and `matches` give at once is the best guess of the instant: a live run takes that. A recording takes `decided`: a
 /// tracker that keeps several hypotheses decides later, and may by then have found that two targets that met had been taken for
 /// each other; others decide at once, and give the same as `step`. Each instant is decided once, in order.
 template <int D>
@@ -50,13 +50,13 @@ class Tracker {
 
   /// Takes in the views of one instant and returns every target that is followed, in the order of ids, those not yet confirmed
   /// included and marked so. In the image and in space there is one view; on the ground a camera without a view has no frame for
-  /// this instant, and misses nothing. Valid until the next call. Throws Error where `now` is not later than the last call's, or
+  /// this instant, and misses nothing. Valid until the next call. Throws Error if `now` is not later than the last call's, or
   /// an observation is not finite.
   virtual std::span<const Track<D>> step(Timestamp now, std::span<const CameraObservations<D>> views) = 0;
 
   /// The same with one view, of the first camera at that very time.
-  std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> seen) {
-    const CameraObservations<D> view{CameraId{}, now, seen};
+  std::span<const Track<D>> step(Timestamp now, std::span<const Observation<D>> detected) {
+    const CameraObservations<D> view{CameraId{}, now, detected};
     return step(now, std::span(&view, 1));
   }
 
@@ -73,7 +73,7 @@ class Tracker {
   /// roll did since. The identity where none of them is followed.
   virtual geometry::Similarity2 view_from_scene() const { return {}; }
 
-  /// What has been learned of how boxes err; nothing where nothing is.
+  /// What has been learned of how boxes err; nothing if nothing is.
   virtual std::optional<image::BoxNoise> learned_noise() const { return std::nullopt; }
 
   /// Where each confirmed target is expected at `now`, before it is observed. Valid until the next call of any kind.
@@ -87,17 +87,17 @@ struct TrackerOptions {
   EvidenceOptions evidence = {};
   double gate_probability = 0.999;  ///< that a target's own observation falls in its gate, in (0, 1)
   double max_speed = 7;             ///< nothing moves faster, sizes/s: 12 m/s for a person
-  double place_noise = 0.04;        ///< standard deviation of a box's centre, sizes, at least
+  double position_noise = 0.04;     ///< standard deviation of a box's centre, sizes, at least
   double size_noise = 0.1;          ///< standard deviation of the logarithm of a box's width and height
   double size_drift = 0.15;         ///< what that logarithm may change by in a second
   double patience = 2.5;            ///< a target that should be seen and is not is given up after this, s
-  bool steady_camera = false;       ///< true where the camera is known to stand still; else its motion is read off the targets
+  bool stabilised_camera = false;   ///< true where the camera is known to stand still; else its motion is read off the targets
   /// Noises of places, sizes and motion are learned from the boxes; those given here count until more is known.
   bool learn_noise = false;
   /// Where people are few for the room they have, who appears near where one is expected is likelier to be that one: by how many
-  /// boxes the pictures hold. For a live run; a second pass does better with pieces that are surely one person's.
+  /// boxes the images hold. For a live run; a second pass does better with pieces that are surely one person's.
   bool learn_clutter = false;
-  /// A newcomer is taken for a target of its size that vanished near there. For a camera that stands still, where tracks are not
+  /// A newcomer is taken for a target of its size that vanished near there. For a static camera still, where tracks are not
   /// joined afterwards with both sides known.
   bool reidentify = false;
   double fading = 0.6;         ///< s unseen after which a target is e times less likely to be there
@@ -111,7 +111,7 @@ TrackerOptions box_tracker_options(TrackerOptions options = {});
 /// What fits points without an extent, such as markers: lengths in px.
 TrackerOptions point_tracker_options();
 
-/// Follows targets in the image of one camera. Throws Error where an option is out of its domain.
+/// Follows targets in the image of one camera. Throws Error if an option is out of its domain.
 std::unique_ptr<Tracker<2>> make_tracker(const TrackerOptions& options);
 
 }  // namespace marey::track

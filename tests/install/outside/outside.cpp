@@ -13,7 +13,7 @@
 #include <marey/format/rig/rig_file.h>
 #include <marey/format/take/take_file.h>
 #include <marey/geometry/pitch.h>
-#include <marey/pipeline/people/track_in_picture.h>
+#include <marey/pipeline/people/track_in_image.h>
 #include <marey/reconstruct/triangulate.h>
 #include <marey/simulate/random.h>
 #include <marey/source/open_source.h>

@@ -1,4 +1,4 @@
-// In place of markers in space where the browser draws nothing in space: it says so. List, plots and pictures work all the same.
+// In place of markers in space where the browser draws nothing in space: it says so. List, plots and images work all the same.
 import type { Colours } from "./colours";
 import { Overlay } from "./overlay";
 import type { State } from "./state";

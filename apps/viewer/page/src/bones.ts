@@ -1,7 +1,7 @@
 // Bones between body keypoints: of recordings in an image, whose rows have keypoints of their own, and in space, where each keypoint
 // is a track with its person's name before it ("P1:left_knee").
 import type { Scene, Track } from "./scene";
-import type { Stretch } from "./wire";
+import type { TimeChunk } from "./wire";
 
 const CERTAIN_M = 0.01; // standard deviation of a keypoint in space that is drawn opaque
 const VAGUE_M = 0.08; // and of one that is drawn faintest
@@ -33,7 +33,7 @@ function parts_of(track: Track): [string, string] {
 }
 
 /** How opaque a keypoint in space is drawn, in [0, 1], by how well its position is known. */
-export function certainty(stretch: Stretch, row: number): number {
+export function certainty(stretch: TimeChunk, row: number): number {
   const sigma = stretch.sigma ? stretch.sigma[row] : NaN;
   if (Number.isNaN(sigma)) return 1;
   const vagueness = Math.log(sigma / CERTAIN_M) / Math.log(VAGUE_M / CERTAIN_M);
@@ -42,7 +42,7 @@ export function certainty(stretch: Stretch, row: number): number {
 
 /** A row's keypoints and the bones between them, on a canvas: the less they are visible, the fainter. */
 export function draw_body(
-  draw: CanvasRenderingContext2D, stretch: Stretch, row: number, bones: [number, number][],
+  draw: CanvasRenderingContext2D, stretch: TimeChunk, row: number, bones: [number, number][],
   place: (x: number, y: number) => [number, number], colour: (alpha: number) => string, alpha: number, wide: number,
 ): void {
   const { keypoint_x, keypoint_y, confidence, keypoints } = stretch;

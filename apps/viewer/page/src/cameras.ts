@@ -1,4 +1,4 @@
-// The cameras of a live run: each one's picture with what was found in it drawn over it, its state, rate and losses. Only pictures
+// The cameras of a live run: each one's image with what was found in it drawn over it, its state, rate and losses. Only images
 // that are in sight are asked for, as wide as they are shown.
 import type { Colours } from "./colours";
 import { Controls, SaveBar, type Changeable } from "./controls";
@@ -6,7 +6,7 @@ import { Coverage } from "./coverage";
 import { bones_of } from "./bones";
 import type { Scene } from "./scene";
 import type { State } from "./state";
-import type { Picture } from "./wire";
+import type { CameraImage } from "./wire";
 
 export interface CameraStatus extends Changeable {
   state: string;
@@ -15,8 +15,8 @@ export interface CameraStatus extends Changeable {
   dropped: number;
 }
 
-/** Draws over a camera's picture: the canvas' size and its px a px of the page. */
-export type Adorn = (draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: Picture) => void;
+/** Draws over a camera's image: the canvas' size and its px a px of the page. */
+export type Adorn = (draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: CameraImage) => void;
 
 class Tile {
   readonly element = document.createElement("figure");
@@ -25,9 +25,9 @@ class Tile {
   private state = document.createElement("b");
   private facts = document.createElement("span");
   visible = false;
-  shown: { picture: Picture; image: ImageBitmap | null } | null = null;
+  shown: { picture: CameraImage; image: ImageBitmap | null } | null = null;
   private decoding = false;
-  private next: Picture | null = null;
+  private next: CameraImage | null = null;
   private controls: Controls | null = null;
   private over: Adorn | null = null;
   private covered = new Coverage();
@@ -35,7 +35,7 @@ class Tile {
   /** Between keypoints, by their tracks' ids. */
   bones: [number, number][] = [];
 
-  constructor(readonly number: number, private name: string, private size: [number, number] | undefined, private colours: Colours, private drawn: (picture: Picture) => void) {
+  constructor(readonly number: number, private name: string, private size: [number, number] | undefined, private colours: Colours, private drawn: (picture: CameraImage) => void) {
     this.element.className = "camera";
     const label = document.createElement("em");
     label.textContent = name;
@@ -78,13 +78,13 @@ class Tile {
     this.facts.textContent = parts.join(" · ");
   }
 
-  /** Of pictures that come faster than they are decoded the newest counts. */
-  async take(picture: Picture): Promise<void> {
+  /** Of images that come faster than they are decoded the newest counts. */
+  async take(picture: CameraImage): Promise<void> {
     this.next = picture;
     if (this.decoding) return;
     this.decoding = true;
     while (this.next) {
-      const now: Picture = this.next;
+      const now: CameraImage = this.next;
       this.next = null;
       const image = now.jpeg ? await createImageBitmap(now.jpeg).catch(() => null) : null;
       this.shown?.image?.close();
@@ -97,7 +97,7 @@ class Tile {
     this.decoding = false;
   }
 
-  private draw_bones(draw: CanvasRenderingContext2D, picture: Picture, scale: number): void {
+  private draw_bones(draw: CanvasRenderingContext2D, picture: CameraImage, scale: number): void {
     if (this.bones.length === 0) return;
     const { x, y, track } = picture.points;
     const at = new Map<number, number>();
@@ -161,11 +161,11 @@ export class Cameras {
   private watched = "";
   private scene: Scene | null = null;
   private save_bar = new SaveBar(this.grid.parentElement!, (line) => this.say(line));
-  /** A camera whose picture is shown elsewhere, and how wide there, px of the screen. */
+  /** A camera whose image is shown elsewhere, and how wide there, px of the screen. */
   also: { camera: number; width: number } | null = null;
   private watcher: IntersectionObserver;
 
-  constructor(private chosen: State, private colours: Colours, private say: (line: string) => void, private drawn: (picture: Picture) => void) {
+  constructor(private chosen: State, private colours: Colours, private say: (line: string) => void, private drawn: (picture: CameraImage) => void) {
     this.watcher = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const tile = this.tiles.find((each) => each.element === entry.target);
@@ -192,7 +192,7 @@ export class Cameras {
     }
   }
 
-  /** What stands below a camera's picture, and is drawn over it. False where there is no such camera. */
+  /** What stands below a camera's image, and is drawn over it. False where there is no such camera. */
   adorn(camera: number, below: HTMLElement, over: Adorn): boolean {
     this.tiles[camera]?.adorn(below, over);
     return camera in this.tiles;
@@ -202,7 +202,7 @@ export class Cameras {
     this.tiles[camera]?.show_state(state);
   }
 
-  picture(picture: Picture): void {
+  picture(picture: CameraImage): void {
     this.tiles[picture.camera]?.take(picture);
   }
   status(cameras: CameraStatus[], unsaved: boolean): void {

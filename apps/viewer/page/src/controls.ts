@@ -1,12 +1,12 @@
 // What of a live camera is changed from the page: exposure, gain, the detector's threshold, and masks, which are drawn into its
-// picture. The server says how things are four times a second.
+// image. The server says how things are four times a second.
 import "./controls.css";
 import { MaskEditor, type Mask } from "./masks";
 import { make, Slider } from "./slider";
 import { put } from "./state";
 
 /** As apps/viewer/live_viewer.cpp says it. */
-export interface Dial {
+export interface CameraControl {
   name: string;
   unit: string;
   least: number;
@@ -14,8 +14,8 @@ export interface Dial {
   now: number;
 }
 export interface Changeable {
-  dials?: Dial[];
-  /** Missing where no markers are looked for. */
+  dials?: CameraControl[];
+  /** Missing where no markers are searched for. */
   threshold?: number | null;
   masks?: Mask[];
   learning?: boolean;
@@ -23,9 +23,9 @@ export interface Changeable {
 }
 
 const BRIGHTEST = 255;
-const HINT = "Drag over a reflection in the picture to mask it, or click the corners of its shape: a double click or Enter closes it, Escape leaves it. Click a mask to remove it.";
+const HINT = "Drag over a reflection in the image to mask it, or click the corners of its shape: a double click or Enter closes it, Escape leaves it. Click a mask to remove it.";
 
-/** The panel under one camera's picture, and the masks in it. */
+/** The panel under one camera's image, and the masks in it. */
 export class Controls {
   readonly button = make("button", "adjust");
   readonly panel = make("div", "controls");
@@ -47,7 +47,7 @@ export class Controls {
     this.button.setAttribute("aria-label", `Adjust ${name}`);
     this.threshold = new Slider("threshold", "", (value) => this.say(`threshold ${camera} ${value}`));
     this.threshold.span(0, BRIGHTEST);
-    this.automatic.title = "Let the threshold follow from the picture's noise";
+    this.automatic.title = "Let the threshold follow from the image's noise";
     this.threshold.element.append(this.automatic);
     this.automatic.addEventListener("click", () => {
       this.threshold.let_go();
@@ -97,13 +97,13 @@ export class Controls {
     this.button.classList.toggle("bad", !!status.refused);
   }
 
-  /** How many blobs are in the picture that is shown, and how large it is, px. */
+  /** How many blobs are in the image that is shown, and how large it is, px. */
   seen(count: number, width: number, height: number): void {
     this.masks.fit(width, height);
     if (this.open) put(this.found, `${count} ${count === 1 ? "marker" : "markers"} found`);
   }
 
-  /** Masks over the picture; `scale`: canvas px a px of the camera. */
+  /** Masks over the image; `scale`: canvas px a px of the camera. */
   draw(draw: CanvasRenderingContext2D, scale: number, ratio: number): void {
     this.masks.draw(draw, scale, ratio);
   }

@@ -1,4 +1,4 @@
-// Where in a camera's picture something was found so far: a lens is known only where it was.
+// Where in a camera's image something was found so far: a lens is known only where it was.
 const COLUMNS = 16;
 const ROWS = 12;
 
@@ -13,7 +13,7 @@ export class Coverage {
     }
   }
 
-  /** Of the picture. */
+  /** Of the image. */
   get share(): number {
     return this.cells.size / (COLUMNS * ROWS);
   }

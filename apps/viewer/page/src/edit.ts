@@ -1,6 +1,6 @@
 // The panel in which a take is edited: a range of frames, what to do, what that means in words, undo and redo.
 import "./edit.css";
-import { command, KINDS, missing, sentence, shell, type History, type Kind, type Wish } from "./edits";
+import { command, KINDS, missing, message_text, shell, type History, type Kind, type ControlRequest } from "./edits";
 import { frame_at, time_of_frame } from "./frames";
 import { HistoryList } from "./history_list";
 import type { Motion } from "./motion";
@@ -10,12 +10,12 @@ import { put, type Range, type State } from "./state";
 const element = <T extends HTMLElement>(id: string): T => document.querySelector<T>(`#${id}`)!;
 const field = (id: string): HTMLInputElement => element<HTMLInputElement>(id);
 const capital = (text: string): string => `${text[0].toUpperCase()}${text.slice(1)}`;
-const MOST_BYTES = 4000; // that the server takes of one message
+const MAX_BYTES = 4000; // that the server takes of one message
 const KEYS: Record<string, Kind> = { n: "rename", w: "swap", s: "split", j: "join", Delete: "delete", f: "fill", b: "filter" };
 
 /** What the rest of the page does for it. */
 interface Around {
-  /** False where nobody is there to hear it. */
+  /** False where no person is there to receive it. */
   say(line: string): boolean;
   seek(time: number): void;
   show_tab(tab: string): void;
@@ -66,7 +66,7 @@ export class Editor {
     this.tell();
   }
 
-  /** The server is there, perhaps again: what it said meanwhile was missed. */
+  /** The server is there, perhaps again: what it said in the meantime was missed. */
   found(): void {
     if (this.allowed) this.refresh();
   }
@@ -133,7 +133,7 @@ export class Editor {
     return { space: "markers", ground: "people", image: "tracks" }[this.motion().scene.frame];
   }
 
-  private wish(kind: Kind): Wish {
+  private wish(kind: Kind): ControlRequest {
     const { scene } = this.motion();
     const by_id = new Map(scene.tracks.map((track) => [track.id, track]));
     const tracks = [...this.state.selected].flatMap((id) => by_id.get(id) ?? []);
@@ -146,7 +146,7 @@ export class Editor {
     };
   }
 
-  /** Every picture: only what the time changes. */
+  /** Every image: only what the time changes. */
   draw(): void {
     if (!this.allowed) return;
     const frame = `frame ${this.frame}`;
@@ -180,7 +180,7 @@ export class Editor {
   private tell_act(kind: Kind): void {
     const wish = this.wish(kind);
     const lacks = missing(wish);
-    put(element("act_words"), lacks || sentence(wish, this.what));
+    put(element("act_words"), lacks || message_text(wish, this.what));
     element("act_words").classList.toggle("lacks", lacks !== "");
     put(element("act_command"), lacks ? "" : `marey edit ${shell(this.motion().scene.name)} ${shell(command(wish))}`);
     element("act_command").hidden = lacks !== "";
@@ -250,7 +250,7 @@ export class Editor {
   private ask(word: "edit" | "undo" | "redo" | "go", rest = ""): void {
     if (!this.allowed || this.pending) return;
     const line = `${word} ${this.history.head} ${this.history.newest}${rest}`;
-    if (new TextEncoder().encode(line).length > MOST_BYTES) return this.said("Not done. So many names are more than the page can send; write it as marey edit on the command line.", false);
+    if (new TextEncoder().encode(line).length > MAX_BYTES) return this.said("Not done. This many names are more than the page can send; write it as marey edit on the command line.", false);
     if (!this.around.say(line)) return this.said("Not done. The program that shows this does not answer.", false);
     this.pending = word;
     (document.activeElement as HTMLElement | null)?.blur?.();

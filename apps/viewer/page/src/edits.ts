@@ -23,7 +23,7 @@ export const KINDS = ["rename", "swap", "split", "join", "delete", "fill", "filt
 export type Kind = (typeof KINDS)[number];
 
 /** What the user has chosen. */
-export interface Wish {
+export interface ControlRequest {
   kind: Kind;
   /** Selected, the first one first. */
   tracks: Track[];
@@ -38,7 +38,7 @@ export interface Wish {
   cutoff: string;
 }
 
-const WANTED: Record<Kind, [number, number]> = { rename: [1, 1], swap: [2, 2], split: [1, 1], join: [2, 2], delete: [1, Infinity], fill: [0, Infinity], filter: [0, Infinity] };
+const REQUIRED: Record<Kind, [number, number]> = { rename: [1, 1], swap: [2, 2], split: [1, 1], join: [2, 2], delete: [1, Infinity], fill: [0, Infinity], filter: [0, Infinity] };
 
 /** A name as a sentence has it. */
 export const called = (track: Track): string => (track.label === "" ? `#${track.id}` : track.label);
@@ -59,12 +59,12 @@ const names_of = (tracks: Track[]): string => {
 /** A word as a shell takes it. */
 export const shell = (word: string): string => (/^[\w./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
-const is_all = (wish: Wish): boolean => wish.tracks.length === 0 || wish.tracks.length === wish.all.length;
+const is_all = (wish: ControlRequest): boolean => wish.tracks.length === 0 || wish.tracks.length === wish.all.length;
 const quoted = (name: string): string => (/^[\w.-]+$/.test(name) ? name : `"${name}"`);
 
-/** Why it cannot be done yet; empty where it can. What only the take knows, the program says. */
-export function missing(wish: Wish): string {
-  const [least, most] = WANTED[wish.kind];
+/** Why it cannot be done yet; empty if it can. What only the take knows, the program says. */
+export function missing(wish: ControlRequest): string {
+  const [least, most] = REQUIRED[wish.kind];
   const count = wish.tracks.length;
   if (count < least || count > most) {
     const how_many = least === most ? (least === 1 ? "one" : "two") : "at least one";
@@ -76,7 +76,7 @@ export function missing(wish: Wish): string {
 }
 
 /** The edit as `marey edit` takes it. */
-export function command(wish: Wish): string {
+export function command(wish: ControlRequest): string {
   const { tracks, all, kind } = wish;
   const range = wish.range ? ` ${wish.range.first}:${wish.range.last}` : "";
   const several = () => tracks.map((track) => reference(track, all)).join(",");
@@ -93,7 +93,7 @@ export function command(wish: Wish): string {
 }
 
 /** What will be done, in a sentence. */
-export function sentence(wish: Wish, what: string): string {
+export function message_text(wish: ControlRequest, what: string): string {
   const { tracks, range } = wish;
   const frames = range ? (range.first === range.last ? `in frame ${range.first}` : `in frames ${range.first} to ${range.last}`) : "in all frames";
   const whose = is_all(wish) ? `all ${wish.all.length} ${what}` : names_of(tracks);

@@ -1,7 +1,7 @@
 // The edits of a take as a list: which count, where they branch, what a fill is expected to be off. A click goes to that state.
 import type { Edit, History } from "./edits";
 
-const MOST_GAPS = 300; // that are listed of one fill
+const MAX_GAPS = 300; // that are listed of one fill
 
 const made = <K extends keyof HTMLElementTagNameMap>(kind: K, name: string, text = ""): HTMLElementTagNameMap[K] =>
   Object.assign(document.createElement(kind), { className: name, textContent: text });
@@ -49,7 +49,7 @@ export class HistoryList {
     const gaps = edit.gaps!;
     const part = made("details", "gaps");
     part.append(made("summary", "", gaps.length === 1 ? "the gap" : `the ${gaps.length} gaps`));
-    for (const gap of gaps.slice(0, MOST_GAPS)) {
+    for (const gap of gaps.slice(0, MAX_GAPS)) {
       const line = made("button", "gap");
       line.title = "Show its beginning";
       line.append(made("span", "", gap.track), made("span", "", gap.first === gap.last ? `${gap.first}` : `${gap.first} – ${gap.last}`));
@@ -57,7 +57,7 @@ export class HistoryList {
       line.addEventListener("click", () => this.show(gap.first));
       part.append(line);
     }
-    if (gaps.length > MOST_GAPS) part.append(made("span", "gap", `and ${gaps.length - MOST_GAPS} more`));
+    if (gaps.length > MAX_GAPS) part.append(made("span", "gap", `and ${gaps.length - MAX_GAPS} more`));
     return part;
   }
 }

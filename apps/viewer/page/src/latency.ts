@@ -1,4 +1,4 @@
-// How old what is shown is: from the moment that the server names to the picture on the screen. The server's clock is known by the
+// How old what is shown is: from the instant that the server names to the image on the screen. The server's clock is known by the
 // shortest of the round trips so far.
 
 const KEPT = 330;
@@ -26,7 +26,7 @@ export class Latency {
     this.offset = { ms: Number(BigInt(ns) / 1000n) / 1000 - (sent + now) / 2, trip };
   }
 
-  /** Something of this moment (ms of the server's clock) is on the screen now. */
+  /** Something of this instant (ms of the server's clock) is on the screen now. */
   drawn(sent_ms: number): void {
     if (!this.offset || document.hidden) return;
     this.ms.push(performance.now() + this.offset.ms - sent_ms);

@@ -1,10 +1,10 @@
-// A run that goes on: the newest instants as they come, the last minute of them kept.
-import { last_at_or_before, type Moment, type Motion } from "./motion";
+// A run that continues: the newest instants as they come, the last minute of them kept.
+import { last_at_or_before, type TimeStep, type Motion } from "./motion";
 import type { Scene } from "./scene";
-import { Stretch, type Course } from "./wire";
+import { TimeChunk, type Course } from "./wire";
 
 const KEPT_S = 60;
-const MOST_KEPT = 15000;
+const MAX_KEPT = 15000;
 const THERE_S = 2; // who was not seen for longer is gone,
 const LISTED_S = 10; // and after this not listed any more
 
@@ -13,8 +13,8 @@ export class Live implements Motion {
   scene: Scene;
   on_change = () => {};
   private times: number[] = [];
-  private here: Stretch[] = []; // of one instant each
-  private place = new Map<Stretch, number>(); // counted from the first that ever came
+  private here: TimeChunk[] = []; // of one instant each
+  private place = new Map<TimeChunk, number>(); // counted from the first that ever came
   private gone = 0;
   private seen_at = new Map<number, number>();
 
@@ -34,13 +34,13 @@ export class Live implements Motion {
     this.on_change();
   }
 
-  add(stretch: Stretch): void {
+  add(stretch: TimeChunk): void {
     if (stretch.time[0] < this.last - 1) this.forget(); // another run
     this.place.set(stretch, this.gone + this.here.length);
     this.times.push(stretch.time[0]);
     this.here.push(stretch);
     for (const track of stretch.track) this.seen_at.set(track, stretch.time[0]);
-    if (this.here.length > MOST_KEPT || (this.here.length > 400 && this.times[200] < this.last - KEPT_S)) {
+    if (this.here.length > MAX_KEPT || (this.here.length > 400 && this.times[200] < this.last - KEPT_S)) {
       const drop = 200;
       for (const old of this.here.splice(0, drop)) this.place.delete(old);
       this.times.splice(0, drop);
@@ -49,12 +49,12 @@ export class Live implements Motion {
     this.on_change();
   }
 
-  at(time: number): Moment | null {
+  at(time: number): TimeStep | null {
     const i = Math.max(0, last_at_or_before(this.times, time + 1e-9));
     return i < this.here.length ? { stretch: this.here[i], k: 0 } : null;
   }
 
-  beside(moment: Moment, step: 1 | -1): Moment | null {
+  beside(moment: TimeStep, step: 1 | -1): TimeStep | null {
     const at = this.place.get(moment.stretch);
     const stretch = at === undefined ? undefined : this.here[at - this.gone + step];
     return stretch ? { stretch, k: 0 } : null;

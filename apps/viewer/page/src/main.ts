@@ -1,4 +1,4 @@
-// The page: fetches the scene, keeps the socket, wires the parts together. It draws when something has changed, once a picture of
+// The page: fetches the scene, keeps the socket, wires the parts together. It draws when something has changed, once an image of
 // the screen at most, from the newest state only; what is not in sight costs nothing.
 import "./style.css";
 import { Cameras } from "./cameras";
@@ -7,7 +7,7 @@ import { Editor } from "./edit";
 import { wire_keys } from "./keys";
 import { Latency } from "./latency";
 import { Live } from "./live";
-import { time_of, type Moment, type Motion } from "./motion";
+import { time_of, type TimeStep, type Motion } from "./motion";
 import { Names } from "./names";
 import { wire_picking } from "./picking";
 import { PlaneView } from "./plane_view";
@@ -21,8 +21,8 @@ import { Timeline } from "./timeline";
 import type { View } from "./view";
 import { view_of } from "./views";
 import { Wand } from "./wand";
-import { kind_of, picture_of, Stretch, type Picture } from "./wire";
-import { Words, type Status } from "./words";
+import { kind_of, image_of, TimeChunk, type CameraImage } from "./wire";
+import { Words, type Status } from "./status_text";
 
 const element = <T extends HTMLElement>(id: string): T => document.querySelector<T>(`#${id}`)!;
 const TRAILS = [0, 0.5, 1, 2, 5, 10];
@@ -32,7 +32,7 @@ class Page {
   private colours = new Colours();
   private motion: Motion;
   private view: View;
-  private moment: Moment | null = null;
+  private moment: TimeStep | null = null;
   private socket: Socket;
   private timeline: Timeline;
   private table: Table;
@@ -48,7 +48,7 @@ class Page {
   private recording = false;
   private recording_into = "";
   private latency = new Latency();
-  private latest: Stretch | null = null;
+  private latest: TimeChunk | null = null;
   private film_asked = { frame: -1, at: 0 };
 
   constructor(scene: Scene) {
@@ -58,7 +58,7 @@ class Page {
     this.motion.on_change = redraw;
     this.view = view_of(scene, state, this.colours, redraw);
     this.socket = new Socket(
-      { opened: () => this.opened(), text: (line) => this.text(line), bytes: (data) => this.bytes(data), lost: () => this.editor.lost(), said: (sentence) => this.said(sentence) },
+      { opened: () => this.opened(), text: (line) => this.text(line), bytes: (data) => this.bytes(data), lost: () => this.editor.lost(), said: (message_text) => this.said(message_text) },
       scene.kind === "live",
     );
     element("view").append(this.view.element);
@@ -127,10 +127,10 @@ class Page {
   private bytes(data: ArrayBuffer): void {
     const kind = kind_of(data);
     if (kind === 2 && this.motion instanceof Live) {
-      this.latest = new Stretch(data);
+      this.latest = new TimeChunk(data);
       this.motion.add(this.latest);
     } else if (kind === 3) {
-      const picture = picture_of(data);
+      const picture = image_of(data);
       const { scene } = this.motion;
       if (scene.kind === "live") this.cameras.picture(picture);
       if (scene.kind === "recording" || (scene.frame === "image" && picture.camera === (scene.camera ?? 0))) this.take_film(picture);
@@ -172,7 +172,7 @@ class Page {
       if (live) return live.seen(track.id);
       if (computed) return (track.rows ?? 0) / whole;
       if (scene.frame === "space") return (track.measured ?? 0) / whole;
-      // Of somebody who comes and goes: while the track lasts.
+      // Of a person who comes and goes: while the track lasts.
       return (track.measured ?? 0) / Math.max(1, track.within ?? 1);
     });
     this.cameras.take(scene);
@@ -203,7 +203,7 @@ class Page {
     button.title = this.recording ? `into ${this.recording_into}; R ends it` : "Record (R)";
   }
 
-  private async take_film(picture: Picture): Promise<void> {
+  private async take_film(picture: CameraImage): Promise<void> {
     this.film_asked.at = 0;
     if (!picture.jpeg || !(this.view instanceof PlaneView)) return;
     const image = await createImageBitmap(picture.jpeg);
@@ -270,8 +270,8 @@ class Page {
     if ((motion.scene.complete ?? true)) state.playing = false;
   }
 
-  /** With a film behind it, what was tracked in the frame that is shown. */
-  private shown_moment(): Moment | null {
+  /** With a video behind it, what was tracked in the frame that is shown. */
+  private shown_moment(): TimeStep | null {
     const film = this.view instanceof PlaneView ? this.view.film : null;
     if (!film || !this.moment) return this.moment;
     const near = this.motion.at(this.state.time + (film.frame - this.moment.stretch.index[this.moment.k]) / Math.max(0.1, this.motion.scene.rate));

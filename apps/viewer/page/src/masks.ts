@@ -1,13 +1,13 @@
-// Masks over a camera's picture: rectangles that are dragged, polygons whose corners are clicked. A click on a mask removes it.
+// Masks over a camera's image: rectangles that are dragged, polygons whose corners are clicked. A click on a mask removes it.
 
 /** x, y, width, height of a rectangle; x, y of each corner of a polygon, six numbers or more. Px of the camera. */
 export type Mask = number[];
 
-type Place = [number, number];
+type Location = [number, number];
 
-const LEAST_DRAG = 4; // px of the page; less is a click
+const MIN_DRAG = 4; // px of the page; less is a click
 const CLOSE_BY = 9; // px of the page to the first corner: a click there closes the polygon
-const MOST_CORNERS = 64; // that the server takes
+const MAX_CORNERS = 64; // that the server takes
 
 function outline(mask: Mask, scale: number): Path2D {
   const path = new Path2D();
@@ -19,9 +19,9 @@ function outline(mask: Mask, scale: number): Path2D {
 
 export class MaskEditor {
   private masks: Mask[] = [];
-  private drag: { from: Place; to: Place; begun: Place; far: boolean } | null = null; // `begun`: px of the page
-  private corners: { px: Place; at: Place }[] = []; // of a polygon that is not closed; `at`: px of the page, in the canvas
-  private pointer: Place | null = null;
+  private drag: { from: Location; to: Location; begun: Location; far: boolean } | null = null; // `begun`: px of the page
+  private corners: { px: Location; at: Location }[] = []; // of a polygon that is not closed; `at`: px of the page, in the canvas
+  private pointer: Location | null = null;
   private active = false;
   private size: [number, number] = [0, 0];
 
@@ -51,7 +51,7 @@ export class MaskEditor {
     this.redraw();
   }
 
-  /** Of the picture that is shown, px. */
+  /** Of the image that is shown, px. */
   fit(width: number, height: number): void {
     this.size = [width, height];
   }
@@ -106,7 +106,7 @@ export class MaskEditor {
   }
 
   /** A place on the canvas in px of the camera. */
-  private place(event: PointerEvent): Place {
+  private place(event: PointerEvent): Location {
     const rect = this.canvas.getBoundingClientRect();
     const inside = (at: number, low: number, size: number, most: number) => Math.max(0, Math.min(most, ((at - low) / size) * most));
     return [inside(event.clientX, rect.left, rect.width, this.size[0]), inside(event.clientY, rect.top, rect.height, this.size[1])];
@@ -126,7 +126,7 @@ export class MaskEditor {
     if (this.drag) {
       const { begun } = this.drag;
       // While corners are set there is no dragging.
-      this.drag.far ||= this.corners.length === 0 && Math.hypot(event.clientX - begun[0], event.clientY - begun[1]) >= LEAST_DRAG;
+      this.drag.far ||= this.corners.length === 0 && Math.hypot(event.clientX - begun[0], event.clientY - begun[1]) >= MIN_DRAG;
       this.drag.to = this.place(event);
     }
     if (this.drag || this.corners.length) this.redraw();
@@ -142,10 +142,10 @@ export class MaskEditor {
     this.redraw();
   }
 
-  private clicked([x, y]: Place, event: PointerEvent): void {
+  private clicked([x, y]: Location, event: PointerEvent): void {
     const rect = this.canvas.getBoundingClientRect();
-    const at: Place = [event.clientX - rect.left, event.clientY - rect.top];
-    const near = (corner: { at: Place } | undefined, reach: number) => !!corner && Math.hypot(corner.at[0] - at[0], corner.at[1] - at[1]) < reach;
+    const at: Location = [event.clientX - rect.left, event.clientY - rect.top];
+    const near = (corner: { at: Location } | undefined, reach: number) => !!corner && Math.hypot(corner.at[0] - at[0], corner.at[1] - at[1]) < reach;
     if (this.corners.length === 0) {
       const draw = this.canvas.getContext("2d")!;
       draw.save();
@@ -155,12 +155,12 @@ export class MaskEditor {
       if (hit) return this.say("unmask", hit);
     } else if (this.corners.length >= 3 && near(this.corners[0], CLOSE_BY)) {
       return this.close();
-    } else if (near(this.corners[this.corners.length - 1], LEAST_DRAG)) {
+    } else if (near(this.corners[this.corners.length - 1], MIN_DRAG)) {
       return; // the second of a double click
     }
     const last = (value: number, size: number) => Math.min(size - 1, Math.floor(value));
     this.corners.push({ px: [last(x, this.size[0]), last(y, this.size[1])], at });
-    if (this.corners.length === MOST_CORNERS) this.close();
+    if (this.corners.length === MAX_CORNERS) this.close();
   }
 
   /** The polygon, where it has three corners. */

@@ -1,14 +1,14 @@
 // A motion over time, recorded or live: what the views, the timeline and the plots ask.
 import type { Scene } from "./scene";
-import type { Course, Stretch } from "./wire";
+import type { Course, TimeChunk } from "./wire";
 
 /** Instant k of a stretch. */
-export interface Moment {
-  stretch: Stretch;
+export interface TimeStep {
+  stretch: TimeChunk;
   k: number;
 }
 
-export const time_of = (moment: Moment): number => moment.stretch.time[moment.k];
+export const time_of = (moment: TimeStep): number => moment.stretch.time[moment.k];
 
 export interface Motion {
   scene: Scene;
@@ -19,10 +19,10 @@ export interface Motion {
   readonly revision: number;
   /** Called where the scene, or what is there of the motion, has changed. */
   on_change: () => void;
-  /** The last moment at or before `time`; null where it is not here yet, and is then asked for. */
-  at(time: number): Moment | null;
-  /** The moment before, or after; null at the ends and where it is not here yet. */
-  beside(moment: Moment, step: 1 | -1): Moment | null;
+  /** The last instant at or before `time`; null where it is not here yet, and is then asked for. */
+  at(time: number): TimeStep | null;
+  /** The instant before, or after; null at the ends and where it is not here yet. */
+  beside(moment: TimeStep, step: 1 | -1): TimeStep | null;
   /** A track over the whole time that is known. */
   course(track: number): Promise<Course>;
   /** How much was there over time, for the strip: [time (s), rows an instant], by growing time. */

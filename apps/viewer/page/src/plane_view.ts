@@ -1,12 +1,12 @@
-// What lies in a plane: people on a pitch or another ground, seen from above; tracks in a picture. Dragged and zoomed with the
+// What lies in a plane: people on a pitch or another ground, seen from above; tracks in an image. Dragged and zoomed with the
 // pointer, two fingers or the wheel.
 import { draw_body } from "./bones";
 import type { Colours } from "./colours";
-import { time_of, type Moment, type Motion } from "./motion";
+import { time_of, type TimeStep, type Motion } from "./motion";
 import { Overlay, type Mark } from "./overlay";
 import { name_of, type Scene, type Track } from "./scene";
 import { TYPEFACE, type State } from "./state";
-import { moments_back, type View } from "./view";
+import { time_steps_back, type View } from "./view";
 
 const TRAIL_STEPS = 120;
 
@@ -25,7 +25,7 @@ export class PlaneView implements View {
   private origin: [number, number] = [0, 0];
   private fitted = true;
   private fingers = new Map<number, [number, number]>();
-  /** The newest picture of the film, and of which frame it is. */
+  /** The newest image of the video, and of which frame it is. */
   film: { image: ImageBitmap; frame: number } | null = null;
 
   constructor(private state: State, private colours: Colours, private redraw: () => void) {
@@ -88,7 +88,7 @@ export class PlaneView implements View {
     this.redraw();
   }
 
-  draw(motion: Motion, moment: Moment | null): void {
+  draw(motion: Motion, moment: TimeStep | null): void {
     const draw = this.base.getContext("2d")!;
     draw.clearRect(0, 0, this.width, this.height);
     if (this.scene?.frame === "image") this.draw_picture(draw);
@@ -220,13 +220,13 @@ export class PlaneView implements View {
     return this.state.selected.size > 0 && !this.state.selected.has(id) && this.state.hover !== id;
   }
 
-  private draw_trails(draw: CanvasRenderingContext2D, motion: Motion, moment: Moment): void {
+  private draw_trails(draw: CanvasRenderingContext2D, motion: Motion, moment: TimeStep): void {
     const now = time_of(moment);
     const before = new Map<number, [number, number, number]>();
     const feet = this.scene?.frame === "image";
     draw.lineCap = "round";
     draw.lineWidth = feet ? 2 : Math.max(1.5, 0.28 * this.scale);
-    for (const { stretch, k } of moments_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
+    for (const { stretch, k } of time_steps_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
       const time = stretch.time[k];
       const alpha = 0.7 * (1 - (now - time) / this.state.trail_s);
       for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
@@ -248,7 +248,7 @@ export class PlaneView implements View {
     }
   }
 
-  private draw_people(moment: Moment): void {
+  private draw_people(moment: TimeStep): void {
     const { stretch, k } = moment;
     const draw = this.overlay.draw;
     const radius = Math.max(7.5, Math.min(15, 1.25 * this.scale));
@@ -284,7 +284,7 @@ export class PlaneView implements View {
     this.overlay.labels(marks, this.state.labels);
   }
 
-  private draw_boxes(moment: Moment): void {
+  private draw_boxes(moment: TimeStep): void {
     const { stretch, k } = moment;
     const draw = this.overlay.draw;
     const marks: Mark[] = [];

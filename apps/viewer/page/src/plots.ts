@@ -8,7 +8,7 @@ import { name_of } from "./scene";
 import type { State } from "./state";
 import { FILLED, PREDICTED, type Course } from "./wire";
 
-const MOST = 6;
+const MAXIMUM = 6;
 const COORDINATES = ["x", "y", "z", "speed"] as const;
 type Coordinate = (typeof COORDINATES)[number];
 
@@ -41,8 +41,8 @@ function with_gaps(course: Course, values: ArrayLike<number | null>, gap: number
 /** What was not seen there: filled, predicted. */
 const unseen = (course: Course, i: number): boolean => (course.state[i] & 7) === FILLED || (course.state[i] & 7) === PREDICTED;
 
-/** The values that were seen, and where some were not those: up to the ones beside them, so that the line goes on. */
-function by_seen(course: Course, values: ArrayLike<number | null>): ArrayLike<number | null>[] {
+/** The values that were seen, and where some were not those: up to the ones beside them, so that the line continues. */
+function by_observed(course: Course, values: ArrayLike<number | null>): ArrayLike<number | null>[] {
   const n = course.time.length;
   const missed = Array.from({ length: n }, (_, i) => unseen(course, i));
   if (!missed.includes(true)) return [values];
@@ -90,7 +90,7 @@ export class Plots {
     this.buttons.get("z")!.hidden = !space;
     for (const [coordinate, button] of this.buttons) button.classList.toggle("on", this.chosen.has(coordinate));
     if (!this.visible || this.busy) return;
-    const ids = [...this.state.selected].slice(-MOST);
+    const ids = [...this.state.selected].slice(-MAXIMUM);
     const coordinates = COORDINATES.filter((c) => this.chosen.has(c) && (c !== "z" || space));
     this.hint.hidden = ids.length > 0;
     const live = motion.scene.kind === "live";
@@ -115,10 +115,10 @@ export class Plots {
     for (const coordinate of coordinates) this.plots.push(this.build(coordinate, ids, height));
     if (zoom && !live) for (const plot of this.plots) plot.setScale("x", zoom);
     this.draw();
-    this.update(); // the selection or the recording may have changed meanwhile
+    this.update(); // the selection or the recording may have changed in the meantime
   }
 
-  /** The stretch of time that the user looks at; nothing where it is all of it. */
+  /** The stretch of time that the user looks at; nothing if it is all of it. */
   private zoom(): { min: number; max: number } | null {
     const plot = this.plots[0];
     const times = plot?.data[0];
@@ -154,9 +154,9 @@ export class Plots {
     return entry;
   }
 
-  /** Tracks of one side or team share a colour: their lines are told apart by lightness. */
+  /** Tracks of one side or team share a colour: their lines are distinguished by lightness. */
   private line_colour(id: number): string {
-    const ids = [...this.state.selected].slice(-MOST);
+    const ids = [...this.state.selected].slice(-MAXIMUM);
     const same = ids.filter((other) => this.colours.css(other) === this.colours.css(id));
     const [r, g, b] = this.colours.rgb(id).map((v) => Math.round(255 * v));
     const amount = same.length < 2 ? 0 : Math.round((60 * same.indexOf(id)) / (same.length - 1));
@@ -171,7 +171,7 @@ export class Plots {
     for (const id of ids) {
       const { course } = this.courses.get(id)!;
       const values = coordinate === "speed" ? speed_of(course, gap) : course[coordinate] ?? [];
-      by_seen(course, values).forEach((part, which) => {
+      by_observed(course, values).forEach((part, which) => {
         tables.push(with_gaps(course, part, gap) as unknown as uPlot.AlignedData);
         lines.push({ stroke: this.line_colour(id), width: 1.5, dash: which ? [3, 3] : undefined, spanGaps: false, points: { show: false } });
       });

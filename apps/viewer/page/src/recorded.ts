@@ -1,10 +1,10 @@
 // A recording that lies with the server: stretches are fetched as they are needed, all of them where it is short.
-import { last_at_or_before, type Moment, type Motion } from "./motion";
+import { last_at_or_before, type TimeStep, type Motion } from "./motion";
 import type { Scene } from "./scene";
-import { course_of, Stretch, type Course } from "./wire";
+import { course_of, TimeChunk, type Course } from "./wire";
 
 const AT_ONCE = 160; // stretches that are fetched without being asked for
-const MOST_KEPT = 600;
+const MAX_KEPT = 600;
 const AHEAD = 4;
 
 export class Recorded implements Motion {
@@ -12,7 +12,7 @@ export class Recorded implements Motion {
   on_change = () => {};
   private begins: number[] = [];
   revision = 0;
-  private here = new Map<number, { stretch: Stretch; version: number }>(); // in the order of their last use
+  private here = new Map<number, { stretch: TimeChunk; version: number }>(); // in the order of their last use
   private asked = new Set<number>();
 
   constructor(scene: Scene) {
@@ -35,7 +35,7 @@ export class Recorded implements Motion {
     this.on_change();
   }
 
-  at(time: number): Moment | null {
+  at(time: number): TimeStep | null {
     const n = Math.max(0, last_at_or_before(this.begins, time + 1e-9));
     if (n >= this.begins.length) return null;
     for (let ahead = 1; ahead <= AHEAD && n + ahead < this.begins.length; ++ahead) this.fetch(n + ahead);
@@ -44,7 +44,7 @@ export class Recorded implements Motion {
     return { stretch, k: Math.max(0, last_at_or_before(stretch.time, time + 1e-9)) };
   }
 
-  beside(moment: Moment, step: 1 | -1): Moment | null {
+  beside(moment: TimeStep, step: 1 | -1): TimeStep | null {
     const k = moment.k + step;
     if (k >= 0 && k < moment.stretch.time.length) return { stretch: moment.stretch, k };
     const n = last_at_or_before(this.begins, moment.stretch.time[0] + 1e-9) + step;
@@ -69,7 +69,7 @@ export class Recorded implements Motion {
     return fine;
   }
 
-  private stretch(n: number): Stretch | null {
+  private stretch(n: number): TimeChunk | null {
     const held = this.here.get(n);
     if (!held || held.version !== this.version(n)) this.fetch(n);
     if (!held) return null;
@@ -90,15 +90,15 @@ export class Recorded implements Motion {
     try {
       const answer = await fetch(`stretch?n=${n}`);
       if (!answer.ok) return;
-      this.here.set(n, { stretch: new Stretch(await answer.arrayBuffer()), version });
+      this.here.set(n, { stretch: new TimeChunk(await answer.arrayBuffer()), version });
       if (held) ++this.revision;
-      if (this.here.size > MOST_KEPT) this.here.delete(this.here.keys().next().value!);
+      if (this.here.size > MAX_KEPT) this.here.delete(this.here.keys().next().value!);
       this.on_change();
     } catch {
       // the server has gone, which the socket tells
     } finally {
       this.asked.delete(n);
     }
-    if (this.version(n) !== version) this.fetch(n); // it was edited again meanwhile
+    if (this.version(n) !== version) this.fetch(n); // it was edited again in the meantime
   }
 }

@@ -22,7 +22,7 @@ export interface Camera {
   name: string;
   size?: [number, number];
   centre?: Vector;
-  /** Directions of its picture's corners, from the top left one clockwise. */
+  /** Directions of its image's corners, from the top left one clockwise. */
   corners?: Vector[];
 }
 
@@ -51,12 +51,12 @@ export interface Scene {
   cameras: Camera[];
   bodies: Body[];
   tracks: Track[];
-  /** Of tracks in a picture that have body keypoints: their names, and the bones between them. */
+  /** Of tracks in an image that have body keypoints: their names, and the bones between them. */
   keypoints?: string[];
   bones?: [number, number][];
   /** Of keypoints in space: the bones between points of these names. */
   named_bones?: [string, string][];
-  /** Of tracks in a picture: whose, and its size (px). */
+  /** Of tracks in an image: whose, and its size (px). */
   camera?: number;
   size?: [number, number];
   pitch?: Pitch | null;

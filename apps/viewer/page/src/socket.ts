@@ -1,19 +1,19 @@
 // The page's socket to the program that shows it: opened again when it was lost, with a sentence where it cannot be had.
 const AGAIN_MS = 2000;
 
-export interface Heard {
+export interface Received {
   opened(): void;
   text(line: string): void;
   bytes(data: ArrayBuffer): void;
   lost(): void;
-  said(sentence: string): void;
+  said(message_text: string): void;
 }
 
 export class Socket {
   private socket: WebSocket | null = null;
   private ever = false;
 
-  constructor(private heard: Heard, private live: boolean) {}
+  constructor(private heard: Received, private live: boolean) {}
 
   connect(): void {
     if (typeof WebSocket === "undefined") {
@@ -43,7 +43,7 @@ export class Socket {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
-  /** False where nobody is there to hear it. */
+  /** False where no person is there to receive it. */
   say(line: string): boolean {
     if (!this.socket || !this.open) return false;
     this.socket.send(line);

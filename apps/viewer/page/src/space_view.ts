@@ -6,21 +6,21 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { bones_of, certainty } from "./bones";
 import type { Colours } from "./colours";
-import { time_of, type Moment, type Motion } from "./motion";
+import { time_of, type TimeStep, type Motion } from "./motion";
 import { Overlay, type Mark } from "./overlay";
 import { name_of, type Scene, type Track } from "./scene";
 import { TYPEFACE, type State } from "./state";
 import { Sticks } from "./sticks";
-import { moments_back, type View } from "./view";
+import { time_steps_back, type View } from "./view";
 import { FILLED, MEASURED, PREDICTED } from "./wire";
 
 const TRAIL_STEPS = 90;
-const MOST_TRAIL_SEGMENTS = 60000;
+const MAX_TRAIL_SEGMENTS = 60000;
 const MARKER_M = 0.017; // radius where the scene is a few metres wide
 const BONE_M = 0.009;
 const AXIS_M = 0.1; // length of a body's axes
 
-/** Lines whose ends and colours change with every picture. */
+/** Lines whose ends and colours change with every image. */
 class Lines {
   readonly object: LineSegments;
   private position: Float32Array;
@@ -64,7 +64,7 @@ export class SpaceView implements View {
   private camera = new PerspectiveCamera(42, 1, 0.02, 500);
   private controls: OrbitControls;
   private markers: InstancedMesh;
-  private trails = new Lines(MOST_TRAIL_SEGMENTS);
+  private trails = new Lines(MAX_TRAIL_SEGMENTS);
   private bones: Sticks;
   private keypoint_bones: [number, number][] = [];
   private rays = new Lines(8000);
@@ -142,7 +142,7 @@ export class SpaceView implements View {
     this.controls.update();
   }
 
-  draw(motion: Motion, moment: Moment | null): void {
+  draw(motion: Motion, moment: TimeStep | null): void {
     if (this.dark !== this.state.dark) this.paint_surroundings();
     this.rig.visible = this.state.cameras;
     const marks = moment ? this.place_markers(moment) : [];
@@ -160,7 +160,7 @@ export class SpaceView implements View {
     return Math.max(0.5, Math.min(12, new Vector3().subVectors(this.high, this.low).length() / 4));
   }
 
-  private place_markers(moment: Moment): Mark[] {
+  private place_markers(moment: TimeStep): Mark[] {
     const { stretch, k } = moment;
     const end = stretch.row_end[k];
     const begin = stretch.begin(k);
@@ -181,7 +181,7 @@ export class SpaceView implements View {
       colour.setRGB(...this.colours.rgb(id), "srgb");
       const how = stretch.provenance(row);
       if (stretch.sigma) colour.lerp(this.background, 1 - certainty(stretch, row));
-      if (how === FILLED || how === PREDICTED) colour.lerp(this.background, 0.6); // not seen at this moment
+      if (how === FILLED || how === PREDICTED) colour.lerp(this.background, 0.6); // not seen at this instant
       if (this.state.selected.size > 0 && !selected) colour.lerp(this.background, 0.35);
       this.markers.setColorAt(count++, colour);
       v.set(stretch.x[row], stretch.y[row], z);
@@ -199,13 +199,13 @@ export class SpaceView implements View {
     return marks;
   }
 
-  private place_trails(motion: Motion, moment: Moment | null): void {
+  private place_trails(motion: Motion, moment: TimeStep | null): void {
     this.trails.begin();
     if (moment && this.state.trail_s > 0) {
       const now = time_of(moment);
       const before = new Map<number, [number, number, number, number]>();
       const chosen = this.state.selected.size > 0;
-      for (const { stretch, k } of moments_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
+      for (const { stretch, k } of time_steps_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
         const time = stretch.time[k];
         const alpha = 0.75 * (1 - (now - time) / this.state.trail_s);
         for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
@@ -228,7 +228,7 @@ export class SpaceView implements View {
   }
 
   /** A segment of a skeleton is a rod from its parent's origin to its own, and to its end; a body by itself is its axes. */
-  private place_bones(moment: Moment | null): void {
+  private place_bones(moment: TimeStep | null): void {
     this.bones.begin(this.camera, this.overlay.height);
     if (moment && this.scene && this.scene.bodies.length > 0) {
       const { stretch, k } = moment;
@@ -259,7 +259,7 @@ export class SpaceView implements View {
   }
 
   /** Between keypoints that are both here: as faint as the less certain of them. */
-  private place_keypoint_bones(moment: Moment): void {
+  private place_keypoint_bones(moment: TimeStep): void {
     if (this.keypoint_bones.length === 0) return;
     const { stretch, k } = moment;
     const rows = new Map<number, number>();
@@ -277,7 +277,7 @@ export class SpaceView implements View {
   }
 
   /** From each camera that saw a marker to it: of those that are selected, or of all. */
-  private place_rays(moment: Moment | null): void {
+  private place_rays(moment: TimeStep | null): void {
     this.rays.begin();
     if (moment && this.state.rays && moment.stretch.cameras) {
       const { stretch, k } = moment;

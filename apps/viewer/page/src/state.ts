@@ -1,4 +1,4 @@
-// What the user has chosen, shared by all parts of the page. Whoever changes it calls `changed`.
+// What the user has chosen, shared by all parts of the page. The one who changes it calls `changed`.
 
 export type Speed = number;
 export const SPEEDS: Speed[] = [0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
@@ -15,7 +15,7 @@ export const TYPEFACE = 'Inter, system-ui, -apple-system, "Segoe UI", Roboto, "N
 export interface Range {
   first: number;
   last: number;
-  /** The end that nobody set: it is the recording's. */
+  /** The end that no person set: it is the recording's. */
   open?: "first" | "last";
 }
 
@@ -50,7 +50,7 @@ export class State {
     localStorage.setItem("marey", JSON.stringify({ dark: this.dark, labels: this.labels, cameras: this.cameras }));
     for (const listener of this.listeners) listener();
   }
-  /** Only who is under the pointer: the table does not make its rows anew for that. */
+  /** Only who is under the pointer: the table does not make its rows again for that. */
   on_hover = () => {};
   changed_hover(): void {
     this.on_hover();

@@ -3,7 +3,7 @@
 import { Color, CylinderGeometry, DynamicDrawUsage, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3, type PerspectiveCamera, type Scene as World } from "three";
 
 const SIDES = 10;
-const LEAST_PX = 1.3; // of a rod's radius on the screen
+const MIN_PX = 1.3; // of a rod's radius on the screen
 const UP = new Vector3(0, 1, 0);
 
 export class Sticks {
@@ -36,7 +36,7 @@ export class Sticks {
     if (!(length > 1e-6)) return;
     if (this.used === this.capacity) this.reserve(2 * this.capacity);
     this.middle.addVectors(a, b).multiplyScalar(0.5);
-    const wide = Math.max(radius, LEAST_PX * this.px_m * this.middle.distanceTo(this.eye));
+    const wide = Math.max(radius, MIN_PX * this.px_m * this.middle.distanceTo(this.eye));
     this.turn.setFromUnitVectors(UP, this.along.multiplyScalar(1 / length));
     this.matrix.compose(this.middle, this.turn, this.size.set(wide, length, wide));
     this.mesh!.setMatrixAt(this.used, this.matrix);

@@ -60,7 +60,7 @@ export class Table {
     head.title = computed ? "Share of the instants that have it: these places were computed, not seen by cameras" : "Share of the instants at which cameras saw it";
   }
 
-  /** Of a live run those who are gone are left out after a while, but for who is selected or has a name. */
+  /** Of a live run those who are gone are omitted after a while, but for who is selected or has a name. */
   take(scene: Scene, motion: Motion, seen: (track: Track) => number | null): void {
     const live = motion instanceof Live ? motion : null;
     const kept = ({ id, label }: Track) => !live || live.is_listed(id) || label !== "" || this.state.selected.has(id);
@@ -93,7 +93,7 @@ export class Table {
     this.place(this.shown.slice(first, last), first);
   }
 
-  /** A row stays the same element while its track is in sight: a press that began on it ends on it, however often the list is drawn meanwhile. */
+  /** A row stays the same element while its track is in sight: a press that began on it ends on it, however often the list is drawn in the meantime. */
   private place(entries: Entry[], first: number): void {
     const wanted = new Set(entries.map((entry) => entry.track.id));
     for (const [id, row] of this.rows) {

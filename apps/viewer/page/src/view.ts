@@ -1,23 +1,23 @@
-import type { Moment, Motion } from "./motion";
+import type { TimeStep, Motion } from "./motion";
 import { time_of } from "./motion";
 import type { Scene } from "./scene";
 import type { Overlay } from "./overlay";
 
-/** One way to look at a scene. It draws when it is told to, into an element that the page sizes. */
+/** One way to look at a scene. It draws when it is reported to, into an element that the page sizes. */
 export interface View {
   readonly element: HTMLElement;
   readonly overlay: Overlay;
   take(scene: Scene): void;
   resize(width: number, height: number): void;
-  draw(motion: Motion, moment: Moment | null): void;
+  draw(motion: Motion, moment: TimeStep | null): void;
   /** Everything in sight again. */
   reset(): void;
   /** A preset, "top" or "front", where there are any. */
   look_from?(side: "top" | "front" | "side"): void;
 }
 
-/** The moments of the last `seconds` before and with this one, the newest first, at most `most` of them. */
-export function moments_back(motion: Motion, from: Moment, seconds: number, most: number): Moment[] {
+/** The instants of the last `seconds` before and with this one, the newest first, at most `most` of them. */
+export function time_steps_back(motion: Motion, from: TimeStep, seconds: number, most: number): TimeStep[] {
   const list = [from];
   const begin = time_of(from) - seconds;
   const least = seconds / most;

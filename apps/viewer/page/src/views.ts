@@ -6,7 +6,7 @@ import { SpaceView } from "./space_view";
 import type { State } from "./state";
 import type { View } from "./view";
 
-/** How a scene is looked at. */
+/** How a scene is inspected. */
 export function view_of(scene: Scene, state: State, colours: Colours, redraw: () => void): View {
   if (scene.frame !== "space") return new PlaneView(state, colours, redraw);
   try {

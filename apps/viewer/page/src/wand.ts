@@ -1,12 +1,12 @@
-// A wand that is waved before live cameras: each one's picture with the wand in it and the parts of the picture in which it was, who
+// A wand that is waved before live cameras: each one's image with the wand in it and the parts of the image in which it was, who
 // has seen enough, and with whom; then how good the calibration is, beside the rig as it stands.
 import "./wand.css";
 import type { Cameras } from "./cameras";
 import type { Scene } from "./scene";
 import { put } from "./state";
-import type { Picture } from "./wire";
+import type { CameraImage } from "./wire";
 
-interface Seen {
+interface Detected {
   name: string;
   state: string;
   coverage: number;
@@ -32,13 +32,13 @@ interface Report {
 /** As apps/cli/wand_screen.cpp says it. */
 interface Waved {
   phase: "waving" | "computing" | "done" | "failed";
-  /** Share of a picture, views of a pair, and parts of a picture. */
+  /** Share of an image, views of a pair, and parts of an image. */
   wanted: number;
   needed: number;
   across: number;
   down: number;
   seconds?: number;
-  cameras?: Seen[];
+  cameras?: Detected[];
   shared?: { a: number; b: number; views: number; enough: boolean }[];
   report?: Report;
   rig?: string;
@@ -47,7 +47,7 @@ interface Waved {
   ground?: null | { phase: "looking" | "set" | "failed"; rms_mm?: number; why?: string; warnings?: string[] };
 }
 
-const [MARGIN, GAP, BELOW, NARROWEST] = [16, 14, 118, 160]; // px; of the cards and what stands below their pictures
+const [MARGIN, GAP, BELOW, NARROWEST] = [16, 14, 118, 160]; // px; of the cards and what stands below their images
 
 const make = <K extends keyof HTMLElementTagNameMap>(kind: K, name = "", text = ""): HTMLElementTagNameMap[K] => {
   const element = document.createElement(kind);
@@ -58,13 +58,13 @@ const make = <K extends keyof HTMLElementTagNameMap>(kind: K, name = "", text = 
 const capital = (text: string) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
 const percent = (share: number) => `${(100 * share).toFixed(0)}\u00a0%`;
 
-/** What stands under one camera's picture, and over it. */
+/** What stands under one camera's image, and over it. */
 class CameraCard {
   readonly element = make("div", "waved");
   private bar = make("i");
   private words = make("p", "coverage");
   private pairs = make("p", "pairs");
-  private seen: Seen | null = null;
+  private seen: Detected | null = null;
 
   constructor(private waved: () => Waved) {
     const track = make("div", "coverage_bar");
@@ -72,7 +72,7 @@ class CameraCard {
     this.element.append(track, this.words, this.pairs);
   }
 
-  take(index: number, seen: Seen): void {
+  take(index: number, seen: Detected): void {
     this.seen = seen;
     const { wanted, needed, shared, cameras } = this.waved();
     // The bar is full at what is wanted.
@@ -93,7 +93,7 @@ class CameraCard {
     this.pairs.hidden = chips.length === 0;
   }
 
-  draw(draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: Picture): void {
+  draw(draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: CameraImage): void {
     const { across, down } = this.waved();
     const [w, h] = [wide / across, tall / down];
     draw.fillStyle = "#55b97a4d";
@@ -107,7 +107,7 @@ class CameraCard {
     this.draw_wand(draw, wide / (picture.width || wide), ratio, picture);
   }
 
-  private draw_wand(draw: CanvasRenderingContext2D, scale: number, ratio: number, { points }: Picture): void {
+  private draw_wand(draw: CanvasRenderingContext2D, scale: number, ratio: number, { points }: CameraImage): void {
     const marks = [...points.track.keys()].filter((i) => points.track[i] > 0).sort((a, b) => points.track[a] - points.track[b]);
     if (marks.length === 0) return;
     draw.strokeStyle = "#ffd166";
@@ -171,7 +171,7 @@ export class Wand {
     return true;
   }
 
-  /** As many columns as make the pictures largest while all of them are in sight. */
+  /** As many columns as make the images largest while all of them are in sight. */
   private arrange(): void {
     const count = this.waved.cameras?.length ?? 0;
     const [width, height] = [this.grid.clientWidth - 2 * MARGIN, this.grid.clientHeight - 2 * MARGIN];
@@ -222,7 +222,7 @@ export class Wand {
       put(this.title, "Enough. Calibrating …");
       put(this.detail, "Put the wand down; this takes some seconds.");
     } else if (phase === "failed") {
-      put(this.title, "No rig came of it");
+      put(this.title, "No rig results from it");
       put(this.detail, why ?? "");
     } else if (report) {
       put(this.title, "Calibrated");

@@ -12,7 +12,7 @@ const HAS_SIGMA = 8;
 const ROW_HAS_BOX = 8;
 
 /** Instants one after the other, in columns. Rows of instant k are those from `begin(k)` to before `row_end[k]`. */
-export class Stretch {
+export class TimeChunk {
   readonly time: Float64Array;
   readonly index: Uint32Array;
   readonly row_end: Uint32Array;
@@ -112,8 +112,8 @@ export function course_of(bytes: ArrayBuffer): Course {
   };
 }
 
-/** A camera's picture and what was found in it, px of the camera. */
-export interface Picture {
+/** A camera's image and what was found in it, px of the camera. */
+export interface CameraImage {
   camera: number;
   frame: number;
   sent_ms: number;
@@ -124,7 +124,7 @@ export interface Picture {
   jpeg: Blob | null;
 }
 
-export function picture_of(bytes: ArrayBuffer): Picture {
+export function image_of(bytes: ArrayBuffer): CameraImage {
   const head = new DataView(bytes);
   const n = head.getUint32(28, true);
   const b = head.getUint32(32, true);

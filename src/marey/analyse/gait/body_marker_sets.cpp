@@ -63,7 +63,7 @@ constexpr std::array<SetMarker, 25> kClevelandClinic = {{
     {"?.Elbow", left_upper_arm, "?ELB"},
     {"?.Wrist.Lat", left_forearm, "?WRA"},
     {"?.Wrist.Med", left_forearm, "?WRB"},
-    // The Cleveland Clinic's triads go on from here.
+    // The Cleveland Clinic's triads continue from here.
     {"?.Thigh.Front", left_thigh},
     {"?.Thigh.Rear", left_thigh},
     {"?.Shank.Front", left_shank},
@@ -217,7 +217,7 @@ const BodyMarkerSet& recognised_marker_set(const std::set<std::string, std::less
     }
   }
   if (best == nullptr)
-    throw Error("its labels are no whole marker set that Marey knows; {} is nearest, and lacks {}", nearest->title(),
+    throw Error("its labels are not whole marker set that Marey knows; {} is nearest, and lacks {}", nearest->title(),
                 fmt::join(nearest->missing(labels), ", "));
   if (second != nullptr)
     throw Error("its labels are as well those of {} as of {}: say which by --marker-set", best->title(), second->title());

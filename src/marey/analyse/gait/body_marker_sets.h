@@ -58,7 +58,7 @@ const BodyMarkerSet& body_marker_set(std::string_view name);
 /// The labels of a set by its name, or of its part on pelvis and legs by its name with "-lower" behind it. Throws Error, with the
 /// names that there are.
 std::vector<std::string> marker_set_labels(std::string_view name);
-/// The set whose labels these are, subjects' names before them left out: whose needed ones are all there, and of several the one of
+/// The set whose labels these are, subjects' names before them omitted: whose needed ones are all there, and of several the one of
 /// which most are. Throws Error, one sentence, where none is whole (with what the nearest lacks), and where two have the same many.
 const BodyMarkerSet& recognised_marker_set(const std::set<std::string, std::less<>>& labels);
 

@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kHipTheta = 0.5, kHipBeta = 0.314;  // rad: Davis 1991
 constexpr int kSidedSegments = 7;
-constexpr double kNearlyStraight = 0.087;  // sine of 5°: 2 cm of a forearm
+constexpr double kAlmostStraight = 0.087;  // sine of 5°: 2 cm of a forearm
 
-std::optional<Vector<3>> place(const MarkerPlaces& markers, std::string_view label) {
+std::optional<Vector<3>> location(const MarkerPositions& markers, std::string_view label) {
   const auto found = markers.find(label);
   return found == markers.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::optional<Vector<3>> place(const MarkerPlaces& markers, Side side, std::string_view label) {
-  return place(markers, std::string(1, side == Side::left ? 'L' : 'R').append(label));
+std::optional<Vector<3>> location(const MarkerPositions& markers, Side side, std::string_view label) {
+  return location(markers, std::string(1, side == Side::left ? 'L' : 'R').append(label));
 }
 
 std::optional<Vector<3>> middle(const std::optional<Vector<3>>& a, const std::optional<Vector<3>>& b) {
@@ -83,9 +83,10 @@ struct Hips {
   std::array<Vector<3>, 2> centres;
 };
 
-std::optional<Hips> hips_of(const MarkerPlaces& markers, const GaitSubject& subject) {
-  const auto left = place(markers, "LASI"), right = place(markers, "RASI");
-  const auto sacrum = place(markers, "SACR") ? place(markers, "SACR") : middle(place(markers, "LPSI"), place(markers, "RPSI"));
+std::optional<Hips> hips_of(const MarkerPositions& markers, const GaitSubject& subject) {
+  const auto left = location(markers, "LASI"), right = location(markers, "RASI");
+  const auto sacrum =
+      location(markers, "SACR") ? location(markers, "SACR") : middle(location(markers, "LPSI"), location(markers, "RPSI"));
   if (!left || !right || !sacrum) return std::nullopt;
   const Vector<3> front = 0.5 * (*left + *right);
   const auto axes = axes_from(1, *left - *right, 0, front - *sacrum);
@@ -111,34 +112,36 @@ std::optional<Matrix<3>> ankle_toe_axes(const Vector<3>& ankle, const Vector<3>&
 }
 
 /// Of one leg: thigh, shank, foot.
-void add_leg(const MarkerPlaces& markers, const GaitSubject& subject, Side side, const Vector<3>& hip, GaitPose& pose) {
+void add_leg(const MarkerPositions& markers, const GaitSubject& subject, Side side, const Vector<3>& hip, GaitPose& pose) {
   const double outwards = side == Side::left ? 1 : -1;
-  const auto thigh_marker = place(markers, side, "THI"), knee_marker = place(markers, side, "KNE");
+  const auto thigh_marker = location(markers, side, "THI"), knee_marker = location(markers, side, "KNE");
   if (!thigh_marker || !knee_marker) return;
   const auto knee = chord(hip, *thigh_marker, *knee_marker, 0.5 * knee_width(subject, side) + subject.marker_radius);
   if (!knee) return;
   if (const auto axes = axes_from(2, hip - *knee, 1, outwards * (*knee_marker - *knee)))
     pose[of_side(SegmentId::left_thigh, side)] = Rigid3{*axes, hip};
-  const auto shank_marker = place(markers, side, "TIB"), ankle_marker = place(markers, side, "ANK");
+  const auto shank_marker = location(markers, side, "TIB"), ankle_marker = location(markers, side, "ANK");
   if (!shank_marker || !ankle_marker) return;
   const auto ankle = chord(*knee, *shank_marker, *ankle_marker, 0.5 * ankle_width(subject, side) + subject.marker_radius);
   if (!ankle) return;
   const auto shank = axes_from(2, *knee - *ankle, 1, outwards * (*ankle_marker - *ankle));
   if (!shank) return;
   pose[of_side(SegmentId::left_shank, side)] = Rigid3{*shank, *knee};
-  const auto toe = place(markers, side, "TOE");
+  const auto toe = location(markers, side, "TOE");
   if (!toe) return;
   if (const auto foot = ankle_toe_axes(*ankle, *toe, *shank))
     pose[of_side(SegmentId::left_foot, side)] = Rigid3{*foot * subject.sole_from_ankle_toe[static_cast<std::size_t>(side)], *ankle};
 }
 
-void add_trunk(const MarkerPlaces& markers, GaitPose& pose) {
-  const auto c7 = place(markers, "C7"), t10 = place(markers, "T10"), clav = place(markers, "CLAV"), strn = place(markers, "STRN");
+void add_trunk(const MarkerPositions& markers, GaitPose& pose) {
+  const auto c7 = location(markers, "C7"), t10 = location(markers, "T10"), clav = location(markers, "CLAV"),
+             strn = location(markers, "STRN");
   if (c7 && clav && strn && t10) {
     if (const auto axes = axes_from(2, 0.5 * (*c7 + *clav) - 0.5 * (*t10 + *strn), 0, 0.5 * (*clav + *strn) - 0.5 * (*c7 + *t10)))
       pose[SegmentId::trunk] = Rigid3{*axes, 0.5 * (*t10 + *strn)};
   }
-  const auto lf = place(markers, "LFHD"), rf = place(markers, "RFHD"), lb = place(markers, "LBHD"), rb = place(markers, "RBHD");
+  const auto lf = location(markers, "LFHD"), rf = location(markers, "RFHD"), lb = location(markers, "LBHD"),
+             rb = location(markers, "RBHD");
   if (!lf || !rf || !lb || !rb) return;
   if (const auto axes = axes_from(0, *lf + *rf - *lb - *rb, 1, *lf + *lb - *rf - *rb))
     pose[SegmentId::head] = Rigid3{*axes, 0.25 * (*lf + *rf + *lb + *rb)};
@@ -149,7 +152,7 @@ void add_trunk(const MarkerPlaces& markers, GaitPose& pose) {
 Vector<3> bends_to(const Vector<3>& down, const Vector<3>& forearm, const Vector<3>& thumb_side) {
   const Vector<3> d = down.normalized(), f = forearm.normalized();
   const Vector<3> across = f - d * d.dot(f), thumb = thumb_side - d * d.dot(thumb_side);
-  const double straight = d.dot(f) > 0 ? std::max(0.0, 1 - across.norm() / kNearlyStraight) : 0;
+  const double straight = d.dot(f) > 0 ? std::max(0.0, 1 - across.norm() / kAlmostStraight) : 0;
   return (1 - straight) * across.normalized() + straight * thumb.normalized();
 }
 
@@ -160,8 +163,8 @@ Vector<3> clavicles_at(const Vector<3>& marker, const GaitSubject& subject, cons
 
 /// A shoulder's centre below its marker: with a right angle there, in the plane of the trunk's origin, the marker and what is up
 /// across the trunk's x.
-std::optional<Vector<3>> shoulder_of(const MarkerPlaces& markers, const GaitSubject& subject, Side side, const Rigid3& trunk) {
-  const auto marker = place(markers, side, "SHO"), clavicle = place(markers, "CLAV");
+std::optional<Vector<3>> shoulder_of(const MarkerPositions& markers, const GaitSubject& subject, Side side, const Rigid3& trunk) {
+  const auto marker = location(markers, side, "SHO"), clavicle = location(markers, "CLAV");
   if (!marker || !clavicle) return std::nullopt;
   const Vector<3> origin = clavicles_at(*clavicle, subject, trunk);
   Vector<3> up = (*marker - origin).cross(trunk.rotation.col(0));
@@ -174,9 +177,10 @@ struct Arm {
 };
 
 /// The elbow lies beside the plane of shoulder, elbow's marker and wrist, the wrist's centre on the palm's side of its markers.
-std::optional<Arm> arm_of(const MarkerPlaces& markers, const GaitSubject& subject, Side side, const Rigid3& trunk) {
+std::optional<Arm> arm_of(const MarkerPositions& markers, const GaitSubject& subject, Side side, const Rigid3& trunk) {
   const auto shoulder = shoulder_of(markers, subject, side, trunk);
-  const auto marker = place(markers, side, "ELB"), thumb = place(markers, side, "WRA"), little = place(markers, side, "WRB");
+  const auto marker = location(markers, side, "ELB"), thumb = location(markers, side, "WRA"),
+             little = location(markers, side, "WRB");
   if (!shoulder || !marker || !thumb || !little) return std::nullopt;
   Arm arm{.shoulder = *shoulder, .elbow = {}, .wrist = {}, .thumb_side = *thumb - *little, .bar = 0.5 * (*thumb + *little)};
   const double outwards = side == Side::left ? 1 : -1;
@@ -192,9 +196,9 @@ std::optional<Arm> arm_of(const MarkerPlaces& markers, const GaitSubject& subjec
 
 /// Of one arm: clavicle, upper arm, forearm, hand. The elbow is a hinge: the upper arm's y is across the plane that it bends in, so
 /// that its flexion is the angle between the two and has no sign to choose.
-void add_arm(const MarkerPlaces& markers, const GaitSubject& subject, Side side, GaitPose& pose) {
+void add_arm(const MarkerPositions& markers, const GaitSubject& subject, Side side, GaitPose& pose) {
   const auto& trunk = pose[SegmentId::trunk];
-  if (const auto clavicle = place(markers, "CLAV"); trunk && clavicle && place(markers, side, "SHO"))
+  if (const auto clavicle = location(markers, "CLAV"); trunk && clavicle && location(markers, side, "SHO"))
     pose[of_side(SegmentId::left_clavicle, side)] = Rigid3{trunk->rotation, clavicles_at(*clavicle, subject, *trunk)};
   const auto arm = trunk ? arm_of(markers, subject, side, *trunk) : std::nullopt;
   if (!arm) return;
@@ -204,7 +208,7 @@ void add_arm(const MarkerPlaces& markers, const GaitSubject& subject, Side side,
   const auto forearm = axes_from(2, arm->elbow - arm->wrist, 0, arm->thumb_side);
   if (!forearm) return;
   pose[of_side(SegmentId::left_forearm, side)] = Rigid3{*forearm, arm->elbow};
-  const auto finger = place(markers, side, "FIN");
+  const auto finger = location(markers, side, "FIN");
   if (!finger) return;
   const auto hand = chord(arm->wrist, arm->bar, *finger, 0.5 * hand_thickness(subject, side) + subject.marker_radius);
   if (!hand) return;
@@ -268,10 +272,10 @@ SegmentId of_side(SegmentId left, Side side) {
   return side == Side::left ? left : static_cast<SegmentId>(static_cast<int>(left) + kSidedSegments);
 }
 
-void GaitSubject::learn_from(const MarkerPlaces& standing) {
+void GaitSubject::learn_from(const MarkerPositions& standing) {
   for (const Side side : kSides) {
     const auto i = static_cast<std::size_t>(side);
-    const auto asis = place(standing, side, "ASI"), ankle = place(standing, side, "ANK");
+    const auto asis = location(standing, side, "ASI"), ankle = location(standing, side, "ANK");
     if (!leg_length[i] && asis && ankle) leg_length[i] = (*asis - *ankle).norm();
     sole_from_ankle_toe[i].setIdentity();
   }
@@ -279,14 +283,14 @@ void GaitSubject::learn_from(const MarkerPlaces& standing) {
   for (const Side side : kSides) {
     const auto& foot = pose[of_side(SegmentId::left_foot, side)];
     const auto& shank = pose[of_side(SegmentId::left_shank, side)];
-    const auto heel = place(standing, side, "HEE"), toe = place(standing, side, "TOE");
+    const auto heel = location(standing, side, "HEE"), toe = location(standing, side, "TOE");
     if (!foot || !shank || !heel || !toe) continue;
     if (const auto sole = axes_from(0, *toe - *heel, 1, shank->rotation.col(1)))
       sole_from_ankle_toe[static_cast<std::size_t>(side)] = foot->rotation.transpose() * *sole;
   }
 }
 
-GaitPose pose_of(const MarkerPlaces& markers, const GaitSubject& subject) {
+GaitPose pose_of(const MarkerPositions& markers, const GaitSubject& subject) {
   GaitPose pose;
   add_trunk(markers, pose);
   for (const Side side : kSides) add_arm(markers, subject, side, pose);

@@ -2,7 +2,7 @@
 // the markers of one instant, where the joints' centres are and how the segments stand. Hips by regression on leg length and pelvis
 // (Davis, equations 1 to 3); knees and ankles where a right angle stands over the marker, half a joint's width away in the plane of
 // the marker above or below (the chord function); shoulders, elbows, wrists and hands likewise; feet by the line from ankle to toe,
-// put right by what a static trial says of the sole.
+// corrected by what a static trial says of the sole.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ std::string_view name_of(SegmentId segment);
 /// "thigh" of a side.
 SegmentId of_side(SegmentId left, Side side);
 
-using MarkerPlaces = std::map<std::string, Vector<3>, std::less<>>;
+using MarkerPositions = std::map<std::string, Vector<3>, std::less<>>;
 
 /// A person's measures, m, left and right. What is not given is taken from the leg's length, as people mostly are.
 struct GaitSubject {
@@ -62,7 +62,7 @@ struct GaitSubject {
   std::array<Matrix<3>, 2> sole_from_ankle_toe = {Matrix<3>::Identity(), Matrix<3>::Identity()};  ///< of a static trial
 
   /// Fills in what a standing person's markers tell: leg lengths, and how the feet stand.
-  void learn_from(const MarkerPlaces& standing);
+  void learn_from(const MarkerPositions& standing);
 };
 
 /// Segments that the markers of an instant determine.
@@ -71,11 +71,11 @@ struct GaitPose {
   const std::optional<Rigid3>& operator[](SegmentId segment) const { return world_from[static_cast<std::size_t>(segment)]; }
   std::optional<Rigid3>& operator[](SegmentId segment) { return world_from[static_cast<std::size_t>(segment)]; }
 };
-GaitPose pose_of(const MarkerPlaces& markers, const GaitSubject& subject);
+GaitPose pose_of(const MarkerPositions& markers, const GaitSubject& subject);
 
 /// Plug-in Gait's markers, without those that are computed.
 std::span<const std::string_view> plug_in_gait_markers();
-/// Which segment each sits on; nothing for a marker that is none of them.
+/// Which segment each sits on; nothing for a marker that is not one of them.
 std::optional<SegmentId> segment_of_marker(std::string_view label);
 
 }  // namespace marey::analyse::gait

@@ -8,18 +8,18 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kShortestS = 0.4, kLongestS = 3;
+constexpr double kMinS = 0.4, kMaxS = 3;
 constexpr double kJump = 0.5 * std::numbers::pi;  // between two frames
 
-/// Between rows, straight; nothing where one of them is not known.
+/// Between rows, straight; nothing if one of them is not known.
 template <typename T>
 std::optional<T> value_at(const std::vector<std::optional<T>>& values, double row) {
   if (row < 0 || row > static_cast<double>(values.size()) - 1 + 1e-6) return std::nullopt;
   const auto i = std::min(static_cast<std::size_t>(row + 1e-6), values.size() - 1);
-  const double share = row - static_cast<double>(i);
-  if (share < 1e-6) return values[i];
+  const double fraction = row - static_cast<double>(i);
+  if (fraction < 1e-6) return values[i];
   if (!values[i] || !values[i + 1]) return std::nullopt;
-  return T((1 - share) * *values[i] + share * *values[i + 1]);
+  return T((1 - fraction) * *values[i] + fraction * *values[i + 1]);
 }
 
 Side side_of(const std::string& name) {
@@ -36,7 +36,7 @@ std::vector<GaitCycles::Cycle> find_cycles(std::span<const GaitEvent> events) {
         off = event.time_s;
         continue;
       }
-      if (begin && event.time_s - *begin >= kShortestS && event.time_s - *begin <= kLongestS)
+      if (begin && event.time_s - *begin >= kMinS && event.time_s - *begin <= kMaxS)
         cycles.push_back({side, *begin, event.time_s, off && *off > *begin ? off : std::nullopt});
       begin = event.time_s;
       off.reset();
@@ -65,12 +65,12 @@ std::optional<std::array<double, kCyclePoints>> points_of(const AngleCurve& angl
   return points;
 }
 
-/// An angle that went on over half a turn between two cycles is whole turns off in the second.
-void take_turns_off(std::span<std::array<double, kCyclePoints>> cycles) {
+/// An angle that continued over half a turn between two cycles is whole turns off in the second.
+void remove_ptz(std::span<std::array<double, kCyclePoints>> cycles) {
   const auto mean = [](const auto& points) { return std::accumulate(points.begin(), points.end(), 0.0) / kCyclePoints; };
   for (auto& points : cycles) {
-    const double turn = 2 * std::numbers::pi, turns = turn * std::round((mean(cycles.front()) - mean(points)) / turn);
-    for (double& point : points) point += turns;
+    const double turn = 2 * std::numbers::pi, rotations = turn * std::round((mean(cycles.front()) - mean(points)) / turn);
+    for (double& point : points) point += rotations;
   }
 }
 
@@ -87,7 +87,7 @@ CycleCurve curve_of(const AngleCurve& angle, std::span<const GaitCycles::Cycle> 
       curve.cycles.push_back(*points);
     }
   }
-  take_turns_off(curve.cycles);
+  remove_ptz(curve.cycles);
   const auto count = static_cast<double>(curve.cycles.size());
   for (std::size_t p = 0; p < kCyclePoints && count > 0; ++p) {
     double sum = 0, squares = 0;
@@ -138,18 +138,18 @@ class CycleMeasure {
 
   /// Ahead, and aside, of the other foot's last place at this foot's next strike.
   std::optional<Vector<2>> step(const GaitCycles::Cycle& cycle) const {
-    const auto way = stride(cycle), at = heel(cycle.side, cycle.end_s);
+    const auto method = stride(cycle), at = heel(cycle.side, cycle.end_s);
     const auto strike = other_strike(cycle);
     const auto there = strike ? heel(cycle.side == Side::left ? Side::right : Side::left, cycle.end_s) : std::nullopt;
-    if (!way || !at || !there || way->norm() < 1e-6) return std::nullopt;
-    const Vector<2> ahead = way->normalized(), between = *at - *there;
+    if (!method || !at || !there || method->norm() < 1e-6) return std::nullopt;
+    const Vector<2> ahead = method->normalized(), between = *at - *there;
     return Vector<2>(ahead.dot(between), std::abs(ahead.x() * between.y() - ahead.y() * between.x()));
   }
 
  private:
   std::optional<Vector<2>> heel(Side side, double time) const {
-    const auto place = value_at(feet_.heel[static_cast<std::size_t>(side)], time * rate_hz_);
-    return place ? std::optional(Vector<2>(place->head<2>())) : std::nullopt;
+    const auto location = value_at(feet_.heel[static_cast<std::size_t>(side)], time * rate_hz_);
+    return location ? std::optional(Vector<2>(location->head<2>())) : std::nullopt;
   }
   std::optional<double> other(const GaitCycles::Cycle& cycle, bool strike) const {
     for (const GaitEvent& event : events_) {

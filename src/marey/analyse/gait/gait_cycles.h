@@ -1,4 +1,4 @@
-// Gait cycles: from a foot's strike to its next, every angle at 101 points of it, and what a walk is told by: lengths, times,
+// Gait cycles: from a foot's strike to its next, every angle at 101 points of it, and what a walk is reported by: lengths, times,
 // shares.
 #pragma once
 
@@ -25,7 +25,7 @@ struct CycleCurve {
   std::string name;
   std::vector<std::array<double, kCyclePoints>> cycles;  ///< rad; of a cycle in which it is known throughout, and does not jump
   std::array<double, kCyclePoints> mean{}, deviation{};  ///< over the cycles
-  std::size_t unknown = 0, jumping = 0;                  ///< cycles of its side that are left out
+  std::size_t unknown = 0, jumping = 0;                  ///< cycles of its side that are omitted
 };
 
 /// A figure of the walk, over its cycles.

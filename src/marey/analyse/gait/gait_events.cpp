@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMirrored = 20;
 constexpr double kWalkCutoffHz = 3;  // of the body's own path
 
-/// A marker's speed over the ground at each row, m/s; its first and last known values hold beyond them. Empty where it is never
+/// A marker's speed over the ground at each row, m/s; its first and last known values hold beyond them. Empty if it is never
 /// seen.
 std::vector<double> ground_speed(const MarkerPath& path, double cutoff_hz, double rate_hz) {
   std::vector<std::size_t> known;
@@ -24,9 +24,9 @@ std::vector<double> ground_speed(const MarkerPath& path, double cutoff_hz, doubl
   std::array<std::vector<double>, 2> along;
   for (std::size_t k = 0; k + 1 < known.size(); ++k) {
     for (std::size_t i = known[k]; i < known[k + 1] || (k + 2 == known.size() && i == known[k + 1]); ++i) {
-      const double share = static_cast<double>(i - known[k]) / static_cast<double>(known[k + 1] - known[k]);
+      const double fraction = static_cast<double>(i - known[k]) / static_cast<double>(known[k + 1] - known[k]);
       for (int c = 0; c < 2; ++c)
-        along[static_cast<std::size_t>(c)].push_back((1 - share) * (*path[known[k]])[c] + share * (*path[known[k + 1]])[c]);
+        along[static_cast<std::size_t>(c)].push_back((1 - fraction) * (*path[known[k]])[c] + fraction * (*path[known[k + 1]])[c]);
     }
   }
   for (auto& values : along) values = low_pass(std::move(values), cutoff_hz, rate_hz);
@@ -60,11 +60,12 @@ void add_events(Side side, const std::vector<double>& heel, const std::vector<do
     std::size_t end = begin;
     while (end < n && swings(end)) ++end;
     std::size_t off = begin;
-    while (off > 0 && toe[off] > options.off_share * walk) --off;
-    if (begin > 0 && toe[off] <= options.off_share * walk && off + 1 < n) add(false, crossing(toe, off, options.off_share * walk));
+    while (off > 0 && toe[off] > options.off_fraction * walk) --off;
+    if (begin > 0 && toe[off] <= options.off_fraction * walk && off + 1 < n)
+      add(false, crossing(toe, off, options.off_fraction * walk));
     std::size_t strike = end;
-    while (strike < n && heel[strike] > options.strike_share * walk) ++strike;
-    if (end < n && strike < n && strike > 0) add(true, crossing(heel, strike - 1, options.strike_share * walk));
+    while (strike < n && heel[strike] > options.strike_fraction * walk) ++strike;
+    if (end < n && strike < n && strike > 0) add(true, crossing(heel, strike - 1, options.strike_fraction * walk));
     begin = end;
   }
 }

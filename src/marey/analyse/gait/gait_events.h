@@ -16,11 +16,11 @@ namespace marey::analyse::gait {
 /// Shares and deviation: found on 131 strikes and offs of the biomechZoo children, walking straight and turning (docs/gait.md says
 /// what they give).
 struct GaitEventOptions {
-  double strike_share = 0.4;   ///< of the walker's speed, that of the heel
-  double off_share = 0.75;     ///< that of the toe
-  double cutoff_hz = 15;       ///< of the feet's paths
-  double deviation_s = 0.014;  ///< of one event
-  double slowest_m_s = 0.15;   ///< who is slower does not walk
+  double strike_fraction = 0.4;  ///< of the walker's speed, that of the heel
+  double off_fraction = 0.75;    ///< that of the toe
+  double cutoff_hz = 15;         ///< of the feet's paths
+  double deviation_s = 0.014;    ///< of one event
+  double slowest_m_s = 0.15;     ///< who is slower does not walk
 };
 
 struct GaitEvent {
@@ -30,7 +30,7 @@ struct GaitEvent {
   double deviation_s = 0;
 };
 
-/// One marker at an even rate; nothing where it is missing. Gaps within are bridged straight.
+/// One marker at an even rate; nothing if it is missing. Gaps within are bridged straight.
 using MarkerPath = std::vector<std::optional<Vector<3>>>;
 
 struct FeetPaths {

@@ -63,11 +63,11 @@ TEST(JointAngles, ShouldersHavePlaneAndElevation) {
 
 /// Trunk and left arm that hangs down: the forearm bends by `bend` degrees at the elbow's marker, ahead where the arm is turned
 /// outwards by 0°. Palms face the body.
-MarkerPlaces arm_markers(double bend, double turned) {
-  const Matrix<3> turn = about(Vector<3>::UnitZ(), turned), forearm = turn * about(Vector<3>::UnitY(), -bend);
+MarkerPositions arm_markers(double bend, double rotated) {
+  const Matrix<3> turn = about(Vector<3>::UnitZ(), rotated), forearm = turn * about(Vector<3>::UnitY(), -bend);
   const Vector<3> shoulder(0, 0.17, 1.42), elbow = shoulder + turn * Vector<3>(0, 0.05, -0.28);
-  MarkerPlaces markers = {{"C7", {-0.07, 0, 1.45}},  {"T10", {-0.1, 0, 1.2}}, {"CLAV", {0.05, 0, 1.4}},
-                          {"STRN", {0.08, 0, 1.25}}, {"LSHO", shoulder},      {"LELB", elbow}};
+  MarkerPositions markers = {{"C7", {-0.07, 0, 1.45}},  {"T10", {-0.1, 0, 1.2}}, {"CLAV", {0.05, 0, 1.4}},
+                             {"STRN", {0.08, 0, 1.25}}, {"LSHO", shoulder},      {"LELB", elbow}};
   markers["LWRA"] = elbow + forearm * Vector<3>(0.03, 0, -0.24);
   markers["LWRB"] = elbow + forearm * Vector<3>(-0.03, 0, -0.24);
   markers["LFIN"] = elbow + forearm * Vector<3>(0, 0, -0.31);
@@ -76,13 +76,13 @@ MarkerPlaces arm_markers(double bend, double turned) {
 
 TEST(JointAngles, AnElbowGoesOnWhereverItsArmTurns) {
   std::optional<double> before, flexion_ahead;
-  for (double turned = 0; turned >= -150; turned -= 2) {
-    const GaitPose pose = pose_of(arm_markers(30, turned), {});
+  for (double rotated = 0; rotated >= -150; rotated -= 2) {
+    const GaitPose pose = pose_of(arm_markers(30, rotated), {});
     const double flexion = angle(pose, "left_elbow_flexion"), pronation = angle(pose, "left_elbow_pronation");
-    EXPECT_GT(flexion, 25) << turned;
+    EXPECT_GT(flexion, 25) << rotated;
     if (!flexion_ahead) flexion_ahead = flexion;
-    EXPECT_NEAR(flexion, *flexion_ahead, 8) << turned;
-    EXPECT_NEAR(pronation, before.value_or(pronation), 3) << turned;
+    EXPECT_NEAR(flexion, *flexion_ahead, 8) << rotated;
+    EXPECT_NEAR(pronation, before.value_or(pronation), 3) << rotated;
     before = pronation;
   }
 }
@@ -111,20 +111,20 @@ TEST(JointAngles, GoOnOverHalfATurn) {
 /// A walker at 1.2 m/s, a cycle a second: feet stand for 0.6 of it.
 FeetPaths walker(double rate_hz, double seconds, double turn) {
   FeetPaths feet;
-  const auto place = [&](double along, double aside) {
+  const auto location = [&](double along, double aside) {
     const double angle = turn * along;
     return Vector<3>(along * std::cos(angle) - aside * std::sin(angle), along * std::sin(angle) + aside * std::cos(angle), 0.1);
   };
   for (int i = 0; i < static_cast<int>(seconds * rate_hz); ++i) {
     const double t = i / rate_hz;
-    feet.sacrum.emplace_back(place(1.2 * t, 0));
+    feet.sacrum.emplace_back(location(1.2 * t, 0));
     for (const Side side : kSides) {
       const double phase = t + (side == Side::left ? 0 : 0.5), cycle = std::floor(phase), part = phase - cycle;
       const double swing = std::clamp((part - 0.6) / 0.4, 0.0, 1.0),
                    ahead = 1.2 * (cycle - (side == Side::left ? 0 : 0.5) + swing -
                                   std::sin(2 * std::numbers::pi * swing) / (2 * std::numbers::pi));
-      feet.heel[static_cast<std::size_t>(side)].emplace_back(place(ahead, side == Side::left ? 0.1 : -0.1));
-      feet.toe[static_cast<std::size_t>(side)].emplace_back(place(ahead + 0.2, side == Side::left ? 0.1 : -0.1));
+      feet.heel[static_cast<std::size_t>(side)].emplace_back(location(ahead, side == Side::left ? 0.1 : -0.1));
+      feet.toe[static_cast<std::size_t>(side)].emplace_back(location(ahead + 0.2, side == Side::left ? 0.1 : -0.1));
     }
   }
   return feet;

@@ -18,7 +18,7 @@ std::optional<Vector<3>> cardan(const std::optional<Rigid3>& upper, const std::o
   if (!upper || !lower) return std::nullopt;
   Matrix<3> axes;
   axes << Vector<3>::UnitY(), Vector<3>::UnitX(), Vector<3>::UnitZ();
-  return turns_about(upper->rotation.transpose() * lower->rotation, axes, Vector<3>::Zero());
+  return rotations_about(upper->rotation.transpose() * lower->rotation, axes, Vector<3>::Zero());
 }
 
 /// One side's angles, as names without the side. The mirror image of a turn about x or z has the other sign.
@@ -28,7 +28,7 @@ class SideAngles {
       : pose_(pose), side_(side), mirror_(side == Side::left ? -1 : 1), walking_(walking) {}
 
   template <typename Take>
-  void tell(Take&& take) const {
+  void notify(Take&& take) const {
     three(take, "pelvis", cardan(walking_, pose_[SegmentId::pelvis]), {"tilt", 1}, {"obliquity", -1}, {"rotation", 1});
     three(take, "trunk", cardan(walking_, pose_[SegmentId::trunk]), {"tilt", 1}, {"obliquity", -1}, {"rotation", 1});
     three(take, "spine", cardan(pose_[SegmentId::pelvis], pose_[SegmentId::trunk]), {"flexion", 1}, {"lateral_bending", -1},
@@ -55,10 +55,10 @@ class SideAngles {
   const std::optional<Rigid3>& of(SegmentId left) const { return pose_[of_side(left, side_)]; }
 
   template <typename Take>
-  void three(Take&& take, const char* joint, const std::optional<Vector<3>>& turns, Named sideways, Named floating,
+  void three(Take&& take, const char* joint, const std::optional<Vector<3>>& rotations, Named sideways, Named floating,
              Named along) const {
     const auto one = [&](const Named& named, int i, double mirror) {
-      take(joint, named.name, turns ? std::optional(named.sign * mirror * (*turns)[i]) : std::nullopt);
+      take(joint, named.name, rotations ? std::optional(named.sign * mirror * (*rotations)[i]) : std::nullopt);
     };
     one(sideways, 0, 1);
     one(floating, 1, mirror_);
@@ -99,7 +99,7 @@ void for_each_angle(const GaitPose& pose, const Vector<2>& heading, Take&& take)
     walking.rotation << h.x(), -h.y(), 0, h.y(), h.x(), 0, 0, 0, 1;
   }
   for (const Side side : kSides) {
-    SideAngles(pose, side, walking).tell([&](const char* joint, const char* name, const std::optional<double>& angle) {
+    SideAngles(pose, side, walking).notify([&](const char* joint, const char* name, const std::optional<double>& angle) {
       take(side, joint, name, angle);
     });
   }

@@ -15,11 +15,11 @@ namespace marey::analyse::gait {
 /// "left_knee_flexion", …, in the order of what `angles_of` gives.
 std::span<const std::string> angle_names();
 
-/// Radians, nothing where a segment is not known. `heading` is the direction of walking on the ground, of any length: pelvis and
-/// trunk are told against it.
+/// Radians, nothing if a segment is not known. `heading` is the direction of walking on the ground, of any length: pelvis and
+/// trunk are reported against it.
 std::vector<std::optional<double>> angles_of(const GaitPose& pose, const Vector<2>& heading);
 
-/// Adds whole turns, so that no step is above half a turn; gaps are passed over.
+/// Adds whole turns, so that no step is above half a turn; gaps are skipped.
 void unwrap(std::span<std::optional<double>> angles);
 
 }  // namespace marey::analyse::gait

@@ -13,7 +13,7 @@
 namespace marey::calibrate::board {
 namespace {
 
-constexpr int kMostCorners = 100;  // in a row or a column
+constexpr int kMaxCorners = 100;  // in a row or a column
 
 std::vector<std::string> split(const std::string& text, char mark) {
   std::vector<std::string> parts;
@@ -40,19 +40,19 @@ std::optional<Number> number(const std::string& text) {
       text, why);
 }
 
-cv::Size grid_of(const std::string& text, const std::string& part, int least) {
+cv::Size grid_of(const std::string& text, const std::string& part, int minimum) {
   const std::vector<std::string> sides = split(part, 'x');
   const auto width = number<int>(sides[0]);
   const auto height = sides.size() == 2 ? number<int>(sides[1]) : std::nullopt;
-  if (!width || !height) refuse(text, fmt::format("\"{}\" is no grid such as 9x6", part));
-  if (std::min(*width, *height) < least || std::max(*width, *height) > kMostCorners)
-    refuse(text, fmt::format("a grid of {} is not possible; each side must be {} to {}", part, least, kMostCorners));
+  if (!width || !height) refuse(text, fmt::format("\"{}\" is not a grid such as 9x6", part));
+  if (std::min(*width, *height) < minimum || std::max(*width, *height) > kMaxCorners)
+    refuse(text, fmt::format("a grid of {} is not possible; each side must be {} to {}", part, minimum, kMaxCorners));
   return {*width, *height};
 }
 
 double side_of(const std::string& text, const std::string& part, const char* what) {
   const auto side = number<double>(part);
-  if (!side) refuse(text, fmt::format("\"{}\" is no side of a {}", part, what));
+  if (!side) refuse(text, fmt::format("\"{}\" is not a side of a {}", part, what));
   if (!(*side > 0 && *side < 100))
     refuse(text, fmt::format("the side of a {} is {} m; it must be above 0 and below 100", what, part));
   return *side;
@@ -62,7 +62,7 @@ std::string dictionary_of(const std::string& text, std::string name, int squares
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   if (name.starts_with("DICT_")) name.erase(0, 5);
   const auto size = board_dictionary_size(name);
-  if (!size) refuse(text, fmt::format("there is no dictionary \"{}\"; known are {}", name, fmt::join(board_dictionaries(), " ")));
+  if (!size) refuse(text, fmt::format("there is no dictionary \"{}\"; supported: {}", name, fmt::join(board_dictionaries(), " ")));
   if (*size < squares / 2)
     refuse(text, fmt::format("dictionary {} holds {} markers and the board needs {}", name, *size, squares / 2));
   return name;
@@ -83,7 +83,7 @@ Board parse_board(const std::string& text) {
     board.square_m = side_of(text, parts[2], "square");
     return board;
   }
-  if (parts[0] != "charuco") refuse(text, fmt::format("\"{}\" is no kind of board", parts[0]));
+  if (parts[0] != "charuco") refuse(text, fmt::format("\"{}\" is not a kind of board", parts[0]));
   if (parts.size() != 5) refuse(text, "a ChArUco board has a grid, the sides of a square and of a marker, and a dictionary");
   const cv::Size squares = grid_of(text, parts[1], 3);
   board.kind = Board::Kind::charuco;

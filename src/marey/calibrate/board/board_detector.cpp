@@ -1,11 +1,11 @@
-// Boards in pictures: OpenCV finds the squares and reads the markers, then every corner is refined.
+// Boards in images: OpenCV finds the squares and reads the markers, then every corner is refined.
 //
-// A ChArUco corner's place is foretold from the markers around it: a homography of the board to the picture, fitted to all markers
-// but weighing near ones most, because a lens bends straight lines over the width of a board and hardly over two squares. The
-// foretold place is refined on the picture, and left out where no corner is near it (a hand, glare, the picture's edge). Boards
+// A ChArUco corner's place is foretold from the markers around it: a homography of the board to the image, fitted to all markers
+// but weighing near ones most, because a lens bends straight lines over the width of a board and barely over two squares. The
+// foretold place is refined on the image, and omitted where no corner is near it (a hand, glare, the image's edge). Boards
 // drawn by OpenCV before 4.7 and after it differ where the number of rows is even: the markers say which it is.
 //
-// A chess board whose sides are one even and one odd number looks different upside down, so its corner 0 is always the same one;
+// A chess board whose sides are one even and one odd number appears different upside down, so its corner 0 is always the same one;
 // with any other, views are the same but for half a turn, and who compares cameras has to find out.
 #include "marey/calibrate/board/board_detector.h"
 
@@ -26,17 +26,17 @@
 namespace marey::calibrate::board {
 namespace {
 
-constexpr int kLeastCorners = 4;
-constexpr int kSurelyInFront = 6;       // corners, or a quarter of the board's: then it is not looked for from behind
-constexpr double kLeastLikeness = 0.6;  // of opposite points round a corner that nothing hides
-constexpr double kSearchWidth = 1600;   // px: larger pictures are searched at a smaller scale; corners are refined at full size
+constexpr int kMinCorners = 4;
+constexpr int kCertainlyInFront = 6;   // corners, or a quarter of the board's: then it is not searched for from behind
+constexpr double kMinLikeness = 0.6;   // of opposite points round a corner that nothing hides
+constexpr double kSearchWidth = 1600;  // px: larger images are searched at a smaller scale; corners are refined at full size
 
-cv::Mat grey_of(const Picture& picture, bool inverted) {
-  cv::Mat grey = picture.luma();
+cv::Mat grey_of(const Image& image, bool inverted) {
+  cv::Mat grey = image.luma();
   if (grey.depth() == CV_16U) {
-    double most = 0;
-    cv::minMaxLoc(grey, nullptr, &most);
-    grey.convertTo(grey, CV_8U, most > 0 ? 255.0 / most : 1.0);  // 10- and 12-bit sensors leave the upper bits empty
+    double maximum = 0;
+    cv::minMaxLoc(grey, nullptr, &maximum);
+    grey.convertTo(grey, CV_8U, maximum > 0 ? 255.0 / maximum : 1.0);  // 10- and 12-bit sensors leave the upper bits empty
   }
   if (!inverted) return grey;
   cv::Mat negative;
@@ -84,20 +84,20 @@ double spacing_at(const std::vector<cv::Point2f>& grid, const cv::Size& size, in
 }
 
 /// Where in the squares' grid a marker lies: its top left corner is (column + margin, row + margin) squares from the outer corner.
-struct MarkerPlace {
+struct MarkerPosition {
   int id = 0;
   int column = 0, row = 0;
 };
 
 /// `white_first`: the board's first square is white and bears marker 0 (OpenCV before 4.7, an even number of rows).
-std::vector<MarkerPlace> marker_places(const cv::Size& squares, bool white_first) {
-  std::vector<MarkerPlace> places;
+std::vector<MarkerPosition> marker_positions(const cv::Size& squares, bool white_first) {
+  std::vector<MarkerPosition> locations;
   for (int row = 0; row < squares.height; ++row) {
     for (int column = 0; column < squares.width; ++column) {
-      if ((row + column) % 2 == (white_first ? 0 : 1)) places.push_back({static_cast<int>(places.size()), column, row});
+      if ((row + column) % 2 == (white_first ? 0 : 1)) locations.push_back({static_cast<int>(locations.size()), column, row});
     }
   }
-  return places;
+  return locations;
 }
 
 struct MarkerPoints {
@@ -137,7 +137,7 @@ cv::Point2f mapped(const cv::Matx33d& h, double x, double y) {
 struct BoardDetector::Markers {
   cv::Ptr<cv::aruco::Dictionary> dictionary;
   cv::Ptr<cv::aruco::DetectorParameters> parameters = cv::aruco::DetectorParameters::create();
-  std::vector<std::vector<MarkerPlace>> layouts;  // as the board may have been drawn
+  std::vector<std::vector<MarkerPosition>> layouts;  // as the board may have been drawn
 };
 
 BoardDetector::BoardDetector(const Board& board) : board_(board), markers_(std::make_unique<Markers>()) {
@@ -145,15 +145,15 @@ BoardDetector::BoardDetector(const Board& board) : board_(board), markers_(std::
   const cv::Size squares(board_.corners.width + 1, board_.corners.height + 1);
   markers_->dictionary = board_dictionary(board_.dictionary);
   markers_->parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
-  markers_->layouts.push_back(marker_places(squares, false));
-  if (squares.height % 2 == 0) markers_->layouts.push_back(marker_places(squares, true));
+  markers_->layouts.push_back(marker_positions(squares, false));
+  if (squares.height % 2 == 0) markers_->layouts.push_back(marker_positions(squares, true));
 }
 
 BoardDetector::~BoardDetector() = default;
 
-std::optional<BoardView> BoardDetector::detect(const Picture& picture) const {
-  if (picture.empty() || std::min(picture.size().width, picture.size().height) < 16) return std::nullopt;
-  const cv::Mat grey = grey_of(picture, board_.inverted);
+std::optional<BoardView> BoardDetector::detect(const Image& image) const {
+  if (image.empty() || std::min(image.size().width, image.size().height) < 16) return std::nullopt;
+  const cv::Mat grey = grey_of(image, board_.inverted);
   return board_.kind == Board::Kind::chess ? chess(grey) : charuco_from_either_side(grey);
 }
 
@@ -162,9 +162,9 @@ std::optional<BoardView> BoardDetector::chess(const cv::Mat& grey) const {
   cv::Mat small = grey;
   if (factor < 1) cv::resize(grey, small, {}, factor, factor, cv::INTER_AREA);
   std::vector<cv::Point2f> found;
-  const int usual = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
+  const int typical = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
   if (!cv::checkChessboard(small, board_.corners)) return std::nullopt;
-  if (!cv::findChessboardCorners(small, board_.corners, found, usual) &&
+  if (!cv::findChessboardCorners(small, board_.corners, found, typical) &&
       !cv::findChessboardCornersSB(small, board_.corners, found, cv::CALIB_CB_NORMALIZE_IMAGE))
     return std::nullopt;
   if (static_cast<int>(found.size()) != board_.corner_count()) return std::nullopt;
@@ -186,7 +186,7 @@ std::optional<BoardView> BoardDetector::chess(const cv::Mat& grey) const {
 /// The side from which more of the board is seen: a mirrored marker may now and then be read as another one.
 std::optional<BoardView> BoardDetector::charuco_from_either_side(const cv::Mat& grey) const {
   auto front = charuco(grey);
-  if (front && static_cast<int>(front->corners.size()) >= std::max(kSurelyInFront, board_.corner_count() / 4)) return front;
+  if (front && static_cast<int>(front->corners.size()) >= std::max(kCertainlyInFront, board_.corner_count() / 4)) return front;
   cv::Mat mirrored;
   cv::flip(grey, mirrored, 1);
   auto behind = charuco(mirrored);
@@ -202,15 +202,15 @@ std::optional<BoardView> BoardDetector::charuco(const cv::Mat& grey) const {
   const double margin = 0.5 * (1 - board_.marker_m / board_.square_m);
   MarkerPoints points;
   std::vector<unsigned char> good;
-  int most = 0;
-  for (const std::vector<MarkerPlace>& layout : markers_->layouts) {
+  int maximum = 0;
+  for (const std::vector<MarkerPosition>& layout : markers_->layouts) {
     MarkerPoints tried;
     for (std::size_t i = 0; i < ids.size(); ++i) {
       if (ids[i] >= static_cast<int>(layout.size())) continue;
-      const MarkerPlace& place = layout[static_cast<std::size_t>(ids[i])];
+      const MarkerPosition& location = layout[static_cast<std::size_t>(ids[i])];
       for (int k = 0; k < 4; ++k) {  // clockwise from the top left
-        const double x = place.column - 1 + (k == 1 || k == 2 ? 1 - margin : margin);
-        const double y = place.row - 1 + (k >= 2 ? 1 - margin : margin);
+        const double x = location.column - 1 + (k == 1 || k == 2 ? 1 - margin : margin);
+        const double y = location.row - 1 + (k >= 2 ? 1 - margin : margin);
         tried.board.emplace_back(static_cast<float>(x), static_cast<float>(y));
         tried.image.push_back(quads[i][static_cast<std::size_t>(k)]);
       }
@@ -221,27 +221,27 @@ std::optional<BoardView> BoardDetector::charuco(const cv::Mat& grey) const {
     std::vector<unsigned char> inliers;
     if (cv::findHomography(tried.board, tried.image, inliers, cv::RANSAC, std::max(2.0, 0.15 * side)).empty()) continue;
     const int count = cv::countNonZero(inliers);
-    if (count <= most) continue;
-    most = count;
+    if (count <= maximum) continue;
+    maximum = count;
     points = std::move(tried);
     good = std::move(inliers);
   }
-  if (most < 4) return std::nullopt;
+  if (maximum < 4) return std::nullopt;
   BoardView view;
   for (int id = 0; id < board_.corner_count(); ++id) {
-    const cv::Point2f place(static_cast<float>(id % board_.corners.width), static_cast<float>(id / board_.corners.width));
-    const bool near = std::ranges::any_of(points.board, [&](const cv::Point2f& p) { return cv::norm(p - place) < 1; });
+    const cv::Point2f location(static_cast<float>(id % board_.corners.width), static_cast<float>(id / board_.corners.width));
+    const bool near = std::ranges::any_of(points.board, [&](const cv::Point2f& p) { return cv::norm(p - location) < 1; });
     if (!near) continue;
-    const cv::Matx33d h = homography_near(points, good, place);
-    const cv::Point2f start = mapped(h, place.x, place.y);
+    const cv::Matx33d h = homography_near(points, good, location);
+    const cv::Point2f start = mapped(h, location.x, location.y);
     double spacing = 1e9;
     for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
-      spacing = std::min(spacing, cv::norm(mapped(h, place.x + dx, place.y + dy) - start));
+      spacing = std::min(spacing, cv::norm(mapped(h, location.x + dx, location.y + dy) - start));
     const double reach = 0.5 * (board_.square_m - board_.marker_m) / board_.square_m;  // up to the markers' black
     const auto pixel = refine_corner(grey, {start.x, start.y}, spacing * std::min(1.0, 2 * std::numbers::sqrt2 * reach + 0.35));
-    if (pixel && opposite_likeness(grey, *pixel, 0.25 * spacing) > kLeastLikeness) view.corners.push_back({id, *pixel});
+    if (pixel && opposite_likeness(grey, *pixel, 0.25 * spacing) > kMinLikeness) view.corners.push_back({id, *pixel});
   }
-  if (static_cast<int>(view.corners.size()) < kLeastCorners) return std::nullopt;
+  if (static_cast<int>(view.corners.size()) < kMinCorners) return std::nullopt;
   return view;
 }
 

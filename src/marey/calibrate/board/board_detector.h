@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "marey/calibrate/board/board.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 
 namespace marey::calibrate::board {
 
@@ -15,14 +15,14 @@ struct BoardCorner {
   Vector<2> pixel = Vector<2>::Zero();
 };
 
-/// A board in one picture: corners by rising id. A chess board is seen whole or not at all.
+/// A board in one image: corners by rising id. A chess board is seen atomically.
 struct BoardView {
   std::vector<BoardCorner> corners;
 };
 
-/// Finds a board in pictures. A ChArUco board on glass or film that is seen from behind shows its markers mirrored; its corners are
-/// where they are all the same, and a pose from them has the camera on the board's other side. A chess board's back is no different
-/// from its front, and is taken for it.
+/// Finds a board in images. A ChArUco board on glass or record that is seen from behind shows its markers mirrored; its corners are
+/// where they are all the same, and a pose from them has the camera on the board's other side. A chess board's back is not a
+/// different from its front, and is taken for it.
 class BoardDetector {
  public:
   explicit BoardDetector(const Board& board);
@@ -32,9 +32,9 @@ class BoardDetector {
 
   const Board& board() const { return board_; }
 
-  /// Nothing where the board is not in the picture or fewer than four of its corners are seen. Corners are refined to a fraction of
+  /// Nothing if the board is not in the image or fewer than four of its corners are seen. Corners are refined to a fraction of
   /// a pixel.
-  std::optional<BoardView> detect(const Picture& picture) const;
+  std::optional<BoardView> detect(const Image& image) const;
 
  private:
   std::optional<BoardView> chess(const cv::Mat& grey) const;

@@ -15,9 +15,9 @@
 namespace marey::calibrate::board {
 namespace {
 
-constexpr int kLeastCommon = 3;
-constexpr double kLeastShare = 0.3;     // of the most views that any offset brings together
-constexpr double kLongestGap = 2.5;     // frames between two views that are still interpolated between
+constexpr int kMinCommon = 3;
+constexpr double kMinFraction = 0.3;    // of the most views that any offset brings together
+constexpr double kMaxGap = 2.5;         // frames between two views that are still interpolated between
 constexpr double kLimitOfSpread = 0.2;  // a pair whose views disagree more decides nothing
 
 /// Median time between neighbours, s.
@@ -36,10 +36,10 @@ std::optional<Rigid3> pose_at(std::span<const PosedView> views, double time_s, d
   const auto before = after - 1;
   const double gap = after->time_s - before->time_s;
   if (gap > longest_gap_s) return std::nullopt;
-  const double share = (time_s - before->time_s) / gap;
+  const double fraction = (time_s - before->time_s) / gap;
   const Eigen::Quaterniond from(before->camera_from_board.rotation), to(after->camera_from_board.rotation);
-  return Rigid3{from.slerp(share, to).toRotationMatrix(),
-                (1 - share) * before->camera_from_board.translation + share * after->camera_from_board.translation};
+  return Rigid3{from.slerp(fraction, to).toRotationMatrix(),
+                (1 - fraction) * before->camera_from_board.translation + fraction * after->camera_from_board.translation};
 }
 
 double angle_between(const Matrix<3>& a, const Matrix<3>& b) {
@@ -85,13 +85,13 @@ std::optional<BoardPair> compare_at(std::span<const PosedView> first, std::span<
                                     double longest_gap_s) {
   std::vector<Rigid3> poses;
   std::vector<double> depths;
-  for (const PosedView& seen : second) {
-    const auto other = pose_at(first, seen.time_s + offset_s, longest_gap_s);
+  for (const PosedView& detected : second) {
+    const auto other = pose_at(first, detected.time_s + offset_s, longest_gap_s);
     if (!other) continue;
-    poses.push_back(seen.camera_from_board * other->inverse());
-    depths.push_back(0.5 * (seen.camera_from_board.translation.norm() + other->translation.norm()));
+    poses.push_back(detected.camera_from_board * other->inverse());
+    depths.push_back(0.5 * (detected.camera_from_board.translation.norm() + other->translation.norm()));
   }
-  if (static_cast<int>(poses.size()) < kLeastCommon) return std::nullopt;
+  if (static_cast<int>(poses.size()) < kMinCommon) return std::nullopt;
   BoardPair pair;
   pair.offset_s = offset_s;
   pair.common = static_cast<int>(poses.size());
@@ -102,32 +102,32 @@ std::optional<BoardPair> compare_at(std::span<const PosedView> first, std::span<
 }  // namespace
 
 std::optional<BoardPair> compare_views(std::span<const PosedView> first, std::span<const PosedView> second, double offset_s,
-                                       double most_offset_s) {
+                                       double max_offset_s) {
   const double period = std::max(period_of(first), period_of(second));
-  const double gap = kLongestGap * period;
-  if (!(most_offset_s > 0) || !(period > 0)) return compare_at(first, second, offset_s, most_offset_s > 0 ? gap : 0.6 * period);
+  const double gap = kMaxGap * period;
+  if (!(max_offset_s > 0) || !(period > 0)) return compare_at(first, second, offset_s, max_offset_s > 0 ? gap : 0.6 * period);
   const double step = period / 2;
-  const int steps = static_cast<int>(most_offset_s / step);
+  const int steps = static_cast<int>(max_offset_s / step);
   std::map<int, BoardPair> tried;
-  int most = 0;
+  int maximum = 0;
   for (int i = -steps; i <= steps; ++i) {
     const auto pair = compare_at(first, second, offset_s + i * step, gap);
     if (!pair) continue;
     tried.emplace(i, *pair);
-    most = std::max(most, pair->common);
+    maximum = std::max(maximum, pair->common);
   }
   const BoardPair* best = nullptr;
   for (const auto& [i, pair] : tried) {
-    if (pair.common < std::max<double>(kLeastCommon, kLeastShare * most)) continue;
+    if (pair.common < std::max<double>(kMinCommon, kMinFraction * maximum)) continue;
     if (!best || pair.spread < best->spread) best = &pair;
   }
   return best ? std::optional(*best) : std::nullopt;
 }
 
-std::vector<BoardPlacement> place_cameras(const std::vector<std::vector<PosedView>>& views, std::span<const BoardRigCamera> cameras,
-                                          const BoardRigOptions& options) {
+std::vector<BoardPlacement> position_cameras(const std::vector<std::vector<PosedView>>& views,
+                                             std::span<const BoardRigCamera> cameras, const BoardRigOptions& options) {
   const std::size_t count = views.size();
-  const double search = options.timing == BoardRigOptions::Timing::films ? options.most_offset_s : 0;
+  const double search = options.timing == BoardRigOptions::Timing::videos ? options.max_offset_s : 0;
   std::map<std::pair<std::size_t, std::size_t>, BoardPair> pairs;
   for (std::size_t a = 0; a < count; ++a) {
     for (std::size_t b = a + 1; b < count; ++b) {
@@ -135,36 +135,36 @@ std::vector<BoardPlacement> place_cameras(const std::vector<std::vector<PosedVie
       if (pair && pair->spread < kLimitOfSpread) pairs.emplace(std::pair{a, b}, *pair);
     }
   }
-  std::vector<std::optional<BoardPlacement>> placed(count);
-  placed[0] = BoardPlacement{};
+  std::vector<std::optional<BoardPlacement>> located(count);
+  located[0] = BoardPlacement{};
   while (true) {  // Prim's tree: the edge whose views agree best, for their number, is taken first
     const BoardPair* best = nullptr;
     std::size_t from = 0, to = 0;
     for (const auto& [ends, pair] : pairs) {
       const auto [a, b] = ends;
-      if (placed[a].has_value() == placed[b].has_value()) continue;
+      if (located[a].has_value() == located[b].has_value()) continue;
       if (best && pair.spread / std::sqrt(pair.common) >= best->spread / std::sqrt(best->common)) continue;
       best = &pair;
-      from = placed[a] ? a : b;
-      to = placed[a] ? b : a;
+      from = located[a] ? a : b;
+      to = located[a] ? b : a;
     }
     if (!best) break;
     const Rigid3 to_from = from < to ? best->second_from_first : best->second_from_first.inverse();
     const double offset = from < to ? best->offset_s : -best->offset_s;
-    placed[to] = BoardPlacement{to_from * placed[from]->camera_from_world, placed[from]->offset_s + offset};
+    located[to] = BoardPlacement{to_from * located[from]->camera_from_world, located[from]->offset_s + offset};
   }
   std::vector<std::string> lost;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!placed[i]) lost.push_back(fmt::format("\"{}\"", cameras[i].name));
+    if (!located[i]) lost.push_back(fmt::format("\"{}\"", cameras[i].name));
   }
   if (!lost.empty())
     throw Error(
-        "camera {} never sees the board together with camera \"{}\" or any camera tied to it, in {} pictures at least that agree; "
+        "camera {} never sees the board together with camera \"{}\" or any camera tied to it, in {} images at least that agree; "
         "carry the board "
         "through what they see in common",
-        fmt::join(lost, ", "), cameras[0].name, kLeastCommon);
+        fmt::join(lost, ", "), cameras[0].name, kMinCommon);
   std::vector<BoardPlacement> result;
-  for (const auto& placement : placed) result.push_back(*placement);
+  for (const auto& placement : located) result.push_back(*placement);
   return result;
 }
 

@@ -8,7 +8,7 @@
 namespace marey::calibrate::board {
 namespace {
 
-/// A board that is carried about: world_from_board at a moment.
+/// A board that is carried about: world_from_board at an instant.
 Rigid3 carried(double t) {
   return {geometry::rotation_from({0.5 * std::sin(1.1 * t), 0.4 * std::cos(0.9 * t), 0.6 * std::sin(0.7 * t + 1)}),
           {0.6 * std::sin(0.8 * t), 0.5 * std::sin(1.3 * t + 1), 2 + 0.4 * std::sin(0.5 * t)}};
@@ -76,15 +76,15 @@ TEST(BoardGraph, CamerasAreChainedByWhomTheyShareViewsWith) {
   const std::vector views{views_of(kCameras[0], 0, 5, 0, 1e-4, noise), views_of(kCameras[1], 2, 9, 0.5, 1e-4, noise),
                           views_of(kCameras[2], 6, 12, -0.3, 1e-4, noise)};
   BoardRigOptions options;
-  options.most_offset_s = 2;
-  const auto placed = place_cameras(views, named(3), options);
-  ASSERT_EQ(placed.size(), 3U);
+  options.max_offset_s = 2;
+  const auto located = position_cameras(views, named(3), options);
+  ASSERT_EQ(located.size(), 3U);
   for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_LT(angle(placed[c].camera_from_world.rotation, kCameras[c].rotation), 0.03) << c;
-    EXPECT_LT((placed[c].camera_from_world.translation - kCameras[c].translation).norm(), 0.08) << c;
+    EXPECT_LT(angle(located[c].camera_from_world.rotation, kCameras[c].rotation), 0.03) << c;
+    EXPECT_LT((located[c].camera_from_world.translation - kCameras[c].translation).norm(), 0.08) << c;
   }
-  EXPECT_NEAR(placed[1].offset_s, 0.5, 0.021);
-  EXPECT_NEAR(placed[2].offset_s, -0.3, 0.041);
+  EXPECT_NEAR(located[1].offset_s, 0.5, 0.021);
+  EXPECT_NEAR(located[2].offset_s, -0.3, 0.041);
 }
 
 TEST(BoardGraph, ACameraThatSharesNoViewIsNamed) {
@@ -93,7 +93,7 @@ TEST(BoardGraph, ACameraThatSharesNoViewIsNamed) {
   BoardRigOptions options;
   options.timing = BoardRigOptions::Timing::synced;
   try {
-    place_cameras(views, named(3), options);
+    position_cameras(views, named(3), options);
     FAIL() << "not refused";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("camera \"cam3\" never sees the board"), std::string::npos) << error.what();

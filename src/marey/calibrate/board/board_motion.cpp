@@ -2,8 +2,8 @@
 // of their lenses as is asked for, and the control poses of the board's path. A corner is predicted at the moment its row was
 // exposed: the board is placed at the exposures of the top and of the bottom row, and a corner lies between the two places in
 // proportion to its row. Second differences of neighbouring control poses are held to what a hand can do, so that the path stays
-// defined where few corners are seen. Each picture may have been taken a little before or after its time, as by webcams whose
-// frames are grabbed when a program gets to it: how much so is judged by the scatter found, and ends at nothing where clocks are
+// defined where few corners are seen. Each image may have been taken a little before or after its time, as by webcams whose
+// frames are grabbed when a program gets to it: how much so is evaluated by the scatter found, and ends at nothing if clocks are
 // even. Derivatives are automatic. Cost: linear in views, a few thousand operations a corner and iteration.
 #include "marey/calibrate/board/board_motion.h"
 
@@ -32,16 +32,16 @@ constexpr int kRejectionRounds = 6;  // of judging outliers and clocks
 struct View {
   std::size_t camera = 0;
   double time_s = 0;  // by the camera's clock
-  std::vector<SeenCorner> corners;
+  std::vector<ObservedCorner> corners;
   double jitter_s = 0;  // its clock's own error
 };
 
 std::vector<View> views_of(const Board& board, std::span<const BoardRigCamera> cameras) {
   std::vector<View> views;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
-    for (const TimedView& seen : cameras[c].views) {
-      View view{c, seen.time_s, {}};
-      for (const BoardCorner& corner : seen.view.corners) {
+    for (const TimedView& detected : cameras[c].views) {
+      View view{c, detected.time_s, {}};
+      for (const BoardCorner& corner : detected.view.corners) {
         const double row = (corner.pixel.y() + 0.5) / cameras[c].size.height - 0.5;
         view.corners.push_back({corner.id, board.corner(corner.id), corner.pixel, row, true});
       }
@@ -84,8 +84,8 @@ class Motion {
     calibrate::solve(how, *problem_);
   }
 
-  /// Judges every corner anew by the noise of the others, and how even the cameras' clocks are.
-  void judge() {
+  /// Evaluates every corner again by the noise of the others, and how even the cameras' clocks are.
+  void assess() {
     std::vector<double> distances;
     for (const View& view : views_) {
       for (const auto& error : errors_of(view)) {
@@ -93,7 +93,7 @@ class Motion {
       }
     }
     if (distances.empty()) return;
-    noise_px_ = std::max(kLeastNoise, geometry::median(distances) / 1.1774);  // the median of a Rayleigh distribution
+    noise_px_ = std::max(kMinNoise, geometry::median(distances) / 1.1774);  // the median of a Rayleigh distribution
     const double limit = std::max(kAlwaysGood, kOutlierSigmas * noise_px_);
     double square = 0;
     for (const View& view : views_) square += view.jitter_s * view.jitter_s;
@@ -105,7 +105,7 @@ class Motion {
     }
   }
 
-  /// From now on pictures may be taken a little before or after their time.
+  /// From now on images may be taken a little before or after their time.
   void expect_jitter() { jitter_s_ = kUneven * options_.knot_s; }
 
   BoardRig report(bool deviations);
@@ -113,9 +113,9 @@ class Motion {
  private:
   static constexpr double kAlwaysGood = 0.5;  // px
   static constexpr double kOutlierSigmas = 6;
-  static constexpr double kLeastNoise = 0.02;  // px
-  static constexpr double kEven = 0.003;       // of a frame: a clock's error that does not count
-  static constexpr double kUneven = 0.03;      // of a frame: what is thought possible
+  static constexpr double kMinNoise = 0.02;  // px
+  static constexpr double kEven = 0.003;     // of a frame: a clock's error that does not count
+  static constexpr double kUneven = 0.03;    // of a frame: what is thought possible
 
   int segment_of(const View& view) const {
     return static_cast<int>(std::floor((view.time_s + timings_[view.camera][0] - begin_) / options_.knot_s));
@@ -137,8 +137,8 @@ class Motion {
   std::vector<std::array<double, 2>> timings_;
   std::map<int, Control> controls_;
   double begin_ = 0;
-  double noise_px_ = 1;  // each axis, as judged last
-  double jitter_s_ = 0;  // standard deviation, as judged last
+  double noise_px_ = 1;  // each axis, as evaluated last
+  double jitter_s_ = 0;  // standard deviation, as evaluated last
   std::unique_ptr<ceres::Problem> problem_;
   int equations_ = 0, unknowns_ = 0;
 };
@@ -152,8 +152,9 @@ bool Motion::controlled(int segment) const {
 }
 
 ceres::CostFunction* Motion::error_of(const View& view, int segment, bool inliers_only) const {
-  std::vector<SeenCorner> corners;
-  std::ranges::copy_if(view.corners, std::back_inserter(corners), [&](const SeenCorner& c) { return c.inlier || !inliers_only; });
+  std::vector<ObservedCorner> corners;
+  std::ranges::copy_if(view.corners, std::back_inserter(corners),
+                       [&](const ObservedCorner& c) { return c.inlier || !inliers_only; });
   if (corners.empty()) return nullptr;
   const double from_begin = view.time_s - (begin_ + segment * options_.knot_s);
   return std::visit(
@@ -215,8 +216,8 @@ void Motion::smooth() {
     const auto next = controls_.find(k + 1), after = controls_.find(k + 2);
     if (next == controls_.end() || after == controls_.end()) continue;
     if (!problem_->HasParameterBlock(next->second.data()) || !problem_->HasParameterBlock(after->second.data())) continue;
-    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<Smoothness, 6, 7, 7, 7>(new Smoothness{
-                                   options_.acceleration * square / noise_px_, options_.turning * square / noise_px_}),
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<Smoothness, 6, 7, 7, 7>(
+                                   new Smoothness{options_.acceleration * square / noise_px_, options_.ptz * square / noise_px_}),
                                nullptr, control.data(), next->second.data(), after->second.data());
     equations_ += 6;
   }
@@ -247,7 +248,7 @@ void Motion::hold(std::size_t camera) {
   held.clear();
   const auto count = static_cast<int>(lenses_[camera].size());
   for (int i = bundle::kLensBase; i < count; ++i) {
-    if (lens[i] == 0) held.push_back(i);  // what the calibration of the lens left out
+    if (lens[i] == 0) held.push_back(i);  // what the calibration of the lens omitted
   }
   if (!options_.refine_lenses) {
     problem_->SetParameterBlockConstant(lens);
@@ -295,17 +296,17 @@ BoardRig Motion::report(bool deviations) {
 }
 
 void Motion::deviate(BoardRig& rig) {
-  std::vector<std::pair<const double*, const double*>> wanted;
+  std::vector<std::pair<const double*, const double*>> required;
   for (std::size_t c = 1; c < inputs_.size(); ++c) {
     if (!problem_->HasParameterBlock(poses_[c].data())) continue;
-    wanted.emplace_back(poses_[c].data(), poses_[c].data());
-    wanted.emplace_back(timings_[c].data(), timings_[c].data());
+    required.emplace_back(poses_[c].data(), poses_[c].data());
+    required.emplace_back(timings_[c].data(), timings_[c].data());
   }
   ceres::Covariance::Options how;
   how.algorithm_type = ceres::SPARSE_QR;
   how.num_threads = 1;
   ceres::Covariance covariance(how);
-  if (wanted.empty() || !covariance.Compute(wanted, problem_.get())) return;
+  if (required.empty() || !covariance.Compute(required, problem_.get())) return;
   for (std::size_t c = 1; c < inputs_.size(); ++c) {
     if (!problem_->HasParameterBlock(poses_[c].data())) continue;
     Eigen::Matrix<double, 6, 6, Eigen::RowMajor> pose;
@@ -328,7 +329,7 @@ BoardRig fit_board_motion(const Board& board, std::span<const BoardRigCamera> ca
   motion.expect_jitter();
   for (int round = 0; round < kRejectionRounds; ++round) {
     motion.solve(round == 0 ? 2 : 0);
-    motion.judge();
+    motion.assess();
   }
   motion.solve(0);
   return motion.report(deviations);

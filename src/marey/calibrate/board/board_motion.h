@@ -14,7 +14,7 @@ struct BoardMotionOptions {
   bool refine_offsets = true;   ///< of all cameras but the first
   bool refine_readout = false;  ///< of all cameras
   double acceleration = 3;      ///< m/s²: what a hand does; holds the path only where nothing is seen
-  double turning = 20;          ///< rad/s²
+  double ptz = 20;              ///< rad/s²
 };
 
 /// The cameras and the board's path, brought to agree. `poses` are the views' own poses, for a start of the path; `start` the

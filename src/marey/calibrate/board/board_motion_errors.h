@@ -9,18 +9,18 @@
 // What fit_board_motion minimises, as Ceres's functors.
 namespace marey::calibrate::board {
 
-struct SeenCorner {
+struct ObservedCorner {
   int id = 0;
-  Vector<3> place = Vector<3>::Zero();  // on the board, m
+  Vector<3> location = Vector<3>::Zero();  // on the board, m
   Vector<2> pixel = Vector<2>::Zero();
-  double row = 0;  // share of the picture's height from its middle: -0.5 at the top, 0.5 at the bottom
+  double row = 0;  // share of the image's height from its middle: -0.5 at the top, 0.5 at the bottom
   bool inlier = true;
 };
 
 /// A view's errors, predicted minus seen. Blocks: four control poses, the camera's pose, its lens, its offset and readout.
 template <typename Model>
 struct ViewError {
-  std::vector<SeenCorner> corners;
+  std::vector<ObservedCorner> corners;
   double time_s = 0;  // by the camera's clock, less the segment's begin
   double knot_s = 0;
 
@@ -31,10 +31,10 @@ struct ViewError {
     const SplinePose<T> top = spline_pose(a, b, c, d, T(middle - half));
     const SplinePose<T> bottom = spline_pose(a, b, c, d, T(middle + half));
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      const SeenCorner& corner = corners[i];
-      const Eigen::Matrix<T, 3, 1> place = corner.place.template cast<T>();
-      const T share(0.5 + corner.row);
-      const Eigen::Matrix<T, 3, 1> world = (T(1) - share) * (top * place) + share * (bottom * place);
+      const ObservedCorner& corner = corners[i];
+      const Eigen::Matrix<T, 3, 1> location = corner.location.template cast<T>();
+      const T fraction(0.5 + corner.row);
+      const Eigen::Matrix<T, 3, 1> world = (T(1) - fraction) * (top * location) + fraction * (bottom * location);
       Eigen::Matrix<T, 3, 1> in_camera;
       ceres::AngleAxisRotatePoint(pose, world.data(), in_camera.data());
       for (int k = 0; k < 3; ++k) in_camera[k] += pose[3 + k];
@@ -47,7 +47,7 @@ struct ViewError {
   }
 };
 
-/// A picture's own error of time, in standard deviations.
+/// An image's own error of time, in standard deviations.
 struct Jitter {
   double weight = 1;  // 1/s
 

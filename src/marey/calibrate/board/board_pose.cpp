@@ -68,12 +68,12 @@ std::optional<Rigid3> board_pose(const Board& board, const BoardView& view, cons
   std::vector<cv::Mat> rotations, translations;
   cv::solvePnPGeneric(points, directions, cv::Matx33d::eye(), cv::noArray(), rotations, translations, false, cv::SOLVEPNP_IPPE);
   std::optional<Rigid3> best;
-  double least = 0;
+  double minimum = 0;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     cv::solvePnPRefineLM(points, directions, cv::Matx33d::eye(), cv::noArray(), rotations[i], translations[i]);
     const Rigid3 pose = rigid_from(rotations[i], translations[i]);
     const auto rms = board_rms(board, view, lens, pose);
-    if (rms && (!best || *rms < least)) best = pose, least = *rms;
+    if (rms && (!best || *rms < minimum)) best = pose, minimum = *rms;
   }
   return best;
 }

@@ -11,15 +11,15 @@
 namespace marey::calibrate::board {
 
 /// Where a board stands before a camera whose lens is known (camera_from_board, m): from its homography, refined. A flat board seen
-/// from far has two such poses; this is the one that fits better. Nothing where fewer than four corners are seen, or they lie on a
+/// from far has two such poses; this is the one that fits better. Nothing if fewer than four corners are seen, or they lie on a
 /// line.
 std::optional<Rigid3> board_pose(const Board& board, const BoardView& view, const geometry::Lens& lens);
 
-/// Root of the mean squared distance between the corners seen and those predicted, px; nothing where a corner is behind the camera.
+/// Root of the mean squared distance between the corners seen and those predicted, px; nothing if a corner is behind the camera.
 std::optional<double> board_rms(const Board& board, const BoardView& view, const geometry::Lens& lens,
                                 const Rigid3& camera_from_board);
 
-/// The pixel of a point in the camera's frame; nothing where it lies behind a camera that sees only ahead.
+/// The pixel of a point in the camera's frame; nothing if it lies behind a camera that sees only ahead.
 std::optional<Vector<2>> pixel_of(const geometry::Lens& lens, const Vector<3>& in_camera);
 
 }  // namespace marey::calibrate::board

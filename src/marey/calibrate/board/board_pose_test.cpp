@@ -25,7 +25,7 @@ TEST(BoardPose, IsFoundThroughEveryLens) {
       SCOPED_TRACE(std::string(geometry::name_of(lens)) + " " + std::to_string(seed));
       Noise noise(seed);
       const Rigid3 truth = before_the_camera(noise);
-      const auto view = see_board(camera, board, [&](double) { return truth; }, 0, noise);
+      const auto view = observe_board(camera, board, [&](double) { return truth; }, 0, noise);
       if (!view) continue;
       ++tried;
       const auto pose = board_pose(board, *view, lens);
@@ -47,7 +47,7 @@ TEST(BoardPose, IsFoundFromBehindTheBoard) {
     Noise noise(seed);
     const Rigid3 front = before_the_camera(noise);
     const Rigid3 truth{front.rotation * about, front.translation + front.rotation * Vector<3>(0.2, 0, 0)};
-    const auto view = see_board(camera, board, [&](double) { return truth; }, 0, noise);
+    const auto view = observe_board(camera, board, [&](double) { return truth; }, 0, noise);
     if (!view) continue;
     ++tried;
     const auto pose = board_pose(board, *view, kLenses[0]);
@@ -62,7 +62,7 @@ TEST(BoardPose, FewCornersOrALineGiveNone) {
   const Board board = parse_board("chess:8x6:0.03");
   const Camera camera(kLenses[0], {}, {1280, 960});
   Noise noise(3);
-  const BoardView whole = *see_board(camera, board, [](double) { return Rigid3{Matrix<3>::Identity(), {0, 0, 1}}; }, 0, noise);
+  const BoardView whole = *observe_board(camera, board, [](double) { return Rigid3{Matrix<3>::Identity(), {0, 0, 1}}; }, 0, noise);
   BoardView three, row;
   for (const int id : {0, 7, 40}) three.corners.push_back(whole.corners[static_cast<std::size_t>(id)]);
   for (std::size_t id = 0; id < 8; ++id) row.corners.push_back(whole.corners[id]);
@@ -77,7 +77,7 @@ TEST(BoardPose, TheRmsIsTheDistanceOfTheCorners) {
   const Camera camera(kLenses[0], {}, {1280, 960});
   const Rigid3 pose{Matrix<3>::Identity(), {-0.05, -0.05, 1}};
   Noise noise(4);
-  BoardView view = *see_board(camera, board, [&](double) { return pose; }, 0, noise);
+  BoardView view = *observe_board(camera, board, [&](double) { return pose; }, 0, noise);
   EXPECT_NEAR(*board_rms(board, view, kLenses[0], pose), 0, 1e-9);
   for (BoardCorner& corner : view.corners) corner.pixel += Vector<2>(3, 4);
   EXPECT_NEAR(*board_rms(board, view, kLenses[0], pose), 5, 1e-9);

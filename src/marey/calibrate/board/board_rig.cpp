@@ -17,14 +17,14 @@ namespace {
 
 using Timing = BoardRigOptions::Timing;
 
-/// Every view with the pose that its camera alone would give it; views without one are left out of both lists.
+/// Every view with the pose that its camera alone would give it; views without one are omitted of both lists.
 std::vector<std::vector<PosedView>> pose_views(const Board& board, std::vector<BoardRigCamera>& cameras, bool stills) {
   std::vector<std::vector<PosedView>> all;
   for (BoardRigCamera& camera : cameras) {
     std::vector<PosedView> posed;
-    std::erase_if(camera.views, [&](const TimedView& seen) {
-      const auto pose = board_pose(board, seen.view, camera.lens);
-      if (pose) posed.push_back({stills ? static_cast<double>(seen.instant) : seen.time_s, *pose});
+    std::erase_if(camera.views, [&](const TimedView& detected) {
+      const auto pose = board_pose(board, detected.view, camera.lens);
+      if (pose) posed.push_back({stills ? static_cast<double>(detected.instant) : detected.time_s, *pose});
       return !pose;
     });
     if (camera.views.empty())
@@ -58,15 +58,15 @@ BoardRig fit_stills(const Board& board, std::span<const BoardRigCamera> cameras,
     if (refine_lenses) camera.freedom = freedom_of(cameras[c].lens);
     bundle.cameras.push_back(camera);
     for (std::size_t i = 0; i < poses[c].size(); ++i) {
-      const TimedView& seen = cameras[c].views[i];
-      const auto [at, fresh] = bodies.try_emplace(seen.instant, static_cast<int>(bundle.bodies.size()));
+      const TimedView& detected = cameras[c].views[i];
+      const auto [at, fresh] = bodies.try_emplace(detected.instant, static_cast<int>(bundle.bodies.size()));
       if (fresh) bundle.bodies.emplace_back(start[c].camera_from_world.inverse() * poses[c][i].camera_from_board);
-      for (const BoardCorner& corner : seen.view.corners)
+      for (const BoardCorner& corner : detected.view.corners)
         bundle.observations.push_back({static_cast<int>(c), at->second, corner.id, corner.pixel, Vector<2>::Zero()});
     }
   }
   bundle::BundleOptions how;
-  how.least_outlier_px = 0.5;
+  how.min_outlier_px = 0.5;
   how.outlier_sigmas = 6;
   const bundle::BundleResult found = bundle::adjust(bundle, how);
   BoardRig rig;
@@ -122,7 +122,7 @@ void warn(BoardRig& rig, std::span<const BoardRigCamera> cameras, double frame_s
   }
   if (rig.jitter_s > 0.02 * frame_s)
     rig.warnings.push_back(
-        fmt::format("pictures were taken unevenly, {:.1f} ms before or after their time: what moves fast will be placed badly",
+        fmt::format("images were taken unevenly, {:.1f} ms before or after their time: what moves fast will be placed badly",
                     1e3 * rig.jitter_s));
 }
 
@@ -133,19 +133,19 @@ BoardRig calibrate_board_rig(const Board& board, std::span<const BoardRigCamera>
   std::vector<BoardRigCamera> cameras(given.begin(), given.end());
   const bool stills = options.timing == Timing::stills;
   const auto poses = pose_views(board, cameras, stills);
-  const std::vector<BoardPlacement> placed = place_cameras(poses, cameras, options);
-  if (stills) return fit_stills(board, cameras, poses, placed, options.refine_lenses);
+  const std::vector<BoardPlacement> located = position_cameras(poses, cameras, options);
+  if (stills) return fit_stills(board, cameras, poses, located, options.refine_lenses);
   std::vector<BoardRigPose> start;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     BoardRigPose camera;
     camera.lens = cameras[c].lens;
-    camera.camera_from_world = placed[c].camera_from_world;
-    camera.offset_s = placed[c].offset_s;
+    camera.camera_from_world = located[c].camera_from_world;
+    camera.offset_s = located[c].offset_s;
     start.push_back(camera);
   }
   BoardMotionOptions how;
   how.knot_s = longest_period(poses);
-  how.refine_offsets = options.timing == Timing::films;
+  how.refine_offsets = options.timing == Timing::videos;
   how.refine_lenses = options.refine_lenses;
   how.refine_readout = options.rolling_shutter;
   BoardRig rig = fit_board_motion(board, cameras, poses, start, how, true);

@@ -2,10 +2,10 @@
 //
 // Each camera gives the board's pose in its own frame, so any two that see the board at one time give how they stand to each other.
 // These pairs are a graph; its tree of the strongest edges places every camera (board_graph). Then all is refined together:
-// cameras, and the board's pose at each instant (stills), or, where the board moves and the cameras are out of step, the board's
+// cameras, and the board's pose at each instant (stills), or, where the board moves and the cameras are unsynchronised, the board's
 // path as a smooth curve that each camera samples at its own times (board_motion). So the offset between cameras that were not
 // started together comes out to a fraction of a frame, and so does the time that a rolling shutter takes from the top of the
-// picture to its bottom. Reference: Furgale, Rehder & Siegwart, "Unified temporal and spatial calibration for multi-sensor
+// image to its bottom. Reference: Furgale, Rehder & Siegwart, "Unified temporal and spatial calibration for multi-sensor
 // systems", IROS 2013.
 #pragma once
 
@@ -25,10 +25,10 @@
 
 namespace marey::calibrate::board {
 
-/// The board in one picture of a camera.
+/// The board in one image of a camera.
 struct TimedView {
-  std::int64_t instant = 0;  ///< stills: pictures with the same number show the board in the same place
-  double time_s = 0;         ///< films: by the camera's clock
+  std::int64_t instant = 0;  ///< stills: images with the same number show the board in the same place
+  double time_s = 0;         ///< videos: by the camera's clock
   BoardView view;
 };
 
@@ -36,20 +36,20 @@ struct BoardRigCamera {
   std::string name;  ///< what messages call it
   cv::Size size;     ///< px
   geometry::Lens lens;
-  double offset_s = 0;  ///< films: what is known of its offset; where the search begins, and what stays where offsets are held
+  double offset_s = 0;  ///< videos: what is known of its offset; where the search begins, and what stays where offsets are held
   std::vector<TimedView> views;  ///< in the order of time
 };
 
 struct BoardRigOptions {
   enum class Timing {
-    stills,  ///< pictures of one instant belong together
-    films,   ///< the board moves; offsets and shutters are sought
+    stills,  ///< images of one instant belong together
+    videos,  ///< the board moves; offsets and shutters are sought
     synced,  ///< the board moves; offsets are held
   };
-  Timing timing = Timing::films;
-  double most_offset_s = 30;     ///< how far the search goes to both sides
+  Timing timing = Timing::videos;
+  double max_offset_s = 30;      ///< how far the search goes to both sides
   bool refine_lenses = false;    ///< together with the poses
-  bool rolling_shutter = false;  ///< films: the shutters' readout is sought too
+  bool rolling_shutter = false;  ///< videos: the shutters' readout is sought too
 };
 
 /// What is found of one camera.
@@ -69,7 +69,7 @@ struct BoardRig {
   std::vector<BoardRigPose> cameras;
   double rms_px = 0, mean_px = 0, noise_px = 0;  ///< over all; noise: each axis, degrees of freedom taken off
   int inliers = 0, observations = 0;
-  double jitter_s = 0;  ///< films: how unevenly pictures were taken, standard deviation; 0 where it does not show
+  double jitter_s = 0;  ///< videos: how unevenly images were taken, standard deviation; 0 where it does not show
   std::vector<std::string> warnings;
 };
 

@@ -28,7 +28,7 @@ struct HandMotion {
       for (const auto& [frequency, size, phase] : swings[k])
         value[k] += size * std::sin(2 * std::numbers::pi * frequency * t + phase);
     }
-    Matrix<3> facing;  // the board's z away from cameras that stand at negative y, its y down
+    Matrix<3> facing;  // the board's z away from static cameras at negative y, its y down
     facing << 1, 0, 0, 0, 0, 1, 0, -1, 0;
     const Vector<3> turn(2.5 * value[3], 2.5 * value[4], 2.5 * value[5]);
     return {geometry::rotation_from(turn) * facing, Vector<3>(value[0] - 0.2, value[1], 1.2 + value[2])};
@@ -44,14 +44,14 @@ struct Rigged {
   std::vector<BoardRigCamera> inputs;
 };
 
-struct Film {
+struct SweepVideo {
   double rate_hz = 25, seconds = 12, noise_px = 0.1;
   std::vector<double> offsets_s{0, 0};
   double readout_s = 0;
   bool last_behind = false;  ///< the last camera stands on the board's other side
 };
 
-Rigged film(const Film& how, std::uint64_t seed) {
+Rigged video(const SweepVideo& how, std::uint64_t seed) {
   Noise noise(seed);
   const HandMotion motion(noise);
   Rigged rigged;
@@ -59,13 +59,13 @@ Rigged film(const Film& how, std::uint64_t seed) {
   const Vector<3> behind(-0.3, 2.3, 1.5);
   for (std::size_t c = 0; c < how.offsets_s.size(); ++c) {
     const geometry::BrownLens lens{{900, 905}, {640, 355}, {-0.2, 0.05, 0.001, -0.001, 0, 0, 0, 0}};
-    rigged.cameras.emplace_back(lens, looking(how.last_behind && c + 1 == how.offsets_s.size() ? behind : centres[c], {0, 0, 1.2}),
+    rigged.cameras.emplace_back(lens, facing(how.last_behind && c + 1 == how.offsets_s.size() ? behind : centres[c], {0, 0, 1.2}),
                                 cv::Size(1280, 720));
     BoardRigCamera input{"camera " + std::to_string(c), {1280, 720}, lens, 0, {}};
     for (int i = 0; i < how.rate_hz * how.seconds; ++i) {
       const double time = i / how.rate_hz;
-      const auto pose_of = [&](double share) { return motion.at(time + how.offsets_s[c] + share * how.readout_s); };
-      auto view = see_board(rigged.cameras[c], kBoard, pose_of, how.noise_px, noise);
+      const auto pose_of = [&](double fraction) { return motion.at(time + how.offsets_s[c] + fraction * how.readout_s); };
+      auto view = observe_board(rigged.cameras[c], kBoard, pose_of, how.noise_px, noise);
       if (view) input.views.push_back({i, time, std::move(*view)});
     }
     rigged.inputs.push_back(std::move(input));
@@ -89,7 +89,7 @@ std::string refusal(std::span<const BoardRigCamera> cameras, const BoardRigOptio
 
 TEST(BoardRig, OffsetIsFoundToAFractionOfAFrame) {
   for (const double rate : {6.0, 25.0}) {
-    const Rigged scene = film({rate, 48 / rate, 0.1, {0, 0.7 / rate, -3.3 / rate}}, 11);
+    const Rigged scene = video({rate, 48 / rate, 0.1, {0, 0.7 / rate, -3.3 / rate}}, 11);
     const BoardRig found = calibrate_board_rig(kBoard, scene.inputs);
     EXPECT_NEAR(found.cameras[1].offset_s * rate, 0.7, 0.01);
     EXPECT_NEAR(found.cameras[2].offset_s * rate, -3.3, 0.01);
@@ -101,25 +101,25 @@ TEST(BoardRig, OffsetIsFoundToAFractionOfAFrame) {
 }
 
 TEST(BoardRig, ACameraBehindAGlassBoardIsTiedToTheOthers) {
-  Film how{25, 3, 0.1, {0, 0, 0.01}};
+  SweepVideo how{25, 3, 0.1, {0, 0, 0.01}};
   how.last_behind = true;
-  const Rigged scene = film(how, 13);
+  const Rigged scene = video(how, 13);
   const BoardRig found = calibrate_board_rig(kBoard, scene.inputs);
   EXPECT_NEAR(found.cameras[2].offset_s, 0.01, 0.001);
   for (const std::size_t c : {1, 2}) EXPECT_LT(centre_error(scene, found, c), 4 * found.cameras[c].centre_deviation.norm() + 5e-4);
 }
 
 TEST(BoardRig, OffsetsHeldStayAndPosesAreFoundAllTheSame) {
-  const Rigged scene = film({25, 2, 0.1, {0, 0}}, 3);
+  const Rigged scene = video({25, 2, 0.1, {0, 0}}, 3);
   const BoardRig found = calibrate_board_rig(kBoard, scene.inputs, {.timing = BoardRigOptions::Timing::synced});
   EXPECT_EQ(found.cameras[1].offset_s, 0);
   EXPECT_LT(centre_error(scene, found, 1), 0.003);
 }
 
 TEST(BoardRig, ARollingShutterIsMeasured) {
-  Film how{25, 2.5, 0.05, {0, 0.01}};
+  SweepVideo how{25, 2.5, 0.05, {0, 0.01}};
   how.readout_s = 0.02;
-  const Rigged scene = film(how, 5);
+  const Rigged scene = video(how, 5);
   const BoardRig found = calibrate_board_rig(kBoard, scene.inputs, {.rolling_shutter = true});
   EXPECT_NEAR(found.cameras[0].readout_s, 0.02, 0.002);
   EXPECT_NEAR(found.cameras[1].readout_s, 0.02, 0.002);
@@ -127,15 +127,15 @@ TEST(BoardRig, ARollingShutterIsMeasured) {
 }
 
 TEST(BoardRig, StillsBelongTogetherByTheirInstant) {
-  Rigged scene = film({1, 20, 0.1, {0, 0}}, 7);
+  Rigged scene = video({1, 20, 0.1, {0, 0}}, 7);
   const BoardRig found = calibrate_board_rig(kBoard, scene.inputs, {.timing = BoardRigOptions::Timing::stills});
   EXPECT_LT(centre_error(scene, found, 1), 0.003);
   EXPECT_NEAR(found.noise_px, 0.1, 0.01);
   EXPECT_EQ(found.inliers, found.observations);
 }
 
-TEST(BoardRig, WhatCannotBeTiedIsRefusedByName) {
-  Rigged scene = film({25, 4, 0.1, {0, 0}}, 9);
+TEST(BoardRig, RejectsUnconnectedCamerasByName) {
+  Rigged scene = video({25, 4, 0.1, {0, 0}}, 9);
   scene.inputs[1].views.resize(2);
   EXPECT_NE(refusal(scene.inputs).find("camera \"camera 1\" never sees the board together with"), std::string::npos)
       << refusal(scene.inputs);

@@ -33,19 +33,20 @@ inline Vector<3> in_cube(Noise& noise, double half) {
   return {noise.uniform(-half, half), noise.uniform(-half, half), noise.uniform(-half, half)};
 }
 
-/// What a camera sees of a board that stands at `world_from_board`; nothing where a corner is out of the picture. With a rolling
-/// shutter, rows are exposed one after the other: `pose_of(share)` is the board's pose at that share of the picture's height, -0.5
+/// What a camera sees of a board that stands at `world_from_board`; nothing if a corner is out of the image. With a rolling
+/// shutter, rows are exposed one after the other: `pose_of(share)` is the board's pose at that share of the image's height, -0.5
 /// to 0.5.
 template <typename PoseOf>
-std::optional<BoardView> see_board(const Camera& camera, const Board& board, const PoseOf& pose_of, double noise_px, Noise& noise) {
+std::optional<BoardView> observe_board(const Camera& camera, const Board& board, const PoseOf& pose_of, double noise_px,
+                                       Noise& noise) {
   BoardView view;
   for (int id = 0; id < board.corner_count(); ++id) {
-    double share = 0;
+    double fraction = 0;
     std::optional<Vector<2>> pixel;
     for (int i = 0; i < 4; ++i) {
-      pixel = camera.project(pose_of(share) * board.corner(id));
-      if (!pixel || !camera.in_picture(*pixel)) return std::nullopt;
-      share = (pixel->y() + 0.5) / camera.size().height - 0.5;
+      pixel = camera.project(pose_of(fraction) * board.corner(id));
+      if (!pixel || !camera.in_image(*pixel)) return std::nullopt;
+      fraction = (pixel->y() + 0.5) / camera.size().height - 0.5;
     }
     view.corners.push_back({id, *pixel + Vector<2>(noise.gaussian(noise_px), noise.gaussian(noise_px))});
   }
@@ -53,7 +54,7 @@ std::optional<BoardView> see_board(const Camera& camera, const Board& board, con
 }
 
 /// A camera at `centre` that looks at `target`, upright in a world with z up.
-inline Rigid3 looking(const Vector<3>& centre, const Vector<3>& target) {
+inline Rigid3 facing(const Vector<3>& centre, const Vector<3>& target) {
   const Vector<3> ahead = (target - centre).normalized();
   const Vector<3> right = ahead.cross(Vector<3>::UnitZ()).normalized();
   Rigid3 pose;

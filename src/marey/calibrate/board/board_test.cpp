@@ -30,7 +30,7 @@ TEST(Board, ReadsWhatItWrites) {
     EXPECT_EQ(to_string(parse_board(text)), text);
 }
 
-TEST(Board, WhatIsNoBoardIsRefusedWithTheReason) {
+TEST(Board, RejectsNonBoardWithReason) {
   const auto why = [](const std::string& text) -> std::string {
     try {
       parse_board(text);

@@ -12,7 +12,7 @@
 namespace marey::calibrate::board {
 namespace {
 
-constexpr int kColumns = 10, kRows = 8;  // fields of the picture
+constexpr int kColumns = 10, kRows = 8;  // fields of the image
 constexpr double kBlurred = 0.5;         // of the median sharpness
 
 struct Features {
@@ -45,7 +45,7 @@ Features features_of(const ViewCandidate& candidate, const cv::Size& size) {
 
 }  // namespace
 
-std::vector<std::size_t> choose_views(std::span<const ViewCandidate> candidates, cv::Size size, std::size_t most) {
+std::vector<std::size_t> choose_views(std::span<const ViewCandidate> candidates, cv::Size size, std::size_t maximum) {
   std::vector<double> sharpness;
   for (const ViewCandidate& candidate : candidates) sharpness.push_back(candidate.sharpness);
   std::ranges::sort(sharpness);
@@ -56,11 +56,11 @@ std::vector<std::size_t> choose_views(std::span<const ViewCandidate> candidates,
     features.push_back(features_of(candidates[i], size));
     if (candidates[i].sharpness >= limit) open.push_back(i);
   }
-  std::array<int, static_cast<std::size_t>(kColumns * kRows)> seen{};
-  while (!open.empty() && taken.size() < most) {
-    const auto worth = [&](std::size_t i) {
+  std::array<int, static_cast<std::size_t>(kColumns * kRows)> detected{};
+  while (!open.empty() && taken.size() < maximum) {
+    const auto merit = [&](std::size_t i) {
       double value = 0;
-      for (const int field : features[i].fields) value += 1.0 / (1 + seen[static_cast<std::size_t>(field)]);
+      for (const int field : features[i].fields) value += 1.0 / (1 + detected[static_cast<std::size_t>(field)]);
       double apart = 4;
       for (const std::size_t other : taken) apart = std::min(apart, (features[i].shape - features[other].shape).norm());
       return (value / 4 + apart) * features[i].sharpness;
@@ -68,10 +68,10 @@ std::vector<std::size_t> choose_views(std::span<const ViewCandidate> candidates,
     auto best = open.begin();
     double most_worth = -1;
     for (auto at = open.begin(); at != open.end(); ++at) {
-      const double value = worth(*at);
+      const double value = merit(*at);
       if (value > most_worth) most_worth = value, best = at;
     }
-    for (const int field : features[*best].fields) ++seen[static_cast<std::size_t>(field)];
+    for (const int field : features[*best].fields) ++detected[static_cast<std::size_t>(field)];
     taken.push_back(*best);
     open.erase(best);
   }

@@ -18,10 +18,10 @@ BoardView rectangle(double x, double y, double width, double height) {
   return view;
 }
 
-std::vector<std::size_t> chosen(const std::vector<BoardView>& views, const std::vector<double>& sharpness, std::size_t most) {
+std::vector<std::size_t> chosen(const std::vector<BoardView>& views, const std::vector<double>& sharpness, std::size_t maximum) {
   std::vector<ViewCandidate> candidates;
   for (std::size_t i = 0; i < views.size(); ++i) candidates.push_back({&views[i], sharpness[i]});
-  return choose_views(candidates, kSize, most);
+  return choose_views(candidates, kSize, maximum);
 }
 
 TEST(ChooseViews, DifferentViewsComeBeforeMoreOfTheSame) {

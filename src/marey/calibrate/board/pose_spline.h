@@ -1,8 +1,9 @@
-// A rigid body's path as a uniform cubic B-spline: continuous in acceleration, and each moment rests on four poses alone.
+// A rigid body's path as a uniform cubic B-spline: continuous in acceleration, and each instant rests on four poses alone.
 //
-// Translation is the usual sum over basis functions; rotation is the cumulative form on the group, q(u) = q0 · exp(B1 log(q0⁻¹ q1))
-// · exp(B2 log(q1⁻¹ q2)) · exp(B3 log(q2⁻¹ q3)). Reference: Kim, Kim & Shin, "A general construction scheme for unit quaternion
-// curves with simple high order derivatives", SIGGRAPH 1995. Templates on the scalar, so that a solver can differentiate them.
+// Translation is the typical sum over basis functions; rotation is the cumulative form on the group, q(u) = q0 · exp(B1 log(q0⁻¹
+// q1)) · exp(B2 log(q1⁻¹ q2)) · exp(B3 log(q2⁻¹ q3)). Reference: Kim, Kim & Shin, "A general construction scheme for unit
+// quaternion curves with simple high order derivatives", SIGGRAPH 1995. Templates on the scalar, so that a solver can differentiate
+// them.
 #pragma once
 
 #include <array>
@@ -20,9 +21,9 @@ struct SplinePose {
   Eigen::Matrix<T, 3, 1> translation;
 
   Eigen::Matrix<T, 3, 1> operator*(const Eigen::Matrix<T, 3, 1>& point) const {
-    Eigen::Matrix<T, 3, 1> turned;
-    ceres::UnitQuaternionRotatePoint(rotation.data(), point.data(), turned.data());
-    return turned + translation;
+    Eigen::Matrix<T, 3, 1> rotated;
+    ceres::UnitQuaternionRotatePoint(rotation.data(), point.data(), rotated.data());
+    return rotated + translation;
   }
 };
 

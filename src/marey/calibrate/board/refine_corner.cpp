@@ -13,18 +13,18 @@
 namespace marey::calibrate::board {
 namespace {
 
-constexpr int kLeastHalf = 3, kMostHalf = 12;  // px
-constexpr double kShare = 0.4;                 // of the way to the next corner
-constexpr int kMostIterations = 30;
-constexpr double kEdgeWidth = 1.5;    // px: how far a blurred edge reaches to each side
-constexpr double kLeastCross = 0.02;  // of det/trace²: below, all edges run one way
+constexpr int kMinHalf = 3, kMaxHalf = 12;  // px
+constexpr double kFraction = 0.4;           // of the way to the next corner
+constexpr int kMaxIterations = 30;
+constexpr double kEdgeWidth = 1.5;  // px: how far a blurred edge reaches to each side
+constexpr double kMinCross = 0.02;  // of det/trace²: below, all edges run one way
 
 struct Sums {
   Matrix<2> A = Matrix<2>::Zero();
   Vector<2> b = Vector<2>::Zero();
 };
 
-/// Sums of the least squares over the window around `p`; an edge that passes `p` at more than about `reach` px is left out.
+/// Sums of the least squares over the window around `p`; an edge that passes `p` at more than about `reach` px is omitted.
 Sums sums_around(const cv::Mat& grey, const Vector<2>& p, int half, double reach) {
   Sums sums;
   const int column = static_cast<int>(std::lround(p.x())), row = static_cast<int>(std::lround(p.y()));
@@ -55,15 +55,15 @@ bool within(const cv::Mat& grey, const Vector<2>& p, int half) {
 }  // namespace
 
 std::optional<Vector<2>> refine_corner(const cv::Mat& grey, const Vector<2>& start, double spacing) {
-  const int half = std::clamp(static_cast<int>(std::lround(kShare * spacing)), kLeastHalf, kMostHalf);
+  const int half = std::clamp(static_cast<int>(std::lround(kFraction * spacing)), kMinHalf, kMaxHalf);
   const double farthest = std::max(1.5, 0.3 * spacing);
   Vector<2> p = start;
   double reach = std::max(kEdgeWidth, half / 3.0);
-  for (int round = 0; round < kMostIterations; ++round) {
+  for (int round = 0; round < kMaxIterations; ++round) {
     if (!within(grey, p, half)) return std::nullopt;
     const Sums sums = sums_around(grey, p, half, reach);
     const double trace = sums.A.trace();
-    if (!(sums.A.determinant() > kLeastCross * trace * trace)) return std::nullopt;
+    if (!(sums.A.determinant() > kMinCross * trace * trace)) return std::nullopt;
     const Vector<2> step = sums.A.inverse() * sums.b;
     p += step;
     if ((p - start).norm() > farthest) return std::nullopt;
@@ -74,7 +74,7 @@ std::optional<Vector<2>> refine_corner(const cv::Mat& grey, const Vector<2>& sta
 }
 
 double opposite_likeness(const cv::Mat& grey, const Vector<2>& pixel, double radius) {
-  const int half = std::max(kLeastHalf, static_cast<int>(std::lround(radius)));
+  const int half = std::max(kMinHalf, static_cast<int>(std::lround(radius)));
   if (!within(grey, pixel, half)) return 0;
   const auto at = [&](double x, double y) {
     const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));

@@ -51,7 +51,7 @@ TEST(RefineCorner, FindsTheCornerToAFewHundredthsOfAPixel) {
 TEST(RefineCorner, NoCornerIsNothing) {
   EXPECT_FALSE(refine_corner(edge(), {32, 32}, 20)) << "an edge runs one way";
   EXPECT_FALSE(refine_corner(cv::Mat(kPatchSide, kPatchSide, CV_8UC1, cv::Scalar(90)), {32, 32}, 20)) << "nothing at all";
-  EXPECT_FALSE(refine_corner(four_squares({32, 32}, 0.2), {3, 3}, 20)) << "at the picture's border";
+  EXPECT_FALSE(refine_corner(four_squares({32, 32}, 0.2), {3, 3}, 20)) << "at the image's border";
   EXPECT_FALSE(refine_corner(four_squares({32, 32}, 0.2), {44, 20}, 20)) << "the corner is out of reach";
 }
 
@@ -59,7 +59,7 @@ TEST(OppositeLikeness, TellsCornersFromEdges) {
   for (const double turn : {0.0, 0.3, 0.7}) EXPECT_GT(opposite_likeness(four_squares({32.3, 31.8}, turn), {32.3, 31.8}, 8), 0.9);
   EXPECT_LT(opposite_likeness(edge(), {31.5, 32}, 8), -0.8);
   EXPECT_EQ(opposite_likeness(cv::Mat(kPatchSide, kPatchSide, CV_8UC1, cv::Scalar(90)), {32, 32}, 8), 0) << "no contrast";
-  EXPECT_EQ(opposite_likeness(four_squares({32, 32}, 0), {2, 2}, 8), 0) << "the picture ends";
+  EXPECT_EQ(opposite_likeness(four_squares({32, 32}, 0), {2, 2}, 8), 0) << "the image ends";
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ double steepness(const cv::Mat& luma, int column, int row) {
 
 }  // namespace
 
-double sharpness_of(const Picture& picture, const BoardView& view) {
-  const cv::Mat& luma = picture.luma();
+double sharpness_of(const Image& image, const BoardView& view) {
+  const cv::Mat& luma = image.luma();
   std::vector<double> values;
   for (const BoardCorner& corner : view.corners) {
     const int x = static_cast<int>(std::lround(corner.pixel.x())), y = static_cast<int>(std::lround(corner.pixel.y()));

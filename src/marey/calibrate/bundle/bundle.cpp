@@ -18,9 +18,9 @@ namespace {
 
 using bundle::kLensBase;
 
-Vector<3> site_of(const Bundle& bundle, const BundleObservation& seen) {
-  const Body& body = bundle.bodies[static_cast<std::size_t>(seen.body)];
-  const auto marker = static_cast<std::size_t>(seen.marker);
+Vector<3> site_of(const Bundle& bundle, const BundleObservation& detected) {
+  const Body& body = bundle.bodies[static_cast<std::size_t>(detected.body)];
+  const auto marker = static_cast<std::size_t>(detected.marker);
   if (std::holds_alternative<WandPose>(body)) return {bundle.wand[marker], 0, 0};
   if (std::holds_alternative<Rigid3>(body)) return bundle.board[marker];
   return Vector<3>::Zero();
@@ -104,11 +104,12 @@ class Problem {
     return options;
   }
 
-  void add(const BundleObservation& seen) {
-    const auto c = static_cast<std::size_t>(seen.camera), b = static_cast<std::size_t>(seen.body);
+  void add(const BundleObservation& detected) {
+    const auto c = static_cast<std::size_t>(detected.camera), b = static_cast<std::size_t>(detected.body);
     const BundleCamera& camera = bundle_.cameras[c];
     const Body& body = bundle_.bodies[b];
-    ceres::CostFunction* cost = bundle::make_reprojection(camera.lens, body, site_of(bundle_, seen), seen, camera.refine_offset);
+    ceres::CostFunction* cost =
+        bundle::make_reprojection(camera.lens, body, site_of(bundle_, detected), detected, camera.refine_offset);
     std::vector<double*> blocks = {numbers_.poses[c], numbers_.lenses[c], numbers_.bodies[b]};
     if (camera.refine_offset) blocks.push_back(numbers_.offsets[c]);
     problem_.AddResidualBlock(cost, &loss_, blocks);
@@ -197,10 +198,10 @@ double median_noise(const std::vector<std::optional<Vector<2>>>& errors, const s
   return geometry::median(distances) / 1.1774;
 }
 
-/// Judges every observation anew; true where any verdict changed.
-bool judge(const Bundle& bundle, const BundleOptions& options, std::vector<char>& inlier) {
+/// Evaluates every observation again; true where any verdict changed.
+bool assess(const Bundle& bundle, const BundleOptions& options, std::vector<char>& inlier) {
   const auto errors = errors_of(bundle);
-  const double limit = std::max(options.least_outlier_px, options.outlier_sigmas * median_noise(errors, inlier));
+  const double limit = std::max(options.min_outlier_px, options.outlier_sigmas * median_noise(errors, inlier));
   std::vector<char> verdict(inlier.size());
   for (std::size_t i = 0; i < verdict.size(); ++i) verdict[i] = errors[i] && errors[i]->norm() <= limit;
   drop_loose_bodies(bundle, verdict);
@@ -231,18 +232,18 @@ void sum_up(const Bundle& bundle, BundleResult& result) {
 
 }  // namespace
 
-Vector<3> marker_position(const Bundle& bundle, const BundleObservation& seen) {
-  const Body& body = bundle.bodies[static_cast<std::size_t>(seen.body)];
-  const Vector<3> site = site_of(bundle, seen);
+Vector<3> marker_position(const Bundle& bundle, const BundleObservation& detected) {
+  const Body& body = bundle.bodies[static_cast<std::size_t>(detected.body)];
+  const Vector<3> site = site_of(bundle, detected);
   if (const auto* point = std::get_if<Vector<3>>(&body)) return *point;
   if (const auto* board = std::get_if<Rigid3>(&body)) return *board * site;
   const auto& wand = std::get<WandPose>(body);
   return wand.origin + site.x() * wand.direction;
 }
 
-std::optional<Vector<2>> predicted_pixel(const Bundle& bundle, const BundleObservation& seen) {
-  const BundleCamera& camera = bundle.cameras[static_cast<std::size_t>(seen.camera)];
-  const Vector<3> in_camera = camera.camera_from_world * marker_position(bundle, seen);
+std::optional<Vector<2>> predicted_pixel(const Bundle& bundle, const BundleObservation& detected) {
+  const BundleCamera& camera = bundle.cameras[static_cast<std::size_t>(detected.camera)];
+  const Vector<3> in_camera = camera.camera_from_world * marker_position(bundle, detected);
   return std::visit(
       [&](const auto& model) -> std::optional<Vector<2>> {
         if (model.ahead_only && !(in_camera.z() > 1e-6)) return std::nullopt;
@@ -256,14 +257,14 @@ std::optional<Vector<2>> predicted_pixel(const Bundle& bundle, const BundleObser
 std::vector<std::optional<Vector<2>>> errors_of(const Bundle& bundle) {
   std::vector<std::optional<Vector<2>>> errors;
   errors.reserve(bundle.observations.size());
-  for (const BundleObservation& seen : bundle.observations) {
-    const auto pixel = predicted_pixel(bundle, seen);
+  for (const BundleObservation& detected : bundle.observations) {
+    const auto pixel = predicted_pixel(bundle, detected);
     if (!pixel) {
       errors.emplace_back();
       continue;
     }
-    const double offset = bundle.cameras[static_cast<std::size_t>(seen.camera)].offset_s;
-    errors.emplace_back(seen.pixel - seen.velocity * offset - *pixel);
+    const double offset = bundle.cameras[static_cast<std::size_t>(detected.camera)].offset_s;
+    errors.emplace_back(detected.pixel - detected.velocity * offset - *pixel);
   }
   return errors;
 }
@@ -279,7 +280,7 @@ BundleResult adjust(Bundle& bundle, const BundleOptions& options) {
   for (int round = 0; round <= options.rounds; ++round) {
     const bool any = std::count(result.inlier.begin(), result.inlier.end(), 1) > 0;
     if (any) result.converged = Problem(bundle, start, result.inlier, options).solve(bundle, options);
-    if (!any || round == options.rounds || !judge(bundle, options, result.inlier)) break;
+    if (!any || round == options.rounds || !assess(bundle, options, result.inlier)) break;
   }
   sum_up(bundle, result);
   if (options.deviations) result.deviations = bundle::deviations_of(bundle, start, result.inlier, result.noise_px);

@@ -3,7 +3,7 @@
 // Everything that was seen is a body: a free point (an LED), a wand (its place and its direction, so that the markers' distances
 // hold exactly) or a board (its pose). Minimised is the sum of squared distances, in px, between where a marker is seen and where
 // it should be, over the cameras' poses, as much of their lenses as is free, their time offsets, and the bodies, by
-// Levenberg-Marquardt on the cameras' Schur complement (Ceres). Observations far off are put out, round by round, judged by the
+// Levenberg-Marquardt on the cameras' Schur complement (Ceres). Observations far off are put out, round by round, evaluated by the
 // noise that the others show. Cost: linear in observations, cubic in cameras.
 // Reference: Triggs, McLauchlan, Hartley & Fitzgibbon, "Bundle adjustment: a modern synthesis", 1999.
 #pragma once
@@ -68,14 +68,14 @@ struct Bundle {
 };
 
 struct BundleOptions {
-  double noise_px = 0.5;          ///< expected of an observation, each axis: weighs what was known beforehand
-  double loss_sigmas = 3;         ///< beyond so many times the noise an error counts linearly (Huber)
-  double outlier_sigmas = 5;      ///< beyond so many times the noise that the others show, an observation is put out
-  double least_outlier_px = 0.2;  ///< what is nearer is never put out
-  int rounds = 3;                 ///< how often outliers are judged anew, at most; 0: none is ever put out
-  int iterations = 50;            ///< a round, at most
-  double tolerance = 1e-10;       ///< relative change of the cost at which a round ends
-  bool deviations = true;         ///< compute `BundleResult::deviations`
+  double noise_px = 0.5;        ///< expected of an observation, each axis: weighs what was known beforehand
+  double loss_sigmas = 3;       ///< beyond this many times the noise an error counts linearly (Huber)
+  double outlier_sigmas = 5;    ///< beyond this many times the noise that the others show, an observation is put out
+  double min_outlier_px = 0.2;  ///< what is nearer is never put out
+  int rounds = 3;               ///< how often outliers are evaluated again, at most; 0: none is ever put out
+  int iterations = 50;          ///< a round, at most
+  double tolerance = 1e-10;     ///< relative change of the cost at which a round ends
+  bool deviations = true;       ///< compute `BundleResult::deviations`
 };
 
 /// Standard deviations of a camera's numbers, by the noise seen. 0 for what was held, as the pose that is the frame.
@@ -100,17 +100,17 @@ struct BundleResult {
 };
 
 /// Where a marker of a body is, m.
-Vector<3> marker_position(const Bundle& bundle, const BundleObservation& seen);
+Vector<3> marker_position(const Bundle& bundle, const BundleObservation& detected);
 
-/// Its pixel by the bundle's camera, offset and velocity not regarded; nothing where it lies behind the camera.
-std::optional<Vector<2>> predicted_pixel(const Bundle& bundle, const BundleObservation& seen);
+/// Its pixel by the bundle's camera, offset and velocity not regarded; nothing if it lies behind the camera.
+std::optional<Vector<2>> predicted_pixel(const Bundle& bundle, const BundleObservation& detected);
 
-/// Seen minus predicted, px, with the camera's time offset in it; nothing where the marker lies behind the camera. For each
+/// Seen minus predicted, px, with the camera's time offset in it; nothing if the marker lies behind the camera. For each
 /// observation.
 std::vector<std::optional<Vector<2>>> errors_of(const Bundle& bundle);
 
 /// Refines `bundle` in place. Observations behind their camera at the start are put out. A body with fewer observations than hold
-/// it stays where it is and its observations are no inliers. The frame is that of the cameras with
+/// it stays where it is and its observations are not inliers. The frame is that of the cameras with
 /// `refine_pose` false, of which there should be one; where only free points are seen the scale is the start's.
 BundleResult adjust(Bundle& bundle, const BundleOptions& options = {});
 

@@ -55,14 +55,14 @@ struct Derivatives {
   Dense by_camera, by_body;  // 2 × free numbers
 };
 
-Derivatives derivatives_of(const Bundle& bundle, const BundleObservation& seen, const FreeNumbers& free) {
-  const BundleCamera& camera = bundle.cameras[static_cast<std::size_t>(seen.camera)];
-  const Body& body = bundle.bodies[static_cast<std::size_t>(seen.body)];
-  const auto marker = static_cast<std::size_t>(seen.marker);
+Derivatives derivatives_of(const Bundle& bundle, const BundleObservation& detected, const FreeNumbers& free) {
+  const BundleCamera& camera = bundle.cameras[static_cast<std::size_t>(detected.camera)];
+  const Body& body = bundle.bodies[static_cast<std::size_t>(detected.body)];
+  const auto marker = static_cast<std::size_t>(detected.marker);
   Vector<3> site = Vector<3>::Zero();
   if (body.index() == 1) site.x() = bundle.wand[marker];
   if (body.index() == 2) site = bundle.board[marker];
-  const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(camera.lens, body, site, seen, true));
+  const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(camera.lens, body, site, detected, true));
   const auto pose = numbers_of(camera.camera_from_world), lens = numbers_of(camera.lens), where = numbers_of(body);
   const std::array<const double*, 4> blocks = {pose.data(), lens.data(), where.data(), &camera.offset_s};
   RowMajor by_pose(2, kPose), by_lens(2, lens.size()), by_body(2, where.size()), by_offset(2, 1);
@@ -79,12 +79,12 @@ Derivatives derivatives_of(const Bundle& bundle, const BundleObservation& seen, 
 }
 
 /// Adds one body's information about the cameras, the body itself eliminated.
-void add_body(const Bundle& bundle, const std::vector<const BundleObservation*>& seen, const std::vector<FreeNumbers>& free,
+void add_body(const Bundle& bundle, const std::vector<const BundleObservation*>& detected, const std::vector<FreeNumbers>& free,
               Dense& S) {
   std::map<int, Dense> W;  // by camera: free numbers × body's
-  const Dense tangent = tangent_of(bundle.bodies[static_cast<std::size_t>(seen.front()->body)]);
+  const Dense tangent = tangent_of(bundle.bodies[static_cast<std::size_t>(detected.front()->body)]);
   Dense V = Dense::Zero(tangent.cols(), tangent.cols());
-  for (const BundleObservation* one : seen) {
+  for (const BundleObservation* one : detected) {
     const FreeNumbers& numbers = free[static_cast<std::size_t>(one->camera)];
     const Derivatives d = derivatives_of(bundle, *one, numbers);
     const auto n = static_cast<Eigen::Index>(numbers.columns.size());
@@ -109,8 +109,8 @@ Dense inverse_of_determined(const Dense& S) {
   const Eigen::VectorXd scale = S.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const auto eigen = geometry::eigenpairs<Eigen::Dynamic>(scale.asDiagonal() * S * scale.asDiagonal());
   Eigen::VectorXd inverse = eigen.values;
-  const double least = 1e-11 * inverse.maxCoeff();
-  for (double& value : inverse) value = value > least ? 1 / value : 0;
+  const double minimum = 1e-11 * inverse.maxCoeff();
+  for (double& value : inverse) value = value > minimum ? 1 / value : 0;
   return scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose() * scale.asDiagonal();
 }
 
@@ -183,8 +183,8 @@ std::vector<CameraDeviation> deviations_of(const Bundle& bundle, const std::vect
   for (std::size_t i = 0; i < inlier.size(); ++i) {
     if (inlier[i]) by_body[static_cast<std::size_t>(bundle.observations[i].body)].push_back(&bundle.observations[i]);
   }
-  for (const auto& seen : by_body) {
-    if (!seen.empty()) add_body(bundle, seen, free, S);
+  for (const auto& detected : by_body) {
+    if (!detected.empty()) add_body(bundle, detected, free, S);
   }
   for (std::size_t c = 0; c < free.size(); ++c) {
     const auto sigmas = lens_sigmas(start[c].lens, bundle.cameras[c].freedom);

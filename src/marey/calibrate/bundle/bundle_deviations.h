@@ -16,7 +16,7 @@ Eigen::Matrix<double, 3, 6> centre_by_pose(const Rigid3& camera_from_world);
 int free_numbers(const Bundle& bundle, const std::vector<char>& inlier);
 
 /// Standard deviations of the cameras' numbers: the bodies are eliminated (Schur complement), the rest is inverted, directions
-/// that nothing decides (the scale of free points) left out. `noise_px` of an observation's axis.
+/// that nothing decides (the scale of free points) omitted. `noise_px` of an observation's axis.
 std::vector<CameraDeviation> deviations_of(const Bundle& bundle, const std::vector<BundleCamera>& start,
                                            const std::vector<char>& inlier, double noise_px);
 

@@ -19,7 +19,7 @@ Bundle three_cameras(Noise& noise, int wands) {
   for (int c = 0; c < 3; ++c) {
     const double angle = 2 * M_PI * c / 3;
     bundle.cameras.push_back({geometry::BrownLens{{1000, 1000}, {640, 512}, {}},
-                              board::looking({3 * std::cos(angle), 3 * std::sin(angle), 1.5}, {0, 0, 0})});
+                              board::facing({3 * std::cos(angle), 3 * std::sin(angle), 1.5}, {0, 0, 0})});
     bundle.cameras.back().refine_pose = c > 0;
   }
   for (int b = 0; b < wands; ++b) {
@@ -28,7 +28,7 @@ Bundle three_cameras(Noise& noise, int wands) {
       for (int m = 0; m < 3; ++m) bundle.observations.push_back({c, b, m});
     }
   }
-  for (auto& seen : bundle.observations) seen.pixel = predicted_pixel(bundle, seen).value();
+  for (auto& detected : bundle.observations) detected.pixel = predicted_pixel(bundle, detected).value();
   return bundle;
 }
 
@@ -102,7 +102,7 @@ TEST(BundleDeviations, AreWhatAdjustingNoisyPicturesShows) {
   Vector<3> square = Vector<3>::Zero();
   for (int trial = 0; trial < kTrials; ++trial) {
     Bundle bundle = truth;
-    for (auto& seen : bundle.observations) seen.pixel += Vector<2>(noise.gaussian(0.5), noise.gaussian(0.5));
+    for (auto& detected : bundle.observations) detected.pixel += Vector<2>(noise.gaussian(0.5), noise.gaussian(0.5));
     adjust(bundle, {.rounds = 0, .deviations = false});
     const Vector<3> off =
         bundle.cameras[1].camera_from_world.inverse().translation - truth.cameras[1].camera_from_world.inverse().translation;

@@ -20,8 +20,8 @@ Matrix<3> skew(const Vector<3>& v) {
 template <typename Model>
 class Reprojection final : public ceres::CostFunction {
  public:
-  Reprojection(const Body& body, const Vector<3>& site, const BundleObservation& seen, bool with_offset)
-      : kind_(body.index()), site_(site), pixel_(seen.pixel), velocity_(seen.velocity) {
+  Reprojection(const Body& body, const Vector<3>& site, const BundleObservation& detected, bool with_offset)
+      : kind_(body.index()), site_(site), pixel_(detected.pixel), velocity_(detected.velocity) {
     set_num_residuals(2);
     *mutable_parameter_block_sizes() = {kPose, kLensBase + Model::coefficients, body_numbers(body)};
     if (with_offset) mutable_parameter_block_sizes()->push_back(1);
@@ -31,8 +31,8 @@ class Reprojection final : public ceres::CostFunction {
     const Eigen::Map<const Vector<3>> rotation(blocks[0]), translation(blocks[0] + 3);
     const Matrix<3> R = geometry::rotation_from(rotation);
     const Vector<3> world = position(blocks[2]);
-    const Vector<3> turned = R * world;
-    const Vector<3> in_camera = turned + translation;
+    const Vector<3> rotated = R * world;
+    const Vector<3> in_camera = rotated + translation;
     if (!in_front(in_camera)) return false;
 
     Eigen::Map<Vector<2>> error(residuals);
@@ -43,7 +43,7 @@ class Reprojection final : public ceres::CostFunction {
       error = lens_with_jacobian(in_camera, blocks[1], by_camera, jacobians[1]) - pixel_;
       if (jacobians[0] != nullptr) {
         Eigen::Map<Rows<kPose>> J(jacobians[0]);
-        J.leftCols<3>() = -by_camera * skew(turned) * left_jacobian(rotation);
+        J.leftCols<3>() = -by_camera * skew(rotated) * left_jacobian(rotation);
         J.rightCols<3>() = by_camera;
       }
       if (jacobians[2] != nullptr) by_body(by_camera * R, blocks[2], jacobians[2]);
@@ -195,10 +195,10 @@ Matrix<3> left_jacobian(const Vector<3>& angle_axis) {
 }
 
 ceres::CostFunction* make_reprojection(const geometry::Lens& lens, const Body& body, const Vector<3>& site,
-                                       const BundleObservation& seen, bool with_offset) {
+                                       const BundleObservation& detected, bool with_offset) {
   return std::visit(
       [&](const auto& model) -> ceres::CostFunction* {
-        return new Reprojection<std::decay_t<decltype(model)>>(body, site, seen, with_offset);
+        return new Reprojection<std::decay_t<decltype(model)>>(body, site, detected, with_offset);
       },
       lens);
 }

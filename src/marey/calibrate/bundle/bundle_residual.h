@@ -34,6 +34,6 @@ Matrix<3> left_jacobian(const Vector<3>& angle_axis);
 /// Blocks: pose, lens, body and, where `with_offset`, the offset. Evaluating fails where the marker is behind the camera.
 /// `site` is the marker's place on its body: (distance, 0, 0) on a wand, the point on a board. The result is Ceres's to delete.
 ceres::CostFunction* make_reprojection(const geometry::Lens& lens, const Body& body, const Vector<3>& site,
-                                       const BundleObservation& seen, bool with_offset);
+                                       const BundleObservation& detected, bool with_offset);
 
 }  // namespace marey::calibrate::bundle

@@ -50,13 +50,13 @@ TEST(BundleResidual, TheLeftJacobianIsThatOfDifferences) {
     SCOPED_TRACE(seed);
     Noise noise(seed);
     const Vector<3> turn = seed == 1 ? Vector<3>(0, 0, 0) : board::in_cube(noise, 1.5), v = board::in_cube(noise, 2);
-    const Vector<3> turned = geometry::rotation_from(turn) * v;
+    const Vector<3> rotated = geometry::rotation_from(turn) * v;
     const Matrix<3> J = left_jacobian(turn);
     for (int k = 0; k < 3; ++k) {
       Vector<3> step = Vector<3>::Zero();
       step[k] = 1e-6;
       const Vector<3> difference = (geometry::rotation_from(turn + step) * v - geometry::rotation_from(turn - step) * v) / 2e-6;
-      EXPECT_LT((Vector<3>(J.col(k)).cross(turned) - difference).norm(), 1e-5) << k;
+      EXPECT_LT((Vector<3>(J.col(k)).cross(rotated) - difference).norm(), 1e-5) << k;
     }
   }
 }
@@ -68,26 +68,26 @@ TEST(BundleResidual, TheErrorIsPredictedMinusSeen) {
     Bundle bundle;
     bundle.cameras.push_back({lens, {geometry::rotation_from({0.1, -0.2, 0.05}), {0.1, 0.2, 3}}});
     bundle.bodies.emplace_back(Vector<3>(0.2, -0.1, 0.3));
-    const BundleObservation seen{0, 0, 0, {600, 500}, {30, -20}};
-    const auto predicted = predicted_pixel(bundle, seen);
-    const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(lens, bundle.bodies[0], Vector<3>::Zero(), seen, true));
+    const BundleObservation detected{0, 0, 0, {600, 500}, {30, -20}};
+    const auto predicted = predicted_pixel(bundle, detected);
+    const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(lens, bundle.bodies[0], Vector<3>::Zero(), detected, true));
     const auto pose = numbers_of(bundle.cameras[0].camera_from_world), numbers = numbers_of(lens),
                body = numbers_of(bundle.bodies[0]);
     const double offset = 0.1;
     const std::array<const double*, 4> blocks{pose.data(), numbers.data(), body.data(), &offset};
     Vector<2> error;
     ASSERT_TRUE(cost->Evaluate(blocks.data(), error.data(), nullptr));
-    EXPECT_LT((error - (*predicted - seen.pixel + 0.1 * seen.velocity)).norm(), 1e-9);
+    EXPECT_LT((error - (*predicted - detected.pixel + 0.1 * detected.velocity)).norm(), 1e-9);
   }
 }
 
 TEST(BundleResidual, AMarkerBehindTheCameraCannotBeEvaluated) {
-  const BundleObservation seen{0, 0, 0, {600, 500}};
+  const BundleObservation detected{0, 0, 0, {600, 500}};
   const Body body(Vector<3>(0, 0, -1));
-  const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(kLenses[0], body, Vector<3>::Zero(), seen, false));
+  const std::unique_ptr<ceres::CostFunction> cost(make_reprojection(kLenses[0], body, Vector<3>::Zero(), detected, false));
   EXPECT_EQ(cost->parameter_block_sizes().size(), 3U);
-  const auto pose = numbers_of(Rigid3{}), lens = numbers_of(kLenses[0]), place = numbers_of(body);
-  const std::array<const double*, 3> blocks{pose.data(), lens.data(), place.data()};
+  const auto pose = numbers_of(Rigid3{}), lens = numbers_of(kLenses[0]), location = numbers_of(body);
+  const std::array<const double*, 3> blocks{pose.data(), lens.data(), location.data()};
   Vector<2> error;
   EXPECT_FALSE(cost->Evaluate(blocks.data(), error.data(), nullptr));
 }

@@ -21,8 +21,8 @@ struct Dice {
   std::mt19937 engine;
 };
 
-/// A camera at `centre` that looks at the origin, its picture upright.
-Rigid3 looking_inward(const Vector<3>& centre) {
+/// A camera at `centre` that looks at the origin, its image upright.
+Rigid3 facing_inward(const Vector<3>& centre) {
   const Vector<3> ahead = -centre.normalized(), right = ahead.cross(Vector<3>::UnitZ()).normalized();
   Matrix<3> R;
   R << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
@@ -37,7 +37,7 @@ Bundle ring_of_cameras(int cameras, const geometry::Lens& lens) {
   Bundle bundle;
   for (int c = 0; c < cameras; ++c) {
     const double angle = 2 * M_PI * c / cameras;
-    bundle.cameras.push_back({lens, looking_inward({3 * std::cos(angle), 3 * std::sin(angle), 1.5 + 0.3 * (c % 2)})});
+    bundle.cameras.push_back({lens, facing_inward({3 * std::cos(angle), 3 * std::sin(angle), 1.5 + 0.3 * (c % 2)})});
   }
   bundle.cameras.front().refine_pose = false;
   bundle.wand = {0, 0.12, 0.30};
@@ -55,9 +55,9 @@ void fill(Bundle& bundle, std::size_t kind, int bodies, double noise, Dice& dice
     if (kind == 2) bundle.bodies.emplace_back(Rigid3{geometry::rotation_from(dice.in_cube(1.5)), at});
     for (int c = 0; c < static_cast<int>(bundle.cameras.size()); ++c) {
       for (int m = 0; m < static_cast<int>(markers[kind]); ++m) {
-        BundleObservation seen{c, b, m};
-        seen.pixel = predicted_pixel(bundle, seen).value() + Vector<2>(dice.gaussian(noise), dice.gaussian(noise));
-        bundle.observations.push_back(seen);
+        BundleObservation detected{c, b, m};
+        detected.pixel = predicted_pixel(bundle, detected).value() + Vector<2>(dice.gaussian(noise), dice.gaussian(noise));
+        bundle.observations.push_back(detected);
       }
     }
   }
@@ -92,11 +92,11 @@ TEST(Bundle, JacobiansAgreeWithDifferences) {
   for (const geometry::Lens& lens : {geometry::Lens(kBrown), geometry::Lens(kFisheye), geometry::Lens(kTsai)}) {
     for (const Body& body : {Body(Vector<3>(0.1, -0.2, 0.3)), Body(WandPose{{0.1, 0.2, -0.1}, Vector<3>(1, 2, 3).normalized()}),
                              Body(Rigid3{geometry::rotation_from({0.4, -2.1, 0.3}), {0.1, 0, 0.2}})}) {
-      const BundleObservation seen{0, 0, 0, {600, 500}, {130, -250}};
+      const BundleObservation detected{0, 0, 0, {600, 500}, {130, -250}};
       const Vector<3> site = body.index() == 1 ? Vector<3>(0.3, 0, 0) : Vector<3>(0.2, 0.1, 0.05);
-      const std::unique_ptr<ceres::CostFunction> cost(bundle::make_reprojection(lens, body, site, seen, true));
+      const std::unique_ptr<ceres::CostFunction> cost(bundle::make_reprojection(lens, body, site, detected, true));
       std::vector<std::vector<double>> blocks = {
-          bundle::numbers_of(looking_inward({2, 1, 1.5})), bundle::numbers_of(lens), bundle::numbers_of(body), {0.002}};
+          bundle::numbers_of(facing_inward({2, 1, 1.5})), bundle::numbers_of(lens), bundle::numbers_of(body), {0.002}};
       const auto evaluate = [&](double** jacobians) {
         std::array<const double*, 4> at{};
         for (std::size_t i = 0; i < 4; ++i) at[i] = blocks[i].data();
@@ -105,10 +105,10 @@ TEST(Bundle, JacobiansAgreeWithDifferences) {
         return error;
       };
       std::vector<std::vector<double>> jacobians;
-      std::array<double*, 4> places{};
+      std::array<double*, 4> locations{};
       for (const auto& block : blocks) jacobians.emplace_back(2 * block.size());
-      for (std::size_t i = 0; i < 4; ++i) places[i] = jacobians[i].data();
-      const Vector<2> with = evaluate(places.data());
+      for (std::size_t i = 0; i < 4; ++i) locations[i] = jacobians[i].data();
+      const Vector<2> with = evaluate(locations.data());
       EXPECT_LT((with - evaluate(nullptr)).norm(), 1e-9) << "both paths through the lens are one projection";
       for (std::size_t block = 0; block < 4; ++block) {
         for (std::size_t i = 0; i < blocks[block].size(); ++i) {
@@ -133,11 +133,11 @@ TEST(Bundle, ProjectsAsTheCameraDoes) {
   for (const geometry::Lens& lens : {geometry::Lens(kBrown), geometry::Lens(kFisheye), geometry::Lens(kTsai)}) {
     Bundle bundle = ring_of_cameras(3, lens);
     fill(bundle, 1, 20, 0, dice);
-    for (const BundleObservation& seen : bundle.observations) {
-      const Camera camera(lens, bundle.cameras[static_cast<std::size_t>(seen.camera)].camera_from_world, {1280, 1024});
-      const auto pixel = camera.project(marker_position(bundle, seen));
+    for (const BundleObservation& detected : bundle.observations) {
+      const Camera camera(lens, bundle.cameras[static_cast<std::size_t>(detected.camera)].camera_from_world, {1280, 1024});
+      const auto pixel = camera.project(marker_position(bundle, detected));
       ASSERT_TRUE(pixel);
-      EXPECT_LT((*pixel - seen.pixel).norm(), 1e-9);
+      EXPECT_LT((*pixel - detected.pixel).norm(), 1e-9);
     }
   }
 }
@@ -215,7 +215,7 @@ TEST(Bundle, FindsALensByABoardInOneView) {
   EXPECT_EQ(lens.distortion[1], kFisheye.distortion[1]) << "what is held stays";
 }
 
-TEST(Bundle, WhatWasKnownBeforehandIsWeighed) {
+TEST(Bundle, WeightsPriorKnowledge) {
   // One point tells nothing of a focal length: it stays at what was known, and so does its deviation.
   Dice dice(6);
   Bundle bundle = ring_of_cameras(3, kTsai);
@@ -223,7 +223,7 @@ TEST(Bundle, WhatWasKnownBeforehandIsWeighed) {
   for (BundleCamera& camera : bundle.cameras) camera.refine_pose = false;
   fill(bundle, 0, 1, 0.0, dice);
   bundle.observations[1].pixel += Vector<2>(0.01, 0.01);
-  const BundleResult result = adjust(bundle, {.noise_px = 0.1, .least_outlier_px = 1});
+  const BundleResult result = adjust(bundle, {.noise_px = 0.1, .min_outlier_px = 1});
   EXPECT_NEAR(geometry::focal_of(bundle.cameras[1].lens).x(), 1000, 10);
   EXPECT_GT(result.deviations[1].focal, 0);
   EXPECT_LE(result.deviations[1].focal, 0.0101);
@@ -233,9 +233,9 @@ TEST(Bundle, FindsATimeOffset) {
   Dice dice(7);
   Bundle bundle = ring_of_cameras(4, kBrown);
   fill(bundle, 0, 200, 0.05, dice);
-  for (BundleObservation& seen : bundle.observations) {
-    seen.velocity = {dice.uniform(-800, 800), dice.uniform(-800, 800)};
-    if (seen.camera == 2) seen.pixel += seen.velocity * 0.004;
+  for (BundleObservation& detected : bundle.observations) {
+    detected.velocity = {dice.uniform(-800, 800), dice.uniform(-800, 800)};
+    if (detected.camera == 2) detected.pixel += detected.velocity * 0.004;
   }
   bundle.cameras[2].refine_offset = true;
   Bundle truth = bundle;

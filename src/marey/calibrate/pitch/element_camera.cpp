@@ -12,7 +12,7 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr std::size_t kLeastElements = 2;
+constexpr std::size_t kMinElements = 2;
 constexpr std::size_t kStarts = 4;
 constexpr double kCoarse = 8;  // label sigmas: the scale of the loss before the wrong labels are known
 
@@ -43,14 +43,14 @@ struct MainCameraPrior {
 
 MainCameraPrior prior_of(const ElementCameraOptions& options) {
   MainCameraPrior prior;
-  const Vector<3> place = options.place + Vector<3>(options.pitch.length / 2, 0, 0);
+  const Vector<3> location = options.location + Vector<3>(options.pitch.length / 2, 0, 0);
   const auto set = [&](int number, double middle, double sigma) {
     prior.middle[number] = middle, prior.weight[number] = 1 / sigma;
   };
   set(ElementView::roll, 0, options.roll_sigma);
   set(ElementView::bend, options.bend, options.bend_sigma);
   set(ElementView::log_focal, std::log(options.focal), options.focal_sigma);
-  for (int i = 0; i < 3; ++i) set(ElementView::x + i, place(i), options.place_sigma(i));
+  for (int i = 0; i < 3; ++i) set(ElementView::x + i, location(i), options.position_sigma(i));
   return prior;
 }
 
@@ -80,16 +80,16 @@ double fit_view(ElementView& view, std::span<const ElementSight> sights, std::sp
 }
 
 /// Where main cameras stand, for the starts: the prior's middle and a deviation to every side.
-std::vector<Vector<3>> places_of(const ElementCameraOptions& options) {
-  const Vector<3> middle = options.place + Vector<3>(options.pitch.length / 2, 0, 0);
-  std::vector<Vector<3>> places;
+std::vector<Vector<3>> positions_of(const ElementCameraOptions& options) {
+  const Vector<3> middle = options.location + Vector<3>(options.pitch.length / 2, 0, 0);
+  std::vector<Vector<3>> locations;
   for (const double away : {0.0, 1.0, -1.0}) {
     for (const double up : {0.0, 1.0, -1.0}) {
       for (const double aside : {0.0, 1.0, -1.0})
-        places.emplace_back(middle + options.place_sigma.cwiseProduct(Vector<3>(aside, away, up)));
+        locations.emplace_back(middle + options.position_sigma.cwiseProduct(Vector<3>(aside, away, up)));
     }
   }
-  return places;
+  return locations;
 }
 
 double median_error(const ElementView& view, const ElementSight& sight) {
@@ -104,16 +104,16 @@ struct Fitted {
   ElementView view;
   double cost = std::numeric_limits<double>::infinity();
   std::vector<char> used;
-  std::vector<double> errors;  // half picture widths
+  std::vector<double> errors;  // half image widths
   std::size_t fitting() const { return static_cast<std::size_t>(std::count(used.begin(), used.end(), 1)); }
   bool all_fit() const { return fitting() == used.size(); }
 };
 
-/// The best of several starts, with whole elements that do not fit left out.
+/// The best of several starts, with whole elements that do not fit omitted.
 Fitted fit_elements(std::span<const ElementSight> sights, const ElementCameraOptions& options) {
   Fitted best;
   best.used.assign(sights.size(), 1);
-  for (ElementView view : element_starts(sights, places_of(options), kStarts)) {
+  for (ElementView view : element_starts(sights, positions_of(options), kStarts)) {
     const double cost = fit_view(view, sights, best.used, kCoarse, options);
     if (cost < best.cost) best.cost = cost, best.view = view;
   }
@@ -124,7 +124,7 @@ Fitted fit_elements(std::span<const ElementSight> sights, const ElementCameraOpt
       best.errors.push_back(median_error(best.view, sights[i]));
       best.used[i] = best.errors[i] < options.outlier ? 1 : 0;
     }
-    if (round == 1 || best.fitting() < kLeastElements) break;
+    if (round == 1 || best.fitting() < kMinElements) break;
     best.cost = fit_view(best.view, sights, best.used, 2, options);
   }
   return best;
@@ -137,21 +137,21 @@ double unexplained(const Fitted& fitted, std::span<const ElementSight> sights, c
 }
 
 constexpr geometry::PitchMirror kAcross{.left_right = true}, kAlong{.near_far = true},
-    kTurned{.left_right = true, .near_far = true};
+    kRotated{.left_right = true, .near_far = true};
 
 /// Whether a mirrored pitch explains the labels clearly better than the one they name.
-ElementVerdict judged(std::span<const geometry::LabelledElement> labels, cv::Size size, const Fitted& as_named, double cost,
-                      const ElementCameraOptions& options) {
+ElementVerdict evaluated(std::span<const geometry::LabelledElement> labels, cv::Size size, const Fitted& as_named, double cost,
+                         const ElementCameraOptions& options) {
   ElementVerdict verdict = 2 * as_named.fitting() > as_named.used.size() ? ElementVerdict::found : ElementVerdict::no_camera;
-  double least = options.mirror_margin * cost;
+  double minimum = options.mirror_margin * cost;
   for (const auto& [mirror, meaning] :
-       {std::pair{kAcross, ElementVerdict::mirrored}, {kAlong, ElementVerdict::mirrored}, {kTurned, ElementVerdict::far_side}}) {
+       {std::pair{kAcross, ElementVerdict::mirrored}, {kAlong, ElementVerdict::mirrored}, {kRotated, ElementVerdict::far_side}}) {
     std::vector<geometry::LabelledElement> renamed(labels.begin(), labels.end());
     for (geometry::LabelledElement& label : renamed) label.element = geometry::mirrored_element(label.element, mirror);
     const std::vector<ElementSight> sights = sights_of(renamed, options.pitch, size);
     const Fitted fitted = fit_elements(sights, options);
     const double other = unexplained(fitted, sights, options);
-    if (other < least && fitted.fitting() > as_named.fitting()) least = other, verdict = meaning;
+    if (other < minimum && fitted.fitting() > as_named.fitting()) minimum = other, verdict = meaning;
   }
   return verdict;
 }
@@ -189,10 +189,10 @@ ElementCamera camera_from_elements(std::span<const geometry::LabelledElement> la
                                    const ElementCameraOptions& options) {
   ElementCamera result;
   const std::vector<ElementSight> sights = sights_of(labels, options.pitch, size);
-  if (sights.size() < kLeastElements || sights.size() != labels.size()) return result;
+  if (sights.size() < kMinElements || sights.size() != labels.size()) return result;
   const Fitted fitted = fit_elements(sights, options);
   const double cost = unexplained(fitted, sights, options);
-  result.verdict = fitted.all_fit() && std::isfinite(cost) ? ElementVerdict::found : judged(labels, size, fitted, cost, options);
+  result.verdict = fitted.all_fit() && std::isfinite(cost) ? ElementVerdict::found : evaluated(labels, size, fitted, cost, options);
   if (result.verdict == ElementVerdict::found && fitted.view.p[ElementView::y] > options.pitch.width / 2)
     result.verdict = ElementVerdict::far_side;
   if (result.verdict != ElementVerdict::found) return result;

@@ -12,14 +12,14 @@ const cv::Size kLabelled(960, 540);
 
 /// px: how far two cameras see the places of the labelled elements apart, at most.
 double apart(const geometry::Camera& one, const geometry::Camera& other, const std::vector<geometry::LabelledElement>& labels) {
-  double most = 0;
+  double maximum = 0;
   for (const auto& label : labels) {
-    for (const Vector<3>& place : geometry::sampled(geometry::pitch_elements({})[static_cast<std::size_t>(label.element)], 5)) {
-      const auto a = one.project(place), b = other.project(place);
-      if (a && b && one.in_picture(*a)) most = std::max(most, (*a - *b).norm());
+    for (const Vector<3>& location : geometry::sampled(geometry::pitch_elements({})[static_cast<std::size_t>(label.element)], 5)) {
+      const auto a = one.project(location), b = other.project(location);
+      if (a && b && one.in_image(*a)) maximum = std::max(maximum, (*a - *b).norm());
     }
   }
-  return most;
+  return maximum;
 }
 
 TEST(ElementCamera, IsFoundFromLabelsOfOnePicture) {
@@ -33,7 +33,7 @@ TEST(ElementCamera, IsFoundFromLabelsOfOnePicture) {
   }
 }
 
-TEST(ElementCamera, OneWrongNameIsLeftOut) {
+TEST(ElementCamera, ExcludesWrongName) {
   std::mt19937 random(12);
   for (int scene = 0; scene < 6; ++scene) {
     const geometry::Camera truth = camera_of(main_camera(random), kLabelled);
@@ -62,9 +62,9 @@ TEST(ElementCamera, AMirroredPitchIsSaid) {
         label.element = geometry::mirrored_element(label.element, {.left_right = left_right, .near_far = !left_right});
       EXPECT_EQ(camera_from_elements(mirrored, kLabelled).verdict, ElementVerdict::mirrored) << "scene " << scene;
     }
-    auto turned = labels;
-    for (auto& label : turned) label.element = geometry::mirrored_element(label.element, {.left_right = true, .near_far = true});
-    EXPECT_EQ(camera_from_elements(turned, kLabelled).verdict, ElementVerdict::far_side) << "scene " << scene;
+    auto rotated = labels;
+    for (auto& label : rotated) label.element = geometry::mirrored_element(label.element, {.left_right = true, .near_far = true});
+    EXPECT_EQ(camera_from_elements(rotated, kLabelled).verdict, ElementVerdict::far_side) << "scene " << scene;
   }
 }
 

@@ -18,14 +18,14 @@
 
 namespace marey::calibrate::pitch {
 
-/// A main camera in nine numbers: pan and tilt (0, 0 looks along y, the tilt grows downwards, the pan to the right), roll, all rad;
-/// ln of the focal length in half picture widths; the place, m; the radial term, per half picture width squared.
+/// A main camera in nine numbers: pan and tilt (0, 0 faces along y, the tilt grows downwards, the pan to the right), roll, all rad;
+/// ln of the focal length in half image widths; the place, m; the radial term, per half image width squared.
 struct ElementView {
   enum { pan, tilt, roll, log_focal, x, y, z, bend, numbers };
   std::array<double, numbers> p{};
 };
 
-/// The camera of these numbers, with a picture of that size; lens model brown, principal point in the middle.
+/// The camera of these numbers, with an image of that size; lens model brown, principal point in the middle.
 geometry::Camera camera_of(const ElementView& view, cv::Size size);
 
 /// Axes and place of a view.
@@ -49,9 +49,9 @@ struct ElementFrame {
     focal = exp(p[ElementView::log_focal]);
   }
 
-  /// A place (m) to homogeneous coordinates of the straightened picture, half widths from its middle; the third is the depth.
-  V3 seen(const V3& place) const {
-    const V3 off = place - centre;
+  /// A place (m) to homogeneous coordinates of the straightened image, half widths from its middle; the third is the depth.
+  V3 detected(const V3& location) const {
+    const V3 off = location - centre;
     return {focal * right.dot(off), focal * down.dot(off), ahead.dot(off)};
   }
 
@@ -73,15 +73,15 @@ Eigen::Matrix<T, 2, 1> straightened(const Vector<2>& distorted, const T& bend) {
 
 namespace element_residual {
 
-constexpr double kLeastDepth = 0.5;  // m
+constexpr double kMinDepth = 0.5;  // m
 
 /// From `at` to where `place` is seen; what lies behind the camera is held before it.
 template <typename T>
-Eigen::Matrix<T, 2, 1> to_place(const ElementFrame<T>& frame, const Eigen::Matrix<T, 3, 1>& place,
-                                const Eigen::Matrix<T, 2, 1>& at) {
-  Eigen::Matrix<T, 3, 1> seen = frame.seen(place);
-  if (!(seen.z() > T(kLeastDepth))) seen.z() = T(kLeastDepth);
-  return Eigen::Matrix<T, 2, 1>(seen.x() / seen.z(), seen.y() / seen.z()) - at;
+Eigen::Matrix<T, 2, 1> to_position(const ElementFrame<T>& frame, const Eigen::Matrix<T, 3, 1>& location,
+                                   const Eigen::Matrix<T, 2, 1>& at) {
+  Eigen::Matrix<T, 3, 1> detected = frame.detected(location);
+  if (!(detected.z() > T(kMinDepth))) detected.z() = T(kMinDepth);
+  return Eigen::Matrix<T, 2, 1>(detected.x() / detected.z(), detected.y() / detected.z()) - at;
 }
 
 template <typename T>
@@ -89,18 +89,18 @@ Eigen::Matrix<T, 2, 1> off(const geometry::StraightElement& line, const ElementF
   using std::sqrt;
   using V3 = Eigen::Matrix<T, 3, 1>;
   const V3 from = line.from.cast<T>(), along = (line.to - line.from).cast<T>();
-  const V3 a = frame.seen(from), b = frame.seen(V3(from + along));
+  const V3 a = frame.detected(from), b = frame.detected(V3(from + along));
   const V3 n = a.cross(b);
   const T length = sqrt(n.x() * n.x() + n.y() * n.y() + T(1e-30));
-  const Eigen::Matrix<T, 2, 1> way(-n.y() / length, n.x() / length);
+  const Eigen::Matrix<T, 2, 1> method(-n.y() / length, n.x() / length);
   // The place on the line that is seen beside the point: (a + t d), d = b − a.
   const V3 d = b - a;
-  const T over = way.x() * (a.x() - at.x() * a.z()) + way.y() * (a.y() - at.y() * a.z());
-  const T under = way.x() * (d.x() - at.x() * d.z()) + way.y() * (d.y() - at.y() * d.z());
+  const T over = method.x() * (a.x() - at.x() * a.z()) + method.y() * (a.y() - at.y() * a.z());
+  const T under = method.x() * (d.x() - at.x() * d.z()) + method.y() * (d.y() - at.y() * d.z());
   const T t = -over / under;
-  if (!(t > T(0))) return to_place(frame, from, at);
-  if (t > T(1)) return to_place(frame, V3(from + along), at);
-  if (!(a.z() + t * d.z() > T(kLeastDepth))) return to_place(frame, V3(from + t * along), at);
+  if (!(t > T(0))) return to_position(frame, from, at);
+  if (t > T(1)) return to_position(frame, V3(from + along), at);
+  if (!(a.z() + t * d.z() > T(kMinDepth))) return to_position(frame, V3(from + t * along), at);
   return {(n.x() * at.x() + n.y() * at.y() + n.z()) / length, T(0)};
 }
 
@@ -110,10 +110,10 @@ Eigen::Matrix<T, 2, 1> off(const geometry::ArcElement& arc, const ElementFrame<T
   using std::sqrt;
   using V3 = Eigen::Matrix<T, 3, 1>;
   const V3 centre(T(arc.centre.x()), T(arc.centre.y()), T(0));
-  // Columns of the map from the ground, about the arc's centre, to the picture; its inverse but for a factor.
+  // Columns of the map from the ground, about the arc's centre, to the image; its inverse but for a factor.
   const V3 a(frame.focal * frame.right.x(), frame.focal * frame.down.x(), frame.ahead.x());
   const V3 b(frame.focal * frame.right.y(), frame.focal * frame.down.y(), frame.ahead.y());
-  const V3 c = frame.seen(centre);
+  const V3 c = frame.detected(centre);
   const V3 r0 = b.cross(c), r1 = c.cross(a), r2 = a.cross(b);
   const V3 point(at.x(), at.y(), T(1));
   const T gx = r0.dot(point), gy = r1.dot(point), gw = r2.dot(point);
@@ -126,8 +126,8 @@ Eigen::Matrix<T, 2, 1> off(const geometry::ArcElement& arc, const ElementFrame<T
   if (from_middle < T(-std::numbers::pi)) from_middle += T(2 * std::numbers::pi);
   if (!ahead || from_middle > T(half) || from_middle < T(-half)) {
     const double end = !ahead ? middle : from_middle > T(0) ? arc.to : arc.from;
-    const V3 place(T(arc.centre.x() + arc.radius * std::cos(end)), T(arc.centre.y() + arc.radius * std::sin(end)), T(0));
-    return to_place(frame, place, at);
+    const V3 location(T(arc.centre.x() + arc.radius * std::cos(end)), T(arc.centre.y() + arc.radius * std::sin(end)), T(0));
+    return to_position(frame, location, at);
   }
   const T value = gx * gx + gy * gy - T(square) * gw * gw;
   const V3 by_point = T(2) * (gx * r0 + gy * r1 - T(square) * gw * r2);
@@ -136,7 +136,7 @@ Eigen::Matrix<T, 2, 1> off(const geometry::ArcElement& arc, const ElementFrame<T
 
 }  // namespace element_residual
 
-/// From the straightened point `at` to the element, in half picture widths: across it alone, or to the end that it lies past.
+/// From the straightened point `at` to the element, in half image widths: across it alone, or to the end that it lies past.
 template <typename T>
 Eigen::Matrix<T, 2, 1> off(const geometry::PitchElement& element, const ElementFrame<T>& frame, const Eigen::Matrix<T, 2, 1>& at) {
   return std::visit([&](const auto& shape) { return element_residual::off(shape, frame, at); }, element.shape);

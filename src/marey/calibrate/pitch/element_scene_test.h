@@ -7,23 +7,25 @@
 
 namespace marey::calibrate::pitch {
 
-/// What a main camera would have labelled of a pitch: of each element in the picture its visible ends and some points between,
+/// What a main camera would have labelled of a pitch: of each element in the image its visible ends and some points between,
 /// `noise_px` off.
 inline std::vector<geometry::LabelledElement> labels_of(const geometry::Camera& camera, double noise_px, std::mt19937& random) {
   std::normal_distribution<double> noise(0, noise_px > 0 ? noise_px : 1);
   std::vector<geometry::LabelledElement> labels;
   const auto elements = geometry::pitch_elements({});
   for (int i = 0; i < geometry::kPitchElements; ++i) {
-    std::vector<Vector<2>> seen;
-    for (const Vector<3>& place : geometry::sampled(elements[static_cast<std::size_t>(i)], 0.25)) {
-      const auto pixel = camera.project(place);
-      if (pixel && camera.in_picture(*pixel)) seen.push_back(*pixel);
+    std::vector<Vector<2>> detected;
+    for (const Vector<3>& location : geometry::sampled(elements[static_cast<std::size_t>(i)], 0.25)) {
+      const auto pixel = camera.project(location);
+      if (pixel && camera.in_image(*pixel)) detected.push_back(*pixel);
     }
-    if (seen.size() < 2 || (seen.front() - seen.back()).norm() + (seen[seen.size() / 2] - seen.back()).norm() < 20) continue;
+    if (detected.size() < 2 ||
+        (detected.front() - detected.back()).norm() + (detected[detected.size() / 2] - detected.back()).norm() < 20)
+      continue;
     geometry::LabelledElement label{i, {}};
     const std::size_t count = std::holds_alternative<geometry::ArcElement>(elements[static_cast<std::size_t>(i)].shape) ? 9 : 2;
     for (std::size_t k = 0; k < count; ++k) {
-      label.points.push_back(seen[k * (seen.size() - 1) / (count - 1)]);
+      label.points.push_back(detected[k * (detected.size() - 1) / (count - 1)]);
       if (noise_px > 0) label.points.back() += Vector<2>(noise(random), noise(random));
     }
     labels.push_back(std::move(label));

@@ -15,23 +15,23 @@ bool inside(const Vector<2>& pixel, cv::Size size) {
   return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < size.width && pixel.y() < size.height;
 }
 
-/// Where the way from `in` to `out` leaves the picture.
+/// Where the way from `in` to `out` leaves the image.
 Vector<2> leaving(const Vector<2>& in, const Vector<2>& out, cv::Size size) {
-  const Vector<2> way = out - in, last(size.width - 1, size.height - 1);
+  const Vector<2> method = out - in, last(size.width - 1, size.height - 1);
   double t = 1;
   for (int axis = 0; axis < 2; ++axis) {
-    if (way(axis) > 0) t = std::min(t, std::max(0.0, last(axis) - in(axis)) / way(axis));
-    if (way(axis) < 0) t = std::min(t, in(axis) / -way(axis));
+    if (method(axis) > 0) t = std::min(t, std::max(0.0, last(axis) - in(axis)) / method(axis));
+    if (method(axis) < 0) t = std::min(t, in(axis) / -method(axis));
   }
-  return in + t * way;
+  return in + t * method;
 }
 
 Polyline projected(const geometry::Camera& camera, const geometry::PitchElement& element) {
   Polyline line;
   std::optional<Vector<2>> before;
   bool in = false;
-  for (const Vector<3>& place : geometry::sampled(element, kProjectedEvery)) {
-    const std::optional<Vector<2>> pixel = camera.project(place);
+  for (const Vector<3>& location : geometry::sampled(element, kProjectedEvery)) {
+    const std::optional<Vector<2>> pixel = camera.project(location);
     if (!pixel) continue;
     if (inside(*pixel, camera.size())) {
       if (!in && before) line.push_back(leaving(*pixel, *before, camera.size()));
@@ -49,9 +49,9 @@ Polyline projected(const geometry::Camera& camera, const geometry::PitchElement&
 double distance(const Vector<2>& point, const Polyline& line) {
   double nearest = (point - line[0]).norm();
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const Vector<2> way = line[i] - line[i - 1];
-    const double t = way.squaredNorm() > 0 ? std::clamp((point - line[i - 1]).dot(way) / way.squaredNorm(), 0.0, 1.0) : 0;
-    nearest = std::min(nearest, (point - line[i - 1] - t * way).norm());
+    const Vector<2> method = line[i] - line[i - 1];
+    const double t = method.squaredNorm() > 0 ? std::clamp((point - line[i - 1]).dot(method) / method.squaredNorm(), 0.0, 1.0) : 0;
+    nearest = std::min(nearest, (point - line[i - 1] - t * method).norm());
   }
   return nearest;
 }
@@ -93,8 +93,8 @@ ElementScore score_elements(const geometry::Camera& camera, std::span<const geom
   const auto elements = geometry::pitch_elements(pitch);
   for (std::size_t i = 0; i < lines.size(); ++i) lines[i] = projected(camera, elements[i]);
   const ElementScore as_named = score_as_named(lines, labels, {}, tolerance);
-  const ElementScore turned = score_as_named(lines, labels, {.left_right = true, .near_far = true}, tolerance);
-  return turned.jaccard() > as_named.jaccard() ? turned : as_named;
+  const ElementScore rotated = score_as_named(lines, labels, {.left_right = true, .near_far = true}, tolerance);
+  return rotated.jaccard() > as_named.jaccard() ? rotated : as_named;
 }
 
 }  // namespace marey::calibrate::pitch

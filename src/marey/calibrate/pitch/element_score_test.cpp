@@ -21,7 +21,7 @@ TEST(ElementScore, TheTrueCameraExplainsWhatItProjects) {
   }
 }
 
-TEST(ElementScore, OnePointAsideMakesItsElementWrong) {
+TEST(ElementScore, DisplacedPointFailsItsElement) {
   std::mt19937 random(8);
   const geometry::Camera camera = camera_of(main_camera(random), kScored);
   auto labels = labels_of(camera, 0, random);
@@ -32,7 +32,7 @@ TEST(ElementScore, OnePointAsideMakesItsElementWrong) {
   EXPECT_EQ(after.wrong, before.wrong + 1);
 }
 
-TEST(ElementScore, WhatIsSeenAndNotLabelledIsWrongAndTheOtherWayMissed) {
+TEST(ElementScore, CountsUnlabelledAsFalseAndUndetectedAsMissed) {
   std::mt19937 random(9);
   const geometry::Camera camera = camera_of(main_camera(random), kScored);
   auto labels = labels_of(camera, 0, random);

@@ -9,32 +9,32 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr double kFarthestFelt = 0.1;             // half picture widths: a point farther off says nothing
-constexpr double kWidest = 1.2, kNarrowest = 60;  // focal lengths, half picture widths
-constexpr double kMostRoll = 0.2;                 // rad
-constexpr double kFarthestCrossing = 1.6;         // half picture widths from the middle, where elements' lines are prolonged to
-constexpr double kSameAngle = 0.25, kSameFocal = 0.1;  // of the picture's half width, of ln f: nearer starts are one
+constexpr double kMaxFelt = 0.1;                       // half image widths: a point farther off says nothing
+constexpr double kMaxWidth = 1.2, kMinWidth = 60;      // focal lengths, half image widths
+constexpr double kMaxRoll = 0.2;                       // rad
+constexpr double kMaxCrossing = 1.6;                   // half image widths from the middle, where elements' lines are prolonged to
+constexpr double kSameAngle = 0.25, kSameFocal = 0.1;  // of the image's half width, of ln f: nearer starts are one
 
 struct Crossing {
-  Vector<3> place;
+  Vector<3> location;
   Vector<2> pixel;
 };
 
 /// Where two straight elements' lines meet in space.
-std::optional<Vector<3>> meeting(const geometry::StraightElement& a, const geometry::StraightElement& b) {
+std::optional<Vector<3>> close_encounter(const geometry::StraightElement& a, const geometry::StraightElement& b) {
   const Vector<3> u = a.to - a.from, v = b.to - b.from, normal = u.cross(v), between = b.from - a.from;
   if (normal.norm() < 1e-9 || std::abs(between.dot(normal)) > 1e-6 * normal.norm()) return std::nullopt;
   return Vector<3>(a.from + u * (between.cross(v).dot(normal) / normal.squaredNorm()));
 }
 
-std::optional<Vector<2>> meeting(const ElementSight& a, const ElementSight& b) {
+std::optional<Vector<2>> close_encounter(const ElementSight& a, const ElementSight& b) {
   const Vector<3> meets =
       a.first.homogeneous().cross(a.last.homogeneous()).cross(b.first.homogeneous().cross(b.last.homogeneous()));
   const double sine =
       std::abs((a.last - a.first).normalized().dot(Vector<2>(b.first.y() - b.last.y(), b.last.x() - b.first.x()).normalized()));
   if (!(sine > 0.05)) return std::nullopt;
   const Vector<2> pixel = meets.hnormalized();
-  if (!(pixel.norm() < kFarthestCrossing)) return std::nullopt;
+  if (!(pixel.norm() < kMaxCrossing)) return std::nullopt;
   return pixel;
 }
 
@@ -45,9 +45,9 @@ std::vector<Crossing> crossings_of(std::span<const ElementSight> sights) {
       const auto* a = std::get_if<geometry::StraightElement>(&sights[i].model.shape);
       const auto* b = std::get_if<geometry::StraightElement>(&sights[k].model.shape);
       if (a == nullptr || b == nullptr) continue;
-      const auto place = meeting(*a, *b);
-      const auto pixel = meeting(sights[i], sights[k]);
-      if (place && pixel) result.push_back({*place, *pixel});
+      const auto location = close_encounter(*a, *b);
+      const auto pixel = close_encounter(sights[i], sights[k]);
+      if (location && pixel) result.push_back({*location, *pixel});
     }
   }
   return result;
@@ -59,14 +59,14 @@ double angle_between(const Vector<3>& a, const Vector<3>& b) {
 
 /// The focal length at which two pixels are seen under this angle, by halving ln f.
 std::optional<double> focal_for(const Vector<2>& a, const Vector<2>& b, double angle) {
-  const auto seen = [&](double focal) {
+  const auto detected = [&](double focal) {
     return angle_between({a.x() / focal, a.y() / focal, 1}, {b.x() / focal, b.y() / focal, 1});
   };
-  double low = kWidest, high = kNarrowest;
-  if (!(seen(low) > angle && seen(high) < angle)) return std::nullopt;
+  double low = kMaxWidth, high = kMinWidth;
+  if (!(detected(low) > angle && detected(high) < angle)) return std::nullopt;
   for (int i = 0; i < 16; ++i) {
     const double middle = std::sqrt(low * high);
-    (seen(middle) > angle ? low : high) = middle;
+    (detected(middle) > angle ? low : high) = middle;
   }
   return std::sqrt(low * high);
 }
@@ -79,8 +79,8 @@ Matrix<3> axes_of(const Vector<3>& a, const Vector<3>& b) {
   return axes;
 }
 
-std::optional<ElementView> two_point_view(const Crossing& one, const Crossing& other, const Vector<3>& place) {
-  const Vector<3> a = one.place - place, b = other.place - place;
+std::optional<ElementView> two_point_view(const Crossing& one, const Crossing& other, const Vector<3>& location) {
+  const Vector<3> a = one.location - location, b = other.location - location;
   if ((one.pixel - other.pixel).norm() < 0.05) return std::nullopt;
   const auto focal = focal_for(one.pixel, other.pixel, angle_between(a, b));
   if (!focal) return std::nullopt;
@@ -90,8 +90,8 @@ std::optional<ElementView> two_point_view(const Crossing& one, const Crossing& o
   const double pan = std::atan2(ahead.x(), ahead.y()), tilt = -std::asin(std::clamp(ahead.z(), -1.0, 1.0));
   const Vector<3> level_right(std::cos(pan), -std::sin(pan), 0);
   const double roll = std::atan2(right.dot(ahead.cross(level_right)), right.dot(level_right));
-  if (std::abs(roll) > kMostRoll) return std::nullopt;
-  return ElementView{{pan, tilt, roll, std::log(*focal), place.x(), place.y(), place.z(), 0}};
+  if (std::abs(roll) > kMaxRoll) return std::nullopt;
+  return ElementView{{pan, tilt, roll, std::log(*focal), location.x(), location.y(), location.z(), 0}};
 }
 
 struct RatedStart {
@@ -99,20 +99,20 @@ struct RatedStart {
   double cost = 0;
 };
 
-void add_grid(std::span<const ElementSight> sights, const Vector<3>& place, std::vector<RatedStart>& starts) {
+void add_grid(std::span<const ElementSight> sights, const Vector<3>& location, std::vector<RatedStart>& starts) {
   Vector<3> middle = Vector<3>::Zero();
   for (const ElementSight& sight : sights) {
     const std::vector<Vector<3>> points = geometry::sampled(sight.model, 1e9);
     for (const Vector<3>& point : points) middle += point / static_cast<double>(points.size() * sights.size());
   }
-  const Vector<3> off = middle - place;
+  const Vector<3> off = middle - location;
   const double pan0 = std::atan2(off.x(), off.y());
   for (double log_focal = std::log(1.5); log_focal < std::log(30.0); log_focal += 0.3) {
     const double step = 0.35 / std::exp(log_focal);
     for (double pan = pan0 - 0.5; pan <= pan0 + 0.5; pan += step) {
       for (double tilt = 0; tilt < 0.6; tilt += step) {
-        const ElementView view{{pan, tilt, 0, log_focal, place.x(), place.y(), place.z(), 0}};
-        starts.push_back({view, cut_off_cost(view, sights, 3 * kFarthestFelt)});
+        const ElementView view{{pan, tilt, 0, log_focal, location.x(), location.y(), location.z(), 0}};
+        starts.push_back({view, cut_off_cost(view, sights, 3 * kMaxFelt)});
       }
     }
   }
@@ -163,20 +163,20 @@ double cut_off_cost(const ElementView& view, std::span<const ElementSight> sight
   return cost / static_cast<double>(sights.size());
 }
 
-std::vector<ElementView> element_starts(std::span<const ElementSight> sights, std::span<const Vector<3>> places,
+std::vector<ElementView> element_starts(std::span<const ElementSight> sights, std::span<const Vector<3>> locations,
                                         std::size_t count) {
   const std::vector<Crossing> crossings = crossings_of(sights);
   std::vector<RatedStart> starts;
-  for (const Vector<3>& place : places) {
+  for (const Vector<3>& location : locations) {
     for (std::size_t i = 0; i < crossings.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
-        if (const auto view = two_point_view(crossings[i], crossings[k], place))
-          starts.push_back({*view, cut_off_cost(*view, sights, kFarthestFelt)});
+        if (const auto view = two_point_view(crossings[i], crossings[k], location))
+          starts.push_back({*view, cut_off_cost(*view, sights, kMaxFelt)});
       }
     }
   }
   if (starts.empty()) {
-    for (const Vector<3>& place : places) add_grid(sights, place, starts);
+    for (const Vector<3>& location : locations) add_grid(sights, location, starts);
   }
   std::stable_sort(starts.begin(), starts.end(), [](const RatedStart& a, const RatedStart& b) { return a.cost < b.cost; });
   std::vector<ElementView> best;

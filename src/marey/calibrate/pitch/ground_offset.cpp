@@ -95,7 +95,7 @@ std::string_view offset_verdict_name(OffsetVerdict verdict) {
     case OffsetVerdict::no_overlap:
       return "no overlap";
     case OffsetVerdict::no_motion:
-      return "nobody moves";
+      return "no person moves";
     case OffsetVerdict::ambiguous:
       return "ambiguous";
   }
@@ -103,7 +103,7 @@ std::string_view offset_verdict_name(OffsetVerdict verdict) {
 }
 
 bool contradicts(const GroundOffset& found, double assumed_s, const GroundOffsetOptions& options) {
-  if (found.verdict != OffsetVerdict::found || found.gain < options.least_score) return false;
+  if (found.verdict != OffsetVerdict::found || found.gain < options.min_score) return false;
   return std::abs(found.offset_s - assumed_s) > std::max(kContradicts * found.deviation_s, kNegligible_s);
 }
 

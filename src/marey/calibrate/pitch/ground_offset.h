@@ -2,7 +2,7 @@
 //
 // Each camera follows people by itself; the paths of one person, seen by two cameras, agree when the clocks do. Two seconds of a
 // path from one camera are compared with every path from the other, its time shifted: as one person's (both apart by something
-// systematic, half a metre that hardly changes, and by noise) against as two people's (anywhere, moving anyhow). The logarithms of
+// systematic, half a metre that barely changes, and by noise) against as two people's (anywhere, moving anyhow). The logarithms of
 // the ratios, those against cut off, add up to a score for the shift. A shift moves who runs straight along like the systematic
 // part, so turns, starts and stops carry the answer, and people who run in different directions.
 //   coarse  the score at every tenth of a second,
@@ -26,23 +26,23 @@ namespace marey::calibrate::pitch {
 struct GroundPath {
   struct Sample {
     double time_s = 0;  ///< by the camera's own clock
-    Vector<2> place = Vector<2>::Zero();
+    Vector<2> location = Vector<2>::Zero();
     Matrix<2> covariance = Matrix<2>::Identity();  ///< m²
   };
   std::vector<Sample> samples;
 };
 
 struct GroundOffsetOptions {
-  double most_offset_s = 60;       ///< how far cameras are out of step
-  double systematic_m = 0.5;       ///< standard deviation of what stays different between two cameras' places of one person
-  double least_common_s = 3;       ///< that two recordings must have in common, in seconds
-  double least_score = 8;          ///< nats by which a shift must be better than all that are not beside it
-  double most_deviation_s = 0.15;  ///< a shift less sure than this is not taken for found
+  double max_offset_s = 60;       ///< how far cameras are unsynchronised
+  double systematic_m = 0.5;      ///< standard deviation of what stays different between two cameras' places of one person
+  double min_common_s = 3;        ///< that two recordings must have in common, in seconds
+  double min_score = 8;           ///< nats by which a shift must be better than all that are not beside it
+  double max_deviation_s = 0.15;  ///< a shift less sure than this is not taken for found
 };
 
 enum class OffsetVerdict { found, no_overlap, no_motion, ambiguous };
 
-/// "found", "no overlap", "nobody moves", "ambiguous".
+/// "found", "no overlap", "no person moves", "ambiguous".
 std::string_view offset_verdict_name(OffsetVerdict verdict);
 
 struct GroundOffset {

@@ -22,37 +22,37 @@ constexpr double kStride_s = 1;                     // from one segment to the n
 constexpr double kWeight = kStride_s / kSegment_s;  // and count the less
 constexpr double kSample_s = 0.2;                   // between the places that are compared
 constexpr int kSegmentSamples = 10;                 // of a segment,
-constexpr std::size_t kLeastSegmentSamples = 5;     // where one of both was not seen throughout
-constexpr double kMemory_s = 0.5;                   // errors hang together for about so long
+constexpr std::size_t kMinSegmentSamples = 5;       // where one of both was not seen throughout
+constexpr double kMemory_s = 0.5;                   // errors hang together for about this long
 constexpr double kFloor_m = 0.05;                   // noise that a smoothed place has at least
 constexpr double kDifferent_m = 1.0;                // how much the distance of two different people changes within a segment
 constexpr double kDensity = 0.01;                   // other people per m²
-constexpr double kFarthest_m = 4;                   // who is farther apart is not one person
+constexpr double kMaxDistance_m = 4;                // who is farther apart is not one person
 constexpr double kPaired = 2;                       // nats above which a pair takes part in the fine search
-constexpr double kBlock_s = 6;                      // the systematic part of a pair is taken to stay for so long
+constexpr double kBlock_s = 6;                      // the systematic part of a pair is taken to stay for this long
 constexpr double kStep_s = 0.15;                    // of the coarse search
 constexpr std::size_t kPeaks = 4;                   // that are refined
 constexpr int kIterations = 10;                     // of the fine search
 constexpr double kStandsOut = 4;                    // times what peaks differ by chance
 constexpr double kExplained = 0.2;                  // of who walks before both cameras, that must be seen by both
-constexpr double kOptimism = 1.5;     // by which errors that hang together for longer make the answer worse than least squares say
-constexpr double kLeastFree = 20;     // degrees of freedom that estimate the noise
-constexpr double kLeastNoise = 0.02;  // and by how much less, or more, than covariances say
+constexpr double kOptimism = 1.5;   // by which errors that hang together for longer make the answer worse than least squares say
+constexpr double kMinFree = 20;     // degrees of freedom that estimate the noise
+constexpr double kMinNoise = 0.02;  // and by how much less, or more, than covariances say
 constexpr int kNoiseRounds = 2;
-constexpr double kBeside_s = 0.5;      // a peak so near is the same one
-constexpr double kWalks_m = 1;         // who gets no farther within a segment stands
-constexpr double kLeastMoving_s = 4;   // person-seconds of walking in the ground both see, that decide anything
-constexpr double kLeastOverlap_s = 3;  // person-seconds in places that both see, that make an overlap
+constexpr double kNextTo_s = 0.5;    // a peak so near is the same one
+constexpr double kWalks_m = 1;       // who gets no farther within a segment stands
+constexpr double kMinMoving_s = 4;   // person-seconds of walking in the ground both see, that decide anything
+constexpr double kMinOverlap_s = 3;  // person-seconds in places that both see, that make an overlap
 constexpr double kCell_m = 4;
 constexpr double kTick_s = SmoothPath::kStep_s;
-constexpr std::size_t kMostSegments = 600;
+constexpr std::size_t kMaxSegments = 600;
 
 double log_det(const Matrix<2>& m) {
   return std::log(m.determinant());
 }
 
-std::pair<int, int> cell_of(const Vector<2>& place) {
-  return {static_cast<int>(std::floor(place.x() / kCell_m)), static_cast<int>(std::floor(place.y() / kCell_m))};
+std::pair<int, int> cell_of(const Vector<2>& location) {
+  return {static_cast<int>(std::floor(location.x() / kCell_m)), static_cast<int>(std::floor(location.y() / kCell_m))};
 }
 
 std::pair<double, double> span_of(const std::vector<SmoothPath>& paths) {
@@ -111,16 +111,16 @@ GroundPair::GroundPair(const std::vector<SmoothPath>& a, const std::vector<Smoot
   if (a.empty() || b.empty()) return;
   const auto [a_begin, a_end] = span_of(a);
   std::tie(b_begin_, b_end_) = span_of(b);
-  first_s_ = std::max(-options.most_offset_s, a_begin + options.least_common_s - b_end_);
-  last_s_ = std::min(options.most_offset_s, a_end - options.least_common_s - b_begin_);
+  first_s_ = std::max(-options.max_offset_s, a_begin + options.min_common_s - b_end_);
+  last_s_ = std::min(options.max_offset_s, a_end - options.min_common_s - b_begin_);
   present_.resize(static_cast<std::size_t>((b_end_ - b_begin_) / kTick_s) + 2);
   std::set<std::pair<int, int>> cells;
   for (std::size_t j = 0; j < b.size(); ++j) {
     for (double t = std::ceil((b[j].begin_s() - b_begin_) / kTick_s) * kTick_s + b_begin_; t < b[j].end_s(); t += kTick_s) {
       const auto state = b[j].at(t);
       if (!state) continue;
-      present_[static_cast<std::size_t>(std::lround((t - b_begin_) / kTick_s))].push_back({j, state->place});
-      cells.insert(cell_of(state->place));
+      present_[static_cast<std::size_t>(std::lround((t - b_begin_) / kTick_s))].push_back({j, state->location});
+      cells.insert(cell_of(state->location));
     }
   }
   cut(a, cells);
@@ -135,23 +135,23 @@ void GroundPair::cut(const std::vector<SmoothPath>& a, const std::set<std::pair<
         const double time = begin + kSample_s * k;
         if (const auto state = a[i].at(time)) segment.times_s.push_back(time), segment.states.push_back(*state);
       }
-      if (segment.states.size() < kLeastSegmentSamples) continue;
+      if (segment.states.size() < kMinSegmentSamples) continue;
       const auto common = std::count_if(segment.states.begin(), segment.states.end(),
-                                        [&](const SmoothPath::State& state) { return cells.contains(cell_of(state.place)); });
+                                        [&](const SmoothPath::State& state) { return cells.contains(cell_of(state.location)); });
       const double common_s = kWeight * kSample_s * static_cast<double>(common);
       overlap_s_ += common_s;
-      if (common == 0 || (segment.states.back().place - segment.states.front().place).norm() < kWalks_m) continue;
+      if (common == 0 || (segment.states.back().location - segment.states.front().location).norm() < kWalks_m) continue;
       moving_s_ += common_s;
       segments_.push_back(std::move(segment));
     }
   }
-  if (segments_.size() <= kMostSegments) return;
+  if (segments_.size() <= kMaxSegments) return;
   std::vector<Segment> some;
-  for (std::size_t i = 0; i < kMostSegments; ++i) some.push_back(std::move(segments_[i * segments_.size() / kMostSegments]));
+  for (std::size_t i = 0; i < kMaxSegments; ++i) some.push_back(std::move(segments_[i * segments_.size() / kMaxSegments]));
   segments_ = std::move(some);
 }
 
-/// Of the segment being the same person's as `other` against another's; nothing where they are not to be compared.
+/// Of the segment being the same person's as `other` against another's; nothing if they are not to be compared.
 std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const SmoothPath& other, double shift_s) const {
   double count = 0;
   Vector<2> mean = Vector<2>::Zero();
@@ -159,24 +159,24 @@ std::optional<double> GroundPair::likelihood_ratio(const Segment& segment, const
   for (std::size_t k = 0; k < segment.states.size(); ++k) {
     const auto there = other.at(segment.times_s[k] - shift_s);
     if (!there) continue;
-    const Vector<2> apart = segment.states[k].place - there->place;
+    const Vector<2> apart = segment.states[k].location - there->location;
     count += 1;
     mean += apart;
     square += apart * apart.transpose();
     noise += noise_scale_ * (segment.states[k].noise + there->noise);
   }
-  if (count < kLeastSegmentSamples) return std::nullopt;
+  if (count < kMinSegmentSamples) return std::nullopt;
   mean /= count;
   noise = noise / count + kFloor_m * kFloor_m * Matrix<2>::Identity();
   const Matrix<2> spread = square / count - mean * mean.transpose();
-  const double worth = count * kSample_s / kMemory_s;  // independent samples
+  const double merit = count * kSample_s / kMemory_s;  // independent samples
   const double systematic = options_.systematic_m * options_.systematic_m;
-  const Matrix<2> of_mean = systematic * Matrix<2>::Identity() + noise / worth;
+  const Matrix<2> of_mean = systematic * Matrix<2>::Identity() + noise / merit;
   const Matrix<2> different = noise + kDifferent_m * kDifferent_m * Matrix<2>::Identity();
   const double same_mean =
       -0.5 * mean.dot(of_mean.inverse() * mean) - std::log(2 * std::numbers::pi) - 0.5 * log_det(of_mean) - std::log(kDensity);
   const double same_motion =
-      -0.5 * (worth - 1) *
+      -0.5 * (merit - 1) *
       ((noise.inverse() * spread).trace() + log_det(noise) - (different.inverse() * spread).trace() - log_det(different));
   return same_mean + same_motion;
 }
@@ -187,8 +187,8 @@ std::optional<GroundPair::Match> GroundPair::match(const Segment& segment, doubl
   const double tick = std::round((segment.times_s[middle] - shift_s - b_begin_) / kTick_s);
   if (!(tick >= 0) || tick >= static_cast<double>(present_.size())) return std::nullopt;
   std::optional<Match> best;
-  for (const auto& [path, place] : present_[static_cast<std::size_t>(tick)]) {
-    if ((place - segment.states[middle].place).squaredNorm() > kFarthest_m * kFarthest_m) continue;
+  for (const auto& [path, location] : present_[static_cast<std::size_t>(tick)]) {
+    if ((location - segment.states[middle].location).squaredNorm() > kMaxDistance_m * kMaxDistance_m) continue;
     const auto ratio = likelihood_ratio(segment, (*b_)[path], shift_s);
     if (ratio && (!best || *ratio > best->score)) best = Match{path, *ratio};
   }
@@ -240,7 +240,7 @@ std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
       const auto there = (*b_)[found->path].at(segment.times_s[k] - shift_s);
       if (!there) continue;
       const Matrix<2> noise = noise_scale_ * (segment.states[k].noise + there->noise) + kFloor_m * kFloor_m * Matrix<2>::Identity();
-      equations.add(block, segment.states[k].place - there->place, there->velocity, noise);
+      equations.add(block, segment.states[k].location - there->location, there->velocity, noise);
     }
   }
   equations.eliminate_blocks();
@@ -252,7 +252,7 @@ std::optional<GroundPair::Fit> GroundPair::step(double shift_s) const {
   const double variance = solver.solve(Vector<3>::UnitX()).x();
   if (!(variance > 0) || !std::isfinite(by.x())) return std::nullopt;
   const double free = 2 * equations.samples - 2 * blocks - 1;
-  const double misfit = free > kLeastFree ? std::max(0.0, equations.cost - equations.right.dot(by)) / free : 1;
+  const double misfit = free > kMinFree ? std::max(0.0, equations.cost - equations.right.dot(by)) / free : 1;
   return Fit{shift_s + std::clamp(by.x(), -kStep_s, kStep_s), kOptimism * std::sqrt(variance), 0, misfit};
 }
 
@@ -268,7 +268,7 @@ std::optional<GroundPair::Fit> GroundPair::refine(double shift_s) const {
   return fit;
 }
 
-/// Of those who walk where the other camera sees people, and while it films, the share that it sees walk there too.
+/// Of those who walk where the other camera sees people, and while it videos, the share that it sees walk there too.
 double GroundPair::explained(double shift_s) const {
   double all = 0, matched = 0;
   for (const Segment& segment : segments_) {
@@ -293,14 +293,14 @@ std::vector<GroundPair::Fit> GroundPair::fits(const std::vector<double>& peaks) 
 
 GroundOffset GroundPair::find(std::optional<double> near) {
   GroundOffset result;
-  if (overlap_s_ < kLeastOverlap_s) return result;
-  result.verdict = moving_s_ < kLeastMoving_s ? OffsetVerdict::no_motion : OffsetVerdict::ambiguous;
+  if (overlap_s_ < kMinOverlap_s) return result;
+  result.verdict = moving_s_ < kMinMoving_s ? OffsetVerdict::no_motion : OffsetVerdict::ambiguous;
   if (result.verdict == OffsetVerdict::no_motion) return result;
   const Peaks coarse = near ? Peaks{{*near}, 0} : peaks();
   std::vector<Fit> fits = this->fits(coarse.shifts_s);
-  // Covariances speak of how wrong a place may be at all; how much that changes from one moment to the next, the paths show.
+  // Covariances speak of how wrong a place may be at all; how much that changes from one instant to the next, the paths show.
   for (int i = 0; i < kNoiseRounds && !fits.empty(); ++i) {
-    noise_scale_ = std::clamp(noise_scale_ * fits[0].misfit, kLeastNoise, 1 / kLeastNoise);
+    noise_scale_ = std::clamp(noise_scale_ * fits[0].misfit, kMinNoise, 1 / kMinNoise);
     std::vector<double> again;
     for (const Fit& fit : fits) again.push_back(fit.shift_s);
     fits = this->fits(again);
@@ -308,12 +308,12 @@ GroundOffset GroundPair::find(std::optional<double> near) {
   if (fits.empty()) return result;
   const Fit& best = fits[0];
   const auto rival =
-      std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& fit) { return std::abs(fit.shift_s - best.shift_s) > kBeside_s; });
+      std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& fit) { return std::abs(fit.shift_s - best.shift_s) > kNextTo_s; });
   const double gap = best.score - (rival == fits.end() ? 0 : rival->score);
   result.offset_s = best.shift_s;
   result.deviation_s = best.deviation_s;
-  if (gap >= std::max(options_.least_score, kStandsOut * coarse.chance) && explained(best.shift_s) >= kExplained &&
-      best.deviation_s <= options_.most_deviation_s)
+  if (gap >= std::max(options_.min_score, kStandsOut * coarse.chance) && explained(best.shift_s) >= kExplained &&
+      best.deviation_s <= options_.max_deviation_s)
     result.verdict = OffsetVerdict::found;
   return result;
 }

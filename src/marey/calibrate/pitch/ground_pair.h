@@ -47,7 +47,7 @@ class GroundPair {
 
   struct Present {
     std::size_t path = 0;
-    Vector<2> place;
+    Vector<2> location;
   };
 
   void cut(const std::vector<SmoothPath>& a, const std::set<std::pair<int, int>>& cells);

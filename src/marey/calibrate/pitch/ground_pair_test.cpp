@@ -15,8 +15,8 @@ Vector<2> at(int person, double t) {
 }
 
 /// What a camera sees of six of them whose clock shows `offset_s` less than the world's.
-std::vector<SmoothPath> seen(double offset_s, double seconds, std::uint64_t seed, const Vector<2>& systematic = {0, 0},
-                             int first = 0) {
+std::vector<SmoothPath> detected(double offset_s, double seconds, std::uint64_t seed, const Vector<2>& systematic = {0, 0},
+                                 int first = 0) {
   Noise noise(seed);
   std::vector<SmoothPath> paths;
   for (int person = first; person < first + 6; ++person) {
@@ -34,8 +34,8 @@ std::vector<SmoothPath> seen(double offset_s, double seconds, std::uint64_t seed
 TEST(GroundPair, FindsTheShiftWhateverIsSystematic) {
   for (const double offset : {-3.37, 0.0, 1.234}) {
     SCOPED_TRACE(offset);
-    const auto a = seen(0, 20, 1), b = seen(offset, 20, 2, {0.4, -0.3});
-    GroundPair pair(a, b, {.most_offset_s = 8});
+    const auto a = detected(0, 20, 1), b = detected(offset, 20, 2, {0.4, -0.3});
+    GroundPair pair(a, b, {.max_offset_s = 8});
     const GroundOffset found = pair.find();
     ASSERT_EQ(found.verdict, OffsetVerdict::found);
     EXPECT_NEAR(found.offset_s, offset, 0.04);
@@ -45,26 +45,26 @@ TEST(GroundPair, FindsTheShiftWhateverIsSystematic) {
 }
 
 TEST(GroundPair, TheScoreIsBestAtTheTruth) {
-  const auto a = seen(0, 20, 3), b = seen(0.8, 20, 4);
-  const GroundPair pair(a, b, {.most_offset_s = 8});
+  const auto a = detected(0, 20, 3), b = detected(0.8, 20, 4);
+  const GroundPair pair(a, b, {.max_offset_s = 8});
   const double best = pair.score(0.8);
   for (const double other : {-4.0, 0.0, 0.5, 1.1, 3.0}) EXPECT_LT(pair.score(other), best - 3) << other;
 }
 
 TEST(GroundPair, KnowingWhereToLookFindsTheSame) {
-  const auto a = seen(0, 20, 5), b = seen(0.6, 20, 6);
-  GroundPair pair(a, b, {.most_offset_s = 8});
+  const auto a = detected(0, 20, 5), b = detected(0.6, 20, 6);
+  GroundPair pair(a, b, {.max_offset_s = 8});
   const GroundOffset anywhere = pair.find(), near = pair.find(0.5);
   ASSERT_EQ(near.verdict, OffsetVerdict::found);
   EXPECT_NEAR(near.offset_s, anywhere.offset_s, 0.01);
 }
 
 TEST(GroundPair, CamerasThatSeeNobodyInCommonHaveNone) {
-  const auto a = seen(0, 20, 7), nobody = std::vector<SmoothPath>{}, far = seen(0, 20, 8, {200, 100});
-  EXPECT_EQ(GroundPair(a, nobody, {}).find().verdict, OffsetVerdict::no_overlap);
+  const auto a = detected(0, 20, 7), no_person = std::vector<SmoothPath>{}, far = detected(0, 20, 8, {200, 100});
+  EXPECT_EQ(GroundPair(a, no_person, {}).find().verdict, OffsetVerdict::no_overlap);
   EXPECT_EQ(GroundPair(a, far, {}).find().verdict, OffsetVerdict::no_overlap);
   EXPECT_EQ(GroundPair(a, far, {}).overlap_s(), 0);
-  const auto b = seen(0, 20, 9);
+  const auto b = detected(0, 20, 9);
   EXPECT_GT(GroundPair(a, b, {}).overlap_s(), 60) << "six people for twenty seconds";
 }
 

@@ -9,14 +9,14 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr double kReach_s = 0.5;    // of the parabola, to both sides
-constexpr double kNear_s = 0.25;    // something must have been seen so near on both sides
-constexpr std::size_t kLeast = 4;   // samples that make a parabola
-constexpr double kIndependent = 2;  // errors of a second's samples hang together: they are worth so many
+constexpr double kReach_s = 0.5;      // of the parabola, to both sides
+constexpr double kNear_s = 0.25;      // something must have been seen so near on both sides
+constexpr std::size_t kMinValue = 4;  // samples that make a parabola
+constexpr double kIndependent = 2;    // errors of a second's samples hang together: they are worth this many
 
-/// The parabola through `samples` about `time_s`; nothing where they do not hold it.
+/// The parabola through `samples` about `time_s`; nothing if they do not hold it.
 std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples, double time_s) {
-  if (samples.size() < kLeast || samples.front().time_s > time_s - kNear_s || samples.back().time_s < time_s + kNear_s)
+  if (samples.size() < kMinValue || samples.front().time_s > time_s - kNear_s || samples.back().time_s < time_s + kNear_s)
     return std::nullopt;
   Matrix<3> normal = Matrix<3>::Zero();
   Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
@@ -28,7 +28,7 @@ std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples
     const double weight = bell / std::max(sample.covariance.trace(), 1e-6);
     const Vector<3> basis(1, u, u * u);
     normal += weight * basis * basis.transpose();
-    right += weight * basis * sample.place.transpose();
+    right += weight * basis * sample.location.transpose();
     noise += bell * sample.covariance;
     total += bell;
   }
@@ -43,7 +43,7 @@ std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples
 
 SmoothPath::SmoothPath(const GroundPath& path) {
   const auto& samples = path.samples;
-  if (samples.size() < kLeast) return;
+  if (samples.size() < kMinValue) return;
   begin_s_ = samples.front().time_s;
   const auto steps = static_cast<std::size_t>((samples.back().time_s - begin_s_) / kStep_s) + 1;
   std::size_t first = 0, end = 0;
@@ -56,16 +56,16 @@ SmoothPath::SmoothPath(const GroundPath& path) {
 }
 
 std::optional<SmoothPath::State> SmoothPath::at(double time_s) const {
-  const double place = (time_s - begin_s_) / kStep_s;
-  if (!(place >= 0) || place >= static_cast<double>(states_.size()) - 1) return std::nullopt;
-  const auto i = static_cast<std::size_t>(place);
+  const double location = (time_s - begin_s_) / kStep_s;
+  if (!(location >= 0) || location >= static_cast<double>(states_.size()) - 1) return std::nullopt;
+  const auto i = static_cast<std::size_t>(location);
   const auto &a = states_[i], &b = states_[i + 1];
   if (!a || !b) return std::nullopt;
   // Hermite's cubic: velocities are known too.
-  const double u = place - static_cast<double>(i), w = 1 - u;
+  const double u = location - static_cast<double>(i), w = 1 - u;
   State result;
-  result.place = w * w * (1 + 2 * u) * a->place + u * u * (1 + 2 * w) * b->place +
-                 kStep_s * (u * w * w * a->velocity - u * u * w * b->velocity);
+  result.location = w * w * (1 + 2 * u) * a->location + u * u * (1 + 2 * w) * b->location +
+                    kStep_s * (u * w * w * a->velocity - u * u * w * b->velocity);
   result.velocity = w * a->velocity + u * b->velocity;
   result.noise = w * a->noise + u * b->noise;
   return result;

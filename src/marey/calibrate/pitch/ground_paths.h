@@ -15,12 +15,12 @@ class SmoothPath {
   explicit SmoothPath(const GroundPath& path);
 
   struct State {
-    Vector<2> place = Vector<2>::Zero();     ///< m
+    Vector<2> location = Vector<2>::Zero();  ///< m
     Vector<2> velocity = Vector<2>::Zero();  ///< m/s
     Matrix<2> noise = Matrix<2>::Zero();     ///< m², of the smoothed place, apart from what is systematic
   };
 
-  /// Nothing where the person was not seen about that time.
+  /// Nothing if the person was not seen about that time.
   std::optional<State> at(double time_s) const;
 
   double begin_s() const { return begin_s_; }

@@ -9,7 +9,7 @@ namespace {
 
 using board::Noise;
 
-/// Somebody who runs along a parabola: a smoothing by parabolas has no error.
+/// A person who runs along a parabola: a smoothing by parabolas has no error.
 Vector<2> runner(double t) {
   return {3 + 4 * t - 0.5 * t * t, 10 - 2 * t + 0.3 * t * t};
 }
@@ -32,7 +32,7 @@ TEST(SmoothPath, FollowsAParabolaExactlyAndWithoutLag) {
     for (double t = 2.5; t < 7; t += 0.037) {
       const auto state = smooth.at(t);
       ASSERT_TRUE(state) << t;
-      EXPECT_LT((state->place - runner(t)).norm(), 1e-6) << t;
+      EXPECT_LT((state->location - runner(t)).norm(), 1e-6) << t;
       EXPECT_LT((state->velocity - Vector<2>(4 - t, -2 + 0.6 * t)).norm(), 1e-6) << t;
     }
   }
@@ -45,7 +45,7 @@ TEST(SmoothPath, NoiseIsAveragedAway) {
     const SmoothPath smooth(path_of(0, 30, 25, 0.2, noise));
     double square = 0;
     int count = 0;
-    for (double t = 1; t < 29; t += 0.05, ++count) square += (smooth.at(t)->place - runner(t)).squaredNorm() / 2;
+    for (double t = 1; t < 29; t += 0.05, ++count) square += (smooth.at(t)->location - runner(t)).squaredNorm() / 2;
     EXPECT_LT(std::sqrt(square / count), 0.1) << "of 0.2 m in a frame";
     EXPECT_NEAR(smooth.at(10)->noise(0, 0), 0.04 / 2, 1e-9) << "worth two independent samples";
   }

@@ -14,12 +14,12 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-// The search narrows as the camera gets better (units of `find_lines`, for a picture of 3,072 px; more or less for others).
+// The search narrows as the camera gets better (units of `find_lines`, for an image of 3,072 px; more or less for others).
 constexpr double kReaches[] = {14, 12, 10, 10, 8};
 constexpr double kLastReaches[] = {8, 6};  // when lens and ground are known together
 constexpr double kReferenceWidth = 3072;
-constexpr double kSampleStep = 0.25;   // m
-constexpr double kFarthestClick = 50;  // px: what is clicked further off its line is no click on it
+constexpr double kSampleStep = 0.25;  // m
+constexpr double kMaxClick = 50;      // px: what is clicked further off its line is not a click on it
 
 /// Frames with their origin in the middle of the pitch have negative coordinates within half a pitch.
 Vector<2> corner_of(const std::vector<PitchView>& views, const geometry::PitchSize& size) {
@@ -47,12 +47,12 @@ std::vector<geometry::PitchLine> lines_in_world(const geometry::PitchSize& size,
 void measure_lines(const geometry::GroundSurface& ground, PitchViewResult& result) {
   const GroundView view(result.camera, ground);
   std::vector<double> pixels, metres;
-  for (const LineSighting& seen : result.lines) {
-    const auto expected = view.pixel(seen.ground);
+  for (const LineSighting& detected : result.lines) {
+    const auto expected = view.pixel(detected.ground);
     if (!expected) continue;
-    const double off = seen.normal.dot(seen.pixel - *expected);
+    const double off = detected.normal.dot(detected.pixel - *expected);
     pixels.push_back(std::abs(off));
-    metres.push_back(std::abs(off) / seen.pixels_per_metre);
+    metres.push_back(std::abs(off) / detected.pixels_per_metre);
   }
   result.line_median_px = geometry::quantile(pixels, 0.5);
   result.line_95_px = geometry::quantile(pixels, 0.95);
@@ -66,23 +66,23 @@ void measure_points(const std::vector<PitchPoint>& points, const GroundView& vie
   result.error_px.clear();
   for (const PitchPoint& point : points) {
     const auto pixel = view.pixel(point.ground);
-    const auto place = view.place(point.pixel);
+    const auto location = view.location(point.pixel);
     result.error_px.push_back(pixel ? (*pixel - point.pixel).norm()
                                     : std::hypot(result.camera.size().width, result.camera.size().height));
-    result.error_m.push_back(place ? std::optional((place->ground - point.ground).norm()) : std::nullopt);
+    result.error_m.push_back(location ? std::optional((location->ground - point.ground).norm()) : std::nullopt);
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     auto& better = result.better_name.emplace_back();
     if (result.inlier[i]) continue;
     double nearest = result.error_px[i] / 3;
-    // Its neighbours' coordinates, exchanged one by one: whoever names a point wrong takes one number of the next.
+    // Its neighbours' coordinates, exchanged one by one: the one who names a point wrong takes one number of the next.
     for (const PitchPoint& x_of : points) {
       for (const PitchPoint& y_of : points) {
-        const Vector<2> place(x_of.ground.x(), y_of.ground.y());
-        const auto pixel = view.pixel(place);
+        const Vector<2> location(x_of.ground.x(), y_of.ground.y());
+        const auto pixel = view.pixel(location);
         if (!pixel || (*pixel - points[i].pixel).norm() >= nearest) continue;
         nearest = (*pixel - points[i].pixel).norm();
-        better = (ground_from_world * place.homogeneous()).hnormalized();
+        better = (ground_from_world * location.homogeneous()).hnormalized();
       }
     }
   }
@@ -99,17 +99,17 @@ std::vector<LineSighting> sightings_of(const std::vector<PitchClickedLine>& clic
     const Vector<2> from = (world_from_ground * line.from.homogeneous()).hnormalized();
     const Vector<2> to = (world_from_ground * line.to.homogeneous()).hnormalized();
     for (const Vector<2>& pixel : line.pixels) {
-      double nearest = kFarthestClick;
+      double nearest = kMaxClick;
       std::optional<LineSighting> best;
       for (int i = 0; i <= pieces; ++i) {
-        const Vector<2> place = from + (to - from) * i / pieces;
-        const auto here = view.camera()->project_with_jacobian({place.x(), place.y(), view.surface().height(place)});
+        const Vector<2> location = from + (to - from) * i / pieces;
+        const auto here = view.camera()->project_with_jacobian({location.x(), location.y(), view.surface().height(location)});
         if (!here || (here->pixel - pixel).norm() >= nearest) continue;
         nearest = (here->pixel - pixel).norm();
         const Vector<2> along = here->by_world.leftCols<2>() * (to - from).normalized();
         const Vector<2> normal = Vector<2>(-along.y(), along.x()).normalized();
         const Vector<2> aside = here->by_world.leftCols<2>() * Vector<2>(from.y() - to.y(), to.x() - from.x()).normalized();
-        best = LineSighting{place, pixel, normal, std::abs(normal.dot(aside)), kClickSigma, -1};
+        best = LineSighting{location, pixel, normal, std::abs(normal.dot(aside)), kClickSigma, -1};
       }
       if (best) result.push_back(*best);
     }
@@ -143,15 +143,15 @@ std::vector<PitchPoint> points_in_world(const PitchView& view, const Matrix<3>& 
   return points;
 }
 
-constexpr double kClickOutlier = 4;       // of a click's error
-constexpr double kLeastClickOutlier = 6;  // px: no user clicks better than this always
+constexpr double kClickOutlier = 4;     // of a click's error
+constexpr double kMinClickOutlier = 6;  // px: no user clicks better than this always
 
 std::vector<char> clicks_that_fit(const std::vector<PitchPoint>& points, const GroundView& view, double scale) {
   std::vector<char> fits;
   for (const PitchPoint& point : points) {
     const auto pixel = view.pixel(point.ground);
     fits.push_back(click_error(view, point) < kClickOutlier * std::max(1.0, scale) ||
-                   (pixel && (*pixel - point.pixel).norm() < kLeastClickOutlier));
+                   (pixel && (*pixel - point.pixel).norm() < kMinClickOutlier));
   }
   return fits;
 }
@@ -166,9 +166,9 @@ void fit_together(const std::vector<PitchView>& views, const PitchCalibrationOpt
   const auto round = [&] {
     std::vector<PitchEvidence> evidence;
     for (std::size_t i = 0; i < views.size(); ++i) {
-      const PitchViewResult& nearly = result.views[i];
-      evidence.push_back({nearly.camera, points_in_world(views[i], world_from_ground), nearly.lines,
-                          sightings_of(views[i].lines, world_from_ground, GroundView(nearly.camera, ground))});
+      const PitchViewResult& almost = result.views[i];
+      evidence.push_back({almost.camera, points_in_world(views[i], world_from_ground), almost.lines,
+                          sightings_of(views[i].lines, world_from_ground, GroundView(almost.camera, ground))});
     }
     result.fit = fit_pitch(evidence, ground, options.known);
     ground = result.fit.ground;

@@ -20,7 +20,7 @@ struct PitchView {
   cv::Size size;                        ///< px
   std::vector<PitchPoint> points;       ///< in the user's frame, right-handed or not
   std::vector<PitchClickedLine> lines;  ///< the same
-  cv::Mat empty_ground;  ///< CV_8UC1 of `size`, people not in it; empty where there are no pictures: then points alone decide
+  cv::Mat empty_ground;  ///< CV_8UC1 of `size`, people not in it; empty if there are no images: then points alone decide
 };
 
 struct PitchCalibrationOptions {
@@ -34,7 +34,7 @@ struct PitchViewResult {
   Camera camera;                                      ///< in a right-handed world, m, z up, the pitch's corners on z = 0
   std::vector<char> inlier;                           ///< for each point
   std::vector<double> error_px;                       ///< for each point: from the click to where the camera sees its place
-  std::vector<std::optional<double>> error_m;         ///< for each point, on the ground; nothing where the click is in the sky
+  std::vector<std::optional<double>> error_m;         ///< for each point, on the ground; nothing if the click is in the sky
   std::vector<std::optional<Vector<2>>> better_name;  ///< for each outlier, the place of another clicked name that would fit it
   std::vector<LineSighting> lines;
   double line_median_px = 0, line_95_px = 0;  ///< distances of the paint from the model; 0 where no line was seen

@@ -21,13 +21,13 @@ void check(const std::string& name, const std::vector<PitchPoint>& points) {
   if (points.size() < 4)
     throw Error("{}: {} {} on the pitch {} given; at least 4 are needed, not all on one line", name, points.size(),
                 points.size() == 1 ? "point" : "points", points.size() == 1 ? "is" : "are");
-  for (const bool in_picture : {false, true}) {
+  for (const bool in_image : {false, true}) {
     Vector<2> middle = Vector<2>::Zero();
-    for (const PitchPoint& point : points) middle += in_picture ? point.pixel : point.ground;
+    for (const PitchPoint& point : points) middle += in_image ? point.pixel : point.ground;
     middle /= static_cast<double>(points.size());
     Matrix<2> spread = Matrix<2>::Zero();
     for (const PitchPoint& point : points) {
-      const Vector<2> off = (in_picture ? point.pixel : point.ground) - middle;
+      const Vector<2> off = (in_image ? point.pixel : point.ground) - middle;
       spread += off * off.transpose();
     }
     // The eigenvalues of a 2 x 2 matrix, by hand: Eigen's solver costs the compiler seconds.
@@ -36,7 +36,7 @@ void check(const std::string& name, const std::vector<PitchPoint>& points) {
     const double across = half_trace - half_gap, along = half_trace + half_gap;
     if (across < 1e-5 * along || !(along > 0))
       throw Error("{}: all {} points lie on one line {}; click points on at least two lines of the pitch", name, points.size(),
-                  in_picture ? "of the picture" : "of the pitch");
+                  in_image ? "of the image" : "of the pitch");
   }
 }
 
@@ -56,13 +56,14 @@ struct PointError {
 };
 
 struct LineError {
-  LineSighting seen;
+  LineSighting detected;
   double sigma;
 
   template <typename T>
   bool operator()(const T* p, T* error) const {
-    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, seen.ground, T(0));
-    error[0] = ((pixel.x() - seen.pixel.x()) * seen.normal.x() + (pixel.y() - seen.pixel.y()) * seen.normal.y()) / sigma;
+    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, detected.ground, T(0));
+    error[0] =
+        ((pixel.x() - detected.pixel.x()) * detected.normal.x() + (pixel.y() - detected.pixel.y()) * detected.normal.y()) / sigma;
     return true;
   }
 };
@@ -81,21 +82,21 @@ LensPrior prior_of(cv::Size size, bool free_lens) {
 }
 
 constexpr double kClickSigmaAlone = 3;         // px: how well people click
-constexpr double kClickSigmaBesideLines = 15;  // px: where lines are seen, clicks only keep the whole in place
+constexpr double kClickSigmaNextToLines = 15;  // px: where lines are seen, clicks only keep the whole in place
 constexpr double kPaintSigmaMetres = 0.04;     // m: how well it was laid, and how level the ground is
 
 double solve(CameraNumbers& numbers, cv::Size size, const std::vector<PitchPoint>& points, const std::vector<char>& inlier,
              const std::vector<LineSighting>& sightings, bool free_lens) {
   ceres::Problem problem;
-  const double click = sightings.empty() ? kClickSigmaAlone : kClickSigmaBesideLines;
+  const double click = sightings.empty() ? kClickSigmaAlone : kClickSigmaNextToLines;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!inlier[i]) continue;
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointError, 2, CameraNumbers::count>(new PointError{points[i], click}),
                              new ceres::SoftLOneLoss(1), numbers.p.data());
   }
-  for (const LineSighting& seen : sightings) {
-    const double sigma = std::hypot(seen.sigma_px, kPaintSigmaMetres * seen.pixels_per_metre);
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LineError, 1, CameraNumbers::count>(new LineError{seen, sigma}),
+  for (const LineSighting& detected : sightings) {
+    const double sigma = std::hypot(detected.sigma_px, kPaintSigmaMetres * detected.pixels_per_metre);
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LineError, 1, CameraNumbers::count>(new LineError{detected, sigma}),
                              new ceres::CauchyLoss(1), numbers.p.data());
   }
   const LensPrior prior = prior_of(size, free_lens);
@@ -118,7 +119,7 @@ double solve(CameraNumbers& numbers, cv::Size size, const std::vector<PitchPoint
   return summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
 }
 
-/// Focal lengths, in half picture widths, for which the homography's columns are those of a rotation; usual ones besides.
+/// Focal lengths, in half image widths, for which the homography's columns are those of a rotation; typical ones besides.
 std::vector<double> focal_candidates(const Matrix<3>& H) {
   const Vector<3> a = H.col(0), b = H.col(1);
   std::vector<double> result = {0.8, 1.4, 2.5, 5};
@@ -150,21 +151,21 @@ std::vector<double> errors_of(const Camera& camera, const std::vector<PitchPoint
   return errors;
 }
 
-constexpr double kWorstMedian = 0.02;  // of the picture's width: points that half lie farther off are of no camera
-constexpr double kLeastOutlier = 6;    // px: no user clicks better than this always
+constexpr double kWorstMedian = 0.02;  // of the image's width: points that half lie farther off are of no camera
+constexpr double kMinOutlier = 6;      // px: no user clicks better than this always
 constexpr double kOutlierSigmas = 4;
 
 /// Whether it is above the ground and sees most of these points at all: a camera under it that sees them mirrored, one that looks
 /// away, or a lens that folds over may fit them in the formulas.
-bool looks_down_upon_most(const Camera& camera, const std::vector<PitchPoint>& points, const std::vector<char>& which) {
+bool faces_ground(const Camera& camera, const std::vector<PitchPoint>& points, const std::vector<char>& which) {
   if (!(camera.camera_from_world().inverse().translation.z() > 0)) return false;
-  std::ptrdiff_t seen = 0;
+  std::ptrdiff_t detected = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
-    seen += which[i] && camera.project({points[i].ground.x(), points[i].ground.y(), 0}) ? 1 : 0;
-  return 2 * seen > std::count(which.begin(), which.end(), 1);
+    detected += which[i] && camera.project({points[i].ground.x(), points[i].ground.y(), 0}) ? 1 : 0;
+  return 2 * detected > std::count(which.begin(), which.end(), 1);
 }
 
-/// The best that a start leads to; nothing where none looks down upon the points.
+/// The best that a start leads to; nothing if none faces down upon the points.
 std::optional<CameraNumbers> camera_from(const PitchStart& start, const std::vector<PitchPoint>& points, cv::Size size) {
   const std::vector<char> agree = start.agreeing(points, size);
   double best = std::numeric_limits<double>::infinity();
@@ -172,31 +173,31 @@ std::optional<CameraNumbers> camera_from(const PitchStart& start, const std::vec
   for (const double focal : focal_candidates(start.image_from_ground)) {
     CameraNumbers p = CameraNumbers::of(camera_at(start, focal, size));
     const double cost = solve(p, size, points, agree, {}, false);
-    if (cost < best && looks_down_upon_most(p.camera(size), points, agree)) best = cost, found = p;
+    if (cost < best && faces_ground(p.camera(size), points, agree)) best = cost, found = p;
   }
   return found;
 }
 
 std::vector<char> inliers_of(const std::vector<double>& errors) {
-  const double reach = std::max(kLeastOutlier, kOutlierSigmas * 1.2 * geometry::median(std::vector(errors)));
+  const double reach = std::max(kMinOutlier, kOutlierSigmas * 1.2 * geometry::median(std::vector(errors)));
   std::vector<char> inlier;
   for (const double error : errors) inlier.push_back(error < reach);
   return inlier;
 }
 
-constexpr double kClearlyWorse = 3;  // times what the other hand's map costs: cameras need not be tried
+constexpr double kDistinctlyWorse = 3;  // times what the other hand's map costs: cameras need not be tried
 
 std::vector<PitchPoint> mirrored(std::vector<PitchPoint> points) {
   for (PitchPoint& point : points) point.ground.y() = -point.ground.y();
   return points;
 }
 
-/// px in the mean, no more than an outlier's each, of the best camera that looks down upon the points; infinite where none does.
+/// px in the mean, no more than an outlier's each, of the best camera that faces down upon the points; infinite where none does.
 double misfit(const std::string& name, const std::vector<PitchPoint>& points, cv::Size size) {
   try {
     const PitchCamera found = camera_from_points(name, points, size);
     double sum = 0;
-    for (const double error : found.error_px) sum += std::min(error, kLeastOutlier);
+    for (const double error : found.error_px) sum += std::min(error, kMinOutlier);
     return sum / static_cast<double>(points.size());
   } catch (const Error&) {
     return std::numeric_limits<double>::infinity();
@@ -233,7 +234,7 @@ bool is_left_handed(const std::string& name, const std::vector<PitchPoint>& poin
   const double right = PitchStarts::cost(starts.right), left = PitchStarts::cost(starts.left);
   if (!std::isfinite(std::min(left, right)))
     throw Error("{}: the points do not fit any camera; are four of them in general position, and is each with its place?", name);
-  if (std::max(left, right) > kClearlyWorse * std::min(left, right)) return left < right;
+  if (std::max(left, right) > kDistinctlyWorse * std::min(left, right)) return left < right;
   const double by_right = misfit(name, points, size), by_left = misfit(name, mirrored(points), size);
   return by_left == by_right ? left < right : by_left < by_right;
 }

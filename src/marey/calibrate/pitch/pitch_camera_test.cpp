@@ -14,7 +14,7 @@ const cv::Size kSize(1536, 864);
 
 /// On a stand, looking at one half; the world's y points away from it.
 Camera on_the_stand(double bend = -0.3) {
-  return {geometry::BrownLens{{1050, 1050}, {767.5, 431.5}, {bend, 0.1}}, board::looking({52, -20, 10}, {35, 34, 0}), kSize};
+  return {geometry::BrownLens{{1050, 1050}, {767.5, 431.5}, {bend, 0.1}}, board::facing({52, -20, 10}, {35, 34, 0}), kSize};
 }
 
 /// Places every few metres that it sees, `sigma` px off.
@@ -23,7 +23,7 @@ std::vector<PitchPoint> points_of(const Camera& camera, double sigma, Noise& noi
   for (double x = 0; x <= 105; x += 10.5) {
     for (double y = 0; y <= 68; y += 13.6) {
       const auto pixel = camera.project({x, y, 0});
-      if (!pixel || !camera.in_picture(*pixel)) continue;
+      if (!pixel || !camera.in_image(*pixel)) continue;
       points.push_back({{x, mirrored ? 68 - y : y}, *pixel + Vector<2>(noise.gaussian(sigma), noise.gaussian(sigma)), ""});
     }
   }
@@ -104,9 +104,9 @@ TEST(PitchCamera, SightingsOfLinesPullTheCameraRight) {
   const auto add = [&](const Vector<2>& ground, const Vector<2>& along, int line) {
     const auto here = truth.project({ground.x(), ground.y(), 0});
     const auto there = truth.project({ground.x() + along.x(), ground.y() + along.y(), 0});
-    if (!here || !there || !truth.in_picture(*here)) return;
-    const Vector<2> way = (*there - *here).normalized();
-    sightings.push_back({ground, *here, {-way.y(), way.x()}, 20, 0.35, line});
+    if (!here || !there || !truth.in_image(*here)) return;
+    const Vector<2> method = (*there - *here).normalized();
+    sightings.push_back({ground, *here, {-method.y(), method.x()}, 20, 0.35, line});
   };
   for (double t = 0; t <= 1; t += 0.01) {
     add({105 * t, 0}, {0.01, 0}, 0);

@@ -22,13 +22,13 @@ using geometry::GroundSurface;
 // What clicks and paint usually err by (docs/tuning.md): of both, how much is learned from the recording.
 constexpr double kClickPixels = 2, kClickMetres = 0.05;
 constexpr double kPaintPixels = 0.3, kPaintMetres = 0.02;
-constexpr double kLeastScale = 0.2;                      // of what is usual: nobody clicks, and no codec leaves paint, better
-constexpr double kFreedom = 3;                           // degrees of freedom of Student's t
-constexpr double kPiece = 2;                             // m of paint that make one residual
-constexpr double kLeastNews = 0.2;                       // of the pieces of paint
-constexpr int kFarthestAlike = 6;                        // pieces apart that may still err alike
-constexpr double kWide = 5;                              // the first solution's scale: it begins far off
-constexpr double kUsualHeight = 0.3, kOffCentre = 0.03;  // deviations beforehand: m; of the picture's width
+constexpr double kMinScale = 0.2;  // of what is typical: no person clicks, and no codec leaves paint, better
+constexpr double kFreedom = 3;     // degrees of freedom of Student's t
+constexpr double kPiece = 2;       // m of paint that make one residual
+constexpr double kMinNews = 0.2;   // of the pieces of paint
+constexpr int kMaxAlike = 6;       // pieces apart that may still err alike
+constexpr double kWide = 5;        // the first solution's scale: it begins far off
+constexpr double kDefaultHeight = 0.3, kOffCentre = 0.03;  // deviations beforehand: m; of the image's width
 
 constexpr int kGroundTerms = GroundSurface::kTerms, kCameraNumbers = CameraNumbers::count;
 constexpr std::array<int, 4> kLenses = {2, 3, 5, 8};                 // coefficients in the order of kLensOrder
@@ -44,19 +44,19 @@ constexpr std::array<Free, 9> kGrounds = {{{},
                                            {true, true, true, false},
                                            {true, true, true, true}}};
 
-/// A place of the ground seen in a picture.
-struct SeenPlace {
+/// A place of the ground seen in an image.
+struct ObservedPosition {
   Vector<2> ground, relative, pixel;
   Matrix<2> whiten;  ///< of a piece of paint only the first row counts: across it
   int line = -1;
 };
 
-struct SeenPitch {
+struct ObservedPitch {
   cv::Size size;
-  std::vector<SeenPlace> clicks, painted, clicked_lines;
+  std::vector<ObservedPosition> clicks, painted, clicked_lines;
 };
 
-/// By how much errors differ from what is usual, and which share of the pieces of paint is news.
+/// By how much errors differ from what is typical, and which share of the pieces of paint is news.
 struct Noise {
   double click = 1, paint = 1, news = 1;
 };
@@ -67,7 +67,7 @@ struct PitchState {
   std::array<double, kGroundTerms> ground{};
 };
 
-/// Which of it is free, and what came of it.
+/// Which of it is free, and the result.
 struct PitchModel {
   int lens = kLenses.back();
   Free ground{};
@@ -76,15 +76,15 @@ struct PitchModel {
 };
 
 template <int kErrors>
-struct PlaceError {
-  SeenPlace seen;
+struct PositionError {
+  ObservedPosition detected;
   double scale;
 
   template <typename T>
   bool operator()(const T* p, const T* ground, T* error) const {
-    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, seen.ground, GroundSurface::height_at(seen.relative, ground));
-    const T x = pixel.x() - seen.pixel.x(), y = pixel.y() - seen.pixel.y();
-    for (int i = 0; i < kErrors; ++i) error[i] = (seen.whiten(i, 0) * x + seen.whiten(i, 1) * y) / scale;
+    const Eigen::Matrix<T, 2, 1> pixel = project_ground(p, detected.ground, GroundSurface::height_at(detected.relative, ground));
+    const T x = pixel.x() - detected.pixel.x(), y = pixel.y() - detected.pixel.y();
+    for (int i = 0; i < kErrors; ++i) error[i] = (detected.whiten(i, 0) * x + detected.whiten(i, 1) * y) / scale;
     return true;
   }
 };
@@ -92,7 +92,7 @@ struct PlaceError {
 struct HeightPrior {
   template <typename T>
   bool operator()(const T* ground, T* error) const {
-    for (int i = 0; i < 3; ++i) error[i] = ground[i] / kUsualHeight;
+    for (int i = 0; i < 3; ++i) error[i] = ground[i] / kDefaultHeight;
     return true;
   }
 };
@@ -101,23 +101,23 @@ struct HeightPrior {
 Matrix<2> whitener(const GroundView& view, const Vector<2>& ground) {
   Matrix<2> covariance = kClickPixels * kClickPixels * Matrix<2>::Identity();
   const auto pixel = view.pixel(ground);
-  if (const auto place = pixel ? view.place(*pixel) : std::nullopt) {
-    const Matrix<2> by_ground = place->by_pixel.inverse();
+  if (const auto location = pixel ? view.location(*pixel) : std::nullopt) {
+    const Matrix<2> by_ground = location->by_pixel.inverse();
     covariance += kClickMetres * kClickMetres * by_ground * by_ground.transpose();
   }
   return Matrix<2>(covariance.llt().matrixL()).inverse();
 }
 
-SeenPlace across_line(const Vector<2>& ground, const Vector<2>& relative, const LineSighting& seen, const Vector<2>& pixel,
-                      double sigma) {
-  SeenPlace place{ground, relative, pixel, Matrix<2>::Zero(), seen.line};
-  place.whiten.row(0) = seen.normal.transpose() / sigma;
-  return place;
+ObservedPosition across_line(const Vector<2>& ground, const Vector<2>& relative, const LineSighting& detected,
+                             const Vector<2>& pixel, double sigma) {
+  ObservedPosition location{ground, relative, pixel, Matrix<2>::Zero(), detected.line};
+  location.whiten.row(0) = detected.normal.transpose() / sigma;
+  return location;
 }
 
 /// The paint, piece by piece: where in the middle of each it is seen, by the median of how far its places lie off.
-std::vector<SeenPlace> pieces_of(const std::vector<LineSighting>& painted, const GroundView& view) {
-  std::vector<SeenPlace> pieces;
+std::vector<ObservedPosition> pieces_of(const std::vector<LineSighting>& painted, const GroundView& view) {
+  std::vector<ObservedPosition> pieces;
   for (std::size_t begin = 0, end = 0; begin < painted.size(); begin = end) {
     std::vector<double> off;
     for (end = begin; end < painted.size() && painted[end].line == painted[begin].line &&
@@ -135,14 +135,14 @@ std::vector<SeenPlace> pieces_of(const std::vector<LineSighting>& painted, const
   return pieces;
 }
 
-SeenPitch seen_in(const PitchEvidence& evidence, const GroundSurface& ground) {
-  const GroundView view(evidence.nearly, ground);
-  SeenPitch seen{evidence.nearly.size(), {}, pieces_of(evidence.painted, view), {}};
+ObservedPitch observed_in(const PitchEvidence& evidence, const GroundSurface& ground) {
+  const GroundView view(evidence.almost, ground);
+  ObservedPitch detected{evidence.almost.size(), {}, pieces_of(evidence.painted, view), {}};
   for (const PitchPoint& point : evidence.points)
-    seen.clicks.push_back({point.ground, ground.relative(point.ground), point.pixel, whitener(view, point.ground), -1});
+    detected.clicks.push_back({point.ground, ground.relative(point.ground), point.pixel, whitener(view, point.ground), -1});
   for (const LineSighting& line : evidence.clicked)
-    seen.clicked_lines.push_back(across_line(line.ground, ground.relative(line.ground), line, line.pixel, line.sigma_px));
-  return seen;
+    detected.clicked_lines.push_back(across_line(line.ground, ground.relative(line.ground), line, line.pixel, line.sigma_px));
+  return detected;
 }
 
 ceres::LossFunction* student(double weight) {
@@ -151,12 +151,13 @@ ceres::LossFunction* student(double weight) {
 }
 
 template <int kErrors>
-void add_places(ceres::Problem& problem, const std::vector<SeenPlace>& places, double scale, double weight, double* camera,
-                double* ground) {
-  using Error = PlaceError<kErrors>;
-  for (const SeenPlace& place : places)
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Error, kErrors, kCameraNumbers, kGroundTerms>(new Error{place, scale}),
-                             student(weight), camera, ground);
+void add_positions(ceres::Problem& problem, const std::vector<ObservedPosition>& locations, double scale, double weight,
+                   double* camera, double* ground) {
+  using Error = PositionError<kErrors>;
+  for (const ObservedPosition& location : locations)
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<Error, kErrors, kCameraNumbers, kGroundTerms>(new Error{location, scale}), student(weight),
+        camera, ground);
 }
 
 LensPrior prior_over(cv::Size size) {
@@ -192,20 +193,21 @@ std::vector<int> held_of(const Free& ground) {
 }
 
 /// The problem of a candidate, over its state; `scale` widens all errors.
-void set_up(ceres::Problem& problem, const std::vector<SeenPitch>& seen, PitchModel& candidate, const Noise& noise, double scale) {
+void set_up(ceres::Problem& problem, const std::vector<ObservedPitch>& detected, PitchModel& candidate, const Noise& noise,
+            double scale) {
   double* ground = candidate.state.ground.data();
-  for (std::size_t i = 0; i < seen.size(); ++i) {
+  for (std::size_t i = 0; i < detected.size(); ++i) {
     double* camera = candidate.state.cameras[i].p.data();
-    add_places<2>(problem, seen[i].clicks, scale * noise.click, 1, camera, ground);
-    add_places<1>(problem, seen[i].painted, scale * noise.paint, noise.news, camera, ground);
-    add_places<1>(problem, seen[i].clicked_lines, scale, 1, camera, ground);
+    add_positions<2>(problem, detected[i].clicks, scale * noise.click, 1, camera, ground);
+    add_positions<1>(problem, detected[i].painted, scale * noise.paint, noise.news, camera, ground);
+    add_positions<1>(problem, detected[i].clicked_lines, scale, 1, camera, ground);
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<LensPrior, CameraNumbers::rotation - CameraNumbers::principal, kCameraNumbers>(
-            new LensPrior(prior_over(seen[i].size))),
+            new LensPrior(prior_over(detected[i].size))),
         nullptr, camera);
     hold(problem, camera, kCameraNumbers, held_of(candidate.lens));
-    problem.SetParameterLowerBound(camera, CameraNumbers::focal, 0.1 * seen[i].size.width);
-    problem.SetParameterUpperBound(camera, CameraNumbers::focal, 100.0 * seen[i].size.width);
+    problem.SetParameterLowerBound(camera, CameraNumbers::focal, 0.1 * detected[i].size.width);
+    problem.SetParameterUpperBound(camera, CameraNumbers::focal, 100.0 * detected[i].size.width);
   }
   problem.AddResidualBlock(new ceres::AutoDiffCostFunction<HeightPrior, 3, kGroundTerms>(new HeightPrior), nullptr, ground);
   hold(problem, ground, kGroundTerms, held_of(candidate.ground));
@@ -214,9 +216,9 @@ void set_up(ceres::Problem& problem, const std::vector<SeenPitch>& seen, PitchMo
   problem.SetParameterUpperBound(ground, 3, 1);
 }
 
-double news_in(const std::vector<SeenPitch>& seen, const Noise& noise) {
+double news_in(const std::vector<ObservedPitch>& detected, const Noise& noise) {
   double count = 0;
-  for (const SeenPitch& one : seen) {
+  for (const ObservedPitch& one : detected) {
     count += 2 * static_cast<double>(one.clicks.size()) + noise.news * static_cast<double>(one.painted.size()) +
              static_cast<double>(one.clicked_lines.size());
   }
@@ -229,69 +231,70 @@ double free_terms(const PitchModel& candidate) {
 }
 
 /// Solves a candidate from its state, and says what it is worth.
-void settle(const std::vector<SeenPitch>& seen, PitchModel& candidate, const Noise& noise) {
+void settle(const std::vector<ObservedPitch>& detected, PitchModel& candidate, const Noise& noise) {
   for (CameraNumbers& camera : candidate.state.cameras) {
     for (const int held : held_of(candidate.lens)) camera.p[static_cast<std::size_t>(held)] = 0;
   }
   if (candidate.ground[3]) candidate.state.ground[3] = std::clamp(candidate.state.ground[3], 0.2, 0.8);
   for (const double scale : {kWide, 1.0}) {
     ceres::Problem problem;
-    set_up(problem, seen, candidate, noise, scale);
+    set_up(problem, detected, candidate, noise, scale);
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.max_num_iterations = 100;
     options.function_tolerance = 1e-9;
     const ceres::Solver::Summary summary = calibrate::solve(options, problem);
     if (!summary.IsSolutionUsable()) return;
-    candidate.criterion = 2 * summary.final_cost + free_terms(candidate) * std::log(std::max(2.0, news_in(seen, noise)));
+    candidate.criterion = 2 * summary.final_cost + free_terms(candidate) * std::log(std::max(2.0, news_in(detected, noise)));
   }
 }
 
-/// The first `count` errors of a place, whitened by what is usual.
-Vector<2> error_of(const SeenPlace& place, const PitchState& state, std::size_t camera) {
+/// The first `count` errors of a place, whitened by what is typical.
+Vector<2> error_of(const ObservedPosition& location, const PitchState& state, std::size_t camera) {
   const auto& p = state.cameras[camera].p;
-  return place.whiten *
-         (project_ground(p.data(), place.ground, GroundSurface::height_at(place.relative, state.ground.data())) - place.pixel);
+  return location.whiten *
+         (project_ground(p.data(), location.ground, GroundSurface::height_at(location.relative, state.ground.data())) -
+          location.pixel);
 }
 
 /// The share of the pieces that is news: one over what the sum of a line's errors varies by, in what independent ones would.
-double news_of(const std::vector<SeenPitch>& seen, const PitchState& state) {
-  std::array<double, kFarthestAlike + 1> products{};
-  for (std::size_t camera = 0; camera < seen.size(); ++camera) {
-    const auto& pieces = seen[camera].painted;
+double news_of(const std::vector<ObservedPitch>& detected, const PitchState& state) {
+  std::array<double, kMaxAlike + 1> products{};
+  for (std::size_t camera = 0; camera < detected.size(); ++camera) {
+    const auto& pieces = detected[camera].painted;
     std::vector<double> errors;
-    for (const SeenPlace& piece : pieces) errors.push_back(std::clamp(error_of(piece, state, camera).x(), -3.0, 3.0));
+    for (const ObservedPosition& piece : pieces) errors.push_back(std::clamp(error_of(piece, state, camera).x(), -3.0, 3.0));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      for (std::size_t lag = 0; lag <= kFarthestAlike && i + lag < pieces.size() && pieces[i + lag].line == pieces[i].line; ++lag)
+      for (std::size_t lag = 0; lag <= kMaxAlike && i + lag < pieces.size() && pieces[i + lag].line == pieces[i].line; ++lag)
         products[lag] += errors[i] * errors[i + lag];
     }
   }
   double alike = 1;
-  for (std::size_t lag = 1; lag <= kFarthestAlike && products[0] > 0; ++lag)
-    alike += 2 * std::max(0.0, products[lag] / products[0]);
-  return std::max(kLeastNews, 1 / alike);
+  for (std::size_t lag = 1; lag <= kMaxAlike && products[0] > 0; ++lag) alike += 2 * std::max(0.0, products[lag] / products[0]);
+  return std::max(kMinNews, 1 / alike);
 }
 
 /// What the richest model leaves is noise.
-Noise learned(const std::vector<SeenPitch>& seen, const PitchModel& richest) {
+Noise learned(const std::vector<ObservedPitch>& detected, const PitchModel& richest) {
   constexpr double kOfPlane = 1.1774, kOfLine = 0.6745;  // medians of |error| for a deviation of 1, in two dimensions and in one
   std::vector<double> clicks, paint;
-  for (std::size_t camera = 0; camera < seen.size(); ++camera) {
-    for (const SeenPlace& click : seen[camera].clicks) clicks.push_back(error_of(click, richest.state, camera).norm());
-    for (const SeenPlace& piece : seen[camera].painted) paint.push_back(std::abs(error_of(piece, richest.state, camera).x()));
+  for (std::size_t camera = 0; camera < detected.size(); ++camera) {
+    for (const ObservedPosition& click : detected[camera].clicks) clicks.push_back(error_of(click, richest.state, camera).norm());
+    for (const ObservedPosition& piece : detected[camera].painted)
+      paint.push_back(std::abs(error_of(piece, richest.state, camera).x()));
   }
   Noise noise;
-  const double count = news_in(seen, noise), numbers = free_terms(richest) + 9.0 * static_cast<double>(seen.size());
+  const double count = news_in(detected, noise), numbers = free_terms(richest) + 9.0 * static_cast<double>(detected.size());
   if (count < 1.5 * numbers) return noise;  // too little to tell noise from what the model takes
   const double taken = std::sqrt(count / (count - numbers));
-  if (!clicks.empty()) noise.click = std::max(kLeastScale, taken * geometry::median(clicks) / kOfPlane);
-  if (!paint.empty()) noise.paint = std::max(kLeastScale, taken * geometry::median(paint) / kOfLine);
-  noise.news = news_of(seen, richest.state);
+  if (!clicks.empty()) noise.click = std::max(kMinScale, taken * geometry::median(clicks) / kOfPlane);
+  if (!paint.empty()) noise.paint = std::max(kMinScale, taken * geometry::median(paint) / kOfLine);
+  noise.news = news_of(detected, richest.state);
   return noise;
 }
 
 /// The best of all lenses and grounds; each begins from what the one before it, or the level one, came to.
-PitchModel chosen(const std::vector<SeenPitch>& seen, const PitchState& start, const Noise& noise, GroundKnown known) {
+PitchModel chosen(const std::vector<ObservedPitch>& detected, const PitchState& start, const Noise& noise, GroundKnown known) {
   PitchModel best;
   PitchState level = start;
   if (known != GroundKnown::wholly) level.ground = {};
@@ -300,7 +303,7 @@ PitchModel chosen(const std::vector<SeenPitch>& seen, const PitchState& start, c
       const bool any = std::find(ground.begin(), ground.end(), true) != ground.end();
       if (any && known != GroundKnown::nothing) continue;
       PitchModel candidate{.lens = lens, .ground = ground, .state = level};
-      settle(seen, candidate, noise);
+      settle(detected, candidate, noise);
       if (!any && std::isfinite(candidate.criterion)) level = candidate.state;
       if (candidate.criterion < best.criterion) best = std::move(candidate);
     }
@@ -309,11 +312,11 @@ PitchModel chosen(const std::vector<SeenPitch>& seen, const PitchState& start, c
 }
 
 /// The inverse of the criterion's curvature at its least, with rows of 0 for what is held.
-Eigen::MatrixXd covariance_of(const std::vector<SeenPitch>& seen, PitchModel candidate, const Noise& noise) {
+Eigen::MatrixXd covariance_of(const std::vector<ObservedPitch>& detected, PitchModel candidate, const Noise& noise) {
   ceres::Problem problem;
-  set_up(problem, seen, candidate, noise, 1);
+  set_up(problem, detected, candidate, noise, 1);
   std::vector<int> free;
-  const int cameras = static_cast<int>(seen.size());
+  const int cameras = static_cast<int>(detected.size());
   ceres::Problem::EvaluateOptions order;
   for (int i = 0; i <= cameras; ++i) {
     const bool of_ground = i == cameras;
@@ -355,26 +358,26 @@ PitchModel unsure(PitchModel best, GroundKnown known) {
 }  // namespace
 
 PitchFit fit_pitch(const std::vector<PitchEvidence>& evidence, const GroundSurface& ground, GroundKnown known) {
-  std::vector<SeenPitch> seen;
+  std::vector<ObservedPitch> detected;
   PitchState start{{}, ground.terms()};
   for (const PitchEvidence& one : evidence) {
-    seen.push_back(seen_in(one, ground));
-    start.cameras.push_back(CameraNumbers::of(one.nearly));
+    detected.push_back(observed_in(one, ground));
+    start.cameras.push_back(CameraNumbers::of(one.almost));
   }
   Noise noise;
   PitchModel richest{.lens = kLenses.back(), .ground = known == GroundKnown::nothing ? kGrounds.back() : Free{}, .state = start};
   for (int round = 0; round < 2; ++round) {
-    settle(seen, richest, noise);
-    noise = learned(seen, richest);
+    settle(detected, richest, noise);
+    noise = learned(detected, richest);
   }
-  const PitchModel best = chosen(seen, start, noise, known);
+  const PitchModel best = chosen(detected, start, noise, known);
   PitchFit fit;
   fit.lens_terms = best.lens;
   fit.click_scale = noise.click;
   fit.ground = ground;
   fit.ground.set_terms(best.state.ground);
-  for (std::size_t i = 0; i < best.state.cameras.size(); ++i) fit.cameras.push_back(best.state.cameras[i].camera(seen[i].size));
-  fit.covariance = covariance_of(seen, unsure(best, known), noise);
+  for (std::size_t i = 0; i < best.state.cameras.size(); ++i) fit.cameras.push_back(best.state.cameras[i].camera(detected[i].size));
+  fit.covariance = covariance_of(detected, unsure(best, known), noise);
   return fit;
 }
 

@@ -26,7 +26,7 @@ namespace marey::calibrate::pitch {
 
 /// What decides one camera.
 struct PitchEvidence {
-  Camera nearly;                      ///< lens brown
+  Camera almost;                      ///< lens brown
   std::vector<PitchPoint> points;     ///< in the world
   std::vector<LineSighting> painted;  ///< in order along each line
   std::vector<LineSighting> clicked;
@@ -43,7 +43,7 @@ struct PitchFit {
   std::vector<Camera> cameras;
   geometry::GroundSurface ground;
   int lens_terms = 0;
-  double click_scale = 1;      ///< what clicks err by, in what is usual
+  double click_scale = 1;      ///< what clicks err by, in what is typical
   Eigen::MatrixXd covariance;  ///< of each camera's CameraNumbers in their order, then of the ground's terms; 0 for what is held
 };
 

@@ -23,7 +23,7 @@ struct CameraNumbers {
   Camera camera(cv::Size size) const;
 };
 
-/// The middle of a picture, px.
+/// The middle of an image, px.
 inline Vector<2> middle_of(cv::Size size) {
   return {(size.width - 1) / 2.0, (size.height - 1) / 2.0};
 }
@@ -32,12 +32,12 @@ inline Vector<2> middle_of(cv::Size size) {
 /// every step of the solver has a cost.
 template <typename T>
 Eigen::Matrix<T, 2, 1> project_ground(const T* p, const Vector<2>& ground, const T& height) {
-  constexpr double kNearest = 0.5;  // m before the camera
-  const T place[3] = {T(ground.x()), T(ground.y()), height};
+  constexpr double kMinDistance = 0.5;  // m before the camera
+  const T location[3] = {T(ground.x()), T(ground.y()), height};
   Eigen::Matrix<T, 3, 1> at;
-  ceres::AngleAxisRotatePoint(p + CameraNumbers::rotation, place, at.data());
+  ceres::AngleAxisRotatePoint(p + CameraNumbers::rotation, location, at.data());
   for (int i = 0; i < 3; ++i) at(i) += p[CameraNumbers::translation + i];
-  if (!(at.z() > T(kNearest))) at.z() = T(kNearest);
+  if (!(at.z() > T(kMinDistance))) at.z() = T(kMinDistance);
   const Eigen::Matrix<T, 2, 1> plane = geometry::BrownLens::distort(at, p + CameraNumbers::distortion);
   return {p[CameraNumbers::focal] * plane.x() + p[CameraNumbers::principal],
           p[CameraNumbers::focal] * plane.y() + p[CameraNumbers::principal + 1]};

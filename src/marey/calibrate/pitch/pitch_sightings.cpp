@@ -11,18 +11,18 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr double kStep = 0.5;         // px between readings along a normal
-constexpr double kBlur = 2;           // px: how much optics and compression widen paint
-constexpr double kLeastContrast = 3;  // grey levels above the brighter side
-constexpr double kPeakSigma = 0.35;   // px: how well a peak's place is known
-constexpr double kTolerance = 0.8;    // units: off the smooth curve
-constexpr double kFaint = 0.3;        // of the contrast of a line's brighter fifth
-constexpr double kLeastShare = 0.25;  // of a line's samples in the picture
-constexpr int kLeastPeaks = 6;
+constexpr double kStep = 0.5;          // px between readings along a normal
+constexpr double kBlur = 2;            // px: how much optics and compression widen paint
+constexpr double kMinContrast = 3;     // grey levels above the brighter side
+constexpr double kPeakSigma = 0.35;    // px: how well a peak's place is known
+constexpr double kTolerance = 0.8;     // units: off the smooth curve
+constexpr double kFaint = 0.3;         // of the contrast of a line's brighter fifth
+constexpr double kMinFraction = 0.25;  // of a line's samples in the image
+constexpr int kMinPeaks = 6;
 constexpr int kDraws = 300;
-constexpr std::size_t kTrail = 12;       // samples that predict where paint goes on
-constexpr int kLongestGap = 8;           // samples without paint, as where a person stood
-constexpr std::size_t kLongestArc = 60;  // samples: a quarter of the centre circle; longer pieces of arcs are no parabola
+constexpr std::size_t kTrail = 12;   // samples that predict where paint continues
+constexpr int kMaxGap = 8;           // samples without paint, as where a person stood
+constexpr std::size_t kMaxArc = 60;  // samples: a quarter of the centre circle; longer pieces of arcs are not parabola
 
 // Offsets are counted in units of what a camera nearly right may be wrong by: a pixel far away, centimetres of uneven ground near
 // by.
@@ -43,19 +43,20 @@ struct Sample {
   double unit() const { return std::hypot(kUnitPixels, kUnitMetres * width / geometry::kPitchLineWidth); }  // px
 };
 
-/// A sample in the picture, or nothing.
+/// A sample in the image, or nothing.
 std::optional<Sample> sample_at(const GroundView& view, const Vector<2>& ground, const Vector<2>& tangent, double margin) {
   const Camera& camera = *view.camera();
   const Vector<2> slope = view.surface().slope(ground);
-  const auto on_ground = [&](const Vector<2>& way) { return Vector<3>(way.x(), way.y(), slope.dot(way)); };
-  const auto seen = camera.project_with_jacobian({ground.x(), ground.y(), view.surface().height(ground)});
-  if (!seen) return std::nullopt;
+  const auto on_ground = [&](const Vector<2>& method) { return Vector<3>(method.x(), method.y(), slope.dot(method)); };
+  const auto detected = camera.project_with_jacobian({ground.x(), ground.y(), view.surface().height(ground)});
+  if (!detected) return std::nullopt;
   const Vector<2> inside = Vector<2>(camera.size().width - 1 - margin, camera.size().height - 1 - margin);
-  if ((seen->pixel.array() < margin).any() || (seen->pixel.array() > inside.array()).any()) return std::nullopt;
-  const Vector<2> along = (seen->by_world * on_ground(tangent)).normalized();
+  if ((detected->pixel.array() < margin).any() || (detected->pixel.array() > inside.array()).any()) return std::nullopt;
+  const Vector<2> along = (detected->by_world * on_ground(tangent)).normalized();
   const Vector<2> normal(-along.y(), along.x());
   const Vector<2> aside(-tangent.y(), tangent.x());
-  return Sample{ground, seen->pixel, normal, geometry::kPitchLineWidth * std::abs(normal.dot(seen->by_world * on_ground(aside)))};
+  return Sample{ground, detected->pixel, normal,
+                geometry::kPitchLineWidth * std::abs(normal.dot(detected->by_world * on_ground(aside)))};
 }
 
 double brightness(const cv::Mat& luma, const Vector<2>& at) {
@@ -102,7 +103,7 @@ class Profile {
       if (!(here > before && here >= after)) continue;
       const double low = values_[i - side_], high = values_[i + side_];
       const double contrast = here - std::max(low, high);
-      if (contrast < kLeastContrast) continue;
+      if (contrast < kMinContrast) continue;
       if (!as_wide_as_paint(i, (here + (low + high) / 2) / 2)) continue;
       result.push_back({first_ + (i + (before - after) / (2 * (before - 2 * here + after))) * kStep, contrast});
     }
@@ -124,7 +125,7 @@ class Profile {
   std::vector<double> values_;
 };
 
-/// Offset along a line as a polynomial: a parabola by consensus, then bent further where paint goes on beside it.
+/// Offset along a line as a polynomial: a parabola by consensus, then bent further where paint continues beside it.
 using Curve = Eigen::VectorXd;
 constexpr int kParabola = 2, kBent = 5;
 constexpr int kBendings = 4;
@@ -179,12 +180,12 @@ std::vector<int> on_one_curve(const std::vector<Candidate>& all, std::size_t sam
   }
   for (int round = 0; round < kBendings && best.size() > 2 * kBent; ++round)
     best = near(fit(all, best, round == 0 ? kParabola : kBent));
-  if (best.size() < std::max<std::size_t>(kLeastPeaks, static_cast<std::size_t>(kLeastShare * static_cast<double>(samples))))
+  if (best.size() < std::max<std::size_t>(kMinPeaks, static_cast<std::size_t>(kMinFraction * static_cast<double>(samples))))
     return {};
   return best;
 }
 
-/// Walks on from what was found, `step` +1 or -1 along the candidates (which are in the order of their samples): paint goes on
+/// Walks on from what was found, `step` +1 or -1 along the candidates (which are in the order of their samples): paint continues
 /// where the last of it points to, even where no polynomial follows.
 void walk_on(const std::vector<Candidate>& all, std::vector<int>& found, int step) {
   std::vector<char> taken(all.size(), 0);
@@ -194,7 +195,7 @@ void walk_on(const std::vector<Candidate>& all, std::vector<int>& found, int ste
   for (int i = step > 0 ? 0 : count - 1; i >= 0 && i < count; i += step) {
     if (!taken[i]) {
       if (last.size() < kTrail || all[last.back()].sample == all[i].sample) continue;
-      if (std::abs(all[last.back()].sample - all[i].sample) > kLongestGap) continue;
+      if (std::abs(all[last.back()].sample - all[i].sample) > kMaxGap) continue;
       const Curve ahead = fit(all, {last.begin(), last.end()}, 1);
       if (std::abs(at(ahead, all[i].along) - all[i].offset) >= kTolerance) continue;
       taken[i] = 1;
@@ -213,8 +214,8 @@ void drop_faint(std::vector<Candidate>& candidates) {
   for (const Candidate& one : candidates) contrasts.push_back(one.contrast);
   const auto bright = contrasts.begin() + static_cast<std::ptrdiff_t>(contrasts.size() * 4 / 5);
   std::nth_element(contrasts.begin(), bright, contrasts.end());
-  const double least = kFaint * *bright;
-  std::erase_if(candidates, [&](const Candidate& one) { return one.contrast < least; });
+  const double minimum = kFaint * *bright;
+  std::erase_if(candidates, [&](const Candidate& one) { return one.contrast < minimum; });
 }
 
 /// One piece of a line: samples that follow one another.
@@ -226,7 +227,7 @@ void find_piece(const cv::Mat& luma, const std::vector<Sample>& samples, int lin
                             offset / samples[i].unit(), contrast});
   }
   drop_faint(candidates);
-  if (candidates.size() < static_cast<std::size_t>(kLeastPeaks)) return;
+  if (candidates.size() < static_cast<std::size_t>(kMinPeaks)) return;
   std::vector<int> paint = on_one_curve(candidates, samples.size(), reach);
   for (const int step : {1, -1}) walk_on(candidates, paint, step);
   for (const int which : paint) {
@@ -247,7 +248,7 @@ std::vector<LineSighting> find_lines(const cv::Mat& luma, const GroundView& view
     std::vector<Sample> samples;
     for (std::size_t i = 0; i < line.points.size(); ++i) {
       if (const auto sample = sample_at(view, line.points[i], line.tangents[i], reach + 8)) samples.push_back(*sample);
-      if (is_arc && samples.size() >= kLongestArc) {
+      if (is_arc && samples.size() >= kMaxArc) {
         find_piece(luma, samples, static_cast<int>(number), reach, found);
         samples.clear();
       }

@@ -12,7 +12,7 @@ const cv::Size kPaintedSize(960, 540);
 const geometry::PitchSize kPaintedPitch{105, 68};
 
 Camera above_the_corner(const Vector<3>& off = {0, 0, 0}) {
-  return {geometry::BrownLens{{800, 800}, {479.5, 269.5}, {}}, board::looking(Vector<3>(30, -15, 14) + off, {30, 30, 0}),
+  return {geometry::BrownLens{{800, 800}, {479.5, 269.5}, {}}, board::facing(Vector<3>(30, -15, 14) + off, {30, 30, 0}),
           kPaintedSize};
 }
 
@@ -23,9 +23,9 @@ cv::Mat painted(const Camera& camera, const std::vector<geometry::PitchLine>& li
     for (std::size_t i = 1; i < line.points.size(); ++i) {
       std::vector<cv::Point> corners;
       const Vector<2> aside = 0.06 * Vector<2>(-line.tangents[i].y(), line.tangents[i].x());
-      for (const Vector<2>& place : {Vector<2>(line.points[i - 1] + aside), Vector<2>(line.points[i] + aside),
-                                     Vector<2>(line.points[i] - aside), Vector<2>(line.points[i - 1] - aside)}) {
-        const auto pixel = camera.project({place.x(), place.y(), 0});
+      for (const Vector<2>& location : {Vector<2>(line.points[i - 1] + aside), Vector<2>(line.points[i] + aside),
+                                        Vector<2>(line.points[i] - aside), Vector<2>(line.points[i - 1] - aside)}) {
+        const auto pixel = camera.project({location.x(), location.y(), 0});
         if (!pixel || pixel->cwiseAbs().maxCoeff() > 5000) break;
         corners.emplace_back(static_cast<int>(std::lround(16 * pixel->x())), static_cast<int>(std::lround(16 * pixel->y())));
       }
@@ -61,16 +61,16 @@ TEST(PitchSightings, ACameraNearlyRightIsShownWhatIsWrong) {
   const Camera truth = above_the_corner(), guess = above_the_corner({0.3, 0.2, 0.1});
   const auto found = find_lines(painted(truth, lines()), GroundView(guess), lines(), 20);
   ASSERT_GT(found.size(), 150U);
-  std::vector<double> expected, seen;
+  std::vector<double> expected, detected;
   for (const LineSighting& one : found) {
-    const Vector<3> place(one.ground.x(), one.ground.y(), 0);
-    expected.push_back(std::abs(one.normal.dot(*truth.project(place) - *guess.project(place))));
-    seen.push_back(std::abs(one.normal.dot(one.pixel - *truth.project(place))));
+    const Vector<3> location(one.ground.x(), one.ground.y(), 0);
+    expected.push_back(std::abs(one.normal.dot(*truth.project(location) - *guess.project(location))));
+    detected.push_back(std::abs(one.normal.dot(one.pixel - *truth.project(location))));
   }
   std::sort(expected.begin(), expected.end());
-  std::sort(seen.begin(), seen.end());
+  std::sort(detected.begin(), detected.end());
   EXPECT_GT(expected[expected.size() / 2], 0.7) << "or there would be nothing to show";
-  EXPECT_LT(seen[seen.size() / 2], 0.5 * expected[expected.size() / 2]);
+  EXPECT_LT(detected[detected.size() / 2], 0.5 * expected[expected.size() / 2]);
 }
 
 TEST(PitchSightings, BareGrassAndNoiseShowNoLine) {

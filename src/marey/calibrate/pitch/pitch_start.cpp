@@ -13,12 +13,12 @@
 namespace marey::calibrate::pitch {
 namespace {
 
-constexpr int kDrawsPerStrength = 400;  // of four points, per strength of distortion
-constexpr double kReach = 0.02;         // half picture widths: beyond, a point says nothing (30 px in a picture of 3,072)
-constexpr double kStrongest = -1.2, kWeakest = 0.3;  // division model, per half picture width squared
+constexpr int kDrawsPerStrength = 400;               // of four points, per strength of distortion
+constexpr double kReach = 0.02;                      // half image widths: beyond, a point says nothing (30 px in an image of 3,072)
+constexpr double kStrongest = -1.2, kWeakest = 0.3;  // division model, per half image width squared
 constexpr int kStrengths = 31;
 
-/// Least squares with both sides scaled about their middle (Hartley); nothing where the points do not decide it.
+/// Least squares with both sides scaled about their middle (Hartley); nothing if the points do not decide it.
 std::optional<Matrix<3>> homography(const std::vector<Vector<2>>& from, const std::vector<Vector<2>>& to,
                                     const std::vector<int>& which) {
   Vector<2> middle = Vector<2>::Zero();

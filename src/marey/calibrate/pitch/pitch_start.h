@@ -14,8 +14,8 @@
 namespace marey::calibrate::pitch {
 
 struct PitchStart {
-  Matrix<3> image_from_ground = Matrix<3>::Identity();  ///< image: straightened, in half picture widths about the middle
-  double strength = 0;                                  ///< of the distortion, per half picture width squared
+  Matrix<3> image_from_ground = Matrix<3>::Identity();  ///< image: straightened, in half image widths about the middle
+  double strength = 0;                                  ///< of the distortion, per half image width squared
   double cost = std::numeric_limits<double>::infinity();
 
   /// For each point, whether it is within reach.

@@ -29,9 +29,10 @@ class RoughPath {
     if (after == path_.end()) return path_.rbegin()->second;
     if (after == path_.begin()) return after->second;
     const auto before = std::prev(after);
-    const double share = (time_s - before->first) / (after->first - before->first);
+    const double fraction = (time_s - before->first) / (after->first - before->first);
     const Eigen::Quaterniond from(before->second.rotation), to(after->second.rotation);
-    return {from.slerp(share, to).toRotationMatrix(), (1 - share) * before->second.translation + share * after->second.translation};
+    return {from.slerp(fraction, to).toRotationMatrix(),
+            (1 - fraction) * before->second.translation + fraction * after->second.translation};
   }
 
  private:

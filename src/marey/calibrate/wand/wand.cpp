@@ -18,10 +18,10 @@
 namespace marey::calibrate::wand {
 namespace {
 
-constexpr int kLeastShared = 12;                                      // instants that link two cameras
+constexpr int kMinShared = 12;                                        // instants that link two cameras
 constexpr std::size_t kGrowPerCamera = 60;                            // instants a camera by which the rig grows
 constexpr std::size_t kGuessPerCamera = 30;                           // where several focal lengths are tried
-constexpr double kKnownLensSigma = 1, kUnknownLensSigma = 3;          // px in a picture of 1280 columns
+constexpr double kKnownLensSigma = 1, kUnknownLensSigma = 3;          // px in an image of 1280 columns
 constexpr std::array kFocalGuesses = {0.5, 0.8, 1.2, 1.8, 2.7, 4.0};  // of the longer side
 constexpr double kLikelyFocal = 1.2;
 constexpr double kRefinedIsBetter = 0.97;  // of the noise with the given lenses
@@ -35,15 +35,15 @@ std::vector<std::size_t> spread_instants(const WandTable& table, std::size_t cam
         static_cast<std::size_t>(std::count_if(table[i].begin(), table[i].end(), [](const auto& m) { return m.has_value(); }));
   }
   for (std::size_t c = 0; c < cameras; ++c) {
-    std::vector<std::size_t> seen;
+    std::vector<std::size_t> detected;
     for (std::size_t i = 0; i < table.size(); ++i) {
-      if (table[i][c] && count[i] >= 2) seen.push_back(i);
+      if (table[i][c] && count[i] >= 2) detected.push_back(i);
     }
     // One of each stretch of time: that which most cameras see.
-    const std::size_t stretches = std::min(per_camera, seen.size());
-    for (std::size_t s = 0; s < stretches; ++s) {
-      const auto begin = seen.begin() + static_cast<std::ptrdiff_t>(s * seen.size() / stretches);
-      const auto end = seen.begin() + static_cast<std::ptrdiff_t>((s + 1) * seen.size() / stretches);
+    const std::size_t segments = std::min(per_camera, detected.size());
+    for (std::size_t s = 0; s < segments; ++s) {
+      const auto begin = detected.begin() + static_cast<std::ptrdiff_t>(s * detected.size() / segments);
+      const auto end = detected.begin() + static_cast<std::ptrdiff_t>((s + 1) * detected.size() / segments);
       chosen[*std::max_element(begin, end, [&](std::size_t a, std::size_t b) { return count[a] < count[b]; })] = 1;
     }
   }
@@ -78,8 +78,8 @@ class WandCalibration {
     step("finding the wand");
     for (std::size_t c = 0; c < cameras(); ++c) {
       const RigCamera& camera = in_.rig.cameras[c];
-      tracks_.push_back(
-          {find_marks(in_.seen[c], in_.wand, camera.lens, *camera.size), period_of(in_.seen[c]), camera.offset_s.value_or(0)});
+      tracks_.push_back({find_marks(in_.detected[c], in_.wand, camera.lens, *camera.size), period_of(in_.detected[c]),
+                         camera.offset_s.value_or(0)});
     }
     check_tracks(in_, tracks_);
     if (options_.find_offsets) {
@@ -90,7 +90,7 @@ class WandCalibration {
     table_ = table_of(tracks_, instants_of(tracks_), in_.wand.markers());
     std::vector<std::string> names;
     for (const RigCamera& camera : in_.rig.cameras) names.push_back(camera.name);
-    require_connected(names, shared_views(table_, cameras()), kLeastShared);
+    require_connected(names, shared_views(table_, cameras()), kMinShared);
   }
 
   std::vector<WandCamera> grown_cameras(double guess, double sigma_px, bool free) const {
@@ -104,7 +104,7 @@ class WandCalibration {
   }
 
   /// Robust cost of a growth over all that was to be explained, px².
-  double cost_of(const Growth& growth, std::size_t wanted) const {
+  double cost_of(const Growth& growth, std::size_t required) const {
     constexpr double cap = 25;
     double cost = 0;
     std::size_t explained = 0;
@@ -113,7 +113,7 @@ class WandCalibration {
       cost += error ? std::min(cap, error->squaredNorm()) : cap;
       ++explained;
     }
-    return cost + cap * static_cast<double>(wanted - std::min(wanted, explained));
+    return cost + cap * static_cast<double>(required - std::min(required, explained));
   }
 
   void grow() {
@@ -121,17 +121,17 @@ class WandCalibration {
     const bool guess = any_unknown_lens();
     const auto instants = spread_instants(table_, cameras(), guess ? kGuessPerCamera : kGrowPerCamera);
     WandTable some;
-    std::size_t wanted = 0;
+    std::size_t required = 0;
     for (const std::size_t i : instants) {
       some.push_back(table_[i]);
-      for (const auto& marks : table_[i]) wanted += marks ? in_.wand.markers() : 0;
+      for (const auto& marks : table_[i]) required += marks ? in_.wand.markers() : 0;
     }
     std::string cause;
     double best = std::numeric_limits<double>::infinity();
     const auto attempt = [&](double focal, double sigma_px, bool free) {
       try {
         Growth growth = grow_rig(grown_cameras(focal, sigma_px, free), in_.wand, some, options_.seed);
-        const double cost = cost_of(growth, wanted);
+        const double cost = cost_of(growth, required);
         if (cost >= best) return;
         best = cost;
         growth_ = std::move(growth);

@@ -1,10 +1,11 @@
 // A rig from a wand, or a single light, that was waved before its cameras.
 //
 //   1. find the wand in each view (wand_marks)
-//   2. compare the clocks (wand_offsets), relate the cameras by a few hundred moments (grow_rig); where lenses are not known, for
+//   2. compare the clocks (wand_offsets), relate the cameras by a few hundred instants (grow_rig); where lenses are not known, for
 //   several guesses of their focal length
 //   3. look again in every view for what the first step could not tell, now that it is known where the wand must be
-//   4. adjust everything, time offsets too, outliers put out; on most of the frames first, to be judged on the others, then on all
+//   4. adjust everything, time offsets too, outliers put out; on most of the frames first, to be evaluated on the others, then on
+//   all
 //   5. where the lenses as given explain less than refined ones would, free them and do 3 and 4 again
 //   6. report, and put the world where the given poses have it, or upright as the cameras stand
 // Cost: dominated by 4, linear in the views of markers.
@@ -22,7 +23,7 @@
 
 namespace marey::calibrate::wand {
 
-/// What becomes of the lenses.
+/// What happens to the lenses.
 enum class LensUse {
   automatic,  ///< held where they explain what is seen as well as refined ones do, else refined; estimated where not given
   fixed,      ///< held; each camera's has to be given
@@ -37,7 +38,7 @@ struct KnownDistance {
 struct WandInput {
   Rig rig;  ///< sizes, lenses where known, poses where the world is to stay where it is
   WandShape wand;
-  std::vector<std::vector<BlobFrame>> seen;  ///< by camera, in order of time
+  std::vector<std::vector<BlobFrame>> detected;  ///< by camera, in order of time
 };
 
 struct WandOptions {

@@ -15,9 +15,9 @@ std::string refusal_of(const WandInput& input, const WandOptions& options = {}) 
   return refusal([&] { check_wand_input(input, options); });
 }
 
-testing::AssertionResult says(const std::string& why, const std::string& part) {
+testing::AssertionResult states(const std::string& why, const std::string& part) {
   if (why.find(part) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << '"' << why << "\" does not say \"" << part << '"';
+  return testing::AssertionFailure() << '"' << why << "\" does not specify \"" << part << '"';
 }
 
 TEST(WandChecks, InputThatCannotBecomeARigIsRefused) {
@@ -25,22 +25,22 @@ TEST(WandChecks, InputThatCannotBecomeARigIsRefused) {
   EXPECT_EQ(refusal_of(input_of(scene)), "");
   WandInput alone = input_of(scene);
   alone.rig.cameras.resize(1);
-  EXPECT_TRUE(says(refusal_of(alone), "two cameras or more; the rig has 1"));
+  EXPECT_TRUE(states(refusal_of(alone), "two cameras or more; the rig has 1"));
   for (const std::vector<double>& distances :
        {std::vector<double>{}, {0.1, 0.2}, {0, 0.3, 0.1}, {0, 0.1, 0.1}, {0, 0.1, 0.2, 0.3}}) {
     WandInput input = input_of(scene);
     input.wand.distances = distances;
-    EXPECT_TRUE(says(refusal_of(input), "two or three distances")) << distances.size();
+    EXPECT_TRUE(states(refusal_of(input), "two or three distances")) << distances.size();
   }
   WandInput sizeless = input_of(scene);
   sizeless.rig.cameras[2].size.reset();
-  EXPECT_TRUE(says(refusal_of(sizeless), "camera \"cam3\": its picture's size is not known"));
+  EXPECT_TRUE(states(refusal_of(sizeless), "camera \"cam3\": its picture's size is not known"));
   WandInput lensless = input_of(scene);
   lensless.rig.cameras[1].lens.reset();
   EXPECT_EQ(refusal_of(lensless), "");
   WandOptions held;
   held.lens = LensUse::fixed;
-  EXPECT_TRUE(says(refusal_of(lensless, held), "camera \"cam2\" has no lens to be held"));
+  EXPECT_TRUE(states(refusal_of(lensless, held), "camera \"cam2\" has no lens to be held"));
 }
 
 TEST(WandChecks, AKnownDistanceIsBetweenTwoOfTheCameras) {
@@ -51,10 +51,10 @@ TEST(WandChecks, AKnownDistanceIsBetweenTwoOfTheCameras) {
     return refusal_of(input_of(scene), options);
   };
   EXPECT_EQ(with("cam1", "cam2", 3), "");
-  EXPECT_TRUE(says(with("cam1", "cam9", 3), "\"cam9\", which the rig does not have"));
-  EXPECT_TRUE(says(with("cam1", "cam1", 3), "twice"));
-  EXPECT_TRUE(says(with("cam1", "cam2", 0), "positive"));
-  EXPECT_TRUE(says(with("cam1", "cam2", std::nan("")), "positive"));
+  EXPECT_TRUE(states(with("cam1", "cam9", 3), "\"cam9\", which the rig does not have"));
+  EXPECT_TRUE(states(with("cam1", "cam1", 3), "twice"));
+  EXPECT_TRUE(states(with("cam1", "cam2", 0), "positive"));
+  EXPECT_TRUE(states(with("cam1", "cam2", std::nan("")), "positive"));
 }
 
 TEST(WandChecks, EveryCameraMustHaveSeenTheWandOften) {
@@ -63,7 +63,7 @@ TEST(WandChecks, EveryCameraMustHaveSeenTheWandOften) {
   std::vector<MarkTrack> tracks(4, MarkTrack{std::vector<MarkFrame>(20), 0.02, 0});
   EXPECT_EQ(refusal([&] { check_tracks(input, tracks); }), "");
   tracks[1].frames.resize(19);
-  EXPECT_TRUE(says(refusal([&] { check_tracks(input, tracks); }), "camera \"cam2\": the wand is seen in 19 of 100 frames"));
+  EXPECT_TRUE(states(refusal([&] { check_tracks(input, tracks); }), "camera \"cam2\": the wand is seen in 19 of 100 frames"));
 }
 
 TEST(WandChecks, AWandThatChangesItsLengthIsRefused) {
@@ -73,12 +73,12 @@ TEST(WandChecks, AWandThatChangesItsLengthIsRefused) {
   EXPECT_EQ(refusal([&] { check_lengths(lengths, {{0, 0.12, 0.30}}); }), "");
   std::vector<double> changed = lengths;
   for (std::size_t i = 300; i < 400; ++i) changed[i] += 0.02;
-  EXPECT_TRUE(says(refusal([&] { check_lengths(changed, {{0, 0.12, 0.30}}); }), "it was another wand"));
+  EXPECT_TRUE(states(refusal([&] { check_lengths(changed, {{0, 0.12, 0.30}}); }), "it was another wand"));
   EXPECT_EQ(refusal([&] { check_lengths(changed, {{0}}); }), "") << "a light has no length";
   EXPECT_EQ(refusal([&] { check_lengths(std::vector(changed.end() - 30, changed.end()), {{0, 0.3}}); }), "") << "too few to tell";
 }
 
-/// A fitted rig of a scene: every marker of `instants` moments an inlier.
+/// A fitted rig of a scene: every marker of `instants` instants an inlier.
 struct Fitted {
   bundle::Bundle bundle;
   bundle::BundleResult fit;
@@ -101,15 +101,15 @@ struct Fitted {
 TEST(WandChecks, AFittedRigMustHaveAVolumeAndPlacesOfItsOwn) {
   const WandScene scene(5);
   EXPECT_EQ(Fitted(scene, 60).refusal_of(scene), "");
-  EXPECT_TRUE(says(Fitted(scene, 29).refusal_of(scene), "only 29 places of the wand"));
-  EXPECT_TRUE(says(Fitted(scene, 60, {1, 1, 0}).refusal_of(scene), "in a plane"));
-  EXPECT_TRUE(says(Fitted(scene, 60, {1, 0, 0}).refusal_of(scene), "along a line"));
+  EXPECT_TRUE(states(Fitted(scene, 29).refusal_of(scene), "only 29 places of the wand"));
+  EXPECT_TRUE(states(Fitted(scene, 60, {1, 1, 0}).refusal_of(scene), "in a plane"));
+  EXPECT_TRUE(states(Fitted(scene, 60, {1, 0, 0}).refusal_of(scene), "along a line"));
   Fitted twice(scene, 60);
   twice.bundle.cameras[3] = twice.bundle.cameras[1];
-  EXPECT_TRUE(says(twice.refusal_of(scene), "cameras \"cam2\" and \"cam4\" stand in one place"));
+  EXPECT_TRUE(states(twice.refusal_of(scene), "cameras \"cam2\" and \"cam4\" stand in one place"));
   Fitted lonely(scene, 60);
   for (std::size_t i = 0; i < lonely.fit.inlier.size(); ++i) lonely.fit.inlier[i] = i % 4 != 2 || i < 40;
-  EXPECT_TRUE(says(lonely.refusal_of(scene), "camera \"cam3\": only 10 of its views"));
+  EXPECT_TRUE(states(lonely.refusal_of(scene), "camera \"cam3\": only 10 of its views"));
 }
 
 }  // namespace

@@ -29,16 +29,16 @@ std::int64_t shared_views(const std::vector<MarkFrame>& a, const std::vector<Mar
 
 }  // namespace
 
-void WandCoverage::add(std::span<const Seen> seen, double together_s) {
-  std::vector<std::vector<MarkFrame>> marks(seen.size());
-  for (std::size_t c = 0; c < seen.size(); ++c) {
-    if (seen[c].size.empty()) continue;
-    marks[c] = find_marks(seen[c].frames, wand_, seen[c].lens, seen[c].size);
+void WandCoverage::add(std::span<const Detected> detected, double together_s) {
+  std::vector<std::vector<MarkFrame>> marks(detected.size());
+  for (std::size_t c = 0; c < detected.size(); ++c) {
+    if (detected[c].size.empty()) continue;
+    marks[c] = find_marks(detected[c].frames, wand_, detected[c].lens, detected[c].size);
     Camera& camera = cameras_[c];
     for (const MarkFrame& frame : marks[c]) {
       ++camera.views;
       for (const auto& mark : frame.marks) {
-        const auto part = mark ? part_of(*mark, seen[c].size) : std::nullopt;
+        const auto part = mark ? part_of(*mark, detected[c].size) : std::nullopt;
         if (part && camera.parts.insert(*part).second) camera.views_at_growth = camera.views;
       }
     }
@@ -60,7 +60,7 @@ double WandCoverage::coverage(std::size_t camera) const {
 bool WandCoverage::is_covered(std::size_t camera) const {
   const std::int64_t same = cameras_[camera].views - cameras_[camera].views_at_growth;
   const bool no_more = same >= (lenses_known_ ? kNothingNew : kNothingNewOfLens);
-  return coverage(camera) >= (no_more ? kCovered : wanted(lenses_known_));
+  return coverage(camera) >= (no_more ? kCovered : required(lenses_known_));
 }
 
 bool WandCoverage::is_enough() const {

@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kRate = 50;  // Hz
 
-/// What camera `c` gives between two moments; a camera that sees nothing gives empty frames.
-std::vector<BlobFrame> frames_of(WandScene& scene, std::size_t c, double from_s, double to_s, bool sees = true) {
+/// What camera `c` gives between two instants; a camera that sees nothing gives empty frames.
+std::vector<BlobFrame> frames_of(WandScene& scene, std::size_t c, double from_s, double to_s, bool observes = true) {
   std::vector<BlobFrame> frames;
   for (double t = from_s; t < to_s; t += 1 / kRate) {
     BlobFrame& frame = frames.emplace_back(BlobFrame{t, {}});
-    const auto marks = scene.seen(c, t, 0.1);
-    if (!sees || !marks) continue;
+    const auto marks = scene.detected(c, t, 0.1);
+    if (!observes || !marks) continue;
     for (std::size_t m = 0; m < scene.wand.markers(); ++m) frame.blobs.push_back(*(*marks)[m]);
   }
   return frames;
@@ -23,16 +23,16 @@ std::vector<BlobFrame> frames_of(WandScene& scene, std::size_t c, double from_s,
 
 /// Two seconds at a time, as they come.
 template <typename Sees>
-WandCoverage waved(WandScene& scene, double duration_s, Sees sees, bool lenses_known = true) {
+WandCoverage waved(WandScene& scene, double duration_s, Sees observes, bool lenses_known = true) {
   WandCoverage coverage(scene.wand, scene.rig.cameras.size(), lenses_known);
   for (double t = 0; t < duration_s; t += 2) {
     std::vector<std::vector<BlobFrame>> frames;
-    std::vector<WandCoverage::Seen> seen;
+    std::vector<WandCoverage::Detected> detected;
     for (std::size_t c = 0; c < scene.rig.cameras.size(); ++c) {
-      frames.push_back(frames_of(scene, c, t, t + 2, sees(c, t)));
-      seen.push_back({frames.back(), scene.rig.cameras[c].lens, *scene.rig.cameras[c].size});
+      frames.push_back(frames_of(scene, c, t, t + 2, observes(c, t)));
+      detected.push_back({frames.back(), scene.rig.cameras[c].lens, *scene.rig.cameras[c].size});
     }
-    coverage.add(seen, 0.5 / kRate);
+    coverage.add(detected, 0.5 / kRate);
   }
   return coverage;
 }
@@ -91,7 +91,7 @@ TEST(WandCoverage, CountsNothingBeforeThePictureIsKnown) {
   WandScene scene(4);
   const std::vector<BlobFrame> frames = frames_of(scene, 0, 0, 2);
   WandCoverage coverage(scene.wand, 1);
-  coverage.add(std::array{WandCoverage::Seen{frames, {}, {}}}, 0.01);
+  coverage.add(std::array{WandCoverage::Detected{frames, {}, {}}}, 0.01);
   EXPECT_EQ(coverage.views(0), 0);
 }
 

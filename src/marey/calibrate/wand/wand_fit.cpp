@@ -12,12 +12,12 @@
 namespace marey::calibrate::wand {
 namespace {
 
-constexpr double kLeastGatePx = 2;      // in a picture of 1280 columns, within which a blob is matched
+constexpr double kMinGatePx = 2;        // in an image of 1280 columns, within which a blob is matched
 constexpr double kGateNoise = 8;        // times the noise
-constexpr std::size_t kHeldOutOf = 10;  // every so many-th place of the wand is held out
-constexpr std::size_t kLeastToHold = 200;
-constexpr double kResample = 0.02;   // of a period: from here on a time offset asks for samples at other moments
-constexpr double kOffsetSigmas = 5;  // a time offset is believed from here on
+constexpr std::size_t kHeldOutOf = 10;  // every this many-th place of the wand is held out
+constexpr std::size_t kMinToHold = 200;
+constexpr double kResample = 0.02;   // of a period: from here on a time offset asks for samples at other instants
+constexpr double kOffsetSigmas = 5;  // a time offset is trusted from here on
 constexpr int kOffsetRounds = 4;
 
 std::vector<WandCamera> wand_cameras(const WandInput& input, const bundle::Bundle& bundle, double noise_px) {
@@ -29,7 +29,7 @@ std::vector<WandCamera> wand_cameras(const WandInput& input, const bundle::Bundl
   return cameras;
 }
 
-/// A value between the bodies' at a moment: the one of that instant, or through the neighbours'.
+/// A value between the bodies' at an instant: the one of that instant, or through the neighbours'.
 class BodyAt {
  public:
   BodyAt(const std::vector<double>& instants, const std::vector<std::optional<bundle::Body>>& bodies, const WandShape& wand)
@@ -91,19 +91,19 @@ void WandFit::match_blobs() {
   for (std::size_t c = 0; c < bundle_.cameras.size(); ++c) placement.poses[c] = bundle_.cameras[c].camera_from_world;
   std::vector<double> lengths;
   for (std::size_t i = 0; in_.wand.markers() > 1 && i < placement.instants(); ++i) {
-    const auto places = placement.markers(i);
-    if (places) lengths.push_back(((*places)[in_.wand.markers() - 1] - (*places)[0]).norm());
+    const auto locations = placement.markers(i);
+    if (locations) lengths.push_back(((*locations)[in_.wand.markers() - 1] - (*locations)[0]).norm());
   }
   check_lengths(lengths, in_.wand);
-  placement.place_all();
+  placement.position_all();
   bodies_ = placement.bodies;
   const BodyAt body_at(instants_, bodies_, in_.wand);
   for (std::size_t c = 0; c < tracks_.size(); ++c) {
     const cv::Size size = *in_.rig.cameras[c].size;
     const Camera camera(bundle_.cameras[c].lens, bundle_.cameras[c].camera_from_world, size);
-    const double gate = std::max(kLeastGatePx * size.width / 1280, kGateNoise * noise_px_);
+    const double gate = std::max(kMinGatePx * size.width / 1280, kGateNoise * noise_px_);
     tracks_[c].frames.clear();
-    for (const BlobFrame& frame : in_.seen[c]) {
+    for (const BlobFrame& frame : in_.detected[c]) {
       Marks expected;
       for (std::size_t m = 0; m < in_.wand.markers(); ++m) {
         const auto point = body_at.marker(frame.time_s + tracks_[c].offset_s, m);
@@ -136,7 +136,7 @@ void WandFit::gather() {
   }
 }
 
-/// Offsets that are believed stay, others are 0; true where one is so large that samples are to be taken anew.
+/// Offsets that are trusted stay, others are 0; true where one is so large that samples are to be taken again.
 bool WandFit::take_over_offsets(const bundle::BundleResult& fit) {
   bool resample = false;
   for (std::size_t c = 0; c < tracks_.size(); ++c) {
@@ -153,16 +153,16 @@ bool WandFit::take_over_offsets(const bundle::BundleResult& fit) {
 
 void WandFit::adjust_held_out(bool find_offsets, std::optional<HeldOutReport>& report) {
   const bool moving = std::any_of(bundle_.observations.begin(), bundle_.observations.end(),
-                                  [](const bundle::BundleObservation& seen) { return seen.velocity != Vector<2>::Zero(); });
-  const bool hold = in_.wand.markers() > 1 && bundle_.bodies.size() >= kLeastToHold;
+                                  [](const bundle::BundleObservation& detected) { return detected.velocity != Vector<2>::Zero(); });
+  const bool hold = in_.wand.markers() > 1 && bundle_.bodies.size() >= kMinToHold;
   for (int round = 0; round < kOffsetRounds; ++round) {
-    bundle::Bundle train = bundle_, judged = bundle_;
+    bundle::Bundle train = bundle_, evaluated = bundle_;
     if (hold) {
-      const auto held = [](const bundle::BundleObservation& seen) {
-        return static_cast<std::size_t>(seen.body) % kHeldOutOf == kHeldOutOf / 2;
+      const auto held = [](const bundle::BundleObservation& detected) {
+        return static_cast<std::size_t>(detected.body) % kHeldOutOf == kHeldOutOf / 2;
       };
       std::erase_if(train.observations, held);
-      std::erase_if(judged.observations, [&](const bundle::BundleObservation& seen) { return !held(seen); });
+      std::erase_if(evaluated.observations, [&](const bundle::BundleObservation& detected) { return !held(detected); });
     }
     for (std::size_t c = 1; c < train.cameras.size(); ++c) train.cameras[c].refine_offset = find_offsets && moving;
     bundle::BundleOptions options;
@@ -176,10 +176,10 @@ void WandFit::adjust_held_out(bool find_offsets, std::optional<HeldOutReport>& r
     bundle_.bodies = train.bodies;
     for (bundle::BundleCamera& camera : bundle_.cameras) camera.refine_offset = false;
     if (hold) {
-      judged.cameras = bundle_.cameras;
+      evaluated.cameras = bundle_.cameras;
       std::vector<cv::Size> sizes;
       for (const RigCamera& camera : in_.rig.cameras) sizes.push_back(*camera.size);
-      report = judge_held_out(judged, sizes);
+      report = evaluate_held_out(evaluated, sizes);
     }
     if (!find_offsets || !moving || !take_over_offsets(fit)) return;
     match_blobs();
@@ -191,7 +191,7 @@ WandFit::Noise WandFit::noise_held_and_refined() const {
   bundle::Bundle some = bundle_;
   const std::size_t every = std::max<std::size_t>(1, some.bodies.size() / bodies);
   std::erase_if(some.observations,
-                [&](const bundle::BundleObservation& seen) { return static_cast<std::size_t>(seen.body) % every != 0; });
+                [&](const bundle::BundleObservation& detected) { return static_cast<std::size_t>(detected.body) % every != 0; });
   bundle::BundleOptions options;
   options.noise_px = std::max(0.02, noise_px_);
   options.tolerance = 1e-7;

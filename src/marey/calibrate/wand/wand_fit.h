@@ -8,7 +8,7 @@
 
 namespace marey::calibrate::wand {
 
-/// The last steps of a wand's calibration: every view looked at again, and everything adjusted.
+/// The last steps of a wand's calibration: every view inspected again, and everything adjusted.
 class WandFit {
  public:
   /// `start` has the cameras where the growth left them. Offsets found are added to the tracks'.
@@ -20,8 +20,8 @@ class WandFit {
   /// Looks where the wand must be, in every frame of every camera, and makes the bundle of it.
   void match_blobs();
 
-  /// Adjusts by nine tenths of the instants, with the cameras' time offsets where `find_offsets`, and judges the others;
-  /// where the wand is long enough known for that. Samples are taken anew where an offset is found.
+  /// Adjusts by nine tenths of the instants, with the cameras' time offsets where `find_offsets`, and evaluates the others;
+  /// where the wand is long enough known for that. Samples are taken again where an offset is found.
   void adjust_held_out(bool find_offsets, std::optional<HeldOutReport>& report);
 
   /// px, each axis, by a part of what was seen.

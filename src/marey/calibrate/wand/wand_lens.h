@@ -7,7 +7,7 @@
 
 namespace marey::calibrate::wand {
 
-/// The camera's lens, or where it is not known a plain one with a focal length of `guess` times the picture's longer side.
+/// The camera's lens, or where it is not known a plain one with a focal length of `guess` times the image's longer side.
 geometry::Lens starting_lens(const RigCamera& camera, double guess);
 
 /// How far a lens that was guessed may move while the rig grows: its focal length, and a little of its barrel.

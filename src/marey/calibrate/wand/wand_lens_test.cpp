@@ -27,10 +27,10 @@ TEST(WandLens, AnUnknownOneIsPlainAndLooksAtTheMiddle) {
   }
 }
 
-TEST(WandLens, WhatIsLessKnownMayMoveFarther) {
+TEST(WandLens, UncertainParametersMayMoveFarther) {
   const cv::Size size(1280, 1024);
   const auto growing = growing_lens(), estimated = estimated_lens(size), refined = refined_lens(size);
-  EXPECT_EQ(growing.principal, 0) << "a growing rig does not tell it";
+  EXPECT_EQ(growing.principal, 0) << "a growing rig does not specify it";
   EXPECT_EQ(estimated.focal, bundle::LensFreedom::free);
   EXPECT_EQ(refined.focal, bundle::LensFreedom::free);
   EXPECT_GT(estimated.distortion[0], refined.distortion[0]);

@@ -14,12 +14,12 @@ namespace {
 
 /// Distances of a wand's two ends from the camera differ by no more than this factor where a view is used at first.
 constexpr double kDepthRatio = 1.35;
-constexpr double kLeastGapPx = 3;       // of neighbouring markers: nearer, their blobs spoil one another
-constexpr double kSymmetric = 0.03;     // a middle marker this near to the middle, as a share of the length, tells no end
-constexpr std::size_t kMostBlobs = 40;  // of one view in which triples are tried
-constexpr double kStillShare = 0.25;    // of the frames in which a blob at one place is no wand
-constexpr std::size_t kFewFrames = 40;  // too few to tell what stands still
-constexpr double kCell = 3;             // px: "one place"
+constexpr double kMinGapPx = 3;          // of neighbouring markers: nearer, their blobs spoil one another
+constexpr double kSymmetric = 0.03;      // a middle marker this near to the middle, as a share of the length, tells no end
+constexpr std::size_t kMaxBlobs = 40;    // of one view in which triples are tried
+constexpr double kStillFraction = 0.25;  // of the frames in which a blob at one place is not a wand
+constexpr std::size_t kFewFrames = 40;   // too few to tell what stands still
+constexpr double kCell = 3;              // px: "one place"
 
 using Cell = std::pair<int, int>;
 
@@ -34,7 +34,7 @@ std::map<Cell, int> still_cells(std::span<const BlobFrame> frames) {
   for (const BlobFrame& frame : frames) {
     for (const auto& blob : frame.blobs) ++counts[cell_of(blob)];
   }
-  std::erase_if(counts, [&](const auto& cell) { return cell.second < kStillShare * static_cast<double>(frames.size()); });
+  std::erase_if(counts, [&](const auto& cell) { return cell.second < kStillFraction * static_cast<double>(frames.size()); });
   return counts;
 }
 
@@ -81,25 +81,25 @@ class Straightener {
 
 /// Where the middle marker may divide the line seen from the first end to the last, for a division `s` of the wand itself.
 bool divides(double t, double s) {
-  const auto seen = [s](double ratio) { return s * ratio / (1 - s + s * ratio); };
-  return t >= seen(1 / kDepthRatio) && t <= seen(kDepthRatio);
+  const auto detected = [s](double ratio) { return s * ratio / (1 - s + s * ratio); };
+  return t >= detected(1 / kDepthRatio) && t <= detected(kDepthRatio);
 }
 
 /// Orientations in which three points, ends first and last, can be the wand: bit 0 as they are, bit 1 reversed.
 int orientations_of(const std::array<Vector<2>, 3>& points, double s, bool knows_lens) {
   const Vector<2> line = points[2] - points[0];
   const double length = line.norm();
-  if (length < 2 * kLeastGapPx) return 0;
+  if (length < 2 * kMinGapPx) return 0;
   const Vector<2> along = line / length, from_end = points[1] - points[0];
   const double t = from_end.dot(along) / length, off = std::abs(along.x() * from_end.y() - along.y() * from_end.x());
-  if (t * length < kLeastGapPx || (1 - t) * length < kLeastGapPx) return 0;
+  if (t * length < kMinGapPx || (1 - t) * length < kMinGapPx) return 0;
   if (off > std::max(1.0, (knows_lens ? 0.01 : 0.03) * length)) return 0;
   return (divides(t, s) ? 1 : 0) | (divides(t, 1 - s) ? 2 : 0);
 }
 
-/// The one triple that can be the wand, or nothing where none or several can.
+/// The one triple that can be the wand, or nothing if none or several can.
 std::optional<Marks> only_triple(const std::vector<Vector<2>>& blobs, const WandShape& wand, const Straightener& straighten) {
-  if (blobs.size() > kMostBlobs) return std::nullopt;
+  if (blobs.size() > kMaxBlobs) return std::nullopt;
   const double s = wand.distances[1] / wand.distances[2];
   std::optional<Marks> found;
   for (std::size_t i = 0; i < blobs.size(); ++i) {

@@ -2,9 +2,9 @@
 //
 // Three markers on a line stay on a line in every view (its lens undone), and the middle one divides it by a ratio that perspective
 // shifts only as far as the wand's ends differ in distance. Every three blobs are tried; a view counts where exactly one triple,
-// one way round, passes. Of a single light, or a wand of two markers, a view counts where it shows exactly so many. Blobs that stay
-// in one place through much of the recording are lamps and reflections, and are left out first. Later, when the cameras are known,
-// `match_marks` finds what this missed: it looks where the wand must be.
+// one way round, passes. Of a single light, or a wand of two markers, a view counts where it shows exactly this many. Blobs that
+// stay in one place through much of the recording are lamps and reflections, and are omitted first. Later, when the cameras are
+// known, `match_marks` finds what this missed: it looks where the wand must be.
 #pragma once
 
 #include <array>
@@ -27,18 +27,18 @@ struct BlobFrame {
 
 /// A wand: its markers' distances from the first, growing, m. One marker, at 0, is a single light.
 struct WandShape {
-  static constexpr std::size_t most = 3;
+  static constexpr std::size_t maximum = 3;
 
   std::vector<double> distances{0};
 
   std::size_t markers() const { return distances.size(); }
   double length() const { return distances.back(); }
-  /// Turned end for end it looks the same: which end is which has to come from elsewhere.
+  /// Turned end for end it appears the same: which end is which has to come from elsewhere.
   bool reversible() const;
 };
 
 /// The wand's markers in one view; all of them at first, later those that were found.
-using Marks = std::array<std::optional<Vector<2>>, WandShape::most>;
+using Marks = std::array<std::optional<Vector<2>>, WandShape::maximum>;
 
 struct MarkFrame {
   double time_s = 0;
@@ -46,7 +46,7 @@ struct MarkFrame {
 };
 
 /// The frames of one camera in which the wand was identified. `lens`, where it is known, straightens the lines; `size` of the
-/// picture. Frames come in order of time, and so does the result. A reversible wand's ends are in any order.
+/// image. Frames come in order of time, and so does the result. A reversible wand's ends are in any order.
 std::vector<MarkFrame> find_marks(std::span<const BlobFrame> frames, const WandShape& wand,
                                   const std::optional<geometry::Lens>& lens, cv::Size size);
 

@@ -15,7 +15,7 @@ const cv::Size kSize(1280, 1024);
 std::vector<BlobFrame> frames_of(WandScene& scene, int count, int ghosts) {
   std::vector<BlobFrame> frames;
   for (int i = 0; static_cast<int>(frames.size()) < count; ++i) {
-    const auto marks = scene.seen(0, 0.09 * i);
+    const auto marks = scene.detected(0, 0.09 * i);
     if (!marks) continue;
     BlobFrame frame{0.09 * i, {}};
     for (std::size_t m = 0; m < scene.wand.markers(); ++m) frame.blobs.push_back(*(*marks)[m]);
@@ -35,7 +35,7 @@ TEST(WandMarks, ThreeMarkersAreFoundTheRightWayRound) {
     const auto found = find_marks(frames_of(scene, 100, 3), scene.wand, scene.rig.cameras[0].lens, kSize);
     int right = 0, wrong = 0;
     for (const MarkFrame& frame : found) {
-      const auto truth = scene.seen(0, frame.time_s);
+      const auto truth = scene.detected(0, frame.time_s);
       ASSERT_TRUE(truth);
       double off = 0;
       for (std::size_t m = 0; m < 3; ++m) off = std::max(off, (*frame.marks[m] - *(*truth)[m]).norm());
@@ -82,7 +82,7 @@ TEST(WandShape, IsReversibleWhereItsMiddleIsInTheMiddle) {
   EXPECT_FALSE((WandShape{{0}}).reversible());
 }
 
-/// The slow twin: of all matches the nearest pair first, then the nearest of what is left, by looking at all of them each time.
+/// The slow twin: of all matches the nearest pair first, then the nearest of the rest, by looking at all of them each time.
 Marks nearest_first(const BlobFrame& frame, const Marks& expected, double gate) {
   Marks marks;
   std::vector<bool> taken(frame.blobs.size(), false);

@@ -10,15 +10,15 @@
 namespace marey::calibrate::wand {
 namespace {
 
-constexpr double kLongestShift_s = 60;
-constexpr std::size_t kLeastCommon = 40;  // samples of speed, to compare them
-constexpr double kLeastOverlap = 0.4;     // of the shorter recording, that two have in common
-constexpr std::size_t kLeastPairs = 50;   // views, to relate two cameras: few fit to anything
-constexpr std::size_t kMostPairs = 200;   // views by which a shift is judged
-constexpr std::size_t kPeaks = 6;         // shifts whose geometry is tried
-constexpr int kDraws = 300;               // of RANSAC: where the shift is right nearly all fits
-constexpr double kFits = 0.85;            // share of views that fit when a shift is right
-constexpr double kBetter = 0.1;           // by which the share must exceed that of the offsets as given
+constexpr double kMaxShift_s = 60;
+constexpr std::size_t kMinCommon = 40;  // samples of speed, to compare them
+constexpr double kMinOverlap = 0.4;     // of the shorter recording, that two have in common
+constexpr std::size_t kMinPairs = 50;   // views, to relate two cameras: few fit to anything
+constexpr std::size_t kMaxPairs = 200;  // views by which a shift is evaluated
+constexpr std::size_t kPeaks = 6;       // shifts whose geometry is tried
+constexpr int kDraws = 300;             // of RANSAC: where the shift is right nearly all fits
+constexpr double kFits = 0.85;          // share of views that fit when a shift is right
+constexpr double kBetter = 0.1;         // by which the share must exceed that of the offsets as given
 
 struct Shift {
   double seconds = 0, agreement = 0;
@@ -44,7 +44,7 @@ Speed speed_of(const MarkTrack& track, std::size_t markers, double period_s) {
   return speed;
 }
 
-/// Correlation of two speeds, b's samples moved by `lag`, as a standard normal deviate (Fisher); nothing where too few meet.
+/// Correlation of two speeds, b's samples moved by `lag`, as a standard normal deviate (Fisher); nothing if too few meet.
 std::optional<double> agreement(const Speed& a, const Speed& b, std::ptrdiff_t lag) {
   double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
   for (std::size_t i = 0; i < a.values.size(); ++i) {
@@ -57,7 +57,7 @@ std::optional<double> agreement(const Speed& a, const Speed& b, std::ptrdiff_t l
     return static_cast<double>(
         std::count_if(speed.values.begin(), speed.values.end(), [](const auto& value) { return value.has_value(); }));
   };
-  if (n < std::max<double>(kLeastCommon, kLeastOverlap * std::min(present(a), present(b)))) return std::nullopt;
+  if (n < std::max<double>(kMinCommon, kMinOverlap * std::min(present(a), present(b)))) return std::nullopt;
   const double variance = (saa - sa * sa / n) * (sbb - sb * sb / n);
   if (!(variance > 0)) return std::nullopt;
   const double r = std::clamp((sab - sa * sb / n) / std::sqrt(variance), -0.9999, 0.9999);
@@ -80,12 +80,12 @@ class Offsets {
     std::vector<Shift> peaks;  // best first, s added to b's times
   };
 
-  double share(std::size_t a, std::size_t b, double shift_s) const;
+  double fraction(std::size_t a, std::size_t b, double shift_s) const;
   std::vector<Shift> peaks_of(const Speed& a, const Speed& b) const;
   std::vector<Edge> edges() const;
   std::optional<double> shift_that_fits(const Edge& edge) const;
   bool fits_as_given() const;
-  std::optional<MarkerPlaces> bearings(std::size_t c, double time_s) const;
+  std::optional<MarkerPositions> bearings(std::size_t c, double time_s) const;
 
   std::vector<MarkTrack>& tracks_;
   const std::vector<WandCamera>& cameras_;
@@ -95,41 +95,41 @@ class Offsets {
   std::vector<Camera> lenses_;
 };
 
-std::optional<MarkerPlaces> Offsets::bearings(std::size_t c, double time_s) const {
+std::optional<MarkerPositions> Offsets::bearings(std::size_t c, double time_s) const {
   const MarkSamples samples = sample_at(tracks_[c], time_s);
-  MarkerPlaces places{};
+  MarkerPositions locations{};
   for (std::size_t m = 0; m < wand_.markers(); ++m) {
     const auto bearing = samples[m] ? lenses_[c].bearing(samples[m]->pixel) : std::nullopt;
     if (!bearing) return std::nullopt;
-    places[m] = *bearing;
+    locations[m] = *bearing;
   }
-  return places;
+  return locations;
 }
 
 /// Of the views that two cameras share, b's times moved, how many one geometry explains.
-double Offsets::share(std::size_t a, std::size_t b, double shift_s) const {
+double Offsets::fraction(std::size_t a, std::size_t b, double shift_s) const {
   std::vector<WandPair> pairs;
   for (const MarkFrame& frame : tracks_[a].frames) {
     const double time = frame.time_s + tracks_[a].offset_s;
     const auto there = bearings(b, time - shift_s), here = there ? bearings(a, time) : std::nullopt;
     if (here) pairs.push_back({*here, *there});
   }
-  if (pairs.size() < kLeastPairs) return 0;
-  if (pairs.size() > kMostPairs) {  // spread over time
+  if (pairs.size() < kMinPairs) return 0;
+  if (pairs.size() > kMaxPairs) {  // spread over time
     std::vector<WandPair> some;
-    for (std::size_t i = 0; i < kMostPairs; ++i) some.push_back(pairs[i * pairs.size() / kMostPairs]);
+    for (std::size_t i = 0; i < kMaxPairs; ++i) some.push_back(pairs[i * pairs.size() / kMaxPairs]);
     pairs = std::move(some);
   }
   const auto sigma = [&](std::size_t c) { return cameras_[c].sigma_px / geometry::focal_of(cameras_[c].lens).x(); };
   const auto views = relate(pairs, {wand_.markers(), wand_.reversible(), sigma(a), sigma(b), seed_, kDraws});
-  return views ? views->share : 0;
+  return views ? views->fraction : 0;
 }
 
 /// Whether the cameras, each with one it shares much with, see one geometry with the offsets they have.
 bool Offsets::fits_as_given() const {
   for (std::size_t c = 1; c < tracks_.size(); ++c) {
     double best = 0;
-    for (std::size_t other = 0; other < c && best < kFits; ++other) best = std::max(best, share(other, c, 0));
+    for (std::size_t other = 0; other < c && best < kFits; ++other) best = std::max(best, fraction(other, c, 0));
     if (best < kFits) return false;
   }
   return true;
@@ -137,7 +137,7 @@ bool Offsets::fits_as_given() const {
 
 /// Shifts at which the speeds agree better than at those beside.
 std::vector<Shift> Offsets::peaks_of(const Speed& a, const Speed& b) const {
-  const auto reach = static_cast<std::ptrdiff_t>(kLongestShift_s / period_s_);
+  const auto reach = static_cast<std::ptrdiff_t>(kMaxShift_s / period_s_);
   const std::ptrdiff_t first = std::max(-reach, -std::ssize(b.values)), last = std::min(reach, std::ssize(a.values));
   std::vector<double> scores;
   for (std::ptrdiff_t lag = first; lag <= last; ++lag) scores.push_back(agreement(a, b, lag).value_or(0));
@@ -172,7 +172,7 @@ std::vector<Offsets::Edge> Offsets::edges() const {
 std::optional<double> Offsets::shift_that_fits(const Edge& edge) const {
   double best = 0, shift = 0;
   const auto attempt = [&](double seconds) {
-    const double here = share(edge.a, edge.b, seconds);
+    const double here = fraction(edge.a, edge.b, seconds);
     if (here > best) best = here, shift = seconds;
   };
   for (const Shift& peak : edge.peaks) {
@@ -183,7 +183,7 @@ std::optional<double> Offsets::shift_that_fits(const Edge& edge) const {
     attempt(from - step * period_s_);
     attempt(from + step * period_s_);
   }
-  if (best < kFits || best < share(edge.a, edge.b, 0) + kBetter * (1 - best)) return std::nullopt;
+  if (best < kFits || best < fraction(edge.a, edge.b, 0) + kBetter * (1 - best)) return std::nullopt;
   return shift;
 }
 

@@ -19,7 +19,7 @@ std::vector<MarkTrack> tracks_of(WandScene& scene, const std::vector<double>& of
   for (std::size_t c = 0; c < offsets.size(); ++c) {
     MarkTrack& track = tracks.emplace_back(MarkTrack{{}, 0.02, 0});
     for (int i = 0; i < frames; ++i) {
-      if (const auto marks = scene.seen(c, by_hand(0.02 * i + offsets[c]), 0.2)) track.frames.push_back({0.02 * i, *marks});
+      if (const auto marks = scene.detected(c, by_hand(0.02 * i + offsets[c]), 0.2)) track.frames.push_back({0.02 * i, *marks});
     }
   }
   return tracks;
@@ -34,7 +34,7 @@ TEST(WandOffsets, CamerasStartedAtOtherTimesAreSetRight) {
   EXPECT_NEAR(tracks[2].offset_s, -0.5, 0.012);
 }
 
-TEST(WandOffsets, WhatFitsAlreadyIsLeft) {
+TEST(WandOffsets, KeepsFittingOffsets) {
   WandScene scene(2, 3);
   auto tracks = tracks_of(scene, {0, 0.7, 0});
   tracks[1].offset_s = 0.7;

@@ -16,11 +16,11 @@ constexpr double kLengthOff = 0.15;  // relative, by which a placed wand may be 
 WandPlacement::WandPlacement(std::vector<WandCamera> cameras, WandShape wand, const WandTable& table)
     : poses(cameras.size()),
       bodies(table.size()),
-      turned(table.size(), std::vector<char>(cameras.size(), 0)),
+      rotated(table.size(), std::vector<char>(cameras.size(), 0)),
       cameras_(std::move(cameras)),
       wand_(std::move(wand)),
       table_(table),
-      bearings_(table.size(), std::vector<std::optional<MarkerPlaces>>(cameras_.size())) {
+      bearings_(table.size(), std::vector<std::optional<MarkerPositions>>(cameras_.size())) {
   for (std::size_t c = 0; c < cameras_.size(); ++c) measure(c);
 }
 
@@ -39,19 +39,19 @@ void WandPlacement::measure(std::size_t c) {
     bearings_[i][c].reset();
     const auto& marks = table_[i][c];
     if (!marks) continue;
-    MarkerPlaces places{};
+    MarkerPositions locations{};
     bool whole = true;
     for (std::size_t m = 0; m < wand_.markers(); ++m) {
       const auto bearing = (*marks)[m] ? camera.bearing(*(*marks)[m]) : std::nullopt;
       whole &= bearing.has_value();
-      if (bearing) places[m] = *bearing;
+      if (bearing) locations[m] = *bearing;
     }
-    if (whole) bearings_[i][c] = places;
+    if (whole) bearings_[i][c] = locations;
   }
 }
 
 Vector<2> WandPlacement::pixel(std::size_t i, std::size_t c, std::size_t marker) const {
-  return *(*table_[i][c])[turned[i][c] ? wand_.markers() - 1 - marker : marker];
+  return *(*table_[i][c])[rotated[i][c] ? wand_.markers() - 1 - marker : marker];
 }
 
 Vector<3> WandPlacement::marker_at(const bundle::Body& body, std::size_t marker) const {
@@ -62,16 +62,16 @@ Vector<3> WandPlacement::marker_at(const bundle::Body& body, std::size_t marker)
 
 SightLine WandPlacement::line(std::size_t i, std::size_t c, std::size_t marker) const {
   const Rigid3 world_from_camera = poses[c]->inverse();
-  const std::size_t seen = turned[i][c] ? wand_.markers() - 1 - marker : marker;
-  return {{world_from_camera.translation, world_from_camera.rotation * (*bearings_[i][c])[seen]}, sigma(c)};
+  const std::size_t detected = rotated[i][c] ? wand_.markers() - 1 - marker : marker;
+  return {{world_from_camera.translation, world_from_camera.rotation * (*bearings_[i][c])[detected]}, sigma(c)};
 }
 
 void WandPlacement::turn_to_fit(std::size_t i, std::size_t first, std::size_t other) {
   constexpr double never = 1e6;
   std::array<double, 2> off{};
-  const char before = turned[i][other];
+  const char before = rotated[i][other];
   for (const char turn : {0, 1}) {
-    turned[i][other] = turn;
+    rotated[i][other] = turn;
     for (std::size_t m = 0; m < wand_.markers(); ++m) {
       const std::array lines = {line(i, first, m), line(i, other, m)};
       const auto point = intersection_point(lines);
@@ -79,49 +79,49 @@ void WandPlacement::turn_to_fit(std::size_t i, std::size_t first, std::size_t ot
           point ? std::pow(angle_off(lines[0], *point), 2) + std::pow(angle_off(lines[1], *point), 2) : never;
     }
   }
-  turned[i][other] = off[0] == off[1] ? before : static_cast<char>(off[1] < off[0]);
+  rotated[i][other] = off[0] == off[1] ? before : static_cast<char>(off[1] < off[0]);
 }
 
-std::optional<MarkerPlaces> WandPlacement::markers(std::size_t i) {
-  std::vector<std::size_t> seeing;
+std::optional<MarkerPositions> WandPlacement::markers(std::size_t i) {
+  std::vector<std::size_t> observing;
   for (std::size_t c = 0; c < poses.size(); ++c) {
-    if (poses[c] && bearings_[i][c]) seeing.push_back(c);
+    if (poses[c] && bearings_[i][c]) observing.push_back(c);
   }
-  if (seeing.size() < 2) return std::nullopt;
+  if (observing.size() < 2) return std::nullopt;
   if (wand_.reversible()) {
-    for (std::size_t k = 1; k < seeing.size(); ++k) turn_to_fit(i, seeing[0], seeing[k]);
+    for (std::size_t k = 1; k < observing.size(); ++k) turn_to_fit(i, observing[0], observing[k]);
   }
-  MarkerPlaces places{};
+  MarkerPositions locations{};
   std::vector<SightLine> lines;
   for (std::size_t m = 0; m < wand_.markers(); ++m) {
     lines.clear();
-    for (const std::size_t c : seeing) lines.push_back(line(i, c, m));
+    for (const std::size_t c : observing) lines.push_back(line(i, c, m));
     const auto point = agreed_point(lines, kAgree);
     if (!point) return std::nullopt;
-    places[m] = *point;
+    locations[m] = *point;
   }
-  return places;
+  return locations;
 }
 
-void WandPlacement::place(std::size_t i) {
-  const auto places = markers(i);
-  if (!places) return;
+void WandPlacement::location(std::size_t i) {
+  const auto locations = markers(i);
+  if (!locations) return;
   if (wand_.markers() == 1) {
-    bodies[i] = bundle::Body((*places)[0]);
+    bodies[i] = bundle::Body((*locations)[0]);
     return;
   }
-  const Vector<3> along = (*places)[wand_.markers() - 1] - (*places)[0];
+  const Vector<3> along = (*locations)[wand_.markers() - 1] - (*locations)[0];
   if (std::abs(along.norm() / wand_.length() - 1) > kLengthOff) return;
   bundle::WandPose pose{Vector<3>::Zero(), along.normalized()};
   for (std::size_t m = 0; m < wand_.markers(); ++m) {
-    pose.origin += ((*places)[m] - wand_.distances[m] * pose.direction) / static_cast<double>(wand_.markers());
+    pose.origin += ((*locations)[m] - wand_.distances[m] * pose.direction) / static_cast<double>(wand_.markers());
   }
   bodies[i] = bundle::Body(pose);
 }
 
-void WandPlacement::place_all() {
+void WandPlacement::position_all() {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i]) place(i);
+    if (!bodies[i]) location(i);
   }
 }
 

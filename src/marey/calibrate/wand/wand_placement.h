@@ -23,7 +23,7 @@ struct WandCamera {
 using WandTable = std::vector<std::vector<std::optional<Marks>>>;
 
 /// Places of the markers of one wand, or the bearings under which a camera sees them.
-using MarkerPlaces = std::array<Vector<3>, WandShape::most>;
+using MarkerPositions = std::array<Vector<3>, WandShape::maximum>;
 
 /// Where the wand was at each instant, by the cameras whose poses are known so far. Only views that show all markers take part.
 class WandPlacement {
@@ -31,20 +31,20 @@ class WandPlacement {
   /// `table` has to outlive this.
   WandPlacement(std::vector<WandCamera> cameras, WandShape wand, const WandTable& table);
 
-  /// Places the wand by all cameras that stand and see it, two at least; leaves it unplaced where their rays do not meet or the
+  /// Places the wand by all static cameras and see it, two at least; leaves it unplaced where their rays do not meet or the
   /// wand would be far from its length.
-  void place(std::size_t instant);
-  void place_all();
+  void location(std::size_t instant);
+  void position_all();
 
-  /// The markers before the wand's length is asked for: nothing where the rays do not meet. Turns views of a reversible wand
+  /// The markers before the wand's length is asked for: nothing if the rays do not meet. Turns views of a reversible wand
   /// so that they fit to the first.
-  std::optional<MarkerPlaces> markers(std::size_t instant);
+  std::optional<MarkerPositions> markers(std::size_t instant);
 
   void set_lens(std::size_t camera, const geometry::Lens& lens);
 
   std::size_t instants() const { return bearings_.size(); }
-  bool sees(std::size_t instant, std::size_t camera) const { return bearings_[instant][camera].has_value(); }
-  const MarkerPlaces& bearings(std::size_t instant, std::size_t camera) const { return *bearings_[instant][camera]; }
+  bool observes(std::size_t instant, std::size_t camera) const { return bearings_[instant][camera].has_value(); }
+  const MarkerPositions& bearings(std::size_t instant, std::size_t camera) const { return *bearings_[instant][camera]; }
   /// The pixel of a marker, counted on the wand, not as the view shows it.
   Vector<2> pixel(std::size_t instant, std::size_t camera, std::size_t marker) const;
   Vector<3> marker_at(const bundle::Body& body, std::size_t marker) const;
@@ -55,7 +55,7 @@ class WandPlacement {
 
   std::vector<std::optional<Rigid3>> poses;         ///< by camera, camera_from_world
   std::vector<std::optional<bundle::Body>> bodies;  ///< by instant
-  std::vector<std::vector<char>> turned;            ///< by instant and camera: its view has the wand's ends the other way round
+  std::vector<std::vector<char>> rotated;           ///< by instant and camera: its view has the wand's ends vice versa
 
  private:
   void measure(std::size_t camera);
@@ -65,7 +65,7 @@ class WandPlacement {
   std::vector<WandCamera> cameras_;
   WandShape wand_;
   const WandTable& table_;
-  std::vector<std::vector<std::optional<MarkerPlaces>>> bearings_;
+  std::vector<std::vector<std::optional<MarkerPositions>>> bearings_;
 };
 
 }  // namespace marey::calibrate::wand

@@ -18,7 +18,7 @@ TEST(WandPlacement, PlacesTheWandWhereItIs) {
     const WandTable table = scene.table(40, 0);
     WandPlacement placement(scene.cameras(), scene.wand, table);
     stand(placement, scene);
-    placement.place_all();
+    placement.position_all();
     for (std::size_t i = 0; i < placement.instants(); ++i) {
       ASSERT_TRUE(placement.bodies[i]) << i;
       const auto truth = scene.markers(0.11 * static_cast<double>(i));
@@ -27,17 +27,17 @@ TEST(WandPlacement, PlacesTheWandWhereItIs) {
   }
 }
 
-TEST(WandPlacement, OneCameraOrRaysThatDoNotMeetLeaveItUnplaced) {
+TEST(WandPlacement, SingleCameraOrSkewRaysLeaveUnlocated) {
   WandScene scene(6);
   WandTable table = scene.table(10, 0);
   for (std::size_t c = 1; c < 4; ++c) table[3][c].reset();  // seen by one
   for (std::size_t m = 0; m < 3; ++m) *(*table[5][0])[m] += Vector<2>(0, 300);
   for (std::size_t c = 2; c < 4; ++c) table[5][c].reset();  // two that contradict each other
   WandPlacement placement(scene.cameras(), scene.wand, table);
-  placement.place_all();
+  placement.position_all();
   for (const auto& body : placement.bodies) EXPECT_FALSE(body) << "no camera stands yet";
   stand(placement, scene);
-  placement.place_all();
+  placement.position_all();
   EXPECT_FALSE(placement.bodies[3]);
   EXPECT_FALSE(placement.bodies[5]);
   EXPECT_TRUE(placement.bodies[4]);
@@ -48,7 +48,7 @@ TEST(WandPlacement, AWandOfAnotherLengthIsNotPlacedButMeasured) {
   const WandTable table = scene.table(10, 0);
   WandPlacement placement(scene.cameras(), {{0, 0.18, 0.45}}, table);  // said to be half as long again
   stand(placement, scene);
-  placement.place_all();
+  placement.position_all();
   for (std::size_t i = 0; i < 10; ++i) {
     EXPECT_FALSE(placement.bodies[i]) << i;
     const auto markers = placement.markers(i);
@@ -64,11 +64,11 @@ TEST(WandPlacement, ViewsOfAReversibleWandAreTurnedToFitTheFirst) {
   for (std::size_t i = 0; i < table.size(); ++i) std::swap((*table[i][1 + i % 3])[0], (*table[i][1 + i % 3])[2]);
   WandPlacement placement(scene.cameras(), scene.wand, table);
   stand(placement, scene);
-  placement.place_all();
+  placement.position_all();
   for (std::size_t i = 0; i < table.size(); ++i) {
     ASSERT_TRUE(placement.bodies[i]) << i;
     for (std::size_t c = 0; c < 4; ++c) {
-      EXPECT_EQ(placement.turned[i][c] != 0, c == 1 + i % 3) << i << ' ' << c;
+      EXPECT_EQ(placement.rotated[i][c] != 0, c == 1 + i % 3) << i << ' ' << c;
       EXPECT_EQ(placement.pixel(i, c, 0), *(*straight[i][c])[0]);
     }
   }

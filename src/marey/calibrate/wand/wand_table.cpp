@@ -7,8 +7,8 @@
 namespace marey::calibrate::wand {
 namespace {
 
-constexpr double kSameMoment = 1e-3;  // of a period
-constexpr double kNeighbour = 0.1;    // of a period, by which a neighbouring frame may be early or late
+constexpr double kSameTimeStep = 1e-3;  // of a period
+constexpr double kNeighbour = 0.1;      // of a period, by which a neighbouring frame may be early or late
 
 bool neighbours(const MarkFrame& earlier, const MarkFrame& later, double period_s) {
   return std::abs(later.time_s - earlier.time_s - period_s) <= kNeighbour * period_s;
@@ -71,7 +71,7 @@ double period_of(std::span<const BlobFrame> frames) {
 }
 
 MarkSamples sample_at(const MarkTrack& track, double time_s) {
-  const double own = time_s - track.offset_s, near = kSameMoment * track.period_s + 1e-9;
+  const double own = time_s - track.offset_s, near = kSameTimeStep * track.period_s + 1e-9;
   const auto& frames = track.frames;
   const auto later = std::lower_bound(frames.begin(), frames.end(), own - near,
                                       [](const MarkFrame& frame, double time) { return frame.time_s < time; });
@@ -97,7 +97,7 @@ std::vector<double> instants_of(std::span<const MarkTrack> tracks) {
     slowest = &track;
   }
   std::sort(times.begin(), times.end());
-  const double same = std::isfinite(shortest) ? kSameMoment * shortest + 1e-9 : 1e-9;
+  const double same = std::isfinite(shortest) ? kSameTimeStep * shortest + 1e-9 : 1e-9;
   std::vector<double> instants;
   bool in_step = true;
   for (const double time : times) {

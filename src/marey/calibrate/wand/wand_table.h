@@ -15,13 +15,13 @@ struct MarkTrack {
   double offset_s = 0;            ///< added to the camera's times gives the rig's
 };
 
-/// A marker's pixel at a moment, and how it moves there.
+/// A marker's pixel at an instant, and how it moves there.
 struct MarkSample {
   Vector<2> pixel = Vector<2>::Zero();
-  Vector<2> velocity = Vector<2>::Zero();  ///< px/s; 0 where the neighbouring frames do not tell
+  Vector<2> velocity = Vector<2>::Zero();  ///< px/s; 0 where the neighbouring frames do not specify
 };
 
-using MarkSamples = std::array<std::optional<MarkSample>, WandShape::most>;
+using MarkSamples = std::array<std::optional<MarkSample>, WandShape::maximum>;
 
 /// Weights of four evenly spaced values for the cubic through them, at `u` in [0, 1] between the second and the third.
 std::array<double, 4> cubic_weights(double u);
@@ -29,12 +29,12 @@ std::array<double, 4> cubic_weights(double u);
 /// The period of frames at these times; 0 for fewer than two.
 double period_of(std::span<const BlobFrame> frames);
 
-/// The marks at a moment of the rig's clock: those of the frame then, or where it falls between frames a cubic through the four
-/// round it (an error of a hundredth of a pixel for a wand at 10 m/s² of acceleration); nothing where one of them is missing.
+/// The marks at an instant of the rig's clock: those of the frame then, or where it falls between frames a cubic through the four
+/// round it (an error of a hundredth of a pixel for a wand at 10 m/s² of acceleration); nothing if one of them is missing.
 MarkSamples sample_at(const MarkTrack& track, double time_s);
 
-/// The moments at which the cameras are compared: all frames' times where the cameras run in step, else those of the first camera
-/// with the longest period.
+/// The instants at which the cameras are compared: all frames' times where the cameras run synchronised, else those of the first
+/// camera with the longest period.
 std::vector<double> instants_of(std::span<const MarkTrack> tracks);
 
 /// All samples that show every one of the `markers`, by instant and camera.

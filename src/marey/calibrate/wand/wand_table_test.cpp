@@ -89,7 +89,7 @@ TEST(WandTable, ARowHasWhoeverSeesAllMarkers) {
   ASSERT_EQ(table.size(), instants.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto truth = scene.seen(c, instants[i]);
+      const auto truth = scene.detected(c, instants[i]);
       const bool whole = truth && !(c == 1 && std::abs(instants[i] - tracks[1].frames[5].time_s) < 1e-9);
       ASSERT_EQ(table[i][c].has_value(), whole) << i << ' ' << c;
       for (std::size_t m = 0; whole && m < 3; ++m) EXPECT_LT((*(*table[i][c])[m] - *(*truth)[m]).norm(), 1e-9);

@@ -10,15 +10,15 @@ namespace {
 
 WandInput input_of(WandScene& scene, int frames, double sigma, bool lenses = true) {
   WandInput input{scene.rig, scene.wand, std::vector<std::vector<BlobFrame>>(scene.rig.cameras.size())};
-  for (std::size_t c = 0; c < input.seen.size(); ++c) {
+  for (std::size_t c = 0; c < input.detected.size(); ++c) {
     input.rig.cameras[c].camera_from_world.reset();
     if (!lenses) input.rig.cameras[c].lens.reset();
     for (int i = 0; i < frames; ++i) {
       BlobFrame frame{i / 30.0, {}};
-      if (const auto marks = scene.seen(c, frame.time_s, sigma)) {
+      if (const auto marks = scene.detected(c, frame.time_s, sigma)) {
         for (const auto& mark : *marks) frame.blobs.push_back(*mark);
       }
-      input.seen[c].push_back(frame);
+      input.detected[c].push_back(frame);
     }
   }
   return input;

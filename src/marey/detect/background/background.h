@@ -20,25 +20,25 @@ class Background {
   virtual ~Background() = default;
 
   /// Begins with the scene common to `samples`, which span some seconds of the recording; people may stand in any of them.
-  /// May be left out: the model then begins with the first frame it is given.
+  /// May be omitted: the model then begins with the first frame it is given.
   virtual void prime(std::span<const Frame> /*samples*/) {}
 
   /// What in `frame` does not belong to the scene; then learns from it, except within `held`, where people are known to be.
-  /// Frames come in the order of their time. Where their size changes, the model begins anew. The mask returned is valid
+  /// Frames come in the order of their time. Where their size changes, the model begins again. The mask returned is valid
   /// until the next call.
   virtual Foreground apply(const Frame& frame, std::span<const Box> held) = 0;
 
-  /// The empty scene as it is believed to be now; empty where the model does not tell.
-  virtual Picture scene() const { return {}; }
+  /// The empty scene as it is trusted to be now; empty if the model does not specify.
+  virtual Image scene() const { return {}; }
   /// The same within `part`, whose corner is on even pixels.
-  virtual Picture scene(const cv::Rect& part) const {
-    const Picture whole = scene();
+  virtual Image scene(const cv::Rect& part) const {
+    const Image whole = scene();
     return whole.empty() ? whole : whole.part(part);
   }
 
-  /// What the picture shows where `mask` (CV_8UC1, its upper left pixel at `corner` of the picture) is not 0 is the scene:
-  /// something that was taken for a part of it has gone. A model that does not tell its scene need not know.
-  virtual void believe(const Picture& /*picture*/, const cv::Mat& /*mask*/, cv::Point /*corner*/) {}
+  /// What the image shows where `mask` (CV_8UC1, its upper left pixel at `corner` of the image) is not 0 is the scene:
+  /// something that was taken for a part of it has gone. A model that does not specify its scene need not know.
+  virtual void trust(const Image& /*image*/, const cv::Mat& /*mask*/, cv::Point /*corner*/) {}
 };
 
 /// Marey's own model: background_adaptive.cpp explains it.

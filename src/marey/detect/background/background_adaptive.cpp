@@ -6,22 +6,22 @@
 // pixel for long before, is taken out. Means follow background pixels by a recursive average, spreads by sigma-delta steps towards
 // a quantile.
 //
-// - A camera that shakes is followed by whole pixels: the frame is brought back to the scene's places, and its mask carried over
+// - A shaking camera is followed by whole pixels: the frame is brought back to the scene's places, and its mask carried over
 //   (background_sway.cpp).
-// - Pictures that it learns ahead from are brought into one light and to one place first (background_even.cpp).
+// - Images that it learns ahead from are brought into one light and to one place first (background_even.cpp).
 // - A change of light rescales the means at once, all together or part by part (background_light.cpp, background_patches.cpp).
 // - A thing that stands still is counted, pixel by pixel, in a second mean; only after `absorb_after_s`, or at the start after
 //   half the time that the model knows, or twice the time that the scene was seen there (where nothing was seen ahead), do the two
 //   change places (background_second.cpp). Pixels in `held` boxes are not counted and not learned.
-// - A model that saw nothing ahead keeps pictures of its first minute and corrects by them, after 0.4 s and each time that has
-//   doubled (background_samples.h): what moves about where a scene was taken for still, and what has left since the first picture.
+// - A model that saw nothing ahead keeps images of its first minute and corrects by them, after 0.4 s and each time that has
+//   doubled (background_samples.h): what moves about where a scene was taken for still, and what has left since the first image.
 // - A ghost, where something of the first frames has left, is a region whose border is an edge in the scene but not in the
-//   frame (background_regions.h); it is believed to be scene after a second.
-// - Where most of a picture does not fit the scene for seconds (the camera was moved), the model begins anew.
+//   frame (background_regions.h); it is trusted to be scene after a second.
+// - Where most of an image does not fit the scene for seconds (the camera was moved), the model begins again.
 //
 // Cost: about five bytes read a pixel and frame; a frame teaches one eighth of the rows, in turn. All else grows with what moves.
 // References: Stauffer & Grimson 1999 (modes that change places); Manzanera & Richefeu 2007 (sigma-delta); Cucchiara et al. 2003
-// (ghosts and shadows); Barnich & Van Droogenbroeck, ViBe, 2011 (a pixel may look as its neighbours do).
+// (ghosts and shadows); Barnich & Van Droogenbroeck, ViBe, 2011 (a pixel may appear as its neighbours do).
 #include "marey/detect/background/background_adaptive.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@
 #include <optional>
 #include <vector>
 
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/detect/background/background_even.h"
 #include "marey/detect/background/background_fringe.h"
 #include "marey/detect/background/background_frozen.h"
@@ -51,12 +51,12 @@ namespace {
 constexpr int kLumaFloor = 8;    // levels: the narrowest band's half width
 constexpr int kChromaFloor = 6;  // levels
 constexpr int kGate = 56;        // 3.5 spreads of 1.15 σ: 4 σ
-constexpr int kTurns = 8;        // frames until each row was taught once
+constexpr int kRotations = 8;    // frames until each row was taught once
 constexpr int kRowsATurn = 16;
-constexpr int kPatchTurns = 4;         // frames between two looks for parts in another light, while there are none
-constexpr double kPatchMarks = 0.005;  // of the picture: with fewer pixels outside the bands there are none
-constexpr double kStartAnew_s = 2;
-constexpr double kTooMuch = 0.6;  // of the picture
+constexpr int kPatchRotations = 4;     // frames between two searches for parts in another light, while there are none
+constexpr double kPatchMarks = 0.005;  // of the image: with fewer pixels outside the bands there are none
+constexpr double kRestart_s = 2;
+constexpr double kTooMuch = 0.6;  // of the image
 
 int shift_of(double time_constant, double step) {
   return std::clamp(static_cast<int>(std::lround(std::log2(std::max(time_constant / step, 1.0)))), 1, 7);
@@ -69,11 +69,11 @@ class AdaptiveBackground final : public Background {
   void prime(std::span<const Frame> samples) override {
     std::vector<FramePlanes> kept;
     for (const Frame& sample : samples) {
-      if (sample.picture.empty() || (!kept.empty() && sample.picture.size() != kept.front().luma.size())) continue;
-      const FramePlanes planes = planes_of(sample.picture);
+      if (sample.image.empty() || (!kept.empty() && sample.image.size() != kept.front().luma.size())) continue;
+      const FramePlanes planes = planes_of(sample.image);
       if (!kept.empty() && planes.cb.empty() != kept.front().cb.empty()) continue;
       kept.push_back(planes);
-      black_ = black_of(sample.picture);
+      black_ = black_of(sample.image);
     }
     if (kept.empty()) return;
     if (auto evened = evened_out(kept, black_)) kept = *std::move(evened);
@@ -82,8 +82,8 @@ class AdaptiveBackground final : public Background {
   }
 
   Foreground apply(const Frame& frame, std::span<const Box> held) override {
-    FramePlanes planes = planes_of(frame.picture);
-    black_ = black_of(frame.picture);
+    FramePlanes planes = planes_of(frame.image);
+    black_ = black_of(frame.image);
     if (planes.luma.empty()) return {};
     if (planes.luma.size() != size_ || planes.cb.empty() == colour_) begin(planes);
     keep_time(frame.time);
@@ -92,53 +92,53 @@ class AdaptiveBackground final : public Background {
     planes = brought_back(planes, shift_, luma_, cb_, cr_);
     std::vector<Box> there(held.begin(), held.end());
     for (Box& box : there) box.left -= shift_.x, box.top -= shift_.y;
-    const Foreground seen = apply(planes, there);
-    carry_over(seen.mask, shift_, carried_mask_);
-    carry_over(seen.covered, shift_, carried_covered_);
+    const Foreground detected = apply(planes, there);
+    carry_over(detected.mask, shift_, carried_mask_);
+    carry_over(detected.covered, shift_, carried_covered_);
     return {carried_mask_, carried_covered_};
   }
 
   Foreground apply(const FramePlanes& planes, std::span<const Box> held) {
     mark(planes);
-    if (follow_light(planes)) mark(planes);
-    if (follow_patches(planes)) mark(planes);
+    if (track_light(planes)) mark(planes);
+    if (track_patches(planes)) mark(planes);
     regions_.choose(marked_, size_.height);
     regions_.compare_borders(planes.luma, luma_);
     draw_mask(planes);
-    if (start_anew_if_lost(planes)) return {mask_, covered_};
+    if (restart_if_lost(planes)) return {mask_, covered_};
     learn(planes, held);
     if (samples_.keep(planes, age_s_)) correct(held);
     ++frames_;
     return {mask_, covered_};
   }
 
-  Picture scene() const override { return scene({{}, size_}); }
+  Image scene() const override { return scene({{}, size_}); }
 
-  Picture scene(const cv::Rect& part) const override {
+  Image scene(const cv::Rect& part) const override {
     if (size_.empty()) return {};
-    if (!colour_) return Picture(luma_.picture(part));
+    if (!colour_) return Image(luma_.image(part));
     const cv::Rect half(part.tl() / 2, cv::Size((part.width + 1) / 2, (part.height + 1) / 2));
-    return {luma_.picture(part), cb_.picture(half), cr_.picture(half), black_ > 0 ? Picture::Range::limited : Picture::Range::full};
+    return {luma_.image(part), cb_.image(half), cr_.image(half), black_ > 0 ? Image::Range::limited : Image::Range::full};
   }
 
-  void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
-    FramePlanes planes = planes_of(picture);
+  void trust(const Image& image, const cv::Mat& mask, cv::Point corner) override {
+    FramePlanes planes = planes_of(image);
     if (planes.luma.size() != size_) return;
     if (shift_ != cv::Point()) planes = brought_back(planes, shift_, luma_, cb_, cr_);
     corner -= shift_;
     for (int y = 0; y < mask.rows; ++y) {
       for (int x = 0; x < mask.cols; ++x) {
         const cv::Point at = corner + cv::Point(x, y);
-        if (mask.at<std::uint8_t>(y, x) != 0 && cv::Rect({0, 0}, size_).contains(at)) believe(planes, at.y, at.x);
+        if (mask.at<std::uint8_t>(y, x) != 0 && cv::Rect({0, 0}, size_).contains(at)) trust(planes, at.y, at.x);
       }
     }
   }
 
  private:
-  static int black_of(const Picture& picture) { return picture.range() == Picture::Range::limited ? 16 : 0; }
+  static int black_of(const Image& image) { return image.range() == Image::Range::limited ? 16 : 0; }
 
-  static FramePlanes planes_of(const Picture& picture) {
-    FramePlanes planes{picture.luma(), picture.cb(), picture.cr()};
+  static FramePlanes planes_of(const Image& image) {
+    FramePlanes planes{image.luma(), image.cb(), image.cr()};
     if (planes.luma.depth() == CV_16U) {
       cv::Mat eight_bit;
       planes.luma.convertTo(eight_bit, CV_8U, 1.0 / 257.0);
@@ -160,7 +160,7 @@ class AdaptiveBackground final : public Background {
       cb_.begin(cb);
       cr_.begin(cr);
     }
-    believe_what_returns(samples, {&luma_, colour ? &cb_ : nullptr, colour ? &cr_ : nullptr});
+    trust_what_returns(samples, {&luma_, colour ? &cb_ : nullptr, colour ? &cr_ : nullptr});
     make_room(luma.front().size(), colour, true);
   }
 
@@ -191,7 +191,7 @@ class AdaptiveBackground final : public Background {
     held_row_.assign(padded, 0);
     half_frozen_.assign(padded, 0);
     lost_s_ = 0;
-    usual_share_ = 0;
+    default_fraction_ = 0;
     frames_ = 0;
   }
 
@@ -208,11 +208,11 @@ class AdaptiveBackground final : public Background {
   void mark(const FramePlanes& planes) { marks_.find(planes, {luma_, cb_, cr_, black_}, marked_); }
 
   /// Rescales the scene where the light has changed. True where it did.
-  bool follow_light(const FramePlanes& planes) {
-    const double share = marked_.pixels / static_cast<double>(size_.area());
-    const bool jumped = share > usual_share_ + 0.03;
-    usual_share_ += (share - usual_share_) * 0.1;
-    if (!jumped && frames_ % kTurns != 0) return false;
+  bool track_light(const FramePlanes& planes) {
+    const double fraction = marked_.pixels / static_cast<double>(size_.area());
+    const bool jumped = fraction > default_fraction_ + 0.03;
+    default_fraction_ += (fraction - default_fraction_) * 0.1;
+    if (!jumped && frames_ % kRotations != 0) return false;
     const std::optional<LightChange> change = meter_.measure(planes.luma, luma_, black_);
     if (!change || !change->explained) return false;
     luma_.scale(change->gains, black_);
@@ -225,10 +225,10 @@ class AdaptiveBackground final : public Background {
     return true;
   }
 
-  /// The same for parts of the picture, each by itself.
-  bool follow_patches(const FramePlanes& planes) {
-    const bool looks = patched_ || frames_ % kPatchTurns == 0;
-    if (!looks || marked_.pixels < kPatchMarks * size_.area()) return patched_ = false;
+  /// The same for parts of the image, each by itself.
+  bool track_patches(const FramePlanes& planes) {
+    const bool appearances = patched_ || frames_ % kPatchRotations == 0;
+    if (!appearances || marked_.pixels < kPatchMarks * size_.area()) return patched_ = false;
     const std::optional<cv::Mat> gains = patches_.measure(planes.luma, luma_, black_);
     patched_ = gains.has_value();
     if (!patched_) return false;
@@ -247,7 +247,7 @@ class AdaptiveBackground final : public Background {
       for (cv::Mat* mask : {&mask_, &covered_})
         std::fill_n(mask->ptr<std::uint8_t>(run.row) + run.begin, run.end - run.begin, std::uint8_t{0});
     }
-    if (options_.suppress_shadows) shadows_.judge(regions_.runs(), planes, {luma_, cb_, cr_, black_});
+    if (options_.suppress_shadows) shadows_.assess(regions_.runs(), planes, {luma_, cb_, cr_, black_});
     for (const PixelRun& run : regions_.runs()) {
       const auto* pixels = planes.luma.ptr<std::uint8_t>(run.row);
       const std::int16_t* means = luma_.mean(run.row);
@@ -270,10 +270,10 @@ class AdaptiveBackground final : public Background {
                                             planes.cr.at<std::uint8_t>(y, x) - 128, cb_.level(y, x) - 128, cr_.level(y, x) - 128);
   }
 
-  /// After most of the picture did not fit the scene for a while.
-  bool start_anew_if_lost(const FramePlanes& planes) {
+  /// After most of the image did not fit the scene for a while.
+  bool restart_if_lost(const FramePlanes& planes) {
     lost_s_ = marked_.pixels > kTooMuch * size_.area() ? lost_s_ + step_s_ : 0;
-    if (lost_s_ < kStartAnew_s) return false;
+    if (lost_s_ < kRestart_s) return false;
     begin(planes);
     return true;
   }
@@ -281,11 +281,11 @@ class AdaptiveBackground final : public Background {
   // ---- learn -------------------------------------------------------------------------------------------------------------
 
   void learn(const FramePlanes& planes, std::span<const Box> held) {
-    const double turn_s = mean_step_s_ * kTurns;
+    const double turn_s = mean_step_s_ * kRotations;
     const int shift = shift_of(std::min(options_.memory_s, std::max(age_s_, 1.0)), turn_s);
     const int ticks = second_.ticks_between(age_s_ - turn_s, age_s_);
-    const int turn = static_cast<int>(frames_ % kTurns);
-    for (int first = turn * kRowsATurn; first < size_.height; first += kTurns * kRowsATurn) {
+    const int turn = static_cast<int>(frames_ % kRotations);
+    for (int first = turn * kRowsATurn; first < size_.height; first += kRotations * kRowsATurn) {
       const int last = std::min(first + kRowsATurn, size_.height);
       for (int y = first; y < last; ++y) count_still(planes, held, y, ticks);
       luma_.learn(planes.luma, first, last, shift, [&](int y) { return freeze(held, y, y); });
@@ -304,10 +304,10 @@ class AdaptiveBackground final : public Background {
   /// By the samples since a model began that learned nothing ahead. People who are known, and what stands out as a thing does,
   /// stay; what else is foreground may have been the scene's all along.
   void correct(std::span<const Box> held) {
-    cv::Mat fixed = cv::Mat::zeros(size_, CV_8UC1), doubted = cv::Mat::zeros(size_, CV_8UC1);
+    cv::Mat fixed = cv::Mat::zeros(size_, CV_8UC1), flagged = cv::Mat::zeros(size_, CV_8UC1);
     for (std::size_t i = 0; i < regions_.runs().size(); ++i) {
       const PixelRun& run = regions_.runs()[i];
-      cv::Mat& marked = regions_.is_thing(i) ? fixed : doubted;
+      cv::Mat& marked = regions_.is_thing(i) ? fixed : flagged;
       std::fill_n(marked.ptr<std::uint8_t>(run.row) + run.begin, run.end - run.begin, std::uint8_t{255});
     }
     for (int y = 0; y < size_.height && !held.empty(); ++y) {
@@ -315,7 +315,7 @@ class AdaptiveBackground final : public Background {
       mark_held(held, y, y, size_.width, held_row_);
       for (int x = 0; x < size_.width; ++x) fixed.at<std::uint8_t>(y, x) |= held_row_[x];
     }
-    luma_.correct(samples_.luma(), fixed, doubted);
+    luma_.correct(samples_.luma(), fixed, flagged);
     if (colour_) {
       const auto halved = [&](const cv::Mat& full) {
         cv::Mat half = cv::Mat::zeros(samples_.cb().front().size(), CV_8UC1);
@@ -324,7 +324,7 @@ class AdaptiveBackground final : public Background {
         }
         return half;
       };
-      const cv::Mat half_fixed = halved(fixed), half_doubted = halved(doubted);
+      const cv::Mat half_fixed = halved(fixed), half_doubted = halved(flagged);
       cb_.correct(samples_.cb(), half_fixed, half_doubted);
       cr_.correct(samples_.cr(), half_fixed, half_doubted);
     }
@@ -344,14 +344,14 @@ class AdaptiveBackground final : public Background {
     mark_held(held, y, y, size_.width, held_row_);
     const auto* pixels = planes.luma.ptr<std::uint8_t>(y);
     second_.count(y, pixels, held_row_.data(), regions_, ticks, age_s_, luma_, taken_);
-    for (const int x : taken_) believe(planes, y, x);
+    for (const int x : taken_) trust(planes, y, x);
   }
 
-  void believe(const FramePlanes& planes, int y, int x) {
-    luma_.believe(y, x, planes.luma.at<std::uint8_t>(y, x));
+  void trust(const FramePlanes& planes, int y, int x) {
+    luma_.trust(y, x, planes.luma.at<std::uint8_t>(y, x));
     if (!colour_) return;
-    cb_.believe(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
-    cr_.believe(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
+    cb_.trust(y / 2, x / 2, planes.cb.at<std::uint8_t>(y / 2, x / 2));
+    cr_.trust(y / 2, x / 2, planes.cr.at<std::uint8_t>(y / 2, x / 2));
   }
 
   AdaptiveOptions options_;
@@ -374,7 +374,7 @@ class AdaptiveBackground final : public Background {
 
   std::optional<Timestamp> last_time_;
   double step_s_ = 0, mean_step_s_ = 0, age_s_ = 0, lost_s_ = 0;
-  double usual_share_ = 0;
+  double default_fraction_ = 0;
   std::int64_t frames_ = 0;
 
   // Room for one frame's work.

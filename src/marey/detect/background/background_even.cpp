@@ -1,9 +1,9 @@
 // A scene is learned from what samples of a recording have in common, pixel by pixel. Where clouds pass, a lamp is switched or the
 // camera shakes they have little in common, and the middle of them is a patchwork of several lights that no frame ever shows. So
 // the sample of middle brightness is taken for the measure: the others are moved to its places (background_sway.h) and divided by
-// the gain of their light over its own (background_light.h, background_patches.h). Whoever stands in it is nowhere else, and the
-// gain of the cells that he covers comes from those round them. What was evened is not believed for its own sake: as many pixels as
-// show the same thing in most samples must become more. Cost: where nothing changes, a few thousand reads a sample and one in 64
+// the gain of their light over its own (background_light.h, background_patches.h). The one who stands in it is nowhere else, and
+// the gain of the cells that he covers comes from those round them. What was evened is not trusted for its own sake: as many pixels
+// as show the same thing in most samples must become more. Cost: where nothing changes, a few thousand reads a sample and one in 64
 // of all pixels.
 #include "marey/detect/background/background_even.h"
 
@@ -19,7 +19,7 @@
 namespace marey::detect::background {
 namespace {
 
-constexpr std::size_t kFewestEvened = 6;
+constexpr std::size_t kMinEvened = 6;
 constexpr int kSameSample = 10;    // levels; samples this near their median show the same thing
 constexpr double kBetter = 0.8;    // of the pixels that show something else: evened samples have fewer
 constexpr int kComparedEvery = 8;  // px
@@ -52,7 +52,7 @@ cv::Mat divided(const cv::Mat& plane, const cv::Mat& gains, int origin) {
   ScenePlane lit(1, 1);
   lit.begin(plane);
   lit.relight(1 / gains, origin);
-  return lit.picture();
+  return lit.image();
 }
 
 class Measure {
@@ -93,7 +93,7 @@ class Measure {
 }  // namespace
 
 std::optional<std::vector<FramePlanes>> evened_out(std::span<const FramePlanes> samples, int black) {
-  if (samples.size() < kFewestEvened) return std::nullopt;
+  if (samples.size() < kMinEvened) return std::nullopt;
   Measure measure(samples[middle_sample(samples)], black);
   std::vector<FramePlanes> result;
   for (const FramePlanes& sample : samples) result.push_back(measure.brought_to(sample));

@@ -61,7 +61,7 @@ TEST(EvenedOut, SamplesOfACameraThatShakesAreOneScene) {
   EXPECT_LT(greatest_spread(*evened, kEvenInner), 1);
 }
 
-TEST(EvenedOut, WhereOnlyPeopleMoveNothingIsChanged) {
+TEST(EvenedOut, KeepsImageIfOnlyPeopleMove) {
   const cv::Mat ground = tiles(3);
   std::vector<FramePlanes> samples;
   for (int i = 0; i < 9; ++i) {

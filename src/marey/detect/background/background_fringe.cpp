@@ -1,9 +1,9 @@
 // A pixel at the rim of a thing is a mixture of the thing and the ground behind it. A threshold on its difference from the ground
 // calls it foreground when a small part of it is covered, so that masks come out half a pixel too wide all round, which is a
-// quarter of the area of a player 25 px tall. Here the share that is covered is told: the pixel's difference from the ground, over
-// the mean difference of its neighbours that are wholly covered, along their direction in the space of luma and chroma.
-// A rim pixel with no such neighbour (a thing two pixels wide) is compared with the one that differs most, and more kindly. Cost:
-// four reads a foreground pixel, and some fifty for one at the rim.
+// quarter of the area of a player 25 px tall. Here the share that is covered is reported: the pixel's difference from the ground,
+// over the mean difference of its neighbours that are wholly covered, along their direction in the space of luma and chroma. A rim
+// pixel with no such neighbour (a thing two pixels wide) is compared with the one that differs most, and more kindly. Cost: four
+// reads a foreground pixel, and some fifty for one at the rim.
 #include "marey/detect/background/background_fringe.h"
 
 #include <algorithm>
@@ -35,9 +35,9 @@ bool at_rim(const std::uint8_t* pixel, std::size_t step) {
   return pixel[-1] == 0 || pixel[1] == 0 || *(pixel - step) == 0 || pixel[step] == 0;
 }
 
-bool mostly_ground(const cv::Mat& mask, int row, int column, const FramePlanes& frame, const SceneView& scene) {
+bool predominantly_ground(const cv::Mat& mask, int row, int column, const FramePlanes& frame, const SceneView& scene) {
   Colour inner{}, strongest{};
-  float most = 0;
+  float maximum = 0;
   int count = 0;
   for (int y = row - 1; y <= row + 1; ++y) {
     for (int x = column - 1; x <= column + 1; ++x) {
@@ -45,8 +45,8 @@ bool mostly_ground(const cv::Mat& mask, int row, int column, const FramePlanes& 
       if (y < 1 || x < 1 || y >= mask.rows - 1 || x >= mask.cols - 1 || *pixel == 0) continue;
       const Colour one = difference(y, x, frame, scene);
       const float size = product(one, one);
-      if (size > most) {
-        most = size;
+      if (size > maximum) {
+        maximum = size;
         strongest = one;
       }
       if (at_rim(pixel, mask.step)) continue;
@@ -55,7 +55,7 @@ bool mostly_ground(const cv::Mat& mask, int row, int column, const FramePlanes& 
     }
   }
   const Colour own = difference(row, column, frame, scene);
-  if (count == 0) return product(own, strongest) < kCoveredThin * most;
+  if (count == 0) return product(own, strongest) < kCoveredThin * maximum;
   return product(own, inner) * static_cast<float>(count) < kCovered * product(inner, inner);
 }
 
@@ -70,7 +70,7 @@ void trim_fringe(const cv::Mat& mask, std::span<const PixelRun> runs, const Fram
     if (run.row == 0 || run.row == mask.rows - 1) continue;
     for (int x = std::max(run.begin, 1); x < std::min(run.end, mask.cols - 1); ++x) {
       if (pixels[x] == 0 || !at_rim(pixels + x, mask.step)) continue;
-      if (mostly_ground(mask, run.row, x, frame, scene)) kept[x] = 0;
+      if (predominantly_ground(mask, run.row, x, frame, scene)) kept[x] = 0;
     }
   }
 }

@@ -21,23 +21,23 @@ double covered(int x, int y, double centre, double radius) {
   return inside / 64.0;
 }
 
-TEST(Fringe, WhatIsLeftOfADiscIsAsLargeAsTheDisc) {
+TEST(Fringe, TrimmedDiscKeepsItsSize) {
   for (const double radius : {4.0, 7.3, 12.6}) {
     for (const int level : {220, 150, 20}) {
-      cv::Mat ground(41, 41, CV_8UC1, cv::Scalar(100)), picture = ground.clone();
+      cv::Mat ground(41, 41, CV_8UC1, cv::Scalar(100)), image = ground.clone();
       cv::Mat mask = cv::Mat::zeros(41, 41, CV_8UC1), left = mask.clone();
       for (int y = 0; y < 41; ++y) {
         for (int x = 0; x < 41; ++x) {
-          const double share = covered(x, y, 20.3, radius);
-          picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(100 + share * (level - 100));
-          if (std::abs(picture.at<std::uint8_t>(y, x) - 100) > 3) mask.at<std::uint8_t>(y, x) = 255;
+          const double fraction = covered(x, y, 20.3, radius);
+          image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(100 + fraction * (level - 100));
+          if (std::abs(image.at<std::uint8_t>(y, x) - 100) > 3) mask.at<std::uint8_t>(y, x) = 255;
         }
       }
       ScenePlane luma(8, 56), none(6, 56);
       luma.begin(ground);
       std::vector<PixelRun> runs;
       for (int y = 0; y < 41; ++y) append_runs(mask.ptr<std::uint8_t>(y), y, 41, runs);
-      trim_fringe(mask, runs, {picture, {}, {}}, {luma, none, none, 0}, left);
+      trim_fringe(mask, runs, {image, {}, {}}, {luma, none, none, 0}, left);
       const double area = 3.14159265 * radius * radius;
       EXPECT_GT(cv::countNonZero(mask), 1.06 * area) << "too wide before";
       EXPECT_NEAR(cv::countNonZero(left), area, 0.04 * area + 2) << radius << " " << level;

@@ -104,8 +104,8 @@ void band(const Word* const rows[3], const Byte* __restrict spread, int width, i
   const Word* __restrict a = rows[0];
   const Word* __restrict b = rows[1];
   const Word* __restrict c = rows[2];
-  constexpr Word kWidest = 64 * 128, kWhite = 255 * 128;
-  const Word least = static_cast<Word>(floor * 128);
+  constexpr Word kMaxWidth = 64 * 128, kWhite = 255 * 128;
+  const Word minimum = static_cast<Word>(floor * 128);
   const Word factor = static_cast<Word>(gate);
   const auto put = [&](int x, int left, int right) HWY_ATTR {
     Word lowest = a[left], highest = a[left];
@@ -115,8 +115,8 @@ void band(const Word* const rows[3], const Byte* __restrict spread, int width, i
     };
     take(a[x]), take(a[right]), take(b[left]), take(b[x]), take(b[right]), take(c[left]), take(c[x]), take(c[right]);
     const Word noise = static_cast<Word>(spread[x] * factor);  // 1/8 level · 1/16 = 1/128 level
-    const Word wide = noise < kWidest ? noise : kWidest;
-    const Word half_width = wide > least ? wide : least;
+    const Word wide = noise < kMaxWidth ? noise : kMaxWidth;
+    const Word half_width = wide > minimum ? wide : minimum;
     // Bounded before the half width is taken off or added, so that 16 bits hold every step.
     const Word below = static_cast<Word>(b[x] - ((b[x] - lowest) >> 1));
     const Word over = static_cast<Word>(b[x] + ((highest - b[x]) >> 1));

@@ -19,8 +19,8 @@ constexpr double kSamples = 2000;
 constexpr int kDarkest = 24;     // levels over black: darker ones tell little of a ratio
 constexpr int kBrightest = 235;  // brighter ones may be clipped
 constexpr float kNoticeable = 0.03F;
-constexpr float kGreatest = 2.5F;  // beyond, and below its inverse, something covers the camera or its scene is another
-constexpr std::size_t kFewestRatios = 12;
+constexpr float kMaxMagnitude = 2.5F;  // beyond, and below its inverse, something covers the camera or its scene is another
+constexpr std::size_t kMinRatios = 12;
 
 }  // namespace
 
@@ -40,10 +40,10 @@ void LightMeter::sample(const cv::Mat& luma, const ScenePlane& scene, int black)
   }
 }
 
-void LightMeter::judge(Cell& cell, float overall_gain) {
+void LightMeter::assess(Cell& cell, float overall_gain) {
   cell.gain = overall_gain;
   cell.sure = false;
-  if (cell.ratios.size() < kFewestRatios) return;
+  if (cell.ratios.size() < kMinRatios) return;
   const float gain = geometry::median(cell.ratios);
   const auto agree =
       std::count_if(cell.ratios.begin(), cell.ratios.end(), [&](float ratio) { return std::abs(ratio - gain) < 0.08F * gain; });
@@ -72,29 +72,29 @@ cv::Mat LightMeter::smoothed(float overall_gain) const {
 
 std::optional<LightChange> LightMeter::measure(const cv::Mat& luma, const ScenePlane& scene, int black) {
   sample(luma, scene, black);
-  if (all_.size() < kFewestRatios) return std::nullopt;
+  if (all_.size() < kMinRatios) return std::nullopt;
   const float overall_gain = geometry::median(all_);
-  for (Cell& cell : cells_) judge(cell, overall_gain);
+  for (Cell& cell : cells_) assess(cell, overall_gain);
   const auto sure = std::count_if(cells_.begin(), cells_.end(), [](const Cell& cell) { return cell.sure; });
   if (sure * 2 < kColumns * kRows) return std::nullopt;
   const cv::Mat coarse = smoothed(overall_gain);
-  double least = 1, greatest = 1;
-  cv::minMaxLoc(coarse, &least, &greatest);
-  if (greatest < 1 + kNoticeable && least > 1 - kNoticeable) return std::nullopt;
+  double minimum = 1, greatest = 1;
+  cv::minMaxLoc(coarse, &minimum, &greatest);
+  if (greatest < 1 + kNoticeable && minimum > 1 - kNoticeable) return std::nullopt;
   LightChange change;
-  change.explained = greatest < kGreatest && least > 1 / kGreatest;
+  change.explained = greatest < kMaxMagnitude && minimum > 1 / kMaxMagnitude;
   const cv::Size blocks((luma.cols + ScenePlane::kBlock - 1) / ScenePlane::kBlock,
                         (luma.rows + ScenePlane::kBlock - 1) / ScenePlane::kBlock);
   cv::resize(coarse, change.gains, blocks, 0, 0, cv::INTER_LINEAR);
   return change;
 }
 
-double median_difference(const cv::Mat& picture, const ScenePlane& scene) {
+double median_difference(const cv::Mat& image, const ScenePlane& scene) {
   std::vector<float> differences;
-  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(picture.total()) / kSamples)));
-  for (int y = step / 2; y < picture.rows; y += step) {
-    for (int x = step / 2; x < picture.cols; x += step) {
-      differences.push_back(static_cast<float>(picture.at<std::uint8_t>(y, x)) - static_cast<float>(scene.mean(y)[x]) / 128.0F);
+  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(image.total()) / kSamples)));
+  for (int y = step / 2; y < image.rows; y += step) {
+    for (int x = step / 2; x < image.cols; x += step) {
+      differences.push_back(static_cast<float>(image.at<std::uint8_t>(y, x)) - static_cast<float>(scene.mean(y)[x]) / 128.0F);
     }
   }
   return differences.empty() ? 0 : geometry::median(differences);

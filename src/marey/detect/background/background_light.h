@@ -18,7 +18,7 @@ struct LightChange {
 /// Compares frames with the scene on a sparse grid.
 class LightMeter {
  public:
-  /// The gain of the light of `luma` over `scene`; nothing where there is none to speak of. Levels count from `black`.
+  /// The gain of the light of `luma` over `scene`; nothing if there is none to speak of. Levels count from `black`.
   std::optional<LightChange> measure(const cv::Mat& luma, const ScenePlane& scene, int black);
 
  private:
@@ -29,7 +29,7 @@ class LightMeter {
   };
   void sample(const cv::Mat& luma, const ScenePlane& scene, int black);
   float overall();
-  void judge(Cell& cell, float overall_gain);
+  void assess(Cell& cell, float overall_gain);
   cv::Mat smoothed(float overall_gain) const;
 
   static constexpr int kColumns = 6, kRows = 4;
@@ -37,7 +37,7 @@ class LightMeter {
   std::vector<float> all_;
 };
 
-/// The median of picture − scene over a sparse grid, in levels.
-double median_difference(const cv::Mat& picture, const ScenePlane& scene);
+/// The median of image − scene over a sparse grid, in levels.
+double median_difference(const cv::Mat& image, const ScenePlane& scene);
 
 }  // namespace marey::detect::background

@@ -14,11 +14,11 @@ class OpenCvBackground final : public Background {
   explicit OpenCvBackground(cv::Ptr<cv::BackgroundSubtractor> model) : model_(std::move(model)) {}
 
   void prime(std::span<const Frame> samples) override {
-    for (const Frame& sample : samples) model_->apply(sample.picture.bgr(), marked_);
+    for (const Frame& sample : samples) model_->apply(sample.image.bgr(), marked_);
   }
 
   Foreground apply(const Frame& frame, std::span<const Box> /*held*/) override {
-    model_->apply(frame.picture.bgr(), marked_);
+    model_->apply(frame.image.bgr(), marked_);
     cv::threshold(marked_, mask_, 200, 255, cv::THRESH_BINARY);
     cv::medianBlur(mask_, smooth_, 3);
     return {smooth_};

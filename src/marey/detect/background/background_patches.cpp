@@ -14,26 +14,26 @@ namespace marey::detect::background {
 namespace {
 
 constexpr int kCellsAcross = 20;
-constexpr int kLeastCell = 12;        // px
-constexpr int kSamplesAcross = 8;     // of a cell
-constexpr double kLeastTexture = 20;  // squared levels: the variance of the scene's part in a cell that tells something
-constexpr double kSeenThrough = 0.6;  // squared correlation
-constexpr double kUnevenLight = 0.1;  // of the level: how far a cell's pixels may lie off their common gain
-constexpr double kPatchNoise = 12;    // squared levels
+constexpr int kMinCellCount = 12;         // px
+constexpr int kSamplesAcross = 8;         // of a cell
+constexpr double kMinTexture = 20;        // squared levels: the variance of the scene's part in a cell that tells something
+constexpr double kObservedThrough = 0.6;  // squared correlation
+constexpr double kUnevenLight = 0.1;      // of the level: how far a cell's pixels may lie off their common gain
+constexpr double kPatchNoise = 12;        // squared levels
 constexpr float kOtherLight = 0.04F;
-constexpr float kMostLight = 2.0F;
-constexpr double kLeastSteps = 10;   // squared levels: of the scene's steps between neighbours in a cell that tells something
+constexpr float kMaxLight = 2.0F;
+constexpr double kMinSteps = 10;     // squared levels: of the scene's steps between neighbours in a cell that tells something
 constexpr double kSameSteps = 0.4;   // squared correlation of the steps
 constexpr double kStepsGain = 0.3;   // how far the steps' gain may be from the levels'
 constexpr double kManyCells = 0.04;  // of the grid: as many in another light are not people
-constexpr int kLeastPart = 4;        // cells side by side
+constexpr int kMinPart = 4;          // cells side by side
 constexpr int kLately = 30;          // looks
 constexpr int kAgreeing = 2;         // neighbours that a cell which cannot tell goes by, at least
 
 }  // namespace
 
 void LightPatches::sample(const cv::Mat& luma, const ScenePlane& scene, int black) {
-  const int cell = std::max(kLeastCell, luma.cols / kCellsAcross);
+  const int cell = std::max(kMinCellCount, luma.cols / kCellsAcross);
   grid_ = {std::max(1, luma.cols / cell), std::max(1, luma.rows / cell)};
   cells_.assign(static_cast<std::size_t>(grid_.area()), {});
   const int step = std::max(1, cell / kSamplesAcross);
@@ -62,32 +62,32 @@ void LightPatches::sample(const cv::Mat& luma, const ScenePlane& scene, int blac
 }
 
 /// Light multiplies the steps between neighbours as it does the levels; a smooth wall and a coat share a slope by chance, but
-/// hardly the small steps on it.
+/// barely the small steps on it.
 bool LightPatches::has_same_steps(const Cell& cell, double gain) {
   const double frame = cell.step_frame2, scene = cell.step_scene2, both = cell.step_both;
-  if (scene < kLeastSteps * cell.steps || both <= 0 || both * both < kSameSteps * scene * frame) return false;
+  if (scene < kMinSteps * cell.steps || both <= 0 || both * both < kSameSteps * scene * frame) return false;
   return std::abs(std::sqrt(frame / scene) / gain - 1) < kStepsGain;
 }
 
-LightPatches::Answer LightPatches::judge(const Cell& cell, float& gain) {
+LightPatches::Answer LightPatches::assess(const Cell& cell, float& gain) {
   gain = 1;
   if (cell.count < kSamplesAcross * kSamplesAcross / 2 || cell.scene2 <= 0) return Answer::unknown;
   const double n = cell.count, frame = cell.frame, scene = cell.scene;
   const double ratio = static_cast<double>(cell.both) / cell.scene2;
   const double texture = (cell.scene2 - scene * scene / n) / n;
-  const double seen = (cell.frame2 - frame * frame / n) / n;
+  const double detected = (cell.frame2 - frame * frame / n) / n;
   const double shared = (cell.both - frame * scene / n) / n;
   const double left_over = (cell.frame2 - ratio * cell.both) / n;
   const double uneven = kUnevenLight * frame / n;
-  if (texture < kLeastTexture || shared <= 0 || shared * shared < kSeenThrough * texture * seen) return Answer::unknown;
-  if (left_over > kPatchNoise + uneven * uneven || ratio > kMostLight || ratio < 1 / kMostLight) return Answer::unknown;
+  if (texture < kMinTexture || shared <= 0 || shared * shared < kObservedThrough * texture * detected) return Answer::unknown;
+  if (left_over > kPatchNoise + uneven * uneven || ratio > kMaxLight || ratio < 1 / kMaxLight) return Answer::unknown;
   if (!has_same_steps(cell, ratio)) return Answer::unknown;
   if (std::abs(ratio - 1) < kOtherLight) return Answer::as_before;
   gain = static_cast<float>(ratio);
   return Answer::other;
 }
 
-/// Of the cells in another light leaves those that are many: in the picture, side by side, or beside such that were there lately.
+/// Of the cells in another light leaves those that are many: in the image, side by side, or beside such that were there lately.
 /// False where none are left.
 bool LightPatches::drop_few() {
   cv::Mat other(grid_, CV_8UC1), parts, sizes, centres, near;
@@ -96,13 +96,13 @@ bool LightPatches::drop_few() {
   if (cv::countNonZero(other) < kManyCells * static_cast<double>(cells_.size())) {
     const int count = cv::connectedComponentsWithStats(other, parts, sizes, centres, 4);
     cv::dilate(lately_, near, {});
-    std::vector<bool> believed(static_cast<std::size_t>(count), false);
-    for (int i = 1; i < count; ++i) believed[static_cast<std::size_t>(i)] = sizes.at<int>(i, cv::CC_STAT_AREA) >= kLeastPart;
+    std::vector<bool> trusted(static_cast<std::size_t>(count), false);
+    for (int i = 1; i < count; ++i) trusted[static_cast<std::size_t>(i)] = sizes.at<int>(i, cv::CC_STAT_AREA) >= kMinPart;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (near.data[i] > 0) believed[static_cast<std::size_t>(parts.ptr<int>()[i])] = true;
+      if (near.data[i] > 0) trusted[static_cast<std::size_t>(parts.ptr<int>()[i])] = true;
     }
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (answers_[i] != Answer::other || believed[static_cast<std::size_t>(parts.ptr<int>()[i])]) continue;
+      if (answers_[i] != Answer::other || trusted[static_cast<std::size_t>(parts.ptr<int>()[i])]) continue;
       answers_[i] = Answer::unknown;
       gains_[i] = 1;
       other.data[i] = 0;
@@ -117,7 +117,7 @@ std::optional<cv::Mat> LightPatches::measure(const cv::Mat& luma, const ScenePla
   sample(luma, scene, black);
   answers_.assign(cells_.size(), Answer::unknown);
   gains_.assign(cells_.size(), 1);
-  for (std::size_t i = 0; i < cells_.size(); ++i) answers_[i] = judge(cells_[i], gains_[i]);
+  for (std::size_t i = 0; i < cells_.size(); ++i) answers_[i] = assess(cells_[i], gains_[i]);
   if (!drop_few()) return std::nullopt;
   cv::Mat gains(grid_, CV_32FC1, cv::Scalar(1));
   for (int y = 0; y < grid_.height; ++y) {

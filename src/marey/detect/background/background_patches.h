@@ -9,11 +9,11 @@
 
 namespace marey::detect::background {
 
-/// Finds parts of a picture that lie in another light than the scene: the shadows of clouds, a lamp's cone, the sun through a
+/// Finds parts of an image that lie in another light than the scene: the shadows of clouds, a lamp's cone, the sun through a
 /// window.
 class LightPatches {
  public:
-  /// The gain of the light of `luma` over `scene`, CV_32FC1, for the cells of a grid that covers the picture evenly; nothing where
+  /// The gain of the light of `luma` over `scene`, CV_32FC1, for the cells of a grid that covers the image evenly; nothing if
   /// it is 1 everywhere. Levels count from `black`.
   std::optional<cv::Mat> measure(const cv::Mat& luma, const ScenePlane& scene, int black);
 
@@ -29,7 +29,7 @@ class LightPatches {
     }
   };
   enum class Answer { unknown, as_before, other };
-  static Answer judge(const Cell& cell, float& gain);
+  static Answer assess(const Cell& cell, float& gain);
   static bool has_same_steps(const Cell& cell, double gain);
   bool drop_few();
   void sample(const cv::Mat& luma, const ScenePlane& scene, int black);

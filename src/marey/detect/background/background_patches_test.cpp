@@ -22,11 +22,11 @@ cv::Mat slabs(std::uint32_t seed) {
 }
 
 /// `picture` with `gain` times the light over black within `where`.
-cv::Mat lit(cv::Mat picture, const cv::Rect& where, double gain) {
-  picture = picture.clone();
-  cv::Mat part = picture(where);
+cv::Mat lit(cv::Mat image, const cv::Rect& where, double gain) {
+  image = image.clone();
+  cv::Mat part = image(where);
   part.convertTo(part, CV_8U, gain, kBlack * (1 - gain));
-  return picture;
+  return image;
 }
 
 TEST(LightPatches, FindAShadowAndItsEnd) {
@@ -48,8 +48,8 @@ TEST(LightPatches, FindAShadowAndItsEnd) {
     relit.begin(ground);
     relit.relight(*gains, kBlack);
     const cv::Rect inner(152, 88, 64, 48);
-    EXPECT_LT(cv::norm(relit.picture()(inner), now(inner), cv::NORM_INF), 3) << gain;
-    EXPECT_EQ(cv::countNonZero(relit.picture()({0, 0, 90, 240}) != ground({0, 0, 90, 240})), 0) << gain;
+    EXPECT_LT(cv::norm(relit.image()(inner), now(inner), cv::NORM_INF), 3) << gain;
+    EXPECT_EQ(cv::countNonZero(relit.image()({0, 0, 90, 240}) != ground({0, 0, 90, 240})), 0) << gain;
   }
 }
 
@@ -87,7 +87,7 @@ TEST(LightPatches, ASlopeThatACoatSharesWithTheWallIsNoLight) {
   EXPECT_FALSE(LightPatches().measure(now, scene, kBlack));
 }
 
-TEST(LightPatches, OneCellIsNoLightUnlessThereWasSomeBesideIt) {
+TEST(LightPatches, SingleCellIsNoLightWithoutNeighbour) {
   const cv::Mat ground = slabs(5);
   ScenePlane scene(8, 56);
   scene.begin(ground);
@@ -97,7 +97,7 @@ TEST(LightPatches, OneCellIsNoLightUnlessThereWasSomeBesideIt) {
   ASSERT_TRUE(patches.measure(lit(ground, many, 0.6), scene, kBlack));
   EXPECT_TRUE(patches.measure(lit(ground, one, 0.6), scene, kBlack));
   EXPECT_FALSE(patches.measure(lit(ground, one + cv::Point(96, 64), 0.6), scene, kBlack));
-  for (int look = 0; look < 40; ++look) patches.measure(ground, scene, kBlack);
+  for (int inspect = 0; inspect < 40; ++inspect) patches.measure(ground, scene, kBlack);
   EXPECT_FALSE(patches.measure(lit(ground, one, 0.6), scene, kBlack)) << "long ago";
 }
 

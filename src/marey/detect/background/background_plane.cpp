@@ -26,8 +26,8 @@ void ScenePlane::make_room(cv::Size size) {
   high_.create(size, CV_8UC1);
 }
 
-void ScenePlane::begin(const cv::Mat& picture) {
-  begin(std::span(&picture, 1));
+void ScenePlane::begin(const cv::Mat& image) {
+  begin(std::span(&image, 1));
 }
 
 /// Calls `row(y, middle, spread)` with what as many of the samples as are a power of two, at most 32, have in common.
@@ -55,34 +55,34 @@ void ScenePlane::begin(std::span<const cv::Mat> samples) {
   make_room(samples.front().size());
   summarise(samples, [&](int y, const std::uint8_t* middle, const std::uint8_t* spread) {
     for (int x = 0; x < mean_.cols; ++x) {
-      believe(y, x, middle[x]);
+      trust(y, x, middle[x]);
       spread_.at<std::uint8_t>(y, x) = std::max(spread[x], kFirstSpread);
     }
   });
   renew_bands(0, mean_.rows);
 }
 
-void ScenePlane::correct(std::span<const cv::Mat> samples, const cv::Mat& fixed, const cv::Mat& doubted) {
-  const auto agreeing = [&](int y, int x, int wanted) {
+void ScenePlane::correct(std::span<const cv::Mat> samples, const cv::Mat& fixed, const cv::Mat& flagged) {
+  const auto agreeing = [&](int y, int x, int required) {
     return std::count_if(samples.begin(), samples.end(),
-                         [&](const cv::Mat& sample) { return std::abs(sample.at<std::uint8_t>(y, x) - wanted) <= kSameLevel; });
+                         [&](const cv::Mat& sample) { return std::abs(sample.at<std::uint8_t>(y, x) - required) <= kSameLevel; });
   };
   summarise(samples, [&](int y, const std::uint8_t* middle, const std::uint8_t* spread) {
     const auto* fixed_row = fixed.ptr<std::uint8_t>(y);
-    const auto* doubted_row = doubted.ptr<std::uint8_t>(y);
+    const auto* doubted_row = flagged.ptr<std::uint8_t>(y);
     auto* spreads = spread_.ptr<std::uint8_t>(y);
     for (int x = 0; x < mean_.cols; ++x) {
       if (fixed_row[x] != 0) continue;
       spreads[x] = std::max(spreads[x], spread[x]);
       const int now = level(y, x);
       if (doubted_row[x] == 0 || std::abs(middle[x] - now) <= kSameLevel) continue;
-      if (agreeing(y, x, middle[x]) >= 2 * agreeing(y, x, now)) believe(y, x, middle[x]);
+      if (agreeing(y, x, middle[x]) >= 2 * agreeing(y, x, now)) trust(y, x, middle[x]);
     }
   });
   renew_bands(0, mean_.rows);
 }
 
-cv::Mat ScenePlane::picture(const cv::Rect& part) const {
+cv::Mat ScenePlane::image(const cv::Rect& part) const {
   cv::Mat levels;
   mean_(part).convertTo(levels, CV_8U, 1 / 128.0);
   return levels;
@@ -93,7 +93,7 @@ void ScenePlane::replace(const cv::Mat& levels, const cv::Mat& spreads, const cv
     const auto* marked = where.ptr<std::uint8_t>(y);
     for (int x = 0; x < mean_.cols; ++x) {
       if (marked[x] == 0) continue;
-      believe(y, x, levels.at<std::uint8_t>(y, x));
+      trust(y, x, levels.at<std::uint8_t>(y, x));
       spread_.at<std::uint8_t>(y, x) = spreads.at<std::uint8_t>(y, x);
     }
   }

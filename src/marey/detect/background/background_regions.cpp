@@ -5,9 +5,9 @@
 namespace marey::detect::background {
 namespace {
 
-constexpr int kStrongPixels = 4;   // that make a region count
-constexpr int kFewestPixels = 10;  // of a region
-constexpr int kSlender = 100;      // px: a smaller region must be solid somewhere; a drop of rain is not
+constexpr int kStrongPixels = 4;  // that make a region count
+constexpr int kMinPixels = 10;    // of a region
+constexpr int kSlender = 100;     // px: a smaller region must be solid somewhere; a drop of rain is not
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void ForegroundRegions::choose(const MarkedRuns& marked, int rows) {
   numbers_.assign(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
     const int root = sets_.find(static_cast<int>(i));
-    if (areas_[root] < kFewestPixels || strongs_[root] < kStrongPixels) continue;
+    if (areas_[root] < kMinPixels || strongs_[root] < kStrongPixels) continue;
     if (areas_[root] < kSlender && solids_[root] == 0) continue;
     if (numbers_[root] < 0) {
       numbers_[root] = static_cast<int>(borders_.size());

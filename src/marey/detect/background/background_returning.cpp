@@ -1,10 +1,10 @@
 // What the scene is at a pixel that showed several things for long. The levels seen there, luma and chroma together, make groups.
-// A group that was seen both before and after another one, which itself lasted without interruption, is behind it: someone came,
+// A group that was seen both before and after another one, which itself lasted without interruption, is behind it: a person came,
 // stood and went. Counting alone takes him for the scene where he stood for longer than the place was seen empty. And it counts
 // each plane by itself: of a wall before which several people stood in grey and black it takes the light's level and their colour.
-// What comes back is then believed of the pixels round it too, at the times when it was seen: of two who stood there in black one
+// What comes back is then trusted of the pixels round it too, at the times when it was seen: of two who stood there in black one
 // after the other, neither was there then.
-// Cost: the samples are read once; only pixels where fewer than half of them agree with the scene are looked at closely.
+// Cost: the samples are read once; only pixels where fewer than half of them agree with the scene are inspected closely.
 #include "marey/detect/background/background_returning.h"
 
 #include <algorithm>
@@ -18,20 +18,20 @@
 namespace marey::detect::background {
 namespace {
 
-constexpr int kSameLuma = 10;             // levels, as the scene's first guess has it
-constexpr int kSameChroma = 8;            // levels
-constexpr std::size_t kFewest = 6;        // samples in which a thing that comes and goes can be told from noise
-constexpr double kLeastShare = 0.15;      // of the samples, in which what returns was seen
-constexpr double kInterrupted = 1.5;      // times as long as it was seen, from the first time to the last: one stay
-constexpr std::size_t kMostSamples = 31;  // a bit for each
-constexpr double kAgree = 0.75;           // of the samples that showed the neighbour's scene, which must agree with one another
-constexpr std::size_t kClearly = 2;       // times as many samples as show the scene as it is
-constexpr std::uint8_t kLeastSpread = 8;  // 1/8 levels
+constexpr int kSameLuma = 10;            // levels, as the scene's first guess has it
+constexpr int kSameChroma = 8;           // levels
+constexpr std::size_t kMinCount = 6;     // samples in which a thing that comes and goes can be distinguished from noise
+constexpr double kMinFraction = 0.15;    // of the samples, in which what returns was seen
+constexpr double kInterrupted = 1.5;     // times as long as it was seen, from the first time to the last: one stay
+constexpr std::size_t kMaxSamples = 31;  // a bit for each
+constexpr double kAgree = 0.75;          // of the samples that showed the neighbour's scene, which must agree with one another
+constexpr std::size_t kDistinctly = 2;   // times as many samples as show the scene as it is
+constexpr std::uint8_t kMinSpread = 8;   // 1/8 levels
 
-struct Seen {
+struct Detected {
   int luma = 0, cb = 128, cr = 128;
 
-  bool is_like(const Seen& other) const {
+  bool is_like(const Detected& other) const {
     return std::abs(luma - other.luma) <= kSameLuma && std::abs(cb - other.cb) <= kSameChroma &&
            std::abs(cr - other.cr) <= kSameChroma;
   }
@@ -47,14 +47,14 @@ struct Group {
   bool encloses(const Group& other) const { return first() < other.first() && last() > other.last(); }
 };
 
-std::vector<Group> groups_of(const std::vector<Seen>& seen) {
+std::vector<Group> groups_of(const std::vector<Detected>& detected) {
   std::vector<Group> groups;
-  std::vector<bool> grouped(seen.size(), false);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
+  std::vector<bool> grouped(detected.size(), false);
+  for (std::size_t i = 0; i < detected.size(); ++i) {
     if (grouped[i]) continue;
     Group& group = groups.emplace_back();
-    for (std::size_t j = i; j < seen.size(); ++j) {
-      if (grouped[j] || !seen[i].is_like(seen[j])) continue;
+    for (std::size_t j = i; j < detected.size(); ++j) {
+      if (grouped[j] || !detected[i].is_like(detected[j])) continue;
       grouped[j] = true;
       group.members.push_back(static_cast<int>(j));
     }
@@ -62,7 +62,7 @@ std::vector<Group> groups_of(const std::vector<Seen>& seen) {
   return groups;
 }
 
-/// The group that is behind the most frequent one, or that one itself where none is; nothing where the scene as it is, which
+/// The group that is behind the most frequent one, or that one itself where none is; nothing if the scene as it is, which
 /// `agreeing` of the samples show, is as good.
 struct SceneGroup {
   const Group* group = nullptr;
@@ -76,7 +76,7 @@ SceneGroup scene_among(const std::vector<Group>& groups, std::size_t samples, st
   for (bool searching = 2 * scene->members.size() <= samples; searching;) {
     const Group* behind = nullptr;
     for (const Group& group : groups) {
-      if (static_cast<double>(group.members.size()) < kLeastShare * static_cast<double>(samples)) continue;
+      if (static_cast<double>(group.members.size()) < kMinFraction * static_cast<double>(samples)) continue;
       if (!scene->is_one_stay() || !group.encloses(*scene)) continue;
       if (behind == nullptr || fewer(*behind, group)) behind = &group;
     }
@@ -85,7 +85,7 @@ SceneGroup scene_among(const std::vector<Group>& groups, std::size_t samples, st
     if (searching) scene = behind;
   }
   if (comes_back) return {scene, true};
-  return {scene->members.size() >= kClearly * agreeing ? scene : nullptr, false};
+  return {scene->members.size() >= kDistinctly * agreeing ? scene : nullptr, false};
 }
 
 /// The median of the group's levels, and what a quarter of them is further from it than, in 1/8 levels.
@@ -98,7 +98,7 @@ Level level_of(std::vector<int> levels) {
   for (int& one : levels) one = std::abs(one - level);
   const auto upper = levels.begin() + 3 * std::ssize(levels) / 4;
   std::nth_element(levels.begin(), upper, levels.end());
-  return {static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(std::clamp(8 * *upper, int{kLeastSpread}, 255))};
+  return {static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(std::clamp(8 * *upper, int{kMinSpread}, 255))};
 }
 
 /// 1 where a level is within `same` of the scene's; else 0.
@@ -139,17 +139,17 @@ class Correction {
         luma_(samples.front().luma.size()),
         cb_(samples.front().cb.size()),
         cr_(samples.front().cr.size()) {
-    seen_.resize(samples.size());
+    detected_.resize(samples.size());
     when_ = cv::Mat::zeros(size(), CV_32SC1);
   }
 
   cv::Size size() const { return samples_.front().luma.size(); }
 
   /// By what was seen at each pixel of a row alone.
-  void look_at_row(int y) {
+  void inspect_at_row(int y) {
     count_agreeing(y);
     for (int x = 0; x < size().width; ++x) {
-      if (2 * static_cast<std::size_t>(agreeing_[static_cast<std::size_t>(x)]) <= samples_.size()) look_at(y, x);
+      if (2 * static_cast<std::size_t>(agreeing_[static_cast<std::size_t>(x)]) <= samples_.size()) inspect_at(y, x);
     }
   }
 
@@ -164,11 +164,11 @@ class Correction {
         if (!cv::Rect({}, size()).contains(to) || when_.at<int>(to) != 0) continue;
         read(to.y, to.x);
         std::vector<int> members;
-        for (int i = 0; i < static_cast<int>(seen_.size()); ++i) {
+        for (int i = 0; i < static_cast<int>(detected_.size()); ++i) {
           if ((when >> i & 1) != 0) members.push_back(i);
         }
-        const Seen then{median(members, &Seen::luma), median(members, &Seen::cb), median(members, &Seen::cr)};
-        std::erase_if(members, [&](int i) { return !seen_[static_cast<std::size_t>(i)].is_like(then); });
+        const Detected then{median(members, &Detected::luma), median(members, &Detected::cb), median(members, &Detected::cr)};
+        std::erase_if(members, [&](int i) { return !detected_[static_cast<std::size_t>(i)].is_like(then); });
         if (then.is_like(scene_at(to.y, to.x)) ||
             static_cast<double>(members.size()) < kAgree * std::popcount(static_cast<unsigned>(when)))
           continue;
@@ -222,9 +222,9 @@ class Correction {
     }
   }
 
-  void look_at(int y, int x) {
+  void inspect_at(int y, int x) {
     read(y, x);
-    const std::vector<Group> groups = groups_of(seen_);
+    const std::vector<Group> groups = groups_of(detected_);
     const auto [group, comes_back] = scene_among(groups, samples_.size(), agreeing_[static_cast<std::size_t>(x)]);
     if (group == nullptr) return;
     set(y, x, group->members);
@@ -233,27 +233,27 @@ class Correction {
 
   void read(int y, int x) {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      seen_[i].luma = samples_[i].luma.at<std::uint8_t>(y, x);
+      detected_[i].luma = samples_[i].luma.at<std::uint8_t>(y, x);
       if (scene_.cb == nullptr) continue;
-      seen_[i].cb = samples_[i].cb.at<std::uint8_t>(y / 2, x / 2);
-      seen_[i].cr = samples_[i].cr.at<std::uint8_t>(y / 2, x / 2);
+      detected_[i].cb = samples_[i].cb.at<std::uint8_t>(y / 2, x / 2);
+      detected_[i].cr = samples_[i].cr.at<std::uint8_t>(y / 2, x / 2);
     }
   }
-  Seen scene_at(int y, int x) const {
+  Detected scene_at(int y, int x) const {
     if (scene_.cb == nullptr) return {scene_.luma->level(y, x)};
     return {scene_.luma->level(y, x), scene_.cb->level(y / 2, x / 2), scene_.cr->level(y / 2, x / 2)};
   }
-  std::vector<int> levels_of(const std::vector<int>& members, int Seen::* plane) const {
+  std::vector<int> levels_of(const std::vector<int>& members, int Detected::* plane) const {
     std::vector<int> levels;
-    for (const int member : members) levels.push_back(seen_[static_cast<std::size_t>(member)].*plane);
+    for (const int member : members) levels.push_back(detected_[static_cast<std::size_t>(member)].*plane);
     return levels;
   }
-  int median(const std::vector<int>& members, int Seen::* plane) const { return level_of(levels_of(members, plane)).level; }
+  int median(const std::vector<int>& members, int Detected::* plane) const { return level_of(levels_of(members, plane)).level; }
   void set(int y, int x, const std::vector<int>& members) {
-    luma_.set(y, x, level_of(levels_of(members, &Seen::luma)));
+    luma_.set(y, x, level_of(levels_of(members, &Detected::luma)));
     if (scene_.cb == nullptr) return;
-    cb_.set(y / 2, x / 2, level_of(levels_of(members, &Seen::cb)));
-    cr_.set(y / 2, x / 2, level_of(levels_of(members, &Seen::cr)));
+    cb_.set(y / 2, x / 2, level_of(levels_of(members, &Detected::cb)));
+    cr_.set(y / 2, x / 2, level_of(levels_of(members, &Detected::cr)));
   }
   void keep(int y, int x, const std::vector<int>& members) {
     unsigned when = 0;
@@ -265,7 +265,7 @@ class Correction {
   std::span<const FramePlanes> samples_;
   ScenePlanes scene_;
   Plane luma_, cb_, cr_;
-  std::vector<Seen> seen_;  // at the pixel in question
+  std::vector<Detected> detected_;  // at the pixel in question
   // Of a row: how many samples agree with the scene, its levels, and where one sample does.
   std::vector<std::uint8_t> agreeing_, luma_row_, cb_row_, cr_row_, like_, cb_like_, cr_like_;
   cv::Mat when_;                 // CV_32SC1: a bit for each sample in which what comes back was seen
@@ -274,11 +274,11 @@ class Correction {
 
 }  // namespace
 
-void believe_what_returns(std::span<const FramePlanes> samples, const ScenePlanes& scene) {
-  if (samples.size() < kFewest) return;
-  if (samples.size() > kMostSamples) samples = samples.first(kMostSamples);
+void trust_what_returns(std::span<const FramePlanes> samples, const ScenePlanes& scene) {
+  if (samples.size() < kMinCount) return;
+  if (samples.size() > kMaxSamples) samples = samples.first(kMaxSamples);
   Correction correction(samples, scene);
-  for (int y = 0; y < correction.size().height; ++y) correction.look_at_row(y);
+  for (int y = 0; y < correction.size().height; ++y) correction.inspect_at_row(y);
   correction.spread();
   correction.apply();
 }

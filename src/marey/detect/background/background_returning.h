@@ -9,7 +9,7 @@
 
 namespace marey::detect::background {
 
-/// The planes of a scene that was begun with `samples`; the chroma's are null where the pictures are grey.
+/// The planes of a scene that was begun with `samples`; the chroma's are null where the images are grey.
 struct ScenePlanes {
   ScenePlane* luma;
   ScenePlane* cb;
@@ -19,6 +19,6 @@ struct ScenePlanes {
 /// Corrects a scene that was begun with the most frequent levels of `samples`, which are in the order of time and of one size:
 /// where none of the levels was there most of the time, the scene is what came back after another had been there once. Who stands
 /// at a place for a third of the time, and longer than it was seen empty, is not the scene.
-void believe_what_returns(std::span<const FramePlanes> samples, const ScenePlanes& scene);
+void trust_what_returns(std::span<const FramePlanes> samples, const ScenePlanes& scene);
 
 }  // namespace marey::detect::background

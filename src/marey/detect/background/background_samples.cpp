@@ -18,7 +18,7 @@ bool SceneSamples::keep(const FramePlanes& planes, double age_s) {
     cr_.push_back(planes.cr.clone());
   }
   const std::size_t count = luma_.size();
-  return count == kMost || (thinned_ == 0 && (count == kMost / 4 || count == kMost / 2));
+  return count == kMaxCount || (thinned_ == 0 && (count == kMaxCount / 4 || count == kMaxCount / 2));
 }
 
 void SceneSamples::forget() {
@@ -26,7 +26,7 @@ void SceneSamples::forget() {
 }
 
 void SceneSamples::thin() {
-  if (luma_.size() < kMost) return;
+  if (luma_.size() < kMaxCount) return;
   interval_s_ *= 2;
   const bool last = ++thinned_ >= kTimes;
   for (std::vector<cv::Mat>* planes : {&luma_, &cb_, &cr_}) {

@@ -9,8 +9,8 @@
 
 namespace marey::detect::background {
 
-/// Pictures of a scene that was not learned ahead, evenly over the time since its model began: sixteen at most. Each time there are
-/// so many, every second one goes, and the next come half as often; after six times that is about a minute.
+/// Images of a scene that was not learned ahead, evenly over the time since its model began: sixteen at most. Each time there are
+/// this many, every second one goes, and the next come half as often; after six times that is about a minute.
 class SceneSamples {
  public:
   void begin();
@@ -21,7 +21,7 @@ class SceneSamples {
   /// Where the samples are full, leaves every second one out; after the last time, all.
   void thin();
 
-  /// Of pictures in another light nothing is left: those that come are as often.
+  /// Of images in another light nothing is left: those that come are as often.
   void forget();
 
   std::span<const cv::Mat> luma() const { return luma_; }
@@ -29,7 +29,7 @@ class SceneSamples {
   std::span<const cv::Mat> cr() const { return cr_; }
 
  private:
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMaxCount = 16;
   static constexpr int kTimes = 6;
   static constexpr double kFirstInterval_s = 0.1;
 

@@ -13,7 +13,7 @@
 
 namespace marey::detect::background::test {
 
-/// Someone of 20 × 56 px who stands at `x`, `foot` (left, bottom), casting a shadow to the right.
+/// A person of 20 × 56 px who stands at `x`, `foot` (left, bottom), casting a shadow to the right.
 struct Figure {
   int x = 0;
   int foot = 0;
@@ -21,18 +21,18 @@ struct Figure {
 
 struct SceneFrame {
   Frame frame;
-  cv::Mat people;   ///< the truth: 255 where someone is seen
+  cv::Mat people;   ///< the truth: 255 where a person is seen
   cv::Mat shadows;  ///< 255 where a shadow is seen
 };
 
-/// What a moment is filmed under.
+/// What an instant is recorded under.
 struct Conditions {
   double light = 1;                 ///< multiplies the ground
   double sway = 0;                  ///< px, how far the tree at the upper right has moved
   double shake_x = 0, shake_y = 0;  ///< px, how far the camera has
 };
 
-/// Films a textured ground, or a room with shelves: what is there is known to the pixel.
+/// Videos a textured ground, or a room with shelves: what is there is known to the pixel.
 class SmallScene {
  public:
   explicit SmallScene(std::uint32_t seed, double noise = 2, bool shelves = false)
@@ -47,12 +47,12 @@ class SmallScene {
     }
   }
 
-  /// The next picture, 1 / kRate later: the light multiplies the ground, `sway` px is how far the tree at the upper right has
+  /// The next image, 1 / kRate later: the light multiplies the ground, `sway` px is how far the tree at the upper right has
   /// moved.
-  SceneFrame film(std::span<const Figure> figures, double light = 1, double sway = 0) {
-    return film(figures, Conditions{.light = light, .sway = sway});
+  SceneFrame video(std::span<const Figure> figures, double light = 1, double sway = 0) {
+    return video(figures, Conditions{.light = light, .sway = sway});
   }
-  SceneFrame film(std::span<const Figure> figures, const Conditions& under) {
+  SceneFrame video(std::span<const Figure> figures, const Conditions& under) {
     SceneFrame result;
     result.people = cv::Mat::zeros(kHeight, kWidth, CV_8UC1);
     result.shadows = cv::Mat::zeros(kHeight, kWidth, CV_8UC1);
@@ -68,9 +68,9 @@ class SmallScene {
       cv::threshold(result.people, result.people, 127, 255, cv::THRESH_BINARY);
       cv::threshold(result.shadows, result.shadows, 127, 255, cv::THRESH_BINARY);
     }
-    result.frame.index = filmed_;
-    result.frame.time = timestamp_from_seconds(static_cast<double>(filmed_++) / kRate);
-    result.frame.picture = Picture(exposed(levels, under.light), cb, cr, Picture::Range::limited);
+    result.frame.index = recorded_;
+    result.frame.time = timestamp_from_seconds(static_cast<double>(recorded_++) / kRate);
+    result.frame.image = Image(exposed(levels, under.light), cb, cr, Image::Range::limited);
     return result;
   }
 
@@ -122,21 +122,20 @@ class SmallScene {
   }
 
   cv::Mat exposed(const cv::Mat& levels, double light) {
-    cv::Mat picture(levels.size(), CV_8UC1);
+    cv::Mat image(levels.size(), CV_8UC1);
     std::normal_distribution<double> noise(0, noise_);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        picture.at<std::uint8_t>(y, x) =
-            cv::saturate_cast<std::uint8_t>(16 + (levels.at<float>(y, x) - 16) * light + noise(random_));
+        image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(16 + (levels.at<float>(y, x) - 16) * light + noise(random_));
       }
     }
-    return picture;
+    return image;
   }
 
   std::mt19937 random_;
   double noise_;
   cv::Mat ground_;
-  std::int64_t filmed_ = 0;
+  std::int64_t recorded_ = 0;
 };
 
 }  // namespace marey::detect::background::test

@@ -13,9 +13,9 @@ constexpr int kAway = 1;           // the bit of a second mean that says that th
 constexpr int kReturn = 25;        // ticks that a return to the second mean is worth: what sways, returns often
 constexpr int kReturnWidens = 12;  // 1/8 levels of spread
 constexpr double kGhost_s = 1;
-constexpr double kLeastStay_s = 2;
+constexpr double kMinStay_s = 2;
 constexpr int kOutlasts =
-    2;  // what stands before a scene that was not learned ahead must stay so many times as long as that was seen
+    2;  // what stands before a scene that was not learned ahead must stay this many times as long as that was seen
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void SecondScene::begin(cv::Size size, bool learned_ahead) {
   learned_ahead_ = learned_ahead;
   scene_ = learned_ahead ? cv::Mat() : cv::Mat::zeros(size, CV_8UC1);
   level_ = cv::Mat::zeros(size, CV_8UC1);
-  seen_ = cv::Mat::zeros(size, CV_8UC1);
+  detected_ = cv::Mat::zeros(size, CV_8UC1);
 }
 
 int SecondScene::ticks_between(double earlier_s, double later_s) const {
@@ -33,19 +33,20 @@ int SecondScene::ticks_between(double earlier_s, double later_s) const {
 }
 
 bool SecondScene::knows(int row, int column, std::uint8_t level) const {
-  return seen_.at<std::uint8_t>(row, column) >= kEstablished && std::abs(level - level_.at<std::uint8_t>(row, column)) <= kWidth;
+  return detected_.at<std::uint8_t>(row, column) >= kEstablished &&
+         std::abs(level - level_.at<std::uint8_t>(row, column)) <= kWidth;
 }
 
 /// For how long something must stand before it is the scene.
 int SecondScene::ticks_to_stay(double age_s, int seen_as_scene) const {
-  const int least = static_cast<int>(std::ceil(kLeastStay_s / tick_s_));
-  const int wanted = learned_ahead_ ? static_cast<int>(std::ceil(age_s / 2 / tick_s_)) : kOutlasts * seen_as_scene;
-  return std::min(kEstablished, std::max(least, wanted));
+  const int minimum = static_cast<int>(std::ceil(kMinStay_s / tick_s_));
+  const int required = learned_ahead_ ? static_cast<int>(std::ceil(age_s / 2 / tick_s_)) : kOutlasts * seen_as_scene;
+  return std::min(kEstablished, std::max(minimum, required));
 }
 
 void SecondScene::forget(int row, int ticks, const ForegroundRegions& regions) {
   auto* level = level_.ptr<std::uint8_t>(row);
-  auto* seen = seen_.ptr<std::uint8_t>(row);
+  auto* detected = detected_.ptr<std::uint8_t>(row);
   auto* scene = scene_.empty() || ticks == 0 ? nullptr : scene_.ptr<std::uint8_t>(row);
   const int fading = (ticks + 1) / 2;
   int x = 0;
@@ -53,7 +54,7 @@ void SecondScene::forget(int row, int ticks, const ForegroundRegions& regions) {
     for (int i = x; scene != nullptr && i < end; ++i) scene[i] = static_cast<std::uint8_t>(std::min(254, scene[i] + ticks));
     for (; x < end; ++x) {
       level[x] = static_cast<std::uint8_t>(level[x] | kAway);
-      seen[x] = static_cast<std::uint8_t>(seen[x] > fading ? seen[x] - fading : 0);
+      detected[x] = static_cast<std::uint8_t>(detected[x] > fading ? detected[x] - fading : 0);
     }
   };
   for (std::size_t i = regions.begin_of(row); i < regions.begin_of(row + 1); ++i) {
@@ -68,7 +69,7 @@ void SecondScene::count(int row, const std::uint8_t* pixels, const std::uint8_t*
   const auto* scene_seen = scene_.empty() ? nullptr : scene_.ptr<std::uint8_t>(row);
   const int ghost_enough = std::max(2, static_cast<int>(std::lround(kGhost_s / tick_s_)));
   auto* level = level_.ptr<std::uint8_t>(row);
-  auto* seen = seen_.ptr<std::uint8_t>(row);
+  auto* detected = detected_.ptr<std::uint8_t>(row);
   taken.clear();
   for (std::size_t i = regions.begin_of(row); i < regions.begin_of(row + 1); ++i) {
     const bool ghost = regions.is_ghost(i);
@@ -76,26 +77,26 @@ void SecondScene::count(int row, const std::uint8_t* pixels, const std::uint8_t*
     for (int x = regions.runs()[i].begin; x < regions.runs()[i].end; ++x) {
       if (held[x] != 0 && !ghost) continue;
       const int distance = pixels[x] - level[x];
-      if (seen[x] == 0 || (std::abs(distance) > kWidth && seen[x] <= 2 * ticks)) {
+      if (detected[x] == 0 || (std::abs(distance) > kWidth && detected[x] <= 2 * ticks)) {
         level[x] = static_cast<std::uint8_t>(pixels[x] & ~kAway);
-        seen[x] = 1;
+        detected[x] = 1;
         continue;
       }
       if (std::abs(distance) > kWidth) {
-        seen[x] = static_cast<std::uint8_t>(seen[x] - 2 * ticks);
+        detected[x] = static_cast<std::uint8_t>(detected[x] - 2 * ticks);
         continue;
       }
       const bool returns = (level[x] & kAway) != 0;
       if (returns) scene.widen(row, x, kReturnWidens);
       const int gained = returns ? std::max(ticks, kReturn) : ticks;
       level[x] = static_cast<std::uint8_t>((level[x] + (distance > 1 ? 2 : distance < -1 ? -2 : 0)) & ~kAway);
-      seen[x] = static_cast<std::uint8_t>(std::min(254, seen[x] + gained));
+      detected[x] = static_cast<std::uint8_t>(std::min(254, detected[x] + gained));
       const int stays = ghost   ? ghost_enough
                         : thing ? kEstablished
                                 : ticks_to_stay(age_s, scene_seen == nullptr ? 0 : scene_seen[x]);
-      if (seen[x] < stays) continue;
+      if (detected[x] < stays) continue;
       level[x] = scene.level(row, x);
-      if (ghost) seen[x] = 0;
+      if (ghost) detected[x] = 0;
       taken.push_back(x);
     }
   }

@@ -17,13 +17,13 @@ class SecondScene {
  public:
   explicit SecondScene(double absorb_after_s);
 
-  /// `learned_ahead`: the scene was learned from pictures beforehand; else each pixel's is only as sure as it has been seen since.
+  /// `learned_ahead`: the scene was learned from images beforehand; else each pixel's is only as sure as it has been seen since.
   void begin(cv::Size size, bool learned_ahead);
 
   /// Whole ticks between two ages of the model, s.
   int ticks_between(double earlier_s, double later_s) const;
 
-  /// Whether a pixel of this level was seen there for so long before that it is no news.
+  /// Whether a pixel of this level was seen there for this long before that it is not news.
   bool knows(int row, int column, std::uint8_t level) const;
 
   /// Where a row shows the scene, what was seen in front of it fades, and is noted (in the level's last bit) to be away.
@@ -40,9 +40,9 @@ class SecondScene {
 
   double tick_s_;
   bool learned_ahead_ = false;
-  cv::Mat level_;  ///< CV_8UC1: the level seen at a pixel while it was foreground, or scene before
-  cv::Mat seen_;   ///< CV_8UC1: for how long, in ticks
-  cv::Mat scene_;  ///< CV_8UC1: for how long the scene was seen, in ticks; empty where it was learned ahead
+  cv::Mat level_;     ///< CV_8UC1: the level seen at a pixel while it was foreground, or scene before
+  cv::Mat detected_;  ///< CV_8UC1: for how long, in ticks
+  cv::Mat scene_;     ///< CV_8UC1: for how long the scene was seen, in ticks; empty if it was learned ahead
 };
 
 }  // namespace marey::detect::background

@@ -1,7 +1,7 @@
 // A cast shadow multiplies the light of the ground it falls on: the ground's texture and its colour stay (Horprasert, Harwood
 // and Davis 1999; Cucchiara et al. 2003). For each cell of 4 × 4 foreground pixels the gain that best maps scene to frame is found
 // by least squares, with what it leaves unexplained. Textured ground that is still seen, only darker, is a shadow without doubt.
-// Where the ground is smooth a dark coat looks the same; so the scene itself is asked how deep its shadows are: each sure cell
+// Where the ground is smooth a dark coat appears the same; so the scene itself is asked how deep its shadows are: each sure cell
 // counts for its depth, and a smooth cell is a shadow only at a depth that counts, or at a shallow one. A shadow lies beside or
 // below its owner: a cell with parts of a thing both above and below it, in an unbroken column, belongs to the thing. Cost: five
 // sums a foreground pixel.
@@ -13,18 +13,18 @@
 namespace marey::detect::background {
 namespace {
 
-constexpr double kDeepest = 0.35;        // of the light left; less is a dark thing
+constexpr double kMaxDepth = 0.35;       // of the light left; less is a dark thing
 constexpr double kShallowest = 0.97;     // nearer to 1 there is nothing to explain
-constexpr double kUsuallyAtLeast = 0.6;  // shadows this shallow are believed before any was seen on textured ground
-constexpr double kEvidence = 12;         // sure cells that make a depth usual
+constexpr double kTypicalMinimum = 0.6;  // shadows this shallow are trusted before any was seen on textured ground
+constexpr double kEvidence = 12;         // sure cells that make a depth typical
 constexpr double kForget = 0.998;        // a frame
 constexpr double kTexture = 25;          // squared levels: the scene's variance within a textured cell
 constexpr double kNoise = 10;            // squared levels left unexplained in a smooth cell
 constexpr double kCorrelation = 0.8;     // squared: how much of a textured cell's frame the scene explains
-constexpr int kFewestCellPixels = 8;     // pixels of a cell to judge it by
+constexpr int kMinCellPixels = 8;        // pixels of a cell to evaluate it by
 constexpr int kEdge = 100;               // 1/1024 of the light: how much deeper than its neighbour a shadow's pixel may be
 constexpr double kColour = 6;            // levels of chroma
-constexpr double kColourful = 8;         // levels of chroma left in a shadow, from which on a pixel is judged by them alone
+constexpr double kColourful = 8;         // levels of chroma left in a shadow, from which on a pixel is evaluated by them alone
 constexpr double kPixelColour = 4;       // levels of chroma, of one pixel
 
 }  // namespace
@@ -80,8 +80,8 @@ bool ShadowFinder::same_colour(std::size_t index, double ratio, const FramePlane
   return std::abs(cb) < kColour * count && std::abs(cr) < kColour * count;
 }
 
-bool ShadowFinder::is_usual(double ratio) const {
-  if (ratio >= kUsuallyAtLeast) return true;
+bool ShadowFinder::is_default(double ratio) const {
+  if (ratio >= kTypicalMinimum) return true;
   const int bin = std::clamp(static_cast<int>(ratio * kBins), 1, kBins - 2);
   return evidence_[bin - 1] + evidence_[bin] + evidence_[bin + 1] >= kEvidence;
 }
@@ -89,28 +89,28 @@ bool ShadowFinder::is_usual(double ratio) const {
 ShadowFinder::Label ShadowFinder::label_of(std::size_t index, const FramePlanes& frame, const SceneView& scene) {
   Cell& cell = cells_[index];
   if (cell.darker * 10 < cell.count * 9 || cell.scene2 == 0) return Label::thing;
-  if (cell.count < kFewestCellPixels) return Label::unsure;
+  if (cell.count < kMinCellPixels) return Label::unsure;
   const double n = cell.count;
   const double ratio = static_cast<double>(cell.both) / cell.scene2;
-  if (ratio < kDeepest || ratio > kShallowest || !same_colour(index, ratio, frame, scene)) return Label::thing;
+  if (ratio < kMaxDepth || ratio > kShallowest || !same_colour(index, ratio, frame, scene)) return Label::thing;
   cell.ratio = static_cast<int>(ratio * 1024);
   const double left_over = (cell.frame2 - ratio * cell.both) / n;
   const double texture = (cell.scene2 - static_cast<double>(cell.scene) * cell.scene / n) / n;
   const double seen_texture = (cell.frame2 - static_cast<double>(cell.frame) * cell.frame / n) / n;
   const double shared = (cell.both - static_cast<double>(cell.frame) * cell.scene / n) / n;
   if (texture * ratio * ratio > kTexture) {
-    const bool seen_through = shared > 0 && shared * shared > kCorrelation * texture * seen_texture;
-    if (!seen_through) return cell.count < kCell * kCell && is_usual(ratio) ? Label::unsure : Label::thing;
+    const bool observed_through = shared > 0 && shared * shared > kCorrelation * texture * seen_texture;
+    if (!observed_through) return cell.count < kCell * kCell && is_default(ratio) ? Label::unsure : Label::thing;
     evidence_[std::min(static_cast<int>(ratio * kBins), kBins - 1)] += 1;
     return Label::shadow;
   }
   const double slope = 0.06 * cell.frame / n;
-  if (!is_usual(ratio)) return Label::thing;
+  if (!is_default(ratio)) return Label::thing;
   if (left_over < kNoise + slope * slope + texture * ratio * ratio) return Label::shadow;
   return cell.count < kCell * kCell ? Label::unsure : Label::thing;  // at a shadow's blurred rim
 }
 
-/// A cell at a region's rim has too few pixels to be judged and goes with the most of its eight neighbours; so does one thing
+/// A cell at a region's rim has too few pixels to be evaluated and goes with the most of its eight neighbours; so does one thing
 /// all among shadows.
 void ShadowFinder::settle_by_neighbours() {
   changed_.clear();
@@ -143,7 +143,7 @@ bool ShadowFinder::is_within_body(std::size_t index) const {
 
 /// Chroma has half the resolution, so that at the shadow's edge it may be anything between the shadow's and the lit ground's.
 bool ShadowFinder::is_coloured_shadow(int frame, int scene, int frame_cb, int frame_cr, int scene_cb, int scene_cr) {
-  if (frame >= kShallowest * scene || frame <= kDeepest * scene) return false;
+  if (frame >= kShallowest * scene || frame <= kMaxDepth * scene) return false;
   const double ratio = static_cast<double>(frame) / scene;
   const double strength = std::hypot(scene_cb, scene_cr);
   if (ratio * strength < kColourful) return false;
@@ -152,7 +152,7 @@ bool ShadowFinder::is_coloured_shadow(int frame, int scene, int frame_cb, int fr
   return std::abs(across) < kPixelColour && along > ratio * strength - kPixelColour && along < strength + kPixelColour;
 }
 
-void ShadowFinder::judge(std::span<const PixelRun> runs, const FramePlanes& frame, const SceneView& scene) {
+void ShadowFinder::assess(std::span<const PixelRun> runs, const FramePlanes& frame, const SceneView& scene) {
   for (const std::size_t index : touched_) {
     cells_[index] = {};
     labels_[index] = Label::none;

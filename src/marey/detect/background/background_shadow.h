@@ -7,13 +7,13 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/detect/background/background_plane.h"
 #include "marey/detect/silhouette.h"
 
 namespace marey::detect::background {
 
-/// The scene as the planes of a picture; chroma is not read where the picture is grey.
+/// The scene as the planes of an image; chroma is not read where the image is grey.
 struct SceneView {
   const ScenePlane& luma;
   const ScenePlane& cb;
@@ -31,10 +31,10 @@ class ShadowFinder {
  public:
   void begin(cv::Size size);
 
-  /// Judges the pixels of `runs`, which are in order.
-  void judge(std::span<const PixelRun> runs, const FramePlanes& frame, const SceneView& scene);
+  /// Evaluates the pixels of `runs`, which are in order.
+  void assess(std::span<const PixelRun> runs, const FramePlanes& frame, const SceneView& scene);
 
-  /// Whether a pixel of the runs judged last lies in shadow, given its levels in frame and scene, over black.
+  /// Whether a pixel of the runs evaluated last lies in shadow, given its levels in frame and scene, over black.
   bool is_shadow(int row, int column, int frame, int scene) const {
     return 1024 * frame >= scene * lightest_[cell_at(row, column)] && frame < scene;
   }
@@ -64,7 +64,7 @@ class ShadowFinder {
   void settle_by_neighbours();
   void set_limits();
   bool is_within_body(std::size_t index) const;
-  bool is_usual(double ratio) const;
+  bool is_default(double ratio) const;
 
   cv::Size size_;
   std::size_t stride_ = 0;

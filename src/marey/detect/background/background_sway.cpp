@@ -1,6 +1,6 @@
-// Of each block of the scene the sharpest upright and the sharpest level edge are looked for again in the picture: the sum over
+// Of each block of the scene the sharpest upright and the sharpest level edge are searched for again in the image: the sum over
 // them of how much the step of light across each differs, cut off so that what people hide counts no more than that. A step of
-// light, unlike light, hardly changes with exposure. From no shift and from the last one the sum is followed downhill pixel by
+// light, unlike light, barely changes with exposure. From no shift and from the last one the sum is followed downhill pixel by
 // pixel; where it stays high, whole neighbourhoods are tried. Cost: a few thousand reads a frame, whatever its size.
 #include "marey/detect/background/background_sway.h"
 
@@ -12,11 +12,11 @@
 namespace marey::detect::background {
 namespace {
 
-constexpr int kMostEdges = 400;
-constexpr int kFewestEdges = 24;
-constexpr int kLeastStep = 24;       // levels
+constexpr int kMaxEdges = 400;
+constexpr int kMinEdges = 24;
+constexpr int kMinStep = 24;         // levels
 constexpr int kReach = 2;            // px from side to side of an edge
-constexpr int kFarthest = 24;        // px, of a shift
+constexpr int kMaxDistance = 24;     // px, of a shift
 constexpr int kChooseEvery = 64;     // frames
 constexpr int kCoarse = 3;           // px: the grid of neighbourhoods
 constexpr int kSearched = 18;        // px: how far they reach
@@ -34,8 +34,8 @@ void SwayMeter::choose(const ScenePlane& scene) {
   until_chosen_ = kChooseEvery;
   edges_.clear();
   const cv::Size size = scene.size();
-  const int border = kFarthest + kReach;
-  const int side = std::max(8, static_cast<int>(std::sqrt(2.0 * size.area() / kMostEdges)));
+  const int border = kMaxDistance + kReach;
+  const int side = std::max(8, static_cast<int>(std::sqrt(2.0 * size.area() / kMaxEdges)));
   for (int top = border; top + side <= size.height - border; top += side) {
     for (int left = border; left + side <= size.width - border; left += side) {
       Edge upright{0, 0, true, 0}, level{0, 0, false, 0};
@@ -48,7 +48,7 @@ void SwayMeter::choose(const ScenePlane& scene) {
         }
       }
       for (const Edge& edge : {upright, level}) {
-        if (std::abs(edge.step) >= kLeastStep) edges_.push_back(edge);
+        if (std::abs(edge.step) >= kMinStep) edges_.push_back(edge);
       }
     }
   }
@@ -66,15 +66,15 @@ int SwayMeter::misfit(const cv::Mat& luma, cv::Point shift) const {
 }
 
 cv::Point SwayMeter::descend(const cv::Mat& luma, cv::Point from) const {
-  int least = misfit(luma, from);
-  for (int step = 0; step < 2 * kFarthest; ++step) {
+  int minimum = misfit(luma, from);
+  for (int step = 0; step < 2 * kMaxDistance; ++step) {
     cv::Point best = from;
     for (const cv::Point by : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
       const cv::Point next = from + by;
-      if (std::max(std::abs(next.x), std::abs(next.y)) > kFarthest) continue;
+      if (std::max(std::abs(next.x), std::abs(next.y)) > kMaxDistance) continue;
       const int one = misfit(luma, next);
-      if (one < least) {
-        least = one;
+      if (one < minimum) {
+        minimum = one;
         best = next;
       }
     }
@@ -86,25 +86,25 @@ cv::Point SwayMeter::descend(const cv::Mat& luma, cv::Point from) const {
 
 cv::Point SwayMeter::measure(const cv::Mat& luma, const ScenePlane& scene) {
   if (--until_chosen_ < 0) choose(scene);
-  if (edges_.size() < kFewestEdges) return {};
-  int most = 0;
-  for (const Edge& edge : edges_) most += std::abs(edge.step);
+  if (edges_.size() < kMinEdges) return {};
+  int maximum = 0;
+  for (const Edge& edge : edges_) maximum += std::abs(edge.step);
   const int unmoved = misfit(luma, {});
-  if (unmoved < kStill * most) return last_ = {};
+  if (unmoved < kStill * maximum) return last_ = {};
   cv::Point best = descend(luma, {});
   const auto take = [&](cv::Point from) {
     const cv::Point other = descend(luma, from);
     if (misfit(luma, other) < misfit(luma, best)) best = other;
   };
   if (last_ != cv::Point()) take(last_);
-  if (misfit(luma, best) > kLost * most) {
+  if (misfit(luma, best) > kLost * maximum) {
     cv::Point start;
-    int least = misfit(luma, start);
+    int minimum = misfit(luma, start);
     for (int y = -kSearched; y <= kSearched; y += kCoarse) {
       for (int x = -kSearched; x <= kSearched; x += kCoarse) {
         const int one = misfit(luma, {x, y});
-        if (one < least) {
-          least = one;
+        if (one < minimum) {
+          minimum = one;
           start = {x, y};
         }
       }
@@ -158,8 +158,8 @@ FramePlanes brought_back(const FramePlanes& planes, cv::Point shift, const Scene
 
 void carry_over(const cv::Mat& mask, cv::Point shift, cv::Mat& result) {
   result = cv::Mat::zeros(mask.size(), mask.type());
-  const cv::Rect picture({0, 0}, mask.size());
-  const cv::Rect to = picture & (picture + shift);
+  const cv::Rect image({0, 0}, mask.size());
+  const cv::Rect to = image & (image + shift);
   if (!to.empty()) mask(to - shift).copyTo(result(to));
 }
 

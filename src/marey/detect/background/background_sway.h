@@ -10,17 +10,17 @@
 
 namespace marey::detect::background {
 
-/// By how many whole pixels a camera that shakes shows the scene beside where it was learned. What is left, half a pixel, the
+/// By how many whole pixels a shaking camera shows the scene beside where it was learned. What is left, half a pixel, the
 /// scene's bands allow for.
 class SwayMeter {
  public:
   /// Another scene begins.
   void begin();
 
-  /// The scene's light has changed: its edges are chosen anew.
+  /// The scene's light has changed: its edges are chosen again.
   void renew() { until_chosen_ = 0; }
 
-  /// The picture shows at (x + dx, y + dy) what the scene has at (x, y). (0, 0) where that explains the picture as well.
+  /// The image shows at (x + dx, y + dy) what the scene has at (x, y). (0, 0) where that explains the image as well.
   cv::Point measure(const cv::Mat& luma, const ScenePlane& scene);
 
  private:
@@ -38,12 +38,12 @@ class SwayMeter {
   int until_chosen_ = 0;  ///< frames
 };
 
-/// `planes` as the scene has its places, for a picture that is `shift` beside it. What lies outside the picture is the scene
+/// `planes` as the scene has its places, for an image that is `shift` beside it. What lies outside the image is the scene
 /// itself.
 FramePlanes brought_back(const FramePlanes& planes, cv::Point shift, const ScenePlane& luma, const ScenePlane& cb,
                          const ScenePlane& cr);
 
-/// What `mask`, in the scene's places, is in the picture's.
+/// What `mask`, in the scene's places, is in the image's.
 void carry_over(const cv::Mat& mask, cv::Point shift, cv::Mat& result);
 
 }  // namespace marey::detect::background

@@ -38,8 +38,8 @@ struct Score {
   double hit = 0, people = 0, marked = 0, shadow_hit = 0, shadow = 0, frames = 0;
   double recall() const { return hit / people; }
   double precision() const { return hit / marked; }
-  double shadow_share() const { return shadow_hit / shadow; }
-  double false_share() const { return (marked - hit) / (frames * SmallScene::kWidth * SmallScene::kHeight); }
+  double shadow_fraction() const { return shadow_hit / shadow; }
+  double false_fraction() const { return (marked - hit) / (frames * SmallScene::kWidth * SmallScene::kHeight); }
 
   void add(const cv::Mat& mask, const SceneFrame& truth) {
     hit += cv::countNonZero(mask & truth.people);
@@ -51,7 +51,7 @@ struct Score {
   }
 };
 
-/// Shows a model `frames` pictures of a scene of its own, and scores from frame `from` on.
+/// Shows a model `frames` images of a scene of its own, and scores from frame `from` on.
 using Play = std::function<SceneFrame(SmallScene&, int frame)>;
 Score play(const BackgroundOptions& options, int frames, int from, const Play& next, std::vector<Box> held = {}) {
   const auto model = make_background(options);
@@ -59,20 +59,20 @@ Score play(const BackgroundOptions& options, int frames, int from, const Play& n
   Score score;
   for (int i = 0; i < frames; ++i) {
     const SceneFrame shown = next(scene, i);
-    const Foreground seen = model->apply(shown.frame, held);
-    if (i >= from) score.add(seen.mask, shown);
+    const Foreground detected = model->apply(shown.frame, held);
+    if (i >= from) score.add(detected.mask, shown);
   }
   return score;
 }
 
 std::vector<Figure> walkers(int frame) {
   if (frame < 4 * kSecond) return {};
-  const int way = 3 * (frame - 4 * kSecond);
-  return {{way % 360 - 30, 120}, {300 - way % 360, 180}};
+  const int method = 3 * (frame - 4 * kSecond);
+  return {{method % 360 - 30, 120}, {300 - method % 360, 180}};
 }
 
 SceneFrame walking(SmallScene& scene, int frame) {
-  return scene.film(walkers(frame));
+  return scene.video(walkers(frame));
 }
 
 TEST(Background, FindsPeopleAndNotTheirShadows) {
@@ -80,13 +80,13 @@ TEST(Background, FindsPeopleAndNotTheirShadows) {
   const Score unaware = play(AdaptiveOptions{.suppress_shadows = false}, 20 * kSecond, 4 * kSecond, walking);
   EXPECT_GT(ours.recall(), 0.93);
   EXPECT_GT(ours.precision(), 0.93);
-  EXPECT_LT(ours.shadow_share(), 0.1);
-  EXPECT_GT(unaware.shadow_share(), 0.8) << "the shadows are there to be found";
+  EXPECT_LT(ours.shadow_fraction(), 0.1);
+  EXPECT_GT(unaware.shadow_fraction(), 0.8) << "the shadows are there to be found";
 }
 
 TEST(Background, FollowsLightThatFallsSlowly) {
   const Play dusk = [](SmallScene& scene, int frame) {
-    return scene.film(walkers(frame), 1 - 0.4 * std::min(1.0, frame / (20.0 * kSecond)));
+    return scene.video(walkers(frame), 1 - 0.4 * std::min(1.0, frame / (20.0 * kSecond)));
   };
   const Score ours = play(AdaptiveOptions{}, 25 * kSecond, 4 * kSecond, dusk);
   const Score mog2 = play(Mog2Options{}, 25 * kSecond, 4 * kSecond, dusk);
@@ -97,26 +97,26 @@ TEST(Background, FollowsLightThatFallsSlowly) {
 }
 
 TEST(Background, FollowsALampAtOnce) {
-  const Play lamp = [](SmallScene& scene, int frame) { return scene.film(walkers(frame), frame < 10 * kSecond ? 1 : 1.35); };
+  const Play lamp = [](SmallScene& scene, int frame) { return scene.video(walkers(frame), frame < 10 * kSecond ? 1 : 1.35); };
   const Score ours = play(AdaptiveOptions{}, 12 * kSecond, 10 * kSecond, lamp);
   const Score mog2 = play(Mog2Options{}, 12 * kSecond, 10 * kSecond, lamp);
   EXPECT_GT(ours.recall(), 0.9);
-  EXPECT_LT(ours.false_share(), 0.005);
-  EXPECT_GT(mog2.false_share(), 0.1) << "a lamp that a plain model notices";
+  EXPECT_LT(ours.false_fraction(), 0.005);
+  EXPECT_GT(mog2.false_fraction(), 0.1) << "a lamp that a plain model notices";
 }
 
 TEST(Background, LearnsATreeThatSways) {
-  const Play wind = [](SmallScene& scene, int frame) { return scene.film({}, 1, 1.5 * std::sin(frame * 0.7)); };
+  const Play wind = [](SmallScene& scene, int frame) { return scene.video({}, 1, 1.5 * std::sin(frame * 0.7)); };
   const Score early = play(AdaptiveOptions{}, 2 * kSecond, 0, wind);
   const Score ours = play(AdaptiveOptions{}, 60 * kSecond, 40 * kSecond, wind);
-  EXPECT_LT(ours.false_share(), 0.008);
-  EXPECT_LT(ours.false_share(), early.false_share() / 2);
+  EXPECT_LT(ours.false_fraction(), 0.008);
+  EXPECT_LT(ours.false_fraction(), early.false_fraction() / 2);
 }
 
 TEST(Background, KeepsAPersonWhoStandsStill) {
   const Figure still{150, 150};
   const Play standing = [&](SmallScene& scene, int frame) {
-    return scene.film(frame < 5 * kSecond ? std::span<const Figure>{} : std::span(&still, 1));
+    return scene.video(frame < 5 * kSecond ? std::span<const Figure>{} : std::span(&still, 1));
   };
   const Score alone = play(AdaptiveOptions{}, 65 * kSecond, 64 * kSecond, standing);
   const Score mog2 = play(Mog2Options{}, 65 * kSecond, 64 * kSecond, standing);
@@ -129,22 +129,22 @@ TEST(Background, KeepsAPersonWhoStandsStill) {
 }
 
 TEST(Background, LearnedAheadIsWhatComesBackBeforeWhomItWasHiddenFor) {
-  // 30 pictures, a second apart: 7 of the empty place, 13 of someone who stands there, 3 empty, 7 of another.
+  // 30 images, a second apart: 7 of the empty place, 13 of a person who stands there, 3 empty, 7 of another.
   SmallScene scene(11);
   std::vector<Frame> samples;
   const Figure long_there{150, 150}, later{152, 151};
   for (int i = 0; i < 30; ++i) {
     const bool first = i >= 7 && i < 20, second = i >= 23;
-    samples.push_back(scene.film(first    ? std::span(&long_there, 1)
-                                 : second ? std::span(&later, 1)
-                                          : std::span<const Figure>{})
+    samples.push_back(scene.video(first    ? std::span(&long_there, 1)
+                                  : second ? std::span(&later, 1)
+                                           : std::span<const Figure>{})
                           .frame);
   }
   const auto model = make_background(AdaptiveOptions{});
   model->prime(samples);
-  const SceneFrame empty = scene.film({});
+  const SceneFrame empty = scene.video({});
   EXPECT_LT(cv::countNonZero(model->apply(empty.frame, {}).mask), 20);
-  const SceneFrame there = scene.film(std::span(&long_there, 1));
+  const SceneFrame there = scene.video(std::span(&long_there, 1));
   Score score;
   score.add(model->apply(there.frame, {}).mask, there);
   EXPECT_GT(score.recall(), 0.9);
@@ -153,21 +153,21 @@ TEST(Background, LearnedAheadIsWhatComesBackBeforeWhomItWasHiddenFor) {
 TEST(Background, HealsTheGhostOfOneWhoWasThereFirst) {
   const Play leaving = [](SmallScene& scene, int frame) {
     const Figure figure{100 + std::max(0, frame - 12 * kSecond) * 4, 150};
-    return scene.film(std::span(&figure, 1));
+    return scene.video(std::span(&figure, 1));
   };
   // From three seconds after the figure has walked off the place where it stood for twelve.
   const Score ours = play(AdaptiveOptions{}, 17 * kSecond, 16 * kSecond, leaving);
   EXPECT_GT(ours.recall(), 0.97);
-  EXPECT_LT(ours.false_share(), 0.003);
+  EXPECT_LT(ours.false_fraction(), 0.003);
 }
 
 TEST(Background, BeginsWithoutThePeopleOfItsSamples) {
   SmallScene scene(3);
   std::vector<Frame> samples;
-  for (int i = 0; i < 32; ++i) samples.push_back(scene.film(std::vector<Figure>{{i * 9, 120}, {280 - i * 9, 190}}).frame);
+  for (int i = 0; i < 32; ++i) samples.push_back(scene.video(std::vector<Figure>{{i * 9, 120}, {280 - i * 9, 190}}).frame);
   const auto model = make_background();
   model->prime(samples);
-  const SceneFrame shown = scene.film(std::vector<Figure>{{100, 120}});
+  const SceneFrame shown = scene.video(std::vector<Figure>{{100, 120}});
   Score score;
   score.add(model->apply(shown.frame, {}).mask, shown);
   EXPECT_GT(score.recall(), 0.93);
@@ -177,16 +177,16 @@ TEST(Background, BeginsWithoutThePeopleOfItsSamples) {
 TEST(Background, BeginsAnewWhenTheCameraWasMoved) {
   const auto model = make_background();
   SmallScene here(1), there(2);
-  for (int i = 0; i < 3 * kSecond; ++i) model->apply(here.film({}).frame, {});
+  for (int i = 0; i < 3 * kSecond; ++i) model->apply(here.video({}).frame, {});
   double first = 0, last = 0;
   for (int i = 0; i < 5 * kSecond; ++i) {
-    Frame frame = there.film({}).frame;
+    Frame frame = there.video({}).frame;
     frame.time += duration_from_seconds(3);
     cv::Mat moved;
-    cv::flip(frame.picture.luma(), moved, -1);
+    cv::flip(frame.image.luma(), moved, -1);
     for (int x = 0; x < moved.cols; x += 16) moved.colRange(x, x + 8) /= 2;
     for (int x = 8; x < moved.cols; x += 16) moved.colRange(x, x + 8) += 80;
-    frame.picture = Picture(moved, frame.picture.cb(), frame.picture.cr(), Picture::Range::limited);
+    frame.image = Image(moved, frame.image.cb(), frame.image.cr(), Image::Range::limited);
     last = cv::countNonZero(model->apply(frame, {}).mask);
     if (i == 0) first = last;
   }
@@ -199,7 +199,7 @@ TEST(Background, IsTheSameFromRunToRun) {
     const auto model = make_background();
     SmallScene scene(5);
     cv::Mat all;
-    for (int i = 0; i < 6 * kSecond; ++i) all.push_back(model->apply(scene.film(walkers(i)).frame, {}).mask.clone());
+    for (int i = 0; i < 6 * kSecond; ++i) all.push_back(model->apply(scene.video(walkers(i)).frame, {}).mask.clone());
     return all;
   };
   EXPECT_EQ(cv::countNonZero(run() != run()), 0);
@@ -218,10 +218,10 @@ TEST(Background, TakesPicturesOfAnySizeAndKind) {
         cv::randu(pixels, 0, kind == CV_16UC1 ? 65535 : 255);
         Frame frame;
         frame.time = timestamp_from_seconds(0.04 * number++);
-        frame.picture = kind == CV_8UC3 ? Picture::from_bgr(pixels) : Picture(pixels);
-        const Foreground seen = model->apply(frame, std::vector<Box>{{-5, -5, 8, 8}, {0.5, 0.5, 1e6, 1e6}});
-        EXPECT_EQ(seen.mask.size(), size) << name;
-        EXPECT_EQ(seen.mask.type(), CV_8UC1) << name;
+        frame.image = kind == CV_8UC3 ? Image::from_bgr(pixels) : Image(pixels);
+        const Foreground detected = model->apply(frame, std::vector<Box>{{-5, -5, 8, 8}, {0.5, 0.5, 1e6, 1e6}});
+        EXPECT_EQ(detected.mask.size(), size) << name;
+        EXPECT_EQ(detected.mask.type(), CV_8UC1) << name;
       }
     }
   }
@@ -232,13 +232,13 @@ TEST(Background, SixteenBitsTellTheSameAsEight) {
   const auto sixteen = make_background();
   SmallScene scene(9);
   for (int i = 0; i < 6 * kSecond; ++i) {
-    Frame frame = scene.film(walkers(i)).frame;
-    const cv::Mat luma = frame.picture.luma();
-    frame.picture = Picture(luma);
+    Frame frame = scene.video(walkers(i)).frame;
+    const cv::Mat luma = frame.image.luma();
+    frame.image = Image(luma);
     const cv::Mat mask = eight->apply(frame, {}).mask.clone();
     cv::Mat deep;
     luma.convertTo(deep, CV_16U, 257);
-    frame.picture = Picture(deep);
+    frame.image = Image(deep);
     ASSERT_EQ(cv::countNonZero(sixteen->apply(frame, {}).mask != mask), 0) << "frame " << i;
   }
 }

@@ -16,8 +16,8 @@ namespace {
 constexpr double kUnlikeLuma = 10, kUnlikeChroma = 7;  // levels: what differs by less is noise or shade
 constexpr double kNoiseSigmas = 5;                     // deviations of the noise; likewise
 constexpr double kOfGaussian = 1.4826;                 // standard deviations in a median distance from the median, of a Gaussian
-constexpr double kLeastArea = 0.15, kMostArea = 2;     // of the body's box; with its shadow it is larger than the body
-constexpr double kLeastHeight = 0.5;                   // of the body's
+constexpr double kMinArea = 0.15, kMaxArea = 2;        // of the body's box; with its shadow it is larger than the body
+constexpr double kMinHeight = 0.5;                     // of the body's
 constexpr double kGap = 1.0 / 15;                      // of the body's height: what is nearer together is one thing
 constexpr double kSharper = 1.3, kSharperLevels = 2;   // how much sharper the border is in the scene, and by how many levels more
 constexpr double kSameLevels = 8;                      // mean difference of what is the same
@@ -34,12 +34,12 @@ std::vector<float> values_of(const cv::Mat& plane, const cv::Mat& mask) {
 }
 
 /// Luma, in levels of 8 bit, and for colour chroma at full size. Luma of 16 bit becomes CV_32F; all else is CV_8U.
-std::vector<cv::Mat> levels_of(const Picture& picture) {
-  std::vector<cv::Mat> planes{picture.luma()};
-  if (picture.luma().depth() == CV_16U) picture.luma().convertTo(planes[0], CV_32F, 1.0 / 257.0);
-  if (!picture.is_colour()) return planes;
-  for (const cv::Mat* chroma : {&picture.cb(), &picture.cr()}) {
-    cv::resize(*chroma, planes.emplace_back(), picture.size(), 0, 0, cv::INTER_LINEAR);
+std::vector<cv::Mat> levels_of(const Image& image) {
+  std::vector<cv::Mat> planes{image.luma()};
+  if (image.luma().depth() == CV_16U) image.luma().convertTo(planes[0], CV_32F, 1.0 / 257.0);
+  if (!image.is_colour()) return planes;
+  for (const cv::Mat* chroma : {&image.cb(), &image.cr()}) {
+    cv::resize(*chroma, planes.emplace_back(), image.size(), 0, 0, cv::INTER_LINEAR);
   }
   return planes;
 }
@@ -69,17 +69,17 @@ void mark_differing(const cv::Mat& scene, const cv::Mat& now, const cv::Rect& bo
     sums.mark(noise.shade, std::max(unlike, kNoiseSigmas * kOfGaussian * noise.deviation), mask);
     return;
   }
-  cv::Mat beside(scene.size(), CV_8UC1, cv::Scalar(255));
-  beside(body) = 0;
+  cv::Mat next_to(scene.size(), CV_8UC1, cv::Scalar(255));
+  next_to(body) = 0;
   cv::Mat difference = as_float(now) - as_float(scene);
   cv::blur(difference, difference, {3, 3});
-  std::vector<float> values = values_of(difference, beside);
+  std::vector<float> values = values_of(difference, next_to);
   const double shade = geometry::median_or(values, 0);
   for (float& value : values) value = static_cast<float>(std::abs(value - shade));
   mask |= cv::abs(difference - shade) > std::max(unlike, kNoiseSigmas * kOfGaussian * geometry::median_or(values, 0));
 }
 
-/// How sharp the pictures are along a band, levels: of each pixel its sharpest plane.
+/// How sharp the images are along a band, levels: of each pixel its sharpest plane.
 double sharpness(const std::vector<cv::Mat>& planes, const cv::Mat& band) {
   const cv::Rect within = cv::boundingRect(band);
   // A gradient needs the smooth levels beside it, and these need the levels beside them.
@@ -94,14 +94,14 @@ double sharpness(const std::vector<cv::Mat>& planes, const cv::Mat& band) {
   return cv::mean(sharpest, band(within))[0];
 }
 
-/// Without specks, and with what is nearer together than twice `gap` joined. All of it is within the picture's rectangle returned,
-/// which is empty where nothing comes near the body, or what there is cannot be of its height.
+/// Without specks, and with what is nearer together than twice `gap` joined. All of it is within the image's rectangle returned,
+/// which is empty if nothing comes near the body, or what there is cannot be of its height.
 cv::Rect tidy(cv::Mat& mask, int gap, const Box& body) {
   const Box near{body.left - gap, body.top - gap, body.width + 2.0 * gap, body.height + 2.0 * gap};
   if (const cv::Rect there = pixels_of(near, mask.size()); there.empty() || cv::countNonZero(mask(there)) == 0) return {};
   cv::morphologyEx(mask, mask, cv::MORPH_OPEN, round_element(1));
   cv::Rect within = cv::boundingRect(mask);
-  if (within.empty() || within.height + 2 * gap < kLeastHeight * body.height) return {};
+  if (within.empty() || within.height + 2 * gap < kMinHeight * body.height) return {};
   // Wide enough that nothing touches the sides; its corner is even, for there labels go by pairs of rows and columns.
   const int round = 2 * gap + 2;
   within = cv::Rect(cv::Point((within.x - round) & ~1, (within.y - round) & ~1), within.br() + cv::Point(round, round)) &
@@ -111,10 +111,10 @@ cv::Rect tidy(cv::Mat& mask, int gap, const Box& body) {
   return within;
 }
 
-/// Of the connected regions, all `within` that rectangle, the one that has most pixels in the body's box; nothing where it is no
+/// Of the connected regions, all `within` that rectangle, the one that has most pixels in the body's box; nothing if it is no
 /// body.
 std::optional<cv::Mat> region_at(const cv::Mat& mask, const cv::Rect& within, const Box& body) {
-  if (within.empty() || cv::countNonZero(mask(within)) < kLeastArea * body.area()) return std::nullopt;
+  if (within.empty() || cv::countNonZero(mask(within)) < kMinArea * body.area()) return std::nullopt;
   cv::Mat labels, stats, centres;
   const int count = cv::connectedComponentsWithStats(mask(within), labels, stats, centres, 8);
   std::vector<int> inside(static_cast<std::size_t>(count), 0);
@@ -126,7 +126,7 @@ std::optional<cv::Mat> region_at(const cv::Mat& mask, const cv::Rect& within, co
   const int best = static_cast<int>(std::max_element(inside.begin(), inside.end()) - inside.begin());
   if (inside[static_cast<std::size_t>(best)] == 0) return std::nullopt;
   const int area = stats.at<int>(best, cv::CC_STAT_AREA), height = stats.at<int>(best, cv::CC_STAT_HEIGHT);
-  if (area < kLeastArea * body.area() || area > kMostArea * body.area() || height < kLeastHeight * body.height) return std::nullopt;
+  if (area < kMinArea * body.area() || area > kMaxArea * body.area() || height < kMinHeight * body.height) return std::nullopt;
   cv::Mat region = cv::Mat::zeros(mask.size(), CV_8UC1);
   cv::compare(labels, best, region(within), cv::CMP_EQ);
   return region;
@@ -144,7 +144,7 @@ void lay(const cv::Mat& patch, const cv::Mat& mask, cv::Mat plane) {
 
 }  // namespace
 
-std::optional<cv::Mat> uncovered(const Picture& scene, const Picture& now, const Box& body) {
+std::optional<cv::Mat> uncovered(const Image& scene, const Image& now, const Box& body) {
   if (scene.size() != now.size() || scene.is_colour() != now.is_colour() || scene.empty()) return std::nullopt;
   const std::vector<cv::Mat> before = levels_of(scene), after = levels_of(now);
   cv::Mat mask = cv::Mat::zeros(scene.size(), CV_8UC1);
@@ -162,27 +162,27 @@ std::optional<cv::Mat> uncovered(const Picture& scene, const Picture& now, const
   return region;
 }
 
-bool same_within(const Picture& a, const Picture& b, const cv::Mat& mask) {
+bool same_within(const Image& a, const Image& b, const cv::Mat& mask) {
   if (a.size() != b.size() || a.empty()) return false;
   cv::Mat difference = as_float(levels_of(a).front()) - as_float(levels_of(b).front());
-  std::vector<float> beside = values_of(difference, mask == 0);
-  difference -= cv::Scalar(geometry::median_or(beside, 0));
+  std::vector<float> next_to = values_of(difference, mask == 0);
+  difference -= cv::Scalar(geometry::median_or(next_to, 0));
   return cv::mean(cv::abs(difference), mask)[0] < kSameLevels;
 }
 
-Picture patched(const Picture& picture, const Picture& patch, const cv::Mat& mask, cv::Point corner) {
-  const cv::Rect place(corner, mask.size());
-  cv::Mat luma = picture.luma().clone();
-  lay(patch.luma(), mask, luma(place));
-  if (!picture.is_colour()) return Picture(luma);
+Image patched(const Image& image, const Image& patch, const cv::Mat& mask, cv::Point corner) {
+  const cv::Rect location(corner, mask.size());
+  cv::Mat luma = image.luma().clone();
+  lay(patch.luma(), mask, luma(location));
+  if (!image.is_colour()) return Image(luma);
   cv::Mat half_mask;
   cv::dilate(mask, half_mask, round_element(1));
-  const cv::Rect half(place.x / 2, place.y / 2, patch.cb().cols, patch.cb().rows);
+  const cv::Rect half(location.x / 2, location.y / 2, patch.cb().cols, patch.cb().rows);
   cv::resize(half_mask, half_mask, half.size(), 0, 0, cv::INTER_NEAREST);
-  cv::Mat cb = picture.cb().clone(), cr = picture.cr().clone();
+  cv::Mat cb = image.cb().clone(), cr = image.cr().clone();
   lay(patch.cb(), half_mask, cb(half));
   lay(patch.cr(), half_mask, cr(half));
-  return {luma, cb, cr, picture.range()};
+  return {luma, cb, cr, image.range()};
 }
 
 }  // namespace marey::detect::background

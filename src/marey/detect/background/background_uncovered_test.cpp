@@ -10,7 +10,7 @@ constexpr int kWidth = 96, kHeight = 80;
 const Box kBody{36, 20, 16, 40};
 
 /// A ground with a texture and noise; with a figure on it where it is asked for.
-Picture ground(int seed, double light, const Box& figure) {
+Image ground(int seed, double light, const Box& figure) {
   cv::Mat luma(kHeight, kWidth, CV_32F);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) luma.at<float>(y, x) = 110 + 10 * std::sin(0.3F * x) * std::cos(0.2F * y);
@@ -25,7 +25,7 @@ Picture ground(int seed, double light, const Box& figure) {
   luma = light * luma + noise;
   luma.convertTo(levels, CV_8U);
   const cv::Mat chroma(kHeight / 2, kWidth / 2, CV_8UC1, cv::Scalar(128));
-  return {levels, chroma, chroma.clone(), Picture::Range::limited};
+  return {levels, chroma, chroma.clone(), Image::Range::limited};
 }
 
 double covered(const cv::Mat& mask) {
@@ -42,7 +42,7 @@ TEST(BackgroundUncovered, APlaceThatHasLostItsOutlineIsFound) {
   }
 }
 
-TEST(BackgroundUncovered, WhoStandsThereNowHasNotGone) {
+TEST(BackgroundUncovered, PersonStandingThereHasNotLeft) {
   EXPECT_FALSE(uncovered(ground(1, 1, {}), ground(2, 1, kBody), kBody));
   EXPECT_FALSE(uncovered(ground(1, 1, {}), ground(2, 1, {}), kBody)) << "nothing was there";
   EXPECT_FALSE(uncovered(ground(1, 1, kBody), ground(2, 1, kBody), kBody)) << "it still is";
@@ -50,14 +50,14 @@ TEST(BackgroundUncovered, WhoStandsThereNowHasNotGone) {
 }
 
 TEST(BackgroundUncovered, APictureIsPatchedInItsOwnLight) {
-  const Picture with = ground(1, 1.1, kBody), without = ground(2, 1, {});
+  const Image with = ground(1, 1.1, kBody), without = ground(2, 1, {});
   const cv::Mat mask = *uncovered(ground(3, 1, kBody), without, kBody);
-  const Picture patch = patched(with, without, mask, {0, 0});
+  const Image patch = patched(with, without, mask, {0, 0});
   const double bright = cv::mean(ground(4, 1.1, {}).luma()(cv::Rect(36, 20, 16, 40)))[0];
   EXPECT_NEAR(cv::mean(patch.luma()(cv::Rect(36, 20, 16, 40)))[0], bright, 4);
   EXPECT_TRUE(same_within(patch, ground(5, 1.1, {}), mask));
   EXPECT_FALSE(same_within(with, ground(5, 1.1, {}), mask));
-  EXPECT_NE(with.luma().at<std::uint8_t>(40, 44), patch.luma().at<std::uint8_t>(40, 44)) << "the picture given stays";
+  EXPECT_NE(with.luma().at<std::uint8_t>(40, 44), patch.luma().at<std::uint8_t>(40, 44)) << "the image given stays";
 }
 
 }  // namespace

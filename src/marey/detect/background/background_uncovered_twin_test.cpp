@@ -1,4 +1,4 @@
-// The place that somebody has left, against the slow way: every plane in floating point, medians by sorting.
+// The place that a person has left, against the slow way: every plane in floating point, medians by sorting.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -18,8 +18,8 @@ namespace {
 constexpr double kUnlikeLuma = 10, kUnlikeChroma = 7;  // levels: what differs by less is noise or shade
 constexpr double kNoiseSigmas = 5;                     // deviations of the noise; likewise
 constexpr double kOfGaussian = 1.4826;                 // standard deviations in a median distance from the median, of a Gaussian
-constexpr double kLeastArea = 0.15, kMostArea = 2;     // of the body's box; with its shadow it is larger than the body
-constexpr double kLeastHeight = 0.5;                   // of the body's
+constexpr double kMinArea = 0.15, kMaxArea = 2;        // of the body's box; with its shadow it is larger than the body
+constexpr double kMinHeight = 0.5;                     // of the body's
 constexpr double kGap = 1.0 / 15;                      // of the body's height: what is nearer together is one thing
 constexpr double kSharper = 1.3, kSharperLevels = 2;   // how much sharper the border is in the scene, and by how many levels more
 constexpr int kBlurReach = 2;                          // px about a region that its blur reaches
@@ -42,13 +42,13 @@ std::vector<float> values_of(const cv::Mat& plane, const cv::Mat& mask) {
 }
 
 /// Luma and, for colour, chroma at full size, 32 bit, in levels of 8 bit.
-std::vector<cv::Mat> levels_of(const Picture& picture) {
+std::vector<cv::Mat> levels_of(const Image& image) {
   std::vector<cv::Mat> planes(1);
-  picture.luma().convertTo(planes[0], CV_32F, picture.luma().depth() == CV_16U ? 1.0 / 257.0 : 1.0);
-  if (!picture.is_colour()) return planes;
-  for (const cv::Mat* chroma : {&picture.cb(), &picture.cr()}) {
+  image.luma().convertTo(planes[0], CV_32F, image.luma().depth() == CV_16U ? 1.0 / 257.0 : 1.0);
+  if (!image.is_colour()) return planes;
+  for (const cv::Mat* chroma : {&image.cb(), &image.cr()}) {
     cv::Mat full;
-    cv::resize(*chroma, full, picture.size(), 0, 0, cv::INTER_LINEAR);
+    cv::resize(*chroma, full, image.size(), 0, 0, cv::INTER_LINEAR);
     full.convertTo(planes.emplace_back(), CV_32F);
   }
   return planes;
@@ -65,21 +65,21 @@ cv::Mat round_element(int radius) {
 }
 
 /// Where the two differ by more than the noise about the body does, once both are in one light.
-cv::Mat differing(const std::vector<cv::Mat>& scene, const std::vector<cv::Mat>& now, const cv::Mat& beside) {
+cv::Mat differing(const std::vector<cv::Mat>& scene, const std::vector<cv::Mat>& now, const cv::Mat& next_to) {
   cv::Mat mask = cv::Mat::zeros(scene.front().size(), CV_8UC1);
   for (std::size_t i = 0; i < scene.size(); ++i) {
     cv::Mat difference = now[i] - scene[i];
     cv::blur(difference, difference, {3, 3});
-    std::vector<float> values = values_of(difference, beside);
+    std::vector<float> values = values_of(difference, next_to);
     const double shade = middle_value(values);
     for (float& value : values) value = static_cast<float>(std::abs(value - shade));
-    const double least = std::max(i == 0 ? kUnlikeLuma : kUnlikeChroma, kNoiseSigmas * kOfGaussian * middle_value(values));
-    mask |= cv::abs(difference - shade) > least;
+    const double minimum = std::max(i == 0 ? kUnlikeLuma : kUnlikeChroma, kNoiseSigmas * kOfGaussian * middle_value(values));
+    mask |= cv::abs(difference - shade) > minimum;
   }
   return mask;
 }
 
-/// How sharp the pictures are along a band, levels: of each pixel its sharpest plane.
+/// How sharp the images are along a band, levels: of each pixel its sharpest plane.
 double sharpness(const std::vector<cv::Mat>& planes, const cv::Mat& band) {
   cv::Mat sharpest = cv::Mat::zeros(band.size(), CV_32F);
   for (const cv::Mat& plane : planes) {
@@ -91,7 +91,7 @@ double sharpness(const std::vector<cv::Mat>& planes, const cv::Mat& band) {
   return cv::mean(sharpest, band)[0];
 }
 
-/// Of the connected regions the one that has most pixels in the body's box; nothing where it is no body.
+/// Of the connected regions the one that has most pixels in the body's box; nothing if it is not a body.
 std::optional<cv::Mat> region_at(const cv::Mat& mask, const Box& body) {
   cv::Mat labels, stats, centres;
   const int count = cv::connectedComponentsWithStats(mask, labels, stats, centres, 8);
@@ -104,16 +104,16 @@ std::optional<cv::Mat> region_at(const cv::Mat& mask, const Box& body) {
   const int best = static_cast<int>(std::max_element(within.begin(), within.end()) - within.begin());
   if (within[static_cast<std::size_t>(best)] == 0) return std::nullopt;
   const int area = stats.at<int>(best, cv::CC_STAT_AREA), height = stats.at<int>(best, cv::CC_STAT_HEIGHT);
-  if (area < kLeastArea * body.area() || area > kMostArea * body.area() || height < kLeastHeight * body.height) return std::nullopt;
+  if (area < kMinArea * body.area() || area > kMaxArea * body.area() || height < kMinHeight * body.height) return std::nullopt;
   return cv::Mat(labels == best);
 }
 
-std::optional<cv::Mat> uncovered_slowly(const Picture& scene, const Picture& now, const Box& body) {
+std::optional<cv::Mat> uncovered_slowly(const Image& scene, const Image& now, const Box& body) {
   if (scene.size() != now.size() || scene.is_colour() != now.is_colour() || scene.empty()) return std::nullopt;
   const std::vector<cv::Mat> before = levels_of(scene), after = levels_of(now);
-  cv::Mat beside(scene.size(), CV_8UC1, cv::Scalar(255));
-  beside(pixels_of(body, scene.size())) = 0;
-  cv::Mat mask = differing(before, after, beside);
+  cv::Mat next_to(scene.size(), CV_8UC1, cv::Scalar(255));
+  next_to(pixels_of(body, scene.size())) = 0;
+  cv::Mat mask = differing(before, after, next_to);
   const int gap = std::max(1, static_cast<int>(std::lround(kGap * body.height / 2)));
   cv::morphologyEx(mask, mask, cv::MORPH_OPEN, round_element(1));
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, round_element(gap));
@@ -153,9 +153,9 @@ cv::Mat noisy(std::mt19937& random, const cv::Mat& plane, double light) {
   return result;
 }
 
-/// A picture, and the same later: things stand in either of them.
+/// An image, and the same later: things stand in either of them.
 struct Pair {
-  Picture scene, now;
+  Image scene, now;
 };
 
 Pair random_pair(std::mt19937& random, cv::Size size, const Box& body, bool colour, bool sixteen_bit) {
@@ -167,16 +167,16 @@ Pair random_pair(std::mt19937& random, cv::Size size, const Box& body, bool colo
     const cv::Mat ground = random_plane(random, own, which == 5 ? 40 : 3);
     before.push_back(noisy(random, ground, 1));
     after.push_back(noisy(random, ground, i == 0 ? light : 1));
-    cv::Rect place = pixels_of(body, size);
-    if (i > 0) place = cv::Rect(place.tl() / 2, place.size() / 2);
+    cv::Rect location = pixels_of(body, size);
+    if (i > 0) location = cv::Rect(location.tl() / 2, location.size() / 2);
     const int level = std::uniform_int_distribution(0, 255)(random);
-    if (which < 4) before.back()(place & cv::Rect({}, own)) = level;
+    if (which < 4) before.back()(location & cv::Rect({}, own)) = level;
     if (which == 3 || which == 4)
-      after.back()(cv::Rect(place.x, place.y, place.width, place.height / 2) & cv::Rect({}, own)) = level;
+      after.back()(cv::Rect(location.x, location.y, location.width, location.height / 2) & cv::Rect({}, own)) = level;
   }
   if (sixteen_bit) after[0].convertTo(after[0], CV_16U, 256.7);
-  if (!colour) return {Picture(before[0]), Picture(after[0])};
-  return {{before[0], before[1], before[2], Picture::Range::limited}, {after[0], after[1], after[2], Picture::Range::limited}};
+  if (!colour) return {Image(before[0]), Image(after[0])};
+  return {{before[0], before[1], before[2], Image::Range::limited}, {after[0], after[1], after[2], Image::Range::limited}};
 }
 
 TEST(BackgroundUncoveredTwin, TheSamePlaceIsFound) {
@@ -211,23 +211,23 @@ TEST(DifferenceSums, MedianDeviationAndMarksAreThoseOfTheSmoothedDifference) {
     const cv::Rect body = cv::Rect(std::uniform_int_distribution(0, 70)(random), std::uniform_int_distribution(0, 70)(random),
                                    std::uniform_int_distribution(0, 70)(random), std::uniform_int_distribution(0, 70)(random)) &
                           cv::Rect({}, size);
-    cv::Mat beside(size, CV_8UC1, cv::Scalar(255)), before, after;
-    beside(body) = 0;
+    cv::Mat next_to(size, CV_8UC1, cv::Scalar(255)), before, after;
+    next_to(body) = 0;
     scene.convertTo(before, CV_32F);
     now.convertTo(after, CV_32F);
     cv::Mat difference = after - before;
     cv::blur(difference, difference, {3, 3});
-    std::vector<float> values = values_of(difference, beside);
+    std::vector<float> values = values_of(difference, next_to);
     const double shade = middle_value(values);
     for (float& value : values) value = static_cast<float>(std::abs(value - shade));
     const DifferenceSums sums(scene, now);
     const DifferenceSums::Noise noise = sums.noise_outside(body);
     ASSERT_EQ(noise.shade, shade) << "seed " << seed << ", trial " << trial;
     ASSERT_EQ(noise.deviation, middle_value(values)) << "seed " << seed << ", trial " << trial;
-    const double least = std::uniform_real_distribution(0.0, 20.0)(random);
+    const double minimum = std::uniform_real_distribution(0.0, 20.0)(random);
     cv::Mat mask = cv::Mat::zeros(size, CV_8UC1);
-    sums.mark(shade, least, mask);
-    ASSERT_EQ(cv::countNonZero(mask != (cv::abs(difference - shade) > least)), 0) << "seed " << seed << ", trial " << trial;
+    sums.mark(shade, minimum, mask);
+    ASSERT_EQ(cv::countNonZero(mask != (cv::abs(difference - shade) > minimum)), 0) << "seed " << seed << ", trial " << trial;
   }
 }
 

@@ -11,8 +11,8 @@
 namespace marey::detect::background {
 namespace {
 
-constexpr int kMostSum = 9 * 255;
-constexpr int kSums = 2 * kMostSum + 1;
+constexpr int kMaxSum = 9 * 255;
+constexpr int kSums = 2 * kMaxSum + 1;
 constexpr int kLanes = 4;  // of counts: neighbours are alike, and one count could not be raised twice in a row at speed
 
 /// A sum's mean in levels, as cv::blur rounds it.
@@ -58,7 +58,7 @@ class SumCounts {
   }
 
  private:
-  int& of(int lane, int sum) { return counts_[static_cast<std::size_t>(lane * kSums + sum + kMostSum)]; }
+  int& of(int lane, int sum) { return counts_[static_cast<std::size_t>(lane * kSums + sum + kMaxSum)]; }
   std::vector<int> counts_;
 };
 
@@ -67,7 +67,7 @@ class SumCounts {
 double ranked_distance(SumCounts& counts, int middle, double shade, int rank) {
   int below = middle, above = middle + 1, passed = 0;
   while (true) {
-    const bool down = above > kMostSum || (below >= -kMostSum && distance_of_sum(below, shade) <= distance_of_sum(above, shade));
+    const bool down = above > kMaxSum || (below >= -kMaxSum && distance_of_sum(below, shade) <= distance_of_sum(above, shade));
     const int next = down ? below-- : above++;
     passed += counts.of_sum(next);
     if (passed > rank) return distance_of_sum(next, shade);
@@ -97,24 +97,26 @@ DifferenceSums::Noise DifferenceSums::noise_outside(const cv::Rect& body) const 
   SumCounts counts;
   for (int y = 0; y < sums_.rows; ++y) {
     const auto* sums = sums_.ptr<std::int16_t>(y);
-    const bool beside = y < body.y || y >= body.br().y || body.empty();
-    counts.add(sums, 0, beside ? sums_.cols : body.x);
-    if (!beside) counts.add(sums, body.br().x, sums_.cols);
+    const bool next_to = y < body.y || y >= body.br().y || body.empty();
+    counts.add(sums, 0, next_to ? sums_.cols : body.x);
+    if (!next_to) counts.add(sums, body.br().x, sums_.cols);
   }
   const int total = static_cast<int>(sums_.total()) - body.area();
   if (total == 0) return {};
-  int middle = -kMostSum - 1;
+  int middle = -kMaxSum - 1;
   for (int passed = 0; passed <= total / 2;) passed += counts.of_sum(++middle);
   const double shade = level_of_sum(middle);
   return {shade, ranked_distance(counts, middle, shade, total / 2)};
 }
 
-void DifferenceSums::mark(double shade, double least, cv::Mat& mask) const {
-  // In the precision of the smoothed picture, CV_32F.
-  const auto is_far = [&](int sum) { return std::abs(level_of_sum(sum) - static_cast<float>(shade)) > static_cast<float>(least); };
+void DifferenceSums::mark(double shade, double minimum, cv::Mat& mask) const {
+  // In the precision of the smoothed image, CV_32F.
+  const auto is_far = [&](int sum) {
+    return std::abs(level_of_sum(sum) - static_cast<float>(shade)) > static_cast<float>(minimum);
+  };
   int lowest = static_cast<int>(std::lround(9 * shade)), highest = lowest;  // of those that are near
-  while (lowest > -kMostSum && !is_far(lowest - 1)) --lowest;
-  while (highest < kMostSum && !is_far(highest + 1)) ++highest;
+  while (lowest > -kMaxSum && !is_far(lowest - 1)) --lowest;
+  while (highest < kMaxSum && !is_far(highest + 1)) ++highest;
   for (int y = 0; y < sums_.rows; ++y)
     mark_beyond(sums_.ptr<std::int16_t>(y), sums_.cols, lowest, highest, mask.ptr<std::uint8_t>(y));
 }

@@ -4,8 +4,8 @@
 
 namespace marey::detect::background {
 
-/// The difference of two pictures, smoothed over 3 × 3 pixels and not divided by nine: integers, of which median and deviation come
-/// from a count of each value. Costs three passes of 16 bit over the picture. At the border, pixels are mirrored about the
+/// The difference of two images, smoothed over 3 × 3 pixels and not divided by nine: integers, of which median and deviation come
+/// from a count of each value. Costs three passes of 16 bit over the image. At the border, pixels are mirrored about the
 /// outermost, as by cv::blur.
 class DifferenceSums {
  public:
@@ -18,12 +18,12 @@ class DifferenceSums {
   /// `now` - `scene`: CV_8UC1, of one size, not empty.
   DifferenceSums(const cv::Mat& scene, const cv::Mat& now);
 
-  /// Of all pixels but those in `body`, which is within the picture. All 0 where there are no others.
+  /// Of all pixels but those in `body`, which is within the image. All 0 where there are no others.
   Noise noise_outside(const cv::Rect& body) const;
 
-  /// Sets `mask` (CV_8UC1, of the pictures' size) to 255 where the difference is further than `least` levels from `shade`; else
+  /// Sets `mask` (CV_8UC1, of the images' size) to 255 where the difference is further than `least` levels from `shade`; else
   /// leaves it.
-  void mark(double shade, double least, cv::Mat& mask) const;
+  void mark(double shade, double minimum, cv::Mat& mask) const;
 
  private:
   cv::Mat sums_;  ///< CV_16SC1: nine differences

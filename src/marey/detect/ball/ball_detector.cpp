@@ -1,10 +1,10 @@
-// The scene is a picture of its own here, of grey levels, which follows by a level now and then: the background models for people
-// leave out what is as small as a ball far away. What is brighter than it falls into regions; a region is judged by its light, the
+// The scene is an image of its own here, of grey levels, which follows by a level now and then: the background models for people
+// omit what is as small as a ball far away. What is brighter than it falls into regions; a region is evaluated by its light, the
 // sum of what it adds, which motion smears but does not change: a ball's is that of a white disc of the radius that it has there.
 // The score is the logarithm of the ratio of two densities of the radius, a ball's (a normal one of the logarithm) and that of
 // anything else (even in the logarithm), less for what is ragged. A ball is alone on the grass; a sock, a shirt or a head has the
-// rest of somebody beside it, brighter or darker than the scene, whether or not that was found to be a person: its company.
-// Cost: some passes over the picture.
+// rest of a person beside it, brighter or darker than the scene, whether or not that was found to be a person: its company.
+// Cost: some passes over the image.
 #include "marey/detect/ball/ball_detector.h"
 
 #include <algorithm>
@@ -18,26 +18,26 @@
 namespace marey::detect::ball {
 
 void BallDetector::prime(std::span<const Frame> samples) {
-  std::vector<cv::Mat> pictures;
+  std::vector<cv::Mat> images;
   for (const Frame& frame : samples) {
-    if (!frame.picture.empty() && frame.picture.luma().type() == CV_8UC1) pictures.push_back(frame.picture.luma());
+    if (!frame.image.empty() && frame.image.luma().type() == CV_8UC1) images.push_back(frame.image.luma());
   }
-  if (pictures.size() < 3) return;
-  scene_.create(pictures.front().size(), CV_8UC1);
-  std::vector<std::uint8_t> levels(pictures.size());
+  if (images.size() < 3) return;
+  scene_.create(images.front().size(), CV_8UC1);
+  std::vector<std::uint8_t> levels(images.size());
   for (int y = 0; y < scene_.rows; ++y) {
     for (int x = 0; x < scene_.cols; ++x) {
-      for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = pictures[i].at<std::uint8_t>(y, x);
+      for (std::size_t i = 0; i < levels.size(); ++i) levels[i] = images[i].at<std::uint8_t>(y, x);
       scene_.at<std::uint8_t>(y, x) = geometry::median(levels);
     }
   }
 }
 
-/// One level nearer to the frame, so often a second as the options say.
-void BallDetector::follow(const cv::Mat& luma, Timestamp time) {
-  if (!followed_) followed_ = time;
-  if (seconds(time - *followed_) * options_.follow_hz < 1) return;
-  followed_ = time;
+/// One level nearer to the frame, this often a second as the options say.
+void BallDetector::run_tracker(const cv::Mat& luma, Timestamp time) {
+  if (!tracked_) tracked_ = time;
+  if (seconds(time - *tracked_) * options_.track_hz < 1) return;
+  tracked_ = time;
   cv::Mat up, down;
   cv::compare(luma, scene_, up, cv::CMP_GT);
   cv::compare(luma, scene_, down, cv::CMP_LT);
@@ -46,7 +46,7 @@ void BallDetector::follow(const cv::Mat& luma, Timestamp time) {
 }
 
 std::vector<BallCandidate> BallDetector::detect(const Frame& frame) {
-  cv::Mat luma = frame.picture.luma();
+  cv::Mat luma = frame.image.luma();
   if (luma.type() == CV_16UC1) luma.convertTo(luma, CV_8U, 1 / 257.0);
   if (scene_.size() != luma.size()) scene_ = luma.clone();
   cv::subtract(luma, scene_, added_);
@@ -54,7 +54,7 @@ std::vector<BallCandidate> BallDetector::detect(const Frame& frame) {
   cv::absdiff(luma, scene_, other);
   cv::threshold(other, other, options_.contrast, 1, cv::THRESH_BINARY);
   cv::integral(other, other_, CV_32S);
-  follow(luma, frame.time);
+  run_tracker(luma, frame.time);
   cv::threshold(added_, bright, options_.contrast, 255, cv::THRESH_BINARY);
   const int count = cv::connectedComponentsWithStats(bright, blobs, figures, centres, 8, CV_32S);
   std::vector<BallCandidate> found;
@@ -62,15 +62,15 @@ std::vector<BallCandidate> BallDetector::detect(const Frame& frame) {
     const int* figure = figures.ptr<int>(blob);
     const cv::Rect box(figure[cv::CC_STAT_LEFT], figure[cv::CC_STAT_TOP], figure[cv::CC_STAT_WIDTH], figure[cv::CC_STAT_HEIGHT]);
     if (figure[cv::CC_STAT_AREA] < 2 || box.width > 80 || box.height > 80) continue;
-    if (const auto candidate = judge(blobs, blob, box)) found.push_back(*candidate);
+    if (const auto candidate = assess(blobs, blob, box)) found.push_back(*candidate);
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
-  if (std::ssize(found) > options_.most) found.resize(static_cast<std::size_t>(options_.most));
+  if (std::ssize(found) > options_.maximum) found.resize(static_cast<std::size_t>(options_.maximum));
   return found;
 }
 
-/// Of the square round a box up to five radii away, without the box and what motion or a film's compression smears round it.
-double BallDetector::company(const cv::Rect& box, double radius) const {
+/// Of the square round a box up to five radii away, without the box and what motion or a video's compression smears round it.
+double BallDetector::local_clutter(const cv::Rect& box, double radius) const {
   const auto grown = [&](int by) {
     return cv::Rect(box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by) & cv::Rect({}, scene_.size());
   };
@@ -83,7 +83,7 @@ double BallDetector::company(const cv::Rect& box, double radius) const {
   return area <= 0 ? 0 : static_cast<double>(sum(outer) - sum(inner)) / area;
 }
 
-std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob, const cv::Rect& box) const {
+std::optional<BallCandidate> BallDetector::assess(const cv::Mat& blobs, int blob, const cv::Rect& box) const {
   double light = 0, scene = 0, xx = 0, yy = 0, xy = 0;
   int area = 0;
   Vector<2> sum = Vector<2>::Zero();
@@ -107,7 +107,7 @@ std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob,
   if (!expected) return std::nullopt;
   const double contrast = std::max(20.0, options_.white - scene / area);
   const double disc = std::numbers::pi * *expected * *expected * contrast;
-  if (light < options_.least_light * disc || light > options_.most_light * disc) return std::nullopt;
+  if (light < options_.min_light * disc || light > options_.max_light * disc) return std::nullopt;
   candidate.radius = std::sqrt(light / (std::numbers::pi * contrast));
   // The narrower side of the light's spread: motion draws out one side alone.
   const double vx = xx / light - candidate.centre.x() * candidate.centre.x(),
@@ -125,7 +125,7 @@ std::optional<BallCandidate> BallDetector::judge(const cv::Mat& blobs, int blob,
   candidate.score -= 0.5 * std::pow(std::max(0.0, wide / round - 2) / 0.8, 2);
   candidate.sigma = 0.4 + 0.1 * wide;
   if (candidate.score < -12) return std::nullopt;
-  candidate.company = company(box, *expected);
+  candidate.local_clutter = local_clutter(box, *expected);
   return candidate;
 }
 

@@ -1,4 +1,4 @@
-// What in a picture may be the ball: small, round and brighter than the scene behind it, of the size that a ball has there.
+// What in an image may be the ball: small, round and brighter than the scene behind it, of the size that a ball has there.
 #pragma once
 
 #include <functional>
@@ -13,19 +13,19 @@
 
 namespace marey::detect::ball {
 
-/// The radius of a ball that lies on the ground and is seen at a pixel, px; nothing where no ground is seen.
+/// The radius of a ball that lies on the ground and is seen at a pixel, px; nothing if no ground is seen.
 using BallSize = std::function<std::optional<double>(const Vector<2>& pixel)>;
 
 /// First guesses; how often the ball is found with them, and false things: docs/ball.md.
 struct BallDetectorOptions {
   double contrast = 14;       ///< grey levels that it is brighter than the scene, at least
   double white = 185;         ///< grey level of a ball
-  double least_light = 0.15;  ///< of the light that a ball on the ground adds to the picture: less is noise,
-  double most_light = 16;     ///< more is no ball, however near it flies
+  double min_light = 0.15;    ///< of the light that a ball on the ground adds to the image: less is noise,
+  double max_light = 16;      ///< more is not a ball, however near it flies
   double size_spread = 0.35;  ///< deviation of the logarithm of the radius, of balls that are smaller than on the ground there,
   double flown_spread = 0.9;  ///< and of those that are larger, for they fly nearer: from a low stand twice as near and more
-  double follow_hz = 4;       ///< grey levels a second by which the scene is followed
-  int most = 60;              ///< candidates in a frame, the best
+  double track_hz = 4;        ///< grey levels a second by which the scene is followed
+  int maximum = 60;           ///< candidates in a frame, the best
 };
 
 struct BallCandidate {
@@ -33,7 +33,7 @@ struct BallCandidate {
   double sigma = 0.5;                    ///< px, of each coordinate
   double radius = 0;                     ///< px: of a white disc of as much light
   double score = 0;                      ///< logarithm of how much likelier a ball looks so than anything else that is found
-  double company = 0;                    ///< 0 … 1: of what is round it, up to some radii away, the share that is not the scene
+  double local_clutter = 0;              ///< 0 … 1: of what is round it, up to some radii away, the share that is not the scene
 };
 
 class BallDetector {
@@ -47,16 +47,16 @@ class BallDetector {
   std::vector<BallCandidate> detect(const Frame& frame);
 
  private:
-  void follow(const cv::Mat& luma, Timestamp time);
-  std::optional<BallCandidate> judge(const cv::Mat& blobs, int blob, const cv::Rect& box) const;
-  double company(const cv::Rect& box, double radius) const;
+  void run_tracker(const cv::Mat& luma, Timestamp time);
+  std::optional<BallCandidate> assess(const cv::Mat& blobs, int blob, const cv::Rect& box) const;
+  double local_clutter(const cv::Rect& box, double radius) const;
 
   BallSize size_;
   BallDetectorOptions options_;
   cv::Mat scene_;  // CV_8UC1
   cv::Mat added_;  // CV_8UC1: by how much the frame is brighter
   cv::Mat other_;  // CV_32SC1: integral of where it is brighter or darker
-  std::optional<Timestamp> followed_;
+  std::optional<Timestamp> tracked_;
 };
 
 }  // namespace marey::detect::ball

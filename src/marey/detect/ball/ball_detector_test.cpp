@@ -36,7 +36,7 @@ Frame grass(const std::vector<Disc>& discs, std::uint64_t seed) {
     }
   }
   Frame frame;
-  frame.picture = Picture(luma);
+  frame.image = Image(luma);
   return frame;
 }
 
@@ -65,12 +65,12 @@ TEST(BallDetector, ShirtsAndSpecksAreNoBalls) {
 
 TEST(BallDetector, ABallIsAloneAndASockIsNot) {
   const Vector<2> at(151, 60);
-  EXPECT_LT(primed().detect(grass({{at, 2.6}}, 6)).at(0).company, 0.01);
+  EXPECT_LT(primed().detect(grass({{at, 2.6}}, 6)).at(0).local_clutter, 0.01);
   Frame beside_a_leg = grass({{at, 2.6}}, 6);
-  cv::Mat luma = beside_a_leg.picture.luma().clone();
+  cv::Mat luma = beside_a_leg.image.luma().clone();
   cv::rectangle(luma, cv::Rect(144, 36, 14, 20), 30, cv::FILLED);
-  beside_a_leg.picture = Picture(luma);
-  EXPECT_GT(primed().detect(beside_a_leg).at(0).company, 0.1);
+  beside_a_leg.image = Image(luma);
+  EXPECT_GT(primed().detect(beside_a_leg).at(0).local_clutter, 0.1);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ constexpr double kHatRatio = 1.6;                        // of the two Gaussians
 constexpr float kBlack = 16, kWhite = 235, kFull = 255;  // of luma in video
 
 /// Blurs a plane and writes what is found at the grid's points as channels `blurred` and `hat`. `scale`: the plane's px in one of
-/// the picture.
+/// the image.
 void filter_plane(const cv::Mat& plane, double scale, int step, int channel, float offset, float gain, cv::Mat& responses) {
   const double sigma = std::max(0.5 * step * scale, 0.4);
   cv::Mat narrow, wide;
@@ -43,23 +43,23 @@ cv::Mat as_float(const cv::Mat& plane) {
 
 }  // namespace
 
-cv::Size grid_size(cv::Size picture, int step) {
-  return {std::max(1, picture.width / step), std::max(1, picture.height / step)};
+cv::Size grid_size(cv::Size image, int step) {
+  return {std::max(1, image.width / step), std::max(1, image.height / step)};
 }
 
-cv::Mat filter_responses(const Picture& picture, int step) {
-  cv::Mat responses(grid_size(picture.size(), step), CV_32FC(kResponses), cv::Scalar::all(0));
-  const bool limited = picture.range() == Picture::Range::limited;
-  filter_plane(as_float(picture.luma()), 1, step, 0, limited ? kBlack : 0, limited ? kFull / (kWhite - kBlack) : 1, responses);
-  if (!picture.is_colour()) {
+cv::Mat filter_responses(const Image& image, int step) {
+  cv::Mat responses(grid_size(image.size(), step), CV_32FC(kResponses), cv::Scalar::all(0));
+  const bool limited = image.range() == Image::Range::limited;
+  filter_plane(as_float(image.luma()), 1, step, 0, limited ? kBlack : 0, limited ? kFull / (kWhite - kBlack) : 1, responses);
+  if (!image.is_colour()) {
     for (int row = 0; row < responses.rows; ++row) {
       for (int column = 0; column < responses.cols; ++column)
         responses.at<Response>(row, column)[1] = responses.at<Response>(row, column)[2] = 128;
     }
     return responses;
   }
-  filter_plane(as_float(picture.cb()), 0.5, step, 1, 0, 1, responses);
-  filter_plane(as_float(picture.cr()), 0.5, step, 2, 0, 1, responses);
+  filter_plane(as_float(image.cb()), 0.5, step, 1, 0, 1, responses);
+  filter_plane(as_float(image.cr()), 0.5, step, 2, 0, 1, responses);
   return responses;
 }
 

@@ -1,4 +1,4 @@
-// What BraMBLe sees of a picture: at each point of a grid the responses of a Gaussian and of a Mexican hat (the Gaussian's negated
+// What BraMBLe sees of an image: at each point of a grid the responses of a Gaussian and of a Mexican hat (the Gaussian's negated
 // Laplacian) to Y, Cb and Cr, six numbers.
 //
 // Source: Isard, MacCormick, "BraMBLe: A Bayesian Multiple-Blob Tracker", ICCV 2001, from memory: neither that paper nor a copy was
@@ -10,7 +10,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 
 namespace marey::detect::blobs {
 
@@ -18,11 +18,11 @@ inline constexpr int kResponses = 6;  ///< Y, Cb, Cr blurred; then Y, Cb, Cr und
 
 using Response = cv::Vec<float, kResponses>;
 
-/// The grid of a picture of this size: its first point is at ((step − 1) / 2, (step − 1) / 2) px, neighbours are `step` px apart.
-cv::Size grid_size(cv::Size picture, int step);
+/// The grid of an image of this size: its first point is at ((step − 1) / 2, (step − 1) / 2) px, neighbours are `step` px apart.
+cv::Size grid_size(cv::Size image, int step);
 
-/// CV_32FC(6), a response a point of the grid, in grey levels of a picture of full range. A grey picture has no chroma: 128. `step`
+/// CV_32FC(6), a response a point of the grid, in grey levels of an image of full range. A grey image has no chroma: 128. `step`
 /// ≥ 1; the Gaussian's standard deviation is half of it.
-cv::Mat filter_responses(const Picture& picture, int step);
+cv::Mat filter_responses(const Image& image, int step);
 
 }  // namespace marey::detect::blobs

@@ -17,15 +17,16 @@ struct ForegroundEvidenceOptions {
   std::optional<int> step;  ///< px between the grid's points; nothing: 5
   int foreground_kinds = 16;
   /// Nats, of one point, at most and at least: neither model knows everything. Ours; the paper is not remembered to have a limit.
-  double most_evidence = 4;
-  int learning_frames = 40;  ///< where nothing could be read ahead: the scene is learned from so many frames, which show nobody
+  double max_evidence = 4;
+  int learning_frames =
+      40;  ///< where nothing could be read ahead: the scene is learned from this many frames, which show no person
   std::uint64_t seed = 1;
 };
 
 /// Learns background and foreground from the samples it is primed with, and from then on neither changes.
 class ForegroundEvidence {
  public:
-  /// Throws Error where an option is out of its domain.
+  /// Throws Error if an option is out of its domain.
   explicit ForegroundEvidence(const ForegroundEvidenceOptions& options);
 
   /// Frames sampled from the recording, before the first `of`; fewer than three are not enough.
@@ -34,8 +35,8 @@ class ForegroundEvidence {
   std::shared_ptr<const BlobEvidence> of(const Frame& frame);
 
  private:
-  void learn(const std::vector<cv::Mat>& seen);
-  std::vector<Response> outliers(const std::vector<cv::Mat>& seen) const;
+  void learn(const std::vector<cv::Mat>& detected);
+  std::vector<Response> outliers(const std::vector<cv::Mat>& detected) const;
 
   ForegroundEvidenceOptions options_;
   std::vector<cv::Mat> waiting_;  // responses of frames that will be learned from

@@ -19,14 +19,14 @@ Frame lawn(std::uint64_t seed, const std::vector<cv::Rect>& people, double brigh
     for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<unsigned char>(pixel[c] + 2 * random.normal_pair().first);
   }
   Frame frame;
-  frame.picture = Picture::from_bgr(bgr);
+  frame.image = Image::from_bgr(bgr);
   return frame;
 }
 
 std::vector<Frame> beginning() {
   std::vector<Frame> frames;
   for (int i = 0; i < 20; ++i) {
-    // Everybody goes about, and is in each place in few frames.
+    // Every person goes about, and is in each place in few frames.
     frames.push_back(
         lawn(static_cast<std::uint64_t>(i) + 1, {{10 + 10 * i, 20, 14, 40}, {200 - 9 * i, 70, 14, 40}, {20 + 8 * i, 110, 14, 40}}));
   }
@@ -51,7 +51,7 @@ double mean_within(const BlobEvidence& evidence, const cv::Rect& where) {
 TEST(FilterBank, TellsLevelAndContrastOfASquare) {
   cv::Mat luma(60, 60, CV_8UC1, cv::Scalar(40));
   luma(cv::Rect(20, 20, 20, 20)) = 140;
-  const cv::Mat responses = filter_responses(Picture(luma), 5);
+  const cv::Mat responses = filter_responses(Image(luma), 5);
   ASSERT_EQ(responses.size(), cv::Size(12, 12));
   EXPECT_NEAR(responses.at<Response>(5, 5)[0], 140, 2);
   EXPECT_NEAR(responses.at<Response>(1, 1)[0], 40, 1);

@@ -12,27 +12,27 @@
 namespace marey::detect::blobs {
 namespace {
 
-constexpr float kDeviation = 1.4826F;  // standard deviations of a normal distribution in its median absolute deviation
-constexpr double kSecondShare = 0.25;  // of the frames, in which another thing must be seen at a point to belong to the scene
-constexpr float kOutlying = 4;         // standard deviations from the median, from which on it is another thing
-constexpr double kShadowShare = 0.05;  // of a point's time, in which somebody's shadow may lie on it
-constexpr float kShadowLevel = 0.65F;  // what a shadow leaves of luma, more or less
-constexpr float kShadowChroma = 0.8F;  // of chroma's distance from grey
+constexpr float kDeviation = 1.4826F;     // standard deviations of a normal distribution in its median absolute deviation
+constexpr double kSecondFraction = 0.25;  // of the frames, in which another thing must be seen at a point to belong to the scene
+constexpr float kOutlying = 4;            // standard deviations from the median, from which on it is another thing
+constexpr double kShadowFraction = 0.05;  // of a point's time, in which a person's shadow may lie on it
+constexpr float kShadowLevel = 0.65F;     // what a shadow leaves of luma, more or less
+constexpr float kShadowChroma = 0.8F;     // of chroma's distance from grey
 constexpr float kShadowDeviation = 0.12F;
-constexpr double kUnknownShare = 0.1;  // of the foreground, that looks like nothing seen before
-constexpr std::size_t kFewest = 200;   // responses that a foreground can be learned from
-constexpr std::size_t kMost = 6000;    // of those that are given
+constexpr double kUnknownFraction = 0.1;  // of the foreground, that looks like nothing seen before
+constexpr std::size_t kMinCount = 200;    // responses that a foreground can be learned from
+constexpr std::size_t kMaxCount = 6000;   // of those that are given
 constexpr int kRounds = 12;
 
 struct Middle {
   Response median, sigma;
 };
 
-Middle middle_of(std::span<const Response> seen, const Response& noise, std::vector<float>& values) {
+Middle middle_of(std::span<const Response> detected, const Response& noise, std::vector<float>& values) {
   Middle middle;
   for (int i = 0; i < kResponses; ++i) {
     values.clear();
-    for (const Response& one : seen) values.push_back(one[i]);
+    for (const Response& one : detected) values.push_back(one[i]);
     middle.median[i] = geometry::median(values);
     for (float& value : values) value = std::abs(value - middle.median[i]);
     middle.sigma[i] = std::max(noise[i], kDeviation * geometry::median(values));
@@ -46,7 +46,7 @@ float squares(const Response& response, const Response& mean, const Response& si
   return sum;
 }
 
-/// The same place in somebody's shadow.
+/// The same place in a person's shadow.
 ResponseKind shadow_on(const Middle& lit) {
   Response mean, sigma;
   for (int i = 0; i < kResponses; ++i) {
@@ -54,7 +54,7 @@ ResponseKind shadow_on(const Middle& lit) {
     mean[i] = grey + (i == 0 || i == 3 ? kShadowLevel : kShadowChroma) * (lit.median[i] - grey);
     sigma[i] = 1.5F * lit.sigma[i] + (i == 0 ? kShadowDeviation * lit.median[0] : i >= 3 ? 2.0F : 1.0F);
   }
-  return ResponseKind::of(kShadowShare, mean, sigma);
+  return ResponseKind::of(kShadowFraction, mean, sigma);
 }
 
 ResponseKind unknown(double weight) {
@@ -82,10 +82,10 @@ std::vector<Response> beginnings(const std::vector<Response>& points, int count,
 
 std::size_t nearest_of(const std::vector<Response>& centres, const Response& point) {
   std::size_t nearest = 0;
-  float least = std::numeric_limits<float>::max();
+  float minimum = std::numeric_limits<float>::max();
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const float away = squares(point, centres[i], Response::all(1));
-    if (away < least) least = away, nearest = i;
+    if (away < minimum) minimum = away, nearest = i;
   }
   return nearest;
 }
@@ -148,23 +148,23 @@ float ResponseKind::log_density(const Response& response) const {
 }
 
 float log_density(std::span<const ResponseKind> mixture, const Response& response) {
-  float most = -std::numeric_limits<float>::max(), sum = 0;
+  float maximum = -std::numeric_limits<float>::max(), sum = 0;
   for (const ResponseKind& kind : mixture) {
     const float one = kind.log_density(response);
-    if (one > most) {
-      sum = sum * std::exp(most - one) + 1;
-      most = one;
-    } else if (one > most - 15) {
-      sum += std::exp(one - most);
+    if (one > maximum) {
+      sum = sum * std::exp(maximum - one) + 1;
+      maximum = one;
+    } else if (one > maximum - 15) {
+      sum += std::exp(one - maximum);
     }
   }
-  return most + std::log(sum);
+  return maximum + std::log(sum);
 }
 
 std::vector<ResponseKind> learn_foreground(std::span<const Response> responses, int kinds, std::uint64_t seed) {
-  if (responses.size() < kFewest) return {unknown(1)};
+  if (responses.size() < kMinCount) return {unknown(1)};
   std::vector<Response> points;
-  const std::size_t every = (responses.size() + kMost - 1) / kMost;
+  const std::size_t every = (responses.size() + kMaxCount - 1) / kMaxCount;
   for (std::size_t i = 0; i < responses.size(); i += every) points.push_back(responses[i]);
   std::vector<Response> centres = beginnings(points, kinds, seed);
   for (int round = 0; round < kRounds; ++round) {
@@ -173,52 +173,52 @@ std::vector<ResponseKind> learn_foreground(std::span<const Response> responses, 
       if (clusters[i].count > 0) centres[i] = clusters[i].mean();
     }
   }
-  std::vector<ResponseKind> mixture{unknown(kUnknownShare)};
+  std::vector<ResponseKind> mixture{unknown(kUnknownFraction)};
   for (const Cluster& cluster : clusters_of(points, centres)) {
     if (cluster.count < 5) continue;
-    const double share = cluster.count / static_cast<double>(points.size());
-    mixture.push_back(ResponseKind::of((1 - kUnknownShare) * share, cluster.mean(), cluster.sigma()));
+    const double fraction = cluster.count / static_cast<double>(points.size());
+    mixture.push_back(ResponseKind::of((1 - kUnknownFraction) * fraction, cluster.mean(), cluster.sigma()));
   }
   return mixture;
 }
 
-PointBackground::PointBackground(std::span<const Response> seen, const Response& noise) {
+PointBackground::PointBackground(std::span<const Response> detected, const Response& noise) {
   std::vector<float> values;
-  const Middle usual = middle_of(seen, noise, values);
+  const Middle typical = middle_of(detected, noise, values);
   std::vector<Response> others;
-  for (const Response& one : seen) {
-    if (squares(one, usual.median, usual.sigma) > kResponses * kOutlying * kOutlying) others.push_back(one);
+  for (const Response& one : detected) {
+    if (squares(one, typical.median, typical.sigma) > kResponses * kOutlying * kOutlying) others.push_back(one);
   }
-  const double second = static_cast<double>(others.size()) / static_cast<double>(seen.size());
-  const bool two = second >= kSecondShare;
-  const double lit = 1 - kShadowShare;
-  kinds_[count_++] = ResponseKind::of(two ? lit * (1 - second) : lit, usual.median, usual.sigma);
-  kinds_[count_++] = shadow_on(usual);
+  const double second = static_cast<double>(others.size()) / static_cast<double>(detected.size());
+  const bool two = second >= kSecondFraction;
+  const double lit = 1 - kShadowFraction;
+  kinds_[count_++] = ResponseKind::of(two ? lit * (1 - second) : lit, typical.median, typical.sigma);
+  kinds_[count_++] = shadow_on(typical);
   if (!two) return;
   const Middle other = middle_of(others, noise, values);
   kinds_[count_++] = ResponseKind::of(lit * second, other.median, other.sigma);
 }
 
 float PointBackground::distance(const Response& response) const {
-  float least = std::numeric_limits<float>::max();
+  float minimum = std::numeric_limits<float>::max();
   for (std::size_t k = 0; k < count_; ++k) {
     float sum = 0;
     for (int i = 0; i < kResponses; ++i) sum += std::pow(response[i] - kinds_[k].mean[i], 2.0F) * kinds_[k].precision[i];
-    least = std::min(least, sum);
+    minimum = std::min(minimum, sum);
   }
-  return std::sqrt(least / kResponses);
+  return std::sqrt(minimum / kResponses);
 }
 
-Response response_noise(std::span<const cv::Mat> seen) {
+Response response_noise(std::span<const cv::Mat> detected) {
   constexpr int kEvery = 7;  // of the points: enough for a median
   Response noise;
   std::array<std::vector<float>, kResponses> deviations;
   std::vector<Response> of_point;
   std::vector<float> values;
-  const cv::Size size = seen.front().size();
+  const cv::Size size = detected.front().size();
   for (int at = 0; at < size.area(); at += kEvery) {
     of_point.clear();
-    for (const cv::Mat& grid : seen) of_point.push_back(grid.at<Response>(at / size.width, at % size.width));
+    for (const cv::Mat& grid : detected) of_point.push_back(grid.at<Response>(at / size.width, at % size.width));
     const Middle middle = middle_of(of_point, Response::all(0), values);
     for (int i = 0; i < kResponses; ++i) deviations[static_cast<std::size_t>(i)].push_back(middle.sigma[i]);
   }

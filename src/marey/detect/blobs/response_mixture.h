@@ -1,5 +1,5 @@
 // What responses of the filter bank look like, as a mixture of Gaussians with diagonal covariances: of what is foreground one for
-// the whole picture, of the background one at each point of the grid.
+// the whole image, of the background one at each point of the grid.
 //
 // Source: Isard, MacCormick 2001, from memory (filter_bank.h): both as mixtures, learned by k-means. Remembered: four components
 // for the background and sixteen for the foreground. Ours: the background of a point is learned from thirty frames in which people
@@ -31,18 +31,18 @@ struct ResponseKind {
 /// ln of the density of a mixture.
 float log_density(std::span<const ResponseKind> mixture, const Response& response);
 
-/// What is no background, from responses that were found to be none: k-means from seeded beginnings, then one pass for the
+/// What is not a background, from responses that were found to be none: k-means from seeded beginnings, then one pass for the
 /// deviations. A broad kind of a tenth of the weight stands for what was not seen while learning; with few responses it is all
 /// there is.
 std::vector<ResponseKind> learn_foreground(std::span<const Response> responses, int kinds, std::uint64_t seed);
 
-/// What is seen at one point of the grid where nobody stands.
+/// What is seen at one point of the grid where no person stands.
 class PointBackground {
  public:
   PointBackground() = default;
   /// From what was seen there in some frames, in any order. `noise`: the standard deviation of each response that a point of the
-  /// picture has at least.
-  PointBackground(std::span<const Response> seen, const Response& noise);
+  /// image has at least.
+  PointBackground(std::span<const Response> detected, const Response& noise);
 
   float log_density(const Response& response) const { return blobs::log_density({kinds_.data(), count_}, response); }
   /// How many standard deviations `response` is from the nearest kind, over all six, as a root of mean squares.
@@ -55,6 +55,6 @@ class PointBackground {
 
 /// The standard deviation that noise gives each response, at least: the median over the grid's points. `seen` are as many grids as
 /// frames, all of one size.
-Response response_noise(std::span<const cv::Mat> seen);
+Response response_noise(std::span<const cv::Mat> detected);
 
 }  // namespace marey::detect::blobs

@@ -32,7 +32,7 @@ std::vector<float> map_of(const std::vector<Hill>& hills) {
 
 TEST(HeatMap, ASureMapMovesThePoint) {
   const HeatPoint point = point_in(map_of({{101, 83, 7, 0.9}}), kCells, kCell, {104, 80});
-  EXPECT_LT((point.place - Vector<2>(101, 83)).norm(), 1.5);
+  EXPECT_LT((point.location - Vector<2>(101, 83)).norm(), 1.5);
   const double sigma = std::sqrt(point.covariance(0, 0));
   EXPECT_GT(sigma, 4);
   EXPECT_LT(sigma, 7);
@@ -41,7 +41,7 @@ TEST(HeatMap, ASureMapMovesThePoint) {
 
 TEST(HeatMap, AnUnsureMapLeavesThePointAndWidensIt) {
   const HeatPoint point = point_in(map_of({{101, 83, 20, 0.3}}), kCells, kCell, {104, 80});
-  EXPECT_EQ(point.place, Vector<2>(104, 80));
+  EXPECT_EQ(point.location, Vector<2>(104, 80));
   EXPECT_GT(std::sqrt(point.covariance(0, 0)), 12);
 }
 
@@ -54,7 +54,7 @@ TEST(HeatMap, TwoPeaksAreFarApartInTheCovariance) {
 TEST(HeatMap, APointOutsideIsFarFromAllEvidence) {
   for (const Vector<2>& given : {Vector<2>(-40, 100), Vector<2>(400, 1e6), Vector<2>(-1e7, 3)}) {
     const HeatPoint point = point_in(map_of({}), kCells, kCell, given);
-    EXPECT_EQ(point.place, given);
+    EXPECT_EQ(point.location, given);
     EXPECT_GT(std::sqrt(point.covariance.trace()), 100);
   }
 }

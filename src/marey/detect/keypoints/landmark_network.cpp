@@ -73,10 +73,10 @@ std::vector<Body> LandmarkNetwork::find(const cv::Mat& bgr, std::span<const Pers
   return bodies;
 }
 
-std::vector<Body> LandmarkNetwork::find(std::span<const Look> looks) {
-  std::vector<Body> bodies(looks.size());
-  inference_.each(looks.size(), [&](network::Inference::Engine& engine, std::size_t i) {
-    bodies[i] = body_of(run(engine, crop_of(looks[i].image, looks[i].region)), looks[i].region);
+std::vector<Body> LandmarkNetwork::find(std::span<const Look> appearances) {
+  std::vector<Body> bodies(appearances.size());
+  inference_.each(appearances.size(), [&](network::Inference::Engine& engine, std::size_t i) {
+    bodies[i] = body_of(run(engine, crop_of(appearances[i].image, appearances[i].region)), appearances[i].region);
   });
   return bodies;
 }
@@ -91,12 +91,12 @@ Body body_of(std::span<const network::Tensor> outputs, const PersonRegion& regio
     constexpr std::size_t kMap = static_cast<std::size_t>(kCells) * kCells;
     const HeatPoint found = point_in(std::span(outputs[2].values).subspan(i * kMap, kMap), kCells,
                                      static_cast<double>(PersonRegion::kCrop) / kCells, given(i));
-    body.keypoints.points.push_back(Keypoint<2>{.position = region.in_picture(found.place),
+    body.keypoints.points.push_back(Keypoint<2>{.position = region.in_image(found.location),
                                                 .covariance = turn * found.covariance * turn.transpose(),
                                                 .visibility = likelihood_of(numbers[kNumbers * i + 3]),
                                                 .presence = likelihood_of(numbers[kNumbers * i + 4])});
   }
-  body.next = region_of(region.in_picture(given(kHips)), region.in_picture(given(kRim)));
+  body.next = region_of(region.in_image(given(kHips)), region.in_image(given(kRim)));
   return body;
 }
 

@@ -6,35 +6,35 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "marey/core/image.h"
 #include "marey/core/keypoints.h"
-#include "marey/core/picture.h"
 #include "marey/detect/keypoints/person_region.h"
 #include "marey/detect/network/inference.h"
 
 namespace marey::detect::keypoints {
 
-/// One person in a region of a picture.
+/// One person in a region of an image.
 struct Body {
-  Keypoints<2> keypoints;  ///< of blazepose(), px of the picture; all of them, those that are hidden or outside too
-  PersonRegion next;       ///< where the person is to be looked for in the next picture
+  Keypoints<2> keypoints;  ///< of blazepose(), px of the image; all of them, those that are hidden or outside too
+  PersonRegion next;       ///< where the person is to be searched for in the next image
 };
 
 /// A region of one of several cameras' images.
 struct Look {
-  Picture image;  ///< colour or grey
+  Image image;  ///< colour or grey
   PersonRegion region;
 };
 
 /// One of MediaPipe's landmark networks (script/model). Regions are shared out among as many threads as OpenCV has (--threads).
 class LandmarkNetwork {
  public:
-  /// Throws Error where the file is not there, cannot be loaded, or is another network.
+  /// Throws Error if the file is not there, cannot be loaded, or is another network.
   explicit LandmarkNetwork(const std::string& onnx);
 
-  /// Who is in each region of a picture, CV_8UC3, blue first. `Keypoints::presence` says whether that is anybody.
+  /// Who is in each region of an image, CV_8UC3, blue first. `Keypoints::presence` says whether that is any person.
   std::vector<Body> find(const cv::Mat& bgr, std::span<const PersonRegion> regions);
   /// The same in regions of several images, which share the threads. Only the pixels in a region are converted.
-  std::vector<Body> find(std::span<const Look> looks);
+  std::vector<Body> find(std::span<const Look> appearances);
 
   /// What the network says of one crop: "landmarks" (39 × x, y, depth, visibility, presence), "presence", "heatmaps".
   std::vector<network::Tensor> raw(const cv::Mat& crop);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/detect/keypoints/blazepose.h"
 #include "marey/detect/keypoints/model_folder.h"
 
@@ -17,7 +17,7 @@
 namespace marey::detect::keypoints {
 namespace {
 
-/// Empty where script/model has not made it.
+/// Empty if script/model has not made it.
 std::string lite() {
   try {
     return landmark_model("lite");
@@ -73,12 +73,12 @@ TEST(LandmarkNetwork, AModelThatIsNoneIsOneSentence) {
   test::write_file(folder / "text.onnx", "no network");
   EXPECT_NE(refused_landmarks(folder / "text.onnx").find("cannot be loaded"), std::string::npos);
   if (lite().empty()) GTEST_SKIP() << "script/model has not made the networks";
-  for (const double share : {0.0, 0.1, 0.5, 0.9, 0.999}) {
+  for (const double fraction : {0.0, 0.1, 0.5, 0.9, 0.999}) {
     std::filesystem::copy_file(lite(), folder / "cut.onnx", std::filesystem::copy_options::overwrite_existing);
-    test::cut_file(folder / "cut.onnx", share);
-    const std::string sentence = refused_landmarks(folder / "cut.onnx");
-    EXPECT_NE(sentence.find("script/model"), std::string::npos) << share << ": " << sentence;
-    EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+    test::cut_file(folder / "cut.onnx", fraction);
+    const std::string message_text = refused_landmarks(folder / "cut.onnx");
+    EXPECT_NE(message_text.find("script/model"), std::string::npos) << fraction << ": " << message_text;
+    EXPECT_EQ(message_text.find('\n'), std::string::npos) << message_text;
   }
 }
 

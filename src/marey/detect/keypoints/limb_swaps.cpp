@@ -57,7 +57,7 @@ LimbSwaps::LimbSwaps(const KeypointSet& set, const SwapOptions& options) : optio
             std::pair(index_of(set, "left_shoulder"), index_of(set, "right_shoulder"))};
 }
 
-/// What a state costs in one picture.
+/// What a state costs in one image.
 double LimbSwaps::here(const Keypoints<2>& body, int state) const {
   double cost = options_.prior * ((state & 1) + (state >> 1));
   std::array<Vector<2>, 2> across;  // from the left to the right
@@ -74,7 +74,7 @@ double LimbSwaps::here(const Keypoints<2>& body, int state) const {
   return cost;
 }
 
-/// What it costs that a group's points went on as they are called, and that they changed sides.
+/// What it costs that a group's points continued as they are called, and that they changed sides.
 std::array<double, 2> LimbSwaps::step(const Keypoints<2>& before, const Keypoints<2>& now, std::size_t group, double step_s) const {
   const Trunk was = trunk_of(before, roots_), is = trunk_of(now, roots_);
   const double slack = options_.speed * is.height * step_s;
@@ -92,7 +92,7 @@ std::array<double, 2> LimbSwaps::step(const Keypoints<2>& before, const Keypoint
       const Keypoint<2>& there = side == 0 ? *same : *other;
       const Vector<2> moved = (here->position - is.middle) - (there.position - was.middle);
       const double variance = (here->covariance.trace() + there.covariance.trace()) / 2 + slack * slack;
-      cost[side] += weight * std::min(moved.squaredNorm() / (2 * variance), options_.most);
+      cost[side] += weight * std::min(moved.squaredNorm() / (2 * variance), options_.maximum);
     }
     weights += weight;
   }
@@ -114,8 +114,8 @@ void LimbSwaps::add(const Keypoints<2>& body, double step_s) {
     }
     next.cost[static_cast<std::size_t>(state)] = best + here(body, state);
   }
-  const double least = *std::min_element(next.cost.begin(), next.cost.end());
-  for (double& cost : next.cost) cost -= least;
+  const double minimum = *std::min_element(next.cost.begin(), next.cost.end());
+  for (double& cost : next.cost) cost -= minimum;
   waiting_.push_back(std::move(next));
 }
 

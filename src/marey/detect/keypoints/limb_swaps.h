@@ -1,11 +1,11 @@
-// Left and right put right over time. A network that sees one picture at a time takes a left leg for a right one now and then: from
+// Left and right corrected over time. A network that sees one image at a time takes a left leg for a right one now and then: from
 // the side, from behind, where legs cross. Limbs do not jump, so the labels follow from the path that costs least (Viterbi) over
 // four states: legs as the network has them or mirrored, arms likewise.
 //
 // A state costs a prior for each mirrored group (the network is right more often than not), and something where hips and shoulders
 // then face opposite ways. A step between states costs how far the points of a group moved against the trunk, over what their
-// covariances and a person's speed allow, capped. Where limbs meet in the picture a step costs nothing, so an error before it lasts
-// no longer than the prior lets it. Cost: 16 steps a picture and person.
+// covariances and a person's speed allow, capped. Where limbs meet in the image a step costs nothing, so an error before it lasts
+// no longer than the prior lets it. Cost: 16 steps an image and person.
 #pragma once
 
 #include <array>
@@ -19,19 +19,19 @@
 namespace marey::detect::keypoints {
 
 struct SwapOptions {
-  double prior = 1.5;     ///< nats that a mirrored group costs in each picture
+  double prior = 1.5;     ///< nats that a mirrored group costs in each image
   double facing = 1.5;    ///< nats where hips and shoulders face opposite ways
   double speed = 0.6;     ///< of a limb's point against the trunk, standard deviation, body heights a second
-  double most = 4;        ///< nats that one point's step costs at most
+  double maximum = 4;     ///< nats that one point's step costs at most
   double together = 2.5;  ///< independent points that a group is worth: they move together
 };
 
-/// The points of one person in one camera's pictures.
+/// The points of one person in one camera's images.
 class LimbSwaps {
  public:
   explicit LimbSwaps(const KeypointSet& set, const SwapOptions& options = {});
 
-  /// The next picture's, `step_s` after the last one's; complete as a landmark network gives them.
+  /// The next image's, `step_s` after the last one's; complete as a landmark network gives them.
   void add(const Keypoints<2>& body, double step_s);
   /// How many were added and not taken.
   std::size_t size() const { return waiting_.size(); }

@@ -23,7 +23,7 @@ class Dice {
 
 constexpr std::size_t kLeftHip = 23, kLeftAnkle = 27, kRightAnkle = 28;
 
-/// Somebody 180 px tall who walks past, seen from the side and a little from ahead: legs and arms swing against each other.
+/// A person 180 px tall who walks past, seen from the side and a little from ahead: legs and arms swing against each other.
 Keypoints<2> walker(double t, Dice& random, double noise) {
   Keypoints<2> body;
   body.points.resize(33);
@@ -51,10 +51,10 @@ Keypoints<2> with_swapped_legs(const Keypoints<2>& body) {
   return result;
 }
 
-/// Shares of pictures with the ankles' names exchanged, as the network gave them and after `lag` more pictures were seen; where the
+/// Shares of images with the ankles' names exchanged, as the network gave them and after `lag` more images were seen; where the
 /// ankles are apart.
 std::pair<double, double> wrong_before_and_after(std::size_t lag, double rate) {
-  constexpr int kPictures = 1000;
+  constexpr int kImages = 1000;
   Dice random(7);
   LimbSwaps swaps(blazepose());
   std::vector<Keypoints<2>> truth;
@@ -65,7 +65,7 @@ std::pair<double, double> wrong_before_and_after(std::size_t lag, double rate) {
     ++apart;
     after += named.points[kLeftAnkle]->position != real.points[kLeftAnkle]->position;
   };
-  for (int i = 0; i < kPictures; ++i) {
+  for (int i = 0; i < kImages; ++i) {
     const Keypoints<2> real = walker(i / rate, random, 2);
     truth.push_back(real);
     if (swapped_for > 0) {
@@ -81,7 +81,7 @@ std::pair<double, double> wrong_before_and_after(std::size_t lag, double rate) {
     const std::size_t at = truth.size() - swaps.size();
     check(swaps.take(), at);
   }
-  return {static_cast<double>(before) / kPictures, static_cast<double>(after) / apart};
+  return {static_cast<double>(before) / kImages, static_cast<double>(after) / apart};
 }
 
 TEST(LimbSwaps, PutsAWalkersLegsRight) {
@@ -108,11 +108,11 @@ TEST(LimbSwaps, AWrongBeginningDoesNotLast) {
   }
 }
 
-TEST(LimbSwaps, WhoTurnsRoundKeepsTheirSides) {
+TEST(LimbSwaps, TurningPersonKeepsSides) {
   Dice random(3);
   LimbSwaps swaps(blazepose());
   for (int i = 0; i < 100; ++i) {
-    Keypoints<2> body = walker(0, random, 1);  // they stand, and turn: left and right change sides in the picture
+    Keypoints<2> body = walker(0, random, 1);  // they stand, and turn: left and right change sides in the image
     const double facing = std::cos(M_PI * i / 100);
     for (std::size_t p = 0; p < 33; ++p) {
       const double side = blazepose().points[p].starts_with("left_") ? 1 : blazepose().points[p].starts_with("right_") ? -1 : 0;

@@ -8,9 +8,9 @@
 namespace marey::detect::keypoints {
 namespace {
 
-constexpr double kRoom = 1.25;   // a region's side over a person's extent: as the networks were trained
-constexpr double kSmallest = 8;  // px; a region's side
-constexpr double kCoarse = 2;    // a picture that shrinks by more is averaged first, so that no detail turns into noise
+constexpr double kRoom = 1.25;  // a region's side over a person's extent: as the networks were trained
+constexpr double kMinSize = 8;  // px; a region's side
+constexpr double kCoarse = 2;   // an image that shrinks by more is averaged first, so that no detail turns into noise
 
 /// The part of an image that a region's crop is made of, px.
 cv::Rect part_of(const PersonRegion& region, cv::Size image) {
@@ -31,17 +31,17 @@ Matrix<2> PersonRegion::turn() const {
   return result;
 }
 
-Vector<2> PersonRegion::in_picture(const Vector<2>& in_crop) const {
+Vector<2> PersonRegion::in_image(const Vector<2>& in_crop) const {
   return centre + turn() * (in_crop - Vector<2>::Constant(kCrop / 2.0));
 }
 
 PersonRegion region_of(const Box& box) {
-  return {.centre = box.centre(), .side = std::max(kSmallest, kRoom * std::max(box.width, box.height)), .angle = 0};
+  return {.centre = box.centre(), .side = std::max(kMinSize, kRoom * std::max(box.width, box.height)), .angle = 0};
 }
 
 PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim) {
   const Vector<2> up = rim - hips;
-  return {.centre = hips, .side = std::max(kSmallest, kRoom * 2 * up.norm()), .angle = std::atan2(up.x(), -up.y())};
+  return {.centre = hips, .side = std::max(kMinSize, kRoom * 2 * up.norm()), .angle = std::atan2(up.x(), -up.y())};
 }
 
 cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
@@ -59,7 +59,7 @@ cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
   }
   // From a pixel of the crop, whose centre lies half a pixel from its edge, to a pixel of `from`.
   const Matrix<2> turn = region.turn();
-  const Vector<2> corner = region.in_picture(Vector<2>::Constant(0.5)) - Vector<2>(part.x, part.y);
+  const Vector<2> corner = region.in_image(Vector<2>::Constant(0.5)) - Vector<2>(part.x, part.y);
   const cv::Matx23d map(turn(0, 0) / shrunk_x, turn(0, 1) / shrunk_x, (corner.x() + 0.5) / shrunk_x - 0.5,  //
                         turn(1, 0) / shrunk_y, turn(1, 1) / shrunk_y, (corner.y() + 0.5) / shrunk_y - 0.5);
   cv::Mat crop;
@@ -68,7 +68,7 @@ cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region) {
   return crop;
 }
 
-cv::Mat crop_of(const Picture& image, const PersonRegion& region) {
+cv::Mat crop_of(const Image& image, const PersonRegion& region) {
   cv::Rect part = part_of(region, image.size());
   if (part.empty()) return cv::Mat::zeros(PersonRegion::kCrop, PersonRegion::kCrop, CV_8UC3);
   // Chroma has half the size: a part that begins at even pixels shares it.

@@ -3,23 +3,23 @@
 #include <opencv2/core/mat.hpp>
 
 #include "marey/core/geometry.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 
 namespace marey::detect::keypoints {
 
-/// A square part of a picture, turned so that the person in it stands upright. A landmark network sees it as a crop of `kCrop` px,
+/// A square part of an image, turned so that the person in it stands upright. A landmark network sees it as a crop of `kCrop` px,
 /// whose coordinates count from its upper left edge: the middle is at kCrop / 2.
 struct PersonRegion {
   static constexpr int kCrop = 256;  // px
 
-  Vector<2> centre = Vector<2>::Zero();  ///< px of the picture
-  double side = 0;                       ///< px of the picture
-  double angle = 0;                      ///< rad, clockwise on the screen, from the picture's up to the person's
+  Vector<2> centre = Vector<2>::Zero();  ///< px of the image
+  double side = 0;                       ///< px of the image
+  double angle = 0;                      ///< rad, clockwise on the screen, from the image's up to the person's
 
-  double scale() const { return side / kCrop; }  ///< px of the picture for one of the crop's
-  /// The linear part of the map from the crop to the picture.
+  double scale() const { return side / kCrop; }  ///< px of the image for one of the crop's
+  /// The linear part of the map from the crop to the image.
   Matrix<2> turn() const;
-  Vector<2> in_picture(const Vector<2>& in_crop) const;
+  Vector<2> in_image(const Vector<2>& in_crop) const;
 };
 
 /// Round a person who is taken to stand upright, or as far as the box tells.
@@ -29,9 +29,9 @@ PersonRegion region_of(const Box& box);
 /// head.
 PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim);
 
-/// What a landmark network is shown: CV_8UC3 like `bgr`, kCrop × kCrop. Beyond the picture's border its last pixels go on.
+/// What a landmark network is shown: CV_8UC3 like `bgr`, kCrop × kCrop. Beyond the image's border its last pixels continue.
 cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region);
 /// The same of an image as cameras deliver it: only the part that is needed is converted to colours.
-cv::Mat crop_of(const Picture& image, const PersonRegion& region);
+cv::Mat crop_of(const Image& image, const PersonRegion& region);
 
 }  // namespace marey::detect::keypoints

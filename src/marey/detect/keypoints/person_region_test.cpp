@@ -9,60 +9,60 @@ TEST(PersonRegion, OfABoxHoldsItUpright) {
   const PersonRegion region = region_of(Box{100, 50, 40, 120});
   EXPECT_EQ(region.angle, 0);
   EXPECT_DOUBLE_EQ(region.side, 150);
-  EXPECT_EQ(region.in_picture({128, 128}), Vector<2>(119.5, 109.5));
+  EXPECT_EQ(region.in_image({128, 128}), Vector<2>(119.5, 109.5));
 }
 
 TEST(PersonRegion, TurnsWithThePerson) {
   const PersonRegion region = region_of(Vector<2>(200, 100), Vector<2>(260, 100));  // lies with the head to the right
   EXPECT_DOUBLE_EQ(region.side, 150);
-  EXPECT_LT((region.in_picture({128, 128 - 60 / region.scale()}) - Vector<2>(260, 100)).norm(), 1e-9)
+  EXPECT_LT((region.in_image({128, 128 - 60 / region.scale()}) - Vector<2>(260, 100)).norm(), 1e-9)
       << "the crop's up is the head's side";
 }
 
-/// A picture whose blue is the column and green the row.
-cv::Mat places(cv::Size size) {
-  cv::Mat picture(size, CV_8UC3);
+/// An image whose blue is the column and green the row.
+cv::Mat locations(cv::Size size) {
+  cv::Mat image(size, CV_8UC3);
   for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) picture.at<cv::Vec3b>(y, x) = {static_cast<uchar>(x), static_cast<uchar>(y), 0};
+    for (int x = 0; x < size.width; ++x) image.at<cv::Vec3b>(y, x) = {static_cast<uchar>(x), static_cast<uchar>(y), 0};
   }
-  return picture;
+  return image;
 }
 
 TEST(PersonRegion, ACropsPixelsAreThePicturesAtTheirPlace) {
-  const cv::Mat picture = places({240, 240});
+  const cv::Mat image = locations({240, 240});
   for (const double side : {90.0, 256.0, 130.0}) {
     for (const double angle : {0.0, 0.7, -2.5}) {
       const PersonRegion region{.centre = {120.3, 118.6}, .side = side, .angle = angle};
-      const cv::Mat crop = crop_of(picture, region);
+      const cv::Mat crop = crop_of(image, region);
       ASSERT_EQ(crop.size(), cv::Size(256, 256));
       for (const cv::Point at : {cv::Point(128, 128), cv::Point(60, 200), cv::Point(128, 70), cv::Point(180, 128)}) {
-        const Vector<2> place = region.in_picture({at.x + 0.5, at.y + 0.5});
-        if (place.x() < 1 || place.y() < 1 || place.x() > 238 || place.y() > 238) continue;
-        EXPECT_NEAR(crop.at<cv::Vec3b>(at)[0], place.x(), 1.01) << side << " " << angle;
-        EXPECT_NEAR(crop.at<cv::Vec3b>(at)[1], place.y(), 1.01) << side << " " << angle;
+        const Vector<2> location = region.in_image({at.x + 0.5, at.y + 0.5});
+        if (location.x() < 1 || location.y() < 1 || location.x() > 238 || location.y() > 238) continue;
+        EXPECT_NEAR(crop.at<cv::Vec3b>(at)[0], location.x(), 1.01) << side << " " << angle;
+        EXPECT_NEAR(crop.at<cv::Vec3b>(at)[1], location.y(), 1.01) << side << " " << angle;
       }
     }
   }
 }
 
 TEST(PersonRegion, ALargeRegionIsAveragedAtItsPlaceToo) {
-  cv::Mat picture = cv::Mat::zeros(2000, 1600, CV_8UC3);
-  picture(cv::Rect(900, 1200, 40, 40)).setTo(cv::Scalar::all(255));
+  cv::Mat image = cv::Mat::zeros(2000, 1600, CV_8UC3);
+  image(cv::Rect(900, 1200, 40, 40)).setTo(cv::Scalar::all(255));
   const PersonRegion region{.centre = {800, 1000}, .side = 1900, .angle = 0.3};
-  const cv::Mat crop = crop_of(picture, region);
+  const cv::Mat crop = crop_of(image, region);
   Vector<2> sum = Vector<2>::Zero();
   double weight = 0;
   for (int y = 0; y < 256; ++y) {
     for (int x = 0; x < 256; ++x)
       sum += crop.at<cv::Vec3b>(y, x)[0] * Vector<2>(x + 0.5, y + 0.5), weight += crop.at<cv::Vec3b>(y, x)[0];
   }
-  EXPECT_LT((region.in_picture(sum / weight) - Vector<2>(919.5, 1219.5)).norm(), 0.5);
+  EXPECT_LT((region.in_image(sum / weight) - Vector<2>(919.5, 1219.5)).norm(), 0.5);
 }
 
 TEST(PersonRegion, BeyondThePictureIsNoCrash) {
-  const cv::Mat picture = places({240, 240});
-  EXPECT_EQ(crop_of(picture, {.centre = {-500, 100}, .side = 50, .angle = 0}).size(), cv::Size(256, 256));
-  EXPECT_EQ(crop_of(picture, {.centre = {0, 0}, .side = 4000, .angle = 1}).size(), cv::Size(256, 256));
+  const cv::Mat image = locations({240, 240});
+  EXPECT_EQ(crop_of(image, {.centre = {-500, 100}, .side = 50, .angle = 0}).size(), cv::Size(256, 256));
+  EXPECT_EQ(crop_of(image, {.centre = {0, 0}, .side = 4000, .angle = 1}).size(), cv::Size(256, 256));
 }
 
 }  // namespace

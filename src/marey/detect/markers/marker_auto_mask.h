@@ -12,7 +12,7 @@
 namespace marey::detect::markers {
 
 /// Learns from the first seconds what stands out and does not move: lamps, reflections. A pixel that passed the threshold in nine
-/// of ten frames is left out from then on, with 2 px around it. A marker that stands still all the while is left out with it.
+/// of ten frames is omitted from then on, with 2 px around it. A marker that stands still all the while is omitted with it.
 class MarkerAutoMask {
  public:
   explicit MarkerAutoMask(double seconds) : length_(duration_from_seconds(seconds)) {}

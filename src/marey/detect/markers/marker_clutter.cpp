@@ -8,7 +8,7 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr double kMostlyCluttered = 0.4;  // of the tiles: then the rest costs less than their borders do
+constexpr double kPredominantlyCluttered = 0.4;  // of the tiles: then the rest costs less than their borders do
 
 }  // namespace
 
@@ -75,7 +75,7 @@ const cv::Mat& MarkerClutter::plane(const cv::Mat& luma, double widest) {
   heights_.create(luma.size(), luma.type());
   if (!everywhere_) heights_.setTo(0);
   luma.copyTo(plane_);
-  if (static_cast<double>(marked_count_) > kMostlyCluttered * static_cast<double>(tiles_.size())) {
+  if (static_cast<double>(marked_count_) > kPredominantlyCluttered * static_cast<double>(tiles_.size())) {
     std::fill(tiles_.begin(), tiles_.end(), 1);
     marked_count_ = static_cast<int>(tiles_.size());
     lift(luma, cv::Rect({}, luma.size()), shape);
@@ -93,12 +93,12 @@ const cv::Mat& MarkerClutter::plane(const cv::Mat& luma, double widest) {
   return plane_;
 }
 
-const MarkerThresholds& MarkerClutter::thresholds(const MarkerLevels& picture) {
+const MarkerThresholds& MarkerClutter::thresholds(const MarkerLevels& image) {
   const double top = heights_.depth() == CV_8U ? 255 : 65535;
-  thresholds_ = picture.thresholds();
+  thresholds_ = image.thresholds();
   for (int i = 0; i < static_cast<int>(tiles_.size()); ++i) {
     if (tiles_[static_cast<std::size_t>(i)] == 0) continue;
-    const double demand = std::max(heights_levels_.noise_demand(i), picture.demand(picture.brighter_level(i)));
+    const double demand = std::max(heights_levels_.noise_demand(i), image.demand(image.brighter_level(i)));
     const double height = std::clamp(std::floor(heights_levels_.level(i) + demand), 0.0, top);
     thresholds_.of_tile[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(dark_ ? top - height : height);
   }

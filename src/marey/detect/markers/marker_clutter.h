@@ -10,17 +10,17 @@
 
 namespace marey::detect::markers {
 
-/// Where a picture shows more than a plain ground: tiles of 64 × 64 px in which something wide stands out, or noise on something
-/// wide. There the picture less what is wider than a marker is searched (Serra 1982: the top-hat), elsewhere the picture itself.
+/// Where an image shows more than a plain ground: tiles of 64 × 64 px in which something wide stands out, or noise on something
+/// wide. There the image less what is wider than a marker is searched (Serra 1982: the top-hat), elsewhere the image itself.
 class MarkerClutter {
  public:
   explicit MarkerClutter(bool dark) : dark_(dark), heights_levels_(false, std::nullopt, false) {}
 
-  /// Forgets everything, for pictures of this size. `everywhere`: all tiles are cluttered, and stay so.
+  /// Forgets everything, for images of this size. `everywhere`: all tiles are cluttered, and stay so.
   void begin(cv::Size size, bool everywhere);
   bool any() const { return marked_count_ > 0; }
   bool at(int tile) const { return tiles_[static_cast<std::size_t>(tile)] != 0; }
-  /// Of a pixel in a picture of this size: row of tiles by row of tiles.
+  /// Of a pixel in an image of this size: row of tiles by row of tiles.
   static int tile_of(int x, int y, cv::Size size) {
     constexpr int kTile = MarkerThresholds::kTile;
     return y / kTile * ((size.width + kTile - 1) / kTile) + x / kTile;
@@ -32,15 +32,15 @@ class MarkerClutter {
   bool mark(std::span<const MarkerRun> runs, std::span<const char> which);
   /// One of the blobs of noise in a tile, of which `many` mark it. Returns whether it was plain and is not any more.
   bool mark_noise(int tile, int many);
-  /// The next picture's noise is counted from 0.
+  /// The next image's noise is counted from 0.
   void clear_noise();
   /// What was clutter may have gone: all tiles are plain again, unless they are so everywhere.
   void forget();
 
   /// What is to be searched in the place of `luma`, with what is wider than `widest` px taken out of the cluttered tiles.
   const cv::Mat& plane(const cv::Mat& luma, double widest);
-  /// Its thresholds: those of the picture, but for the cluttered tiles.
-  const MarkerThresholds& thresholds(const MarkerLevels& picture);
+  /// Its thresholds: those of the image, but for the cluttered tiles.
+  const MarkerThresholds& thresholds(const MarkerLevels& image);
   /// Looks at all of the last plane once more: the light has changed.
   void relearn() { heights_levels_.learn(heights_, true); }
   /// Of the plane's heights over what is wide.

@@ -59,21 +59,21 @@ MarkerColour parse_marker_colour(std::string_view text) {
   return colour;
 }
 
-void colour_heights(const Picture& picture, const MarkerColour& colour, cv::Mat& heights) {
-  if (!picture.is_colour()) throw Error("markers of a colour cannot be found in a grey picture; leave the colour out");
-  const double scale = picture.range() == Picture::Range::full ? 255.0 / 224.0 : 1.0;
+void colour_heights(const Image& image, const MarkerColour& colour, cv::Mat& heights) {
+  if (!image.is_colour()) throw Error("markers of a colour cannot be found in a grey image; leave the colour out");
+  const double scale = image.range() == Image::Range::full ? 255.0 / 224.0 : 1.0;
   Vector<2> low = chroma_of_hue(colour.hue_deg - colour.tolerance_deg) * scale;
   Vector<2> high = chroma_of_hue(colour.hue_deg + colour.tolerance_deg) * scale;
   if (cross(low, high) < 0) std::swap(low, high);
   // Height above the chord, with its distance from grey as the unit: cross(c, high − low) / cross(low, high) is 1 on it.
-  const Vector<2> chord = (high - low) / cross(low, high) * (64.0 / colour.least_saturation);
+  const Vector<2> chord = (high - low) / cross(low, high) * (64.0 / colour.min_saturation);
   const auto lx = static_cast<float>(low.x()), ly = static_cast<float>(low.y());
   const auto hx = static_cast<float>(high.x()), hy = static_cast<float>(high.y());
   const auto kx = static_cast<float>(chord.x()), ky = static_cast<float>(chord.y());
-  heights.create(picture.cb().size(), CV_8UC1);
+  heights.create(image.cb().size(), CV_8UC1);
   for (int y = 0; y < heights.rows; ++y) {
-    const auto* cb = picture.cb().ptr<std::uint8_t>(y);
-    const auto* cr = picture.cr().ptr<std::uint8_t>(y);
+    const auto* cb = image.cb().ptr<std::uint8_t>(y);
+    const auto* cr = image.cr().ptr<std::uint8_t>(y);
     auto* out = heights.ptr<std::uint8_t>(y);
     for (int x = 0; x < heights.cols; ++x) {
       const float b = cb[x] - 128.0f, r = cr[x] - 128.0f;

@@ -11,21 +11,21 @@ namespace marey::detect::markers {
 namespace {
 
 constexpr int kRim = 3;             // px outside the blob's box
-constexpr int kRimPlaces = 48;      // at most
+constexpr int kRimPositions = 48;   // at most
 constexpr double kAllRound = 0.9;   // of the directions in which a blob must fall off
-constexpr int kLampArea = 50;       // px², from which on a halo is looked for
+constexpr int kLampArea = 50;       // px², from which on a halo is searched for
 constexpr int kFurther = 12;        // px outside the box, where a halo is fainter
 constexpr double kEnoughArea = 50;  // px² beyond which a blob is no better a marker
-constexpr int kFewestClutter = 10;  // blobs from which a tail is told
-constexpr double kFalseAPicture = 0.05;
-constexpr double kMostOfTypical = 0.5;
+constexpr int kMinClutter = 10;     // blobs from which a tail is reported
+constexpr double kFalseAImage = 0.05;
+constexpr double kMaxFactorOfTypical = 0.5;
 
-/// Places round a blob's box, evenly spread over a frame so many px outside it: `look(x, y, inwards_x, inwards_y)` for those within
-/// the picture.
+/// Places round a blob's box, evenly spread over a frame this many px outside it: `look(x, y, inwards_x, inwards_y)` for those
+/// within the image.
 template <typename Look>
-void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& look) {
+void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& inspect) {
   const cv::Rect frame(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin);
-  const int length = 2 * (frame.width + frame.height) - 4, step = (length + kRimPlaces - 1) / kRimPlaces;
+  const int length = 2 * (frame.width + frame.height) - 4, step = (length + kRimPositions - 1) / kRimPositions;
   for (int i = 0; i < length; i += step) {  // clockwise
     int x = frame.x, y = frame.y;
     if (i < frame.width) {
@@ -39,7 +39,7 @@ void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& look) {
     }
     if (x < 0 || y < 0 || x >= size.width || y >= size.height) continue;
     const int across = x < box.x ? 1 : x >= box.br().x ? -1 : 0, down = y < box.y ? 1 : y >= box.br().y ? -1 : 0;
-    look(x, y, across, down);
+    inspect(x, y, across, down);
   }
 }
 
@@ -54,10 +54,10 @@ int peak_of(const cv::Mat& luma, const cv::Rect& box, int sign) {
   return peak;
 }
 
-/// The middle of the values on a frame; nothing where all of it lies outside the picture.
+/// The middle of the values on a frame; nothing if all of it lies outside the image.
 template <typename Pixel>
 std::optional<double> middle_round(const cv::Mat& luma, const cv::Rect& box, int margin) {
-  std::array<int, kRimPlaces> rim;
+  std::array<int, kRimPositions> rim;
   std::size_t n = 0;
   walk_round(box, margin, luma.size(), [&](int x, int y, int, int) { rim[n++] = luma.ptr<Pixel>(y)[x]; });
   if (n == 0) return std::nullopt;
@@ -68,11 +68,11 @@ template <typename Pixel>
 MarkerContrast measured(const cv::Mat& luma, const MarkerBlob& blob, bool dark, double otherwise) {
   const int sign = dark ? -1 : 1;
   const int peak = peak_of<Pixel>(luma, blob.box, sign);
-  std::array<int, kRimPlaces> rim, valleys;
+  std::array<int, kRimPositions> rim, valleys;
   std::size_t n = 0;
   walk_round(blob.box, kRim, luma.size(), [&](int x, int y, int across, int down) {
     rim[n] = valleys[n] = sign * luma.ptr<Pixel>(y)[x];
-    for (int step = 1; step < kRim; ++step) {  // past a blob of one row or column, and so perhaps out of the picture
+    for (int step = 1; step < kRim; ++step) {  // past a blob of one row or column, and so perhaps out of the image
       const int row = std::clamp(y + step * down, 0, luma.rows - 1), column = std::clamp(x + step * across, 0, luma.cols - 1);
       valleys[n] = std::min<int>(valleys[n], sign * luma.ptr<Pixel>(row)[column]);
     }
@@ -101,20 +101,20 @@ double roundness_of(const MarkerBlob& blob) {
   return static_cast<double>(blob.area) / (4 * std::numbers::pi * largest);
 }
 
-double say_of(double contrast, double area) {
+double report_of(double contrast, double area) {
   return std::max(0.0, contrast) * std::min(area, kEnoughArea);
 }
 
 double above_clutter(std::span<const double> contrasts, double typical) {
   std::vector<double> excess;  // over the least of them
   for (const double contrast : contrasts) {
-    if (contrast < kMostOfTypical * typical) excess.push_back(contrast);
+    if (contrast < kMaxFactorOfTypical * typical) excess.push_back(contrast);
   }
-  if (std::ssize(excess) < kFewestClutter) return 0;
-  const double least = *std::min_element(excess.begin(), excess.end());
-  for (double& contrast : excess) contrast -= least;
+  if (std::ssize(excess) < kMinClutter) return 0;
+  const double minimum = *std::min_element(excess.begin(), excess.end());
+  for (double& contrast : excess) contrast -= minimum;
   const double mean = std::max(0.0, geometry::median(excess)) / std::numbers::ln2;
-  return std::min(kMostOfTypical * typical, least + mean * std::log(static_cast<double>(excess.size()) / kFalseAPicture));
+  return std::min(kMaxFactorOfTypical * typical, minimum + mean * std::log(static_cast<double>(excess.size()) / kFalseAImage));
 }
 
 }  // namespace marey::detect::markers

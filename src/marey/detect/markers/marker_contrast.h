@@ -20,7 +20,7 @@ struct MarkerContrast {
       0;  ///< of larger blobs: what is around it over what is 9 px further out, in heights; a lamp's light falls off slowly
 };
 
-/// `otherwise` is what is around where all of that lies outside the picture. `dark` turns the heights round.
+/// `otherwise` is what is around where all of that lies outside the image. `dark` turns the heights round.
 MarkerContrast contrast_of(const cv::Mat& luma, const MarkerBlob& blob, bool dark, double otherwise);
 
 /// Area over that of the circle with the same largest second moment (a disc of radius R has R²/4).
@@ -28,10 +28,10 @@ double roundness_of(const MarkerBlob& blob);
 
 /// How much a blob counts where it is asked what markers are like: the brighter and the larger the more, up to a size beyond which
 /// it is no better a marker. Specks are many, and count little.
-double say_of(double contrast, double area);
+double report_of(double contrast, double area);
 
 /// The contrast that clutter does not reach: what stands out by at most half of what markers do is taken for the beginning of an
-/// exponential tail, in whose continuation less than one in twenty pictures has anything. At most half of `typical`.
+/// exponential tail, in whose continuation less than one in twenty images has anything. At most half of `typical`.
 double above_clutter(std::span<const double> contrasts, double typical);
 
 }  // namespace marey::detect::markers

@@ -22,20 +22,20 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr int kMostSplitPixels = 20000;   // a frame: about 200 small pairs
+constexpr int kMaxSplitPixels = 20000;    // a frame: about 200 small pairs
 constexpr std::size_t kBlobsATask = 64;   // a quarter of a millisecond of fitting: a frame of few markers is one task
 constexpr std::size_t kSplitsATask = 8;   // unswept, as the one above
 constexpr double kShapeMisfit = 0.06;     // of the contrast: what a lone round marker leaves at most
 constexpr double kOfRoundness = 0.6;      // a blob this much less round is not even split: it bounds a window by its blob's area
-constexpr double kLessSay = 0.1;          // of a disc's, about how large markers are
+constexpr double kLessReport = 0.1;       // of a disc's, about how large markers are
 constexpr double kColourDeviation = 0.5;  // px; where chroma lies within its four pixels is not known for certain
-constexpr double kLeastLumaContrast = 8;  // noises, for the centre of a coloured marker
+constexpr double kMinLumaContrast = 8;    // noises, for the centre of a coloured marker
 
 bool inside(const Box& box, double x, double y) {
   return x >= box.left - 0.5 && y >= box.top - 0.5 && x < box.right() - 0.5 && y < box.bottom() - 0.5;
 }
 
-/// Of the ellipse of a blob's moments, px.
+/// Of the ellipse of a blob's instants, px.
 double half_width_of(const MarkerBlob& blob) {
   const double mean = (blob.var_x + blob.var_y) / 2, spread = std::hypot((blob.var_x - blob.var_y) / 2, blob.cov_xy);
   return 2 * std::sqrt(std::max(mean - spread, 1.0 / 12));
@@ -90,14 +90,14 @@ class MarkerDetector::Impl {
     bool is_disc = false;  ///< it is one, as sharp as the others
     int pixels = 0;        ///< of its window
   };
-  /// What a blob is that is no lone disc.
+  /// What a blob is that is not a lone disc.
   struct Explained {
     std::vector<MarkerShape> shapes;
     std::int64_t MarkerCounts::* counted = nullptr;  ///< where what it is adds one
   };
 
   void choose(std::span<const MarkerBlob> blobs);
-  void keep_most(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
+  void keep_max(std::span<const MarkerBlob> blobs, std::span<const Expected> expected);
   MarkerSurroundings surroundings(const cv::Mat& luma, const MarkerBlob& blob, std::size_t index) const;
   Lone fit_lone(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::size_t index, MarkerWorkspace& workspace) const;
   void fit_all(const cv::Mat& luma, std::span<const MarkerBlob> blobs);
@@ -115,20 +115,20 @@ class MarkerDetector::Impl {
   std::vector<std::size_t> unclear_;  // of the lone ones, those that are to be explained, and
   std::vector<char> may_split_;       // of each whether there is time to split it
   std::vector<Explained> explained_;  // likewise
-  std::vector<MarkerLikeness::Witness> seen_;
-  bool moving_ = false;  // most markers of the frame are no discs
+  std::vector<MarkerLikeness::Witness> detected_;
+  bool moving_ = false;  // most markers of the frame are not discs
 };
 
 Detections MarkerDetector::Impl::detect(const Frame& frame, std::span<const Expected> expected) {
   Detections result;
   ++counts_.frames;
-  if (frame.picture.empty()) return result;
-  const cv::Mat& luma = frame.picture.luma();
+  if (frame.image.empty()) return result;
+  const cv::Mat& luma = frame.image.luma();
   const auto blobs = search_.find(frame, likeness_.widest());
   if (search_.was_cut()) ++counts_.frames_cut;
-  counts_.masked_share = search_.masked_share();
+  counts_.masked_fraction = search_.masked_fraction();
   choose(blobs);
-  keep_most(blobs, expected);
+  keep_max(blobs, expected);
   neighbours_.file(blobs, chosen_, luma.size());
   fit_all(luma, blobs);
   explain_all(luma, blobs, expected);
@@ -169,20 +169,20 @@ void MarkerDetector::Impl::choose(std::span<const MarkerBlob> blobs) {
 }
 
 /// Those where the tracker expects a marker, then the largest.
-void MarkerDetector::Impl::keep_most(std::span<const MarkerBlob> blobs, std::span<const Expected> expected) {
-  const auto most = static_cast<std::size_t>(options_.most_markers);
-  if (chosen_.size() <= most) return;
-  counts_.over_limit += static_cast<std::int64_t>(chosen_.size() - most);
-  const auto wanted = [&](std::size_t i) {
+void MarkerDetector::Impl::keep_max(std::span<const MarkerBlob> blobs, std::span<const Expected> expected) {
+  const auto maximum = static_cast<std::size_t>(options_.max_markers);
+  if (chosen_.size() <= maximum) return;
+  counts_.over_limit += static_cast<std::int64_t>(chosen_.size() - maximum);
+  const auto required = [&](std::size_t i) {
     return std::any_of(expected.begin(), expected.end(),
                        [&](const Expected& e) { return inside(e.box, blobs[i].mean_x, blobs[i].mean_y); });
   };
   std::vector<std::tuple<bool, std::int64_t, std::size_t>> order;  // what sorts first stays
   order.reserve(chosen_.size());
-  for (const std::size_t i : chosen_) order.emplace_back(!wanted(i), -blobs[i].area, i);
+  for (const std::size_t i : chosen_) order.emplace_back(!required(i), -blobs[i].area, i);
   std::sort(order.begin(), order.end());
   std::transform(order.begin(), order.end(), chosen_.begin(), [](const auto& entry) { return std::get<2>(entry); });
-  chosen_.resize(most);
+  chosen_.resize(maximum);
   std::sort(chosen_.begin(), chosen_.end());
 }
 
@@ -208,7 +208,7 @@ MarkerDetector::Impl::Lone MarkerDetector::Impl::fit_lone(const cv::Mat& luma, s
   Lone lone{.blob = index, .shape = fit_disc(window, blob, around), .pixels = window.count};
   MarkerShape& shape = lone.shape;
   if (options_.colour &&
-      (!shape.fitted || shape.contrast < kLeastLumaContrast * around.noise)) {  // luma does not show it: chroma does
+      (!shape.fitted || shape.contrast < kMinLumaContrast * around.noise)) {  // luma does not show it: chroma does
     shape.fitted = false;
     shape.centre = {blob.mean_x, blob.mean_y};
     shape.covariance = Matrix<2>::Identity() * (kColourDeviation * kColourDeviation);
@@ -223,19 +223,19 @@ void MarkerDetector::Impl::fit_all(const cv::Mat& luma, std::span<const MarkerBl
   lone_.resize(chosen_.size());
   for_blobs(chosen_.size(), kBlobsATask,
             [&](std::size_t i, MarkerWorkspace& workspace) { lone_[i] = fit_lone(luma, blobs, chosen_[i], workspace); });
-  seen_.clear();
+  detected_.clear();
   for (const Lone& lone : lone_) {
     const std::size_t index = lone.blob;
     if (lone.has_halo) continue;
-    const double say = say_of(lone.shape.contrast, static_cast<double>(blobs[index].area));
+    const double announce = report_of(lone.shape.contrast, static_cast<double>(blobs[index].area));
     if (lone.is_disc) {
-      seen_.push_back({lone.shape.radius, lone.shape.blur, say, lone.shape.contrast, true});
+      detected_.push_back({lone.shape.radius, lone.shape.blur, announce, lone.shape.contrast, true});
     } else {  // what moves, or touches another, says by its width how large it is
       const bool round = roundness_of(blobs[index]) > kOfRoundness;
-      seen_.push_back({half_width_of(blobs[index]), std::nullopt, kLessSay * say, lone.shape.contrast, round});
+      detected_.push_back({half_width_of(blobs[index]), std::nullopt, kLessReport * announce, lone.shape.contrast, round});
     }
   }
-  likeness_.learn(seen_);
+  likeness_.learn(detected_);
   const auto discs = std::count_if(lone_.begin(), lone_.end(), [](const Lone& lone) { return lone.is_disc; });
   moving_ = 2 * discs < std::ssize(lone_);
   for (Lone& lone : lone_) {
@@ -245,11 +245,11 @@ void MarkerDetector::Impl::fit_all(const cv::Mat& luma, std::span<const MarkerBl
   }
 }
 
-/// Which are split is settled ahead, in their order: a frame has time for so many pixels.
+/// Which are split is settled ahead, in their order: a frame has time for this many pixels.
 void MarkerDetector::Impl::explain_all(const cv::Mat& luma, std::span<const MarkerBlob> blobs, std::span<const Expected> expected) {
   unclear_.clear();
   may_split_.clear();
-  int left = kMostSplitPixels;
+  int left = kMaxSplitPixels;
   for (std::size_t i = 0; i < lone_.size(); ++i) {
     const Lone& lone = lone_[i];
     if (lone.is_disc) continue;
@@ -266,14 +266,14 @@ void MarkerDetector::Impl::explain_all(const cv::Mat& luma, std::span<const Mark
   });
 }
 
-/// What a blob is that is no disc: several, or one all the same, or none.
+/// What a blob is that is not a disc: several, or one all the same, or none.
 MarkerDetector::Impl::Explained MarkerDetector::Impl::explain(const cv::Mat& luma, std::span<const MarkerBlob> blobs,
                                                               const Lone& lone, std::span<const Expected> expected, bool may_split,
                                                               MarkerWorkspace& workspace) const {
   const MarkerBlob& blob = blobs[lone.blob];
   const auto area = static_cast<double>(blob.area);
   if (lone.is_lamp || likeness_.too_large(area)) return {{}, &MarkerCounts::unlike};
-  bool told = false;
+  bool reported = false;
   if (may_split) {
     auto& [near, window] = workspace;
     const MarkerSurroundings around = surroundings(luma, blob, lone.blob);
@@ -284,10 +284,10 @@ MarkerDetector::Impl::Explained MarkerDetector::Impl::explain(const cv::Mat& lum
     const bool alike =
         std::all_of(split.discs.begin(), split.discs.end(), [&](const MarkerShape& d) { return likeness_.fits(d.radius, count); });
     if (!split.discs.empty() && alike) return {std::move(split.discs), &MarkerCounts::split};
-    told = split.swept && likeness_.fits(split.swept->radius);
+    reported = split.swept && likeness_.fits(split.swept->radius);
   }
   if (roundness_of(blob) < options_.min_roundness) return {{}, &MarkerCounts::not_round};
-  if (!told && likeness_.odd(area)) return {{}, &MarkerCounts::unlike};
+  if (!reported && likeness_.odd(area)) return {{}, &MarkerCounts::unlike};
   return {{lone.shape}, lone.shape.fitted ? nullptr : &MarkerCounts::not_fitted};
 }
 
@@ -298,7 +298,7 @@ Detection MarkerDetector::Impl::report(const MarkerShape& shape, const MarkerBlo
   detection.area = shape.fitted ? std::numbers::pi * shape.radius * shape.radius : static_cast<double>(blob.area);
   detection.box = shape.part ? Box::from_centre(shape.centre, 2 * shape.radius + 1, 2 * shape.radius + 1) : box_of(blob.box);
   if (!options_.automatic()) return detection;
-  detection.score = std::clamp(shape.contrast / (2 * search_.least_contrast(blob)), 0.1, 1.0);
+  detection.score = std::clamp(shape.contrast / (2 * search_.min_contrast(blob)), 0.1, 1.0);
   return detection;
 }
 
@@ -333,7 +333,7 @@ const MarkerCounts& MarkerDetector::counts() const {
 }
 
 double MarkerDetector::typical_threshold() const {
-  return impl_->levels().typical_least_contrast();
+  return impl_->levels().typical_min_contrast();
 }
 
 double MarkerDetector::noise() const {
@@ -344,7 +344,7 @@ std::vector<std::string> warnings(const MarkerCounts& counts) {
   std::vector<std::string> result;
   if (counts.over_limit > 0) {
     result.push_back(
-        fmt::format("{} blobs beyond the most markers allowed a frame were left out: is there glare? A mask or a higher "
+        fmt::format("{} blobs beyond the most markers allowed a frame were omitted: is there glare? A mask or a higher "
                     "threshold helps",
                     counts.over_limit));
   }
@@ -355,8 +355,8 @@ std::vector<std::string> warnings(const MarkerCounts& counts) {
   }
   if (counts.unlike > 0) {
     result.push_back(
-        fmt::format("{} bright spots unlike the markers were left out: neither discs nor several that touch nor in motion, "
-                    "and larger; where they are markers, say how wide those are with --widest",
+        fmt::format("{} bright spots unlike the markers were omitted: neither discs nor several that touch nor in motion, "
+                    "and larger; where they are markers, say how wide those are with --max-width",
                     counts.unlike));
   }
   if (counts.frames > 0 && counts.markers == 0) result.push_back("no marker was seen in any frame");

@@ -12,7 +12,7 @@
 
 namespace marey::detect::markers {
 
-/// What became of the blobs so far, for the run's summary.
+/// What happened to the blobs so far, for the run's summary.
 struct MarkerCounts {
   std::int64_t frames = 0;
   std::int64_t markers = 0;     ///< reported
@@ -21,18 +21,18 @@ struct MarkerCounts {
   std::int64_t too_large = 0;   ///< above max_area
   std::int64_t not_round = 0;   ///< below min_roundness
   std::int64_t unlike = 0;      ///< no disc, no several, no streak, and larger than the markers that are seen: a lamp, a reflection
-  std::int64_t over_limit = 0;  ///< more than most_markers in their frame
+  std::int64_t over_limit = 0;  ///< more than max_markers in their frame
   std::int64_t split = 0;       ///< blobs that were taken apart
   std::int64_t not_fitted = 0;  ///< reported with the weighted centroid, because no disc fitted
-  std::int64_t frames_cut = 0;  ///< frames with so much above the threshold that their lower part was not searched
-  double masked_share = 0;      ///< of the picture, by both masks
+  std::int64_t frames_cut = 0;  ///< frames with this much above the threshold that their lower part was not searched
+  double masked_fraction = 0;   ///< of the image, by both masks
 };
 
-/// One sentence each on what was left out; empty where nothing was.
+/// One sentence each on what was omitted; empty if nothing was.
 std::vector<std::string> warnings(const MarkerCounts& counts);
 
 /// Finds markers: bright, dark or coloured spots, as sub-pixel points with their covariance. Frames are of one camera.
-/// Throws Error where a colour is asked of a grey picture or the mask is not of the picture's size.
+/// Throws Error if a colour is asked of a grey image or the mask is not of the image's size.
 class MarkerDetector final : public Detector {
  public:
   explicit MarkerDetector(const MarkerOptions& options = {});
@@ -41,13 +41,13 @@ class MarkerDetector final : public Detector {
   /// Learns the automatic mask at once where the samples lie within its time.
   void prime(std::span<const Frame> samples) override;
 
-  /// Looks by other options from the next frame on. What was learned of the picture is learned anew; the counts go on.
+  /// Looks by other options from the next frame on. What was learned of the image is learned again; the counts continue.
   void change(const MarkerOptions& options);
   /// Once the automatic mask is learned: the boxes of its parts, px, from top to bottom.
   std::optional<std::vector<cv::Rect>> learned_parts() const;
 
-  /// Markers in the order of their first pixel. `expected` decides which stay when there are too many, and where to look for two in
-  /// one blob.
+  /// Markers in the order of their first pixel. `expected` decides which stay when there are too many, and where to search for two
+  /// in one blob.
   Detections detect(const Frame& frame, std::span<const Expected> expected) override;
 
   /// Noise are the blobs too small, misfits those too large, not round or unlike the others.

@@ -33,13 +33,13 @@ cv::Mat scene(cv::Size size, const std::vector<Spot>& spots, double noise, std::
         cv::Rect({}, size);
     for (int y = box.y; y < box.br().y; ++y) {
       for (int x = box.x; x < box.br().x; ++x) {
-        double share = 0;
+        double fraction = 0;
         for (int k = 0; k < 64; ++k) {
           const double d = std::hypot(x - 0.4375 + k % 8 / 8.0 - spot.x, y - 0.4375 + k / 8 / 8.0 - spot.y);
-          share += std::erfc((d - spot.radius) / (std::sqrt(2.0) * spot.blur)) / 128;
+          fraction += std::erfc((d - spot.radius) / (std::sqrt(2.0) * spot.blur)) / 128;
         }
         float& pixel = image.at<float>(y, x);
-        pixel = static_cast<float>(pixel * (1 - share) + spot.level * share);
+        pixel = static_cast<float>(pixel * (1 - fraction) + spot.level * fraction);
       }
     }
   }
@@ -54,7 +54,7 @@ cv::Mat scene(cv::Size size, const std::vector<Spot>& spots, double noise, std::
 Frame frame_of(const cv::Mat& image, double time_s = 0) {
   Frame frame;
   frame.time = timestamp_from_seconds(time_s);
-  frame.picture = Picture(image);
+  frame.image = Image(image);
   return frame;
 }
 
@@ -64,9 +64,9 @@ std::vector<Detection> find(const cv::Mat& image, const MarkerOptions& options =
 }
 
 double distance_to_nearest(const std::vector<Detection>& found, double x, double y) {
-  double least = 1e9;
-  for (const Detection& d : found) least = std::min(least, (d.centre - Vector<2>(x, y)).norm());
-  return least;
+  double minimum = 1e9;
+  for (const Detection& d : found) minimum = std::min(minimum, (d.centre - Vector<2>(x, y)).norm());
+  return minimum;
 }
 
 struct Case {
@@ -77,7 +77,7 @@ struct Case {
   bool dark = false;
 };
 
-/// Without it the bytes are printed, those between the members too, which nobody has set.
+/// Without it the bytes are printed, those between the members too, which no person has set.
 void PrintTo(const Case& each, std::ostream* out) {
   *out << "radius " << each.radius << " px, noise " << each.noise << ", level " << each.level << " on " << each.background;
 }
@@ -107,8 +107,8 @@ TEST_P(MarkerAccuracy, RootMeanSquareAndBiasStayBelowTheirLimits) {
     for (std::size_t i = 0; i < spots.size(); ++i) {
       const auto nearest =
           std::min_element(found.detections.begin(), found.detections.end(), [&](const Detection& a, const Detection& b) {
-            const Vector<2> place(spots[i].x, spots[i].y);
-            return (a.centre - place).norm() < (b.centre - place).norm();
+            const Vector<2> location(spots[i].x, spots[i].y);
+            return (a.centre - location).norm() < (b.centre - location).norm();
           });
       const Vector<2> error = nearest->centre - Vector<2>(spots[i].x, spots[i].y);
       squares += error.squaredNorm();
@@ -212,11 +212,11 @@ TEST(MarkerDetector, AWideGreyBarIsNoMarkerAndHidesNone) {
     cv::Mat image = clean.clone();
     image(cv::Rect(210, 0, 213, 480)) = cv::max(image(cv::Rect(210, 0, 213, 480)), bar);
     for (const double turn : {0.0, 17.0}) {
-      cv::Mat turned;
-      cv::warpAffine(image, turned, cv::getRotationMatrix2D({320, 240}, turn, 1), image.size(), cv::INTER_LINEAR,
+      cv::Mat rotated;
+      cv::warpAffine(image, rotated, cv::getRotationMatrix2D({320, 240}, turn, 1), image.size(), cv::INTER_LINEAR,
                      cv::BORDER_REPLICATE);
       SCOPED_TRACE(testing::Message() << "bar " << bar << ", turned " << turn);
-      EXPECT_EQ(find(with_noise(turned, 4, 3)).size(), spots.size());
+      EXPECT_EQ(find(with_noise(rotated, 4, 3)).size(), spots.size());
     }
   }
 }
@@ -294,7 +294,7 @@ TEST(MarkerDetector, GlareIsBoundedAndToldAndExpectedMarkersStay) {
   std::vector<Spot> spots{{1100.3, 900.2, 1}};  // the smallest
   for (int i = 0; i < 5000; ++i) spots.push_back({8.0 + i % 100 * 12, 8.0 + i / 100 * 12, 2});
   MarkerOptions options;
-  options.most_markers = 2000;
+  options.max_markers = 2000;
   MarkerDetector detector(options);
   const std::vector<Expected> expected{{Box::from_centre({1100, 900}, 20, 20)}};
   const auto found = detector.detect(frame_of(scene({1280, 1024}, spots, 2, 1)), expected).detections;
@@ -343,12 +343,12 @@ TEST(MarkerDetector, DarkMarkersOnAWhitePlateBeforeBlackAreFoundByAFixedThreshol
 /// Single lines of pixels along the borders: the address sanitizer sees what is read beyond them.
 TEST(MarkerDetector, ReadsNothingOutsideThePicture) {
   for (const cv::Rect& line : {cv::Rect(30, 99, 4, 1), cv::Rect(60, 0, 4, 1), cv::Rect(0, 30, 1, 4), cv::Rect(99, 60, 1, 4)}) {
-    cv::Mat picture = scene({100, 100}, {}, 2, 3);
-    picture(line).setTo(200);
+    cv::Mat image = scene({100, 100}, {}, 2, 3);
+    image(line).setTo(200);
     MarkerBlob blob{};
     blob.box = line;
     blob.area = line.area();
-    const MarkerContrast contrast = contrast_of(picture, blob, false, 12);
+    const MarkerContrast contrast = contrast_of(image, blob, false, 12);
     EXPECT_NEAR(contrast.around, 12, 2);
     EXPECT_NEAR(contrast.height, 188, 8);
   }
@@ -371,7 +371,7 @@ TEST(MarkerDetector, ChangedWhileItLooksItLeavesOutPartsAndWhatIsFaint) {
   MarkerDetector detector;
   EXPECT_EQ(detector.detect(frame_of(image), {}).detections.size(), 2u);
   MarkerOptions options;
-  options.masked = {{-5, -5, 45, 80}};  // as far as it lies in the picture
+  options.masked = {{-5, -5, 45, 80}};  // as far as it lies in the image
   detector.change(options);
   const auto unmasked = detector.detect(frame_of(image, 1), {}).detections;
   ASSERT_EQ(unmasked.size(), 1u);
@@ -395,7 +395,7 @@ TEST(MarkerDetector, TheAutomaticMaskLearnsLampsAndKeepsWhatMoves) {
     EXPECT_LT(distance_to_nearest(found, x, 20), 0.1);
     EXPECT_EQ(detector.learned_parts().has_value(), i > 30);
   }
-  EXPECT_GT(detector.counts().masked_share, 0.004);
+  EXPECT_GT(detector.counts().masked_fraction, 0.004);
   ASSERT_EQ(detector.learned_parts()->size(), 1u);
   const cv::Rect lamp = detector.learned_parts()->front();
   EXPECT_EQ(lamp & cv::Rect(95, 55, 10, 10), cv::Rect(95, 55, 10, 10));
@@ -412,7 +412,7 @@ TEST(MarkerDetector, ColouredMarkersAreToldByTheirHue) {
     options.colour = MarkerColour{hue, 20, 0.2};
     MarkerDetector detector(options);
     Frame frame;
-    frame.picture = Picture::from_bgr(bgr);
+    frame.image = Image::from_bgr(bgr);
     const auto found = detector.detect(frame, {}).detections;
     ASSERT_EQ(found.size(), 1u) << hue;
     EXPECT_LT(distance_to_nearest(found, x, 60), 0.6) << hue;

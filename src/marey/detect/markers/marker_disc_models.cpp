@@ -10,7 +10,7 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr int kMostSplitSteps = 20;
+constexpr int kMaxSplitSteps = 20;
 constexpr double kSplitSettled = 5e-3;  // px; the next step would be a hundredth of it
 constexpr double kSplitGain = 3e-3;     // of the squares left: a smaller step changes no decision
 
@@ -30,13 +30,13 @@ bool sensible_discs(const DiscsModel& model, double reach) {
 DiscsNormal linearised(const DiscsModel& model, const MarkerWindow& window, const std::vector<float>& value,
                        const MarkerKernels& kernels) {
   const Eigen::Index n = model.p.size();
-  std::array<float, kMostParameters> parameters{};
+  std::array<float, kMaxParameters> parameters{};
   for (Eigen::Index i = 0; i < n; ++i) parameters[static_cast<std::size_t>(i)] = static_cast<float>(model.p[i]);
-  const double most = (model.ceiling - model.p[kDiscsBackground]) / model.p[kDiscsContrast];
+  const double maximum = (model.ceiling - model.p[kDiscsBackground]) / model.p[kDiscsContrast];
   MarkerSamples samples = window.samples();
   samples.value = value.data();
   DiscsSums sums;
-  kernels.linearise_discs(samples, {parameters.data(), model.discs, model.swept, model.adds, static_cast<float>(most)}, sums);
+  kernels.linearise_discs(samples, {parameters.data(), model.discs, model.swept, model.adds, static_cast<float>(maximum)}, sums);
   DiscsNormal normal{DiscsInformation(n, n), DiscsParameters(n), sums.squares};
   int k = 0;
   for (Eigen::Index a = 0; a < n; ++a) {
@@ -53,7 +53,7 @@ DiscsSolution fit_discs(DiscsModel model, const MarkerWindow& window, const std:
   };
   DiscsSolution best{model, linearised(model, window, value)};
   double damping = 1e-2;
-  for (int step = 0; step < kMostSplitSteps; ++step) {
+  for (int step = 0; step < kMaxSplitSteps; ++step) {
     DiscsInformation information = best.normal.information;
     information.diagonal() += damping * best.normal.information.diagonal() + DiscsParameters::Constant(model.p.size(), 1e-9);
     information(kDiscsBlur, kDiscsBlur) += stiffness;

@@ -10,10 +10,10 @@
 namespace marey::detect::markers {
 
 // On the stack, whatever the number of discs; their order is that of marker_kernel.h.
-using DiscsParameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostParameters, 1>;
-using DiscsInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostParameters, kMostParameters>;
+using DiscsParameters = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxParameters, 1>;
+using DiscsInformation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParameters, kMaxParameters>;
 
-/// One to four discs in a window, at rest or moving together while they were seen. Pixels are told in units of the window.
+/// One to four discs in a window, at rest or moving together while they were seen. Pixels are reported in units of the window.
 struct DiscsModel {
   DiscsParameters p;
   int discs = 1;
@@ -39,7 +39,7 @@ DiscsNormal linearised(const DiscsModel& model, const MarkerWindow& window, cons
                        const MarkerKernels& kernels = marker_kernels());
 
 /// Fits a model to the pixels `value` at the window's places by Levenberg-Marquardt. `stiffness` pulls the blur to where it began:
-/// two close discs hardly tell it.
+/// two close discs barely tell it.
 DiscsSolution fit_discs(DiscsModel model, const MarkerWindow& window, const std::vector<float>& value, double stiffness);
 
 }  // namespace marey::detect::markers

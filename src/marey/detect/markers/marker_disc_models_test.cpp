@@ -13,8 +13,8 @@
 namespace marey::detect::markers {
 namespace {
 
-double uniform(std::mt19937& random, double least, double most) {
-  return std::uniform_real_distribution<double>(least, most)(random);
+double uniform(std::mt19937& random, double minimum, double maximum) {
+  return std::uniform_real_distribution<double>(minimum, maximum)(random);
 }
 
 /// A disc of pixels, in eights.
@@ -56,15 +56,15 @@ double level_at(const DiscsModel& model, double x, double y) {
     Vector<2> away = Vector<2>(x, y) - p.segment<2>(kFirstDisc + 3 * i);
     if (model.swept) away -= half * std::clamp(away.dot(half) / half.squaredNorm(), -1.0, 1.0);
     const double distance = std::sqrt(away.squaredNorm() + 1.0 / 12);
-    const double share = std::erfc((distance - p[kFirstDisc + 3 * i + 2]) / p[kDiscsBlur] / std::sqrt(2.0)) / 2;
-    outside *= 1 - share;
-    sum += share;
+    const double fraction = std::erfc((distance - p[kFirstDisc + 3 * i + 2]) / p[kDiscsBlur] / std::sqrt(2.0)) / 2;
+    outside *= 1 - fraction;
+    sum += fraction;
   }
-  const double most = (model.ceiling - p[kDiscsBackground]) / p[kDiscsContrast];
-  return p[kDiscsBackground] + p[kDiscsContrast] * (model.adds ? std::min(sum, most) : 1 - outside);
+  const double maximum = (model.ceiling - p[kDiscsBackground]) / p[kDiscsContrast];
+  return p[kDiscsBackground] + p[kDiscsContrast] * (model.adds ? std::min(sum, maximum) : 1 - outside);
 }
 
-/// All sums by differences, as nobody would compute them.
+/// All sums by differences, as no person would compute them.
 DiscsNormal by_differences(const DiscsModel& model, const MarkerWindow& window, const std::vector<float>& value) {
   const Eigen::Index n = model.p.size();
   DiscsNormal normal{DiscsInformation::Zero(n, n), DiscsParameters::Zero(n)};
@@ -76,9 +76,9 @@ DiscsNormal by_differences(const DiscsModel& model, const MarkerWindow& window, 
       DiscsModel above = model, below = model;
       above.p[a] += kStep, below.p[a] -= kStep;
       if (model.adds) {  // the ceiling is kept as a share, as it is while a fit takes a step
-        const double most = (model.ceiling - model.p[kDiscsBackground]) / model.p[kDiscsContrast];
-        above.ceiling = above.p[kDiscsBackground] + most * above.p[kDiscsContrast];
-        below.ceiling = below.p[kDiscsBackground] + most * below.p[kDiscsContrast];
+        const double maximum = (model.ceiling - model.p[kDiscsBackground]) / model.p[kDiscsContrast];
+        above.ceiling = above.p[kDiscsBackground] + maximum * above.p[kDiscsContrast];
+        below.ceiling = below.p[kDiscsBackground] + maximum * below.p[kDiscsContrast];
       }
       slope[a] = (level_at(above, x, y) - level_at(below, x, y)) / (2 * kStep);
     }
@@ -93,7 +93,7 @@ TEST(MarkerDiscModels, EveryKernelSumsWhatDifferencesDo) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     std::mt19937 random(seed);
     const bool swept = seed % 3 == 0;
-    const int discs = swept ? 1 + static_cast<int>(seed) % 2 : 1 + static_cast<int>(seed) % kMostDiscs;
+    const int discs = swept ? 1 + static_cast<int>(seed) % 2 : 1 + static_cast<int>(seed) % kMaxDiscs;
     const bool adds = discs == 2 && seed % 4 == 1;
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << discs << " discs" << (swept ? ", swept" : "")
                                     << (adds ? ", adding up" : ""));

@@ -3,7 +3,7 @@
 // beyond the blob. A pixel's own width widens the edge, which `blur` absorbs (+1/12 px²), and bends the distance (d² + 1/12). Where
 // the true shape is another one (an ellipse, a streak, a saturated or shaded ball) the centre stays unbiased as long as the shape
 // is the same from both sides, because only the odd part of the residual moves it; the covariance is scaled by what the model
-// leaves. A weak prior on the blur and the radius holds what very small spots cannot tell apart: it does not touch the centre.
+// leaves. A weak prior on the blur and the radius holds what very small spots cannot distinguish: it does not touch the centre.
 // Cost: 3–4 linearisations of about 2 ns a pixel. docs/decisions says what else was tried.
 #include "marey/detect/markers/marker_fit.h"
 
@@ -17,7 +17,7 @@ namespace marey::detect::markers {
 namespace {
 
 constexpr double kMargin = 2.5;  // px beyond the blob
-constexpr int kMostFitSteps = 12;
+constexpr int kMaxFitSteps = 12;
 constexpr double kFitSettled = 1e-3;      // px
 constexpr double kWorstMisfit = 0.2;      // of the contrast
 constexpr double kFloorDeviation = 3e-3;  // px; pixels are not quite alike
@@ -71,7 +71,7 @@ Fit minimise(const MarkerWindow& window, const Vector6& start, const Prior& prio
   Fit fit{start, linearise(window, start, kernels)};
   double damping = 1e-4;
   double best = cost(fit.last, fit.parameters, prior);
-  for (int step = 0; step < kMostFitSteps; ++step) {
+  for (int step = 0; step < kMaxFitSteps; ++step) {
     Matrix6 information = fit.last.information;
     information.diagonal() += prior.weight + damping * fit.last.information.diagonal();
     const Vector6 gradient = fit.last.gradient - prior.weight.cwiseProduct(fit.parameters - prior.mean);
@@ -115,7 +115,7 @@ MarkerShape fit_disc(const MarkerWindow& window, const MarkerBlob& blob, const M
   if (window.count < 12) return shape;
 
   const double noise = around.noise / window.scale;
-  const double blur = around.blur.value_or(kUsualBlur);
+  const double blur = around.blur.value_or(kDefaultBlur);
   Prior prior{Vector6::Zero(), Vector6::Zero()};
   prior.mean[kBlur] = blur;
   prior.weight[kBlur] = noise * noise / std::pow(0.5 * blur, 2);

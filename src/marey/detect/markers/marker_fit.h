@@ -11,7 +11,7 @@
 
 namespace marey::detect::markers {
 
-inline constexpr double kUsualBlur = 0.65;  ///< px; a sharp lens, and the pixel
+inline constexpr double kDefaultBlur = 0.65;  ///< px; a sharp lens, and the pixel
 
 /// A marker as fitted: a disc with a blurred edge.
 struct MarkerShape {
@@ -34,7 +34,7 @@ struct MarkerSurroundings {
   std::optional<double> blur;  ///< what other markers of the clip have, px
 };
 
-/// A blob close by, whose light is to be left out.
+/// A blob close by, whose light is to be omitted.
 struct MarkerNeighbour {
   Vector<2> centre = Vector<2>::Zero();
   double radius = 0;  ///< px

@@ -206,7 +206,7 @@ HWY_INLINE Floats power_of_two(Floats x) {
 
 /// A blurred edge, `distance` from a centre: the share of what lies within it, and its density, for u = (distance − radius) / blur.
 struct Edge {
-  Floats share, density;
+  Floats fraction, density;
 };
 
 HWY_INLINE Edge edge_at(Floats u) {
@@ -238,13 +238,13 @@ DiscSums linearise_disc(const MarkerSamples& samples, const float* p) {
     const Floats dy = load(samples.y + i) - cy;
     const Floats distance = square_root(dx * dx + dy * dy + 1.0f / 12);
     const Floats u = (distance - radius) * inverse_blur;
-    const auto [share, density] = edge_at(u);
+    const auto [fraction, density] = edge_at(u);
     const Floats weight = load(samples.weight + i);
     const Floats slope = contrast * inverse_blur * density;
     const Floats along = slope / distance;
-    const Floats residual = load(samples.value + i) - background - contrast * share;
+    const Floats residual = load(samples.value + i) - background - contrast * fraction;
     const Floats one = Floats{} + 1.0f;
-    const Floats jacobian[kDiscParameters] = {along * dx, along * dy, slope, slope * u, share, one};
+    const Floats jacobian[kDiscParameters] = {along * dx, along * dy, slope, slope * u, fraction, one};
     int k = 0;
     for (int a = 0; a < kDiscParameters; ++a) {
       const Floats weighted = weight * jacobian[a];
@@ -261,10 +261,10 @@ DiscSums linearise_disc(const MarkerSamples& samples, const float* p) {
 constexpr float kFlat = 4.5f;  // blurs from the edge beyond which it is not felt
 
 /// Eight pixels as one disc sees them.
-struct Seen {
+struct Detected {
   Floats away_x, away_y, distance;  ///< px, from the disc's centre or the nearest of its segment
   Floats u;                         ///< blurs outside its edge
-  Floats way;                       ///< along the sweep: −1 at one end, 1 at the other
+  Floats method;                    ///< along the sweep: −1 at one end, 1 at the other
   Edge edge;
 };
 
@@ -277,55 +277,56 @@ struct Discs {
   float half_x = swept ? p[n - 2] : 0, half_y = swept ? p[n - 1] : 0;
   float length = half_x * half_x + half_y * half_y, along = length > 1e-9f ? 1.0f / length : 0;
   bool adds;
-  float most;
+  float maximum;
 
   /// Whether any of the pixels is near enough to the edge to feel it.
-  HWY_INLINE Integers see(int disc, Floats x, Floats y, Seen& seen) const {
+  HWY_INLINE Integers observe_frame(int disc, Floats x, Floats y, Detected& detected) const {
     const float* at = p + kFirstDisc + 3 * disc;
-    seen.away_x = x - at[0];
-    seen.away_y = y - at[1];
+    detected.away_x = x - at[0];
+    detected.away_y = y - at[1];
     if (swept) {
-      Floats t = (seen.away_x * half_x + seen.away_y * half_y) * along;
+      Floats t = (detected.away_x * half_x + detected.away_y * half_y) * along;
       t = t < -1.0f ? Floats{} - 1.0f : t;
-      seen.way = t > 1.0f ? Floats{} + 1.0f : t;
-      seen.away_x -= seen.way * half_x;
-      seen.away_y -= seen.way * half_y;
+      detected.method = t > 1.0f ? Floats{} + 1.0f : t;
+      detected.away_x -= detected.method * half_x;
+      detected.away_y -= detected.method * half_y;
     }
-    seen.distance = square_root(seen.away_x * seen.away_x + seen.away_y * seen.away_y + 1.0f / 12);
-    seen.u = (seen.distance - at[2]) * inverse_blur;
-    return (seen.u < kFlat) & (seen.u > -kFlat);
+    detected.distance = square_root(detected.away_x * detected.away_x + detected.away_y * detected.away_y + 1.0f / 12);
+    detected.u = (detected.distance - at[2]) * inverse_blur;
+    return (detected.u < kFlat) & (detected.u > -kFlat);
   }
 
   /// The pixels' share of all discs; `edges` says that some pixel feels one.
-  HWY_INLINE Floats share(Seen* seen, bool edges) const {
+  HWY_INLINE Floats fraction(Detected* detected, bool edges) const {
     Floats outside = Floats{} + 1.0f, sum = {};
     for (int d = 0; d < discs; ++d) {
-      const Floats within = seen[d].u < 0.0f ? Floats{} + 1.0f : Floats{};
-      seen[d].edge = edges ? edge_at(seen[d].u) : Edge{within, Floats{}};
-      outside *= 1.0f - seen[d].edge.share;
-      sum += seen[d].edge.share;
+      const Floats within = detected[d].u < 0.0f ? Floats{} + 1.0f : Floats{};
+      detected[d].edge = edges ? edge_at(detected[d].u) : Edge{within, Floats{}};
+      outside *= 1.0f - detected[d].edge.fraction;
+      sum += detected[d].edge.fraction;
     }
-    return adds ? (sum > most ? Floats{} + most : sum) : 1.0f - outside;
+    return adds ? (sum > maximum ? Floats{} + maximum : sum) : 1.0f - outside;
   }
 
   /// Derivatives of the pixels' levels by all parameters.
-  HWY_INLINE void slopes(const Seen* seen, Floats share, Floats* slope) const {
+  HWY_INLINE void slopes(const Detected* detected, Floats fraction, Floats* slope) const {
     for (int a = kDiscsBlur; a < n; ++a) slope[a] = Floats{};
-    slope[kDiscsContrast] = share;
+    slope[kDiscsContrast] = fraction;
     slope[kDiscsBackground] = Floats{} + 1.0f;
     for (int d = 0; d < discs; ++d) {
       Floats others = Floats{} + 1.0f;
-      for (int other = 0; other < discs; ++other) others *= other == d ? Floats{} + 1.0f : 1.0f - seen[other].edge.share;
-      if (adds) others = share < most ? Floats{} + 1.0f : Floats{};
-      const Floats outwards = contrast * inverse_blur * seen[d].edge.density * others;
-      const Floats by_x = outwards / seen[d].distance * seen[d].away_x, by_y = outwards / seen[d].distance * seen[d].away_y;
+      for (int other = 0; other < discs; ++other) others *= other == d ? Floats{} + 1.0f : 1.0f - detected[other].edge.fraction;
+      if (adds) others = fraction < maximum ? Floats{} + 1.0f : Floats{};
+      const Floats outwards = contrast * inverse_blur * detected[d].edge.density * others;
+      const Floats by_x = outwards / detected[d].distance * detected[d].away_x,
+                   by_y = outwards / detected[d].distance * detected[d].away_y;
       slope[kFirstDisc + 3 * d] = by_x;
       slope[kFirstDisc + 3 * d + 1] = by_y;
       slope[kFirstDisc + 3 * d + 2] = outwards;
-      slope[kDiscsBlur] += outwards * seen[d].u;
+      slope[kDiscsBlur] += outwards * detected[d].u;
       if (!swept) continue;
-      slope[n - 2] += seen[d].way * by_x;
-      slope[n - 1] += seen[d].way * by_y;
+      slope[n - 2] += detected[d].method * by_x;
+      slope[n - 1] += detected[d].method * by_y;
     }
   }
 };
@@ -333,28 +334,28 @@ struct Discs {
 /// Eight pixels that lie beyond every edge tell of contrast and background alone.
 template <int discs, bool swept>
 void linearise_many(const MarkerSamples& samples, const DiscsAt& at, DiscsSums& result) {
-  const Discs<discs, swept> model{.p = at.parameters, .adds = at.adds, .most = at.most};
+  const Discs<discs, swept> model{.p = at.parameters, .adds = at.adds, .maximum = at.maximum};
   constexpr int n = Discs<discs, swept>::n;
   Floats information[n * (n + 1) / 2] = {}, gradient[n] = {}, squares = {};
   for (int i = 0; i < samples.count; i += 8) {
     const Floats x = load(samples.x + i), y = load(samples.y + i), weight = load(samples.weight + i);
-    Seen seen[discs];
+    Detected detected[discs];
     Integers felt = {};
-    for (int d = 0; d < discs; ++d) felt |= model.see(d, x, y, seen[d]);
+    for (int d = 0; d < discs; ++d) felt |= model.observe_frame(d, x, y, detected[d]);
     const bool edges = any(felt);
-    const Floats share = model.share(seen, edges);
-    const Floats residual = load(samples.value + i) - model.background - model.contrast * share;
+    const Floats fraction = model.fraction(detected, edges);
+    const Floats residual = load(samples.value + i) - model.background - model.contrast * fraction;
     squares += weight * residual * residual;
     if (!edges) {
-      information[0] += weight * share * share;
-      information[1] += weight * share;
+      information[0] += weight * fraction * fraction;
+      information[1] += weight * fraction;
       information[n] += weight;
-      gradient[0] += weight * share * residual;
+      gradient[0] += weight * fraction * residual;
       gradient[1] += weight * residual;
       continue;
     }
     Floats slope[n];
-    model.slopes(seen, share, slope);
+    model.slopes(detected, fraction, slope);
     int k = 0;
     for (int a = 0; a < n; ++a) {
       const Floats weighted = weight * slope[a];

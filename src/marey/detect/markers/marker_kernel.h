@@ -39,11 +39,11 @@ struct DiscSums {
   float sum[28];
 };
 
-inline constexpr int kMostDiscs = 4;
+inline constexpr int kMaxDiscs = 4;
 /// Parameters of several discs, in this order everywhere: these three, then x, y, radius of each disc, then half of the path that
 /// all of them went, if they did.
 enum { kDiscsContrast, kDiscsBackground, kDiscsBlur, kFirstDisc };
-inline constexpr int kMostParameters = kFirstDisc + 3 * kMostDiscs + 2;
+inline constexpr int kMaxParameters = kFirstDisc + 3 * kMaxDiscs + 2;
 
 /// One to four discs. Where they hide each other a pixel's share is 1 − Π (1 − sᵢ); where their light adds up it is Σ sᵢ, at most
 /// `most`, as far as the sensor goes. A disc that moved while it was seen is as near as its segment.
@@ -52,13 +52,13 @@ struct DiscsAt {
   int discs = 1;
   bool swept = false;  ///< one or two discs only
   bool adds = false;
-  float most = 0;
+  float maximum = 0;
 };
 
-/// The same sums as DiscSums for so many parameters as there are: the upper triangle of JᵀJ row by row, Jᵀr, r².
+/// The same sums as DiscSums for this many parameters as there are: the upper triangle of JᵀJ row by row, Jᵀr, r².
 struct DiscsSums {
-  float information[kMostParameters * (kMostParameters + 1) / 2];
-  float gradient[kMostParameters];
+  float information[kMaxParameters * (kMaxParameters + 1) / 2];
+  float gradient[kMaxParameters];
   float squares;
 };
 

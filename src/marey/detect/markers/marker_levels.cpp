@@ -1,6 +1,6 @@
 // The automatic threshold. Each tile of 64 × 64 pixels is sampled at 64 places on a grid. Its background is their median, smoothed
 // by the median of the 3 × 3 tiles around, so that a marker that fills a tile does not become its background. The noise is found
-// twice: over the image, from differences of pixels two apart, which a gradient hardly touches; and in the tile, from how far the
+// twice: over the image, from differences of pixels two apart, which a gradient barely touches; and in the tile, from how far the
 // samples fall short of their median, on the side on which no marker is: texture and gradients count there. A pixel passes that
 // stands out by the largest of 6 standard deviations, 3 % of white (compression and shadows), and a fifth of what the markers so
 // far stood out by. Assumes that markers cover less than half of most neighbourhoods of 192 × 192 pixels. Cost: 64 samples for a
@@ -18,16 +18,16 @@ namespace {
 
 constexpr int kTile = MarkerThresholds::kTile;
 constexpr int kGrid = 8;             // samples a tile, each way
-constexpr int kShare = 32;           // frames in which every tile is looked at once
+constexpr int kFraction = 32;        // frames in which every tile is inspected once
 constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
-constexpr double kLeast = 0.03;      // of white; of what was compressed or rounded to 8 bits
-constexpr double kLeastRaw = 0.01;   // of a picture of more bits
+constexpr double kMinValue = 0.03;   // of white; of what was compressed or rounded to 8 bits
+constexpr double kMinRaw = 0.01;     // of an image of more bits
 constexpr double kOfContrast = 0.3;  // of the bright ones': a dim edge of something else is no marker
 constexpr double kForget = 0.97;     // of the contrast is left after a frame without a marker
 constexpr double kUneven = 0.5;      // of what a marker must stand out by: a step in the ground that matters
 constexpr double kUnevenNoise = 5;   // noises: of noise alone seven tenths lie within 2.1
 constexpr double kOfTop = 0.6;       // of their own level: one before something bright stands out by less
-constexpr int kMostChange = 1023;
+constexpr int kMaxChange = 1023;
 
 double value_at(const cv::Mat& image, int x, int y) {
   return image.depth() == CV_8U ? image.ptr<std::uint8_t>(y)[x] : image.ptr<std::uint16_t>(y)[x];
@@ -44,9 +44,9 @@ void MarkerLevels::begin(const cv::Mat& image) {
   thresholds_ = {std::vector<std::uint16_t>(tiles_.area(), 0), dark_};
   white_ = 255;
   if (depth_ == CV_16U) {
-    double most = 0;
-    cv::minMaxLoc(image, nullptr, &most);
-    while (white_ < most) white_ = 2 * white_ + 1;
+    double maximum = 0;
+    cv::minMaxLoc(image, nullptr, &maximum);
+    while (white_ < maximum) white_ = 2 * white_ + 1;
   }
 }
 
@@ -54,15 +54,15 @@ void MarkerLevels::learn(const cv::Mat& image, bool afresh) {
   const bool first = image.size() != size_ || image.depth() != depth_;
   if (first) begin(image);
   const int count = tiles_.area();
-  const int share = first || afresh ? count : (count + kShare - 1) / kShare;
-  if (first || afresh) changes_.assign(kMostChange + 1, 0);
-  for (int i = 0; i < share; ++i) sample(image, (next_ + i) % count);
-  if (first || afresh || next_ + share >= count) {
+  const int fraction = first || afresh ? count : (count + kFraction - 1) / kFraction;
+  if (first || afresh) changes_.assign(kMaxChange + 1, 0);
+  for (int i = 0; i < fraction; ++i) sample(image, (next_ + i) % count);
+  if (first || afresh || next_ + fraction >= count) {
     learn_noise();
-    for (auto& seen : changes_) seen /= 2;  // older frames fade
+    for (auto& detected : changes_) detected /= 2;  // older frames fade
   }
-  for (int i = 0; i < share; ++i) set_threshold((next_ + i) % count);
-  next_ = (next_ + share) % count;
+  for (int i = 0; i < fraction; ++i) set_threshold((next_ + i) % count);
+  next_ = (next_ + fraction) % count;
 }
 
 void MarkerLevels::sample(const cv::Mat& image, int tile) {
@@ -78,7 +78,7 @@ void MarkerLevels::sample(const cv::Mat& image, int tile) {
       const double value = value_at(image, x, y);
       const double other = value_at(image, x + jump < size_.width ? x + jump : x - jump, y);
       heights[n++] = static_cast<int>(dark_ ? white_ - value : value);
-      ++changes_[std::min<int>(kMostChange, static_cast<int>(std::abs(value - other) * (depth_ == CV_8U ? 1 : 4 / unit)))];
+      ++changes_[std::min<int>(kMaxChange, static_cast<int>(std::abs(value - other) * (depth_ == CV_8U ? 1 : 4 / unit)))];
     }
   }
   std::sort(heights.begin(), heights.begin() + n);
@@ -122,13 +122,13 @@ double MarkerLevels::brighter_level(int tile) const {
 }
 
 /// What compression, rounding and shadows leave, grey levels.
-double MarkerLevels::least() const {
-  return (depth_ == CV_8U ? kLeast : kLeastRaw) * white_;
+double MarkerLevels::minimum() const {
+  return (depth_ == CV_8U ? kMinValue : kMinRaw) * white_;
 }
 
 double MarkerLevels::noise_demand(int tile) const {
   const double sigma = std::max<double>(noise_, raw_[static_cast<std::size_t>(tile)].spread);
-  return std::max(kSigmas * sigma, least());
+  return std::max(kSigmas * sigma, minimum());
 }
 
 double MarkerLevels::demand(double ground) const {
@@ -145,8 +145,8 @@ double MarkerLevels::needed(int tile) const {
 bool MarkerLevels::is_uneven(int tile) const {
   const double ground = raw_[static_cast<std::size_t>(tile)].median;
   const double apart = std::abs(ground - level_[static_cast<std::size_t>(tile)]);
-  const double wanted = std::max({kSigmas * noise_, least(), demand(dark_ ? white_ - ground : ground)});
-  return std::max<double>(raw_[static_cast<std::size_t>(tile)].step, apart) > std::max(kUneven * wanted, kUnevenNoise * noise_);
+  const double required = std::max({kSigmas * noise_, minimum(), demand(dark_ ? white_ - ground : ground)});
+  return std::max<double>(raw_[static_cast<std::size_t>(tile)].step, apart) > std::max(kUneven * required, kUnevenNoise * noise_);
 }
 
 void MarkerLevels::set_threshold(int tile) {
@@ -164,9 +164,9 @@ void MarkerLevels::learn_contrast(const std::optional<TypicalMarker>& typical) {
     typical_.contrast *= kForget;
     return;
   }
-  const double share = typical_.contrast > 0 ? 1.0 / kShare : 1;
-  typical_.contrast += (typical->contrast - typical_.contrast) * share;
-  typical_.top += (typical->top - typical_.top) * share;
+  const double fraction = typical_.contrast > 0 ? 1.0 / kFraction : 1;
+  typical_.contrast += (typical->contrast - typical_.contrast) * fraction;
+  typical_.top += (typical->top - typical_.top) * fraction;
 }
 
 void MarkerLevels::set_contrast(const TypicalMarker& typical) {
@@ -179,7 +179,7 @@ double MarkerLevels::background(int x, int y) const {
   return dark_ ? white_ - height : height;
 }
 
-double MarkerLevels::typical_least_contrast() const {
+double MarkerLevels::typical_min_contrast() const {
   std::vector<double> all;
   for (std::size_t i = 0; i < level_.size(); ++i) {
     const double height = dark_ ? white_ - thresholds_.of_tile[i] : thresholds_.of_tile[i];
@@ -189,7 +189,7 @@ double MarkerLevels::typical_least_contrast() const {
   return geometry::median(all);
 }
 
-double MarkerLevels::least_contrast(int x, int y) const {
+double MarkerLevels::min_contrast(int x, int y) const {
   const std::size_t tile = static_cast<std::size_t>(y / kTile) * tiles_.width + x / kTile;
   return std::max(1.0, std::abs(thresholds_.of_tile[tile] - background(x, y)));
 }

@@ -11,7 +11,7 @@
 
 namespace marey::detect::markers {
 
-/// What the markers of a picture are like, grey levels.
+/// What the markers of an image are like, grey levels.
 struct TypicalMarker {
   double contrast = 0;  ///< over what is around them
   double top = 0;       ///< their own level; of dark ones, counted down from white
@@ -30,7 +30,7 @@ class MarkerLevels {
   /// Looks at a share of the tiles; at all of them the first time, after the image's size or depth changed, or where `afresh`.
   void learn(const cv::Mat& image, bool afresh = false);
 
-  /// What markers of a frame are like; nothing where there were none.
+  /// What markers of a frame are like; nothing if there were none.
   void learn_contrast(const std::optional<TypicalMarker>& typical);
   /// The same at once, for all tiles.
   void set_contrast(const TypicalMarker& typical);
@@ -51,9 +51,9 @@ class MarkerLevels {
   /// Background at a pixel, grey levels.
   double background(int x, int y) const;
   /// The contrast that a pixel must have to pass, grey levels.
-  double least_contrast(int x, int y) const;
-  /// The middle of least_contrast over all tiles; 0 before the first frame.
-  double typical_least_contrast() const;
+  double min_contrast(int x, int y) const;
+  /// The middle of min_contrast over all tiles; 0 before the first frame.
+  double typical_min_contrast() const;
   /// Whether grounds of several levels meet in a tile (row of tiles by row of tiles), or it is another than those around, so that a
   /// threshold for all of it loses markers on the darker one.
   bool is_uneven(int tile) const;
@@ -70,7 +70,7 @@ class MarkerLevels {
   };
 
   void begin(const cv::Mat& image);
-  double least() const;
+  double minimum() const;
   void sample(const cv::Mat& image, int tile);
   void set_threshold(int tile);
   double smooth_median(int tile) const;

@@ -17,26 +17,26 @@ namespace marey::detect::markers {
 class MarkerLikeness {
  public:
   /// `widest`: px, of what the user says of markers; 0 where that is nothing.
-  explicit MarkerLikeness(double widest) : said_radius_(widest / 2) {}
+  explicit MarkerLikeness(double widest) : stated_radius_(widest / 2) {}
 
   /// What one blob says.
   struct Witness {
     double radius = 0;           ///< px
     std::optional<double> blur;  ///< px
-    double say = 0;              ///< how much it counts
+    double announce = 0;         ///< how much it counts
     double contrast = 0;         ///< grey levels
     bool round = false;          ///< whether it may bear witness of a large kind
   };
 
   /// Takes in what is seen in a frame.
-  void learn(std::span<const Witness> seen);
+  void learn(std::span<const Witness> detected);
 
   std::optional<double> blur() const { return blur_; }  ///< px
   std::optional<double> widest() const;                 ///< px, so that twice the radius and the blurred edge are within
 
-  /// No marker, whether alone, drawn out by its motion or with others that touch it, covers so many px².
+  /// No marker, whether alone, drawn out by its motion or with others that touch it, covers this many px².
   bool too_large(double area) const;
-  /// A marker that is no disc (half hidden, shaded, of a shape that nothing explains) covers no more than this many px².
+  /// A marker that is not a disc (half hidden, shaded, of a shape that nothing explains) covers no more than this many px².
   bool odd(double area) const;
   /// A disc of this radius, or a streak so wide, may be one of them; or one of three and more in a blob, which a half hidden marker
   /// looks like too where they may be small.
@@ -49,11 +49,11 @@ class MarkerLikeness {
  private:
   static constexpr double kLampRadius = 1.5;  // times a marker's
 
-  std::optional<double> large_kind(std::span<const Witness> seen);
+  std::optional<double> large_kind(std::span<const Witness> detected);
   double area(double markers) const;
   double largest() const { return std::max(*radius_, large_.value_or(0)); }
 
-  double said_radius_;
+  double stated_radius_;
   std::optional<double> radius_, blur_;
   std::optional<double> large_;  ///< px, the radius of the large kind where there are two
   std::vector<geometry::WeightedValue> radii_, blurs_, contrasts_;

@@ -10,12 +10,13 @@ using Witness = MarkerLikeness::Witness;
 constexpr double kSphere = 50;  // px², of the spheres below as a threshold cuts them out
 
 std::vector<Witness> specks(int count) {
-  return {static_cast<std::size_t>(count), Witness{.radius = 0.8, .blur = 0.6, .say = 1500, .contrast = 200, .round = true}};
+  return {static_cast<std::size_t>(count), Witness{.radius = 0.8, .blur = 0.6, .announce = 1500, .contrast = 200, .round = true}};
 }
 
-std::vector<Witness> with_large(std::vector<Witness> seen, const std::vector<double>& radii, double contrast, bool round = true) {
-  for (const double radius : radii) seen.push_back({radius, {}, 1100, contrast, round});
-  return seen;
+std::vector<Witness> with_large(std::vector<Witness> detected, const std::vector<double>& radii, double contrast,
+                                bool round = true) {
+  for (const double radius : radii) detected.push_back({radius, {}, 1100, contrast, round});
+  return detected;
 }
 
 TEST(MarkerLikeness, SpheresAmongSpecksAreAKindOfTheirOwn) {
@@ -37,10 +38,10 @@ TEST(MarkerLikeness, ThingsOfAllSizesAreNoKind) {
 
 TEST(MarkerLikeness, NeitherAFewNorFaintNorLongOnesAreAKind) {
   const std::vector<double> three{4, 4, 4}, many{3.7, 3.9, 4.0, 4.2, 4.4};
-  for (const auto& seen :
+  for (const auto& detected :
        {with_large(specks(200), three, 220), with_large(specks(200), many, 100), with_large(specks(200), many, 220, false)}) {
     MarkerLikeness likeness(0);
-    likeness.learn(seen);
+    likeness.learn(detected);
     EXPECT_TRUE(likeness.odd(kSphere));
   }
 }

@@ -27,7 +27,7 @@ void MarkerNeighbours::find(std::span<const MarkerBlob> blobs, std::size_t index
   const MarkerBlob& own = blobs[index];
   const int extent = std::max(own.box.width, own.box.height) / 2 + 3;
   const cv::Rect reach(own.box.x - extent, own.box.y - extent, own.box.width + 2 * extent, own.box.height + 2 * extent);
-  const auto cell = [](int place, int cells) { return std::clamp(place / kCell, 0, cells - 1); };
+  const auto cell = [](int location, int cells) { return std::clamp(location / kCell, 0, cells - 1); };
   for (int row = cell(reach.y, cell_count_.height); row <= cell(reach.br().y, cell_count_.height); ++row) {
     for (int column = cell(reach.x, cell_count_.width); column <= cell(reach.br().x, cell_count_.width); ++column) {
       for (const std::uint32_t i : cells_[static_cast<std::size_t>(row) * cell_count_.width + column]) {

@@ -13,7 +13,7 @@ namespace marey::detect::markers {
 /// The blobs of a frame, filed by cells, so that those near another are found without looking at all.
 class MarkerNeighbours {
  public:
-  /// Files blobs[i] for each i of `chosen`. They lie within a picture of `size`.
+  /// Files blobs[i] for each i of `chosen`. They lie within an image of `size`.
   void file(std::span<const MarkerBlob> blobs, std::span<const std::size_t> chosen, cv::Size size);
 
   /// Other filed blobs whose light may reach into the window of blobs[index], in `near`.

@@ -21,12 +21,12 @@ struct MarkerOptions {
   double min_area = 2;          ///< px² that pass the threshold
   double max_area = 10000;      ///< px²
   double min_roundness = 0.25;  ///< area over that of the circle as long as the blob: 1 a disc, b/a an ellipse
-  int most_markers = 5000;      ///< a frame; beyond, those where the tracker expects one stay, then the largest
-  cv::Mat mask;                 ///< CV_8UC1 of the picture's size, what is not 0 is left out; empty for none
-  std::vector<Mask> masked;     ///< px: parts of the picture that are left out too, as far as they lie in it
-  double auto_mask_s = 0;       ///< learn for so long what is bright and does not move, then leave it out; 0: never
+  int max_markers = 5000;       ///< a frame; beyond, those where the tracker expects one stay, then the largest
+  cv::Mat mask;                 ///< CV_8UC1 of the image's size, what is not 0 is omitted; empty for none
+  std::vector<Mask> masked;     ///< px: parts of the image that are omitted too, as far as they lie in it
+  double auto_mask_s = 0;       ///< learn for this long what is bright and does not move, then leave it out; 0: never
 
-  /// Whether what a marker must stand out by is learned from the pictures.
+  /// Whether what a marker must stand out by is learned from the images.
   bool automatic() const { return !colour && !threshold; }
 };
 

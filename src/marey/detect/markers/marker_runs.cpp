@@ -1,7 +1,7 @@
 // Connected components by runs (He, Chao & Suzuki, A run-based two-scan labeling algorithm, IEEE Trans. Image Processing 17, 2008).
 // Only the first scan touches pixels: words of 64 with a bit set (marker_kernel) become runs by counting trailing zeros, and runs
 // of neighbouring rows that touch are joined in a union-find whose roots are their first runs. The second scan goes over the runs
-// and sums area and moments in closed form. Assumes a mostly dark image for its speed, not for its result. Cost: one comparison of
+// and sums area and instants in closed form. Assumes a mostly dark image for its speed, not for its result. Cost: one comparison of
 // 64 pixels a word, and O(runs · α). Where an image has more runs than allowed (noise, glare) the search ends there and says so.
 #include "marey/detect/markers/marker_runs.h"
 
@@ -33,7 +33,7 @@ void MarkerMask::add(const MarkerMask& other) {
   for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] |= other.bits_[i];
 }
 
-MarkerRunFinder::MarkerRunFinder(std::size_t most_runs, const MarkerKernels& kernels) : most_runs_(most_runs), kernels_(kernels) {}
+MarkerRunFinder::MarkerRunFinder(std::size_t most_runs, const MarkerKernels& kernels) : max_runs_(most_runs), kernels_(kernels) {}
 
 std::span<const MarkerBlob> MarkerRunFinder::find(const cv::Mat& image, const MarkerThresholds& thresholds,
                                                   const MarkerMask& mask) {
@@ -69,7 +69,7 @@ void MarkerRunFinder::scan(const cv::Mat& image, const MarkerThresholds& thresho
         above = row == last_row + 1 ? here : runs_.size();
         here = runs_.size();
         last_row = row;
-        if (runs_.size() + image.cols / 2 + 1 > most_runs_) {
+        if (runs_.size() + image.cols / 2 + 1 > max_runs_) {
           cut_at_ = row;
           return;
         }

@@ -34,7 +34,7 @@ struct MarkerThresholds {
   bool dark = false;  ///< a pixel passes below its threshold, not above it
 };
 
-/// Pixels left out of every search: one bit each, rows of whole 64-bit words.
+/// Pixels omitted of every search: one bit each, rows of whole 64-bit words.
 class MarkerMask {
  public:
   MarkerMask() = default;
@@ -45,7 +45,7 @@ class MarkerMask {
   cv::Size size() const { return size_; }
   std::uint64_t word(int row, int word) const { return bits_[static_cast<std::size_t>(row) * words_ + word]; }
   bool at(int x, int y) const { return (word(y, x / 64) >> (x % 64) & 1) != 0; }
-  /// Leaves out what `other`, of the same size, leaves out as well.
+  /// Omits what `other`, of the same size, omits as well.
   void add(const MarkerMask& other);
 
  private:
@@ -74,7 +74,7 @@ class MarkerRunFinder {
   std::int32_t root(std::int32_t run);
   void sum_up();
 
-  std::size_t most_runs_;
+  std::size_t max_runs_;
   const MarkerKernels& kernels_;
   std::vector<MarkerHit> hits_;
   std::vector<MarkerRun> runs_;

@@ -26,14 +26,14 @@ std::vector<Region> flood(const cv::Mat& image, const MarkerThresholds& threshol
     const int limit = thresholds.of_tile[static_cast<std::size_t>(y / 64) * words + x / 64];
     return thresholds.dark ? value < limit : value > limit;
   };
-  cv::Mat seen = cv::Mat::zeros(image.size(), CV_8U);
+  cv::Mat detected = cv::Mat::zeros(image.size(), CV_8U);
   std::vector<Region> regions;
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
-      if (!passes(x, y) || seen.at<std::uint8_t>(y, x) != 0) continue;
+      if (!passes(x, y) || detected.at<std::uint8_t>(y, x) != 0) continue;
       Region region{{x, y, 1, 1}};
       std::vector<cv::Point> open{{x, y}};
-      seen.at<std::uint8_t>(y, x) = 1;
+      detected.at<std::uint8_t>(y, x) = 1;
       while (!open.empty()) {
         const cv::Point p = open.back();
         open.pop_back();
@@ -43,8 +43,8 @@ std::vector<Region> flood(const cv::Mat& image, const MarkerThresholds& threshol
         region.sum_y += p.y;
         for (int j = std::max(0, p.y - 1); j <= std::min(image.rows - 1, p.y + 1); ++j) {
           for (int i = std::max(0, p.x - 1); i <= std::min(image.cols - 1, p.x + 1); ++i) {
-            if (!passes(i, j) || seen.at<std::uint8_t>(j, i) != 0) continue;
-            seen.at<std::uint8_t>(j, i) = 1;
+            if (!passes(i, j) || detected.at<std::uint8_t>(j, i) != 0) continue;
+            detected.at<std::uint8_t>(j, i) = 1;
             open.emplace_back(i, j);
           }
         }

@@ -1,9 +1,9 @@
-// The automatic threshold, as seen from above. The first look passes whatever stands out of a tile's ground by more than its noise:
-// markers, but texture, specks, the pixels of a bar too. Each blob is then measured against what lies round it. Of those that stand
-// out, the bright and large ones say what a marker's contrast is; three tenths of that is asked of all, and more where the dim ones
-// are so many that the brightest of them would pass. What is too large or too long for a marker, and noise on something wide, says
-// where the ground is not plain: there the picture less what is wide is searched. After each such finding the picture is looked at
-// again, at most four times in all; in a film that is the first picture, and one where something comes into view.
+// The automatic threshold, as seen from above. The first inspection passes whatever stands out of a tile's ground by more than its
+// noise: markers, but texture, specks, the pixels of a bar too. Each blob is then measured against what lies round it. Of those
+// that stand out, the bright and large ones say what a marker's contrast is; three tenths of that is asked of all, and more where
+// the dim ones are so many that the brightest of them would pass. What is too large or too long for a marker, and noise on
+// something wide, says where the ground is not plain: there the image less what is wide is searched. After each such finding the
+// image is inspected again, at most four times in all; in a video that is the first image, and one where something comes into view.
 #include "marey/detect/markers/marker_search.h"
 
 #include <algorithm>
@@ -17,9 +17,9 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr std::size_t kMostRuns = 1 << 18;
+constexpr std::size_t kMaxRuns = 1 << 18;
 constexpr std::size_t kEnoughSamples = 5;  // for an automatic mask
-constexpr int kMostLooks = 4;              // at one picture
+constexpr int kMaxAppearance = 4;          // at one image
 constexpr int kClutterKept = 64;           // frames, before it is asked again whether it is still there
 constexpr double kOfDemand = 0.85;         // a blob over what is round it, in the contrast that its pixels had to have
 constexpr double kNewContrast = 1.5;       // times what was known: markers are brighter than was thought
@@ -27,13 +27,13 @@ constexpr double kLong = 0.15;             // less round than that is no marker,
 constexpr int kLongSide = 16;              // px, of what may be called long
 constexpr double kManyAreas = 8;           // of typical blobs: something wide, where it is not round or is cut by the border
 constexpr double kRound = 0.7;
-constexpr double kSomewhatRound = 0.4;  // of blobs that say what markers are like
-constexpr int kNoisy = 3;               // faint blobs in a tile: its ground is another than it was taken for
-constexpr double kHalo = 0.08;          // of its height, 3 px outside a blob over 12 px: a lamp's
-constexpr double kLeastLight = 0.05;    // contrast times area, of the typical one's: less is a speck
-constexpr double kEnoughLight = 60;     // px² of that one's area that count
-constexpr double kAsBright = 0.7;       // of the typical one's own level
-constexpr double kUsualWidest = 41;     // px; of markers on something wide, before one is known
+constexpr double kModeratelyRound = 0.4;  // of blobs that say what markers are like
+constexpr int kNoisy = 3;                 // faint blobs in a tile: its ground is another than it was taken for
+constexpr double kHalo = 0.08;            // of its height, 3 px outside a blob over 12 px: a lamp's
+constexpr double kMinLight = 0.05;        // contrast times area, of the typical one's: less is a speck
+constexpr double kEnoughLight = 60;       // px² of that one's area that count
+constexpr double kAsBright = 0.7;         // of the typical one's own level
+constexpr double kDefaultMaxWidth = 41;   // px; of markers on something wide, before one is known
 
 bool at_border(const MarkerBlob& blob, cv::Size size) {
   return blob.box.x == 0 || blob.box.y == 0 || blob.box.br().x == size.width || blob.box.br().y == size.height;
@@ -45,7 +45,7 @@ MarkerSearch::MarkerSearch(const MarkerOptions& options)
     : options_(options),
       levels_(options.dark && !options.colour, options.threshold),
       clutter_(options.dark),
-      finder_(kMostRuns),
+      finder_(kMaxRuns),
       auto_mask_(options.auto_mask_s) {
   if (!options_.mask.empty()) CV_Assert(options_.mask.type() == CV_8UC1);
 }
@@ -53,7 +53,7 @@ MarkerSearch::MarkerSearch(const MarkerOptions& options)
 void MarkerSearch::prime(std::span<const Frame> samples) {
   if (options_.auto_mask_s <= 0) return;
   for (const Frame& frame : samples) {
-    if (seconds(frame.time - samples.front().time) > options_.auto_mask_s || frame.picture.empty()) continue;
+    if (seconds(frame.time - samples.front().time) > options_.auto_mask_s || frame.image.empty()) continue;
     find(frame, std::nullopt);
   }
   if (samples.size() < kEnoughSamples || !auto_mask_.learning()) return;
@@ -62,44 +62,44 @@ void MarkerSearch::prime(std::span<const Frame> samples) {
 }
 
 std::span<const MarkerBlob> MarkerSearch::find(const Frame& frame, std::optional<double> widest) {
-  const cv::Mat& luma = frame.picture.luma();
-  widest_ = options_.widest > 0 ? options_.widest : widest.value_or(kUsualWidest);
-  prepare(frame.picture);
+  const cv::Mat& luma = frame.image.luma();
+  widest_ = options_.widest > 0 ? options_.widest : widest.value_or(kDefaultMaxWidth);
+  prepare(frame.image);
   if (++frames_ % kClutterKept == 0) clutter_.forget();
   standing_.clear();
-  for (int looks = 1;; ++looks) {
-    look(frame.picture);
+  for (int appearances = 1;; ++appearances) {
+    inspect(frame.image);
     if (!options_.automatic()) break;
     assess(luma);
-    if (looks == kMostLooks || !(learned_contrast() || found_clutter())) break;
+    if (appearances == kMaxAppearance || !(learned_contrast() || found_clutter())) break;
   }
   if (options_.automatic()) levels_.learn_contrast(typical_);
   if (options_.auto_mask_s <= 0 || !auto_mask_.learning()) return blobs_;
   if (const auto learned = auto_mask_.add(frame.time, size_, finder_.runs())) {
     learned_ = *learned;
     mask_more(*learned);
-    look(frame.picture);
+    inspect(frame.image);
     if (options_.automatic()) assess(luma);
   }
   return blobs_;
 }
 
-/// Learns the levels of the picture, and begins anew where it has another size.
-void MarkerSearch::prepare(const Picture& picture) {
-  const cv::Mat& luma = picture.luma();
+/// Learns the levels of the image, and begins again where it has another size.
+void MarkerSearch::prepare(const Image& image) {
+  const cv::Mat& luma = image.luma();
   if (!options_.mask.empty() && options_.mask.size() != luma.size()) {
-    throw Error("the mask is {}×{} px but the picture is {}×{}; give a mask of the picture's size", options_.mask.cols,
+    throw Error("the mask is {}×{} px but the image is {}×{}; give a mask of the image's size", options_.mask.cols,
                 options_.mask.rows, luma.cols, luma.rows);
   }
   levels_.learn(luma);
-  if (options_.colour) colour_heights(picture, *options_.colour, colours_);
+  if (options_.colour) colour_heights(image, *options_.colour, colours_);
   const cv::Size size = options_.colour ? colours_.size() : luma.size();
   if (size != size_) begin(size);
 }
 
 namespace {
 
-void leave_out(cv::Mat& excluded, const Mask& part) {
+void exclude(cv::Mat& excluded, const Mask& part) {
   if (part.corners().empty()) {
     excluded(part.box() & cv::Rect({}, excluded.size())).setTo(255);
   } else {
@@ -118,8 +118,8 @@ void MarkerSearch::begin(cv::Size size) {
   if (options_.mask.empty() && options_.masked.empty()) return;
   const cv::Size full = options_.colour ? cv::Size(2 * size.width, 2 * size.height) : size;
   cv::Mat excluded = options_.mask.empty() ? cv::Mat(cv::Mat::zeros(full, CV_8UC1)) : cv::Mat(options_.mask != 0);
-  for (const Mask& part : options_.masked) leave_out(excluded, part);
-  if (options_.colour) {  // a chroma pixel is left out where any of its four is
+  for (const Mask& part : options_.masked) exclude(excluded, part);
+  if (options_.colour) {  // a chroma pixel is omitted where any of its four is
     cv::dilate(excluded, excluded, cv::Mat::ones(3, 3, CV_8U));
     cv::resize(excluded, excluded, size, 0, 0, cv::INTER_NEAREST);
   }
@@ -149,17 +149,17 @@ void MarkerSearch::mask_more(const MarkerMask& learned) {
   for (int y = 0; y < mask_.size().height; ++y) {
     for (int x = 0; x < mask_.size().width; ++x) excluded += mask_.at(x, y) ? 1 : 0;
   }
-  if (!mask_.empty()) masked_share_ = static_cast<double>(excluded) / mask_.size().area();
+  if (!mask_.empty()) masked_fraction_ = static_cast<double>(excluded) / mask_.size().area();
 }
 
-/// One look: the blobs of what is searched.
-void MarkerSearch::look(const Picture& picture) {
+/// One inspection: the blobs of what is searched.
+void MarkerSearch::inspect(const Image& image) {
   if (!options_.colour) {
     const bool cluttered = clutter_.any();
-    const cv::Mat& plane = cluttered ? clutter_.plane(picture.luma(), widest_) : picture.luma();
+    const cv::Mat& plane = cluttered ? clutter_.plane(image.luma(), widest_) : image.luma();
     blobs_ = finder_.find(plane, cluttered ? clutter_.thresholds(levels_) : levels_.thresholds(), mask_);
     if (!finder_.cut_at()) return;
-    levels_.learn(picture.luma(), true);  // the light may have changed at once
+    levels_.learn(image.luma(), true);  // the light may have changed at once
     if (cluttered) clutter_.relearn();
     blobs_ = finder_.find(plane, cluttered ? clutter_.thresholds(levels_) : levels_.thresholds(), mask_);
     return;
@@ -201,7 +201,7 @@ bool MarkerSearch::has_halo(std::size_t blob) const {
 /// Measures each blob against what is round it, and finds what is typical of those that stand out.
 void MarkerSearch::assess(const cv::Mat& luma) {
   contrasts_.assign(blobs_.size(), {});
-  standing_.assign(blobs_.size(), Standing::unseen);
+  standing_.assign(blobs_.size(), Standing::unobserved);
   heights_.clear();
   std::vector<geometry::WeightedValue> contrasts, tops, areas;
   for (std::size_t i = 0; i < blobs_.size(); ++i) {
@@ -213,12 +213,12 @@ void MarkerSearch::assess(const cv::Mat& luma) {
     const auto& [around, height, halo] = contrasts_[i];
     standing_[i] = height < kOfDemand * demand(blob, around) ? Standing::faint : Standing::out;
     if (standing_[i] == Standing::faint || area > options_.max_area || has_halo(i) || at_border(blob, luma.size())) continue;
-    const double round = roundness_of(blob), say = say_of(height, area);
-    if (round < kSomewhatRound) continue;
+    const double round = roundness_of(blob), announce = report_of(height, area);
+    if (round < kModeratelyRound) continue;
     heights_.push_back(height);
-    contrasts.push_back({height, say});
-    tops.push_back({(options_.dark ? levels_.white() - around : around) + height, say});
-    if (round >= kRound) areas.push_back({area, say});
+    contrasts.push_back({height, announce});
+    tops.push_back({(options_.dark ? levels_.white() - around : around) + height, announce});
+    if (round >= kRound) areas.push_back({area, announce});
   }
   const auto contrast = geometry::weighted_median(contrasts), top = geometry::weighted_median(tops);
   typical_ = contrast ? std::optional(TypicalMarker{*contrast, *top}) : std::nullopt;
@@ -226,14 +226,14 @@ void MarkerSearch::assess(const cv::Mat& luma) {
   if (typical_) leave_clutter();
 }
 
-/// What so many others stand out by that the brightest of them would pass for markers, and what gives too little light.
+/// What this many others stand out by that the brightest of them would pass for markers, and what gives too little light.
 void MarkerSearch::leave_clutter() {
-  const double least = above_clutter(heights_, typical_->contrast);
-  const double light = kLeastLight * std::min(typical_area_.value_or(0), kEnoughLight) * typical_->contrast;
+  const double minimum = above_clutter(heights_, typical_->contrast);
+  const double light = kMinLight * std::min(typical_area_.value_or(0), kEnoughLight) * typical_->contrast;
   for (std::size_t i = 0; i < blobs_.size(); ++i) {
     const auto& [around, height, halo] = contrasts_[i];
     const double top = (options_.dark ? levels_.white() - around : around) + height;
-    const bool dim = height < least && top < kAsBright * typical_->top;  // and not before something bright
+    const bool dim = height < minimum && top < kAsBright * typical_->top;  // and not before something bright
     const bool speck = height * static_cast<double>(blobs_[i].area) < light;
     if (standing_[i] == Standing::out && (dim || speck)) standing_[i] = Standing::clutter;
   }

@@ -16,9 +16,9 @@
 
 namespace marey::detect::markers {
 
-/// Finds what stands out in a picture: blobs, and by how much. The automatic threshold is more than one look at the first picture,
-/// and at one in which something is new: what markers stand out by, and where the ground is not plain, is known only when blobs
-/// were seen. Later pictures take over what was learned.
+/// Finds what stands out in an image: blobs, and by how much. The automatic threshold is more than one inspection at the first
+/// image, and at one in which something is new: what markers stand out by, and where the ground is not plain, is known only when
+/// blobs were seen. Later images take over what was learned.
 class MarkerSearch {
  public:
   explicit MarkerSearch(const MarkerOptions& options);
@@ -26,34 +26,34 @@ class MarkerSearch {
   /// Learns the automatic mask at once where the samples lie within its time.
   void prime(std::span<const Frame> samples);
 
-  /// Blobs in pixels of the full picture, whatever they were found in. `widest`: px, of the largest marker that is known of.
+  /// Blobs in pixels of the full image, whatever they were found in. `widest`: px, of the largest marker that is known of.
   std::span<const MarkerBlob> find(const Frame& frame, std::optional<double> widest);
-  /// Of a blob of the last frame: where the threshold is automatic, whether it is no noise and no edge of something wide.
+  /// Of a blob of the last frame: where the threshold is automatic, whether it is not a noise and no edge of something wide.
   bool stands_out(std::size_t blob) const { return standing_.empty() || standing_[blob] == Standing::out; }
   /// Its light falls off slowly: a lamp's, or of what is out of focus.
   bool has_halo(std::size_t blob) const;
   /// What lies round it, grey levels.
   double around(const cv::Mat& luma, std::size_t blob) const;
   /// The contrast that a pixel must have to pass there, grey levels.
-  double least_contrast(const MarkerBlob& blob) { return std::max(1.0, demand(blob, levels_.background(blob.box.x, blob.box.y))); }
+  double min_contrast(const MarkerBlob& blob) { return std::max(1.0, demand(blob, levels_.background(blob.box.x, blob.box.y))); }
 
   const MarkerLevels& levels() const { return levels_; }
   bool was_cut() const { return finder_.cut_at().has_value(); }  ///< the last frame's lower part was not searched
-  double masked_share() const { return masked_share_; }          ///< of the picture
-  /// Once the automatic mask is learned: the boxes of its parts, px of the picture.
+  double masked_fraction() const { return masked_fraction_; }    ///< of the image
+  /// Once the automatic mask is learned: the boxes of its parts, px of the image.
   std::optional<std::vector<cv::Rect>> learned_parts() const;
 
  private:
   enum class Standing : char {
-    unseen,   ///< too small to be looked at
-    faint,    ///< as what lies round it, or nearly
-    clutter,  ///< as many others do, and markers do not
+    unobserved,  ///< too small to be inspected
+    faint,       ///< as what lies round it, or nearly
+    clutter,     ///< as many others do, and markers do not
     out,
   };
 
-  void prepare(const Picture& picture);
+  void prepare(const Image& image);
   void begin(cv::Size size);
-  void look(const Picture& picture);
+  void inspect(const Image& image);
   void mask_more(const MarkerMask& learned);
   void assess(const cv::Mat& luma);
   double demand(const MarkerBlob& blob, double around);
@@ -67,11 +67,11 @@ class MarkerSearch {
   MarkerClutter clutter_;
   MarkerRunFinder finder_;
   MarkerAutoMask auto_mask_;
-  MarkerMask mask_, learned_;  // all that is left out; of that the automatic mask's
+  MarkerMask mask_, learned_;  // all that is omitted; of that the automatic mask's
   MarkerThresholds colour_thresholds_;
   cv::Size size_;  // of what is searched
   cv::Mat colours_;
-  double masked_share_ = 0;
+  double masked_fraction_ = 0;
   double widest_ = 0;
   std::int64_t frames_ = 0;
   std::span<const MarkerBlob> blobs_;

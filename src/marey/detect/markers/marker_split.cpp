@@ -1,10 +1,10 @@
-// Two to four discs in one blob. The blob is told as the union of k discs with one edge width and one brightness: a pixel's share
-// is 1 − Π (1 − sᵢ), whichever disc lies in front. All centres and radii, the contrast, the background and the blur are fitted
-// together by Levenberg-Marquardt, begun from k-means of the bright pixels along the blob's long axis. Where discs add up instead
-// of hiding each other the overlap is brighter than a disc; such pixels are cut to the discs' own level first. The rival is one
-// marker in motion: a disc swept along a segment (distance to the segment instead of the point). The blob is split when the discs
-// leave clearly less than the swept disc does, their radii are alike, and their centres lie apart. Cost: about 10 steps of k error
-// shares a pixel (marker_disc_models); the caller bounds the number of pairs.
+// Two to four discs in one blob. The blob is reported as the union of k discs with one edge width and one brightness: a pixel's
+// share is 1 − Π (1 − sᵢ), whichever disc lies in front. All centres and radii, the contrast, the background and the blur are
+// fitted together by Levenberg-Marquardt, begun from k-means of the bright pixels along the blob's long axis. Where discs add up
+// instead of hiding each other the overlap is brighter than a disc; such pixels are cut to the discs' own level first. The rival is
+// one marker in motion: a disc swept along a segment (distance to the segment instead of the point). The blob is split when the
+// discs leave clearly less than the swept disc does, their radii are alike, and their centres lie apart. Cost: about 10 steps of k
+// error shares a pixel (marker_disc_models); the caller bounds the number of pairs.
 #include "marey/detect/markers/marker_split.h"
 
 #include <algorithm>
@@ -21,20 +21,20 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr double kClearly = 0.5;          // of the squares that one swept disc leaves
-constexpr double kClearlyExpected = 0.8;  // where the tracker knows of several
-constexpr double kSurely = 20;            // noise variances: where discs fit to the noise, by how much they must fit better
-constexpr double kSurelyExpected = -9;    // the tracker saw both: nearly as good will do
-constexpr double kModelError = 0.006;     // of the contrast
-constexpr double kLeastApart = 0.8;       // centres, in mean radii
-constexpr double kMostUnlike = 2.2;       // larger radius over smaller
-constexpr double kMovingClearly = 0.9;    // of the squares that one swept disc leaves
-constexpr double kSimpler = 1.3;          // of the squares that three or four discs at rest leave: it has fewer parameters
-constexpr double kMovingApart = 1.2;      // centres of two in motion, in mean radii
-constexpr double kGrain = 0.03;           // of the contrast: one swept disc that leaves no more is not asked whether it is two
-constexpr int kFewestMoving = 120, kMostMoving = 4000;  // px, of a window in which two in motion are looked for
-constexpr double kLeastWithin = 0.7;                    // of a disc
-constexpr double kWellTold = 0.08;                      // of the contrast: what an explanation leaves at most
+constexpr double kDistinctly = 0.5;          // of the squares that one swept disc leaves
+constexpr double kDistinctlyExpected = 0.8;  // where the tracker knows of several
+constexpr double kCertainly = 20;            // noise variances: where discs fit to the noise, by how much they must fit better
+constexpr double kCertainlyExpected = -9;    // the tracker saw both: nearly as good will do
+constexpr double kModelError = 0.006;        // of the contrast
+constexpr double kMinApart = 0.8;            // centres, in mean radii
+constexpr double kMaxUnlike = 2.2;           // larger radius over smaller
+constexpr double kMovingDistinctly = 0.9;    // of the squares that one swept disc leaves
+constexpr double kSimpler = 1.3;             // of the squares that three or four discs at rest leave: it has fewer parameters
+constexpr double kMovingApart = 1.2;         // centres of two in motion, in mean radii
+constexpr double kGrain = 0.03;              // of the contrast: one swept disc that leaves no more is not asked whether it is two
+constexpr int kMinMoving = 120, kMaxMoving = 4000;  // px, of a window in which two in motion are searched for
+constexpr double kMinWithin = 0.7;                  // of a disc
+constexpr double kWellReported = 0.08;              // of the contrast: what an explanation leaves at most
 
 /// The level of a disc, where pixels are brighter than that: an overlap of discs that add up. Else nothing.
 std::optional<float> level_below_overlap(const std::vector<float>& value, double noise) {
@@ -53,16 +53,16 @@ std::vector<Vector<2>> centres(const MarkerWindow& window, const std::vector<flo
   result.reserve(k);
   for (int i = 0; i < k; ++i) result.push_back(window.centroid + axis * (2.0 * i / (k - 1) - 1));
   for (int round = 0; round < 10; ++round) {
-    std::array<Vector<2>, kMostDiscs> sums;
-    std::array<double, kMostDiscs> counts{};
+    std::array<Vector<2>, kMaxDiscs> sums;
+    std::array<double, kMaxDiscs> counts{};
     sums.fill(Vector<2>::Zero());
     for (int i = 0; i < window.count; ++i) {
       if (value[i] < 0.4f) continue;
-      const Vector<2> place(window.x[i], window.y[i]);
+      const Vector<2> location(window.x[i], window.y[i]);
       const auto nearest = std::min_element(result.begin(), result.end(), [&](const auto& a, const auto& b) {
-        return (a - place).squaredNorm() < (b - place).squaredNorm();
+        return (a - location).squaredNorm() < (b - location).squaredNorm();
       });
-      sums[nearest - result.begin()] += place;
+      sums[nearest - result.begin()] += location;
       counts[nearest - result.begin()] += 1;
     }
     for (int j = 0; j < k; ++j) {
@@ -72,13 +72,13 @@ std::vector<Vector<2>> centres(const MarkerWindow& window, const std::vector<flo
   return result;
 }
 
-bool distinct(const DiscsModel& model, double least_apart = kLeastApart) {
+bool distinct(const DiscsModel& model, double least_apart = kMinApart) {
   for (int i = 0; i < model.discs; ++i) {
     for (int j = 0; j < i; ++j) {
       const auto a = model.p.segment<3>(kFirstDisc + 3 * i), b = model.p.segment<3>(kFirstDisc + 3 * j);
       const double apart = (a.head<2>() - b.head<2>()).norm();
       if (apart < least_apart * (a[2] + b[2]) / 2) return false;
-      if (std::max(a[2], b[2]) > kMostUnlike * std::min(a[2], b[2])) return false;
+      if (std::max(a[2], b[2]) > kMaxUnlike * std::min(a[2], b[2])) return false;
     }
   }
   return true;
@@ -111,7 +111,7 @@ std::vector<MarkerShape> shapes(const DiscsSolution& solution, const MarkerWindo
   return result;
 }
 
-/// The ellipse of a blob's moments, px.
+/// The ellipse of a blob's instants, px.
 struct BlobEllipse {
   double half_length = 0, half_width = 0;
   Vector<2> along = Vector<2>::UnitX();
@@ -133,7 +133,7 @@ DiscsModel swept_disc(const BlobEllipse& ellipse, const MarkerWindow& window, do
   return swept;
 }
 
-/// So many discs, whose places are still to be set.
+/// This many discs, whose places are still to be set.
 DiscsModel several_discs(int count, const MarkerWindow& window, const MarkerSurroundings& around, double blur) {
   DiscsModel discs{DiscsParameters(kFirstDisc + 3 * count), count};
   discs.ceiling = around.dark ? window.background / window.scale : std::abs(around.white - window.background) / window.scale;
@@ -174,7 +174,7 @@ bool within_window(const DiscsModel& model, const MarkerWindow& window) {
     int inside = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(window.count); ++k)
       inside += std::hypot(window.x[k] - disc[0], window.y[k] - disc[1]) < disc[2] ? 1 : 0;
-    if (inside < kLeastWithin * std::numbers::pi * disc[2] * disc[2]) return false;
+    if (inside < kMinWithin * std::numbers::pi * disc[2] * disc[2]) return false;
   }
   return true;
 }
@@ -182,10 +182,10 @@ bool within_window(const DiscsModel& model, const MarkerWindow& window) {
 DiscsSolution fit_several(const SplitTask& task, int count) {
   DiscsModel discs = several_discs(count, task.window, task.around, task.blur);
   const double radius = std::max(0.4, std::sqrt(task.window.half_area / (count * std::numbers::pi)));
-  const auto places = centres(task.window, task.value, count, task.ellipse.along * task.ellipse.half_length * (1 - 1.0 / count));
+  const auto locations = centres(task.window, task.value, count, task.ellipse.along * task.ellipse.half_length * (1 - 1.0 / count));
   for (int i = 0; i < count; ++i)
-    discs.p.segment<3>(kFirstDisc + 3 * i) << places[static_cast<std::size_t>(i)].x(), places[static_cast<std::size_t>(i)].y(),
-        radius;
+    discs.p.segment<3>(kFirstDisc + 3 * i) << locations[static_cast<std::size_t>(i)].x(),
+        locations[static_cast<std::size_t>(i)].y(), radius;
   DiscsSolution solution = fit_discs(discs, task.window, task.value, task.stiffness);
   if (!task.overlap || count != 2) return solution;  // more discs that add up could tell any streak
   discs.adds = true;
@@ -200,8 +200,8 @@ DiscsModel moving_pair(const SplitTask& task, const Vector<2>& apart, const Vect
   pair.p.conservativeResize(kFirstDisc + 8);
   pair.swept = true;
   for (int i = 0; i < 2; ++i) {
-    const Vector<2> place = task.window.centroid + (i == 0 ? -0.5 : 0.5) * apart;
-    pair.p.segment<3>(kFirstDisc + 3 * i) << place.x(), place.y(), radius;
+    const Vector<2> location = task.window.centroid + (i == 0 ? -0.5 : 0.5) * apart;
+    pair.p.segment<3>(kFirstDisc + 3 * i) << location.x(), location.y(), radius;
   }
   pair.p.tail<2>() = path;
   return pair;
@@ -231,14 +231,14 @@ MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, co
   if (window.count < 20) return {};
   const SplitTask task = task_of(window, blob, around);
   const DiscsSolution rival = fit_discs(swept_disc(task.ellipse, window, task.blur), window, task.value, task.stiffness);
-  const double share = expected >= 2 ? kClearlyExpected : kClearly;
-  const double surely = (expected >= 2 ? kSurelyExpected : kSurely) * task.noise * task.noise;
+  const double fraction = expected >= 2 ? kDistinctlyExpected : kDistinctly;
+  const double certainly = (expected >= 2 ? kCertainlyExpected : kCertainly) * task.noise * task.noise;
   double to_beat = rival.normal.squares;
   MarkerSplit best;
-  for (int k = 2; k <= kMostDiscs; ++k) {
+  for (int k = 2; k <= kMaxDiscs; ++k) {
     const DiscsSolution solution = fit_several(task, k);
     const double left = solution.normal.squares;
-    const bool clear = left < share * to_beat || (left < task.floor && to_beat - left > surely);
+    const bool clear = left < fraction * to_beat || (left < task.floor && to_beat - left > certainly);
     if (!distinct(solution.model) || !clear || !within_window(solution.model, window)) {
       if (k == 2) continue;  // three in a corner may fit where two do not
       break;
@@ -247,17 +247,17 @@ MarkerSplit split_markers(const MarkerWindow& window, const MarkerBlob& blob, co
     to_beat = left;
     if (left < task.floor || best.discs.front().misfit < 0.04) break;
   }
-  const double most = std::max(kWellTold, 3 * task.noise);
+  const double maximum = std::max(kWellReported, 3 * task.noise);
   const MarkerShape swept = shapes(rival, window, task.stiffness).front();
-  const double told = best.discs.empty() ? swept.misfit : best.discs.front().misfit;
-  const bool may_move = moving && window.count >= kFewestMoving && window.count <= kMostMoving;
-  if (may_move && (told > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2)) {
+  const double reported = best.discs.empty() ? swept.misfit : best.discs.front().misfit;
+  const bool may_move = moving && window.count >= kMinMoving && window.count <= kMaxMoving;
+  if (may_move && (reported > std::max(kGrain, 2 * task.noise) || best.discs.size() > 2)) {
     const DiscsSolution pair = fit_moving_pair(task);
-    const double limit = (best.discs.size() > 2 ? kSimpler : kMovingClearly) * to_beat;
+    const double limit = (best.discs.size() > 2 ? kSimpler : kMovingDistinctly) * to_beat;
     if (distinct(pair.model, kMovingApart) && pair.normal.squares < limit) best.discs = shapes(pair, window, task.stiffness);
   }
-  if (!best.discs.empty() && best.discs.front().misfit > most) best.discs.clear();
-  if (best.discs.empty() && swept.misfit <= most) best.swept = swept;
+  if (!best.discs.empty() && best.discs.front().misfit > maximum) best.discs.clear();
+  if (best.discs.empty() && swept.misfit <= maximum) best.swept = swept;
   return best;
 }
 

@@ -22,11 +22,11 @@ Frame disc_at_a_bar(double x, bool before) {
     }
   }
   Frame frame;
-  frame.picture = Picture(image);
+  frame.image = Image(image);
   return frame;
 }
 
-TEST(MarkerSplit, OneAtTheEdgeOfABarIsOne) {
+TEST(MarkerSplit, KeepsSingleMarkerAtBarEdge) {
   for (const bool before : {false, true}) {
     for (double x = 20; x < 39; x += 0.7) {
       MarkerDetector detector;

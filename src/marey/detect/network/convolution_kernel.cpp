@@ -24,7 +24,7 @@ template <int size>
 void row_of(const DepthwiseRows& rows, const float* weights, float bias, float low, float high, int width, float* out) {
   const Floats d;
   const int step = static_cast<int>(hn::Lanes(d));
-  const auto least = hn::Set(d, low), most = hn::Set(d, high), first = hn::Set(d, bias);
+  const auto minimum = hn::Set(d, low), maximum = hn::Set(d, high), first = hn::Set(d, bias);
   for (int x = 0; x < width; x += 2 * step) {
     auto left = first, right = first;
     for (int r = 0; r < size; ++r) {
@@ -35,8 +35,8 @@ void row_of(const DepthwiseRows& rows, const float* weights, float bias, float l
         right = hn::MulAdd(weight, hn::LoadU(d, values + step), right);
       }
     }
-    hn::StoreU(hn::Min(hn::Max(left, least), most), d, out + x);
-    hn::StoreU(hn::Min(hn::Max(right, least), most), d, out + x + step);
+    hn::StoreU(hn::Min(hn::Max(left, minimum), maximum), d, out + x);
+    hn::StoreU(hn::Min(hn::Max(right, minimum), maximum), d, out + x + step);
   }
 }
 
@@ -55,7 +55,7 @@ void point(const float* pixels, const float* weights, int inputs, const float* b
   constexpr int kBlock = ConvolutionKernels::kBlock, kRows = ConvolutionKernels::kRows;
   static_assert(kRows == 6);
   const int step = static_cast<int>(hn::Lanes(d));
-  const auto least = hn::Set(d, low), most = hn::Set(d, high);
+  const auto minimum = hn::Set(d, low), maximum = hn::Set(d, high);
   for (int x = 0; x < kBlock; x += 2 * step) {
     auto a0 = hn::Set(d, bias[0]), a1 = hn::Set(d, bias[1]), a2 = hn::Set(d, bias[2]), a3 = hn::Set(d, bias[3]),
          a4 = hn::Set(d, bias[4]), a5 = hn::Set(d, bias[5]);
@@ -73,8 +73,8 @@ void point(const float* pixels, const float* weights, int inputs, const float* b
     }
     const auto put = [&](auto a, auto b, int row) HWY_ATTR {
       float* to = out + static_cast<std::ptrdiff_t>(row) * stride + x;
-      hn::StoreU(hn::Min(hn::Max(a, least), most), d, to);
-      hn::StoreU(hn::Min(hn::Max(b, least), most), d, to + step);
+      hn::StoreU(hn::Min(hn::Max(a, minimum), maximum), d, to);
+      hn::StoreU(hn::Min(hn::Max(b, minimum), maximum), d, to + step);
     };
     put(a0, b0, 0), put(a1, b1, 1), put(a2, b2, 2), put(a3, b3, 3), put(a4, b4, 4), put(a5, b5, 5);
   }

@@ -4,8 +4,8 @@ namespace marey::detect::network {
 
 /// Rows of one channel: what belongs to output x of tap k is taps[row][k][x].
 struct DepthwiseRows {
-  static constexpr int kMostTaps = 5;
-  const float* taps[kMostTaps][kMostTaps] = {};
+  static constexpr int kMaxTaps = 5;
+  const float* taps[kMaxTaps][kMaxTaps] = {};
 };
 
 /// The inner loops of convolutions. Results are held in [low, high].

@@ -77,7 +77,7 @@ class OwnConvolution : public cv::dnn::Layer {
 
  private:
   PlainLayer plain_;
-  cv::Ptr<cv::dnn::ActivationLayer> activation_;  // one that is none of the two that the kernels do
+  cv::Ptr<cv::dnn::ActivationLayer> activation_;  // one that is not one of the two that the kernels do
 };
 
 class DepthwiseConvolution final : public OwnConvolution {

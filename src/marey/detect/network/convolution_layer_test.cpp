@@ -12,7 +12,7 @@ namespace {
 
 struct Shape {
   int inputs, outputs, groups, size, stride, pad;
-  cv::Size picture;
+  cv::Size image;
 };
 
 cv::Mat random_values(std::vector<int> sizes, std::mt19937& random) {
@@ -41,7 +41,7 @@ float plain_convolution(const cv::Mat& input, const cv::Mat& weights, const cv::
 }
 
 void check_convolution(const Shape& shape, bool clipped, std::mt19937& random) {
-  const cv::Mat input = random_values({1, shape.inputs, shape.picture.height, shape.picture.width}, random);
+  const cv::Mat input = random_values({1, shape.inputs, shape.image.height, shape.image.width}, random);
   const cv::Mat weights = random_values({shape.outputs, shape.inputs / shape.groups, shape.size, shape.size}, random);
   const cv::Mat bias = random_values({shape.outputs}, random);
   cv::dnn::LayerParams params;

@@ -29,7 +29,7 @@ class Fields {
  public:
   explicit Fields(std::string_view message) : rest_(message) {}
 
-  /// Nothing at the end, and where the message is none.
+  /// Nothing at the end, and where the message is not one.
   std::optional<Field> next() {
     if (rest_.empty()) return std::nullopt;
     const std::string_view from_here = rest_;
@@ -96,7 +96,7 @@ std::string floats_of(std::string_view halves) {
   return {reinterpret_cast<const char*>(floats.data), floats.total() * floats.elemSize()};
 }
 
-/// A tensor's message; nothing where it is not of 16-bit floats.
+/// A tensor's message; nothing if it is not of 16-bit floats.
 std::optional<std::string> full_tensor(std::string_view message) {
   std::string result;
   bool half = false, raw = false;

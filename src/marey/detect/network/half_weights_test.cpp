@@ -26,7 +26,7 @@ TEST(HalfWeights, BecomeFloats) {
   EXPECT_EQ(with_full_weights(model_of(1, floats)), model_of(1, floats));
 }
 
-TEST(HalfWeights, WhatIsNoNetworkStaysAsItIs) {
+TEST(HalfWeights, KeepsNonNetworkFile) {
   EXPECT_EQ(with_full_weights(""), "");
   EXPECT_EQ(with_full_weights("no network at all"), "no network at all");
   const std::string whole = model_of(10, "\x00\x3c\x00\xc1"s);

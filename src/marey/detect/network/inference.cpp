@@ -16,7 +16,7 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr int kMostThreads = 16;  // each holds the network once
+constexpr int kMaxThreads = 16;  // each holds the network once
 
 /// OpenCV writes to standard error what it also throws: not while this lives.
 class QuietOpenCv {
@@ -63,8 +63,9 @@ Inference::Engine::Engine(const std::string& onnx) : net_(std::make_unique<Net>(
 
 Inference::Engine::~Engine() = default;
 
-std::vector<Tensor> Inference::Engine::run(const cv::Mat& blob, std::span<const std::string> wanted) {
-  const std::vector<std::string> names = wanted.empty() ? net_->outputs : std::vector<std::string>(wanted.begin(), wanted.end());
+std::vector<Tensor> Inference::Engine::run(const cv::Mat& blob, std::span<const std::string> required) {
+  const std::vector<std::string> names =
+      required.empty() ? net_->outputs : std::vector<std::string>(required.begin(), required.end());
   net_->net.setInput(blob);
   std::vector<cv::Mat> outputs;
   net_->net.forward(outputs, names);
@@ -91,10 +92,10 @@ Inference::Inference(Inference&&) noexcept = default;
 
 void Inference::each(std::size_t count, const std::function<void(Engine&, std::size_t)>& work) {
   const QuietOpenCv quiet;
-  const auto threads = std::min<std::size_t>(count, static_cast<std::size_t>(std::clamp(cv::getNumThreads(), 1, kMostThreads)));
+  const auto threads = std::min<std::size_t>(count, static_cast<std::size_t>(std::clamp(cv::getNumThreads(), 1, kMaxThreads)));
   while (engines_.size() < threads) engines_.push_back(load());
   std::vector<std::exception_ptr> failed(threads);
-  const auto share_of = [&](std::size_t thread) {
+  const auto fraction_of = [&](std::size_t thread) {
     try {
       for (std::size_t i = thread; i < count; i += threads) work(*engines_[thread], i);
     } catch (...) {
@@ -102,12 +103,12 @@ void Inference::each(std::size_t count, const std::function<void(Engine&, std::s
     }
   };
   if (threads == 1) {
-    share_of(0);
+    fraction_of(0);
   } else if (threads > 1) {  // within it OpenCV computes each network on one thread
     cv::parallel_for_(
         cv::Range(0, static_cast<int>(threads)),
         [&](const cv::Range& range) {
-          for (int i = range.start; i < range.end; ++i) share_of(static_cast<std::size_t>(i));
+          for (int i = range.start; i < range.end; ++i) fraction_of(static_cast<std::size_t>(i));
         },
         static_cast<double>(threads));
   }

@@ -23,14 +23,14 @@ class Inference {
     explicit Engine(const std::string& onnx);
     ~Engine();
     /// `blob`: 1 × channels × height × width floats; `wanted`: outputs by name, all where it is empty. Throws cv::Exception.
-    std::vector<Tensor> run(const cv::Mat& blob, std::span<const std::string> wanted = {});
+    std::vector<Tensor> run(const cv::Mat& blob, std::span<const std::string> required = {});
 
    private:
     struct Net;
     std::unique_ptr<Net> net_;
   };
 
-  /// From an ONNX file, whose weights may be of 16 bits. Throws Error where it cannot be loaded, with what to do then.
+  /// From an ONNX file, whose weights may be of 16 bits. Throws Error if it cannot be loaded, with what to do then.
   explicit Inference(std::string onnx, std::string remedy = "export it with opset 11 or 12 and a fixed input");
   ~Inference();
   Inference(Inference&&) noexcept;

@@ -14,11 +14,11 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr int kLeastInput = 16, kMostInput = 4096;
-constexpr std::size_t kLongestFile = 1 << 16;  // bytes
+constexpr int kMinInput = 16, kMaxInput = 4096;
+constexpr std::size_t kMaxFile = 1 << 16;  // bytes
 
-[[noreturn]] void refuse(const std::string& path, const toml::node* node, const std::string& sentence) {
-  throw Error("{}:{}: {}", path, node == nullptr ? 1 : std::max<unsigned>(1, node->source().begin.line), sentence);
+[[noreturn]] void refuse(const std::string& path, const toml::node* node, const std::string& message_text) {
+  throw Error("{}:{}: {}", path, node == nullptr ? 1 : std::max<unsigned>(1, node->source().begin.line), message_text);
 }
 
 class ModelTable {
@@ -55,7 +55,7 @@ class ModelTable {
   void knows_only(std::initializer_list<std::string_view> keys) const {
     for (const auto& [key, value] : table_) {
       if (std::find(keys.begin(), keys.end(), key.str()) == keys.end())
-        refuse(path_, &value, fmt::format("{} is no setting of a model; these are: {}", key.str(), fmt::join(keys, ", ")));
+        refuse(path_, &value, fmt::format("{} is not a setting of a model; these are: {}", key.str(), fmt::join(keys, ", ")));
     }
   }
 
@@ -74,7 +74,7 @@ class ModelTable {
 std::optional<NetworkModel::Resize> resize_of(const ModelTable& table, const std::string& path) {
   const auto text = table.text("resize");
   if (!text) return std::nullopt;
-  if (*text == "stretch") return NetworkModel::Resize::stretch;
+  if (*text == "stretch") return NetworkModel::Resize::segment;
   if (*text == "letterbox") return NetworkModel::Resize::letterbox;
   if (*text == "corner") return NetworkModel::Resize::corner;
   refuse(path, table.at("resize"), "resize must be stretch, letterbox or corner");
@@ -87,8 +87,8 @@ NetworkModel model_of(const ModelTable& table, const std::string& path) {
   const auto network = table.text("network");
   if (!network) refuse(path, nullptr, "network is missing: the ONNX file, beside this one");
   model.network = (std::filesystem::path(path).parent_path() / *network).string();
-  const auto input = table.numbers<2>("input", kLeastInput, kMostInput);
-  if (!input) refuse(path, nullptr, "input is missing: [width, height] in px of the picture that the network wants");
+  const auto input = table.numbers<2>("input", kMinInput, kMaxInput);
+  if (!input) refuse(path, nullptr, "input is missing: [width, height] in px of the image that the network wants");
   model.input = {static_cast<int>(std::lround((*input)[0])), static_cast<int>(std::lround((*input)[1]))};
   if (const auto layout = table.text("layout")) {
     model.layout = layout_named(*layout);
@@ -122,8 +122,8 @@ NetworkModel read_network_model(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(in), {});
   if (!in) throw Error("{}: cannot be read; give the TOML file that describes a detection network (docs/network.md)", path);
-  if (text.size() > kLongestFile || text.find('\0') != std::string::npos)
-    throw Error("{}: is no description of a detection network but something else; give the TOML file beside the network", path);
+  if (text.size() > kMaxFile || text.find('\0') != std::string::npos)
+    throw Error("{}: is not a description of a detection network but something else; give the TOML file beside the network", path);
   return parse_network_model(text, path);
 }
 

@@ -10,10 +10,10 @@
 
 namespace marey::detect::network {
 
-/// A detection network, as a file of TOML says (docs/network.md): where it lies, what picture it wants, what its outputs mean. What
-/// is not said there is as usual for its layout.
+/// A detection network, as a file of TOML says (docs/network.md): where it lies, what image it wants, what its outputs mean. What
+/// is not said there is as normal for its layout.
 struct NetworkModel {
-  enum class Resize { stretch, letterbox, corner };  ///< corner: as letterbox, the picture at the top left
+  enum class Resize { segment, letterbox, corner };  ///< corner: as letterbox, the image at the top left
 
   std::string path;              ///< the TOML file, for messages
   std::string network;           ///< the ONNX file

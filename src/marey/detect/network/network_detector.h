@@ -4,22 +4,22 @@
 #include <optional>
 #include <vector>
 
+#include "marey/detect/network/image_cells.h"
 #include "marey/detect/network/network_options.h"
-#include "marey/detect/network/picture_cells.h"
 #include "marey/detect/network/run_network.h"
 #include "marey/detect/network/tiles.h"
 
 namespace marey::detect::network {
 
-/// People found by a network in tiles of each picture, alone or beside a background model. Beside it a person whom both see is
+/// People found by a network in tiles of each image, alone or beside a background model. Beside it a person whom both see is
 /// as the background model measured it, people who share one region are those whom the network sees in it, and who stands since
 /// the first frame, whom only the network sees, is added. Boxes end at the tip of the foot, as silhouettes do. The network runs
-/// where it may tell something new: all over the picture now and then; in between where people share a region, where somebody
+/// where it may tell something new: all over the image now and then; in between where people share a region, where a person
 /// appears, or is expected and not found. Who stands there with the same pixels as when the network found them is found again
 /// without it.
 class NetworkDetector final : public Detector {
  public:
-  /// Throws Error where the model or its network is not usable.
+  /// Throws Error if the model or its network is not usable.
   explicit NetworkDetector(const NetworkDetectorOptions& options);
 
   void prime(std::span<const Frame> samples) override;
@@ -28,40 +28,40 @@ class NetworkDetector final : public Detector {
   DetectionCounts detection_counts() const override;
   std::optional<Box> body_at(const Vector<2>& foot) const override;
 
-  /// Parts of pictures that the network was run on so far.
+  /// Parts of images that the network was run on so far.
   std::int64_t tiles_searched() const { return tiles_; }
 
-  /// What the network alone sees in the picture, looking everywhere. Learns nothing but the size of people.
-  std::vector<Detection> look(const Frame& frame);
+  /// What the network alone sees in the image, looking everywhere. Learns nothing but the size of people.
+  std::vector<Detection> inspect(const Frame& frame);
 
  private:
-  /// Whom the network found, and the picture in which it did.
+  /// Whom the network found, and the image in which it did.
   struct Standing {
     Detection found;
-    PictureCells cells;
+    ImageCells cells;
   };
 
   std::optional<people::PersonSize> size_at(double x, double y) const;
-  std::vector<cv::Rect> tiles_of(cv::Size picture) const;
-  std::vector<Detection> look_at(const Frame& frame, std::span<const cv::Rect> tiles);
-  void learn(std::span<const Detection> found, cv::Size picture);
-  std::vector<Detection> search(const Frame& frame, const PictureCells& cells, std::span<const Expected> expected,
+  std::vector<cv::Rect> tiles_of(cv::Size image) const;
+  std::vector<Detection> inspect_at(const Frame& frame, std::span<const cv::Rect> tiles);
+  void learn(std::span<const Detection> found, cv::Size image);
+  std::vector<Detection> search(const Frame& frame, const ImageCells& cells, std::span<const Expected> expected,
                                 std::span<const Detection> moving);
-  std::vector<Box> asked(const PictureCells& cells, std::span<const Expected> expected, std::span<const Detection> moving,
-                         cv::Size picture) const;
+  std::vector<Box> requested(const ImageCells& cells, std::span<const Expected> expected, std::span<const Detection> moving,
+                             cv::Size image) const;
   bool stands(const Box& box) const;
-  void forget_changed(const PictureCells& cells);
+  void forget_changed(const ImageCells& cells);
   std::vector<Detection> standing() const;
-  std::vector<Detection> joined(const std::vector<Detection>& moving, const std::vector<Detection>& seen) const;
+  std::vector<Detection> joined(const std::vector<Detection>& moving, const std::vector<Detection>& detected) const;
 
   NetworkDetectorOptions options_;
   LoadedNetwork network_;
   std::unique_ptr<people::PeopleDetector> moving_;  // none without a background model
   people::PersonSizeModel sizes_;
-  std::optional<Timestamp> looked_everywhere_;
+  std::optional<Timestamp> inspected_everywhere_;
   double until_everywhere_;         // s from then on
   std::vector<Standing> standing_;  // those found last, as long as their pixels are the same
-  PictureCells before_;             // of the last frame that was searched
+  ImageCells before_;               // of the last frame that was searched
   std::int64_t frames_ = 0, misfits_ = 0, tiles_ = 0;
 };
 

@@ -54,11 +54,11 @@ TEST(NetworkModel, SaysWhatItsFileSays) {
 TEST(NetworkModel, WhatIsWrongInItsFileIsSaidWithItsLine) {
   EXPECT_EQ(refused_model("input = [300, 300]\n"), "model.toml:1: network is missing: the ONNX file, beside this one");
   EXPECT_EQ(refused_model("network = \"n.onnx\"\n"),
-            "model.toml:1: input is missing: [width, height] in px of the picture that the network wants");
+            "model.toml:1: input is missing: [width, height] in px of the image that the network wants");
   EXPECT_EQ(refused_model("network = \"n.onnx\"\ninput = [300, 300]\nlayout = \"yolo\"\n"),
             "model.toml:3: layout must be one of ssd_raw, ssd, yolov5, yolox, yolov8, suppressed, nanodet, rt_detr, rf_detr");
   EXPECT_EQ(refused_model("network = \"n.onnx\"\ninput = [300]\n"), "model.toml:2: input must be a list of 2 numbers");
-  EXPECT_NE(refused_model("netwrok = \"n.onnx\"\n").find("netwrok is no setting of a model"), std::string::npos);
+  EXPECT_NE(refused_model("netwrok = \"n.onnx\"\n").find("netwrok is not a setting of a model"), std::string::npos);
   EXPECT_NE(refused_model("network = ").find("model.toml:1:"), std::string::npos);
 }
 
@@ -71,9 +71,9 @@ TEST(NetworkDetector, AnUnusableNetworkIsOneSentence) {
   EXPECT_EQ(refused_detector(folder / "model.toml"),
             fmt::format("{}: its network {} is not there", folder / "model.toml", folder / "n.onnx"));
   test::write_file(folder / "n.onnx", "no network");
-  const std::string sentence = refused_detector(folder / "model.toml");
-  EXPECT_NE(sentence.find("cannot be loaded as an ONNX network"), std::string::npos) << sentence;
-  EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+  const std::string message_text = refused_detector(folder / "model.toml");
+  EXPECT_NE(message_text.find("cannot be loaded as an ONNX network"), std::string::npos) << message_text;
+  EXPECT_EQ(message_text.find('\n'), std::string::npos) << message_text;
 }
 
 TEST(NetworkDetector, TellsTheLayoutOfARealNetworkAndSeesNobodyOnGrey) {

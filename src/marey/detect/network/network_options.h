@@ -11,10 +11,11 @@ namespace marey::detect::network {
 struct NetworkDetectorOptions {
   static constexpr std::string_view name = "network";
 
-  std::string model = {};   ///< a file that describes a network (model_file.h)
-  bool background = true;   ///< a background model beside it, which sees whoever moves between the frames that the network looks at
-  int every = 1;            ///< the network looks at every n-th frame
-  double everywhere_s = 2;  ///< the network looks all over the picture this often, or up to four times as seldom
+  std::string model = {};  ///< a file that describes a network (model_file.h)
+  bool background =
+      true;       ///< a background model beside it, which sees the one who moves between the frames that the network looks at
+  int every = 1;  ///< the network looks at every n-th frame
+  double everywhere_s = 2;                    ///< the network looks all over the image this often, or up to four times as rarely
   double first_height = 84;                   ///< px: as high people are taken to be until some were found
   people::PeopleDetectorOptions people = {};  ///< the background model and, where they are known, the sizes of people
 };

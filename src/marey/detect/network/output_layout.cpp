@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::array<std::string_view, 9> kLayoutNames = {"ssd_raw",    "ssd",     "yolov5",  "yolox",  "yolov8",
                                                           "suppressed", "nanodet", "rt_detr", "rf_detr"};
-constexpr int kMostQueries = 1000;  // candidates of a network of the DETR kind
-constexpr int kDistances = 8;       // of nanodet's distributions
+constexpr int kMaxQueries = 1000;  // candidates of a network of the DETR kind
+constexpr int kDistances = 8;      // of nanodet's distributions
 
-/// A tensor as rows and columns, the batch of one left out.
+/// A tensor as rows and columns, the batch of one omitted.
 struct Table {
   int rows = 0, columns = 0;
   const float* values = nullptr;
@@ -55,11 +55,11 @@ Candidate centred(double x, double y, double width, double height, double score)
 
 /// Of several outputs with one number a candidate, the one whose name holds `word`, else the one at `place` among them.
 std::size_t named_or_nth(std::span<const Tensor> outputs, const std::vector<std::size_t>& lists, std::string_view word,
-                         std::size_t place) {
+                         std::size_t location) {
   for (const std::size_t i : lists) {
     if (outputs[i].name.find(word) != std::string::npos) return i;
   }
-  return lists[place];
+  return lists[location];
 }
 
 [[noreturn]] void contradicts_layout(std::span<const Tensor> outputs, Layout layout) {
@@ -141,15 +141,15 @@ std::vector<Anchor> ssd_anchors(cv::Size input) {
   return anchors;
 }
 
-std::vector<Candidate> of_ssd_raw(const Scored& raw, cv::Size input, int wanted, double least) {
+std::vector<Candidate> of_ssd_raw(const Scored& raw, cv::Size input, int required, double minimum) {
   const std::vector<Anchor> anchors = ssd_anchors(input);
-  if (static_cast<int>(anchors.size()) != raw.boxes.rows || wanted >= raw.logits.columns)
+  if (static_cast<int>(anchors.size()) != raw.boxes.rows || required >= raw.logits.columns)
     throw Error("the network has {} candidates of {} classes; SSD over {}x{} px has {}, and class {} is wanted", raw.boxes.rows,
-                raw.logits.columns, input.width, input.height, anchors.size(), wanted);
+                raw.logits.columns, input.width, input.height, anchors.size(), required);
   std::vector<Candidate> found;
   for (int i = 0; i < raw.boxes.rows; ++i) {
-    const double score = logistic(raw.logits.at(i, wanted));
-    if (score < least) continue;
+    const double score = logistic(raw.logits.at(i, required));
+    if (score < minimum) continue;
     const Anchor& anchor = anchors[static_cast<std::size_t>(i)];
     const double y = anchor.y + raw.boxes.at(i, 0) / 10 * anchor.height, x = anchor.x + raw.boxes.at(i, 1) / 10 * anchor.width;
     const double height = anchor.height * std::exp(raw.boxes.at(i, 2) / 5.0),
@@ -159,14 +159,14 @@ std::vector<Candidate> of_ssd_raw(const Scored& raw, cv::Size input, int wanted,
   return found;
 }
 
-std::vector<Candidate> of_ssd(std::span<const Tensor> outputs, cv::Size input, int wanted, double least) {
+std::vector<Candidate> of_ssd(std::span<const Tensor> outputs, cv::Size input, int required, double minimum) {
   std::vector<Candidate> found;
   const double w = input.width, h = input.height;
   if (outputs.size() == 1) {
     const Table table = table_of(outputs[0]);
     if (table.columns != 7) contradicts_layout(outputs, Layout::ssd);
     for (int i = 0; i < table.rows; ++i) {
-      if (std::lround(table.at(i, 1)) != wanted || table.at(i, 2) < least) continue;
+      if (std::lround(table.at(i, 1)) != required || table.at(i, 2) < minimum) continue;
       found.push_back({table.at(i, 3) * w, table.at(i, 4) * h, table.at(i, 5) * w, table.at(i, 6) * h, table.at(i, 2)});
     }
     return found;
@@ -174,30 +174,30 @@ std::vector<Candidate> of_ssd(std::span<const Tensor> outputs, cv::Size input, i
   const auto lists = listed(outputs);
   if (!lists) contradicts_layout(outputs, Layout::ssd);
   for (int i = 0; i < lists->count; ++i) {
-    if (std::lround(lists->classes.at(i, 0)) != wanted || lists->scores.at(i, 0) < least) continue;
+    if (std::lround(lists->classes.at(i, 0)) != required || lists->scores.at(i, 0) < minimum) continue;
     const Table& b = lists->boxes;
     found.push_back({b.at(i, 1) * w, b.at(i, 0) * h, b.at(i, 3) * w, b.at(i, 2) * h, lists->scores.at(i, 0)});
   }
   return found;
 }
 
-std::vector<Candidate> of_yolov5(const Table& table, int wanted, double least) {
+std::vector<Candidate> of_yolov5(const Table& table, int required, double minimum) {
   std::vector<Candidate> found;
   for (int i = 0; i < table.rows; ++i) {
-    const double score = table.at(i, 4) * table.at(i, 5 + wanted);
-    if (score >= least) found.push_back(centred(table.at(i, 0), table.at(i, 1), table.at(i, 2), table.at(i, 3), score));
+    const double score = table.at(i, 4) * table.at(i, 5 + required);
+    if (score >= minimum) found.push_back(centred(table.at(i, 0), table.at(i, 1), table.at(i, 2), table.at(i, 3), score));
   }
   return found;
 }
 
-std::vector<Candidate> of_yolox(const Table& table, cv::Size input, int wanted, double least) {
+std::vector<Candidate> of_yolox(const Table& table, cv::Size input, int required, double minimum) {
   std::vector<Candidate> found;
   int i = 0;
   for (const int stride : {8, 16, 32}) {
     for (int y = 0; y < (input.height + stride - 1) / stride; ++y) {
       for (int x = 0; x < (input.width + stride - 1) / stride; ++x, ++i) {
-        const double score = table.at(i, 4) * table.at(i, 5 + wanted);
-        if (score < least) continue;
+        const double score = table.at(i, 4) * table.at(i, 5 + required);
+        if (score < minimum) continue;
         found.push_back(centred((table.at(i, 0) + x) * stride, (table.at(i, 1) + y) * stride, std::exp(table.at(i, 2)) * stride,
                                 std::exp(table.at(i, 3)) * stride, score));
       }
@@ -206,19 +206,19 @@ std::vector<Candidate> of_yolox(const Table& table, cv::Size input, int wanted, 
   return found;
 }
 
-std::vector<Candidate> of_yolov8(const Table& table, int wanted, double least) {
+std::vector<Candidate> of_yolov8(const Table& table, int required, double minimum) {
   std::vector<Candidate> found;
   for (int i = 0; i < table.columns; ++i) {
-    const double score = table.at(4 + wanted, i);
-    if (score >= least) found.push_back(centred(table.at(0, i), table.at(1, i), table.at(2, i), table.at(3, i), score));
+    const double score = table.at(4 + required, i);
+    if (score >= minimum) found.push_back(centred(table.at(0, i), table.at(1, i), table.at(2, i), table.at(3, i), score));
   }
   return found;
 }
 
-std::vector<Candidate> of_suppressed(const Table& table, int wanted, double least) {
+std::vector<Candidate> of_suppressed(const Table& table, int required, double minimum) {
   std::vector<Candidate> found;
   for (int i = 0; i < table.rows; ++i) {
-    if (std::lround(table.at(i, 5)) != wanted || table.at(i, 4) < least) continue;
+    if (std::lround(table.at(i, 5)) != required || table.at(i, 4) < minimum) continue;
     found.push_back({table.at(i, 0), table.at(i, 1), table.at(i, 2), table.at(i, 3), table.at(i, 4)});
   }
   return found;
@@ -234,58 +234,58 @@ double expected_distance(const Table& table, int row, int column) {
   return mean / sum;
 }
 
-std::vector<Candidate> of_nanodet(const Table& table, cv::Size input, int wanted, double least) {
+std::vector<Candidate> of_nanodet(const Table& table, cv::Size input, int required, double minimum) {
   const int classes = table.columns - 4 * kDistances;
   std::vector<Candidate> found;
   int i = 0;
   for (const int stride : {8, 16, 32, 64}) {
     for (int y = 0; y < (input.height + stride - 1) / stride; ++y) {
       for (int x = 0; x < (input.width + stride - 1) / stride; ++x, ++i) {
-        if (table.at(i, wanted) < least) continue;
+        if (table.at(i, required) < minimum) continue;
         const auto side = [&](int which) { return stride * expected_distance(table, i, classes + which * kDistances); };
         const double cx = x * stride, cy = y * stride;
-        found.push_back({cx - side(0), cy - side(1), cx + side(2), cy + side(3), table.at(i, wanted)});
+        found.push_back({cx - side(0), cy - side(1), cx + side(2), cy + side(3), table.at(i, required)});
       }
     }
   }
   return found;
 }
 
-std::vector<Candidate> of_rt_detr(const Listed& lists, int wanted, double least) {
+std::vector<Candidate> of_rt_detr(const Listed& lists, int required, double minimum) {
   std::vector<Candidate> found;
   for (int i = 0; i < lists.count; ++i) {
-    if (std::lround(lists.classes.at(i, 0)) != wanted || lists.scores.at(i, 0) < least) continue;
+    if (std::lround(lists.classes.at(i, 0)) != required || lists.scores.at(i, 0) < minimum) continue;
     const Table& b = lists.boxes;
     found.push_back({b.at(i, 0), b.at(i, 1), b.at(i, 2), b.at(i, 3), lists.scores.at(i, 0)});
   }
   return found;
 }
 
-std::vector<Candidate> of_rf_detr(const Scored& raw, cv::Size input, int wanted, double least) {
+std::vector<Candidate> of_rf_detr(const Scored& raw, cv::Size input, int required, double minimum) {
   std::vector<Candidate> found;
   for (int i = 0; i < raw.boxes.rows; ++i) {
-    const double score = logistic(raw.logits.at(i, wanted));
-    if (score < least) continue;
+    const double score = logistic(raw.logits.at(i, required));
+    if (score < minimum) continue;
     found.push_back(centred(raw.boxes.at(i, 0) * input.width, raw.boxes.at(i, 1) * input.height, raw.boxes.at(i, 2) * input.width,
                             raw.boxes.at(i, 3) * input.height, score));
   }
   return found;
 }
 
-/// Whether a table has a column (or row) for the class, and as many candidates as its layout has over such a picture.
-bool holds_class(const Table& table, Layout layout, cv::Size input, int wanted) {
-  if (wanted < 0) return false;
+/// Whether a table has a column (or row) for the class, and as many candidates as its layout has over such an image.
+bool holds_class(const Table& table, Layout layout, cv::Size input, int required) {
+  if (required < 0) return false;
   switch (layout) {
     case Layout::yolov5:
-      return table.columns > 5 + wanted;
+      return table.columns > 5 + required;
     case Layout::yolox:
-      return table.columns > 5 + wanted && table.rows == cells(input, {8, 16, 32});
+      return table.columns > 5 + required && table.rows == cells(input, {8, 16, 32});
     case Layout::yolov8:
-      return table.rows > 4 + wanted;
+      return table.rows > 4 + required;
     case Layout::suppressed:
       return table.columns == 6;
     case Layout::nanodet:
-      return table.columns > 4 * kDistances + wanted && table.rows == cells(input, {8, 16, 32, 64});
+      return table.columns > 4 * kDistances + required && table.rows == cells(input, {8, 16, 32, 64});
     default:
       return false;
   }
@@ -308,45 +308,45 @@ std::string layout_names() {
 }
 
 std::optional<Layout> layout_of(std::span<const Tensor> outputs, cv::Size input) {
-  if (const auto raw = scored(outputs)) return raw->boxes.rows <= kMostQueries ? Layout::rf_detr : Layout::ssd_raw;
+  if (const auto raw = scored(outputs)) return raw->boxes.rows <= kMaxQueries ? Layout::rf_detr : Layout::ssd_raw;
   if (const auto lists = listed(outputs)) return outputs.size() == 4 ? Layout::ssd : Layout::rt_detr;
   if (outputs.size() != 1) return std::nullopt;
   const Table table = table_of(outputs[0]);
-  const int usual = cells(input, {8, 16, 32});
+  const int typical = cells(input, {8, 16, 32});
   if (table.columns == 7 && outputs[0].shape.size() == 4) return Layout::ssd;
-  if (table.rows == 3 * usual && table.columns > 5) return Layout::yolov5;
-  if (table.rows == usual && table.columns > 5) return Layout::yolox;
+  if (table.rows == 3 * typical && table.columns > 5) return Layout::yolov5;
+  if (table.rows == typical && table.columns > 5) return Layout::yolox;
   if (table.rows == cells(input, {8, 16, 32, 64}) && table.columns > 4 * kDistances) return Layout::nanodet;
-  if (table.columns == usual && table.rows > 4) return Layout::yolov8;
-  if (table.columns == 6 && table.rows <= kMostQueries) return Layout::suppressed;
+  if (table.columns == typical && table.rows > 4) return Layout::yolov8;
+  if (table.columns == 6 && table.rows <= kMaxQueries) return Layout::suppressed;
   return std::nullopt;
 }
 
-std::vector<Candidate> candidates_of(std::span<const Tensor> outputs, Layout layout, cv::Size input, int wanted, double least) {
-  if (layout == Layout::ssd) return of_ssd(outputs, input, wanted, least);
+std::vector<Candidate> candidates_of(std::span<const Tensor> outputs, Layout layout, cv::Size input, int required, double minimum) {
+  if (layout == Layout::ssd) return of_ssd(outputs, input, required, minimum);
   if (layout == Layout::rt_detr) {
     const auto lists = listed(outputs);
     if (!lists) contradicts_layout(outputs, layout);
-    return of_rt_detr(*lists, wanted, least);
+    return of_rt_detr(*lists, required, minimum);
   }
   if (layout == Layout::ssd_raw || layout == Layout::rf_detr) {
     const auto raw = scored(outputs);
-    if (!raw || wanted < 0 || wanted >= raw->logits.columns) contradicts_layout(outputs, layout);
-    return layout == Layout::ssd_raw ? of_ssd_raw(*raw, input, wanted, least) : of_rf_detr(*raw, input, wanted, least);
+    if (!raw || required < 0 || required >= raw->logits.columns) contradicts_layout(outputs, layout);
+    return layout == Layout::ssd_raw ? of_ssd_raw(*raw, input, required, minimum) : of_rf_detr(*raw, input, required, minimum);
   }
   const Table table = outputs.size() == 1 ? table_of(outputs[0]) : Table{};
-  if (!holds_class(table, layout, input, wanted)) contradicts_layout(outputs, layout);
+  if (!holds_class(table, layout, input, required)) contradicts_layout(outputs, layout);
   switch (layout) {
     case Layout::yolov5:
-      return of_yolov5(table, wanted, least);
+      return of_yolov5(table, required, minimum);
     case Layout::yolox:
-      return of_yolox(table, input, wanted, least);
+      return of_yolox(table, input, required, minimum);
     case Layout::yolov8:
-      return of_yolov8(table, wanted, least);
+      return of_yolov8(table, required, minimum);
     case Layout::nanodet:
-      return of_nanodet(table, input, wanted, least);
+      return of_nanodet(table, input, required, minimum);
     default:
-      return of_suppressed(table, wanted, least);
+      return of_suppressed(table, required, minimum);
   }
 }
 

@@ -36,18 +36,18 @@ struct Tensor {
   std::vector<float> values;
 };
 
-/// What shapes like these are, for a network that is given pictures of `input` px; nothing where they are of no layout above.
+/// What shapes like these are, for a network that is given images of `input` px; nothing if they are of no layout above.
 std::optional<Layout> layout_of(std::span<const Tensor> outputs, cv::Size input);
 
-/// One candidate that is of the wanted class: its box in px of the network's input, edges counted from the picture's edge.
+/// One candidate that is of the wanted class: its box in px of the network's input, edges counted from the image's edge.
 struct Candidate {
   double left = 0, top = 0, right = 0, bottom = 0;
   double score = 0;  ///< in [0, 1]
 };
 
 /// The candidates of class `wanted` (from 0, or as the network counts in `ssd`) whose score reaches `least`, none suppressed but by
-/// the network itself. Outputs must be of that layout: whoever calls asked `layout_of`, or a person said so. Throws Error where
+/// the network itself. Outputs must be of that layout: the one who calls asked `layout_of`, or a person said so. Throws Error if
 /// their shapes contradict it.
-std::vector<Candidate> candidates_of(std::span<const Tensor> outputs, Layout layout, cv::Size input, int wanted, double least);
+std::vector<Candidate> candidates_of(std::span<const Tensor> outputs, Layout layout, cv::Size input, int required, double minimum);
 
 }  // namespace marey::detect::network

@@ -12,7 +12,7 @@ namespace marey::detect::network {
 namespace {
 
 const cv::Size kInput(320, 320);
-constexpr int kClasses = 80, kWanted = 2;
+constexpr int kClasses = 80, kRequired = 2;
 constexpr double kX = 150, kY = 110, kW = 40, kH = 96;  // one person: centre and size, px
 
 Tensor zeros(const std::string& name, std::vector<int> shape, float value = 0) {
@@ -29,15 +29,15 @@ void put(Tensor& tensor, std::size_t row, std::initializer_list<double> values) 
 
 void expect_the_person(const std::vector<Tensor>& outputs, Layout layout) {
   EXPECT_EQ(layout_of(outputs, kInput), layout) << layout_name(layout);
-  const auto found = candidates_of(outputs, layout, kInput, kWanted, 0.5);
+  const auto found = candidates_of(outputs, layout, kInput, kRequired, 0.5);
   ASSERT_EQ(found.size(), 1U) << layout_name(layout);
   EXPECT_NEAR(found[0].left, kX - kW / 2, 0.5) << layout_name(layout);
   EXPECT_NEAR(found[0].right, kX + kW / 2, 0.5) << layout_name(layout);
   EXPECT_NEAR(found[0].top, kY - kH / 2, 0.5) << layout_name(layout);
   EXPECT_NEAR(found[0].bottom, kY + kH / 2, 0.5) << layout_name(layout);
   EXPECT_NEAR(found[0].score, 0.81, 0.01) << layout_name(layout);
-  EXPECT_TRUE(candidates_of(outputs, layout, kInput, kWanted, 0.9).empty());
-  EXPECT_TRUE(candidates_of(outputs, layout, kInput, kWanted + 1, 0.5).empty());
+  EXPECT_TRUE(candidates_of(outputs, layout, kInput, kRequired, 0.9).empty());
+  EXPECT_TRUE(candidates_of(outputs, layout, kInput, kRequired + 1, 0.5).empty());
 }
 
 TEST(OutputLayout, Yolov5) {
@@ -62,7 +62,7 @@ TEST(OutputLayout, Yolov8) {
 
 TEST(OutputLayout, SuppressedInside) {
   Tensor out = zeros("output0", {1, 300, 6});
-  put(out, 3, {kX - kW / 2, kY - kH / 2, kX + kW / 2, kY + kH / 2, 0.81, kWanted});
+  put(out, 3, {kX - kW / 2, kY - kH / 2, kX + kW / 2, kY + kH / 2, 0.81, kRequired});
   expect_the_person({out}, Layout::suppressed);
 }
 
@@ -85,13 +85,13 @@ TEST(OutputLayout, SsdAfterItsPostProcessing) {
   Tensor boxes = zeros("TFLite_Detection_PostProcess", {1, 10, 4}), classes = zeros("TFLite_Detection_PostProcess:1", {1, 10});
   Tensor scores = zeros("TFLite_Detection_PostProcess:2", {1, 10}), count = zeros("TFLite_Detection_PostProcess:3", {1}, 1);
   put(boxes, 0, {(kY - kH / 2) / 320, (kX - kW / 2) / 320, (kY + kH / 2) / 320, (kX + kW / 2) / 320});
-  classes.values[0] = kWanted, scores.values[0] = 0.81F;
+  classes.values[0] = kRequired, scores.values[0] = 0.81F;
   expect_the_person({boxes, classes, scores, count}, Layout::ssd);
 }
 
 TEST(OutputLayout, DetectionOutput) {
   Tensor out = zeros("detection_out", {1, 1, 100, 7});
-  put(out, 4, {0, kWanted, 0.81, (kX - kW / 2) / 320, (kY - kH / 2) / 320, (kX + kW / 2) / 320, (kY + kH / 2) / 320});
+  put(out, 4, {0, kRequired, 0.81, (kX - kW / 2) / 320, (kY - kH / 2) / 320, (kX + kW / 2) / 320, (kY + kH / 2) / 320});
   expect_the_person({out}, Layout::ssd);
 }
 
@@ -102,7 +102,7 @@ TEST(OutputLayout, SsdBeforeIt) {
       400 * 3 + 6 * (3 * 10 + 4) + 2;  // layer 2, scale 0.35, ratio 1/2: 79.2 px wide, 158.4 high, over (144, 112)
   const double height = 0.35 / std::sqrt(0.5) * 320, width = 0.35 * std::sqrt(0.5) * 320;
   put(boxes, row, {(kY - 112) / height * 10, (kX - 144) / width * 10, std::log(kH / height) * 5, std::log(kW / width) * 5});
-  logits.values[row * 24 + kWanted] = static_cast<float>(std::log(0.81 / 0.19));
+  logits.values[row * 24 + kRequired] = static_cast<float>(std::log(0.81 / 0.19));
   expect_the_person({boxes, logits}, Layout::ssd_raw);
   expect_the_person({logits, boxes}, Layout::ssd_raw);
 }
@@ -110,7 +110,7 @@ TEST(OutputLayout, SsdBeforeIt) {
 TEST(OutputLayout, RtDetr) {
   Tensor labels = zeros("labels", {1, 300}), boxes = zeros("boxes", {1, 300, 4}), scores = zeros("scores", {1, 300});
   put(boxes, 7, {kX - kW / 2, kY - kH / 2, kX + kW / 2, kY + kH / 2});
-  labels.values[7] = kWanted, scores.values[7] = 0.81F;
+  labels.values[7] = kRequired, scores.values[7] = 0.81F;
   expect_the_person({labels, boxes, scores}, Layout::rt_detr);
   expect_the_person({scores, labels, boxes}, Layout::rt_detr);
 }
@@ -118,20 +118,20 @@ TEST(OutputLayout, RtDetr) {
 TEST(OutputLayout, RfDetr) {
   Tensor boxes = zeros("dets", {1, 300, 4}), logits = zeros("labels", {1, 300, 91}, -20);
   put(boxes, 7, {kX / 320, kY / 320, kW / 320, kH / 320});
-  logits.values[7 * 91 + kWanted] = static_cast<float>(std::log(0.81 / 0.19));
+  logits.values[7 * 91 + kRequired] = static_cast<float>(std::log(0.81 / 0.19));
   expect_the_person({boxes, logits}, Layout::rf_detr);
 }
 
-TEST(OutputLayout, WhatIsNoDetectorHasNone) {
+TEST(OutputLayout, NonDetectorHasNoLayout) {
   EXPECT_FALSE(layout_of(std::vector{zeros("prob", {1, 1000})}, kInput));
   EXPECT_FALSE(layout_of(std::vector{zeros("heat", {1, 17, 48, 64})}, kInput));
   EXPECT_FALSE(layout_of(std::vector<Tensor>{}, kInput));
 }
 
 TEST(OutputLayout, AContradictionIsSaid) {
-  const auto refused = [](const std::vector<Tensor>& outputs, Layout layout, int wanted) -> std::string {
+  const auto refused = [](const std::vector<Tensor>& outputs, Layout layout, int required) -> std::string {
     try {
-      candidates_of(outputs, layout, kInput, wanted, 0.5);
+      candidates_of(outputs, layout, kInput, required, 0.5);
     } catch (const Error& error) {
       return error.what();
     }

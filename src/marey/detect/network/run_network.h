@@ -10,8 +10,8 @@
 
 namespace marey::detect::network {
 
-/// A network that is loaded, its layout known. Several pictures are searched on as many threads as OpenCV has (--threads), each on
-/// one: the same picture gives the same bits.
+/// A network that is loaded, its layout known. Several images are searched on as many threads as OpenCV has (--threads), each on
+/// one: the same image gives the same bits.
 class LoadedNetwork {
  public:
   /// Throws Error, with the model's file, where the network cannot be loaded or run, or its outputs are of no known layout.
@@ -20,10 +20,10 @@ class LoadedNetwork {
   Layout layout() const { return *model_.layout; }
   const NetworkModel& model() const { return model_; }
 
-  /// People in a picture, CV_8UC3, blue first, of any size: boxes in px of that picture, edges counted from its edge.
+  /// People in an image, CV_8UC3, blue first, of any size: boxes in px of that image, edges counted from its edge.
   std::vector<Candidate> find(const cv::Mat& bgr);
-  /// The same of each picture, in their order.
-  std::vector<std::vector<Candidate>> find_all(std::span<const cv::Mat> pictures);
+  /// The same of each image, in their order.
+  std::vector<std::vector<Candidate>> find_all(std::span<const cv::Mat> images);
 
  private:
   std::vector<Tensor> run(Inference::Engine& engine, const cv::Mat& bgr) const;

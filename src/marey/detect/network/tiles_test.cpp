@@ -10,12 +10,12 @@ namespace marey::detect::network {
 namespace {
 
 TEST(Tiles, EverybodyLiesWholeInATileWhereHeFillsAGoodShareOfIt) {
-  const cv::Size picture(1920, 1080);
+  const cv::Size image(1920, 1080);
   const HeightAt height_at = [](double, double y) -> std::optional<double> {
     if (y < 200) return std::nullopt;
     return 0.22 * y;
   };
-  const std::vector<cv::Rect> tiles = tiles_over(picture, height_at, 80);
+  const std::vector<cv::Rect> tiles = tiles_over(image, height_at, 80);
   std::mt19937 random(5);
   for (int i = 0; i < 500; ++i) {
     const double x = std::uniform_real_distribution<double>(60, 1860)(random),
@@ -24,12 +24,12 @@ TEST(Tiles, EverybodyLiesWholeInATileWhereHeFillsAGoodShareOfIt) {
     const cv::Rect2d person(x - height / 6, y - height, height / 3, height);
     bool good = false;
     for (const cv::Rect& tile : tiles) {
-      const double share = height / tile.height;
-      good |= (person & cv::Rect2d(tile)).area() > 0.999 * person.area() && share > 0.18 && share < 0.42;
+      const double fraction = height / tile.height;
+      good |= (person & cv::Rect2d(tile)).area() > 0.999 * person.area() && fraction > 0.18 && fraction < 0.42;
     }
     EXPECT_TRUE(good) << "seed 5: " << x << ", " << y << ", " << height << " px high";
   }
-  for (const cv::Rect& tile : tiles) EXPECT_EQ(tile & cv::Rect(cv::Point(), picture), tile);
+  for (const cv::Rect& tile : tiles) EXPECT_EQ(tile & cv::Rect(cv::Point(), image), tile);
 }
 
 TEST(Tiles, ASmallPictureIsOneTile) {
@@ -39,8 +39,8 @@ TEST(Tiles, ASmallPictureIsOneTile) {
 }
 
 TEST(Tiles, SearchEverySizeWhereNoneIsKnown) {
-  const cv::Size picture(768, 432);
-  const std::vector<cv::Rect> tiles = tiles_over(picture, {}, 84);
+  const cv::Size image(768, 432);
+  const std::vector<cv::Rect> tiles = tiles_over(image, {}, 84);
   for (const double height : {60.0, 84.0, 200.0, 410.0}) {
     const cv::Rect2d person(350, 428 - height, height / 3, height);
     bool good = false;
@@ -51,7 +51,7 @@ TEST(Tiles, SearchEverySizeWhereNoneIsKnown) {
 }
 
 TEST(Tiles, RoundPeopleAreFewAndHoldEachWhole) {
-  const cv::Size picture(768, 576);
+  const cv::Size image(768, 576);
   std::mt19937 random(7);
   for (int trial = 0; trial < 100; ++trial) {
     std::vector<Box> people;
@@ -60,7 +60,7 @@ TEST(Tiles, RoundPeopleAreFewAndHoldEachWhole) {
       people.push_back({std::uniform_real_distribution<double>(0, 768 - height / 3)(random),
                         std::uniform_real_distribution<double>(0, 576 - height)(random), height / 3, height});
     }
-    const std::vector<cv::Rect> tiles = tiles_round(picture, people);
+    const std::vector<cv::Rect> tiles = tiles_round(image, people);
     EXPECT_LE(tiles.size(), people.size());
     for (const Box& one : people) {
       bool good = false;
@@ -70,30 +70,30 @@ TEST(Tiles, RoundPeopleAreFewAndHoldEachWhole) {
       }
       EXPECT_TRUE(good) << "seed 7, trial " << trial;
     }
-    for (const cv::Rect& tile : tiles) EXPECT_EQ(tile & cv::Rect(cv::Point(), picture), tile);
+    for (const cv::Rect& tile : tiles) EXPECT_EQ(tile & cv::Rect(cv::Point(), image), tile);
   }
   const std::vector<Box> together = {{100, 100, 30, 80}, {140, 105, 30, 78}, {170, 98, 28, 82}};
-  EXPECT_EQ(tiles_round(picture, together).size(), 1u);
-  EXPECT_TRUE(tiles_round(picture, {}).empty());
+  EXPECT_EQ(tiles_round(image, together).size(), 1u);
+  EXPECT_TRUE(tiles_round(image, {}).empty());
 }
 
 TEST(JoinFinds, ABoxThatSpansTwoPeopleIsNeitherOfThem) {
-  const cv::Size picture(500, 300);
+  const cv::Size image(500, 300);
   // Two people side by side, 50 px in all, and a box round both that the network is surest of; another over halves of both.
   const std::vector<TileFinds> tiles = {
       {{0, 0, 300, 300},
        {{100, 100, 152, 190, 0.7}, {100, 102, 127, 188, 0.65}, {125, 100, 152, 190, 0.62}, {112, 100, 140, 190, 0.5}}}};
-  const std::vector<Candidate> joined = join_finds(tiles, picture);
+  const std::vector<Candidate> joined = join_finds(tiles, image);
   ASSERT_EQ(joined.size(), 2U);
   EXPECT_EQ(joined[0].score, 0.65);
   EXPECT_EQ(joined[1].score, 0.62);
 }
 
 TEST(JoinFinds, TwoTilesSeeOnePersonOnceAndWhoIsCutOffNotAtAll) {
-  const cv::Size picture(500, 300);
+  const cv::Size image(500, 300);
   const std::vector<TileFinds> tiles = {{{0, 0, 300, 300}, {{210, 100, 250, 200, 0.9}, {270, 50, 299, 150, 0.8}}},
                                         {{200, 0, 300, 300}, {{212, 98, 251, 203, 0.7}, {268, 50, 310, 150, 0.6}}}};
-  const std::vector<Candidate> joined = join_finds(tiles, picture);
+  const std::vector<Candidate> joined = join_finds(tiles, image);
   ASSERT_EQ(joined.size(), 2U);
   EXPECT_EQ(joined[0].score, 0.9);
   EXPECT_EQ(joined[0].right, 250) << "the surer find";

@@ -1,6 +1,6 @@
 // From foreground to people. Regions that may belong together (by the size a person has there) form a cluster. A cluster that
 // looks like one whole person, and where at most one is expected, is reported as it was measured. Any other (a group, a body in
-// pieces, a body of which a pole hides half) is explained by whole bodies: people_fit.h. What neither explains is left out and
+// pieces, a body of which a pole hides half) is explained by whole bodies: people_fit.h. What neither explains is omitted and
 // counted.
 #include "marey/detect/people/people.h"
 
@@ -17,19 +17,19 @@ namespace {
 
 constexpr double kGapAcross = 0.15;                            // of a person's width: pieces of one person are no further apart
 constexpr double kGapDown = 0.5;                               // of a person's height
-constexpr double kLowest = 0.78, kHighest = 1.28;              // height of one whole person, of the one learned
-constexpr double kNarrowest = 0.4, kWidest = 1.7;              // width, the same; from the side people are half as wide
-constexpr double kPlainlyOne = 1.25;                           // width up to which two are not considered
-constexpr double kLeastFilled = 0.3;                           // of its box
-constexpr double kLeastColumn = 0.15;                          // of the height, filled: less is a shadow or a hand
-constexpr double kOutgrownAcross = 1.6, kOutgrownDown = 1.15;  // a region so much larger than one body holds another
+constexpr double kMinLevel = 0.78, kMaxLevel = 1.28;           // height of one whole person, of the one learned
+constexpr double kMinWidth = 0.4, kMaxWidth = 1.7;             // width, the same; from the side people are half as wide
+constexpr double kUnambiguouslyOne = 1.25;                     // width up to which two are not considered
+constexpr double kMinFilled = 0.3;                             // of its box
+constexpr double kMinColumn = 0.15;                            // of the height, filled: less is a shadow or a hand
+constexpr double kOutgrownAcross = 1.6, kOutgrownDown = 1.15;  // a region this much larger than one body holds another
 constexpr double kMerged = 0.6;                                // share of an expected box that lies within a region with others
 constexpr double kSameBody = 0.6;            // overlap of the body fitted with the one measured, which is then the better
-constexpr double kBelieved = 0.4;            // share of a body seen, from which on the rest of it shows what hides people
+constexpr double kAccepted = 0.4;            // share of a body seen, from which on the rest of it shows what hides people
 constexpr double kOverlapExpected = 0.3;     // of the smaller of the two boxes
 constexpr double kHeldBeyond = 0.15;         // of an expected box's height, round it, that is kept from the background
 constexpr double kHeap = 1.6;                // heights of those who are expected there: no group of them is so tall
-constexpr double kSpeck = 0.1;               // of the tallest body seen: less is not told, while no size is known
+constexpr double kSpeck = 0.1;               // of the tallest body seen: less is not reported, while no size is known
 constexpr double kUnknownFlattestCut = 0.3;  // the same of what the border cuts off
 constexpr double kUnknownFlattest = 0.8, kUnknownTallest = 6;  // height over width, while no size is known
 constexpr double kUnknownSmallest = 50;                        // px²
@@ -50,7 +50,7 @@ Box clipped(const Box& box, cv::Size image) {
 
 /// The box of a region without what sticks out at its sides, a shadow at the feet or a hand: columns at either side that are
 /// filled over less than `least` of the height, and rows that then hold nothing.
-Box trimmed(std::span<const PixelRun> runs, const Box& box, double least) {
+Box trimmed(std::span<const PixelRun> runs, const Box& box, double minimum) {
   const int left = static_cast<int>(box.left), columns = static_cast<int>(box.width);
   std::vector<int> filled(columns + 1, 0);
   for (const PixelRun& run : runs) {
@@ -58,7 +58,7 @@ Box trimmed(std::span<const PixelRun> runs, const Box& box, double least) {
     --filled[run.end - left];
   }
   std::partial_sum(filled.begin(), filled.end(), filled.begin());
-  const double enough = least * box.height;
+  const double enough = minimum * box.height;
   int first = 0, last = columns - 1;
   while (first < last && filled[first] < enough) ++first;
   while (last > first && filled[last] < enough) --last;
@@ -103,8 +103,8 @@ Detection detection_of(const Box& box, std::span<const PixelRun> runs, double sc
   Detection detection;
   detection.box = clipped(box, image);
   const double across = 1 + 0.08 * box.width, down = 1 + 0.04 * box.height;
-  const double doubt = 1 / std::max(score, 0.2);
-  detection.covariance = Vector<2>(across * across * doubt, down * down * doubt).asDiagonal();
+  const double review_item = 1 / std::max(score, 0.2);
+  detection.covariance = Vector<2>(across * across * review_item, down * down * review_item).asDiagonal();
   detection.score = score;
   std::vector<PixelRun> part = runs_within(runs, box);
   Vector<2> sum = Vector<2>::Zero();
@@ -138,7 +138,7 @@ void PeopleDetector::prime(std::span<const Frame> samples) {
   if (options_.sizes) return;
   for (const Frame& sample : samples) {
     // Held everywhere: the model says what it sees and learns nothing, so that the first frame finds it as it was primed.
-    const cv::Size image = sample.picture.size();
+    const cv::Size image = sample.image.size();
     const Box everywhere{0, 0, static_cast<double>(image.width), static_cast<double>(image.height)};
     const Foreground foreground = background_->apply(sample, std::span(&everywhere, 1));
     learn(find_regions(foreground.mask, {.min_area = options_.min_area}), {}, image);
@@ -154,11 +154,11 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
   Detections result;
   result.foreground = background_->apply(frame, held);
   groups_ = 0;
-  picture_ = frame.picture;
-  const cv::Size image = frame.picture.size();
+  image_ = frame.image;
+  const cv::Size image = frame.image.size();
   const std::vector<Region> regions = find_regions(result.foreground.mask, {.min_area = options_.min_area});
   for (const Cluster& cluster : clusters_of(without_noise(regions), expected)) {
-    if (cluster.expected.size() <= 1 && looks_whole(cluster, image, kPlainlyOne)) {
+    if (cluster.expected.size() <= 1 && appearance_whole(cluster, image, kUnambiguouslyOne)) {
       result.detections.push_back(whole(cluster, expected, result.foreground));
       if (size_known()) hidden_.note(cluster.body, result.foreground.mask);
     } else {
@@ -166,16 +166,16 @@ Detections PeopleDetector::detect(const Frame& frame, std::span<const Expected> 
     }
   }
   learn(regions, expected, image);
-  if (sizes_.wants_fit()) sizes_.fit();
-  picture_ = {};
+  if (sizes_.needs_fit()) sizes_.fit();
+  image_ = {};
   return result;
 }
 
-double PeopleDetector::least_area(const Region& region) const {
+double PeopleDetector::min_area(const Region& region) const {
   const auto foot = region.box.foot();
   const auto size = size_at(foot.x(), foot.y());
   if (!size) return size_known() ? std::numeric_limits<double>::infinity() : options_.min_area;
-  return options_.min_share * size->height * size->width;
+  return options_.min_fraction * size->height * size->width;
 }
 
 /// Which regions lie so near each other that they may be pieces of one body: by the size that a body has there, or while that is
@@ -201,7 +201,7 @@ assign::DisjointSets PeopleDetector::pieces_that_lie_together(const std::vector<
 }
 
 std::vector<Region> PeopleDetector::without_noise(std::vector<Region> regions) {
-  counts_.noise += static_cast<std::int64_t>(std::erase_if(regions, [&](const Region& r) { return r.area < least_area(r); }));
+  counts_.noise += static_cast<std::int64_t>(std::erase_if(regions, [&](const Region& r) { return r.area < min_area(r); }));
   return regions;
 }
 
@@ -224,7 +224,7 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
   }
   for (Cluster& cluster : clusters) {
     if (cluster.regions > 1) put_in_order(cluster.runs);
-    cluster.body = trimmed(cluster.runs, cluster.box, kLeastColumn);
+    cluster.body = trimmed(cluster.runs, cluster.box, kMinColumn);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const double shared = geometry::intersection(expected[i].box, cluster.box).area();
       if (shared > kOverlapExpected * std::min(expected[i].box.area(), cluster.box.area())) {
@@ -241,7 +241,7 @@ void PeopleDetector::learn(const std::vector<Region>& regions, std::span<const E
   if (options_.sizes || std::ssize(regions) >= kManyRegions) return;  // there is nothing to learn, or all is noise
   assign::DisjointSets pieces = pieces_by_their_own_size(regions);
   for (const Body& body : bodies_of(regions, pieces)) {
-    if (body.area < kLeastFilled * body.box.area()) continue;
+    if (body.area < kMinFilled * body.box.area()) continue;
     int known = 0;
     double tallest = 0;
     for (const Expected& one : expected) {
@@ -253,29 +253,29 @@ void PeopleDetector::learn(const std::vector<Region>& regions, std::span<const E
     if (known > 1 && body.box.height < kHeap * tallest) continue;  // a group
     if (at_border(body.box, image)) {
       const bool within = body.box.left > 1 && body.box.right() < image.width - 1;
-      if (within) sizes_.see_cut(body.box, image);
+      if (within) sizes_.observe_cut(body.box, image);
     } else {
-      sizes_.see(trimmed(body.runs, body.box, kLeastColumn), image);
+      sizes_.observe_frame(trimmed(body.runs, body.box, kMinColumn), image);
     }
   }
 }
 
-bool PeopleDetector::looks_whole(const Cluster& cluster, cv::Size image, double widest) const {
+bool PeopleDetector::appearance_whole(const Cluster& cluster, cv::Size image, double widest) const {
   const Box& box = cluster.body;
   const auto foot = box.foot();
   const auto size = size_at(foot.x(), foot.y());
   if (!size) {
     if (size_known()) return false;
     const double tall = box.height / box.width, flattest = at_border(cluster.box, image) ? kUnknownFlattestCut : kUnknownFlattest;
-    return box.area() >= kUnknownSmallest && box.height > kSpeck * sizes_.tallest_seen() && tall > flattest &&
+    return box.area() >= kUnknownSmallest && box.height > kSpeck * sizes_.tallest_observed() && tall > flattest &&
            tall < kUnknownTallest;
   }
-  return !at_border(cluster.box, image) && box.height > kLowest * size->height && box.height < kHighest * size->height &&
-         box.width > kNarrowest * size->width && box.width < widest * size->width && cluster.area > kLeastFilled * box.area();
+  return !at_border(cluster.box, image) && box.height > kMinLevel * size->height && box.height < kMaxLevel * size->height &&
+         box.width > kMinWidth * size->width && box.width < widest * size->width && cluster.area > kMinFilled * box.area();
 }
 
-/// While no size is known: of someone whom the picture's border cuts off, and who is expected there, what is not seen any more is
-/// where it was; else who walks out of the picture would leap as his parts do.
+/// While no size is known: of a person whom the image's border cuts off, and who is expected there, what is not seen any more is
+/// where it was; else who walks out of the image would leap as his parts do.
 Box PeopleDetector::completed(const Cluster& cluster, std::span<const Expected> expected, cv::Size image) {
   Box box = cluster.body;
   if (cluster.expected.size() != 1) return box;
@@ -296,11 +296,11 @@ Box PeopleDetector::completed(const Cluster& cluster, std::span<const Expected> 
 /// A silhouette runs on the halo of sharpening and on the shadow under the shoes; where the background model tells what is behind
 /// it, its ends are put where the body ends.
 Box PeopleDetector::without_halo(const Box& box, std::span<const PixelRun> runs) {
-  if (picture_.luma().depth() != CV_8U) return box;
-  const cv::Rect part = part_for_ends(box, picture_.size());
-  const Picture scene = background_->scene(part);
+  if (image_.luma().depth() != CV_8U) return box;
+  const cv::Rect part = part_for_ends(box, image_.size());
+  const Image scene = background_->scene(part);
   if (scene.empty()) return box;
-  const BodyEnds ends = find_ends(runs, box, {picture_.part(part), scene, part.tl()});
+  const BodyEnds ends = find_ends(runs, box, {image_.part(part), scene, part.tl()});
   excess_.learn(box, ends);
   return excess_.without(box, ends);
 }
@@ -325,21 +325,21 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
   const cv::Size image = mask.size();
   std::vector<Box> known;
   known.reserve(cluster.expected.size());
-  for (const int who : cluster.expected) known.push_back(expected[who].box);
+  for (const int identity : cluster.expected) known.push_back(expected[identity].box);
   const FitScene scene{image, [&](double x, double y) { return size_at(x, y); },
                        [&](double x, double y) { return hidden_.at(x, y); }};
-  const std::vector<Placed> placed = fit_people(cluster.runs, known, scene, options_.fit);
-  for (const Placed& one : placed) {
-    if (one.seen > kBelieved) hidden_.note(one.box, mask);
+  const std::vector<Located> located = fit_people(cluster.runs, known, scene, options_.fit);
+  for (const Located& one : located) {
+    if (one.detected > kAccepted) hidden_.note(one.box, mask);
   }
-  if (placed.size() == 1 && looks_whole(cluster, image, kWidest) && iou(placed[0].box, cluster.body) > kSameBody) {
+  if (located.size() == 1 && appearance_whole(cluster, image, kMaxWidth) && iou(located[0].box, cluster.body) > kSameBody) {
     found.push_back(whole(cluster, expected, foreground));
     return;
   }
   const auto within = std::count_if(known.begin(), known.end(), [&](const Box& box) {
     return geometry::intersection(box, cluster.body).area() > kMerged * box.area();
   });
-  if (placed.size() == 1 && within > 1 && outgrows(cluster.body, placed[0].box)) {
+  if (located.size() == 1 && within > 1 && outgrows(cluster.body, located[0].box)) {
     // One body cannot be all of this, and two do not stand out: the region is theirs together.
     Detection together = whole(cluster, expected, foreground);
     together.group = groups_++;
@@ -347,15 +347,15 @@ void PeopleDetector::explain(const Cluster& cluster, std::span<const Expected> e
     found.push_back(std::move(together));
     return;
   }
-  if (placed.empty()) ++counts_.misfits;
-  if (placed.size() == 1) ++counts_.completed;
-  if (placed.size() > 1) {
+  if (located.empty()) ++counts_.misfits;
+  if (located.size() == 1) ++counts_.completed;
+  if (located.size() > 1) {
     ++groups_;
-    counts_.shared += static_cast<std::int64_t>(placed.size());
+    counts_.shared += static_cast<std::int64_t>(located.size());
   }
-  for (const Placed& one : placed) {
+  for (const Located& one : located) {
     Detection detection = detection_of(one.box, cluster.runs, std::clamp(0.3 + one.cover, 0.1, 1.0), foreground);
-    if (placed.size() > 1) detection.group = groups_ - 1;
+    if (located.size() > 1) detection.group = groups_ - 1;
     found.push_back(std::move(detection));
   }
 }

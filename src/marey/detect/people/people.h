@@ -19,8 +19,8 @@ namespace marey::detect::people {
 
 struct PeopleOptions {
   FitOptions fit;
-  double min_share = 0.04;  ///< of a person's box; smaller regions are noise
-  double min_area = 12;     ///< px²; smaller regions are noise, while the size of people is not known
+  double min_fraction = 0.04;  ///< of a person's box; smaller regions are noise
+  double min_area = 12;        ///< px²; smaller regions are noise, while the size of people is not known
   /// The size of people at each place, from a camera that is calibrated; nothing: learned from the recording.
   std::shared_ptr<const PersonSizeMap> sizes = nullptr;
 };
@@ -35,7 +35,7 @@ struct PeopleDetectorOptions {
 
 /// People who move, or moved, before a fixed camera: foreground of a background model, cut into people by the size that they
 /// have at each place, which is learned from the recording itself. Boxes hold whole bodies, also where a part is hidden, and end
-/// at the picture's border.
+/// at the image's border.
 class PeopleDetector final : public Detector {
  public:
   /// What was seen and not reported, or reported with doubt, since the beginning.
@@ -55,10 +55,8 @@ class PeopleDetector final : public Detector {
   DetectorTraits traits() const override { return {.toe_m = 0.1, .has_foreground = true, .knows_body_size = true}; }
   DetectionCounts detection_counts() const override { return {counts_.noise, counts_.misfits}; }
   std::optional<Box> body_at(const Vector<2>& foot) const override;
-  Picture scene() const override { return background_->scene(); }
-  void believe(const Picture& picture, const cv::Mat& mask, cv::Point corner) override {
-    background_->believe(picture, mask, corner);
-  }
+  Image scene() const override { return background_->scene(); }
+  void trust(const Image& image, const cv::Mat& mask, cv::Point corner) override { background_->trust(image, mask, corner); }
 
   const Counts& counts() const { return counts_; }
   /// How large a person is whose feet are at (x, y), px: as it was given, or as it was learned so far.
@@ -77,12 +75,12 @@ class PeopleDetector final : public Detector {
   };
 
   bool size_known() const { return options_.sizes != nullptr || sizes_.known(); }
-  double least_area(const Region& region) const;
+  double min_area(const Region& region) const;
   assign::DisjointSets pieces_that_lie_together(const std::vector<Region>& regions, std::span<const Expected> expected) const;
   std::vector<Region> without_noise(std::vector<Region> regions);
   std::vector<Cluster> clusters_of(std::vector<Region> regions, std::span<const Expected> expected) const;
   void learn(const std::vector<Region>& regions, std::span<const Expected> expected, cv::Size image);
-  bool looks_whole(const Cluster& cluster, cv::Size image, double widest) const;
+  bool appearance_whole(const Cluster& cluster, cv::Size image, double widest) const;
   static Box completed(const Cluster& cluster, std::span<const Expected> expected, cv::Size image);
   Box without_halo(const Box& box, std::span<const PixelRun> runs);
   Detection whole(const Cluster& cluster, std::span<const Expected> expected, const Foreground& foreground);
@@ -92,9 +90,9 @@ class PeopleDetector final : public Detector {
   std::unique_ptr<background::Background> background_;
   PeopleOptions options_;
   PersonSizeModel sizes_;
-  HiddenPlaces hidden_;
+  StaticOccluders hidden_;
   SilhouetteExcess excess_;
-  Picture picture_;  ///< the frame's
+  Image image_;  ///< the frame's
   Counts counts_;
   int groups_ = 0;  ///< numbers given to shared regions in this frame
 };

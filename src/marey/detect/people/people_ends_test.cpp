@@ -12,7 +12,7 @@ namespace {
 /// A figure of two legs, a trunk and a head on a lawn, sharpened as a camera does, with the shadow under its shoes; and its
 /// silhouette as a background model sees it: whatever differs at all.
 struct DrawnFigure {
-  Picture frame, scene;
+  Image frame, scene;
   Box box;    ///< of the silhouette
   Box truth;  ///< of the figure
   std::vector<PixelRun> runs;
@@ -46,7 +46,7 @@ DrawnFigure draw(double height, double halo, std::mt19937& random) {
   cv::Mat planes[3] = {cv::Mat(rows, columns, CV_32F, cv::Scalar(grass)), cv::Mat(rows, columns, CV_32F, cv::Scalar(118)),
                        cv::Mat(rows, columns, CV_32F, cv::Scalar(120))};
   DrawnFigure drawn;
-  const auto picture_of = [&] {
+  const auto image_of = [&] {
     cv::Mat whole[3];
     for (int k = 0; k < 3; ++k) {
       cv::Mat noise(rows, columns, CV_32F), level;
@@ -64,9 +64,9 @@ DrawnFigure draw(double height, double halo, std::mt19937& random) {
       level.convertTo(whole[k], CV_8U);
       if (k > 0) cv::resize(whole[k], whole[k], {(columns + 1) / 2, (rows + 1) / 2}, 0, 0, cv::INTER_AREA);
     }
-    return Picture(whole[0], whole[1], whole[2], Picture::Range::limited);
+    return Image(whole[0], whole[1], whole[2], Image::Range::limited);
   };
-  drawn.scene = picture_of();
+  drawn.scene = image_of();
   const auto part = [&](double from_x, double from_y, double to_x, double to_y, const FigureColour& colour) {
     const Box box{left + from_x * width, top + from_y * height, (to_x - from_x) * width, (to_y - from_y) * height};
     fill(planes[0], box, colour.y), fill(planes[1], box, colour.cb), fill(planes[2], box, colour.cr);
@@ -80,7 +80,7 @@ DrawnFigure draw(double height, double halo, std::mt19937& random) {
     part(leg, 0.7, leg + 0.3, 0.95, shirt);
     part(leg, 0.95, leg + 0.3, 1.0, shoe);
   }
-  drawn.frame = picture_of();
+  drawn.frame = image_of();
   drawn.truth = {left, top, width, height};
   int first_row = rows, last_row = 0, first = columns, last = 0;
   for (int row = 0; row < rows; ++row) {
@@ -132,7 +132,7 @@ TEST(PeopleEnds, ABodyEndsAtItsSolesAndNotAtItsHalo) {
   }
 }
 
-TEST(PeopleEnds, WhatDoesNotDifferEnoughIsNotMeasured) {
+TEST(PeopleEnds, LeavesLowContrastEndUnmeasured) {
   std::mt19937 random(1);
   const DrawnFigure drawn = draw(60, 0.45, random);
   const BodyEnds ends = find_ends(drawn.runs, drawn.box, {drawn.scene, drawn.scene, {}});
@@ -161,16 +161,16 @@ TEST(PeopleEnds, PartsAtTheBorderAndTinyBoxesDoNoHarm) {
   }
 }
 
-TEST(PeopleEnds, WhatIsUsualIsLearnedAndUsedWhereNothingIsMeasured) {
+TEST(PeopleEnds, UsesLearnedEndIfUnmeasured) {
   SilhouetteExcess excess;
   const Box box{100, 100, 30, 80};
   for (int i = 0; i < 200; ++i) excess.learn(box, {102.0 + (i % 10 == 0 ? 8 : 0), 177.0 - (i % 10 == 0 ? 8 : 0)});
   EXPECT_NEAR(excess.above(), 2, 0.3);
   EXPECT_NEAR(excess.below(), 3, 0.3);
-  const Box usual = excess.without(box, {});
-  EXPECT_NEAR(usual.top, 102, 0.3);
-  EXPECT_NEAR(usual.bottom(), 177, 0.3);
-  EXPECT_NEAR(excess.without(box, {100.0, 160.0}).bottom(), 176, 0.5) << "a measurement far off is not believed whole";
+  const Box typical = excess.without(box, {});
+  EXPECT_NEAR(typical.top, 102, 0.3);
+  EXPECT_NEAR(typical.bottom(), 177, 0.3);
+  EXPECT_NEAR(excess.without(box, {100.0, 160.0}).bottom(), 176, 0.5) << "a measurement far off is not trusted whole";
 }
 
 }  // namespace

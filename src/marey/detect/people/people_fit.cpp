@@ -1,6 +1,6 @@
 // Explaining foreground by people. A body is a head, a trunk and legs in a box. A place is good where the body's pixels are
-// foreground that no person explains yet, and bad for every pixel of the body that is background; pixels explained by someone
-// placed before, and those outside the picture, count neither for nor against. People are placed one after another, the best place
+// foreground that no person explains yet, and bad for every pixel of the body that is background; pixels explained by a person
+// placed before, and those outside the image, count neither for nor against. People are placed one after another, the best place
 // first (greedy): those known to be here near where they are expected, then new ones anywhere. Then each is moved to its best place
 // given all the others. A person behind another is thus found by what sticks out, and keeps a whole body's box.
 //
@@ -22,22 +22,22 @@ namespace marey::detect::people {
 namespace {
 
 constexpr BodyPart kHead = {0.28, 0.0, 0.72, 0.16}, kTrunk = {0.10, 0.16, 0.90, 0.52}, kLegs = {0.18, 0.52, 0.82, 1.0};
-constexpr double kBodyShare = 0.44 * 0.16 + 0.8 * 0.36 + 0.64 * 0.48;  // of the box
-constexpr double kLeastTrunk = 0.15;                                   // filled, of what is not explained: a quick no
+constexpr double kBodyFraction = 0.44 * 0.16 + 0.8 * 0.36 + 0.64 * 0.48;  // of the box
+constexpr double kMinTrunk = 0.15;                                        // filled, of what is not explained: a quick no
 constexpr BodyPart kWholeBox = {0, 0, 1, 1};
 constexpr BodyPart kAboveHead = {0.25, -0.16, 0.75, -0.02};
 constexpr double kAboveHeadCost = 0.3;  // a head has no person above it, or this is a trunk
-constexpr double kArmsWorth = 0.2;      // of a pixel of the box beside the body, where one of the body is worth 1
+constexpr double kArmsScore = 0.2;      // of a pixel of the box beside the body, where one of the body is worth 1
 constexpr double kDistanceCost = 1.0;   // of a known person found one width, or half a height, from where it is expected
 constexpr double kReachAcross = 0.7;    // of the width: how far from there it is searched for
 constexpr double kReachUp = 0.25;       // of the height
 constexpr double kRefineAcross = 0.2, kRefineUp = 0.08;
-constexpr double kLeastVisible = 0.3;  // of the body: within the picture, and not behind something
-constexpr double kUnseenCost = 0.2;    // of a body of which all is hidden: of two places, the visible one
-constexpr double kKnownBefore = 0.15;  // of cover: so much better must someone new be, to come before someone known
-constexpr double kHeightSlack = 0.08;  // how far a known person's height may be from the one learned
+constexpr double kMinVisible = 0.3;      // of the body: within the image, and not behind something
+constexpr double kUnobservedCost = 0.2;  // of a body of which all is hidden: of two places, the visible one
+constexpr double kKnownBefore = 0.15;    // of cover: this much better must a person new be, to come before a person known
+constexpr double kHeightSlack = 0.08;    // how far a known person's height may be from the one learned
 constexpr double kWidthSlack = 0.1;
-constexpr int kMostNew = 12;
+constexpr int kMaxNew = 12;
 constexpr double kBetter = 1e-9;  // by less, a place is as good as the one before it
 constexpr int kCoarse = 2;        // cells between the places first tried
 
@@ -59,40 +59,41 @@ class Fit {
  public:
   Fit(PeopleGrid& grid, const FitScene& scene, const PersonSize& typical, const FitOptions& options)
       : grid_(grid), scene_(scene), options_(options) {
-    enough_ = 0.5 * options.min_cover_new * kLeastVisible * kBodyShare * typical.width * typical.height;
+    enough_ = 0.5 * options.min_cover_new * kMinVisible * kBodyFraction * typical.width * typical.height;
   }
 
-  std::vector<Placed> run(std::span<const Box> known) {
-    place_all(known);
+  std::vector<Located> run(std::span<const Box> known) {
+    position_all(known);
     refine();
-    measure_seen();
-    return std::move(placed_);
+    measure_observed();
+    return std::move(located_);
   }
 
  private:
-  struct Place {
+  struct Location {
     Box box;
     double cover = 0;
-    double arms = 0;    ///< what the rest of the box adds to the value: foreground beside the body
-    double share = 0;   ///< of the visible body that lies on unexplained foreground
-    double value = -1;  ///< what is maximised: the cover less the costs of an unlikely place
+    double arms = 0;      ///< what the rest of the box adds to the value: foreground beside the body
+    double fraction = 0;  ///< of the visible body that lies on unexplained foreground
+    double value = -1;    ///< what is maximised: the cover less the costs of an unlikely place
   };
 
-  Place look_at(const Box& box) const {
-    Place place;
-    place.box = box;
-    place.cover = -1;
+  Location inspect_at(const Box& box) const {
+    Location location;
+    location.box = box;
+    location.cover = -1;
     PeopleGrid::Count body = grid_.count(box, kTrunk);
-    if (body.filled < kLeastTrunk * body.valid) return place;
+    if (body.filled < kMinTrunk * body.valid) return location;
     body += grid_.count(box, kHead);
     body += grid_.count(box, kLegs);
-    const double area = kBodyShare * box.area();
-    if (body.visible < kLeastVisible * area) return place;
-    const double unseen = std::max(0.0, 1 - body.visible / area);
-    place.cover = (body.filled - options_.blank_penalty * (body.valid - body.filled)) / body.visible - kUnseenCost * unseen;
-    place.arms = kArmsWorth * std::max(0, grid_.count(box, kWholeBox).filled - body.filled) / area;
-    place.share = static_cast<double>(body.filled) / body.visible;
-    return place;
+    const double area = kBodyFraction * box.area();
+    if (body.visible < kMinVisible * area) return location;
+    const double unobserved = std::max(0.0, 1 - body.visible / area);
+    location.cover =
+        (body.filled - options_.blank_penalty * (body.valid - body.filled)) / body.visible - kUnobservedCost * unobserved;
+    location.arms = kArmsScore * std::max(0, grid_.count(box, kWholeBox).filled - body.filled) / area;
+    location.fraction = static_cast<double>(body.filled) / body.visible;
+    return location;
   }
 
   double above_head(const Box& box) const {
@@ -100,8 +101,8 @@ class Fit {
     return count.valid > 0 ? kAboveHeadCost * count.filled / count.valid : 0;
   }
 
-  Place best_near(const Box& box, double across, double up) const {
-    Place best;
+  Location best_near(const Box& box, double across, double up) const {
+    Location best;
     const double step = grid_.cell();
     const int most_x = std::max(1, static_cast<int>(across * box.width / step));
     const int most_y = std::max(1, static_cast<int>(up * box.height / step));
@@ -109,73 +110,73 @@ class Fit {
       for (int x = -most_x; x <= most_x; ++x) {
         const Box there = moved(box, x * step, y * step);
         const double dx = x * step / box.width, dy = 2 * y * step / box.height;
-        Place place = look_at(there);
-        place.value = place.cover + place.arms - kDistanceCost * (dx * dx + dy * dy);
-        if (place.value > best.value) best = place;
+        Location location = inspect_at(there);
+        location.value = location.cover + location.arms - kDistanceCost * (dx * dx + dy * dy);
+        if (location.value > best.value) best = location;
       }
     }
     return best;
   }
 
-  void place(const Place& place, int known) {
-    placed_.push_back({place.box, place.cover, 0, known});
-    grid_.explain(place.box);
+  void location(const Location& location, int known) {
+    located_.push_back({location.box, location.cover, 0, known});
+    grid_.explain(location.box);
     grid_.sum();
   }
 
-  void place_all(std::span<const Box> known) {
+  void position_all(std::span<const Box> known) {
     std::vector<int> waiting(known.size());
     std::iota(waiting.begin(), waiting.end(), 0);
-    std::vector<std::optional<Place>> nearest(known.size());  // what was found near each, while no person is placed about there
-    const auto place_one = [&](const Place& one, int who) {
-      place(one, who);
+    std::vector<std::optional<Location>> nearest(known.size());  // what was found near each, while no person is placed about there
+    const auto place_one = [&](const Location& one, int identity) {
+      location(one, identity);
       for (const int other : waiting) {
         const Box box = known_box(known[other], scene_);
         if (may_change(box, kReachAcross * box.width, kReachUp * box.height, one.box)) nearest[other].reset();
       }
       for (Candidate& candidate : candidates_) {
-        const Box& box = candidate.place.box;
+        const Box& box = candidate.location.box;
         candidate.stale = candidate.stale || may_change(box, 0, -kAboveHead.top * box.height, one.box);
       }
     };
-    for (int newcomers = 0; newcomers < kMostNew;) {
-      Place best;
-      std::size_t who = 0;
+    for (int newcomers = 0; newcomers < kMaxNew;) {
+      Location best;
+      std::size_t identity = 0;
       for (std::size_t i = 0; i < waiting.size(); ++i) {
-        std::optional<Place>& near = nearest[waiting[i]];
+        std::optional<Location>& near = nearest[waiting[i]];
         if (!near) near = best_near(known_box(known[waiting[i]], scene_), kReachAcross, kReachUp);
-        const Place& found = *near;
-        if (found.cover < options_.min_cover_known && found.share < options_.min_share_known) continue;
+        const Location& found = *near;
+        if (found.cover < options_.min_cover_known && found.fraction < options_.min_fraction_known) continue;
         if (found.value <= best.value) continue;
         best = found;
-        who = i;
+        identity = i;
       }
-      const Place other = best_anywhere();
+      const Location other = best_anywhere();
       if (other.cover >= options_.min_cover_new && other.value > best.value + kKnownBefore) {
         place_one(other, -1);
         ++newcomers;
       } else if (best.value > -1) {
-        place_one(best, waiting[who]);
-        waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(who));
+        place_one(best, waiting[identity]);
+        waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(identity));
       } else {
         return;
       }
     }
   }
 
-  /// Whether someone placed in `placed` may change how good a place is that lies within `across` and `up` of `box`.
-  bool may_change(const Box& box, double across, double up, const Box& placed) const {
+  /// Whether a person placed in `placed` may change how good a place is that lies within `across` and `up` of `box`.
+  bool may_change(const Box& box, double across, double up, const Box& located) const {
     const double slack = 3 * grid_.cell();
-    across += 0.03 * placed.width + slack;
-    up += 0.08 * placed.height + slack;
-    return box.left - across < placed.right() && placed.left < box.right() + across && box.top - up < placed.bottom() &&
-           placed.top < box.bottom() + up;
+    across += 0.03 * located.width + slack;
+    up += 0.08 * located.height + slack;
+    return box.left - across < located.right() && located.left < box.right() + across && box.top - up < located.bottom() &&
+           located.top < box.bottom() + up;
   }
 
-  /// A place for someone new, and what it was worth when last computed.
+  /// A place for a person new, and what it was worth when last computed.
   struct Candidate {
-    Place place;
-    bool stale = true;  ///< someone was placed about there since
+    Location location;
+    bool stale = true;  ///< a person was placed about there since
   };
 
   /// From the bottom up: of places equally good, the lowest, whose head is the top of what is seen.
@@ -188,13 +189,13 @@ class Fit {
     }
   }
 
-  Place best_anywhere() {
-    Place best;
+  Location best_anywhere() {
+    Location best;
     if (grid_.filled_in_all() < enough_) return best;
     if (candidates_.empty()) list_candidates();
     for (Candidate& candidate : candidates_) {
-      if (candidate.stale) candidate = {look_for_new(candidate.place.box), false};
-      if (candidate.place.value > best.value + kBetter) best = candidate.place;
+      if (candidate.stale) candidate = {inspect_for_new(candidate.location.box), false};
+      if (candidate.location.value > best.value + kBetter) best = candidate.location;
     }
     if (best.value <= -1) return best;
     const auto foot = best.box.foot();
@@ -203,54 +204,54 @@ class Fit {
         const double foot_x = foot.x() + x * grid_.cell(), foot_y = foot.y() + y * grid_.cell();
         const auto size = scene_.size_at(foot_x, foot_y);
         if (!size) continue;
-        const Place place = look_for_new(size->box_at(foot_x, foot_y));
-        if (place.value > best.value + kBetter) best = place;
+        const Location location = inspect_for_new(size->box_at(foot_x, foot_y));
+        if (location.value > best.value + kBetter) best = location;
       }
     }
     return best;
   }
 
-  Place look_for_new(const Box& box) const {
-    Place place = look_at(box);
-    if (place.cover >= options_.min_cover_new) place.value = place.cover + place.arms - above_head(box);
-    return place;
+  Location inspect_for_new(const Box& box) const {
+    Location location = inspect_at(box);
+    if (location.cover >= options_.min_cover_new) location.value = location.cover + location.arms - above_head(box);
+    return location;
   }
 
   void refine() {
-    if (placed_.size() < 2) return;
-    for (std::size_t i = 0; i < placed_.size(); ++i) {
+    if (located_.size() < 2) return;
+    for (std::size_t i = 0; i < located_.size(); ++i) {
       explain_all_but(i);
-      const Place better = best_near(placed_[i].box, kRefineAcross, kRefineUp);
-      if (better.cover < placed_[i].cover) continue;
-      placed_[i].box = better.box;
-      placed_[i].cover = better.cover;
+      const Location better = best_near(located_[i].box, kRefineAcross, kRefineUp);
+      if (better.cover < located_[i].cover) continue;
+      located_[i].box = better.box;
+      located_[i].cover = better.cover;
     }
   }
 
-  void explain_all_but(std::size_t left_out) {
+  void explain_all_but(std::size_t excluded) {
     grid_.reset();
-    for (std::size_t i = 0; i < placed_.size(); ++i) {
-      if (i != left_out) grid_.explain(placed_[i].box);
+    for (std::size_t i = 0; i < located_.size(); ++i) {
+      if (i != excluded) grid_.explain(located_[i].box);
     }
     grid_.sum();
   }
 
-  void measure_seen() {
+  void measure_observed() {
     grid_.reset();
     grid_.sum();
-    for (Placed& one : placed_) {
+    for (Located& one : located_) {
       PeopleGrid::Count body = grid_.count(one.box, kHead);
       body += grid_.count(one.box, kTrunk);
       body += grid_.count(one.box, kLegs);
-      one.seen = body.valid > 0 ? static_cast<double>(body.filled) / body.valid : 0;
+      one.detected = body.valid > 0 ? static_cast<double>(body.filled) / body.valid : 0;
     }
   }
 
   PeopleGrid& grid_;
   const FitScene& scene_;
   const FitOptions& options_;
-  double enough_;  ///< px² of unexplained foreground, half of the least that can make someone new
-  std::vector<Placed> placed_;
+  double enough_;  ///< px² of unexplained foreground, half of the least that can make a person new
+  std::vector<Located> located_;
   std::vector<Candidate> candidates_;
 };
 
@@ -265,22 +266,22 @@ Box bounds_of(std::span<const PixelRun> runs) {
 
 }  // namespace
 
-std::vector<Placed> fit_people(std::span<const PixelRun> runs, std::span<const Box> known, const FitScene& scene,
-                               const FitOptions& options) {
+std::vector<Located> fit_people(std::span<const PixelRun> runs, std::span<const Box> known, const FitScene& scene,
+                                const FitOptions& options) {
   if (runs.empty()) return {};
-  Box place = bounds_of(runs);
-  const auto foot = place.foot();
-  PersonSize typical{place.height, place.width};
+  Box location = bounds_of(runs);
+  const auto foot = location.foot();
+  PersonSize typical{location.height, location.width};
   if (const auto size = scene.size_at(foot.x(), foot.y()))
     typical = *size;
   else if (known.empty())
     return {};
   else
     typical = {known.front().height, known.front().width};
-  for (const Box& box : known) place = geometry::hull(place, box);
+  for (const Box& box : known) location = geometry::hull(location, box);
   const double cell = std::max(1.0, std::round(typical.height / options.cells_tall));
-  const Box wide{std::floor(place.left - typical.width), std::floor(place.top - typical.height / 4),
-                 place.width + 2 * typical.width + 1, place.height + typical.height + 1};
+  const Box wide{std::floor(location.left - typical.width), std::floor(location.top - typical.height / 4),
+                 location.width + 2 * typical.width + 1, location.height + typical.height + 1};
   PeopleGrid grid(wide, scene, cell);
   grid.fill(runs, scene);
   return Fit(grid, scene, typical, options).run(known);

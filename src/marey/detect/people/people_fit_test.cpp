@@ -17,9 +17,9 @@ FitScene scene_of(double height) {
   return {kFitImage, [height](double, double) { return PersonSize{height, 0.36 * height}; }};
 }
 
-double best_iou(const std::vector<Placed>& placed, const Box& truth) {
+double best_iou(const std::vector<Located>& located, const Box& truth) {
   double best = 0;
-  for (const Placed& one : placed) best = std::max(best, geometry::iou(one.box, truth));
+  for (const Located& one : located) best = std::max(best, geometry::iou(one.box, truth));
   return best;
 }
 
@@ -78,17 +78,17 @@ TEST(FitPeople, TheFirstPersonIsWhereTheSlowTwinFindsTheBestPlace) {
                             static_cast<int>(bodies::uniform(random, truth.left, truth.right()))) = i % 3 == 0 ? 0 : 255;
     }
     const FitScene scene = scene_of(height);
-    const auto placed = fit_people(bodies::runs(mask), {}, scene, options);
+    const auto located = fit_people(bodies::runs(mask), {}, scene, options);
     double best = -1;
     for (double y = 0; y < kFitImage.height + 40; ++y) {
       for (double x = -20; x < kFitImage.width + 20; ++x) {
         best = std::max(best, value_at(mask, scene.size_at(x, y)->box_at(x, y), options));
       }
     }
-    ASSERT_EQ(placed.size(), 1u);
-    // The grid's origin is no whole pixel off the twin's, but rounding a part's edge may differ by a pixel.
-    EXPECT_NEAR(value_at(mask, placed[0].box, options), best, 0.02);
-    EXPECT_GT(geometry::iou(placed[0].box, truth), 0.75);
+    ASSERT_EQ(located.size(), 1u);
+    // The grid's origin is not a whole pixel off the twin's, but rounding a part's edge may differ by a pixel.
+    EXPECT_NEAR(value_at(mask, located[0].box, options), best, 0.02);
+    EXPECT_GT(geometry::iou(located[0].box, truth), 0.75);
     ++found;
   }
   EXPECT_EQ(found, 6);
@@ -106,9 +106,9 @@ TEST(FitPeople, GroupsAreSplitIntoWholeBodies) {
       truth.push_back(bodies::person(50 + i * bodies::uniform(random, 17, 20), bodies::uniform(random, 100, 112), height));
       bodies::draw(mask, truth.back(), bodies::uniform(random, 0, 1));
     }
-    const auto placed = fit_people(bodies::runs(mask), {}, scene_of(height));
-    ASSERT_EQ(placed.size(), truth.size());
-    for (const Box& one : truth) EXPECT_GT(best_iou(placed, one), 0.6);
+    const auto located = fit_people(bodies::runs(mask), {}, scene_of(height));
+    ASSERT_EQ(located.size(), truth.size());
+    for (const Box& one : truth) EXPECT_GT(best_iou(located, one), 0.6);
   }
 }
 
@@ -119,17 +119,17 @@ TEST(FitPeople, KnownPeopleKeepTheirPlacesWhereOneHidesHalfOfTheOther) {
   bodies::draw(mask, behind);
   const std::array<Box, 2> known = {Box{front.left - 2, front.top, front.width, front.height},
                                     Box{behind.left + 2, behind.top + 1, behind.width, behind.height}};
-  const auto placed = fit_people(bodies::runs(mask), known, scene_of(60));
-  ASSERT_EQ(placed.size(), 2u);
-  for (const Placed& one : placed) {
+  const auto located = fit_people(bodies::runs(mask), known, scene_of(60));
+  ASSERT_EQ(located.size(), 2u);
+  for (const Located& one : located) {
     ASSERT_GE(one.known, 0);
     EXPECT_GT(geometry::iou(one.box, one.known == 0 ? front : behind), 0.7);
-    EXPECT_GT(one.seen, 0.8);
+    EXPECT_GT(one.detected, 0.8);
   }
-  EXPECT_NE(placed[0].known, placed[1].known);
+  EXPECT_NE(located[0].known, located[1].known);
 }
 
-TEST(FitPeople, WhatIsKnownToHideIsNoReasonToDoubt) {
+TEST(FitPeople, KnownOccluderCausesNoAmbiguity) {
   const Box truth = bodies::person(80, 120, 60);
   const cv::Rect sign(60, 76, 40, 28);
   cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
@@ -138,18 +138,18 @@ TEST(FitPeople, WhatIsKnownToHideIsNoReasonToDoubt) {
   FitScene scene = scene_of(60);
   EXPECT_TRUE(fit_people(bodies::runs(mask), {}, scene).empty());
   scene.hidden = [&](double x, double y) { return sign.contains(cv::Point(static_cast<int>(x), static_cast<int>(y))); };
-  const auto placed = fit_people(bodies::runs(mask), {}, scene);
-  ASSERT_EQ(placed.size(), 1u);
-  EXPECT_GT(geometry::iou(placed[0].box, truth), 0.8);
+  const auto located = fit_people(bodies::runs(mask), {}, scene);
+  ASSERT_EQ(located.size(), 1u);
+  EXPECT_GT(geometry::iou(located[0].box, truth), 0.8);
 }
 
 TEST(FitPeople, APersonCutByTheBorderHasAWholeBody) {
   const Box truth = bodies::person(4, 120, 60);
   cv::Mat mask = cv::Mat::zeros(kFitImage, CV_8UC1);
   bodies::draw(mask, truth);
-  const auto placed = fit_people(bodies::runs(mask), {}, scene_of(60));
-  ASSERT_EQ(placed.size(), 1u);
-  EXPECT_GT(geometry::iou(placed[0].box, truth), 0.6);
+  const auto located = fit_people(bodies::runs(mask), {}, scene_of(60));
+  ASSERT_EQ(located.size(), 1u);
+  EXPECT_GT(geometry::iou(located[0].box, truth), 0.6);
 }
 
 TEST(FitPeople, NothingComesOfNothing) {

@@ -11,10 +11,10 @@ constexpr std::array<BodyPart, 2> kExplained = {{{0.15, -0.08, 0.85, 0.12}, {-0.
 
 }  // namespace
 
-PeopleGrid::PeopleGrid(const Box& place, const FitScene& scene, double cell)
-    : cell_(cell), per_cell_(1 / cell), left_(place.left), top_(place.top) {
-  columns_ = std::max(1, static_cast<int>(std::ceil(place.width / cell)));
-  rows_ = std::max(1, static_cast<int>(std::ceil(place.height / cell)));
+PeopleGrid::PeopleGrid(const Box& location, const FitScene& scene, double cell)
+    : cell_(cell), per_cell_(1 / cell), left_(location.left), top_(location.top) {
+  columns_ = std::max(1, static_cast<int>(std::ceil(location.width / cell)));
+  rows_ = std::max(1, static_cast<int>(std::ceil(location.height / cell)));
   filled_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
   valid_.resize(filled_.size());
   std::vector<int> wide(columns_);
@@ -36,7 +36,7 @@ void PeopleGrid::fill(std::span<const PixelRun> runs, const FitScene& scene) {
       x = end;
     }
   }
-  if (scene.hidden) leave_out_hidden(scene);
+  if (scene.hidden) exclude_hidden(scene);
   first_filled_ = filled_;
   first_valid_ = valid_;
   sum();
@@ -76,12 +76,12 @@ void PeopleGrid::sum() {
   changed_row_ = rows_;
 }
 
-/// How many whole pixels of a cell that begins at `from` lie within a picture `size` long.
+/// How many whole pixels of a cell that begins at `from` lie within an image `size` long.
 int PeopleGrid::overlap(double from, int size) const {
   return static_cast<int>(std::max(0.0, std::min(from + cell_, static_cast<double>(size)) - std::max(from, 0.0)));
 }
 
-void PeopleGrid::leave_out_hidden(const FitScene& scene) {
+void PeopleGrid::exclude_hidden(const FitScene& scene) {
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       const std::size_t i = index(row, column);

@@ -17,8 +17,8 @@ struct BodyPart {
 /// foreground that no person explains yet. `explain` takes a person's pixels out, so that they count neither for nor against.
 class PeopleGrid {
  public:
-  /// Covers `place` (px, may reach beyond the picture) with square cells of `cell` px; all of it empty.
-  PeopleGrid(const Box& place, const FitScene& scene, double cell);
+  /// Covers `place` (px, may reach beyond the image) with square cells of `cell` px; all of it empty.
+  PeopleGrid(const Box& location, const FitScene& scene, double cell);
 
   /// Enters the foreground, once. `runs` lie within `place`.
   void fill(std::span<const PixelRun> runs, const FitScene& scene);
@@ -31,7 +31,7 @@ class PeopleGrid {
 
   struct alignas(16) Count {
     int filled = 0, valid = 0;  ///< px² not explained
-    int visible = 0;            ///< px² valid before anyone was placed
+    int visible = 0;            ///< px² valid before any person was placed
     int unused = 0;             ///< makes four, which a machine adds at once
 
     Count& operator+=(const Count& other) {
@@ -79,7 +79,7 @@ class PeopleGrid {
   std::size_t index(int row, int column) const { return static_cast<std::size_t>(row) * columns_ + column; }
 
   int overlap(double from, int size) const;
-  void leave_out_hidden(const FitScene& scene);
+  void exclude_hidden(const FitScene& scene);
 
   Cells cells_of(const Box& box, const BodyPart& part) const {
     const auto across = [&](double x) {
@@ -95,7 +95,7 @@ class PeopleGrid {
   double left_, top_;
   int columns_ = 0, rows_ = 0;
   std::vector<int> filled_, valid_;              ///< px² of each cell that are foreground; that may be: both unexplained
-  std::vector<int> first_filled_, first_valid_;  ///< the same before anyone was placed
+  std::vector<int> first_filled_, first_valid_;  ///< the same before any person was placed
   std::vector<Count> sums_;                      ///< integral image
   int changed_row_ = 0;                          ///< from which row on it is out of date
 };

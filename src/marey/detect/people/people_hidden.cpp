@@ -1,4 +1,4 @@
-// A picture of small cells, each with two counts: how often a person's body should have covered it, and how often something was
+// An image of small cells, each with two counts: how often a person's body should have covered it, and how often something was
 // seen there. Old evidence fades by halving, so that a parked car that leaves is forgotten. Only the inner part of the body
 // is counted: the rest of a box is often empty.
 // Cost: one reading of the mask for each cell under a body, some hundreds a person.
@@ -15,7 +15,7 @@ constexpr double kInnerLeft = 0.3, kInnerRight = 0.7, kInnerTop = 0.12, kInnerBo
 
 }  // namespace
 
-void HiddenPlaces::note(const Box& person, const cv::Mat& mask) {
+void StaticOccluders::note(const Box& person, const cv::Mat& mask) {
   if (mask.empty()) return;
   if (image_ != mask.size()) {
     image_ = mask.size();
@@ -32,10 +32,10 @@ void HiddenPlaces::note(const Box& person, const cv::Mat& mask) {
       const int x = std::min(image_.width - 1, column * side_ + side_ / 2);
       const int y = std::min(image_.height - 1, row * side_ + side_ / 2);
       ++cell.covered;
-      cell.seen += mask.at<std::uint8_t>(y, x) != 0;
+      cell.detected += mask.at<std::uint8_t>(y, x) != 0;
       if (cell.covered >= kMemory) {
         cell.covered /= 2;
-        cell.seen /= 2;
+        cell.detected /= 2;
       }
     }
   }

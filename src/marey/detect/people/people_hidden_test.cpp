@@ -5,8 +5,8 @@
 namespace marey::detect::people {
 namespace {
 
-TEST(HiddenPlaces, APoleThatPeoplePassBehindIsLearnedAndForgotten) {
-  HiddenPlaces hidden;
+TEST(StaticOccluders, APoleThatPeoplePassBehindIsLearnedAndForgotten) {
+  StaticOccluders hidden;
   EXPECT_FALSE(hidden.at(100, 100));
   const cv::Rect pole(95, 0, 12, 200);
   for (int frame = 0; frame < 60; ++frame) {
@@ -19,7 +19,7 @@ TEST(HiddenPlaces, APoleThatPeoplePassBehindIsLearnedAndForgotten) {
   EXPECT_TRUE(hidden.at(100, 100));
   EXPECT_FALSE(hidden.at(88, 100));
   EXPECT_FALSE(hidden.at(115, 100));
-  EXPECT_FALSE(hidden.at(100, 190)) << "nobody was there";
+  EXPECT_FALSE(hidden.at(100, 190)) << "no person was there";
   EXPECT_FALSE(hidden.at(-1, 100));
   EXPECT_FALSE(hidden.at(200, 100));
 
@@ -28,8 +28,8 @@ TEST(HiddenPlaces, APoleThatPeoplePassBehindIsLearnedAndForgotten) {
   EXPECT_FALSE(hidden.at(100, 100)) << "the pole is gone";
 }
 
-TEST(HiddenPlaces, BoxesBeyondThePictureAndEmptyMasksDoNoHarm) {
-  HiddenPlaces hidden;
+TEST(StaticOccluders, BoxesBeyondThePictureAndEmptyMasksDoNoHarm) {
+  StaticOccluders hidden;
   hidden.note({0, 0, 10, 10}, {});
   const cv::Mat pixel(1, 1, CV_8UC1, cv::Scalar(0));
   hidden.note({-50, -50, 100, 100}, pixel);

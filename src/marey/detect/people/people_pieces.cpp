@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kOwnGapAcross = 0.05, kOwnGapDown = 0.15;  // of the larger region's height, while that is all that is known
 constexpr int kOwnRounds = 3;
-constexpr double kWithin = 0.6;  // of a region's box, within that of someone expected: his, while no size is known
+constexpr double kWithin = 0.6;  // of a region's box, within that of a person expected: his, while no size is known
 
 }  // namespace
 

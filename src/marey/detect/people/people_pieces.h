@@ -11,7 +11,7 @@
 
 namespace marey::detect::people {
 
-inline constexpr int kManyRegions = 400;  ///< so many are rain and noise, and are not joined
+inline constexpr int kManyRegions = 400;  ///< this many are rain and noise, and are not joined
 
 /// The room between two intervals; 0 where they meet.
 inline double gap(double begin_a, double end_a, double begin_b, double end_b) {

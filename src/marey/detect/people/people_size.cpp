@@ -1,11 +1,11 @@
-// How tall people are at each place of the picture, learned from the regions that move in it. On flat ground, seen through
+// How tall people are at each place of the image, learned from the regions that move in it. On flat ground, seen through
 // a camera without distortion, an upright person's height in pixels is a linear function of where the feet are: h = a + b·y +
 // c·x. A small term in x² takes up what a wide lens bends. Width follows height by one ratio.
 //
-// Most regions are no clean single person: fragments are too small, groups too large, shadows lengthen. They do not agree
+// Most regions are not clean single person: fragments are too small, groups too large, shadows lengthen. They do not agree
 // with one another, people do: the plane that most regions agree with (within a fifth of the height) is found from triples of
 // regions, then refined by weighted least squares with Tukey's weights. Slopes are pulled towards zero with the weight of a
-// few regions, so that three people on a line do not tilt the world. The memory is spread over the picture: a busy path, or a
+// few regions, so that three people on a line do not tilt the world. The memory is spread over the image: a busy path, or a
 // person who stands for minutes, does not outvote the rest.
 // Cost: a fit reads at most 64 cells × 12 boxes some 400 times, about a millisecond.
 // References: Fischler & Bolles, RANSAC, CACM 24(6), 1981; Hoiem, Efros, Hebert, "Putting objects in perspective", CVPR 2006.
@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kSizeCellsAcross = 8;
 constexpr std::size_t kBoxesInCell = 12;
-constexpr double kSmallestHeight = 12;           // px; below this a body has no shape
+constexpr double kMinHeightPx = 12;              // px; below this a body has no shape
 constexpr double kFlattest = 1.2, kTallest = 5;  // height over width of what may be one upright person
 constexpr double kAgreement = 0.2;               // of the height
 constexpr double kTukey = 0.3;                   // of the height; a region further off has no say
@@ -49,17 +49,17 @@ class Draw {
 
 }  // namespace
 
-void PersonSizeModel::see(const Box& region, cv::Size image) {
+void PersonSizeModel::observe_frame(const Box& region, cv::Size image) {
   remember(region, image, false);
 }
 
-void PersonSizeModel::see_cut(const Box& region, cv::Size image) {
+void PersonSizeModel::observe_cut(const Box& region, cv::Size image) {
   remember(region, image, true);
 }
 
 void PersonSizeModel::remember(const Box& region, cv::Size image, bool cut) {
   const double tall = region.height / std::max(region.width, 1.0);
-  if (region.height < kSmallestHeight || tall < kFlattest || tall > kTallest) return;
+  if (region.height < kMinHeightPx || tall < kFlattest || tall > kTallest) return;
   if (image_ != image) {
     *this = {};
     image_ = image;
@@ -72,7 +72,7 @@ void PersonSizeModel::remember(const Box& region, cv::Size image, bool cut) {
   const std::size_t cell = static_cast<std::size_t>(row) * kSizeCellsAcross + column;
   std::vector<Remembered>& boxes = cells_[cell];
   for (const Remembered& known : boxes) {
-    if (geometry::iou(known.box, region) > 0.7) return;  // someone who stands says nothing new
+    if (geometry::iou(known.box, region) > 0.7) return;  // a person who stands says nothing new
   }
   if (boxes.size() < kBoxesInCell) {
     boxes.push_back({region, cut});
@@ -80,7 +80,7 @@ void PersonSizeModel::remember(const Box& region, cv::Size image, bool cut) {
     boxes[next_[cell]++ % kBoxesInCell] = {region, cut};
   }
   ++fresh_;
-  tallest_seen_ = std::max(tallest_seen_, region.height);
+  tallest_observed_ = std::max(tallest_observed_, region.height);
 }
 
 PersonSizeModel::Features PersonSizeModel::features_of(double x, double y) const {
@@ -101,7 +101,7 @@ std::vector<PersonSizeModel::Sample> PersonSizeModel::weighted_samples() const {
   return samples;
 }
 
-/// What agrees with these heights, less what speaks against them: nobody is taller than a person, but much is smaller.
+/// What agrees with these heights, less what speaks against them: no person is taller than a person, but much is smaller.
 double PersonSizeModel::support_of(const Features& guess, const std::vector<Sample>& samples) {
   double support = 0;
   for (const Sample& sample : samples) {
@@ -140,12 +140,12 @@ std::optional<PersonSizeModel::Features> PersonSizeModel::consensus(const std::v
 PersonSizeModel::Features PersonSizeModel::refined(Features start, const std::vector<Sample>& samples) const {
   Features solution = start;
   for (int round = 0; round < 6; ++round) {
-    // Ridge: slopes of one height per picture width have the say of the weights below, in regions.
+    // Ridge: slopes of one height per image width have the say of the weights below, in regions.
     Eigen::Matrix4d A = Features(0, 0.02, 0.02, 0.5).asDiagonal();
     Features b = Features::Zero();
     for (const Sample& sample : samples) {
       const double expected = solution.dot(sample.features);
-      if (sample.cut || expected < kSmallestHeight / 2) continue;
+      if (sample.cut || expected < kMinHeightPx / 2) continue;
       const double off = (sample.height - expected) / (kTukey * expected);
       if (off * off >= 1) continue;
       const double pull = sample.weight * (1 - off * off) * (1 - off * off);
@@ -165,7 +165,7 @@ void PersonSizeModel::take_over(const Features& solution, const std::vector<Samp
   for (const Sample& sample : samples) {
     const double expected = solution.dot(sample.features);
     const double off = sample.height / std::max(expected, 1.0) - 1;
-    if (sample.cut || expected < kSmallestHeight / 2 || std::abs(off) > kAgreement) continue;
+    if (sample.cut || expected < kMinHeightPx / 2 || std::abs(off) > kAgreement) continue;
     aspects.push_back({sample.aspect, sample.weight});
     offs.push_back({std::abs(off), sample.weight});
     support += sample.weight;

@@ -35,7 +35,7 @@ PersonSizeModel learned(const World& world, int count, unsigned seed) {
     } else if (kind < world.fragments + world.groups + world.shadows) {
       box.height *= 1.15;
     }
-    model.see(box, {kWidth, kHeight});
+    model.observe_frame(box, {kWidth, kHeight});
   }
   model.fit();
   return model;
@@ -74,20 +74,20 @@ TEST(PersonSizeModel, SaysNothingFromTooLittle) {
   EXPECT_FALSE(model.at(10, 10).has_value());
   model.fit();
   EXPECT_FALSE(model.known());
-  model.see({100, 100, 30, 80}, {kWidth, kHeight});
-  model.see({300, 110, 31, 82}, {kWidth, kHeight});
+  model.observe_frame({100, 100, 30, 80}, {kWidth, kHeight});
+  model.observe_frame({300, 110, 31, 82}, {kWidth, kHeight});
   model.fit();
   EXPECT_FALSE(model.known());
 }
 
-TEST(PersonSizeModel, OneWhoStandsDoesNotCountAgainAndAgain) {
+TEST(PersonSizeModel, CountsStandingPersonOnce) {
   PersonSizeModel model;
-  for (int i = 0; i < 1000; ++i) model.see({100.0 + i % 2, 100, 30, 80}, {kWidth, kHeight});
+  for (int i = 0; i < 1000; ++i) model.observe_frame({100.0 + i % 2, 100, 30, 80}, {kWidth, kHeight});
   model.fit();
   EXPECT_FALSE(model.known());
 }
 
-TEST(PersonSizeModel, NobodyStandsTowardsTheHorizon) {
+TEST(PersonSizeModel, NoPersonBeyondHorizon) {
   const World world{[](double, double y) { return 0.25 * (y - 100); }, 250, 570};
   const PersonSizeModel model = learned(world, 400, 8);
   EXPECT_TRUE(model.at(384, 300).has_value());
@@ -100,17 +100,17 @@ TEST(PersonSizeModel, FollowsNewEvidence) {
   std::mt19937 random(10);
   for (int i = 0; i < 4000; ++i) {
     const double x = bodies::uniform(random, 60, kWidth - 60), y = bodies::uniform(random, 120, 570);
-    model.see({x - 18, y - 100, 36, 100}, {kWidth, kHeight});
-    if (model.wants_fit()) model.fit();
+    model.observe_frame({x - 18, y - 100, 36, 100}, {kWidth, kHeight});
+    if (model.needs_fit()) model.fit();
   }
   EXPECT_NEAR(model.at(384, 300).value().height, 100, 6);
 }
 
-TEST(PersonSizeModel, WhatIsNoUprightShapeIsNotTakenIn) {
+TEST(PersonSizeModel, IgnoresNonUprightShapes) {
   PersonSizeModel model;
   std::mt19937 random(11);
   for (int i = 0; i < 300; ++i) {  // cars
-    model.see({bodies::uniform(random, 0, 600), bodies::uniform(random, 0, 400), 150, 70}, {kWidth, kHeight});
+    model.observe_frame({bodies::uniform(random, 0, 600), bodies::uniform(random, 0, 400), 150, 70}, {kWidth, kHeight});
   }
   model.fit();
   EXPECT_FALSE(model.known());

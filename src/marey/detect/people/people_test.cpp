@@ -16,11 +16,11 @@ const cv::Size kSceneImage(768, 576);
 /// Foreground is what is not black: the tests draw it.
 class Drawn final : public background::Background {
  public:
-  Foreground apply(const Frame& frame, std::span<const Box>) override { return {frame.picture.luma()}; }
+  Foreground apply(const Frame& frame, std::span<const Box>) override { return {frame.image.luma()}; }
 };
 
 Frame frame_of(cv::Mat mask, std::int64_t index = 0) {
-  return {{}, index, timestamp_from_seconds(static_cast<double>(index) / 10), Picture(std::move(mask))};
+  return {{}, index, timestamp_from_seconds(static_cast<double>(index) / 10), Image(std::move(mask))};
 }
 
 double height_at(double y) {
@@ -48,10 +48,10 @@ PeopleDetector trained(int frames, unsigned seed) {
   return detector;
 }
 
-int found(const std::vector<Detection>& detections, const std::vector<Box>& truth, double least) {
+int found(const std::vector<Detection>& detections, const std::vector<Box>& truth, double minimum) {
   return static_cast<int>(std::count_if(truth.begin(), truth.end(), [&](const Box& one) {
     return std::any_of(detections.begin(), detections.end(),
-                       [&](const Detection& d) { return geometry::iou(d.box, one) >= least; });
+                       [&](const Detection& d) { return geometry::iou(d.box, one) >= minimum; });
   }));
 }
 
@@ -80,7 +80,7 @@ TEST(PeopleDetector, FindsPeopleAloneInGroupsInPiecesAndAtTheBorder) {
   EXPECT_EQ(detector.counts().shared, 3);
 }
 
-/// Someone `height` px tall who walks across and, where that is possible, in from below, in pieces: stripes of the body look like
+/// A person `height` px tall who walks across and, where that is possible, in from below, in pieces: stripes of the body look like
 /// the scene.
 cv::Mat in_pieces(cv::Size image, double height, int i) {
   cv::Mat mask = cv::Mat::zeros(image, CV_8UC1);
@@ -93,7 +93,7 @@ cv::Mat in_pieces(cv::Size image, double height, int i) {
   return mask;
 }
 
-TEST(PeopleDetector, OneWhoIsInPiecesIsOneOfAnySize) {
+TEST(PeopleDetector, MergesPiecesOfPersonAtAnySize) {
   for (const double height : {40.0, 100.0, 400.0, 700.0, 1200.0}) {
     SCOPED_TRACE(height);
     PeopleDetector detector(std::make_unique<Drawn>());
@@ -166,7 +166,7 @@ TEST(PeopleDetector, ReportsRegionsThemselvesWhileNoSizeIsKnown) {
   EXPECT_LE(result.detections[0].score, 0.5);
 }
 
-TEST(PeopleDetector, WhatADetectionHoldsFitsTogether) {
+TEST(PeopleDetector, DetectionPartsAreConsistent) {
   PeopleDetector detector = trained(30, 5);
   std::mt19937 random(6);
   for (int round = 0; round < 30; ++round) {
@@ -205,10 +205,10 @@ TEST(PeopleDetector, TheCentreIsThatOfThePixelsSeen) {
   bodies::draw(mask, walker_at(400, 400));
   const auto result = detector.detect(frame_of(mask), {});
   ASSERT_EQ(result.detections.size(), 1u);
-  const cv::Moments moments = cv::moments(mask, true);
-  EXPECT_NEAR(result.detections[0].centre.x(), moments.m10 / moments.m00, 1.0);
-  EXPECT_NEAR(result.detections[0].centre.y(), moments.m01 / moments.m00, 1.0);
-  EXPECT_GT((result.detections[0].centre - result.detections[0].box.centre()).norm(), 0.5) << "a body is no rectangle";
+  const cv::Moments time_steps = cv::moments(mask, true);
+  EXPECT_NEAR(result.detections[0].centre.x(), time_steps.m10 / time_steps.m00, 1.0);
+  EXPECT_NEAR(result.detections[0].centre.y(), time_steps.m01 / time_steps.m00, 1.0);
+  EXPECT_GT((result.detections[0].centre - result.detections[0].box.centre()).norm(), 0.5) << "a body is not a rectangle";
 }
 
 TEST(PeopleDetector, EmptyFullAndTinyPicturesDoNoHarm) {

@@ -7,7 +7,7 @@ namespace marey::detect::people {
 namespace {
 
 constexpr double kStep = 16;     // px between places of the grid
-constexpr double kBeyond = 0.3;  // of the picture's width, to each side
+constexpr double kBeyond = 0.3;  // of the image's width, to each side
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::optional<PersonSize> PersonSizeMap::at(double x, double y) const {
   if (!(across >= 0 && down >= 0 && across < columns_ - 1 && down < rows_ - 1)) return std::nullopt;
   const int column = static_cast<int>(across), row = static_cast<int>(down);
   const double a = across - column, b = down - row;
-  const std::array<double, 4> shares{(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b};
+  const std::array<double, 4> fractions{(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b};
   const std::size_t first = static_cast<std::size_t>(row) * columns_ + column;
   const std::array<const PersonSize*, 4> corners{&cells_[first], &cells_[first + 1], &cells_[first + columns_],
                                                  &cells_[first + columns_ + 1]};
@@ -36,9 +36,9 @@ std::optional<PersonSize> PersonSizeMap::at(double x, double y) const {
   double known = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!(corners[i]->height > 0)) continue;
-    known += shares[i];
-    sum.height += shares[i] * corners[i]->height;
-    sum.width += shares[i] * corners[i]->width;
+    known += fractions[i];
+    sum.height += fractions[i] * corners[i]->height;
+    sum.width += fractions[i] * corners[i]->width;
   }
   if (known < 0.5) return std::nullopt;
   return PersonSize{sum.height / known, sum.width / known};

@@ -5,7 +5,7 @@
 namespace marey::detect::people {
 namespace {
 
-/// People grow downwards, and nobody stands above row 100.
+/// People grow downwards, and no person stands above row 100.
 std::optional<PersonSize> rising(double /*x*/, double y) {
   if (y < 100) return std::nullopt;
   return PersonSize{20 + 0.2 * y, 8 + 0.08 * y};
@@ -23,11 +23,11 @@ TEST(PersonSizeMap, BetweenItsPlacesSizesAreThoseItWasTold) {
   }
 }
 
-TEST(PersonSizeMap, NobodyStandsWhereNobodyCan) {
+TEST(PersonSizeMap, NoPersonAtImpossiblePosition) {
   const PersonSizeMap map({640, 480}, rising);
   EXPECT_FALSE(map.at(320, 60));
   EXPECT_FALSE(map.at(320, -50));
-  EXPECT_FALSE(map.at(1e6, 300)) << "far outside of the picture";
+  EXPECT_FALSE(map.at(1e6, 300)) << "far outside of the image";
   EXPECT_FALSE(map.at(320, 1e6));
 }
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/format.h"
 #include "marey/format/motion/marker_set.h"
 #include "marey/format/nesting.h"
@@ -18,7 +18,7 @@
 namespace marey::format::bodies {
 namespace {
 
-constexpr std::size_t kMostMarkers = 1000;  // of a body
+constexpr std::size_t kMaxMarkers = 1000;  // of a body
 
 std::string quoted(const std::string& text) {
   std::string result = "\"";
@@ -49,8 +49,8 @@ Body read_body(const toml::table& table, int number, rig::Problems& problems) {
   body.label = plain_text(section.text("name").value_or(""));
   if (body.label.empty()) section.problem("name", "has no name; give it one");
   const toml::array* markers = table["marker"].as_array();
-  if (markers == nullptr || markers->size() < 3 || markers->size() > kMostMarkers) {
-    section.problem("marker", fmt::format("needs three [[body.marker]] or more, and at most {}", kMostMarkers));
+  if (markers == nullptr || markers->size() < 3 || markers->size() > kMaxMarkers) {
+    section.problem("marker", fmt::format("needs three [[body.marker]] or more, and at most {}", kMaxMarkers));
     return body;
   }
   std::set<std::string> labels;
@@ -109,7 +109,7 @@ std::vector<Body> read_bodies(const std::string& path) {
   Body body;
   body.id = BodyId{1};
   body.label = std::filesystem::path(path).stem().string();
-  for (std::size_t m = 0; m < set.labels.size(); ++m) body.markers.push_back({set.labels[m], set.places[m]});
+  for (std::size_t m = 0; m < set.labels.size(); ++m) body.markers.push_back({set.labels[m], set.locations[m]});
   return {body};
 }
 

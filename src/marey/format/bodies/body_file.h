@@ -22,7 +22,7 @@ std::vector<Body> parse_bodies(std::string_view text, const std::string& name);
 
 /// The same as text. `notes` by body, as comments above it; none where they are fewer.
 std::string bodies_text(const std::vector<Body>& bodies, const std::vector<std::vector<std::string>>& notes = {});
-/// Whole or not at all.
+/// Atomically.
 void write_bodies(const std::string& path, const std::vector<Body>& bodies,
                   const std::vector<std::vector<std::string>>& notes = {});
 

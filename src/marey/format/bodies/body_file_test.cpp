@@ -27,7 +27,7 @@ TEST(BodyFile, ComesBackAsItWasWritten) {
   cap.id = BodyId{2};
   cap.label = "cap";
   const test::TemporaryFolder folder;
-  write_bodies(folder / "b.toml", {racket, cap}, {{"turned 180° about its z axis it looks the same"}, {}});
+  write_bodies(folder / "b.toml", {racket, cap}, {{"turned 180° about its z axis it appears the same"}, {}});
   EXPECT_EQ(read_bodies(folder / "b.toml"), (std::vector<Body>{racket, cap}));
   EXPECT_EQ(test::read_file(folder / "b.toml").substr(0, 8), "# turned");
 }

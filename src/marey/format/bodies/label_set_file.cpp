@@ -8,8 +8,8 @@
 #include <toml++/toml.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/format.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
@@ -18,7 +18,7 @@
 namespace marey::format::bodies {
 namespace {
 
-constexpr std::size_t kMostLabels = 2000;
+constexpr std::size_t kMaxLabels = 2000;
 
 /// Rows of `width` numbers each.
 std::vector<std::vector<double>> rows_in(const toml::table& file, const char* key, std::size_t rows, std::size_t width,
@@ -58,8 +58,8 @@ LearnedMarkers parse_label_set(std::string_view text, const std::string& name) {
   LearnedMarkers set;
   const toml::array* labels = file["labels"].as_array();
   std::set<std::string> known;
-  if (labels == nullptr || labels->size() < 4 || labels->size() > kMostLabels) {
-    problems.add({}, fmt::format("labels must be a list of 4 to {} names", kMostLabels));
+  if (labels == nullptr || labels->size() < 4 || labels->size() > kMaxLabels) {
+    problems.add({}, fmt::format("labels must be a list of 4 to {} names", kMaxLabels));
     problems.throw_if_any();
   }
   for (const toml::node& node : *labels) {
@@ -71,7 +71,7 @@ LearnedMarkers parse_label_set(std::string_view text, const std::string& name) {
   set.moves = file["moves"].value_or(true);
   set.scaled = file["scaled"].value_or(false);
   const std::size_t count = set.labels.size();
-  for (const auto& row : rows_in(file, "places", count, 3, problems)) set.places.push_back({row[0], row[1], row[2]});
+  for (const auto& row : rows_in(file, "places", count, 3, problems)) set.locations.push_back({row[0], row[1], row[2]});
   for (const auto& row : rows_in(file, "distances", count * (count - 1) / 2, 2, problems)) {
     if (row[0] < 0 || row[1] < 0) problems.add(file["distances"].node()->source(), "a distance or its deviation is below 0");
     set.distances.push_back({row[0], row[1]});
@@ -95,7 +95,8 @@ std::string label_set_text(const LearnedMarkers& set) {
     text += fmt::format("{}\"{}\"", m == 0 ? "" : ", ", label);
   }
   text += fmt::format("]\nmoves = {}\nscaled = {}\nplaces = [\n", set.moves, set.scaled);
-  for (const Vector<3>& place : set.places) text += fmt::format("  [{:.5f}, {:.5f}, {:.5f}],\n", place.x(), place.y(), place.z());
+  for (const Vector<3>& location : set.locations)
+    text += fmt::format("  [{:.5f}, {:.5f}, {:.5f}],\n", location.x(), location.y(), location.z());
   text += "]\ndistances = [\n";
   for (std::size_t a = 1; a < set.size(); ++a) {
     text += " ";
@@ -117,7 +118,7 @@ Format label_set_format() {
           .title = "a learned marker set",
           .endings = {},
           .holds = Content::labels,
-          .detail = "m; how far markers are from each other: see [labels](labels.md). For `marey label --set`",
+          .detail = "m; how far markers are from each other: see [labels](labels.md). For `marey label --marker-set`",
           .is =
               [](const Beginning& file) {
                 return file.is_text() && file.first_line().starts_with("labels = [") && file.has("\nplaces = [");

@@ -15,11 +15,11 @@
 
 namespace marey::format::bodies {
 
-/// Throws Error, `path:LINE: what`, for what is none.
+/// Throws Error, `path:LINE: what`, for what is not one.
 LearnedMarkers read_label_set(const std::string& path);
 LearnedMarkers parse_label_set(std::string_view text, const std::string& name);
 std::string label_set_text(const LearnedMarkers& set);
-/// Whole or not at all.
+/// Atomically.
 void write_label_set(const std::string& path, const LearnedMarkers& set);
 
 }  // namespace marey::format::bodies

@@ -12,7 +12,7 @@ namespace {
 LearnedMarkers four() {
   LearnedMarkers set;
   set.labels = {"a", "b \"two\"", "c", "d"};
-  set.places = {{0, 0, 0}, {0.125, 0, 0}, {0, 0.25, 0}, {0, 0, 1.5}};
+  set.locations = {{0, 0, 0}, {0.125, 0, 0}, {0, 0.25, 0}, {0, 0, 1.5}};
   for (int i = 0; i < 6; ++i) set.distances.push_back({0.25 * i, 0.125});
   set.moves = false;
   set.scaled = true;

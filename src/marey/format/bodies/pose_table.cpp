@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/format.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
@@ -27,9 +27,9 @@ class PoseTable final : public Sink {
 
   std::string name() const override { return path_; }
 
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     if (header.bodies.empty())
-      throw Error("{}: the recording holds no bodies, so that there are no poses; `marey body follow` finds them", path_);
+      throw Error("{}: the recording holds no bodies, so that there are no poses; `marey body track` finds them", path_);
     for (const Body& body : header.bodies) names_[body.id] = quoted_field(body.skeleton) + ',' + quoted_field(body.label);
     file_.write(fmt::format("{}\n", kHead));
     return {};

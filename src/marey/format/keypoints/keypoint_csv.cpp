@@ -21,7 +21,7 @@ class CsvLines {
  public:
   explicit CsvLines(std::string_view text) : rest_(text) {}
 
-  /// False at the end. Empty lines are passed over.
+  /// False at the end. Empty lines are skipped.
   bool next(Cells& cells) {
     std::string_view line;
     do {
@@ -74,7 +74,7 @@ KeypointSequence read_deeplabcut(CsvLines lines, const std::string& path, std::s
     }
   }
   if (parts.empty() || parts.size() != coordinates.size() || parts.size() % 3 != 0)
-    throw Error("{}: is no table of DeepLabCut: \"bodyparts\" and \"coords\" must name x, y, likelihood of each point", path);
+    throw Error("{}: is not a table of DeepLabCut: \"bodyparts\" and \"coords\" must name x, y, likelihood of each point", path);
   if (individuals.empty()) individuals.assign(parts.size(), "");
   std::vector<std::string> names;
   for (std::size_t i = 0; i < parts.size() && individuals[i] == individuals[0]; i += 3) names.push_back(parts[i]);
@@ -136,8 +136,8 @@ KeypointSequence read_keypoint_csv(std::string_view text, const std::string& pat
   if (head.starts_with("scorer")) return read_deeplabcut(lines, path, set);
   if (head.starts_with("frame,") && head.find(",point,x,y") != std::string_view::npos) return read_keypoint_rows(text, path, set);
   if (head.find("frame_idx") != std::string_view::npos) return read_sleap(lines, path, set);
-  throw Error("{}: is no table of keypoints: DeepLabCut's begins with \"scorer\", SLEAP's names \"frame_idx\", Marey's \"point\"",
-              path);
+  throw Error(
+      "{}: is not a table of keypoints: DeepLabCut's begins with \"scorer\", SLEAP's names \"frame_idx\", Marey's \"point\"", path);
 }
 
 }  // namespace marey::format::keypoints

@@ -38,8 +38,8 @@ void append_triples(std::string& text, const Keypoints<2>& person) {
 }
 
 void require_frame(std::int64_t frame, const std::string& path) {
-  if (frame < 0 || frame > FrameNumbers::kMostMissing)
-    throw Error("{}: frame {} is not supported; a video has at most {}", path, frame, FrameNumbers::kMostMissing);
+  if (frame < 0 || frame > FrameNumbers::kMaxMissing)
+    throw Error("{}: frame {} is not supported; a video has at most {}", path, frame, FrameNumbers::kMaxMissing);
 }
 
 /// What both sinks share: the people of an image's instants.
@@ -48,7 +48,7 @@ class KeypointExport : public Sink {
   explicit KeypointExport(std::string path) : path_(std::move(path)) {}
 
   std::string name() const override { return path_; }
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     if (header.frame.metric() || !header.keypoints)
       throw Error("{}: such a file holds people's keypoints in images; marey track --targets keypoints finds them", path_);
     begin_export(header);

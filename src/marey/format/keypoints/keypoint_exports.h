@@ -10,7 +10,7 @@
 
 #include "marey/core/keypoint_sequence.h"
 #include "marey/core/sink.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 
 namespace marey::format::keypoints {
 
@@ -25,7 +25,7 @@ struct ExportedPerson {
 /// for one that is absent. The file is written atomically.
 class CocoWriter {
  public:
-  /// Throws Error where nothing can be written there.
+  /// Throws Error if nothing can be written there.
   explicit CocoWriter(const std::string& path) : file_(path) {}
 
   void begin(const KeypointSet& set, std::optional<double> rate_hz, std::optional<cv::Size> size);

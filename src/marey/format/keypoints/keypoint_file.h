@@ -19,7 +19,7 @@ bool may_hold_keypoints(const std::string& path);
 KeypointSequence read_keypoints(const std::string& path, std::string_view set = {});
 
 /// Writes one camera's keypoints as COCO annotations with images and a category that names the points: third number of a point is
-/// its visibility × presence, 0 for one that is absent. Throws Error where the file cannot be written.
+/// its visibility × presence, 0 for one that is absent. Throws Error if the file cannot be written.
 void write_coco_keypoints(const KeypointSequence& sequence, const std::string& path);
 
 }  // namespace marey::format::keypoints

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/core/natural_order.h"
+#include "marey/files/natural_order.h"
 #include "marey/format/keypoints/sequence_builder.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
@@ -32,7 +32,7 @@ json parse_keypoint_json(std::string_view text, const std::string& path) {
   } catch (const json::parse_error& error) {
     if (error.byte > 0 && text.substr(std::min(error.byte - 1, text.size()), 3) == "NaN")
       throw Error("{}: NaN at byte {} is no number of JSON; a missing point has null or the confidence 0", path, error.byte);
-    throw Error("{}: is no JSON: it breaks off or is wrong at byte {}", path, error.byte);
+    throw Error("{}: is not a JSON: it breaks off or is wrong at byte {}", path, error.byte);
   }
 }
 
@@ -58,7 +58,7 @@ std::vector<FilePoint> points_of_triples(const json& list, const std::string& wh
 void add_openpose(const json& root, std::int64_t frame, SequenceBuilder& builder, const std::string& path) {
   const auto people = root.is_object() ? root.find("people") : root.end();
   if (!root.is_object() || people == root.end() || !people->is_array())
-    throw Error("{}: is no file of OpenPose: \"people\" is missing", path);
+    throw Error("{}: is not a file of OpenPose: \"people\" is missing", path);
   builder.add_frame(frame);
   for (const json& person : *people) {
     const auto points = person.find("pose_keypoints_2d");
@@ -117,7 +117,7 @@ void add_annotations(const json& root, SequenceBuilder& builder, const std::stri
   }
 }
 
-/// COCO's results and AlphaPose's, whose confidences are no probabilities: they may exceed 1.
+/// COCO's results and AlphaPose's, whose confidences are not probabilities: they may exceed 1.
 void add_results(const json& root, SequenceBuilder& builder, const std::string& path) {
   for (const json& one : root) {
     if (!one.is_object() || !one.contains("keypoints") || !one.contains("image_id"))
@@ -129,13 +129,13 @@ void add_results(const json& root, SequenceBuilder& builder, const std::string& 
 }
 
 std::vector<FilePoint> points_of_instance(const json& instance, const std::string& where) {
-  const json &places = instance.at("keypoints"), &scores = instance.at("keypoint_scores");
-  if (!places.is_array() || !scores.is_array() || places.size() != scores.size())
+  const json &locations = instance.at("keypoints"), &scores = instance.at("keypoint_scores");
+  if (!locations.is_array() || !scores.is_array() || locations.size() != scores.size())
     throw Error("{}: \"keypoints\" and \"keypoint_scores\" must be lists of one length", where);
-  std::vector<FilePoint> points(places.size());
+  std::vector<FilePoint> points(locations.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!places[i].is_array() || places[i].size() < 2) throw Error("{}: a keypoint must be [x, y]", where);
-    points[i] = {number_or_zero(places[i][0], where), number_or_zero(places[i][1], where), number_or_zero(scores[i], where)};
+    if (!locations[i].is_array() || locations[i].size() < 2) throw Error("{}: a keypoint must be [x, y]", where);
+    points[i] = {number_or_zero(locations[i][0], where), number_or_zero(locations[i][1], where), number_or_zero(scores[i], where)};
   }
   return points;
 }

@@ -110,7 +110,7 @@ KeypointSequence read_keypoint_lines(std::string_view text, const std::string& p
     try {
       add_line(json::parse(line), where, people);
     } catch (const json::exception&) {
-      throw Error("{}: is no line of keypoints: it breaks off, or a field is missing or of another kind", where);
+      throw Error("{}: is not a line of keypoints: it breaks off, or a field is missing or of another kind", where);
     }
   }
   return people.finish(set);
@@ -122,14 +122,14 @@ KeypointSequence read_keypoint_rows(std::string_view text, const std::string& pa
   NamedPeople people(path);
   for (const CsvTable::Row& row : table.rows()) {
     const auto frame = static_cast<std::int64_t>(number_in(row, "frame"));
-    const auto share = [&](const char* column) { return row.text(column).empty() ? 1 : number_in(row, column); };
+    const auto fraction = [&](const char* column) { return row.text(column).empty() ? 1 : number_in(row, column); };
     if (!row.text("time").empty()) people.add_time(frame, number_in(row, "time"));
     NamedPerson& person = rows[{frame, row.text("id")}];
     person.frame = frame;
     person.where = row.where();
     person.points[common_keypoint_name(row.text("point"))] = {.x = number_in(row, "x"),
                                                               .y = number_in(row, "y"),
-                                                              .confidence = share("visibility") * share("presence"),
+                                                              .confidence = fraction("visibility") * fraction("presence"),
                                                               .sigma = number_in(row, "sd")};
   }
   for (auto& [key, person] : rows) people.add(std::move(person));

@@ -9,18 +9,18 @@
 
 #include "marey/core/error.h"
 #include "marey/core/keypoint_sets.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::format::keypoints {
 namespace {
 
-constexpr double kFarthestPixel = 1e6;
+constexpr double kMaxPixel = 1e6;
 // Standard deviation of a point of full confidence, as a share of the diagonal of the person's points: 8 px of a person 590 px
-// tall. Whoever needs more learns it from how well several views agree.
-constexpr double kNoiseShare = 0.012;
-constexpr double kLeastNoise = 0.5;        // px
-constexpr double kLeastConfidence = 0.05;  // below, the noise does not grow any more
-constexpr int kLooks = 400;                // people by whom a set is told from another one
+// tall. The one who needs more learns it from how well several views agree.
+constexpr double kNoiseFraction = 0.012;
+constexpr double kMinNoise = 0.5;        // px
+constexpr double kMinConfidence = 0.05;  // below, the noise does not grow any more
+constexpr int kAppearance = 400;         // people by whom a set is distinguished from another one
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -28,13 +28,13 @@ bool is_digit(char c) {
 
 /// The noise of a point of full confidence.
 double noise_of(const Keypoints<2>& person) {
-  Vector<2> low = Vector<2>::Constant(kFarthestPixel), high = -low;
+  Vector<2> low = Vector<2>::Constant(kMaxPixel), high = -low;
   for (const auto& point : person.points) {
     if (!point) continue;
     low = low.cwiseMin(point->position);
     high = high.cwiseMax(point->position);
   }
-  return std::max(kLeastNoise, kNoiseShare * (high - low).norm());
+  return std::max(kMinNoise, kNoiseFraction * (high - low).norm());
 }
 
 }  // namespace
@@ -73,8 +73,8 @@ void SequenceBuilder::add(std::int64_t frame, const std::vector<FilePoint>& poin
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FilePoint& point = points[i];
     if (!(point.confidence > 0)) continue;
-    if (!(std::abs(point.x) < kFarthestPixel && std::abs(point.y) < kFarthestPixel))
-      throw Error("{}: point {} lies at ({}, {}), which is no place in an image; a missing point has the confidence 0", where,
+    if (!(std::abs(point.x) < kMaxPixel && std::abs(point.y) < kMaxPixel))
+      throw Error("{}: point {} lies at ({}, {}), which is not a place in an image; a missing point has the confidence 0", where,
                   i + 1, point.x, point.y);
     person.points[i] = Keypoint<2>{.position = {point.x, point.y}, .visibility = std::min(1.0, point.confidence)};
     any = true;
@@ -84,8 +84,8 @@ void SequenceBuilder::add(std::int64_t frame, const std::vector<FilePoint>& poin
   const double noise = noise_of(person);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!person.points[i]) continue;
-    const double usual = noise / std::sqrt(std::max(kLeastConfidence, person.points[i]->visibility));
-    const double sigma = points[i].sigma ? std::hypot(*points[i].sigma, noise) : usual;
+    const double typical = noise / std::sqrt(std::max(kMinConfidence, person.points[i]->visibility));
+    const double sigma = points[i].sigma ? std::hypot(*points[i].sigma, noise) : typical;
     person.points[i]->covariance = sigma * sigma * Matrix<2>::Identity();
   }
   people_.push_back({frame, std::move(person)});
@@ -106,7 +106,7 @@ void SequenceBuilder::name_points(const std::vector<std::string>& names) {
 
 double SequenceBuilder::mean_bone(const KeypointSet& set) const {
   double sum = 0, count = 0;
-  for (std::size_t p = 0; p < people_.size(); p += std::max<std::size_t>(1, people_.size() / kLooks)) {
+  for (std::size_t p = 0; p < people_.size(); p += std::max<std::size_t>(1, people_.size() / kAppearance)) {
     const auto& points = people_[p].keypoints.points;
     for (const auto& [a, b] : set.bones) {
       const auto &from = points[static_cast<std::size_t>(a)], &to = points[static_cast<std::size_t>(b)];

@@ -26,8 +26,8 @@ class SequenceBuilder {
   KeypointSequence& sequence() { return sequence_; }
   /// A frame that is there, with or without people. Throws Error for a negative number.
   void add_frame(std::int64_t frame, std::optional<double> time_s = {});
-  /// A person. `score` is in [0, 1]; `where` names the place for messages. Throws Error where points are as many as another person
-  /// does not have, or are no places in an image.
+  /// A person. `score` is in [0, 1]; `where` names the place for messages. Throws Error if points are as many as another person
+  /// does not have, or are not places in an image.
   void add(std::int64_t frame, const std::vector<FilePoint>& points, double score, const std::string& where);
   /// The set, where the file names the points.
   void name_points(const std::vector<std::string>& names);

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/epts.h"
 #include "marey/format/match/epts_periods.h"
 #include "marey/format/match/ground_builder.h"
@@ -22,7 +22,7 @@
 namespace marey::format::match {
 namespace {
 
-constexpr int kDeepest = 16;  // registers in registers
+constexpr int kMaxDepth = 16;  // registers in registers
 
 /// What a line is made of: a register that splits it further, or the channel of a player's that stands there, or neither.
 struct Register {
@@ -53,17 +53,17 @@ class EptsReader {
   }
 
  private:
-  double number(const pugi::xml_node& node, const char* what, double least, double most) const {
+  double number(const pugi::xml_node& node, const char* what, double minimum, double maximum) const {
     const auto value = number_of(node.child_value());
-    if (!value || !(*value >= least && *value <= most))
-      throw Error("{}: {} is {}; a number from {:g} to {:g} is wanted", metadata_name_, what, shown(node.child_value()), least,
-                  most);
+    if (!value || !(*value >= minimum && *value <= maximum))
+      throw Error("{}: {} is {}; a number from {:g} to {:g} is wanted", metadata_name_, what, shown(node.child_value()), minimum,
+                  maximum);
     return *value;
   }
 
   void read_globals(const pugi::xml_node& metadata) {
     const pugi::xml_node global = metadata.child("GlobalConfig");
-    if (!global) throw Error("{}: is no metadata of EPTS: <GlobalConfig> is missing", metadata_name_);
+    if (!global) throw Error("{}: is not a metadata of EPTS: <GlobalConfig> is missing", metadata_name_);
     match_.recording.header.rate_hz = number(global.child("FrameRate"), "FrameRate", 0.1, 10'000);
     const pugi::xml_node size = metadata.child("Sessions").child("Session").child("FieldSize");
     if (size) {
@@ -104,8 +104,8 @@ class EptsReader {
       const auto team = teams.find(player.attribute("teamId").as_string());
       const int shirt = player.child("ShirtNumber").text().as_int(0);
       const auto digits = id.find_last_not_of("0123456789") + 1;
-      const auto wanted = whole_number_of(std::string_view(id).substr(digits));
-      people[id] = builder_.person(id, wanted && *wanted < 1'000'000'000 ? static_cast<int>(*wanted) : 0,
+      const auto required = whole_number_of(std::string_view(id).substr(digits));
+      people[id] = builder_.person(id, required && *required < 1'000'000'000 ? static_cast<int>(*required) : 0,
                                    label_of(player.child_value("Name"), shirt), team == teams.end() ? std::string() : team->second);
     }
     for (const pugi::xml_node channel : metadata.child("PlayerChannels").children("PlayerChannel")) {
@@ -114,11 +114,11 @@ class EptsReader {
       if (person == people.end() || (what != "x" && what != "y")) continue;
       channels_[channel.attribute("id").as_string()] = {person->second, what == "x" ? 0 : 1};
     }
-    if (channels_.empty()) throw Error("{}: no player has a channel x or y, so nobody has a place", metadata_name_);
+    if (channels_.empty()) throw Error("{}: no player has a channel x or y, so no person has a place", metadata_name_);
   }
 
   Register layout(const pugi::xml_node& node, int depth) const {
-    if (depth > kDeepest) throw Error("{}: registers are nested more than {} deep", metadata_name_, kDeepest);
+    if (depth > kMaxDepth) throw Error("{}: registers are nested more than {} deep", metadata_name_, kMaxDepth);
     Register one;
     const std::string_view kind = node.name();
     if (kind == "PlayerChannelRef") {
@@ -128,7 +128,7 @@ class EptsReader {
       one.frame = std::string_view(node.attribute("name").as_string()) == "frameCount";
     } else if (kind == "SplitRegister" || kind == "DataFormatSpecification") {
       const std::string_view separator = node.attribute("separator").as_string();
-      if (separator.size() != 1) throw Error("{}: the separator {} is no single letter", metadata_name_, shown(separator));
+      if (separator.size() != 1) throw Error("{}: the separator {} is not a single letter", metadata_name_, shown(separator));
       one.separator = separator[0];
       for (const pugi::xml_node part : node.children()) {
         if (part.type() == pugi::node_element) one.parts.push_back(layout(part, depth + 1));
@@ -150,7 +150,7 @@ class EptsReader {
   void walk(std::string_view text, const Register& one) {
     if (one.separator == 0) {
       if (one.frame) frame_ = text;
-      if (one.axis >= 0) places_[one.person][static_cast<std::size_t>(one.axis)] = text;
+      if (one.axis >= 0) locations_[one.person][static_cast<std::size_t>(one.axis)] = text;
       return;
     }
     for (const Register& part : one.parts) {
@@ -165,15 +165,15 @@ class EptsReader {
     std::size_t which = 0;
     while (frame_first && which + 1 < layouts_.size() && *frame_first > last_frames_[which]) ++which;
     frame_ = {};
-    places_.clear();
+    locations_.clear();
     walk(line, layouts_[which]);
     const auto frame = whole_number_of(frame_);
     if (!frame || *frame < 0 || *frame > 1'000'000'000) throw Error("{}: {} is no frame's number", where_, shown(frame_));
-    for (const auto& [person, place] : places_) {
+    for (const auto& [person, location] : locations_) {
       const auto missing = [](std::string_view text) { return text.empty() || text == "NaN" || text == "nan"; };
-      if (missing(place[0]) || missing(place[1])) continue;
-      const auto x = number_of(place[0]), y = number_of(place[1]);
-      if (!x || !y) throw Error("{}: {}, {} is no place", where_, shown(place[0]), shown(place[1]));
+      if (missing(location[0]) || missing(location[1])) continue;
+      const auto x = number_of(location[0]), y = number_of(location[1]);
+      if (!x || !y) throw Error("{}: {}, {} is not a place", where_, shown(location[0]), shown(location[1]));
       const double right = normalized_ ? match_.pitch.length * *x : *x;
       const double up = normalized_ ? match_.pitch.width * (1 - *y) : *y;
       builder_.add(static_cast<std::int32_t>(*frame), static_cast<double>(*frame) / match_.recording.header.rate_hz, person, right,
@@ -191,7 +191,7 @@ class EptsReader {
   std::vector<std::int64_t> last_frames_;
   std::string where_;
   std::string_view frame_;
-  std::map<std::int32_t, std::array<std::string_view, 2>> places_;
+  std::map<std::int32_t, std::array<std::string_view, 2>> locations_;
 };
 
 }  // namespace
@@ -235,7 +235,7 @@ Format epts_format() {
                      const ReadOptions& options) { return match::read_two_files(path, match::epts_files(), options); },
           .write = match::write_epts,
           .from_corner = true,
-          .beside = {{".xml", ".txt"}}};
+          .next_to = {{".xml", ".txt"}}};
 }
 
 }  // namespace marey::format::match

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/epts.h"
 #include "marey/format/match/epts_periods.h"
 #include "marey/format/match/line_ups.h"
@@ -163,7 +163,7 @@ void write_metadata(const GroundMatch& match, const Plan& plan, const std::strin
 }  // namespace
 
 std::vector<std::string> write_epts(const GroundMatch& match, const std::string& path) {
-  if (match.recording.samples() == 0) throw Error("nobody is in the recording, and EPTS's readers take that for broken");
+  if (match.recording.samples() == 0) throw Error("no person is in the recording, and EPTS's readers take that for broken");
   Plan plan{line_ups_of(match), {}, has_velocities(match.recording), periods_of(match)};
   plan.people = plan.line_ups.of(Side::home);
   const std::vector<std::size_t> guests = plan.line_ups.of(Side::away);
@@ -192,8 +192,8 @@ std::vector<std::string> write_epts(const GroundMatch& match, const std::string&
       if (plan.speed) fmt::format_to(std::back_inserter(text), ",{:.3f}", velocity ? kPerHour * velocity->head<2>().norm() : 0);
     }
     if (balls[instant])
-      fmt::format_to(std::back_inserter(text), ":{:.5f},{:.5f}\n", balls[instant]->place.x() / match.pitch.length,
-                     1 - balls[instant]->place.y() / match.pitch.width);
+      fmt::format_to(std::back_inserter(text), ":{:.5f},{:.5f}\n", balls[instant]->location.x() / match.pitch.length,
+                     1 - balls[instant]->location.y() / match.pitch.width);
     else
       text += ":NaN,NaN\n";
     if (text.size() < (std::size_t{1} << 20)) continue;
@@ -203,10 +203,10 @@ std::vector<std::string> write_epts(const GroundMatch& match, const std::string&
   file.write(text);
   write_metadata(match, plan, with_ending(path, ".xml"));
   file.finish();
-  const auto left_out = tracks.size() - plan.people.size() - (plan.line_ups.ball ? 1 : 0);
-  if (left_out > 0)
+  const auto excluded = tracks.size() - plan.people.size() - (plan.line_ups.ball ? 1 : 0);
+  if (excluded > 0)
     plan.line_ups.warnings.push_back(
-        fmt::format("{} people of neither team were left out: EPTS is written for two teams", left_out));
+        fmt::format("{} people of neither team were omitted: EPTS is written for two teams", excluded));
   return plan.line_ups.warnings;
 }
 

@@ -7,15 +7,15 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/limits.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/limits.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::format::match {
 namespace {
 
 Sample sample_of(const GroundBuilder::Row& row) {
   Sample sample;
-  sample.position = {row.place.x(), row.place.y(), row.height};
+  sample.position = {row.location.x(), row.location.y(), row.height};
   if (row.velocity) sample.velocity = Vector<3>(row.velocity->x(), row.velocity->y(), row.climb);
   sample.provenance = row.provenance;
   sample.cameras = row.cameras;
@@ -32,19 +32,19 @@ void require_short(const std::string& label, const std::string& name) {
 }
 
 /// Each frame once, in order.
-void put_in_order(std::vector<Recording::Moment>& moments) {
-  const auto before = [](const Recording::Moment& a, const Recording::Moment& b) { return a.index < b.index; };
-  if (!std::is_sorted(moments.begin(), moments.end(), before)) std::stable_sort(moments.begin(), moments.end(), before);
-  const auto same = [](const Recording::Moment& a, const Recording::Moment& b) { return a.index == b.index; };
-  moments.erase(std::unique(moments.begin(), moments.end(), same), moments.end());
+void put_in_order(std::vector<Recording::TimeStep>& time_steps) {
+  const auto before = [](const Recording::TimeStep& a, const Recording::TimeStep& b) { return a.index < b.index; };
+  if (!std::is_sorted(time_steps.begin(), time_steps.end(), before)) std::stable_sort(time_steps.begin(), time_steps.end(), before);
+  const auto same = [](const Recording::TimeStep& a, const Recording::TimeStep& b) { return a.index == b.index; };
+  time_steps.erase(std::unique(time_steps.begin(), time_steps.end(), same), time_steps.end());
 }
 
-std::vector<std::int32_t> instants_of(std::span<const std::int32_t> frames, const std::vector<Recording::Moment>& moments) {
+std::vector<std::int32_t> instants_of(std::span<const std::int32_t> frames, const std::vector<Recording::TimeStep>& time_steps) {
   std::vector<std::int32_t> instants;
   instants.reserve(frames.size());
   std::size_t at = 0;
   for (const std::int32_t frame : frames) {
-    while (moments[at].index < frame) ++at;
+    while (time_steps[at].index < frame) ++at;
     instants.push_back(static_cast<std::int32_t>(at));
   }
   return instants;
@@ -52,11 +52,11 @@ std::vector<std::int32_t> instants_of(std::span<const std::int32_t> frames, cons
 
 }  // namespace
 
-std::int32_t GroundBuilder::person(const std::string& key, int wanted, const std::string& label, const std::string& team) {
+std::int32_t GroundBuilder::person(const std::string& key, int required, const std::string& label, const std::string& team) {
   const auto [entry, is_new] = index_of_.try_emplace(key, static_cast<std::int32_t>(people_.size()));
   if (!is_new) return entry->second;
-  const bool free = wanted > 0 && !by_id_.contains(wanted);
-  return person(free ? wanted : by_id_.empty() ? 1 : by_id_.rbegin()->first + 1, label, team);
+  const bool free = required > 0 && !by_id_.contains(required);
+  return person(free ? required : by_id_.empty() ? 1 : by_id_.rbegin()->first + 1, label, team);
 }
 
 std::int32_t GroundBuilder::person(int id, const std::string& label, const std::string& team) {
@@ -77,13 +77,14 @@ std::int32_t GroundBuilder::person(int id, const std::string& label, const std::
 }
 
 void GroundBuilder::add(std::int32_t frame, double time, std::int32_t person, double x, double y, std::string_view where) {
-  if (!(std::abs(x) <= kFarthestOnGround && std::abs(y) <= kFarthestOnGround))
-    throw Error("{}: ({:g}, {:g}) m is no place near a pitch", where, x, y);
-  add(person, {.frame = frame, .time = time, .place = {x, y}});
+  if (!(std::abs(x) <= kMaxOnGround && std::abs(y) <= kMaxOnGround))
+    throw Error("{}: ({:g}, {:g}) m is not a place near a pitch", where, x, y);
+  add(person, {.frame = frame, .time = time, .location = {x, y}});
 }
 
 void GroundBuilder::add(std::int32_t person, const Row& row) {
-  if (moments_.empty() || moments_.back().index != row.frame) moments_.push_back({row.frame, timestamp_from_seconds(row.time)});
+  if (time_steps_.empty() || time_steps_.back().index != row.frame)
+    time_steps_.push_back({row.frame, timestamp_from_seconds(row.time)});
   Person& one = people_[static_cast<std::size_t>(person)];
   if (!one.rows.empty() && one.rows.at().back() >= row.frame) {
     one.late.push_back(row);
@@ -120,16 +121,16 @@ void GroundBuilder::put_in_order(Person& person) const {
 }
 
 void GroundBuilder::require_once() const {
-  const TrackName* who = nullptr;
+  const TrackName* identity = nullptr;
   std::pair<std::int32_t, int> first;  // frame and id
   for (const Person& person : people_) {
     if (person.late.empty()) continue;
     const std::pair found(person.late.front().frame, number(person.rows.id()));
-    if (who == nullptr || found < first) who = &person.rows.name, first = found;
+    if (identity == nullptr || found < first) identity = &person.rows.name, first = found;
   }
-  if (who == nullptr) return;
-  if (index_of_.empty()) throw Error("{}: person {} is twice in frame {}", name_, number(who->id), first.first);
-  throw Error("{}: someone (\"{}\", team \"{}\") is twice in frame {}", name_, who->label, who->team, first.first);
+  if (identity == nullptr) return;
+  if (index_of_.empty()) throw Error("{}: person {} is twice in frame {}", name_, number(identity->id), first.first);
+  throw Error("{}: a person (\"{}\", team \"{}\") is twice in frame {}", name_, identity->label, identity->team, first.first);
 }
 
 std::vector<TrackId> GroundBuilder::finish(Recording& recording) {
@@ -139,14 +140,14 @@ std::vector<TrackId> GroundBuilder::finish(Recording& recording) {
     put_in_order(person);
   }
   require_once();
-  match::put_in_order(moments_);
+  match::put_in_order(time_steps_);
   FrameNumbers numbers;
-  for (const Recording::Moment& moment : moments_) numbers.add(moment.index);
+  for (const Recording::TimeStep& time_step : time_steps_) numbers.add(time_step.index);
   numbers.check(name_);
-  for (const Recording::Moment& moment : moments_) recording.add_moment(moment);
+  for (const Recording::TimeStep& time_step : time_steps_) recording.add_time_step(time_step);
   for (const auto& [id, index] : by_id_) {
     TrackColumns& rows = people_[static_cast<std::size_t>(index)].rows;
-    rows.set_at(instants_of(rows.at(), moments_));
+    rows.set_at(instants_of(rows.at(), time_steps_));
     recording.put(std::move(rows));
   }
   return order;

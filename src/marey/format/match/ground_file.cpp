@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
-#include "marey/core/text_safety.h"
+#include "marey/core/ground_transform.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/read_file.h"
@@ -52,24 +52,24 @@ constexpr std::array<std::string_view, kColumns> kAllNames = {"frame",  "time", 
                                                               "vx",     "vy",   "state", "cameras", "left", "top", "width",
                                                               "height", "z",    "vz",    "xx",      "xy",   "yy",  "y_down"};
 constexpr std::span<const std::string_view> kNames = std::span(kAllNames).first(
-    kLeft);  // the others are of tracks in a picture, of the ball, of places whose covariance is known, and of a reflected ground
+    kLeft);  // the others are of tracks in an image, of the ball, of places whose covariance is known, and of a reflected ground
 constexpr std::array kNeeded = {kId, kX, kY};
-constexpr double kFarthest = 1e5;   // m
-constexpr double kMostTime = 1e10;  // s: frame 1e9 at 0.1 Hz
-constexpr std::size_t kMostCameras = 64;
-constexpr double kMostVariance = 1e6, kRounded = 1e-3;  // m²
-constexpr double kUsual = 0.1;  // share by which a step may differ from the median one, for times are rounded
+constexpr double kMaxDistance = 1e5;  // m
+constexpr double kMaxTime = 1e10;     // s: frame 1e9 at 0.1 Hz
+constexpr std::size_t kMaxCameras = 64;
+constexpr double kMaxVariance = 1e6, kRounded = 1e-3;  // m²
+constexpr double kDefault = 0.1;  // share by which a step may differ from the median one, for times are rounded
 
 /// Frames a second: the mean over the steps that are about the median one, to 1/1000 Hz; 25 where there are none.
-double rate_of(std::span<const Recording::Moment> moments) {
-  const auto median = median_rate_hz(moments);
+double rate_of(std::span<const Recording::TimeStep> time_steps) {
+  const auto median = median_rate_hz(time_steps);
   if (!median) return 25;
   std::int64_t frames = 0;
   Duration time{};
-  for (std::size_t i = 1; i < moments.size(); ++i) {
-    const std::int64_t count = moments[i].index - moments[i - 1].index;
-    const Duration step = moments[i].time - moments[i - 1].time;
-    if (std::abs(seconds(step) * *median - static_cast<double>(count)) > kUsual * static_cast<double>(count)) continue;
+  for (std::size_t i = 1; i < time_steps.size(); ++i) {
+    const std::int64_t count = time_steps[i].index - time_steps[i - 1].index;
+    const Duration step = time_steps[i].time - time_steps[i - 1].time;
+    if (std::abs(seconds(step) * *median - static_cast<double>(count)) > kDefault * static_cast<double>(count)) continue;
     frames += count;
     time += step;
   }
@@ -124,18 +124,18 @@ class GroundFileReader {
     if (y_down_) set_y_down(header, *y_down_);
   }
 
-  /// The column's field; nothing where it is missing or empty.
+  /// The column's field; nothing if it is missing or empty.
   std::optional<std::string_view> field(Column column) const {
     if (!where_[column] || *where_[column] >= fields_.size() || fields_[*where_[column]].empty()) return std::nullopt;
     return fields_[*where_[column]];
   }
 
-  double number(Column column, double least, double most) const {
+  double number(Column column, double minimum, double maximum) const {
     const auto text = field(column);
     const auto value = text ? number_of(*text) : std::nullopt;
-    if (!value || !(*value >= least && *value <= most))
+    if (!value || !(*value >= minimum && *value <= maximum))
       throw Error("{}:{}: {} is {}; a number from {:g} to {:g} is wanted", name_, line_, kAllNames[column],
-                  text ? shown(*text) : std::string("missing"), least, most);
+                  text ? shown(*text) : std::string("missing"), minimum, maximum);
     return *value;
   }
 
@@ -146,17 +146,16 @@ class GroundFileReader {
 
   void add() {
     GroundBuilder::Row row;
-    if (where_[kFrame]) row.frame = static_cast<std::int32_t>(number(kFrame, 0, kMostFrame - 1));
-    row.time = where_[kTime] ? number(kTime, -kMostTime, kMostTime) : row.frame / rate_hz_;
+    if (where_[kFrame]) row.frame = static_cast<std::int32_t>(number(kFrame, 0, kMaxFrame - 1));
+    row.time = where_[kTime] ? number(kTime, -kMaxTime, kMaxTime) : row.frame / rate_hz_;
     if (!where_[kFrame]) row.frame = static_cast<std::int32_t>(std::lround((row.time - start_s_) / step_s_));
     const std::int32_t person = builder_.person(static_cast<int>(number(kId, 1, 1e9)), text(kLabel), text(kTeam));
-    row.place = {number(kX, -kFarthestOnGround, kFarthestOnGround), number(kY, -kFarthestOnGround, kFarthestOnGround)};
+    row.location = {number(kX, -kMaxOnGround, kMaxOnGround), number(kY, -kMaxOnGround, kMaxOnGround)};
     if (field(kVx) && field(kVy))
-      row.velocity =
-          Vector<2>(number(kVx, -kFarthestOnGround, kFarthestOnGround), number(kVy, -kFarthestOnGround, kFarthestOnGround));
+      row.velocity = Vector<2>(number(kVx, -kMaxOnGround, kMaxOnGround), number(kVy, -kMaxOnGround, kMaxOnGround));
     if (field(kXx) && field(kXy) && field(kYy)) row.covariance = covariance();
-    if (field(kZ)) row.height = number(kZ, -kFarthestOnGround, kFarthestOnGround);
-    if (field(kVz)) row.climb = number(kVz, -kFarthestOnGround, kFarthestOnGround);
+    if (field(kZ)) row.height = number(kZ, -kMaxOnGround, kMaxOnGround);
+    if (field(kVz)) row.climb = number(kVz, -kMaxOnGround, kMaxOnGround);
     moves_ |= row.velocity && *row.velocity != Vector<2>::Zero();
     if (const std::string state = text(kState); !state.empty()) {
       const auto provenance = provenance_of(state);
@@ -166,8 +165,8 @@ class GroundFileReader {
     }
     row.cameras = cameras_of(text(kCameras));
     if (has_boxes_ && field(kLeft)) {
-      row.box = Box{number(kLeft, -kFarthest, kFarthest), number(kTop, -kFarthest, kFarthest), number(kWidth, 0, kFarthest),
-                    number(kHeight, 0, kFarthest)};
+      row.box = Box{number(kLeft, -kMaxDistance, kMaxDistance), number(kTop, -kMaxDistance, kMaxDistance),
+                    number(kWidth, 0, kMaxDistance), number(kHeight, 0, kMaxDistance)};
     }
     if (field(kYDown)) read_y_down();
     builder_.add(person, row);
@@ -182,11 +181,11 @@ class GroundFileReader {
   }
 
   Matrix<2> covariance() const {
-    const double xx = number(kXx, 0, kMostVariance), xy = number(kXy, -kMostVariance, kMostVariance),
-                 yy = number(kYy, 0, kMostVariance);
+    const double xx = number(kXx, 0, kMaxVariance), xy = number(kXy, -kMaxVariance, kMaxVariance),
+                 yy = number(kYy, 0, kMaxVariance);
     if (xy * xy > xx * yy * (1 + kRounded) + kRounded)
-      throw Error("{}:{}: xx {:g}, xy {:g}, yy {:g} is no covariance: xy is at most the root of xx times yy", name_, line_, xx, xy,
-                  yy);
+      throw Error("{}:{}: xx {:g}, xy {:g}, yy {:g} is not a covariance: xy is at most the root of xx times yy", name_, line_, xx,
+                  xy, yy);
     return (Matrix<2>() << xx, xy, xy, yy).finished();
   }
 
@@ -200,7 +199,7 @@ class GroundFileReader {
       line_ = lines.number();
       if (line.empty()) continue;
       split_fields(line, ',', fields_);
-      times.push_back(number(kTime, -kMostTime, kMostTime));
+      times.push_back(number(kTime, -kMaxTime, kMaxTime));
     }
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -221,7 +220,7 @@ class GroundFileReader {
       if (one.empty()) continue;
       auto known = std::find(cameras_.begin(), cameras_.end(), one);
       if (known == cameras_.end()) {
-        if (cameras_.size() == kMostCameras) throw Error("{}:{}: more than {} cameras", name_, line_, kMostCameras);
+        if (cameras_.size() == kMaxCameras) throw Error("{}:{}: more than {} cameras", name_, line_, kMaxCameras);
         known = cameras_.insert(known, std::string(one));
       }
       mask |= std::uint64_t{1} << (known - cameras_.begin());
@@ -279,7 +278,7 @@ bool is_ground_csv(const Beginning& file, bool with_boxes) {
   return (has("frame") || has("time")) && has("id") && has("x") && has("y") && (!has("z") || has("team")) && boxes == with_boxes;
 }
 
-Sink::Wants GroundWriter::begin(const RecordingHeader& header) {
+Sink::SinkRequirements GroundWriter::begin(const RecordingHeader& header) {
   require_ground(header, "the CSV of people");
   if (header.rig) {
     for (const RigCamera& camera : header.rig->cameras) cameras_.push_back(camera.name);
@@ -297,17 +296,17 @@ void GroundWriter::write(const Instant& instant) {
   const double time = seconds(instant.time);
   for (const Sample& sample : instant.samples) {
     if (sample.covariance) add_columns(Extra::covariances);
-    seen_by_.clear();
+    observed_by_.clear();
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
       if ((sample.cameras >> i & 1) == 0) continue;
-      if (!seen_by_.empty()) seen_by_ += ' ';
-      seen_by_ += cameras_[i];
+      if (!observed_by_.empty()) observed_by_ += ' ';
+      observed_by_ += cameras_[i];
     }
     const Fields& fields = fields_[sample.track];
     const Vector<3> velocity = sample.velocity.value_or(Vector<3>::Zero());
     fmt::format_to(std::back_inserter(text_), "{},{:.4f},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{},{}", instant.index, time,
                    number(sample.track), fields.label, fields.team, sample.position.x(), sample.position.y(), velocity.x(),
-                   velocity.y(), to_string(sample.provenance), quoted_field(seen_by_));
+                   velocity.y(), to_string(sample.provenance), quoted_field(observed_by_));
     for (const Extra extra : extras_) write_extra(extra, sample, fields.ball);
     text_ += '\n';
   }

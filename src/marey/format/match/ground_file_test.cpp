@@ -7,20 +7,20 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
+#include "marey/core/ground_transform.h"
 
 #include "support/files.h"
 
 namespace marey::format::match {
 namespace {
 
-Sample sample_of(int track, const Vector<2>& place, const Vector<2>& velocity, CameraMask cameras, bool seen) {
+Sample sample_of(int track, const Vector<2>& location, const Vector<2>& velocity, CameraMask cameras, bool detected) {
   Sample sample;
   sample.track = TrackId{track};
-  sample.position.head<2>() = place;
+  sample.position.head<2>() = location;
   sample.velocity = Vector<3>(velocity.x(), velocity.y(), 0);
   sample.cameras = cameras;
-  sample.provenance = seen ? Provenance::measured : Provenance::predicted;
+  sample.provenance = detected ? Provenance::measured : Provenance::predicted;
   return sample;
 }
 
@@ -33,7 +33,7 @@ RecordingHeader two_cameras() {
   return header;
 }
 
-TEST(GroundFile, WhatIsWrittenIsReadBack) {
+TEST(GroundFile, RoundTripsContent) {
   Recording recording(two_cameras());
   Instant first, second;
   first.samples = {sample_of(1, {1.5, 2.25}, {0.5, -1}, 1, true), sample_of(3, {10, 20}, {0, 0}, 3, true)};
@@ -140,7 +140,7 @@ TEST(GroundFile, RowsByPersonAreTheSameAsRowsByFrame) {
     ASSERT_EQ(b.size(), 2u);
     for (std::size_t row = 0; row < 2; ++row) {
       EXPECT_EQ(a.at()[row], b.at()[row]);
-      EXPECT_EQ(a.place(row), b.place(row));
+      EXPECT_EQ(a.location(row), b.location(row));
     }
   }
 }
@@ -196,7 +196,7 @@ TEST(GroundFile, FramesOrTimesAreEnough) {
   EXPECT_EQ(times.instants()[3].index, 5);
 }
 
-TEST(GroundFile, WhatIsWrongIsSaidWithItsLine) {
+TEST(GroundFile, ReportsErrorWithLine) {
   const auto message = [](const char* text) {
     try {
       parse_ground(text, "match.csv");
@@ -212,10 +212,10 @@ TEST(GroundFile, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_NE(message("frame,time,id,x,y\n0,0,1,1,2\n0,0,1,1,2\n").find("twice"), std::string::npos);
   EXPECT_NE(message("frame,time,id,x,y,state\n0,0,1,1,2,lost\n").find("state"), std::string::npos);
   EXPECT_NE(message("frame,time,id,x,y\n0,0,0,1,2\n").find("id"), std::string::npos);
-  EXPECT_EQ(message("frame,time,id,x,y\n"), "") << "nobody is no error";
+  EXPECT_EQ(message("frame,time,id,x,y\n"), "") << "no person is not an error";
 }
 
-TEST(GroundFile, OneWildFrameIsNamed) {
+TEST(GroundFile, ReportsOutlierFrame) {
   try {
     parse_ground("frame,id,x,y\n0,1,2,3\n1,1,2,3\n999999999,1,2,3\n", "m.csv");
     FAIL();

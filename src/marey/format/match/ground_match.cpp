@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
+#include "marey/core/ground_transform.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/text_rows.h"
 
@@ -81,27 +81,27 @@ Pair pair_of(const std::string& path, const TwoFiles& format, const ReadOptions&
 /// The header's rig follows: a frame that it leads to is another one now.
 void turn_rig(RecordingHeader& header, const GroundFrame& frame, bool to, const Vector<2>& moved) {
   const bool leads = header.rig && header.rig->ground_from_world;
-  const Matrix<3> turned_over = Vector<3>(1, -1, 1).asDiagonal();
-  Matrix<3> change = frame.y_down ? turned_over : Matrix<3>(Matrix<3>::Identity());
+  const Matrix<3> rotated_over = Vector<3>(1, -1, 1).asDiagonal();
+  Matrix<3> change = frame.y_down ? rotated_over : Matrix<3>(Matrix<3>::Identity());
   change.topRightCorner<2, 1>() = moved;
-  const Matrix<3> unknown = to && frame.y_down ? turned_over : Matrix<3>(Matrix<3>::Identity());
+  const Matrix<3> unknown = to && frame.y_down ? rotated_over : Matrix<3>(Matrix<3>::Identity());
   const Matrix<3> now = change * (leads ? *header.rig->ground_from_world : unknown);
   if (!header.rig) header.rig.emplace();
   header.rig->ground_from_world = now;
 }
 
-Recording turned(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame, bool to) {
+Recording rotated(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame, bool to) {
   require_ground(recording, "the pitch's corner");
   const Vector<2> middle(pitch.length / 2, pitch.width / 2);
-  const auto place = [&](Vector<2> at) {
+  const auto location = [&](Vector<2> at) {
     if (to && frame.centred) at += middle;
     if (frame.y_down) at.y() = pitch.width - at.y();
     if (!to && frame.centred) at -= middle;
     return at;
   };
   const Matrix<2> linear = Vector<2>(1, frame.y_down ? -1 : 1).asDiagonal();
-  turn_rig(recording.header, frame, to, place(Vector<2>::Zero()));
-  return on_other_ground(std::move(recording), {FrameOfReference::Kind::user_ground, {}}, {place, linear});
+  turn_rig(recording.header, frame, to, location(Vector<2>::Zero()));
+  return on_other_ground(std::move(recording), {FrameOfReference::Kind::user_ground, {}}, {location, linear});
 }
 
 }  // namespace
@@ -127,11 +127,11 @@ bool all_numbers(const std::vector<std::string_view>& fields) {
 }
 
 Recording from_corner(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame) {
-  return turned(std::move(recording), pitch, frame, false);
+  return rotated(std::move(recording), pitch, frame, false);
 }
 
 Recording to_corner(Recording recording, const geometry::PitchSize& pitch, const GroundFrame& frame) {
-  return turned(std::move(recording), pitch, frame, true);
+  return rotated(std::move(recording), pitch, frame, true);
 }
 
 }  // namespace marey::format::match

@@ -25,8 +25,8 @@ struct GroundMatch {
   Recording recording{ground_header({})};  ///< an instant a frame
   std::vector<TrackId> order;  ///< in which the file names its people, and line-ups list them; who is in it not, by id behind
   geometry::PitchSize pitch;   ///< as the file says, or as was given to the reader
-  std::vector<GroundPeriod> periods;  ///< in order; empty where the file does not know any
-  std::string home, away;             ///< names of the teams; empty where the file does not know them
+  std::vector<GroundPeriod> periods;  ///< in order; empty if the file does not know any
+  std::string home, away;             ///< names of the teams; empty if the file does not know them
   std::vector<std::string> warnings;  ///< one sentence each
 };
 

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
-#include "marey/core/text_safety.h"
+#include "marey/core/ground_transform.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 
@@ -33,7 +33,7 @@ Sample sample_at(int id, double x, double y) {
   return sample;
 }
 
-/// Two teams of three with numbered shirts and a referee, in two halves; not everyone is always there.
+/// Two teams of three with numbered shirts and a referee, in two halves; not every person is always there.
 GroundMatch made_up(unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (static_cast<double>(random()) / 4294967296.0); };
@@ -66,31 +66,31 @@ template <typename Visit>
 void for_each_sample(const GroundMatch& match, Visit&& visit) {
   for (const TrackColumns& track : match.recording.tracks()) {
     for (std::size_t row = 0; row < track.size(); ++row) {
-      const Recording::Moment& moment = match.recording.instants()[static_cast<std::size_t>(track.at()[row])];
-      visit(track.name, static_cast<std::int32_t>(moment.index), seconds(moment.time), track.place(row));
+      const Recording::TimeStep& time_step = match.recording.instants()[static_cast<std::size_t>(track.at()[row])];
+      visit(track.name, static_cast<std::int32_t>(time_step.index), seconds(time_step.time), track.location(row));
     }
   }
 }
 
 using Key = std::tuple<std::int32_t, std::string, std::string>;  // frame, team, label
 
-std::map<Key, Vector<2>> places_of(const GroundMatch& match) {
-  std::map<Key, Vector<2>> places;
-  for_each_sample(match, [&](const TrackName& person, std::int32_t frame, double time, const Vector<2>& place) {
+std::map<Key, Vector<2>> positions_of(const GroundMatch& match) {
+  std::map<Key, Vector<2>> locations;
+  for_each_sample(match, [&](const TrackName& person, std::int32_t frame, double time, const Vector<2>& location) {
     EXPECT_NEAR(time, frame / match.recording.header.rate_hz, 1e-4);
-    places[{frame, person.team, person.label}] = place;
+    locations[{frame, person.team, person.label}] = location;
   });
-  return places;
+  return locations;
 }
 
 /// The same people in the same frames, to 1 cm.
-void expect_same(const std::map<Key, Vector<2>>& found, const std::map<Key, Vector<2>>& wanted, std::string_view what) {
-  EXPECT_EQ(found.size(), wanted.size()) << what;
-  for (const auto& [key, place] : wanted) {
+void expect_same(const std::map<Key, Vector<2>>& found, const std::map<Key, Vector<2>>& required, std::string_view what) {
+  EXPECT_EQ(found.size(), required.size()) << what;
+  for (const auto& [key, location] : required) {
     const auto theirs = found.find(key);
     ASSERT_NE(theirs, found.end()) << what << ": " << std::get<2>(key) << " of " << std::get<1>(key) << " in frame "
                                    << std::get<0>(key);
-    EXPECT_LT((theirs->second - place).cwiseAbs().maxCoeff(), 0.01) << what;
+    EXPECT_LT((theirs->second - location).cwiseAbs().maxCoeff(), 0.01) << what;
   }
 }
 
@@ -109,10 +109,10 @@ const std::vector<Case> kWritten = {
 
 /// Without the referee, whom only some formats hold.
 std::map<Key, Vector<2>> players_of(const GroundMatch& match) {
-  auto places = places_of(match);
-  std::erase_if(places,
+  auto locations = positions_of(match);
+  std::erase_if(locations,
                 [](const auto& entry) { return std::get<1>(entry.first) == "referee" || std::get<1>(entry.first).empty(); });
-  return places;
+  return locations;
 }
 
 TEST(GroundExchange, MatchesComeBackFromEveryFormat) {
@@ -140,24 +140,24 @@ TEST(GroundExchange, SoccerNetAndMotKeepIds) {
   const TemporaryFolder folder;
   const GroundMatch match = made_up(3);
   const auto by_id = [](const GroundMatch& one) {
-    std::map<std::pair<std::int32_t, int>, Vector<2>> places;
-    for_each_sample(one, [&](const TrackName& person, std::int32_t frame, double, const Vector<2>& place) {
-      places[{frame, number(person.id)}] = place;
+    std::map<std::pair<std::int32_t, int>, Vector<2>> locations;
+    for_each_sample(one, [&](const TrackName& person, std::int32_t frame, double, const Vector<2>& location) {
+      locations[{frame, number(person.id)}] = location;
     });
-    return places;
+    return locations;
   };
   for (const auto& [name, format] :
        {std::pair("m.json", "soccernet"), std::pair("Labels-GameState.json", "soccernet"), std::pair("m.txt", "mot")}) {
     write_whole(folder / name, of_ground(format), match);
     ASSERT_EQ(format_of_content(folder / name)->name, format) << name;
     const GroundMatch back = read_match(folder / name, {{}, match.pitch, 25});
-    const auto found = by_id(back), wanted = by_id(match);
-    ASSERT_EQ(found.size(), wanted.size()) << name;
-    for (const auto& [key, place] : wanted) EXPECT_LT((found.at(key) - place).norm(), 0.002) << name;
+    const auto found = by_id(back), required = by_id(match);
+    ASSERT_EQ(found.size(), required.size()) << name;
+    for (const auto& [key, location] : required) EXPECT_LT((found.at(key) - location).norm(), 0.002) << name;
   }
 }
 
-TEST(GroundExchange, OneFormatAfterTheOtherChangesNothing) {
+TEST(GroundExchange, ChainedConversionsKeepContent) {
   const TemporaryFolder folder;
   const GroundMatch match = made_up(11);
   write_whole(folder / "a.dat", of_ground("tracab"), match);
@@ -184,13 +184,13 @@ TEST(GroundExchange, CornersAreWhereEachFormatHasThem) {
   EXPECT_EQ(read_file(folder / "e.txt"), "0:0.00000,1.00000;1.00000,0.00000:NaN,NaN\n");
   write_whole(folder / "m.json", of_ground("soccernet"), match);
   EXPECT_NE(read_file(folder / "m.json").find("\"x_bottom_middle\":-52.500,\"y_bottom_middle\":34.000"), std::string::npos);
-  const Recording turned = to_corner(match.recording, match.pitch, {.y_down = true, .centred = false});
-  EXPECT_EQ(turned.tracks()[0].place(0).y(), 68);
-  EXPECT_EQ(match.recording.tracks()[0].place(0).y(), 0) << "a change of frame makes a new recording";
-  const Recording centred = from_corner(turned, match.pitch, {.y_down = true, .centred = true});
-  EXPECT_EQ(centred.tracks()[0].place(0), Vector<2>(-52.5, -34));
+  const Recording rotated = to_corner(match.recording, match.pitch, {.y_down = true, .centred = false});
+  EXPECT_EQ(rotated.tracks()[0].location(0).y(), 68);
+  EXPECT_EQ(match.recording.tracks()[0].location(0).y(), 0) << "a change of frame makes a new recording";
+  const Recording centred = from_corner(rotated, match.pitch, {.y_down = true, .centred = true});
+  EXPECT_EQ(centred.tracks()[0].location(0), Vector<2>(-52.5, -34));
   EXPECT_TRUE(y_grows_down(centred.header)) << "the frame that it came into";
-  EXPECT_FALSE(y_grows_down(turned.header)) << "the corner is below";
+  EXPECT_FALSE(y_grows_down(rotated.header)) << "the corner is below";
   EXPECT_FALSE(y_grows_down(to_corner(centred, match.pitch, {.y_down = true, .centred = true}).header));
 }
 
@@ -227,7 +227,7 @@ TEST(GroundExchange, TheBallGoesWhereAFormatHasAPlaceForIt) {
   for (const Holds& one : {Holds{"ground", "m.csv", 0.001, true}, Holds{"tracab", "m.dat", 0.006, true},
                            Holds{"metrica", "m_home.csv", 100, true}, Holds{"epts", "m.xml", 100, false}}) {
     for (const std::string& warning : write_whole(folder / one.name, of_ground(one.format), match))
-      EXPECT_EQ(warning.find("2 people"), std::string::npos) << "the ball is nobody: " << warning;
+      EXPECT_EQ(warning.find("2 people"), std::string::npos) << "the ball is no person: " << warning;
     const GroundMatch back = read_match(folder / one.name, {{}, match.pitch, 25});
     const auto& tracks = back.recording.tracks();
     const auto found =
@@ -236,13 +236,13 @@ TEST(GroundExchange, TheBallGoesWhereAFormatHasAPlaceForIt) {
     if (!one.read) continue;
     ASSERT_EQ(found->size(), ball.size()) << one.format;
     for (std::size_t row = 0; row < ball.size(); ++row) {
-      EXPECT_LT((found->place(row) - ball.place(row)).norm(), 0.01) << one.format;
+      EXPECT_LT((found->location(row) - ball.location(row)).norm(), 0.01) << one.format;
       EXPECT_NEAR(found->position(row).z(), ball.position(row).z(), one.height) << one.format;
     }
   }
 }
 
-TEST(GroundExchange, WhatAFormatCannotHoldIsSaid) {
+TEST(GroundExchange, ReportsUnsupportedContent) {
   const TemporaryFolder folder;
   GroundMatch match = made_up(1);
   match.recording.header.rate_hz = 12.5;
@@ -255,7 +255,7 @@ TEST(GroundExchange, WhatAFormatCannotHoldIsSaid) {
   EXPECT_NEAR(read_match(folder / "m_home.csv").recording.header.rate_hz, 12.5, 1e-9);
 }
 
-TEST(GroundExchange, OneWildTimeChangesNoRateOfMetrica) {
+TEST(GroundExchange, OutlierTimeKeepsMetricaRate) {
   const TemporaryFolder folder;
   const GroundMatch match = made_up(2);
   write_whole(folder / "m_home.csv", of_ground("metrica"), match);
@@ -309,7 +309,7 @@ TEST(GroundExchange, TornAndScrambledFilesEndInOneSentence) {
 
 TEST(GroundExchange, BadFilesAreNamed) {
   const TemporaryFolder folder;
-  const auto said = [&](const std::string& name, const std::string& text) -> std::string {
+  const auto stated = [&](const std::string& name, const std::string& text) -> std::string {
     write_file(folder / name, text);
     try {
       read_match(folder / name);
@@ -318,13 +318,13 @@ TEST(GroundExchange, BadFilesAreNamed) {
     }
     return {};
   };
-  EXPECT_NE(said("alone.dat", "1:1,1,1,0,0,0.00;:0,0,0,0.00,H,Dead;:\n").find("--metadata"), std::string::npos);
-  EXPECT_NE(said("alone_home.csv", ",,,a,,,\n,,,1,,,\nPeriod,Frame,Time [s],Player1,,Ball,\n").find("pairs"), std::string::npos);
-  EXPECT_NE(said("none.txt", "").find("empty"), std::string::npos);
-  EXPECT_NE(said("far.txt", "1,1,-1,-1,-1,-1,1,1e7,0,0\n").find("far.txt:1"), std::string::npos);
-  EXPECT_NE(said("twice.txt", "1,1,-1,-1,-1,-1,1,5,0,0\n1,1,-1,-1,-1,-1,1,6,0,0\n").find("twice"), std::string::npos);
-  EXPECT_NE(said("list.json", "{\"predictions\": {}}").find("list.json"), std::string::npos);
-  EXPECT_NE(said("open.json", "{\"predictions\": [").find("no JSON"), std::string::npos);
+  EXPECT_NE(stated("alone.dat", "1:1,1,1,0,0,0.00;:0,0,0,0.00,H,Dead;:\n").find("--metadata"), std::string::npos);
+  EXPECT_NE(stated("alone_home.csv", ",,,a,,,\n,,,1,,,\nPeriod,Frame,Time [s],Player1,,Ball,\n").find("pairs"), std::string::npos);
+  EXPECT_NE(stated("none.txt", "").find("empty"), std::string::npos);
+  EXPECT_NE(stated("far.txt", "1,1,-1,-1,-1,-1,1,1e7,0,0\n").find("far.txt:1"), std::string::npos);
+  EXPECT_NE(stated("twice.txt", "1,1,-1,-1,-1,-1,1,5,0,0\n1,1,-1,-1,-1,-1,1,6,0,0\n").find("twice"), std::string::npos);
+  EXPECT_NE(stated("list.json", "{\"predictions\": {}}").find("list.json"), std::string::npos);
+  EXPECT_NE(stated("open.json", "{\"predictions\": [").find("no JSON"), std::string::npos);
   EXPECT_THROW(read_match(folder / "missing.dat"), Error);
   EXPECT_THROW(read_match(folder.path()), Error);
 }
@@ -357,13 +357,13 @@ TEST(GroundExchange, PixelsAreRefusedByEveryFormat) {
 }
 
 /// Of the first person whom the file names, at the first instant.
-Vector<2> first_place(const GroundMatch& match) {
+Vector<2> first_position(const GroundMatch& match) {
   InstantRows rows(match.recording);
   const InstantRows::Row row = rows.at(0).front();
-  return match.recording.tracks()[row.track].place(row.row);
+  return match.recording.tracks()[row.track].location(row.row);
 }
 
-TEST(GroundExchange, SomebodyMayStandWhereMotChallengeSaysNothing) {
+TEST(GroundExchange, AcceptsOriginAsPosition) {
   const TemporaryFolder folder;
   GroundMatch match;
   match.recording.header.rate_hz = 25;
@@ -371,7 +371,7 @@ TEST(GroundExchange, SomebodyMayStandWhereMotChallengeSaysNothing) {
   instant.samples = {sample_at(1, -1, -1)};
   match.recording.add(instant);
   write_whole(folder / "m.txt", of_ground("mot"), match);
-  EXPECT_EQ(first_place(read_match(folder / "m.txt")), Vector<2>(-1, -1));
+  EXPECT_EQ(first_position(read_match(folder / "m.txt")), Vector<2>(-1, -1));
   for (const char* nowhere : {"1,1,-1,-1,-1,-1,1,-1,-1,-1\n", "1,1,-1,-1,-1,-1,1,-1,-1\n"})
     EXPECT_THROW(parse_mot_world(nowhere, "m.txt", 25), Error) << nowhere;
 }
@@ -412,16 +412,16 @@ TEST(GroundExchange, FilesOfVendors) {
     }
     EXPECT_EQ(match.periods.size(), one.periods) << one.name;
     if (one.first != Vector<2>::Zero()) {
-      EXPECT_LT((first_place(match) - one.first).norm(), 1e-6) << one.name;
+      EXPECT_LT((first_position(match) - one.first).norm(), 1e-6) << one.name;
     }
   }
   const GroundMatch pets = read_match(test::data("pets2009/gt_001_300.txt"));
   EXPECT_EQ(pets.order.front(), TrackId{9}) << "people are listed as the file names them";
-  EXPECT_LT((pets.recording.find(TrackId{9})->place(0) - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
+  EXPECT_LT((pets.recording.find(TrackId{9})->location(0) - Vector<2>(-4.1554, -7.3591)).norm(), 1e-9);
 }
 
 TEST(GroundExchange, DeepFilesAreRefusedAndNoMessageShowsALibrarysInternals) {
-  const auto said = [](auto parse) -> std::string {
+  const auto stated = [](auto parse) -> std::string {
     try {
       parse();
     } catch (const Error& error) {
@@ -431,12 +431,12 @@ TEST(GroundExchange, DeepFilesAreRefusedAndNoMessageShowsALibrarysInternals) {
   };
   std::string lists = "{\"predictions\": ", elements;
   for (int i = 0; i < 200'000; ++i) lists += '[', elements += "<a>";
-  EXPECT_NE(said([&] { parse_soccernet(lists, "m.json", {}); }).find("m.json:1: is nested more than"), std::string::npos);
-  EXPECT_NE(said([&] { parse_sportec(elements, "m.xml", {}, {}); }).find("m.xml:1: is nested more than"), std::string::npos);
-  EXPECT_NE(said([&] { parse_epts("1:1:1,1,1:\n", "m.txt", elements, "m.xml"); }).find("m.xml:1: is nested more than"),
+  EXPECT_NE(stated([&] { parse_soccernet(lists, "m.json", {}); }).find("m.json:1: is nested more than"), std::string::npos);
+  EXPECT_NE(stated([&] { parse_sportec(elements, "m.xml", {}, {}); }).find("m.xml:1: is nested more than"), std::string::npos);
+  EXPECT_NE(stated([&] { parse_epts("1:1:1,1,1:\n", "m.txt", elements, "m.xml"); }).find("m.xml:1: is nested more than"),
             std::string::npos);
   for (const char* text : {"{\"predictions\": [", "\xff\xfe", "[1, 2}", "{\"predictions\": [1e999999]}"}) {
-    const std::string message = said([&] { parse_soccernet(text, "m.json", {}); });
+    const std::string message = stated([&] { parse_soccernet(text, "m.json", {}); });
     EXPECT_TRUE(message.starts_with("m.json")) << message;
     EXPECT_EQ(message.find("exception"), std::string::npos) << message;
     EXPECT_EQ(message.find("syntax error"), std::string::npos) << message;

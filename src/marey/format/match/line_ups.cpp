@@ -44,8 +44,8 @@ std::array<std::string, 2> two_teams(const GroundMatch& match, LineUps& line_ups
   std::vector<std::string> teams = teams_by_size(match, line_ups.listed);
   for (const std::string& name : {match.home, match.away}) {
     if (name.empty() || tracks.empty() || std::find(teams.begin(), teams.end(), name) != teams.end()) continue;
-    throw Error("nobody is of the team \"{}\"; there {}", name,
-                teams.empty() ? std::string("are no teams") : fmt::format("are: {}", fmt::join(teams, ", ")));
+    throw Error("no person is of the team \"{}\"; there {}", name,
+                teams.empty() ? std::string("are not teams") : fmt::format("are: {}", fmt::join(teams, ", ")));
   }
   if (teams.size() > 2) {
     line_ups.warnings.push_back(
@@ -113,7 +113,8 @@ LineUps line_ups_of(const GroundMatch& match) {
   line_ups.members.resize(line_ups.listed.size());
   const std::array<std::string, 2> pair = two_teams(match, line_ups);
   const bool no_teams = pair[0].empty() && pair[1].empty();
-  if (no_teams && !line_ups.listed.empty()) line_ups.warnings.push_back("nobody has a team; all were written as the home team's");
+  if (no_teams && !line_ups.listed.empty())
+    line_ups.warnings.push_back("no person has a team; all were written as the home team's");
   std::map<Side, std::set<int>> taken;
   for (const std::size_t i : line_ups.listed) {
     const TrackName& person = match.recording.tracks()[i].name;
@@ -138,12 +139,12 @@ LineUps line_ups_of(const GroundMatch& match) {
 }
 
 std::vector<std::optional<BallAt>> ball_by_instant(const GroundMatch& match, const LineUps& line_ups) {
-  std::vector<std::optional<BallAt>> places(match.recording.instants().size());
-  if (!line_ups.ball) return places;
+  std::vector<std::optional<BallAt>> locations(match.recording.instants().size());
+  if (!line_ups.ball) return locations;
   const TrackColumns& ball = match.recording.tracks()[*line_ups.ball];
   for (std::size_t row = 0; row < ball.size(); ++row)
-    places[static_cast<std::size_t>(ball.at()[row])] = BallAt{ball.position(row), ball.velocity(row)};
-  return places;
+    locations[static_cast<std::size_t>(ball.at()[row])] = BallAt{ball.position(row), ball.velocity(row)};
+  return locations;
 }
 
 std::vector<GroundPeriod> periods_of(const GroundMatch& match) {
@@ -154,10 +155,10 @@ std::vector<GroundPeriod> periods_of(const GroundMatch& match) {
 
 int whole_rate(double rate_hz, std::string_view format) {
   const double whole = std::round(rate_hz);
-  constexpr double kMost = 1000;
-  if (!(whole >= 1 && whole <= kMost) || std::abs(rate_hz - whole) > 0.005 * whole)
+  constexpr double kMaxCount = 1000;
+  if (!(whole >= 1 && whole <= kMaxCount) || std::abs(rate_hz - whole) > 0.005 * whole)
     throw Error("{} holds whole numbers of frames a second only, up to {:g}, and the recording has {:.3f}; write ground or mot",
-                format, kMost, rate_hz);
+                format, kMaxCount, rate_hz);
   return static_cast<int>(whole);
 }
 

@@ -10,12 +10,12 @@
 
 namespace marey::format::match {
 
-/// Where someone belongs in the formats of matches, which know two teams.
+/// Where a person belongs in the formats of matches, which know two teams.
 enum class Side { home, away, referee, other, ball };
 
 /// Where a ball is at one instant.
 struct BallAt {
-  Vector<3> place;                    ///< m
+  Vector<3> location;                 ///< m
   std::optional<Vector<3>> velocity;  ///< m/s
 };
 
@@ -40,10 +40,10 @@ struct LineUps {
 std::vector<std::size_t> listed_tracks(const GroundMatch& match);
 
 /// Home and away are those that `match` names, else the two teams with the most places, in the order of their first people. Without
-/// any team everyone is at home. Throws Error where a named team has nobody.
+/// any team every person is at home. Throws Error if a named team has no person.
 LineUps line_ups_of(const GroundMatch& match);
 
-/// Where the ball is at each instant; nothing where it is not known.
+/// Where the ball is at each instant; nothing if it is not known.
 std::vector<std::optional<BallAt>> ball_by_instant(const GroundMatch& match, const LineUps& line_ups);
 
 /// The match's periods; one from the first frame to the last where it has none.

@@ -1,5 +1,5 @@
 // Metrica's CSV: a file of the home team and one of the guests, `Period,Frame,Time [s],x,y,...` below three lines of heads, the
-// ball in the last two columns; 0 to 1 from the corner above on the left, y downwards; NaN where someone is missing. Frames count
+// ball in the last two columns; 0 to 1 from the corner above on the left, y downwards; NaN where a person is missing. Frames count
 // from 1, and the first is at one frame's time.
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_match.h"
@@ -21,11 +21,11 @@
 namespace marey::format::match {
 namespace {
 
-constexpr double kLeastRate = 0.1, kMostRate = 10'000;  // Hz
-constexpr double kMostPitches = 1000;                   // lengths and widths of the pitch
+constexpr double kMinRate = 0.1, kMaxRate = 10'000;  // Hz
+constexpr double kMaxPitches = 1000;                 // lengths and widths of the pitch
 
-bool is_told_by_times(double rate_hz) {
-  return rate_hz >= kLeastRate && rate_hz <= kMostRate;
+bool is_given_by_times(double rate_hz) {
+  return rate_hz >= kMinRate && rate_hz <= kMaxRate;
 }
 
 constexpr std::size_t kFirstPlayer = 3;  // columns before it
@@ -50,7 +50,7 @@ class MetricaReader {
     std::vector<std::string> numbers;
     for (const std::string_view field : fields_) numbers.emplace_back(field);
     if (!numbered || !next_fields() || fields_.size() < kFirstPlayer + kBall || fields_[0] != "Period" || fields_[1] != "Frame")
-      throw Error("{}:3: must read Period,Frame,Time [s],Player...; it is no tracking file of Metrica", name_);
+      throw Error("{}:3: must read Period,Frame,Time [s],Player...; it is not a tracking file of Metrica", name_);
     std::vector<PersonColumn> columns;
     for (std::size_t at = kFirstPlayer; at + kBall < fields_.size(); at += 2) {
       const auto number = at < numbers.size() ? whole_number_of(numbers[at]) : std::nullopt;
@@ -85,17 +85,17 @@ class MetricaReader {
     return true;
   }
 
-  double number(std::size_t column, double least, double most) const {
+  double number(std::size_t column, double minimum, double maximum) const {
     const auto value = number_of(fields_[column]);
-    if (!value || !(*value >= least && *value <= most))
-      throw Error("{}: column {} is {}; a number from {:g} to {:g} is wanted", where(), column + 1, shown(fields_[column]), least,
-                  most);
+    if (!value || !(*value >= minimum && *value <= maximum))
+      throw Error("{}: column {} is {}; a number from {:g} to {:g} is wanted", where(), column + 1, shown(fields_[column]), minimum,
+                  maximum);
     return *value;
   }
 
   void read_row(const std::vector<PersonColumn>& columns) {
     const int period = static_cast<int>(number(0, 1, 9));
-    const auto frame = static_cast<std::int32_t>(number(1, 1, kMostFrame)) - 1;
+    const auto frame = static_cast<std::int32_t>(number(1, 1, kMaxFrame)) - 1;
     number(2, -1e11, 1e11);
     auto known = std::find_if(match_.periods.begin(), match_.periods.end(), [&](const auto& one) { return one.number == period; });
     if (known == match_.periods.end()) known = match_.periods.insert(known, {period, frame, frame});
@@ -105,8 +105,8 @@ class MetricaReader {
       const std::string_view x = fields_[column.at], y = fields_[column.at + 1];
       if (x.empty() || y.empty() || x == "NaN" || y == "NaN") continue;
       builder_.add(frame, frame / match_.recording.header.rate_hz, column.person,
-                   match_.pitch.length * number(column.at, -kMostPitches, kMostPitches),
-                   match_.pitch.width * (1 - number(column.at + 1, -kMostPitches, kMostPitches)), where());
+                   match_.pitch.length * number(column.at, -kMaxPitches, kMaxPitches),
+                   match_.pitch.width * (1 - number(column.at + 1, -kMaxPitches, kMaxPitches)), where());
     }
   }
 
@@ -114,14 +114,14 @@ class MetricaReader {
   void read_ball(std::size_t column) {
     const std::string_view x = fields_[column], y = fields_[column + 1];
     if (x.empty() || y.empty() || x == "NaN" || y == "NaN") return;
-    const auto frame = static_cast<std::int32_t>(number(1, 1, kMostFrame)) - 1;
+    const auto frame = static_cast<std::int32_t>(number(1, 1, kMaxFrame)) - 1;
     builder_.add(frame, frame / match_.recording.header.rate_hz, builder_.ball(),
-                 match_.pitch.length * number(column, -kMostPitches, kMostPitches),
-                 match_.pitch.width * (1 - number(column + 1, -kMostPitches, kMostPitches)), where());
+                 match_.pitch.length * number(column, -kMaxPitches, kMaxPitches),
+                 match_.pitch.width * (1 - number(column + 1, -kMaxPitches, kMaxPitches)), where());
   }
 
-  /// The head does not tell the rate; frames and times of the rows do, the beginning at 0 among them. Rows that cannot be read are
-  /// left to who reads them.
+  /// The head does not specify the rate; frames and times of the rows do, the beginning at 0 among them. Rows that cannot be read
+  /// are left to who reads them.
   void learn_rate(std::string_view text) {
     FrameNumbers numbers;
     numbers.add(0, 0.0);
@@ -135,7 +135,7 @@ class MetricaReader {
     }
     if (numbers.count() < 2) return;
     const double rate = std::round(1000 * numbers.rate_hz().value_or(0)) / 1000;
-    if (!is_told_by_times(rate))
+    if (!is_given_by_times(rate))
       throw Error("{}: its frames and times make no rate; the match begins with frame 1 at one frame's time", name_);
     match_.recording.header.rate_hz = rate;
   }
@@ -158,7 +158,8 @@ class MetricaReader {
 std::string plain(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (static_cast<unsigned char>(c) >= 0x80 && (static_cast<unsigned char>(c) & 0xC0) == 0x80) continue;  // goes on with a letter
+    if (static_cast<unsigned char>(c) >= 0x80 && (static_cast<unsigned char>(c) & 0xC0) == 0x80)
+      continue;  // continues with a letter
     result += c < ' ' || c > '~' || c == ',' || c == '"' ? '?' : c;
   }
   return result;
@@ -181,30 +182,31 @@ void write_team(const GroundMatch& match, const LineUps& line_ups, Side side, co
   std::string text = heads(line_ups, side, people);
   const Recording& recording = match.recording;
   const std::vector<std::optional<BallAt>> balls = ball_by_instant(match, line_ups);
-  std::vector<std::optional<Vector<2>>> places(recording.tracks().size());
+  std::vector<std::optional<Vector<2>>> locations(recording.tracks().size());
   InstantRows rows(recording);
   for (std::size_t instant = 0; instant < recording.instants().size(); ++instant) {
     const std::int64_t frame = recording.instants()[instant].index;
     const auto period = std::find_if(periods.begin(), periods.end(),
                                      [&](const auto& one) { return one.first_frame <= frame && frame <= one.last_frame; });
     if (period == periods.end()) continue;
-    std::fill(places.begin(), places.end(), std::nullopt);
-    for (const auto& [track, row] : rows.at(instant)) places[track] = recording.tracks()[track].place(row);
+    std::fill(locations.begin(), locations.end(), std::nullopt);
+    for (const auto& [track, row] : rows.at(instant)) locations[track] = recording.tracks()[track].location(row);
     fmt::format_to(std::back_inserter(text), "{},{},{:.5f}", period->number, frame + 1,
                    static_cast<double>(frame + 1) / recording.header.rate_hz);
     for (const std::size_t person : people) {
-      if (const auto& place = places[person]) {
-        const Vector<2> share(place->x() / match.pitch.length, 1 - place->y() / match.pitch.width);
-        if (!(share.cwiseAbs().maxCoeff() <= kMostPitches))
-          throw Error("somebody is at ({:g}, {:g}) m, farther from the pitch than Metrica's files can say", place->x(), place->y());
-        fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}", share.x(), share.y());
+      if (const auto& location = locations[person]) {
+        const Vector<2> fraction(location->x() / match.pitch.length, 1 - location->y() / match.pitch.width);
+        if (!(fraction.cwiseAbs().maxCoeff() <= kMaxPitches))
+          throw Error("a person is at ({:g}, {:g}) m, farther from the pitch than Metrica's files can say", location->x(),
+                      location->y());
+        fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}", fraction.x(), fraction.y());
       } else {
         text += ",NaN,NaN";
       }
     }
     if (const auto& ball = balls[instant])
-      fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}\n", ball->place.x() / match.pitch.length,
-                     1 - ball->place.y() / match.pitch.width);
+      fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f}\n", ball->location.x() / match.pitch.length,
+                     1 - ball->location.y() / match.pitch.width);
     else
       text += ",NaN,NaN\n";
     if (text.size() < (std::size_t{1} << 20)) continue;
@@ -257,9 +259,9 @@ bool is_metrica(const Beginning& file) {
 }
 
 std::vector<std::string> write_metrica(const GroundMatch& match, const std::string& path) {
-  if (!is_told_by_times(match.recording.header.rate_hz)) {
-    throw Error("{}: Metrica's files tell a rate of {:g} to {:g} Hz by their times; this is one of {:g} Hz", path, kLeastRate,
-                kMostRate, match.recording.header.rate_hz);
+  if (!is_given_by_times(match.recording.header.rate_hz)) {
+    throw Error("{}: Metrica's files tell a rate of {:g} to {:g} Hz by their times; this is one of {:g} Hz", path, kMinRate,
+                kMaxRate, match.recording.header.rate_hz);
   }
   LineUps line_ups = line_ups_of(match);
   const std::vector<GroundPeriod> periods = periods_of(match);
@@ -272,9 +274,9 @@ std::vector<std::string> write_metrica(const GroundMatch& match, const std::stri
   write_team(match, line_ups, Side::away, periods, away);
   home.finish();
   away.finish();
-  const auto left_out = line_ups.of(Side::referee).size() + line_ups.of(Side::other).size();
-  if (left_out > 0)
-    line_ups.warnings.push_back(fmt::format("{} people of neither team were left out: Metrica's files hold two teams", left_out));
+  const auto excluded = line_ups.of(Side::referee).size() + line_ups.of(Side::other).size();
+  if (excluded > 0)
+    line_ups.warnings.push_back(fmt::format("{} people of neither team were omitted: Metrica's files hold two teams", excluded));
   return line_ups.warnings;
 }
 
@@ -286,13 +288,13 @@ Format metrica_format() {
           .endings = "_home.csv _away.csv",
           .holds = Content::ground,
           .detail =
-              "corner above on the left, y down, 0 to 1; halves, shirts, two teams, NaN where someone is missing. Frames from 1. "
+              "corner above on the left, y down, 0 to 1; halves, shirts, two teams, NaN where a person is missing. Frames from 1. "
               "The pitch's size is not in it: `--size`",
           .is = match::is_metrica,
           .read = match::read_metrica,
           .write = match::write_metrica,
           .from_corner = true,
-          .beside = {{"_home.csv", "_away.csv"}, {"_away.csv", "_home.csv"}}};
+          .next_to = {{"_home.csv", "_away.csv"}, {"_away.csv", "_home.csv"}}};
 }
 
 }  // namespace marey::format::match

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_match.h"
 #include "marey/format/read_file.h"
@@ -17,8 +17,8 @@ namespace marey::format::match {
 
 namespace {
 
-/// (-1, -1), and -1 or nothing behind it, says that there is no place. With a height of 0, as we write it, somebody stands there.
-bool is_no_place(const std::vector<std::string_view>& fields) {
+/// (-1, -1), and -1 or nothing behind it, says that there is no place. With a height of 0, as we write it, a person stands there.
+bool is_no_position(const std::vector<std::string_view>& fields) {
   return number_of(fields[7]) == -1 && number_of(fields[8]) == -1 && (fields.size() < 10 || number_of(fields[9]) == -1);
 }
 
@@ -49,7 +49,7 @@ GroundMatch parse_mot_world(std::string_view text, const std::string& name, doub
       throw Error("{}: frame is {:g}; frames are whole numbers from 1", where, values[0]);
     if (values[1] < 0 || values[1] > 1e9 || values[1] != std::floor(values[1]))
       throw Error("{}: id is {:g}; ids are whole numbers from 0", where, values[1]);
-    if (is_no_place(fields))
+    if (is_no_position(fields))
       throw Error("{}: has no world coordinates (-1, -1); such boxes are placed on the ground by `marey track --ground`", where);
     const auto frame = static_cast<std::int32_t>(values[0]) - 1;
     const int id = static_cast<int>(values[1]);
@@ -95,7 +95,7 @@ bool is_mot_world(const Beginning& file) {
   const std::string_view line = file.first_line();
   split_fields(line, line.find(',') == std::string_view::npos ? ' ' : ',', fields);
   if (fields.size() < 9 || !all_numbers(fields) || is_truth_of_boxes(fields)) return false;
-  return !is_no_place(fields);
+  return !is_no_position(fields);
 }
 
 GroundMatch read_mot_world(const std::string& path, const ReadOptions& options) {

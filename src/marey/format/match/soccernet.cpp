@@ -1,6 +1,6 @@
-// SoccerNet's game state: JSON with a list of people seen in pictures, each with its place on the pitch, m from the centre spot, x
+// SoccerNet's game state: JSON with a list of people seen in images, each with its place on the pitch, m from the centre spot, x
 // to the right and y downwards. The truth lists them as "annotations" (the file is named Labels-GameState.json), a tracker's result
-// as "predictions"; both are read, and the name decides which is written. The last six digits of an image_id count pictures from 1.
+// as "predictions"; both are read, and the name decides which is written. The last six digits of an image_id count images from 1.
 // Teams are "left" and "right", shirts' numbers are strings or null.
 #include <algorithm>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_match.h"
 #include "marey/format/match/line_ups.h"
@@ -39,14 +39,14 @@ class SoccernetReader {
   GroundMatch read(std::string_view text) {
     check_nesting(text, Notation::json, name_);
     const json root = json::parse(text);
-    if (!root.is_object()) throw Error("{}: is no game state of SoccerNet: it must be an object", name_);
+    if (!root.is_object()) throw Error("{}: is not a game state of SoccerNet: it must be an object", name_);
     if (const auto info = root.find("info"); info != root.end() && info->is_object()) {
       const double rate = number_or(*info, "frame_rate", match_.recording.header.rate_hz);
       if (rate >= 0.1 && rate <= 10'000) match_.recording.header.rate_hz = rate;
     }
     const auto list = root.contains("predictions") ? root.find("predictions") : root.find("annotations");
     if (list == root.end() || !list->is_array())
-      throw Error("{}: is no game state of SoccerNet: \"predictions\" or \"annotations\" is missing", name_);
+      throw Error("{}: is not a game state of SoccerNet: \"predictions\" or \"annotations\" is missing", name_);
     for (std::size_t i = 0; i < list->size(); ++i) {
       where_ = fmt::format("{}: person {} of the list", name_, i + 1);
       add((*list)[i]);
@@ -71,17 +71,17 @@ class SoccernetReader {
 
   /// Lines and cameras are in the list too; so are people whose place is not known.
   void add(const json& one) {
-    if (!one.is_object()) throw Error("{} is no object", where_);
+    if (!one.is_object()) throw Error("{} is not an object", where_);
     const auto box = one.find("bbox_pitch");
     if (text_of(one, "supercategory") != "object" || box == one.end() || !box->is_object()) return;
     const json& attributes = one.contains("attributes") && one["attributes"].is_object() ? one["attributes"] : json::object();
     const std::string role = text_of(attributes, "role");
     if (role == "ball") return;
     const auto image = whole_number_of(text_of(one, "image_id"));
-    if (!image || *image % kImages < 1) throw Error("{}: image_id is no number that ends in a picture's, counted from 1", where_);
+    if (!image || *image % kImages < 1) throw Error("{}: image_id is no number that ends in an image's, counted from 1", where_);
     const auto track = whole_number_of(text_of(one, "track_id"));
     if (!track || *track < 0 || *track > 1'000'000'000) throw Error("{}: track_id is no number from 0", where_);
-    const auto place = [&](const char* key) {
+    const auto location = [&](const char* key) {
       const auto value = box->find(key);
       if (value == box->end() || !value->is_number()) throw Error("{}: bbox_pitch has no number {}", where_, key);
       return value->get<double>();
@@ -91,8 +91,8 @@ class SoccernetReader {
     const std::string jersey = text_of(attributes, "jersey");
     const std::string label = jersey.empty() && role == "goalkeeper" ? "keeper" : jersey;
     const std::int32_t person = builder_.person(std::to_string(*track), static_cast<int>(*track), label, team);
-    builder_.add(frame, frame / match_.recording.header.rate_hz, person, match_.pitch.length / 2 + place("x_bottom_middle"),
-                 match_.pitch.width / 2 - place("y_bottom_middle"), where_);
+    builder_.add(frame, frame / match_.recording.header.rate_hz, person, match_.pitch.length / 2 + location("x_bottom_middle"),
+                 match_.pitch.width / 2 - location("y_bottom_middle"), where_);
   }
 
   const std::string& name_;
@@ -148,7 +148,7 @@ GroundMatch parse_soccernet(std::string_view text, const std::string& name, cons
     if (broken == nullptr)
       throw Error("{}: holds something else than SoccerNet's game state where a number or a text is wanted", name);
     const auto read = text.substr(0, broken->byte);
-    throw Error("{}:{}: is no JSON from here on; the file may be cut off", name, std::count(read.begin(), read.end(), '\n') + 1);
+    throw Error("{}:{}: is not a JSON from here on; the file may be cut off", name, std::count(read.begin(), read.end(), '\n') + 1);
   }
 }
 

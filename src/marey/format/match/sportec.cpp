@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kSections = {"firstHalf", "secondHalf", "firstHalfExtra", "secondHalfExtra"};
 
-struct Who {
+struct Identify {
   std::string label, team;
 };
 
@@ -45,7 +45,7 @@ class SportecReader {
     if (!metadata.empty()) read_people(metadata);
     const pugi::xml_document document = parse_xml(text, name_);
     const pugi::xml_node positions = document.document_element().child("Positions");
-    if (!positions) throw Error("{}: is no positional data of DFL: <Positions> is missing", name_);
+    if (!positions) throw Error("{}: is not a positional data of DFL: <Positions> is missing", name_);
     if (const pugi::xml_node size = positions.child("MetaData").child("PitchSize")) {
       match_.pitch.length = number(size, "X", 1, 1000);
       match_.pitch.width = number(size, "Y", 1, 1000);
@@ -68,12 +68,12 @@ class SportecReader {
     }
   }
 
-  double number(const pugi::xml_node& node, const char* attribute, double least, double most) const {
+  double number(const pugi::xml_node& node, const char* attribute, double minimum, double maximum) const {
     const std::string_view text = node.attribute(attribute).as_string();
     const auto value = number_of(text);
-    if (!value || !(*value >= least && *value <= most))
-      throw Error("{}: {} of a <{}> is {}; a number from {:g} to {:g} is wanted", name_, attribute, node.name(), shown(text), least,
-                  most);
+    if (!value || !(*value >= minimum && *value <= maximum))
+      throw Error("{}: {} of a <{}> is {}; a number from {:g} to {:g} is wanted", name_, attribute, node.name(), shown(text),
+                  minimum, maximum);
     return *value;
   }
 
@@ -96,16 +96,17 @@ class SportecReader {
     if (known == kSections.end())
       throw Error("{}: a <FrameSet> has the section {}; firstHalf, secondHalf, ... are known", name_, shown(section));
     const int period = static_cast<int>(known - kSections.begin()) + 1;
-    const auto who = people_.find(id);
+    const auto identity = people_.find(id);
     const bool ball = team == "BALL";
-    const std::int32_t person = ball                   ? builder_.ball()
-                                : who == people_.end() ? builder_.person(id, 0, id, team == "referee" ? "referee" : team)
-                                                       : builder_.person(id, 0, who->second.label, who->second.team);
+    const std::int32_t person = ball                        ? builder_.ball()
+                                : identity == people_.end() ? builder_.person(id, 0, id, team == "referee" ? "referee" : team)
+                                                            : builder_.person(id, 0, identity->second.label, identity->second.team);
     for (const pugi::xml_node node : set.children("Frame")) {
       const auto frame = static_cast<std::int32_t>(number(node, "N", 0, 1e9));
       extend(period, frame);
       GroundBuilder::Row row{.frame = frame, .time = frame / match_.recording.header.rate_hz};
-      row.place = {match_.pitch.length / 2 + number(node, "X", -1e5, 1e5), match_.pitch.width / 2 + number(node, "Y", -1e5, 1e5)};
+      row.location = {match_.pitch.length / 2 + number(node, "X", -1e5, 1e5),
+                      match_.pitch.width / 2 + number(node, "Y", -1e5, 1e5)};
       if (ball && node.attribute("Z")) row.height = number(node, "Z", -1e5, 1e5);
       builder_.add(person, row);
     }
@@ -123,7 +124,7 @@ class SportecReader {
   GroundBuilder builder_;
   GroundMatch match_;
   bool rate_known_ = false;
-  std::map<std::string, Who> people_;
+  std::map<std::string, Identify> people_;
 };
 
 }  // namespace

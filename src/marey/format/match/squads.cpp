@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/csv_table.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
@@ -19,8 +19,8 @@
 namespace marey::format::match {
 namespace {
 
-constexpr std::size_t kLongestName = 200;  // bytes
-constexpr std::size_t kMostMembers = 256;
+constexpr std::size_t kMaxName = 200;  // bytes
+constexpr std::size_t kMaxMembers = 256;
 
 std::string folded(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -31,7 +31,7 @@ std::string folded(std::string text) {
 std::string name_from(const std::string& field, const std::string& where) {
   std::string name = plain_text(field);
   std::replace(name.begin(), name.end(), '"', '\'');
-  if (name.size() > kLongestName) throw Error("{}: a name has {} bytes; at most {} are read", where, name.size(), kLongestName);
+  if (name.size() > kMaxName) throw Error("{}: a name has {} bytes; at most {} are read", where, name.size(), kMaxName);
   return name;
 }
 
@@ -40,13 +40,13 @@ SquadRole role_from(const std::string& text, const std::string& where) {
   if (role.empty() || role == "player") return SquadRole::player;
   if (role == "keeper" || role == "goalkeeper") return SquadRole::keeper;
   if (role == "referee") return SquadRole::referee;
-  throw Error("{}: {} is no role; player, keeper and referee are", where, shown(text));
+  throw Error("{}: {} is not a role; player, keeper and referee are", where, shown(text));
 }
 
 std::optional<double> minute_from(const std::string& text, const std::string& where) {
   if (text.empty()) return std::nullopt;
   const auto minute = number_of(text);
-  if (!minute || *minute < 0) throw Error("{}: {} is no minute", where, shown(text));
+  if (!minute || *minute < 0) throw Error("{}: {} is not a minute", where, shown(text));
   return 60 * *minute;
 }
 
@@ -72,7 +72,7 @@ void require_apart(const SquadMember& one, const SquadMember& other, const std::
     throw Error("{}: number {} is there twice in the team {}: {} and {}", where, one.number, shown(one.team), one.label(),
                 other.label());
   if (one.label() == other.label())
-    throw Error("{}: two are called {}, and nobody could tell them apart; write one's name otherwise", where, one.label());
+    throw Error("{}: two are called {}, and no person could distinguish them; write one's name otherwise", where, one.label());
 }
 
 }  // namespace
@@ -89,9 +89,9 @@ std::vector<SquadMember> parse_squads(std::string_view text, const std::string& 
     const SquadMember member = member_from(row);
     for (const SquadMember& other : squads) require_apart(other, member, row.where());
     squads.push_back(member);
-    if (squads.size() > kMostMembers) throw Error("{}: more than {} people", row.where(), kMostMembers);
+    if (squads.size() > kMaxMembers) throw Error("{}: more than {} people", row.where(), kMaxMembers);
   }
-  if (squads.empty()) throw Error("{}: names nobody", name);
+  if (squads.empty()) throw Error("{}: names no person", name);
   return squads;
 }
 
@@ -102,18 +102,19 @@ std::vector<SquadMember> read_squads(const std::string& path) {
 int member_called(const std::string& called, const std::string& team, const std::vector<SquadMember>& squads,
                   const std::string& where) {
   const std::string sought = folded(name_from(called, where));
-  std::vector<std::size_t> found, nearly;
+  std::vector<std::size_t> found, almost;
   for (std::size_t i = 0; i < squads.size(); ++i) {
     const SquadMember& one = squads[i];
     if (!team.empty() && folded(one.team) != folded(team)) continue;
     const std::array<std::string, 3> exactly{one.label(), one.number + " " + one.team, one.team + " " + one.number};
     if (std::any_of(exactly.begin(), exactly.end(), [&](const std::string& text) { return folded(text) == sought; }))
       found.push_back(i);
-    if (sought == folded(one.name) || sought == one.number) nearly.push_back(i);
+    if (sought == folded(one.name) || sought == one.number) almost.push_back(i);
   }
-  if (found.empty()) found = nearly;
+  if (found.empty()) found = almost;
   if (found.empty())
-    throw Error("{}: nobody in the roster is called {}{}", where, shown(called), team.empty() ? "" : " in the team " + shown(team));
+    throw Error("{}: no person in the roster is called {}{}", where, shown(called),
+                team.empty() ? "" : " in the team " + shown(team));
   if (found.size() == 1) return static_cast<int>(found.front());
   std::vector<std::string> labels;
   for (const std::size_t i : found) labels.push_back(fmt::format("{} ({})", squads[i].label(), squads[i].team));
@@ -126,7 +127,7 @@ std::vector<SquadNaming> parse_namings(std::string_view text, const std::string&
   for (const CsvTable::Row& row : table.rows()) {
     SquadNaming naming{.where = row.where()};
     const auto time = seconds_of_clock(row.text("time"));
-    if (!time) throw Error("{}: {} is no time; write 63.2, 1:03.2 or 0:01:03.2", row.where(), shown(row.text("time")));
+    if (!time) throw Error("{}: {} is not a time; write 63.2, 1:03.2 or 0:01:03.2", row.where(), shown(row.text("time")));
     std::string id = row.text("id");
     if (id.starts_with('#')) id.erase(0, 1);
     const auto track = whole_number_of(id);
@@ -137,7 +138,7 @@ std::vector<SquadNaming> parse_namings(std::string_view text, const std::string&
     naming.member = member_called(row.text("name"), row.text("team"), squads, row.where());
     namings.push_back(naming);
   }
-  if (namings.empty()) throw Error("{}: names nobody", name);
+  if (namings.empty()) throw Error("{}: names no person", name);
   std::stable_sort(namings.begin(), namings.end(), [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
   return namings;
 }

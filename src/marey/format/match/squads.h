@@ -12,7 +12,7 @@ namespace marey::format::match {
 enum class SquadRole { player, keeper, referee };
 
 struct SquadMember {
-  std::string number;  ///< of the shirt; empty where there is none
+  std::string number;  ///< of the shirt; empty if there is none
   std::string name;
   std::string team;  ///< "Referees" for a referee of whom the list says nothing
   SquadRole role = SquadRole::player;
@@ -27,7 +27,7 @@ struct SquadMember {
 std::vector<SquadMember> parse_squads(std::string_view text, const std::string& name);
 std::vector<SquadMember> read_squads(const std::string& path);
 
-/// Somebody was recognised.
+/// A person was recognised.
 struct SquadNaming {
   double time_s = 0;  ///< from the recording's beginning
   int track = 0;
@@ -44,7 +44,7 @@ int member_called(const std::string& called, const std::string& team, const std:
 std::vector<SquadNaming> parse_namings(std::string_view text, const std::string& name, const std::vector<SquadMember>& squads);
 std::vector<SquadNaming> read_namings(const std::string& path, const std::vector<SquadMember>& squads);
 
-/// 63.2, 1:03.2 or 0:01:03.2 in seconds; nothing for what is none.
+/// 63.2, 1:03.2 or 0:01:03.2 in seconds; nothing for what is not one.
 std::optional<double> seconds_of_clock(std::string_view text);
 /// "1:03.2".
 std::string clock_of_seconds(double seconds);

@@ -41,16 +41,16 @@ TEST(Squads, AreReadWhateverTheOrderOfTheirColumns) {
   EXPECT_EQ(squads[4].team, "Referees");
 }
 
-TEST(Squads, WhatCannotBeIsRefusedWithItsLine) {
+TEST(Squads, RejectsImpossibleRowWithLine) {
   EXPECT_EQ(squads_refused("number,name,team\n7,Kane,A\n7,Son,A\n"),
             "squads.csv:3: number 7 is there twice in the team \"A\": 7 Kane and 7 Son");
   EXPECT_EQ(squads_refused("number,name,team\n7,Kane,A\n7,Kane,B\n"),
-            "squads.csv:3: two are called 7 Kane, and nobody could tell them apart; write one's name otherwise");
+            "squads.csv:3: two are called 7 Kane, and no person could distinguish them; write one's name otherwise");
   EXPECT_EQ(squads_refused("number,name,team\nseven,Kane,A\n"), "squads.csv:2: \"seven\" is no number of a shirt");
   EXPECT_EQ(squads_refused("number,name,team,in,out\n7,Kane,A,20,10\n"), "squads.csv:2: 7 Kane goes out before coming in");
   EXPECT_EQ(squads_refused("number,name,team,role\n7,Kane,A,coach\n"),
-            "squads.csv:2: \"coach\" is no role; player, keeper and referee are");
-  EXPECT_EQ(squads_refused("number,name,team\n"), "squads.csv: names nobody");
+            "squads.csv:2: \"coach\" is not a role; player, keeper and referee are");
+  EXPECT_EQ(squads_refused("number,name,team\n"), "squads.csv: names no person");
   EXPECT_EQ(squads_refused("number,name,team\n,,A\n"), "squads.csv:2: has neither a number nor a name");
 }
 
@@ -67,7 +67,7 @@ TEST(Squads, MembersAreCalledInManyWays) {
   EXPECT_EQ(called("10", "spurs"), 0);
   EXPECT_EQ(complaint_of([&] { called("10"); }),
             "here: \"10\" may be 10 Kane (Spurs) or 10 Grealish (City); say number and name, or number and team");
-  EXPECT_EQ(complaint_of([&] { called("11"); }), "here: nobody in the roster is called \"11\"");
+  EXPECT_EQ(complaint_of([&] { called("11"); }), "here: no person in the roster is called \"11\"");
 }
 
 TEST(Namings, AreReadByTime) {

@@ -51,7 +51,7 @@ class StatsperformReader {
     if (fields_.size() > 1) split_fields(fields_[1], ',', rest);
     const double period = rest.size() > 1 ? number_of(rest[1]).value_or(0) : 0;
     if (!ms || !(*ms >= 0 && *ms < 1e14) || !(period >= 1 && period <= 9))
-      throw Error("{}: is no instant of MA25; it must read time;ms,half,state:people:ball", where);
+      throw Error("{}: is not an instant of MA25; it must read time;ms,half,state:people:ball", where);
     return {*ms, static_cast<int>(period)};
   }
 
@@ -69,7 +69,8 @@ class StatsperformReader {
     }
     if (count < 2) return;
     const auto rate = numbers.rate_hz();
-    if (!rate || !(*rate >= 0.1 && *rate <= 1000)) throw Error("{}: its instants' times do not go on, which makes no rate", name_);
+    if (!rate || !(*rate >= 0.1 && *rate <= 1000))
+      throw Error("{}: its instants' times do not continue, which makes no rate", name_);
     match_.recording.header.rate_hz = std::round(*rate * 1000) / 1000;
   }
 
@@ -95,7 +96,7 @@ class StatsperformReader {
     const auto x = fields_.size() == 5 ? number_of(fields_[3]) : std::nullopt;
     const auto y = fields_.size() == 5 ? number_of(fields_[4]) : std::nullopt;
     if (!side || *side < 0 || *side >= static_cast<std::int64_t>(kTeams.size()) || !x || !y)
-      throw Error("{}: {} is nobody; it must read side,person,shirt,x,y", where_, shown(text));
+      throw Error("{}: {} is no person; it must read side,person,shirt,x,y", where_, shown(text));
     const std::int32_t person =
         builder_.person(std::string(fields_[1]), 0, std::string(fields_[2]), kTeams[static_cast<std::size_t>(*side)]);
     builder_.add(frame, frame / match_.recording.header.rate_hz, person, *x, match_.pitch.width - *y, where_);

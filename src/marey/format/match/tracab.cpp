@@ -3,7 +3,7 @@
 // metadata's XML comes with attributes of <match> or flat, lengths then in cm.
 //
 // A ball that is not known is written dead on the centre spot, for readers insist on one. Readers insist on who has it too: the
-// team of whoever was last within two metres of it, to begin with the home team.
+// team of the one who was last within two metres of it, to begin with the home team.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/ground_builder.h"
 #include "marey/format/match/ground_match.h"
 #include "marey/format/match/line_ups.h"
@@ -23,7 +23,7 @@ namespace marey::format::match {
 namespace {
 
 constexpr double kMetre = 100;  // of TRACAB's units
-constexpr std::int64_t kMostFrames = 1'000'000'000;
+constexpr std::int64_t kMaxFrames = 1'000'000'000;
 
 /// A number with a dot or, as some exports have it, a comma.
 std::optional<double> decimal(std::string text) {
@@ -47,10 +47,10 @@ class TracabReader {
   }
 
  private:
-  double metadata_number(const std::string& text, const char* what, double least, double most) const {
+  double metadata_number(const std::string& text, const char* what, double minimum, double maximum) const {
     const auto value = decimal(text);
-    if (!value || !(*value >= least && *value <= most))
-      throw Error("{}: {} is {}; a number from {:g} to {:g} is wanted", metadata_name_, what, shown(text), least, most);
+    if (!value || !(*value >= minimum && *value <= maximum))
+      throw Error("{}: {} is {}; a number from {:g} to {:g} is wanted", metadata_name_, what, shown(text), minimum, maximum);
     return *value;
   }
 
@@ -68,8 +68,8 @@ class TracabReader {
       match_.pitch.width = metadata_number(head.attribute("fPitchYSizeMeters").as_string(), "fPitchYSizeMeters", 1, 1000);
       for (const pugi::xml_node period : head.children("period")) {
         add_period(period.attribute("iId").as_int(),
-                   metadata_number(period.attribute("iStartFrame").as_string(), "iStartFrame", 0, kMostFrames),
-                   metadata_number(period.attribute("iEndFrame").as_string(), "iEndFrame", 0, kMostFrames));
+                   metadata_number(period.attribute("iStartFrame").as_string(), "iStartFrame", 0, kMaxFrames),
+                   metadata_number(period.attribute("iEndFrame").as_string(), "iEndFrame", 0, kMaxFrames));
       }
     } else if (root.child("FrameRate")) {
       match_.recording.header.rate_hz = metadata_number(root.child_value("FrameRate"), "FrameRate", 1, 1000);
@@ -78,11 +78,11 @@ class TracabReader {
       for (int phase = 1; phase <= 5; ++phase) {
         const std::string start = fmt::format("Phase{}StartFrame", phase), end = fmt::format("Phase{}EndFrame", phase);
         if (!root.child(start.c_str())) continue;
-        add_period(phase, metadata_number(root.child_value(start.c_str()), start.c_str(), 0, kMostFrames),
-                   metadata_number(root.child_value(end.c_str()), end.c_str(), 0, kMostFrames));
+        add_period(phase, metadata_number(root.child_value(start.c_str()), start.c_str(), 0, kMaxFrames),
+                   metadata_number(root.child_value(end.c_str()), end.c_str(), 0, kMaxFrames));
       }
     } else {
-      throw Error("{}: is no metadata of TRACAB: neither <match> nor <FrameRate> is in it", metadata_name_);
+      throw Error("{}: is not a metadata of TRACAB: neither <match> nor <FrameRate> is in it", metadata_name_);
     }
     read_team(root.child("HomeTeam"), 1, "Home", match_.home);
     read_team(root.child("AwayTeam"), 0, "Away", match_.away);
@@ -102,8 +102,8 @@ class TracabReader {
     const std::size_t head = line.find(':');
     const auto frame = whole_number_of(line.substr(0, head));
     const std::size_t end = head == std::string_view::npos ? head : line.find(':', head + 1);
-    if (!frame || *frame < 0 || *frame > kMostFrames || end == std::string_view::npos)
-      throw Error("{}: is no instant of TRACAB; it must read frame:targets:ball:", where_);
+    if (!frame || *frame < 0 || *frame > kMaxFrames || end == std::string_view::npos)
+      throw Error("{}: is not an instant of TRACAB; it must read frame:targets:ball:", where_);
     split_fields(line.substr(head + 1, end - head - 1), ';', targets_);
     for (const std::string_view target : targets_) {
       if (!target.empty()) read_target(target, static_cast<std::int32_t>(*frame));
@@ -111,7 +111,7 @@ class TracabReader {
     read_ball(line.substr(end + 1), static_cast<std::int32_t>(*frame));
   }
 
-  /// x,y,z,speed,team,state. A ball dead on the centre spot is one that nobody knows of.
+  /// x,y,z,speed,team,state. A ball dead on the centre spot is one that no person knows of.
   void read_ball(std::string_view text, std::int32_t frame) {
     split_fields(text.substr(0, text.find_first_of(";:")), ',', fields_);
     if (fields_.size() < 6) return;
@@ -119,7 +119,7 @@ class TracabReader {
     if (!x || !y || !z || !(std::abs(*x) < 1e6 && std::abs(*y) < 1e6 && std::abs(*z) < 1e6)) return;
     if (*x == 0 && *y == 0 && *z == 0 && fields_[5] == "Dead") return;
     GroundBuilder::Row row{.frame = frame, .time = frame / match_.recording.header.rate_hz};
-    row.place = {*x / kMetre + match_.pitch.length / 2, *y / kMetre + match_.pitch.width / 2};
+    row.location = {*x / kMetre + match_.pitch.length / 2, *y / kMetre + match_.pitch.width / 2};
     row.height = *z / kMetre;
     builder_.add(builder_.ball(), row);
   }
@@ -130,7 +130,7 @@ class TracabReader {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto value = i < fields_.size() ? number_of(fields_[i]) : std::nullopt;
       if (!value || std::abs(*value) > 1e9)
-        throw Error("{}: {} is no target; it must read team,target,shirt,x,y,speed", where_, shown(target));
+        throw Error("{}: {} is not a target; it must read team,target,shirt,x,y,speed", where_, shown(target));
       values[i] = *value;
     }
     const int team = static_cast<int>(values[0]), id = static_cast<int>(values[1]), number = static_cast<int>(values[2]);
@@ -139,8 +139,8 @@ class TracabReader {
     const std::string key = fmt::format("{} {} {}", team, plays ? number : -1, plays ? -1 : id);
     const auto named = names_.find({team, number});
     const std::string label = plays ? label_of(named == names_.end() ? std::string() : named->second, number) : std::string();
-    const std::string whose = team == 1 ? match_.home : team == 0 ? match_.away : team == 3 ? "referee" : "";
-    builder_.add(frame, frame / match_.recording.header.rate_hz, builder_.person(key, id, label, whose),
+    const std::string owner = team == 1 ? match_.home : team == 0 ? match_.away : team == 3 ? "referee" : "";
+    builder_.add(frame, frame / match_.recording.header.rate_hz, builder_.person(key, id, label, owner),
                  values[3] / kMetre + match_.pitch.length / 2, values[4] / kMetre + match_.pitch.width / 2, where_);
   }
 
@@ -248,7 +248,7 @@ const TwoFiles& tracab_files() {
 /// The ball's part of a line: x,y,z,speed,team,state. `owner` is who had it, and has it now.
 std::string ball_text(const std::optional<BallAt>& ball, const GroundMatch& match, char owner) {
   if (!ball) return fmt::format("0,0,0,0.00,{},Dead", owner);
-  const Vector<3>& at = ball->place;
+  const Vector<3>& at = ball->location;
   const bool in_play = at.x() >= 0 && at.y() >= 0 && at.x() <= match.pitch.length && at.y() <= match.pitch.width;
   return fmt::format("{},{},{},{:.2f},{},{}", std::lround(kMetre * (at.x() - match.pitch.length / 2)),
                      std::lround(kMetre * (at.y() - match.pitch.width / 2)), std::lround(kMetre * at.z()),
@@ -256,7 +256,7 @@ std::string ball_text(const std::optional<BallAt>& ball, const GroundMatch& matc
 }
 
 std::vector<std::string> write_tracab(const GroundMatch& match, const std::string& path) {
-  if (match.recording.samples() == 0) throw Error("nobody is in the recording, and TRACAB's readers take that for broken");
+  if (match.recording.samples() == 0) throw Error("no person is in the recording, and TRACAB's readers take that for broken");
   const LineUps line_ups = line_ups_of(match);
   WholeFile file(path);
   std::string text;
@@ -271,7 +271,7 @@ std::vector<std::string> write_tracab(const GroundMatch& match, const std::strin
       const TrackColumns& track = match.recording.tracks()[index];
       const LineUps::Member& member = line_ups.members[index];
       if (member.side == Side::ball) continue;
-      const double away = balls[instant] ? (track.place(row) - balls[instant]->place.head<2>()).norm() : kReach;
+      const double away = balls[instant] ? (track.location(row) - balls[instant]->location.head<2>()).norm() : kReach;
       if (away < nearest && (member.side == Side::home || member.side == Side::away)) {
         nearest = away;
         owner = member.side == Side::home ? 'H' : 'A';
@@ -308,7 +308,7 @@ Format tracab_format() {
                      const ReadOptions& options) { return match::read_two_files(path, match::tracab_files(), options); },
           .write = match::write_tracab,
           .from_corner = true,
-          .beside = {{".dat", ".xml"}}};
+          .next_to = {{".dat", ".xml"}}};
 }
 
 }  // namespace marey::format::match

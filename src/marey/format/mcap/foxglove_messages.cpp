@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/mcap/foxglove_schemas.h"
 #include "marey/format/mcap/protobuf.h"
 

@@ -1,5 +1,5 @@
-// A moment as Foxglove's messages, for MCAP files and for the Foxglove WebSocket: points as a PointCloud (Rerun reads that), bodies
-// as FrameTransforms, both drawn with their names as a SceneUpdate, and the times as JSON.
+// An instant as Foxglove's messages, for MCAP files and for the Foxglove WebSocket: points as a PointCloud (Rerun reads that),
+// bodies as FrameTransforms, both drawn with their names as a SceneUpdate, and the times as JSON.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ class FoxgloveMessages {
   void begin(const RecordingHeader& header);
   void add(const std::vector<TrackName>& names);
 
-  /// Of that topic; empty where this moment has none.
+  /// Of that topic; empty if this instant has none.
   std::string message(std::size_t topic, const Instant& instant, const MessageTimes& times) const;
 
  private:

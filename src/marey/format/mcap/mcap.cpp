@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/mcap/foxglove_messages.h"
 
@@ -98,7 +98,7 @@ class McapFile : public Sink {
   explicit McapFile(std::string path) : path_(std::move(path)), file_(path_) {}
   std::string name() const override { return path_; }
 
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     if (!header.frame.metric())
       throw Error("{}: such a file holds metres, and these positions are {}", path_, to_string(header.frame));
     messages_.begin(header);

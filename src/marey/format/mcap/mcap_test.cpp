@@ -78,7 +78,7 @@ TEST(Mcap, TheSameRecordingGivesTheSameBytes) {
   EXPECT_EQ(written(folder / "a.mcap", 20), written(folder / "b.mcap", 20));
 }
 
-TEST(Mcap, WhatIsCutOffAnywhereEndsInASentence) {
+TEST(Mcap, ReportsTruncationAnywhere) {
   const test::TemporaryFolder folder;
   const std::string bytes = written(folder / "a.mcap", 3);
   for (std::size_t size = 0; size < bytes.size(); size += 7) {

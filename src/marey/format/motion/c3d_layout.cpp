@@ -65,7 +65,7 @@ class LayoutFinder {
     const std::string unit = head_.text("POINT:UNITS");
     const auto metres = metres_of_unit(unit);
     if (!metres) {
-      layout_.warnings.push_back(unit.empty() ? std::string("it does not say its unit; mm is assumed")
+      layout_.warnings.push_back(unit.empty() ? std::string("it does not specify its unit; mm is assumed")
                                               : "its unit \"" + unit.substr(0, 20) + "\" is not known; mm is assumed");
     }
     layout_.unit_m = metres.value_or(0.001);
@@ -76,12 +76,12 @@ class LayoutFinder {
     const auto parameter = head_.number("POINT:DATA_START");
     const std::size_t other = parameter && *parameter >= 1 && *parameter <= 65535 ? static_cast<std::size_t>(*parameter) : 0;
     if (block < 2 || (block - 1) * kC3dBlock > size_) block = other;
-    if (block < 2) throw Error("{}: does not say where its frames begin; it is damaged", name_);
+    if (block < 2) throw Error("{}: does not specify where its frames begin; it is damaged", name_);
     layout_.begin = (block - 1) * kC3dBlock;
   }
 
   /// Of what the file says twice and differently: what ends where the file does. Where both do, or neither, the parameters are
-  /// believed about the points, and the first block about the analog values.
+  /// trusted about the points, and the first block about the analog values.
   void find_counts() {
     std::vector<std::size_t> points = {head_.points}, words = {words_of_first_block()};
     const auto used = head_.number("POINT:USED");
@@ -95,12 +95,12 @@ class LayoutFinder {
     if (points.front() != points.back())
       layout_.warnings.push_back(
           fmt::format("it names {} points in one place and {} in another; {}", points.front(), points.back(),
-                      layout_.points == points.front() ? "the first is believed" : "its length fits the second"));
+                      layout_.points == points.front() ? "the first is trusted" : "its length fits the second"));
     if (words.size() > 1 && words_of_parameters().value_or(words.front()) != words.front())
       layout_.warnings.push_back(fmt::format(
           "its first block names {} analog values a frame, and its rates of analog values and of points make {}; {}", words.front(),
           *words_of_parameters(),
-          !fits ? "its length fits neither, and the first is believed" : fmt::format("its length fits {}", layout_.analog_words)));
+          !fits ? "its length fits neither, and the first is trusted" : fmt::format("its length fits {}", layout_.analog_words)));
   }
 
   /// False where no pair of counts ends with the file; then nothing is changed.
@@ -116,7 +116,7 @@ class LayoutFinder {
     return false;
   }
 
-  /// Whether so many frames as the file names end in its last block.
+  /// Whether this many frames as the file names end in its last block.
   bool ends_with_file(std::size_t points, std::size_t analog_words) const {
     const std::size_t bytes = layout_.word() * (4 * points + analog_words), end = end_of_frames();
     if (bytes == 0 || end <= layout_.begin) return false;
@@ -164,15 +164,15 @@ class LayoutFinder {
       layout_.analog_channels = words / samples;
     } else {
       layout_.warnings.push_back(
-          fmt::format("it names {} analog channels, and has {} values of them a frame; they are passed over", used, words));
+          fmt::format("it names {} analog channels, and has {} values of them a frame; they are skipped", used, words));
       return;
     }
     layout_.analog_samples = words / layout_.analog_channels;
   }
 
-  std::size_t count(std::string_view parameter, double most) const {
+  std::size_t count(std::string_view parameter, double maximum) const {
     const double value = head_.number(parameter).value_or(0);
-    return std::isfinite(value) && std::abs(value) <= most ? static_cast<std::size_t>(unsigned_word(value)) : 0;
+    return std::isfinite(value) && std::abs(value) <= maximum ? static_cast<std::size_t>(unsigned_word(value)) : 0;
   }
 
   void find_bodies() {
@@ -182,7 +182,7 @@ class LayoutFinder {
     const std::size_t block = count("ROTATION:DATA_START", 1e12);
     layout_.bodies_begin = block < 2 ? size_ : (block - 1) * kC3dBlock;
     if (layout_.bodies_begin < size_) return;
-    layout_.warnings.emplace_back("where the matrices of its bodies begin there is nothing; they are left out");
+    layout_.warnings.emplace_back("where the matrices of its bodies begin there is nothing; they are omitted");
     layout_.bodies = 0;
   }
 
@@ -219,17 +219,17 @@ class LayoutFinder {
     require_matrices(of_bodies);
   }
 
-  /// A count that ran over its 16 bits, or stopped at their end, where the frames go on for as long as a whole turn.
+  /// A count that ran over its 16 bits, or stopped at their end, where the frames continue for as long as a whole turn.
   void count_beyond_16_bits(std::int64_t named, std::int64_t there, std::size_t bytes) {
     if (named > 65535 || there <= 65535) return;
-    const std::int64_t turned = named + (there - named) / 65536 * 65536;
-    const bool ends_there = static_cast<std::size_t>(there - turned) * bytes < kC3dBlock;
-    if (named != 65535 && !(turned > named && ends_there)) return;
-    layout_.frames = static_cast<std::size_t>(named == 65535 ? there : turned);
+    const std::int64_t rotated = named + (there - named) / 65536 * 65536;
+    const bool ends_there = static_cast<std::size_t>(there - rotated) * bytes < kC3dBlock;
+    if (named != 65535 && !(rotated > named && ends_there)) return;
+    layout_.frames = static_cast<std::size_t>(named == 65535 ? there : rotated);
     layout_.warnings.push_back(fmt::format("it names {} frames, which is as far as it counts; it holds {}", named, layout_.frames));
   }
 
-  /// What the file holds where it is shorter than any count it names. Throws Error where it holds nothing.
+  /// What the file holds where it is shorter than any count it names. Throws Error if it holds nothing.
   void count_what_is_there(const std::vector<std::int64_t>& counts, std::int64_t there, std::int64_t of_bodies) {
     const std::int64_t named = *std::min_element(counts.begin(), counts.end());
     if (there <= 0) throw Error("{}: is cut off: it names {} frames and holds {}; copy it again", name_, named, there);
@@ -237,7 +237,7 @@ class LayoutFinder {
     // 65535 (or -1) stands for "more than can be said", even where it is less.
     layout_.warnings.push_back(
         counts.front() == 65535
-            ? fmt::format("it does not say how many frames it holds; there are {}", there)
+            ? fmt::format("it does not specify how many frames it holds; there are {}", there)
             : fmt::format("is cut off: it names {} frames and holds {}, which are read; copy it again to have them all", named,
                           there));
     require_matrices(of_bodies);

@@ -1,6 +1,6 @@
 // A C3D file is blocks of 512 bytes: a header, a section of parameters that the header points to, and frames. The parameters are a
 // list whose links are offsets; real files have sections at odd places, wrong counts of blocks, groups after their parameters,
-// numbers too many or too few, so nothing is believed that can be seen from the file itself. Reference: C3D.org, "The C3D File
+// numbers too many or too few, so nothing is trusted that can be seen from the file itself. Reference: C3D.org, "The C3D File
 // Format User Guide" (2008).
 #include "marey/format/motion/c3d_parameters.h"
 
@@ -17,7 +17,7 @@ namespace marey::format::motion {
 namespace {
 
 constexpr std::uint8_t kKey = 0x50;
-constexpr std::size_t kMostParameters = 20'000;
+constexpr std::size_t kMaxParameters = 20'000;
 constexpr std::size_t kMostValues = std::size_t{1} << 20;  // eight times what 255 blocks can hold
 
 std::string upper(std::string_view text) {
@@ -41,9 +41,9 @@ class ParameterWalk {
       : bytes_(bytes), at_(begin), end_(end), head_(head) {}
 
   void run() {
-    while (parameters_.size() < kMostParameters && step()) {
+    while (parameters_.size() < kMaxParameters && step()) {
     }
-    if (parameters_.size() == kMostParameters) warn("its parameters have no end");
+    if (parameters_.size() == kMaxParameters) warn("its parameters have no end");
     for (auto& [key, parameter] : parameters_) {
       const auto group = groups_.find(key.first);
       if (group != groups_.end()) head_.parameters.try_emplace(group->second + ":" + key.second, std::move(parameter));
@@ -126,8 +126,8 @@ class ParameterWalk {
   }
 
   bool has(std::size_t length) const { return at_ + length <= end_; }
-  bool warn(std::string sentence) {
-    head_.warnings.push_back(std::move(sentence));
+  bool warn(std::string message_text) {
+    head_.warnings.push_back(std::move(message_text));
     return false;
   }
 
@@ -152,7 +152,7 @@ std::vector<Value> all_parts(const std::map<std::string, C3dParameter, std::less
 
 C3dProcessor processor_of(std::uint8_t mark, C3dHead& head) {
   if (mark == 84 || mark == 85 || mark == 86) return static_cast<C3dProcessor>(mark);
-  head.warnings.push_back("it does not say whose numbers it holds; a PC's are assumed");
+  head.warnings.push_back("it does not specify whose numbers it holds; a PC's are assumed");
   return C3dProcessor::intel;
 }
 
@@ -193,8 +193,8 @@ std::vector<double> C3dHead::numbers(std::string_view name) const {
 
 C3dHead read_c3d_head(std::span<const std::byte> bytes, const std::string& name) {
   const C3dBytes plain(bytes, C3dProcessor::intel);
-  if (bytes.size() < 2 || plain.byte(1) != kKey) throw Error("{}: is no C3D file (its second byte is not 0x50)", name);
-  // A pointer of 0 is a mistake that some programs make, and means the usual place.
+  if (bytes.size() < 2 || plain.byte(1) != kKey) throw Error("{}: is not a C3D file (its second byte is not 0x50)", name);
+  // A pointer of 0 is a mistake that some programs make, and means the typical place.
   const std::size_t section = (plain.byte(0) == 0 ? 1 : plain.byte(0) - std::size_t{1}) * kC3dBlock;
   if (bytes.size() < kC3dBlock || section + 4 > bytes.size()) {
     throw Error("{}: is cut off within its header ({} bytes); copy it again", name, bytes.size());

@@ -58,15 +58,15 @@ struct C3dHead {
   std::map<std::string, C3dParameter, std::less<>> parameters;  ///< by "GROUP:NAME", in capitals
   std::vector<std::string> warnings;
 
-  /// Nothing where it is missing, or is text.
+  /// Nothing if it is missing, or is text.
   std::optional<double> number(std::string_view name, std::size_t index = 0) const;
   std::string text(std::string_view name) const;
-  /// Of a parameter that goes on in others of its name, with a number behind it.
+  /// Of a parameter that continues in others of its name, with a number behind it.
   std::vector<std::string> texts(std::string_view name) const;
   std::vector<double> numbers(std::string_view name) const;
 };
 
-/// Throws Error, with `name` for the file, where the bytes are no C3D file's.
+/// Throws Error, with `name` for the file, where the bytes are not C3D file's.
 C3dHead read_c3d_head(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace marey::format::motion

@@ -12,7 +12,7 @@
 #include "marey/core/error.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/c3d.h"
-#include "marey/format/motion/c3d_beside.h"
+#include "marey/format/motion/c3d_auxiliary.h"
 #include "marey/format/motion/c3d_layout.h"
 #include "marey/format/motion/c3d_parameters.h"
 #include "marey/format/motion/c3d_points.h"
@@ -32,18 +32,18 @@ class C3dReader : public FileReader {
         layout_(c3d_layout(head_, bytes.size(), name)),
         points_(bytes_, layout_) {
     for (const auto* sentences : {&head_.warnings, &layout_.warnings}) warn(*sentences);
-    tells_measured_ = any_point_tells();
+    reports_measured_ = any_point_reports();
     info_.header.made_by.program = maker();
     info_.header.rate_hz = rate(name);
     info_.frame_count = static_cast<std::int64_t>(layout_.frames);
     const std::string screen = head_.text("POINT:Y_SCREEN");
     if (screen == "+Y" || screen == "+Z") info_.up = screen == "+Y" ? UpAxis::y : UpAxis::z;
     find_tracks(points);
-    if (maker() != "Marey") zeros_.emplace(points_, places());  // which marks all that is missing
+    if (maker() != "Marey") zeros_.emplace(points_, locations());  // which marks all that is missing
     if (zeros_) warn(zeros_->warnings());
     find_bodies();
-    if (file_ != nullptr) info_.beside = beside_points(head_, layout_, name);
-    info_.beside.turned = up.value_or(info_.up.value_or(UpAxis::z)) == UpAxis::y;
+    if (file_ != nullptr) info_.next_to = auxiliary_data(head_, layout_, name);
+    info_.next_to.rotated = up.value_or(info_.up.value_or(UpAxis::z)) == UpAxis::y;
   }
 
   const FileInfo& info() const override { return info_; }
@@ -55,7 +55,7 @@ class C3dReader : public FileReader {
     frame.index = layout_.first_index + static_cast<std::int64_t>(at_);
     frame.time = timestamp_from_seconds(static_cast<double>(frame.index) / info_.header.rate_hz);
     for (std::size_t i = 0; i < layout_.points; ++i) {
-      if (!is_place_[i]) continue;
+      if (!is_position_[i]) continue;
       if (auto point = point_at(at_, i)) frame.samples.push_back(*point);
     }
     for (std::size_t i = 0; i < layout_.bodies; ++i) {
@@ -67,10 +67,10 @@ class C3dReader : public FileReader {
 
  private:
   void warn(const std::vector<std::string>& sentences) {
-    for (const std::string& sentence : sentences) warnings_.push_back(path_ + ": " + sentence);
+    for (const std::string& message_text : sentences) warnings_.push_back(path_ + ": " + message_text);
   }
 
-  bool any_point_tells() const {
+  bool any_point_reports() const {
     for (std::size_t frame = 0; frame < layout_.frames; ++frame) {
       for (std::size_t i = 0; i < layout_.points; ++i) {
         if (points_.fourth_word(frame, i) > 0) return true;
@@ -90,7 +90,7 @@ class C3dReader : public FileReader {
     if (word > 0) {
       point.cameras = static_cast<CameraMask>(word >> 8);
       point.residual_m = (word & 0xff) * layout_.scale * layout_.unit_m;
-    } else if (tells_measured_) {
+    } else if (reports_measured_) {
       point.provenance = Provenance::filled;
     }
     return point;
@@ -100,17 +100,18 @@ class C3dReader : public FileReader {
     for (const double rate : {head_.number("POINT:RATE").value_or(0), static_cast<double>(head_.rate_hz)}) {
       if (std::isfinite(rate) && rate > 1e-6 && rate < 1e9) return rate;
     }
-    warnings_.push_back(name + ": does not say its rate; 100 frames a second are assumed");
+    warnings_.push_back(name + ": does not specify its rate; 100 frames a second are assumed");
     return 100;
   }
 
   std::string maker() const {
-    const std::string software = head_.text("MANUFACTURER:SOFTWARE"), company = head_.text("MANUFACTURER:COMPANY");
-    if (software.empty() || company.empty() || software.starts_with(company)) return software.empty() ? company : software;
-    return company + " " + software;
+    const std::string software = head_.text("MANUFACTURER:SOFTWARE"), local_clutter = head_.text("MANUFACTURER:COMPANY");
+    if (software.empty() || local_clutter.empty() || software.starts_with(local_clutter))
+      return software.empty() ? local_clutter : software;
+    return local_clutter + " " + software;
   }
 
-  /// What stands among the points and is none: angles in degrees, forces in N, …
+  /// What stands among the points and is not one: angles in degrees, forces in N, …
   std::map<std::string, std::string_view> other_quantities() const {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kGroups{{{"POINT:ANGLES", "angles"},
                                                                                     {"POINT:FORCES", "forces"},
@@ -128,24 +129,24 @@ class C3dReader : public FileReader {
     std::vector<std::string> labels = head_.texts("POINT:LABELS");
     labels.resize(layout_.points);
     const auto quantities = points == C3dPoints::all ? std::map<std::string, std::string_view>() : other_quantities();
-    std::map<std::string_view, int> left_out;
+    std::map<std::string_view, int> excluded;
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const auto other = labels[i].empty() ? quantities.end() : quantities.find(labels[i]);
-      is_place_.push_back(other == quantities.end());
-      if (is_place_.back()) {
+      is_position_.push_back(other == quantities.end());
+      if (is_position_.back()) {
         info_.tracks.push_back({TrackId(static_cast<int>(i) + 1), std::move(labels[i]), {}});
       } else {
-        ++left_out[other->second];
+        ++excluded[other->second];
       }
     }
-    if (left_out.empty()) return;
+    if (excluded.empty()) return;
     std::string counts;
-    for (const auto& [quantity, count] : left_out) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, quantity);
-    warnings_.push_back(fmt::format("{}: {} stand among its points and are no places; they are left out", path_, counts));
+    for (const auto& [quantity, count] : excluded) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, quantity);
+    warnings_.push_back(fmt::format("{}: {} stand among its points and are not places; they are omitted", path_, counts));
   }
 
-  /// The tracks whose points are positions: an angle of 0 is none.
-  std::vector<TrackName> places() const {
+  /// The tracks whose points are positions: an angle of 0 is not one.
+  std::vector<TrackName> locations() const {
     const auto others = other_quantities();
     std::vector<TrackName> tracks;
     std::copy_if(info_.tracks.begin(), info_.tracks.end(), std::back_inserter(tracks),
@@ -167,7 +168,7 @@ class C3dReader : public FileReader {
     }
   }
 
-  /// The first of a frame's matrices of this body; nothing where there is none, or it is no rigid motion.
+  /// The first of a frame's matrices of this body; nothing if there is none, or it is not a rigid motion.
   std::optional<BodyPose> pose_at(std::size_t frame, std::size_t i) const {
     constexpr double kStretched = 1e-3;
     const std::size_t at = layout_.bodies_begin + frame * layout_.bodies_bytes() + i * layout_.body_bytes();
@@ -177,15 +178,15 @@ class C3dReader : public FileReader {
     const auto element = [&](Eigen::Index row, Eigen::Index column) {
       return static_cast<double>(bytes_.real(at + 4 * static_cast<std::size_t>(4 * column + row)));
     };
-    Matrix<3> turned;
+    Matrix<3> rotated;
     for (Eigen::Index row = 0; row < 3; ++row) {
-      for (Eigen::Index column = 0; column < 3; ++column) turned(row, column) = element(row, column);
+      for (Eigen::Index column = 0; column < 3; ++column) rotated(row, column) = element(row, column);
       pose.world_from_body.translation[row] = element(row, 3) * layout_.unit_m;
     }
-    if (!pose.world_from_body.translation.allFinite() || !turned.allFinite() || turned.determinant() < 0 ||
-        (turned.transpose() * turned - Matrix<3>::Identity()).norm() > kStretched)
+    if (!pose.world_from_body.translation.allFinite() || !rotated.allFinite() || rotated.determinant() < 0 ||
+        (rotated.transpose() * rotated - Matrix<3>::Identity()).norm() > kStretched)
       return std::nullopt;
-    pose.world_from_body.rotation = Eigen::Quaterniond(turned).normalized().toRotationMatrix();
+    pose.world_from_body.rotation = Eigen::Quaterniond(rotated).normalized().toRotationMatrix();
     return pose;
   }
 
@@ -196,9 +197,9 @@ class C3dReader : public FileReader {
   C3dLayout layout_;
   C3dPointWords points_;
   std::optional<C3dZeros> zeros_;
-  bool tells_measured_ = false;
+  bool reports_measured_ = false;
   FileInfo info_;
-  std::vector<bool> is_place_;  // of each point
+  std::vector<bool> is_position_;  // of each point
   std::vector<std::string> warnings_;
   std::size_t at_ = 0;
 };
@@ -212,7 +213,7 @@ std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points, 
 }
 
 std::unique_ptr<FileReader> read_c3d(std::span<const std::byte> bytes, const std::string& name) {
-  return std::make_unique<C3dReader>(nullptr, bytes, name, C3dPoints::places);
+  return std::make_unique<C3dReader>(nullptr, bytes, name, C3dPoints::locations);
 }
 
 }  // namespace marey::format::motion

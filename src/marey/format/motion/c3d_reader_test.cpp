@@ -11,7 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/format/motion/c3d.h"
-#include "marey/format/motion/c3d_beside.h"
+#include "marey/format/motion/c3d_auxiliary.h"
 #include "marey/format/motion/c3d_section.h"
 #include "marey/format/recording_file.h"
 
@@ -274,10 +274,10 @@ TEST(C3dCounts, OfAnalogValuesThatFitTheLengthAreRead) {
   struct Case {
     int header;
     double rate_hz;
-    const char* said;
+    const char* stated;
   };
   // Ten samples a frame are there.
-  for (const auto& [header, rate_hz, said] :
+  for (const auto& [header, rate_hz, stated] :
        {Case{1, 1000, "its first block names 6 analog values a frame"}, Case{20, 1000, "its length fits 60"},
         Case{10, 2000, "make 120; its length fits 60"}, Case{10, 1000, ""}}) {
     SCOPED_TRACE(fmt::format("{} {}", header, rate_hz));
@@ -292,13 +292,13 @@ TEST(C3dCounts, OfAnalogValuesThatFitTheLengthAreRead) {
       ASSERT_EQ(read.frames[t].samples.size(), 4U);
       EXPECT_NEAR(read.frames[t].samples[3].position.x(), 1 + 0.012 * static_cast<double>(t), 1e-6);
     }
-    EXPECT_EQ(read.warnings.empty(), *said == 0);
-    EXPECT_TRUE(*said == 0 || read.warns(said));
+    EXPECT_EQ(read.warnings.empty(), *stated == 0);
+    EXPECT_TRUE(*stated == 0 || read.warns(stated));
     test::write_file(folder / "a.c3d", bytes_of(made));
-    C3dBeside beside(BesidePoints{.path = folder / "a.c3d"});
-    ASSERT_EQ(beside.channels() * beside.samples(), 60U);
-    EXPECT_EQ(beside.samples(), 10U);
-    EXPECT_EQ(beside.frame(7)[59], 7059);
+    C3dAuxiliary next_to(AuxiliaryData{.path = folder / "a.c3d"});
+    ASSERT_EQ(next_to.channels() * next_to.samples(), 60U);
+    EXPECT_EQ(next_to.samples(), 10U);
+    EXPECT_EQ(next_to.frame(7)[59], 7059);
   }
 }
 

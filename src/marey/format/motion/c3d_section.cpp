@@ -65,8 +65,8 @@ void C3dSection::text(const std::string& name, const std::string& text) {
 void C3dSection::texts(const std::string& name, std::span<const std::string> texts) {
   std::size_t width = 1;
   for (const std::string& text : texts) width = std::max(width, std::min<std::size_t>(text.size(), 255));
-  for (std::size_t begin = 0, part = 1; begin < texts.size() || part == 1; begin += kC3dMostNames, ++part) {
-    const auto here = texts.subspan(begin, std::min(kC3dMostNames, texts.size() - begin));
+  for (std::size_t begin = 0, part = 1; begin < texts.size() || part == 1; begin += kC3dMaxNames, ++part) {
+    const auto here = texts.subspan(begin, std::min(kC3dMaxNames, texts.size() - begin));
     std::string data;
     for (const std::string& text : here) data += text.substr(0, width) + std::string(width - std::min(width, text.size()), ' ');
     parameter(part == 1 ? name : fmt::format("{}{}", name, part), -1, std::array{width, here.size()}, data);

@@ -10,7 +10,7 @@
 
 namespace marey::format::motion {
 
-constexpr std::size_t kC3dMostNames = 255;  // in one parameter: its dimensions are bytes
+constexpr std::size_t kC3dMaxNames = 255;  // in one parameter: its dimensions are bytes
 
 /// A PC's numbers, least byte first.
 void put_byte(std::string& bytes, std::size_t value);
@@ -27,11 +27,11 @@ class C3dSection {
   /// By the first of `dimensions` first, as all of C3D is.
   void reals(const std::string& name, std::span<const double> values, const std::vector<std::size_t>& dimensions);
   void text(const std::string& name, const std::string& text);
-  /// All of the width of the longest. More than 255 go on in NAME2, NAME3, …
+  /// All of the width of the longest. More than 255 continue in NAME2, NAME3, …
   void texts(const std::string& name, std::span<const std::string> texts);
   /// As it was read.
   void copy(const C3dParameter& parameter);
-  /// Whole blocks. Throws Error where it is longer than the format allows.
+  /// Whole blocks. Throws Error if it is longer than the format allows.
   std::string blocks(const std::string& path) const;
 
  private:

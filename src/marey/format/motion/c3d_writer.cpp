@@ -7,20 +7,20 @@
 #include <utility>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/motion/c3d.h"
-#include "marey/format/motion/c3d_beside.h"
+#include "marey/format/motion/c3d_auxiliary.h"
 #include "marey/format/motion/c3d_section.h"
 #include "marey/format/motion/point_sink.h"
 
 namespace marey::format::motion {
 namespace {
 
-constexpr std::size_t kLongestName = 127;
-constexpr std::size_t kMostPoints = 65535;
-constexpr std::size_t kC3dMostBlocks = 260;  // before the frames
-/// What goes along from the file that was read; events where none were found anew.
+constexpr std::size_t kMaxName = 127;
+constexpr std::size_t kMaxPoints = 65535;
+constexpr std::size_t kC3dMaxBlocks = 260;  // before the frames
+/// What goes along from the file that was read; events where none were found again.
 constexpr std::array<const char*, 6> kGroupsAlong = {"EVENT",          "EVENT_CONTEXT", "ANALOG",
                                                      "FORCE_PLATFORM", "PROCESSING",    "SUBJECTS"};
 
@@ -55,8 +55,8 @@ class C3dWriter : public PointSink {
       : PointSink(path), plan_(plan), tracks_(plan.info.tracks.size()), next_(plan.first_frame) {
     if (plan.found) angles_ = plan.found->angles;
     points_ = tracks_ + angles_.size();
-    if (points_ > kMostPoints) {
-      throw Error("{}: {} tracks, and a C3D file has room for {}; write fewer", path, points_, kMostPoints);
+    if (points_ > kMaxPoints) {
+      throw Error("{}: {} tracks, and a C3D file has room for {}; write fewer", path, points_, kMaxPoints);
     }
     // What integers of 16 bits would need, and fine enough that a residual, 255 steps at most, says something.
     scale_mm_ = std::max(plan.farthest_m * 1000 / 32000, 0.01);
@@ -82,18 +82,18 @@ class C3dWriter : public PointSink {
 
  private:
   void start(const RecordingHeader& header) override {
-    if (!plan_.info.beside.path.empty()) beside_.emplace(plan_.info.beside);
-    if (analog_channels() > 0 && std::abs(beside_->rate_hz() / plan_.info.header.rate_hz - 1) > 1e-6)
+    if (!plan_.info.next_to.path.empty()) next_to_.emplace(plan_.info.next_to);
+    if (analog_channels() > 0 && std::abs(next_to_->rate_hz() / plan_.info.header.rate_hz - 1) > 1e-6)
       throw Error("{}: {} has {:g} frames a second, and what is written {:g}; analog channels of another rate do not fit", path(),
-                  plan_.info.beside.path, beside_->rate_hz(), plan_.info.header.rate_hz);
+                  plan_.info.next_to.path, next_to_->rate_hz(), plan_.info.header.rate_hz);
     bodies_ = header.bodies;
     if (!bodies_.empty()) poses_.emplace(path());
     file_.emplace(path());
     write_head();
   }
 
-  std::size_t analog_channels() const { return beside_ ? beside_->channels() : 0; }
-  std::size_t analog_samples() const { return analog_channels() > 0 ? beside_->samples() : 0; }
+  std::size_t analog_channels() const { return next_to_ ? next_to_->channels() : 0; }
+  std::size_t analog_samples() const { return analog_channels() > 0 ? next_to_->samples() : 0; }
   std::size_t frame_bytes() const { return (4 * points_ + analog_channels() * analog_samples()) * sizeof(float); }
   std::size_t frame_count() const { return static_cast<std::size_t>(plan_.last_frame - plan_.first_frame + 1); }
   std::size_t points_begin() const { return (data_block_ - 1) * kC3dBlock; }
@@ -115,7 +115,7 @@ class C3dWriter : public PointSink {
       if (row < angles_[i].rows.size() && angles_[i].rows[row]) put_point(tracks_ + i, *angles_[i].rows[row], 0);
     }
     if (analog_channels() > 0) {
-      const std::span<const float> values = beside_->frame(next_);
+      const std::span<const float> values = next_to_->frame(next_);
       row_.insert(row_.end(), values.begin(), values.end());
     }
     static_assert(std::endian::native == std::endian::little, "rows are written as they lie in memory");
@@ -124,9 +124,9 @@ class C3dWriter : public PointSink {
     ++next_;
   }
 
-  void put_point(std::size_t column, const Vector<3>& place, int word) {
+  void put_point(std::size_t column, const Vector<3>& location, int word) {
     float* out = row_.data() + 4 * column;
-    for (int axis = 0; axis < 3; ++axis) out[axis] = static_cast<float>(place[axis]);
+    for (int axis = 0; axis < 3; ++axis) out[axis] = static_cast<float>(location[axis]);
     out[3] = static_cast<float>(word);
   }
 
@@ -150,7 +150,7 @@ class C3dWriter : public PointSink {
 
   /// 0 says "not measured", so that what was measured must say something else.
   int fourth_word(const Sample& point) const {
-    if (!plan_.tells_measured || point.provenance != Provenance::measured) return 0;
+    if (!plan_.reports_measured || point.provenance != Provenance::measured) return 0;
     const double steps = point.residual_m.value_or(0) * 1000 / scale_mm_;
     const int residual = static_cast<int>(std::clamp(std::round(steps), 0.0, 255.0));
     const int word = static_cast<int>(point.cameras & 0x7f) << 8 | residual;
@@ -208,8 +208,7 @@ class C3dWriter : public PointSink {
   void put_names(C3dSection& section) const {
     std::vector<std::string> labels, descriptions(tracks_), names_of_angles;
     for (const TrackName& track : plan_.info.tracks)
-      labels.push_back(track.label.empty() ? fmt::format("*{}", number(track.id))
-                                           : plain_text(track.label).substr(0, kLongestName));
+      labels.push_back(track.label.empty() ? fmt::format("*{}", number(track.id)) : plain_text(track.label).substr(0, kMaxName));
     for (const AngleTriple& triple : angles_) {
       labels.push_back(triple.label);
       names_of_angles.push_back(triple.label);
@@ -231,7 +230,7 @@ class C3dWriter : public PointSink {
       section.real("GEN_SCALE", 1);
     }
     for (const std::string_view name : kGroupsAlong) {
-      const auto parameters = beside_ ? beside_->group(name, plan_.up) : std::vector<C3dParameter>();
+      const auto parameters = next_to_ ? next_to_->group(name, plan_.up) : std::vector<C3dParameter>();
       if (parameters.empty() || (plan_.found && name.starts_with("EVENT"))) continue;
       const bool analog = name == "ANALOG";
       if (analog && analog_channels() == 0) continue;
@@ -246,15 +245,15 @@ class C3dWriter : public PointSink {
     }
   }
 
-  /// What a file may leave out, and readers (ezc3d) take to be there once a rate is: values as they stand. Parts of 255.
+  /// What a file may omit, and readers (ezc3d) take to be there once a rate is: values as they stand. Parts of 255.
   void put_absent_scales(C3dSection& section, std::span<const C3dParameter> parameters) const {
     const auto absent = [&](std::string_view name) {
       return std::none_of(parameters.begin(), parameters.end(), [&](const C3dParameter& one) { return one.name == name; });
     };
     if (absent("GEN_SCALE")) section.real("GEN_SCALE", 1);
     const bool scale = absent("SCALE"), offset = absent("OFFSET");
-    for (std::size_t begin = 0, part = 1; begin < analog_channels(); begin += kC3dMostNames, ++part) {
-      const std::size_t here = std::min(analog_channels() - begin, kC3dMostNames);
+    for (std::size_t begin = 0, part = 1; begin < analog_channels(); begin += kC3dMaxNames, ++part) {
+      const std::size_t here = std::min(analog_channels() - begin, kC3dMaxNames);
       const std::string number = part == 1 ? "" : std::to_string(part);
       if (scale) section.reals("SCALE" + number, std::vector<double>(here, 1), {here});
       if (offset) section.words("OFFSET" + number, std::vector<std::int64_t>(here, 0));
@@ -272,9 +271,9 @@ class C3dWriter : public PointSink {
     }
     section.texts("CONTEXTS", contexts);
     section.texts("LABELS", labels);
-    section.texts("SUBJECTS", std::vector<std::string>(events.size(), beside_ ? beside_->subject() : std::string()));
-    for (std::size_t begin = 0, part = 1; begin < events.size() || part == 1; begin += kC3dMostNames, ++part) {
-      const auto here = events.subspan(begin, std::min(kC3dMostNames, events.size() - begin));
+    section.texts("SUBJECTS", std::vector<std::string>(events.size(), next_to_ ? next_to_->subject() : std::string()));
+    for (std::size_t begin = 0, part = 1; begin < events.size() || part == 1; begin += kC3dMaxNames, ++part) {
+      const auto here = events.subspan(begin, std::min(kC3dMaxNames, events.size() - begin));
       const std::string number = part == 1 ? "" : std::to_string(part);
       std::vector<double> times;
       std::vector<std::int64_t> icons;
@@ -295,9 +294,9 @@ class C3dWriter : public PointSink {
 
   void put_bodies(C3dSection& section) const {
     std::vector<std::string> labels;
-    for (const Body& body : bodies_) labels.push_back(plain_text(body.label).substr(0, kLongestName).append(kC3dMatrixEnding));
+    for (const Body& body : bodies_) labels.push_back(plain_text(body.label).substr(0, kMaxName).append(kC3dMatrixEnding));
     // Said as a real number where a word has no room for it, as LONG_FRAMES is; the section is as long whatever comes before.
-    const bool fits = frame_count() * frame_bytes() / kC3dBlock + kC3dMostBlocks < 65535;
+    const bool fits = frame_count() * frame_bytes() / kC3dBlock + kC3dMaxBlocks < 65535;
     const std::size_t block = 1 + poses_begin() / kC3dBlock;
     section.group("ROTATION");
     section.word("USED", std::ssize(bodies_));
@@ -313,7 +312,7 @@ class C3dWriter : public PointSink {
 
   WritePlan plan_;
   std::optional<WholeFile> file_;
-  std::optional<C3dBeside> beside_;
+  std::optional<C3dAuxiliary> next_to_;
   std::optional<RowsBehind> poses_;
   std::vector<AngleTriple> angles_;
   std::vector<Body> bodies_;
@@ -331,23 +330,24 @@ std::unique_ptr<Sink> create_c3d(const std::string& path, const WritePlan& plan)
 }
 
 Format c3d_format() {
-  return {.name = "c3d",
-          .title = "a C3D file",
-          .endings = ".c3d",
-          .holds = Content::space,
-          .detail =
-              "mm; points, residuals in space, the first seven cameras, whether a point was measured. Written as a PC's floats; "
-              "PC, DEC and SGI, integer and real, are read. Bodies' poses as matrices (ROTATION); analog channels, force plates "
-              "and events "
-              "go along from C3D to C3D",
-          .is =
-              [](const Beginning& file) {
-                return file.bytes.size() >= 2 && file.bytes[1] == 0x50 && file.bytes[0] > 0 && !file.bytes.starts_with("PP");
-              },
-          .open = [](const std::string& path, const ReadOptions& how) { return motion::open_c3d(path, C3dPoints::places, how.up); },
-          .create = [](const std::string& path, const WritePlan& plan) { return motion::create_c3d(path, plan); },
-          .poses = true,
-          .beside_points = true};
+  return {
+      .name = "c3d",
+      .title = "a C3D file",
+      .endings = ".c3d",
+      .holds = Content::space,
+      .detail =
+          "mm; points, residuals in space, the first seven cameras, whether a point was measured. Written as a PC's floats; "
+          "PC, DEC and SGI, integer and real, are read. Bodies' poses as matrices (ROTATION); analog channels, force plates "
+          "and events "
+          "go along from C3D to C3D",
+      .is =
+          [](const Beginning& file) {
+            return file.bytes.size() >= 2 && file.bytes[1] == 0x50 && file.bytes[0] > 0 && !file.bytes.starts_with("PP");
+          },
+      .open = [](const std::string& path, const ReadOptions& how) { return motion::open_c3d(path, C3dPoints::locations, how.up); },
+      .create = [](const std::string& path, const WritePlan& plan) { return motion::create_c3d(path, plan); },
+      .poses = true,
+      .auxiliary_data = true};
 }
 
 }  // namespace marey::format::motion

@@ -1,4 +1,4 @@
-// The format marks a missing point by a fourth word of −1. Some programs write (0, 0, 0) alone. A real coordinate is hardly ever
+// The format marks a missing point by a fourth word of −1. Some programs write (0, 0, 0) alone. A real coordinate is barely ever
 // exactly 0 and three are never at once, unless a point is the origin itself: it was put there, or its numbers are coarse and it
 // rests there. So a run of exact zeros is a position if the marker comes from there and goes there, at the speed that it has before
 // and behind the run, and missing if it would leap. A marker that is at the origin throughout has neither before nor behind: it is
@@ -16,7 +16,7 @@ namespace marey::format::motion {
 namespace {
 
 /// Between a marker's last steps and the one into the run. It bounds the acceleration alone: one that moves evenly needs 1.
-constexpr double kLargestStepRatio = 3;
+constexpr double kMaxStepRatio = 3;
 
 bool is_zero(const C3dPointWords& points, std::size_t frame, std::size_t point) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -35,7 +35,7 @@ bool leads_to_origin(const C3dPointWords& points, std::size_t point, std::size_t
     const Vector<3> from = points.position(other, point);
     if (points.fourth_word(other, point) >= 0 && from.allFinite() && !from.isZero(0)) step = (position - from).norm();
   }
-  return position.norm() <= kLargestStepRatio * step * static_cast<double>(gap) + 2 * points.layout().scale;
+  return position.norm() <= kMaxStepRatio * step * static_cast<double>(gap) + 2 * points.layout().scale;
 }
 
 bool labels_an_origin(const std::string& label) {
@@ -58,7 +58,7 @@ C3dZeros::C3dZeros(const C3dPointWords& points, std::span<const TrackName> track
   }
   bool marks_missing = false;
   scan(points, markers, marks_missing);
-  judge(points, markers, marks_missing);
+  assess(points, markers, marks_missing);
 }
 
 bool C3dZeros::missing(std::size_t frame, std::size_t point) const {
@@ -98,7 +98,7 @@ bool C3dZeros::is_position(const C3dPointWords& points, std::size_t point, const
   return from_there && to_there;
 }
 
-void C3dZeros::judge(const C3dPointWords& points, std::vector<Marker>& markers, bool marks_missing) {
+void C3dZeros::assess(const C3dPointWords& points, std::vector<Marker>& markers, bool marks_missing) {
   bool writes_zeros = false;  // for missing points
   std::vector<Marker*> throughout;
   for (Marker& marker : markers) {
@@ -123,10 +123,10 @@ void C3dZeros::judge(const C3dPointWords& points, std::vector<Marker>& markers, 
       for (const Run& run : marker->zeros) missing_[marker->point].push_back(run.frames);
     }
   }
-  say(kept, points.layout().frames * markers.size());
+  announce(kept, points.layout().frames * markers.size());
 }
 
-void C3dZeros::say(const std::vector<const Marker*>& kept, std::size_t all_points) {
+void C3dZeros::announce(const std::vector<const Marker*>& kept, std::size_t all_points) {
   std::size_t count = 0, of_markers = 0;
   for (const auto& runs : missing_) {
     of_markers += runs.empty() ? 0 : 1;

@@ -42,8 +42,8 @@ class C3dZeros {
 
   static void scan(const C3dPointWords& points, std::vector<Marker>& markers, bool& marks_missing);
   static bool is_position(const C3dPointWords& points, std::size_t point, const Run& run);
-  void judge(const C3dPointWords& points, std::vector<Marker>& markers, bool marks_missing);
-  void say(const std::vector<const Marker*>& kept, std::size_t all_points);
+  void assess(const C3dPointWords& points, std::vector<Marker>& markers, bool marks_missing);
+  void announce(const std::vector<const Marker*>& kept, std::size_t all_points);
 
   std::vector<std::vector<Range>> missing_;  // by point, by frame
   std::vector<std::string> warnings_;

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/core/input_file.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/input_file.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/format.h"
 #include "marey/format/text_rows.h"
 
@@ -38,15 +38,15 @@ std::optional<double> number_in(std::string_view text) {
   return value;
 }
 
-Vector<3> place_in(const std::vector<std::string_view>& cells, const std::string& path, int line) {
+Vector<3> position_in(const std::vector<std::string_view>& cells, const std::string& path, int line) {
   if (cells.size() != 4) throw Error("{}:{}: {} values where label,x,y,z are due", path, line, cells.size());
-  Vector<3> place;
+  Vector<3> location;
   for (int axis = 0; axis < 3; ++axis) {
     const auto value = number_in(cells[static_cast<std::size_t>(axis) + 1]);
-    if (!value) throw Error("{}:{}: {} is no length in m", path, line, shown(cells[static_cast<std::size_t>(axis) + 1]));
-    place[axis] = *value;
+    if (!value) throw Error("{}:{}: {} is not a length in m", path, line, shown(cells[static_cast<std::size_t>(axis) + 1]));
+    location[axis] = *value;
   }
-  return place;
+  return location;
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ MarkerSet read_marker_set(const std::string& path) {
       with_places = true;
       continue;
     }
-    if (with_places) set.places.push_back(place_in(cells, path, number));
+    if (with_places) set.locations.push_back(position_in(cells, path, number));
     const std::string label = plain_text(with_places ? cells.front() : text);
     if (label.empty()) throw Error("{}:{}: a marker without a name; give it one", path, number);
     if (!known.insert(label).second)
@@ -80,7 +80,7 @@ MarkerSet read_marker_set(const std::string& path) {
 
 namespace {
 
-constexpr std::size_t kLongestLabel = 64;
+constexpr std::size_t kMaxLabel = 64;
 
 /// One name a line, or the header label,x,y,z. Asked last: what else may be such a text?
 bool is_labels(const Beginning& file) {
@@ -91,7 +91,7 @@ bool is_labels(const Beginning& file) {
   std::string_view line;
   while (lines.next(line)) {
     if (line.empty() || line.front() == '#') continue;
-    if (line.size() > kLongestLabel || line.find_first_of(",;=<>{}[]\"") != std::string_view::npos || number_of(line)) return false;
+    if (line.size() > kMaxLabel || line.find_first_of(",;=<>{}[]\"") != std::string_view::npos || number_of(line)) return false;
     ++names;
   }
   return names > 1;
@@ -108,7 +108,7 @@ Format labels_format() {
           .is = is_labels,
           .facts = [](const std::string& path) -> std::vector<Fact> {
             const MarkerSet set = motion::read_marker_set(path);
-            return {{"labels", set.labels}, {"with_places", std::string(set.has_places() ? "yes" : "no")}};
+            return {{"labels", set.labels}, {"with_places", std::string(set.has_positions() ? "yes" : "no")}};
           }};
 }
 

@@ -14,12 +14,12 @@ TEST(MarkerSet, NamesAloneOrWithPlaces) {
   test::write_file(folder / "names.txt", "# a hand\nthumb\n\n little finger \n");
   const MarkerSet names = read_marker_set(folder / "names.txt");
   EXPECT_EQ(names.labels, (std::vector<std::string>{"thumb", "little finger"}));
-  EXPECT_FALSE(names.has_places());
+  EXPECT_FALSE(names.has_positions());
   test::write_file(folder / "set.csv", "label,x,y,z\r\nhead, 0, 0.1 ,1.8\r\nfoot,1,2,-3e-1\r\n");
   const MarkerSet set = read_marker_set(folder / "set.csv");
-  ASSERT_EQ(set.places.size(), 2);
+  ASSERT_EQ(set.locations.size(), 2);
   EXPECT_EQ(set.labels[1], "foot");
-  EXPECT_EQ(set.places[1], Vector<3>(1, 2, -0.3));
+  EXPECT_EQ(set.locations[1], Vector<3>(1, 2, -0.3));
 }
 
 TEST(MarkerSet, RefusesWhatIsNeither) {

@@ -8,17 +8,17 @@
 
 namespace marey::format::motion {
 
-// Three kinds of CSV that hold points over time. All throw Error, `path:line: what`, for what is none of them.
+// Three kinds of CSV that hold points over time. All throw Error, `path:line: what`, for what is not one of them.
 
 /// Tidy: one row a point, with a header. `frame` (from 0), `x`, `y`, `z` (m) and one of `id` and `label` must be there; `time` (s),
-/// `state` (measured, filled or predicted), `cameras`, `residual_px` and `residual_mm` may be; other columns are passed over. Rows
+/// `state` (measured, filled or predicted), `cameras`, `residual_px` and `residual_mm` may be; other columns are skipped. Rows
 /// in any order.
 std::unique_ptr<FileReader> open_tidy_csv(const std::string& path);
 std::unique_ptr<FileReader> read_tidy_csv(std::string_view text, const std::string& name);
 /// `frame,time,id,label,x,y,z,state,cameras,residual_px,residual_mm`: one row a point.
 std::unique_ptr<Sink> create_tidy_csv(const std::string& path);
 
-/// As OptiTrack's Motive exports: markers' positions are read, rotations and errors passed over.
+/// As OptiTrack's Motive exports: markers' positions are read, rotations and errors skipped.
 std::unique_ptr<FileReader> open_motive_csv(const std::string& path);
 std::unique_ptr<FileReader> read_motive_csv(std::string_view text, const std::string& name);
 /// The same layout, in m as Motive's default is.

@@ -98,11 +98,11 @@ void convert(const std::string& from, const std::string& to, const char* format,
   replay(*reader, *create_recording(to, of_points(format), plan));
 }
 
-using Place = std::pair<std::int64_t, std::string>;
-std::map<Place, Sample> by_label(const Read& read) {
+using Location = std::pair<std::int64_t, std::string>;
+std::map<Location, Sample> by_label(const Read& read) {
   std::map<TrackId, std::string> labels;
   for (const TrackName& track : read.info.tracks) labels[track.id] = track.label;
-  std::map<Place, Sample> points;
+  std::map<Location, Sample> points;
   for (const Instant& frame : read.frames) {
     for (const Sample& point : frame.samples) points[{frame.index, labels[point.track]}] = point;
   }
@@ -114,10 +114,11 @@ void expect_same(const Read& a, const Read& b, double tolerance_m) {
   const auto points = by_label(a), others = by_label(b);
   ASSERT_FALSE(points.empty());
   ASSERT_EQ(points.size(), others.size());
-  for (const auto& [place, point] : points) {
-    const auto found = others.find(place);
-    ASSERT_NE(found, others.end()) << place.first << " " << place.second;
-    ASSERT_LE((point.position - found->second.position).cwiseAbs().maxCoeff(), tolerance_m) << place.first << " " << place.second;
+  for (const auto& [location, point] : points) {
+    const auto found = others.find(location);
+    ASSERT_NE(found, others.end()) << location.first << " " << location.second;
+    ASSERT_LE((point.position - found->second.position).cwiseAbs().maxCoeff(), tolerance_m)
+        << location.first << " " << location.second;
   }
 }
 
@@ -147,14 +148,14 @@ TEST_F(Motion, EveryFormatGivesBackWhatItWasGiven) {
     EXPECT_EQ(read.frames.back().index, 42);
     EXPECT_NEAR(seconds(read.frames.front().time), 3.0 / 120, 1e-6);
     // And on from there, with the other axis up.
-    const std::string turned = folder_ / (std::string("turned_") + name), back = folder_ / "back.csv";
+    const std::string rotated = folder_ / (std::string("turned_") + name), back = folder_ / "back.csv";
     if (std::string_view(format) == "take") continue;
-    convert(path, turned, format, UpAxis::z, UpAxis::y);
-    const auto first = read_all(turned).frames.front().samples.front().position;
+    convert(path, rotated, format, UpAxis::z, UpAxis::y);
+    const auto first = read_all(rotated).frames.front().samples.front().position;
     const auto plain = read.frames.front().samples.front().position;
     EXPECT_NEAR(first.y(), plain.z(), 1e-9) << "what was up is y now";
     EXPECT_NEAR(first.z(), -plain.y(), 1e-9);
-    convert(turned, back, "csv", UpAxis::y, UpAxis::z);
+    convert(rotated, back, "csv", UpAxis::y, UpAxis::z);
     expect_same(truth, read_all(back), 1e-9);
   }
 }
@@ -180,8 +181,8 @@ TEST_F(Motion, TimesOfInstantsThatAreMissingLieBetweenTheirNeighbours) {
     convert(take, folder_ / name, format);
     const Read read = read_all(folder_ / name);
     ASSERT_EQ(read.frames.size(), 9U);
-    const double wanted[] = {5, 5.009, 5.018, 5.027, 5.034, 5.04225, 5.0505, 5.05875, 5.067};
-    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(seconds(read.frames[i].time), wanted[i], 1e-6) << i;
+    const double required[] = {5, 5.009, 5.018, 5.027, 5.034, 5.04225, 5.0505, 5.05875, 5.067};
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(seconds(read.frames[i].time), required[i], 1e-6) << i;
   }
 }
 
@@ -190,8 +191,8 @@ TEST_F(Motion, C3dKeepsResidualsCamerasAndWhatWasFilled) {
   take::write_recording(take, walk());
   convert(take, path, "c3d");
   const auto truth = by_label(read_all(take)), read = by_label(read_all(path));
-  for (const auto& [place, point] : truth) {
-    const Sample& found = read.at(place);
+  for (const auto& [location, point] : truth) {
+    const Sample& found = read.at(location);
     EXPECT_EQ(found.provenance, point.provenance);
     EXPECT_EQ(found.cameras, point.cameras);
     ASSERT_EQ(found.residual_m.has_value(), point.residual_m.has_value());
@@ -227,9 +228,9 @@ TEST_F(Motion, C3dThatIsCutOffIsReadAsFarAsItGoes) {
   convert(take, path, "c3d");
   const std::string whole = test::read_file(path);
   const Read all = read_all(path);
-  for (const double share : {0.0, 0.01, 0.2, 0.5, 0.99}) {
+  for (const double fraction : {0.0, 0.01, 0.2, 0.5, 0.99}) {
     test::write_file(path, whole);
-    test::cut_file(path, share);
+    test::cut_file(path, fraction);
     std::size_t frames = 0;
     const std::string error = error_of([&] {
       const Read read = read_all(path);
@@ -238,8 +239,8 @@ TEST_F(Motion, C3dThatIsCutOffIsReadAsFarAsItGoes) {
       for (std::size_t i = 0; i < frames; ++i) EXPECT_EQ(read.frames[i].samples.size(), all.frames[i].samples.size());
       EXPECT_EQ(read.warnings.size(), frames < all.frames.size() ? 1U : 0U);
     });
-    EXPECT_TRUE(share < 0.9 || frames >= 38) << frames;
-    EXPECT_TRUE(share > 0.3 || error != "no error") << share;
+    EXPECT_TRUE(fraction < 0.9 || frames >= 38) << frames;
+    EXPECT_TRUE(fraction > 0.3 || error != "no error") << fraction;
   }
 }
 
@@ -279,7 +280,7 @@ TEST_F(Motion, TidyCsvIsWrittenWhileRecording) {
   EXPECT_EQ(test::read_file(folder_ / "live.csv"), test::read_file(folder_ / "whole.csv"));
 }
 
-TEST_F(Motion, WhatIsNotInSpaceIsRefused) {
+TEST_F(Motion, RejectsNonSpatialRecording) {
   Recording recording = walk();
   recording.header.frame.kind = FrameOfReference::Kind::ground;
   for (const char* format : {"c3d", "trc", "csv", "motive"}) {
@@ -313,10 +314,10 @@ TEST_F(Motion, TheAxisThatAC3dFileSaysIsUpIsTakenForUp) {
   expect_same(truth, read, 1e-9);
   ASSERT_EQ(read.warnings.size(), 1U);
   EXPECT_NE(read.warnings.front().find("its y is taken for up, as the file says; if z is up in it, say --up z"), std::string::npos);
-  // Who says otherwise is believed.
-  const Read as_it_stands = read_all(y_up, UpAxis::z), told = read_all(y_up, UpAxis::y);
-  EXPECT_TRUE(as_it_stands.warnings.empty() && told.warnings.empty());
-  expect_same(truth, told, 1e-9);
+  // Who says otherwise is trusted.
+  const Read as_it_stands = read_all(y_up, UpAxis::z), reported = read_all(y_up, UpAxis::y);
+  EXPECT_TRUE(as_it_stands.warnings.empty() && reported.warnings.empty());
+  expect_same(truth, reported, 1e-9);
   const auto up = truth.frames.front().samples.front().position.z();
   EXPECT_NEAR(as_it_stands.frames.front().samples.front().position.y(), up, 1e-9);
 }
@@ -370,12 +371,12 @@ TEST(TidyCsv, TakesRowsInAnyOrderAndColumnsInAnyOrder) {
 }
 
 TEST(TidyCsv, SaysWhatIsWrongAndWhere) {
-  const auto said = [](const std::string& text) { return error_of([&] { read_all(*read_tidy_csv(text, "t")); }); };
-  EXPECT_NE(said("frame,id,x,y\n").find("t:1: has no column \"z\""), std::string::npos);
-  EXPECT_NE(said("frame,x,y,z\n").find("neither a column \"id\" nor \"label\""), std::string::npos);
-  EXPECT_NE(said("frame,id,x,y,z\n0,1,1,2,oops\n").find("t:2: z is \"oops\""), std::string::npos);
-  EXPECT_NE(said("frame,id,x,y,z\n0,1,1,2,3\n0,1,1,2,3\n").find("stands twice in frame 0"), std::string::npos);
-  EXPECT_NE(said("frame,id,x,y,z\n0,1,1,2,3\n1,1,2").find("it is cut off"), std::string::npos);
+  const auto stated = [](const std::string& text) { return error_of([&] { read_all(*read_tidy_csv(text, "t")); }); };
+  EXPECT_NE(stated("frame,id,x,y\n").find("t:1: has no column \"z\""), std::string::npos);
+  EXPECT_NE(stated("frame,x,y,z\n").find("neither a column \"id\" nor \"label\""), std::string::npos);
+  EXPECT_NE(stated("frame,id,x,y,z\n0,1,1,2,oops\n").find("t:2: z is \"oops\""), std::string::npos);
+  EXPECT_NE(stated("frame,id,x,y,z\n0,1,1,2,3\n0,1,1,2,3\n").find("stands twice in frame 0"), std::string::npos);
+  EXPECT_NE(stated("frame,id,x,y,z\n0,1,1,2,3\n1,1,2").find("it is cut off"), std::string::npos);
 }
 
 TEST(MotiveCsv, PassesOverBodiesAndRotations) {
@@ -414,7 +415,7 @@ TEST(MocapFiles, EveryProcessorsTwinsAreEqual) {
   for (const char* name : {"pc_int.c3d", "dec_int.c3d", "sgi_int.c3d"}) expect_same(real, mocap_file(folder + name), 0.00028119);
 }
 
-TEST(MocapFiles, WhatIsNoPlaceIsNoPoint) {
+TEST(MocapFiles, RejectsNonFinitePosition) {
   const std::string path = test::data("gait_children/HC002D/straight_HC002D06.c3d");
   if (!fs::exists(path)) GTEST_SKIP() << path << " is not here";
   const Read read = read_all(path);
@@ -427,8 +428,8 @@ TEST(MocapFiles, WhatIsNoPlaceIsNoPoint) {
   ASSERT_EQ(read.warnings.size(), 1U);
   EXPECT_NE(read.warnings[0].find("51 angles, 20 forces, 18 moments, 16 powers, 2 scalars stand among its points"),
             std::string::npos);
-  EXPECT_EQ(read.info.beside.channels, 24);
-  EXPECT_EQ(read.info.beside.events, 12);
+  EXPECT_EQ(read.info.next_to.channels, 24);
+  EXPECT_EQ(read.info.next_to.events, 12);
 }
 
 TEST(MocapFiles, HeadersAtOddPlacesReadTheSame) {

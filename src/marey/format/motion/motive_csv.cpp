@@ -16,7 +16,7 @@
 namespace marey::format::motion {
 namespace {
 
-constexpr int kMostHeadings = 12;
+constexpr int kMaxHeadings = 12;
 
 class MotiveHead : private WideTableHead {
  public:
@@ -38,7 +38,7 @@ class MotiveHead : private WideTableHead {
     for (std::size_t i = 0; i + 1 < fields_.size(); i += 2) by_key[unquoted(fields_[i])] = unquoted(fields_[i + 1]);
     auto rate = number_of(by_key["Export Frame Rate"]);
     if (!rate) rate = number_of(by_key["Capture Frame Rate"]);
-    set_rate(rate, "does not say its Export Frame Rate in frames per second");
+    set_rate(rate, "does not specify its Export Frame Rate in frames per second");
     info_.header.name = by_key["Take Name"];
     info_.header.made_by.program = "Motive";
     info_.frame_count = whole_number_of(by_key["Total Exported Frames"]);
@@ -51,7 +51,7 @@ class MotiveHead : private WideTableHead {
 
   /// Up to the line that begins with "Frame".
   void headings() {
-    for (int i = 0; i < kMostHeadings && next_line(); ++i) {
+    for (int i = 0; i < kMaxHeadings && next_line(); ++i) {
       Cells cells;
       for (const std::string_view field : fields_) cells.push_back(unquoted(field));
       if (cells.front() == "Frame") {

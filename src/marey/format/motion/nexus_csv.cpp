@@ -21,7 +21,7 @@ class NexusHead : private WideTableHead {
       need("a line \"Trajectories\"");
     } while (fields_.front() != "Trajectories");
     need("the rate");
-    set_rate(number_of(fields_.front()), fmt::format("{} is no rate in frames per second", shown(fields_.front())));
+    set_rate(number_of(fields_.front()), fmt::format("{} is not a rate in frames per second", shown(fields_.front())));
     info_.header.made_by.program = "Nexus";
     need("the names of its markers");
     const std::vector<std::string_view> names = fields_;

@@ -4,7 +4,7 @@
 
 namespace marey::format::motion {
 
-Sink::Wants PointSink::begin(const RecordingHeader& header) {
+Sink::SinkRequirements PointSink::begin(const RecordingHeader& header) {
   if (header.frame.kind != FrameOfReference::Kind::space)
     throw Error("{}: such a file holds points in space, and these positions are {}", path_, to_string(header.frame));
   start(header);

@@ -7,13 +7,13 @@
 
 namespace marey::format::motion {
 
-/// A file of points in space, written instant by instant; it is there whole or not at all.
+/// A file of points in space, written instant by instant; it is there atomically.
 class PointSink : public Sink {
  public:
   explicit PointSink(std::string path) : path_(std::move(path)) {}
   std::string name() const override { return path_; }
-  /// Throws Error where the recording is not of points in space.
-  Wants begin(const RecordingHeader& header) final;
+  /// Throws Error if the recording is not of points in space.
+  SinkRequirements begin(const RecordingHeader& header) final;
 
  protected:
   virtual void start(const RecordingHeader& header) = 0;

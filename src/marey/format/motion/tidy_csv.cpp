@@ -12,8 +12,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/motion_csv.h"
 #include "marey/format/motion/point_sink.h"
@@ -25,7 +25,7 @@ namespace {
 enum Column { frame, time, id, label, x, y, z, state, cameras, residual_px, residual_mm, column_count };
 constexpr std::array<std::string_view, column_count> kColumns{"frame", "time",  "id",      "label",       "x",          "y",
                                                               "z",     "state", "cameras", "residual_px", "residual_mm"};
-constexpr double kLargest = 1e9;
+constexpr double kMaxSize = 1e9;
 
 class TidyReader : public FileReader {
  public:
@@ -33,7 +33,7 @@ class TidyReader : public FileReader {
       : file_(std::move(file)), name_(std::move(name)), lines_(text) {
     find_columns();
     rows_ = lines_.rest();
-    look_over();
+    inspect_over();
     lines_.go_to(rows_, 2);
   }
 
@@ -81,8 +81,8 @@ class TidyReader : public FileReader {
     std::string_view line;
     if (!order_.empty()) {
       if (at_row_ == order_.size()) return false;
-      const Place& place = order_[at_row_++];
-      lines_.go_to(rows_.substr(place.offset), place.line);
+      const Location& location = order_[at_row_++];
+      lines_.go_to(rows_.substr(location.offset), location.line);
     }
     do {
       if (!lines_.next(line)) return false;
@@ -99,7 +99,7 @@ class TidyReader : public FileReader {
   double number_in(Column column) const {
     const std::string_view text = field(column);
     const auto value = number_of(text);
-    if (!value || std::abs(*value) > kLargest) {
+    if (!value || std::abs(*value) > kMaxSize) {
       fail(fmt::format("{} is {}; it must be a number{}", kColumns[column], shown(text),
                        lines_.ended() ? "" : ", and the file ends here: it is cut off"));
     }
@@ -141,10 +141,10 @@ class TidyReader : public FileReader {
     result.position = {number_in(x), number_in(y), number_in(z)};
     result.residual_px = number_if_any(residual_px);
     if (const auto mm = number_if_any(residual_mm)) result.residual_m = *mm / 1000;
-    const std::string_view told = field(state);
-    if (!told.empty()) {
-      const auto provenance = provenance_of(told);
-      if (!provenance) fail(fmt::format("state is {}; it must be {}", shown(told), fmt::join(kProvenanceNames, ", ")));
+    const std::string_view reported = field(state);
+    if (!reported.empty()) {
+      const auto provenance = provenance_of(reported);
+      if (!provenance) fail(fmt::format("state is {}; it must be {}", shown(reported), fmt::join(kProvenanceNames, ", ")));
       result.provenance = *provenance;
     }
     result.cameras = camera_mask();
@@ -167,7 +167,7 @@ class TidyReader : public FileReader {
   }
 
   /// The first reading: tracks, rate, order.
-  void look_over() {
+  void inspect_over() {
     std::optional<std::int64_t> first, last;
     bool in_order = true;
     FrameNumbers numbers;
@@ -188,11 +188,11 @@ class TidyReader : public FileReader {
 
   void sort_rows() {
     lines_.go_to(rows_, 2);
-    std::vector<Place> places;
+    std::vector<Location> locations;
     std::size_t begins = 0;
-    while (begins = rows_.size() - lines_.rest().size(), next_row()) places.push_back({frame_index(), begins, lines_.number()});
-    std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.index < b.index; });
-    order_ = std::move(places);
+    while (begins = rows_.size() - lines_.rest().size(), next_row()) locations.push_back({frame_index(), begins, lines_.number()});
+    std::stable_sort(locations.begin(), locations.end(), [](const Location& a, const Location& b) { return a.index < b.index; });
+    order_ = std::move(locations);
   }
 
   /// Times have six decimals or so: a rate that is whole but for that is whole.
@@ -202,9 +202,9 @@ class TidyReader : public FileReader {
   }
 
   void check_once(const Instant& result) const {
-    std::set<TrackId> seen;
+    std::set<TrackId> detected;
     for (const Sample& each : result.samples) {
-      if (!seen.insert(each.track).second) {
+      if (!detected.insert(each.track).second) {
         throw Error("{}: id {} stands twice in frame {}; it may stand once", name_, number(each.track), result.index);
       }
     }
@@ -212,7 +212,7 @@ class TidyReader : public FileReader {
 
   [[noreturn]] void fail(const std::string& what) const { throw Error("{}:{}: {}", name_, lines_.number(), what); }
 
-  struct Place {
+  struct Location {
     std::int64_t index;
     std::size_t offset, line;
   };
@@ -224,7 +224,7 @@ class TidyReader : public FileReader {
   std::vector<std::string_view> fields_;
   std::map<TrackId, std::string> labels_;
   std::map<std::string, TrackId> ids_;
-  std::vector<Place> order_;  // empty where rows come in the order of frames
+  std::vector<Location> order_;  // empty if rows come in the order of frames
   std::size_t at_row_ = 0;
   bool pending_ = false;  // the row at hand belongs to the next frame
   FileInfo info_;

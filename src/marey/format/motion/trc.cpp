@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/motion/length_unit.h"
 #include "marey/format/motion/wide_table.h"
 

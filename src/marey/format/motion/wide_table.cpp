@@ -12,7 +12,7 @@
 namespace marey::format::motion {
 namespace {
 
-constexpr double kLargestSeconds = 1e9;
+constexpr double kMaxSeconds = 1e9;
 
 bool is_missing(std::string_view field) {
   if (field.empty() || field == "\"\"") return true;
@@ -106,12 +106,12 @@ Instant WideTableReader::frame_of(const std::vector<std::string_view>& fields) {
   }
   double time = static_cast<double>(frame.index) / info_.header.rate_hz;
   if (table_.time_column && *table_.time_column < fields.size() && !is_missing(fields[*table_.time_column])) {
-    const auto told = number_of(fields[*table_.time_column]);
-    if (!told || std::abs(*told) > kLargestSeconds)
-      fail(fmt::format("{} is no time in seconds", shown(fields[*table_.time_column])));
-    time = *told;
+    const auto reported = number_of(fields[*table_.time_column]);
+    if (!reported || std::abs(*reported) > kMaxSeconds)
+      fail(fmt::format("{} is not a time in seconds", shown(fields[*table_.time_column])));
+    time = *reported;
   }
-  if (!(std::abs(time) <= kLargestSeconds)) fail(fmt::format("frame {} is too far from the first", *number));
+  if (!(std::abs(time) <= kMaxSeconds)) fail(fmt::format("frame {} is too far from the first", *number));
   frame.time = timestamp_from_seconds(time);
   for (std::size_t track = 0; track < table_.x_columns.size(); ++track) {
     if (auto point = point_at(fields, track)) frame.samples.push_back(*point);
@@ -149,7 +149,7 @@ WideTableWriter::WideTableWriter(const std::string& path, const WritePlan& plan)
 }
 
 void WideTableWriter::start(const RecordingHeader& header) {
-  if (!is_table_rate(header.rate_hz)) throw Error("{}: {:g} Hz is no rate that its head can tell", path(), header.rate_hz);
+  if (!is_table_rate(header.rate_hz)) throw Error("{}: {:g} Hz is not a rate that its head can tell", path(), header.rate_hz);
   file_.emplace(path());
   file_->write(head(header));
   rate_hz_ = header.rate_hz;

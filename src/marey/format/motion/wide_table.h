@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/motion/point_sink.h"
 #include "marey/format/text_rows.h"
@@ -38,12 +38,12 @@ class WideTableHead {
  protected:
   /// The next line, cut at the table's separator; false at the end.
   bool next_line();
-  /// Throws Error where the text ends before it.
+  /// Throws Error if the text ends before it.
   const std::vector<std::string_view>& line(const char* which);
-  /// Throws Error, which says `otherwise`, where it is no rate.
+  /// Throws Error, which says `otherwise`, where it is not a rate.
   void set_rate(std::optional<double> rate_hz, const std::string& otherwise);
   void add_marker(std::string label, std::size_t x_column);
-  void warn(const std::string& sentence) { warnings_.push_back(name_ + ": " + sentence); }
+  void warn(const std::string& message_text) { warnings_.push_back(name_ + ": " + message_text); }
   [[noreturn]] void fail(const std::string& what) const;
 
   /// Reads on where the headings ended. `file` keeps the text where it lies in one.

@@ -9,8 +9,8 @@
 #include <toml++/toml.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/imported_rig.h"
@@ -19,7 +19,7 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr double kFarthestMetres = 100;
+constexpr double kMaxDistanceMetres = 100;
 
 /// One camera's table.
 class Table {
@@ -131,7 +131,7 @@ void to_metres(Rig& rig) {
   for (const RigCamera& camera : rig.cameras) {
     if (camera.camera_from_world) farthest = std::max(farthest, camera.camera_from_world->translation.norm());
   }
-  if (farthest <= kFarthestMetres) return;
+  if (farthest <= kMaxDistanceMetres) return;
   for (RigCamera& camera : rig.cameras) {
     if (camera.camera_from_world) camera.camera_from_world->translation /= 1000;
   }

@@ -1,6 +1,6 @@
-// Calibrations come from strangers, and OpenCV's own parser (4.6) is not made for that: some 250 bytes of YAML hold it for ever,
-// and XML that is cut off within a tag is read beyond its end. So YAML is read here, strictly and in one pass, each step of which
-// takes at least one byte; JSON is YAML's bracketed half; XML is pugixml's.
+// Calibrations come from untrusted clients, and OpenCV's own parser (4.6) is not made for that: some 250 bytes of YAML hold it for
+// ever, and XML that is cut off within a tag is read beyond its end. So YAML is read here, strictly and in one pass, each step of
+// which takes at least one byte; JSON is YAML's bracketed half; XML is pugixml's.
 #include "marey/format/rig/file_storage.h"
 
 #include <algorithm>
@@ -58,8 +58,8 @@ class YamlReader {
   class Level {
    public:
     explicit Level(YamlReader& reader) : reader_(reader) {
-      if (++reader_.depth_ > kDeepestNesting)
-        reader_.refuse(fmt::format("is nested more than {} deep, as no file of its kind is; it must be damaged", kDeepestNesting));
+      if (++reader_.depth_ > kMaxNestingDepth)
+        reader_.refuse(fmt::format("is nested more than {} deep, as no file of its kind is; it must be damaged", kMaxNestingDepth));
     }
     ~Level() { --reader_.depth_; }
     Level(const Level&) = delete;
@@ -106,7 +106,7 @@ class YamlReader {
   std::string quoted();
   void escaped(std::string& to);
   std::string_view plain(std::string_view ends);
-  /// Where the key that begins here ends, which is before its colon; nothing where the line is no key.
+  /// Where the key that begins here ends, which is before its colon; nothing if the line is not a key.
   std::optional<std::size_t> end_of_key() const;
   void add(Json& map, const std::string& key, Json value);
 
@@ -323,7 +323,7 @@ void YamlReader::escaped(std::string& to) {
   const auto [stop, failed] = std::from_chars(hex.data(), hex.data() + hex.size(), code, 16);
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   if (digits == 0 || hex.size() != digits || failed != std::errc() || stop != hex.data() + hex.size() || surrogate)
-    refuse("an escape in a quoted text is none that is known");
+    refuse("an escape in a quoted text is not one that is known");
   at_ += digits;
   if (digits == 2 || code < 0x80) {
     to += static_cast<char>(code);

@@ -87,7 +87,7 @@ TEST(FileStorage, SaysWhatIsWrongWhere) {
   EXPECT_EQ(message("a: \"b\n"), "file:1: a quoted text does not end on its line");
   EXPECT_EQ(message("a: [ 1 ] 2\n"), "file:1: something follows where a value has ended");
   EXPECT_EQ(message("  a: 1\nb: 2\n"), "file:2: another value follows where the file's value has ended");
-  EXPECT_EQ(message("a: \"\\ud800\"\n"), "file:1: an escape in a quoted text is none that is known");
+  EXPECT_EQ(message("a: \"\\ud800\"\n"), "file:1: an escape in a quoted text is not one that is known");
   EXPECT_EQ(message("a: 1\nb\n"), "file:2: a name with a colon and a value must stand here");
   EXPECT_EQ(message("a: &b 1\n"), "file:1: \"&\" begins nothing that a calibration holds");
 }
@@ -187,8 +187,8 @@ TEST(FileStorage, AnyBytesEndInAValueOrOneError) {
   for (int round = 0; round < 20000; ++round) {
     std::string text = round % 2 == 0 ? "%YAML:1.0\n---\n" : "";
     for (unsigned i = 0, size = random() % 60; i < size; ++i) text += letters[random() % letters.size()];
-    const std::string said = message(text);
-    ASSERT_TRUE(said == "none" || said.starts_with("file")) << "seed " << seed << '\n' << text;
+    const std::string stated = message(text);
+    ASSERT_TRUE(stated == "none" || stated.starts_with("file")) << "seed " << seed << '\n' << text;
   }
 }
 

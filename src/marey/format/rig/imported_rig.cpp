@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/input_file.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/input_file.h"
+#include "marey/files/text_safety.h"
 #include "marey/geometry/decompositions.h"
 #include "marey/geometry/lens_fit.h"
 
@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kNearEnough = 0.05;  // px RMS, of a lens that stands for another
 
-constexpr double kLargestInRig = 1e9;  // of any number in a rig
+constexpr double kMaxInRig = 1e9;  // of any number in a rig
 
 bool is_sound(double value) {
-  return std::abs(value) < kLargestInRig;
+  return std::abs(value) < kMaxInRig;
 }
 
 /// A pixel's direction through a whole lens.
@@ -39,7 +39,7 @@ std::string fit_name(std::string name) {
 void check_rotation(Matrix<3>& rotation, const std::string& path, const std::string& name) {
   const double off = (rotation.transpose() * rotation - Matrix<3>::Identity()).cwiseAbs().maxCoeff();
   if (!(off < 1e-2))
-    throw Error("{}: camera \"{}\": its rotation is none: rows must have length 1 and be perpendicular", path, name);
+    throw Error("{}: camera \"{}\": its rotation is not one: rows must have length 1 and be perpendicular", path, name);
   if (rotation.determinant() < 0) throw Error("{}: camera \"{}\": its rotation is a mirroring (determinant -1)", path, name);
   if (off < 1e-9) return;
   const geometry::SingularValues3 svd = geometry::singular_values(rotation);
@@ -63,7 +63,7 @@ void check_imported(Rig& rig, const std::string& path) {
       throw Error("{}: two cameras are named \"{}\"; each needs its own name", path, camera.name);
     if (camera.size &&
         (camera.size->width < 1 || camera.size->height < 1 || camera.size->width > 100'000 || camera.size->height > 100'000)) {
-      throw Error("{}: camera \"{}\": its picture of {} x {} px is none", path, camera.name, camera.size->width,
+      throw Error("{}: camera \"{}\": its image of {} x {} px is not one", path, camera.name, camera.size->width,
                   camera.size->height);
     }
     if (camera.lens) {
@@ -72,7 +72,7 @@ void check_imported(Rig& rig, const std::string& path) {
         throw Error("{}: camera \"{}\": focal length is {}; it must be positive", path, camera.name, focal);
       }
       const bool sound =
-          (geometry::principal_of(*camera.lens).array().abs() < kLargestInRig).all() &&
+          (geometry::principal_of(*camera.lens).array().abs() < kMaxInRig).all() &&
           std::visit([](const auto& lens) { return std::all_of(lens.distortion.begin(), lens.distortion.end(), is_sound); },
                      *camera.lens);
       if (!sound) throw Error("{}: camera \"{}\": its lens has numbers that are not finite, or beyond 1e9", path, camera.name);
@@ -80,7 +80,7 @@ void check_imported(Rig& rig, const std::string& path) {
     if (camera.rms_px && !is_sound(*camera.rms_px)) camera.rms_px.reset();
     if (!camera.camera_from_world) continue;
     check_rotation(camera.camera_from_world->rotation, path, camera.name);
-    if (!(camera.camera_from_world->translation.array().abs() < kLargestInRig).all())
+    if (!(camera.camera_from_world->translation.array().abs() < kMaxInRig).all())
       throw Error("{}: camera \"{}\": its place is not finite, or beyond 1e9 m", path, camera.name);
   }
 }

@@ -8,9 +8,9 @@
 
 namespace marey::format::rig {
 
-// Calibrations of other programs, one file each. Units become metres (aniposelib does not say its unit: see docs/rig.md); what the
-// format does not know is missing. Lenses that a format does not know are replaced by the nearest that it does, within 0.05 px RMS,
-// else refused. All throw Error with the file, and the camera where there is one.
+// Calibrations of other programs, one file each. Units become metres (aniposelib does not specify its unit: see docs/rig.md); what
+// the format does not know is missing. Lenses that a format does not know are replaced by the nearest that it does, within 0.05 px
+// RMS, else refused. All throw Error with the file, and the camera where there is one.
 Rig read_opencv_rig(const std::string& path);
 Rig read_aniposelib_rig(const std::string& path);
 Rig read_self_cal_rig(const std::string& path);
@@ -34,8 +34,8 @@ bool is_xml(const Beginning& file);
 /// rig. Throws Error that names `path` and the camera.
 void check_imported(Rig& rig, const std::string& path);
 
-/// The camera's lens as a Brown lens of at most `coefficients` (4 or 5): itself, or the nearest. Throws Error where that is off by
-/// more than 0.05 px RMS over the picture, or lens or size is missing.
+/// The camera's lens as a Brown lens of at most `coefficients` (4 or 5): itself, or the nearest. Throws Error if that is off by
+/// more than 0.05 px RMS over the image, or lens or size is missing.
 geometry::BrownLens as_brown(const RigCamera& camera, int coefficients, std::string_view format);
 
 }  // namespace marey::format::rig

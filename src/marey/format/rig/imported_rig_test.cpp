@@ -41,7 +41,7 @@ Rig two_cameras() {
     lens.principal = {630.25, 371 + 20 * i};
     lens.distortion = {-0.12, 0.03, 4e-4, -3e-4};
     camera.lens = lens;
-    const Matrix<3> upright = Matrix<3>{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};  // looks along y, z up
+    const Matrix<3> upright = Matrix<3>{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};  // faces along y, z up
     camera.camera_from_world = Rigid3{geometry::rotation_from({0.3, 0.1 * i, 0.02}) * upright, {0.25 - 0.5 * i, 0.4, 3.5 + i}};
     rig.cameras.push_back(camera);
   }
@@ -91,7 +91,7 @@ TEST(RigExchange, EveryFormatReadsBackWhatItWrites) {
   }
 }
 
-TEST(RigExchange, WhatAFormatCannotHoldIsSaid) {
+TEST(RigExchange, ReportsUnsupportedContent) {
   const test::TemporaryFolder folder;
   Rig rig = two_cameras();
   EXPECT_THROW(of_rigs("tsai").write_rig(rig, folder / "a.xml"), Error);
@@ -211,7 +211,7 @@ TEST(AniposelibRig, ReadsCaliscopesCameras) {
 
 TEST(QualisysRig, AxesPointRightUpAndBack) {
   const test::TemporaryFolder folder;
-  // A camera 2 m before the origin (at y = -2 m) that looks along y, level.
+  // A camera 2 m before the origin (at y = -2 m) that faces along y, level.
   const std::string text = R"(<?xml version="1.0"?>
 <calibration type="regular"><results std-dev="0.5"/><cameras>
 <camera active="1" avg-residual="0.4" serial="22139" model="Miqus M3">
@@ -263,7 +263,7 @@ TEST(TsaiRig, FeetOfBoxesStandWhereTheTruthSays) {
     const Vector<2> off = *camera.project({truth.x(), truth.y(), 0}) - foot;
     sum += off;
     worst = worst.cwiseMax(off.cwiseAbs());
-    worst_m = std::max(worst_m, (view.place(foot)->ground - truth).norm());
+    worst_m = std::max(worst_m, (view.location(foot)->ground - truth).norm());
   }
   EXPECT_GT(count, 1000);
   EXPECT_LT((sum / count).norm(), 0.03) << "px: the model and its convention";
@@ -306,7 +306,7 @@ TEST(SelfCalRig, MatricesAndLensesAreOneLens) {
   EXPECT_LT(median_error(folder.path(), true), 0.56) << "px, where its own matrices leave 0.26";
 }
 
-TEST(RigExchange, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
+TEST(RigExchange, RejectsDeepNestingBeforeParsing) {
   constexpr int kMany = 200'000;
   const auto refused = [](auto parse, const std::string& text) {
     try {
@@ -347,10 +347,10 @@ TEST(RigExchange, NoMessageShowsALibrarysInternals) {
       parse_opencv_rig(text, "file.yml");
       ADD_FAILURE() << text;
     } catch (const Error& error) {
-      const std::string said = error.what();
-      EXPECT_TRUE(said.starts_with("file.yml:")) << said;
+      const std::string stated = error.what();
+      EXPECT_TRUE(stated.starts_with("file.yml:")) << stated;
       for (const char* internal : {"nelems", "cv::", "OpenCV(", ".cpp", "persistence", "=="})
-        EXPECT_EQ(said.find(internal), std::string::npos) << said;
+        EXPECT_EQ(stated.find(internal), std::string::npos) << stated;
     }
   }
 }
@@ -364,7 +364,7 @@ TEST(RigExchange, NumbersThatNoRigHoldsAreRefused) {
   }
 }
 
-TEST(RigExchange, WhatOpenCvsFormatCannotHoldIsRefusedAndLeavesNothing) {
+TEST(RigExchange, RejectsUnsupportedOpenCvContentWithoutFile) {
   const test::TemporaryFolder folder;
   Rig rig = two_cameras();
   rig.cameras[0].name = std::string(5000, 'a');

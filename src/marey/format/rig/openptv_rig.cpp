@@ -1,6 +1,6 @@
-// Cameras of OpenPTV (three-dimensional particle tracking): a working folder with parameters/ptv.par, which says how large pictures
-// and pixels are and names the cameras' calibration pictures, and beside each of those CAMERA.ori (where the camera is, mm) and
-// CAMERA.addpar (its lens). A camera there looks along −z with y up:
+// Cameras of OpenPTV (three-dimensional particle tracking): a working folder with parameters/ptv.par, which says how large images
+// and pixels are and names the cameras' calibration images, and beside each of those CAMERA.ori (where the camera is, mm) and
+// CAMERA.addpar (its lens). A camera there faces along −z with y up:
 //
 //   (a, b, c) = Rᵀ (P − C),   x = −cc a / c + xh,   y = −cc b / c + yh   (mm on the sensor)
 //   x' = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 x²) + 2 p2 x y,   y' likewise with p2, p1,   r² = x² + y²
@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMillimetres = 1e-3;
-constexpr std::int64_t kMostPtvCameras = 1000;
+constexpr std::int64_t kMaxPtvCameras = 1000;
 constexpr double kLensNearEnough = 0.5;  // px RMS, of the lens that stands for OpenPTV's
 constexpr int kUndistortSteps = 50;
 
@@ -42,7 +42,7 @@ bool is_there(const fs::path& path) {
 
 /// What parameters/ptv.par says.
 struct PtvControl {
-  std::vector<std::string> cameras;  ///< calibration pictures, as the file names them
+  std::vector<std::string> cameras;  ///< calibration images, as the file names them
   cv::Size size;
   Vector<2> pixel = Vector<2>::Ones();  ///< mm
 };
@@ -63,24 +63,24 @@ PtvControl control_of(const std::string& path) {
     return *value;
   };
   const double count = number("the number of cameras");
-  if (!(count >= 1 && count <= kMostPtvCameras) || count != std::floor(count))
-    throw Error("{}:1: {} cameras; OpenPTV's ptv.par begins with their number, 1 to {}", path, count, kMostPtvCameras);
+  if (!(count >= 1 && count <= kMaxPtvCameras) || count != std::floor(count))
+    throw Error("{}:1: {} cameras; OpenPTV's ptv.par begins with their number, 1 to {}", path, count, kMaxPtvCameras);
   PtvControl control;
   for (int i = 0; i < static_cast<int>(count); ++i) {
     next("all cameras are named");
     control.cameras.emplace_back(next("all cameras are named"));
     std::replace(control.cameras.back().begin(), control.cameras.back().end(), '\\', '/');  // of a folder made under Windows
-    const std::string& picture = control.cameras.back();
-    if (picture.empty()) throw Error("{}:{}: camera {} has no calibration picture", path, lines.number(), i + 1);
-    if (std::any_of(picture.begin(), picture.end(), [](unsigned char c) { return c < ' ' || c == '\x7f'; }))
-      throw Error("{}:{}: control characters in the name of camera {}'s calibration picture", path, lines.number(), i + 1);
+    const std::string& image = control.cameras.back();
+    if (image.empty()) throw Error("{}:{}: camera {} has no calibration image", path, lines.number(), i + 1);
+    if (std::any_of(image.begin(), image.end(), [](unsigned char c) { return c < ' ' || c == '\x7f'; }))
+      throw Error("{}:{}: control characters in the name of camera {}'s calibration image", path, lines.number(), i + 1);
   }
   for (const char* flag : {"the high-pass flag", "the flag of all cameras", "the TIFF flag"}) number(flag);
-  const double width = number("the pictures' width"), height = number("the pictures' height");
+  const double width = number("the images' width"), height = number("the images' height");
   control.size = {cv::saturate_cast<int>(width), cv::saturate_cast<int>(height)};
   for (int axis = 0; axis < 2; ++axis) control.pixel[axis] = number("the size of a pixel");
   if (!(control.pixel.minCoeff() > 0) || control.size.empty())
-    throw Error("{}: pictures of {} x {} px of {} x {} mm are none", path, width, height, control.pixel.x(), control.pixel.y());
+    throw Error("{}: images of {} x {} px of {} x {} mm are not any", path, width, height, control.pixel.x(), control.pixel.y());
   number("the interlacing");
   const std::array<double, 3> index{number("the refractive index of air"), number("that of glass"), number("that of water")};
   if (index[0] != index[1] || index[1] != index[2]) {
@@ -93,7 +93,7 @@ PtvControl control_of(const std::string& path) {
 }
 
 /// All numbers of a file, at least `fewest` of them.
-std::vector<double> ptv_numbers(const std::string& path, std::size_t fewest, const char* what) {
+std::vector<double> ptv_numbers(const std::string& path, std::size_t lowest_count, const char* what) {
   const std::string text = read_file(path);
   std::vector<double> values;
   for_each_line(text, path, [&](std::string_view line, const std::string& where) {
@@ -108,7 +108,7 @@ std::vector<double> ptv_numbers(const std::string& path, std::size_t fewest, con
       line.remove_prefix(word.size());
     }
   });
-  if (values.size() < fewest) throw Error("{}: {} numbers, and {} has {} or more", path, values.size(), what, fewest);
+  if (values.size() < lowest_count) throw Error("{}: {} numbers, and {} has {} or more", path, values.size(), what, lowest_count);
   return values;
 }
 
@@ -129,7 +129,7 @@ struct PtvLens {
             y + y * radial + p[1] * (r2 + 2 * y * y) + 2 * p[0] * x * y};
   }
 
-  /// The direction of a place on the sensor; nothing where no undistorted place is found.
+  /// The direction of a place on the sensor; nothing if no undistorted place is found.
   std::optional<Vector<3>> direction(const Vector<2>& sensor) const {
     const double y = sensor.y() / (scale * std::cos(shear));
     const Vector<2> bent(sensor.x() / scale + std::sin(shear) * y, y);
@@ -166,9 +166,9 @@ geometry::BrownFit lens_of(const PtvLens& lens, const PtvControl& control, const
   return *fit;
 }
 
-/// `off_px`: the most that a lens of Brown is off OpenPTV's, RMS over the picture.
-RigCamera camera_of(const std::string& picture, const PtvControl& control, double& off_px) {
-  const std::string ori = picture + ".ori", addpar = picture + ".addpar";
+/// `off_px`: the most that a lens of Brown is off OpenPTV's, RMS over the image.
+RigCamera camera_of(const std::string& image, const PtvControl& control, double& off_px) {
+  const std::string ori = image + ".ori", addpar = image + ".addpar";
   const std::vector<double> outside = ptv_numbers(ori, 18, "an OpenPTV orientation");
   PtvLens lens;
   lens.offset = {outside[15], outside[16]};
@@ -182,16 +182,16 @@ RigCamera camera_of(const std::string& picture, const PtvControl& control, doubl
     lens.shear = added[6];
   }
   if (!(lens.scale > 0) || !(std::abs(lens.shear) < 1))
-    throw Error("{}: a scale of {} and a shear of {} are none", addpar, lens.scale, lens.shear);
+    throw Error("{}: a scale of {} and a shear of {} are not any", addpar, lens.scale, lens.shear);
   RigCamera camera;
-  camera.name = fs::path(picture).stem().string();
+  camera.name = fs::path(image).stem().string();
   camera.size = control.size;
-  const geometry::BrownFit seen = lens_of(lens, control, ori);
-  camera.lens = seen.lens;
-  off_px = std::max(off_px, seen.rms_px);
+  const geometry::BrownFit detected = lens_of(lens, control, ori);
+  camera.lens = detected.lens;
+  off_px = std::max(off_px, detected.rms_px);
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(outside.data() + 6);
   const Vector<3> centre = kMillimetres * Vector<3>(outside[0], outside[1], outside[2]);
-  const Matrix<3> rotation = seen.turn * Vector<3>(1, -1, -1).asDiagonal() * R.transpose();
+  const Matrix<3> rotation = detected.turn * Vector<3>(1, -1, -1).asDiagonal() * R.transpose();
   camera.camera_from_world = Rigid3{rotation, -rotation * centre};
   return camera;
 }
@@ -207,7 +207,7 @@ std::string control_path(const std::string& path) {
     if (is_there(folder / "ptv.par")) return (folder / "ptv.par").string();
   }
   throw Error(
-      "{}: how large its pictures and pixels are says OpenPTV's parameters/ptv.par, which is neither beside it nor beside its "
+      "{}: how large its images and pixels are says OpenPTV's parameters/ptv.par, which is neither beside it nor beside its "
       "folder",
       path);
 }
@@ -220,10 +220,10 @@ Rig read_openptv_rig(const std::string& path) {
   if (fs::path(path).extension() == ".ori") {
     rig.cameras.push_back(camera_of(fs::path(path).replace_extension().string(), control, off_px));
   } else {
-    const fs::path beside = fs::path(control_file).parent_path();
-    const fs::path folder = beside.filename() == "parameters" ? beside / ".." : beside;
-    for (const std::string& picture : control.cameras)
-      rig.cameras.push_back(camera_of((folder / picture).lexically_normal().string(), control, off_px));
+    const fs::path next_to = fs::path(control_file).parent_path();
+    const fs::path folder = next_to.filename() == "parameters" ? next_to / ".." : next_to;
+    for (const std::string& image : control.cameras)
+      rig.cameras.push_back(camera_of((folder / image).lexically_normal().string(), control, off_px));
   }
   rig.calibration.emplace().method = off_px > 0 ? fmt::format("OpenPTV, lenses to {:.2g} px", off_px) : "OpenPTV";
   check_imported(rig, path);

@@ -13,8 +13,8 @@
 namespace marey::format::rig {
 namespace {
 
-/// What is said of the rig at `path`; nothing where it is read.
-std::string said_of(const std::string& path) {
+/// What is said of the rig at `path`; nothing if it is read.
+std::string stated_of(const std::string& path) {
   try {
     format_to_read(path, Content::rig).read_rig(path);
     return "";
@@ -75,11 +75,11 @@ TEST_F(PtvFolder, IsReadByFolderControlFileAndOrientation) {
     const Vector<3> centre = camera.camera()->centre();
     EXPECT_LT((centre - Vector<3>(0.1052632, 0.1027458, 0.4038822)).norm(), 1e-7);
     const auto middle = camera.camera()->project({0, 0, 0});
-    ASSERT_TRUE(middle) << "it looks along its -z, where the origin is";
+    ASSERT_TRUE(middle) << "it faces along its -z, where the origin is";
   }
 }
 
-TEST_F(PtvFolder, WhatBendsIsALensOfBrown) {
+TEST_F(PtvFolder, ReadsBrownDistortion) {
   test::write_file(folder_ / "cal/cam1.tif.addpar", "0.0003 -0.00001 0.0000002 0.0005 -0.0004 1.002 0");
   EXPECT_TRUE(contains(read().calibration->method, "lenses to 0.")) << "it bends about a place beside its principal point";
   std::string ideal = kOrientation;
@@ -93,20 +93,20 @@ TEST_F(PtvFolder, WhatBendsIsALensOfBrown) {
   EXPECT_NEAR(lens.distortion[2], 0.0004 * 60, 1e-12) << "y is down here";
   EXPECT_NEAR(lens.distortion[3], 0.0005 * 60, 1e-12);
   test::write_file(folder_ / "cal/cam1.tif.addpar", "0.0003 -0.00001 0.0000002 0.0005 -0.0004 1.002 0.3");
-  EXPECT_TRUE(contains(said_of(folder_.path()), "no Brown lens stands for its shear of 0.3 rad"));
+  EXPECT_TRUE(contains(stated_of(folder_.path()), "no Brown lens stands for its shear of 0.3 rad"));
 }
 
 TEST_F(PtvFolder, RaysThatBendAreRefused) {
   write_control("1\n1.46\n1.33\n");
-  const std::string message = said_of(folder_.path());
+  const std::string message = stated_of(folder_.path());
   EXPECT_TRUE(contains(message, "refractive indices 1, 1.46 and 1.33")) << message;
   EXPECT_TRUE(contains(message, "ptv.par")) << message;
 }
 
 TEST_F(PtvFolder, BadFilesAreNamedInOneSentence) {
-  const auto problem = [&] { return said_of(folder_.path()); };
+  const auto problem = [&] { return stated_of(folder_.path()); };
   write_control("1\n1\n1\n", "0\n1024\n0.012\n0.013\n");
-  EXPECT_TRUE(contains(problem(), "are none"));
+  EXPECT_TRUE(contains(problem(), "are not any"));
   write_control("1\n1\n1\n", "1280\n1024\n0.012\nnan\n");
   EXPECT_TRUE(contains(problem(), "ptv.par:10: the size of a pixel is \"nan\"")) << problem();
   test::write_file(folder_ / "parameters/ptv.par", "1000000\n");
@@ -127,7 +127,7 @@ TEST_F(PtvFolder, BadFilesAreNamedInOneSentence) {
 TEST(OpenPtvRig, TheRealFolderSeesThroughWaterAndIsRefused) {
   const std::string folder = test::data("particles");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
-  const std::string message = said_of(folder);
+  const std::string message = stated_of(folder);
   EXPECT_TRUE(contains(message, "refractive indices")) << message;
 }
 

@@ -4,8 +4,8 @@
 #include <pugixml.hpp>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/imported_rig.h"
 #include "marey/format/xml_text.h"
@@ -29,13 +29,13 @@ struct Node {
   }
 };
 
-Node part(const pugi::xml_node& camera, const char* name, const std::string& path, const std::string& who) {
+Node part(const pugi::xml_node& camera, const char* name, const std::string& path, const std::string& identity) {
   const pugi::xml_node node = camera.child(name);
-  if (!node) throw Error("{}: camera \"{}\": <{}> is missing", path, who, name);
-  return {node, path, who};
+  if (!node) throw Error("{}: camera \"{}\": <{}> is missing", path, identity, name);
+  return {node, path, identity};
 }
 
-/// Where the camera films, its pictures; else what its marker mode sees.
+/// Where the camera videos, its images; else what its marker mode sees.
 const char* field_of_view(const pugi::xml_node& camera) {
   const std::string model = camera.attribute("model").as_string();
   const bool video = model.find("ideo") != std::string::npos || model == "none";

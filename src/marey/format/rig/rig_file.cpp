@@ -1,5 +1,5 @@
-// A rig file is read in one walk over its parsed tables. Each problem is noted with its line and the walk goes on, so that
-// the user hears of all of them at once; only a text that is no TOML at all ends it early.
+// A rig file is read in one walk over its parsed tables. Each problem is noted with its line and the walk continues, so that
+// the user receives of all of them at once; only a text that is not a TOML at all ends it early.
 #include "marey/format/rig/rig_file.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include <toml++/toml.h>
 
 #include "marey/core/error.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/imported_rig.h"
@@ -23,19 +23,19 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr double kLargestPicture = 1e5;                       // px, of either side
-constexpr std::size_t kMostMasks = 256;                       // of a camera
-constexpr double kSmallestGround = 10, kLargestGround = 500;  // m, from the middle to its lines
+constexpr double kMaxImage = 1e5;                    // px, of either side
+constexpr std::size_t kMaxMasks = 256;               // of a camera
+constexpr double kMinGround = 10, kMaxGround = 500;  // m, from the middle to its lines
 
 bool whole(double value) {
   return value == std::floor(value);
 }
 
-/// Nothing where these are no whole px, or no part of a picture.
+/// Nothing if these are not whole px, or no part of an image.
 std::optional<Mask> mask_of(std::span<const double> numbers) {
   std::vector<int> px;
   for (const double each : numbers) {
-    if (!whole(each) || std::abs(each) > kLargestPicture) return std::nullopt;
+    if (!whole(each) || std::abs(each) > kMaxImage) return std::nullopt;
     px.push_back(static_cast<int>(each));
   }
   return Mask::of_numbers(px);
@@ -45,7 +45,7 @@ std::optional<cv::Size> read_size(const Section& section) {
   const auto size = section.numbers("size", 2, 2, "[width, height] in px");
   if (!size) return std::nullopt;
   for (const double side : *size) {
-    if (side >= 1 && side <= kLargestPicture && whole(side)) continue;
+    if (side >= 1 && side <= kMaxImage && whole(side)) continue;
     section.problem("size", fmt::format("size is [{}, {}]; both must be positive whole numbers of px", (*size)[0], (*size)[1]));
     return std::nullopt;
   }
@@ -67,13 +67,13 @@ std::optional<cv::Rect> read_region(const Section& section) {
 std::vector<Mask> read_masks(const Section& section) {
   constexpr std::string_view kForm = "[[x, y, width, height], …] in px, a polygon its corners [x, y, x, y, x, y, …]";
   std::vector<Mask> masks;
-  for (const std::vector<double>& row : section.rows("masks", 4, kMostMasks, kForm)) {
+  for (const std::vector<double>& row : section.rows("masks", 4, kMaxMasks, kForm)) {
     if (const auto mask = mask_of(row)) {
       masks.push_back(*mask);
     } else {
       section.problem("masks", fmt::format("masks is [{}]; it must be whole px, the corner not negative and the sides positive, or "
                                            "3 to {} corners of a polygon",
-                                           fmt::join(row, ", "), Mask::kMostCorners));
+                                           fmt::join(row, ", "), Mask::kMaxCorners));
     }
   }
   return masks;
@@ -152,8 +152,8 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
                 "rms_px", "turns",  "tripod",     "lean",       "nodal_offset", "bend",        "exposure",
                 "gain",   "masks",  "threshold"});
   check_name(section, camera.name);
-  camera.source = source_beside(folder, section.text("source").value_or(""));
-  camera.detections = source_beside(folder, section.text("detections").value_or(""));
+  camera.source = source_next_to(folder, section.text("source").value_or(""));
+  camera.detections = source_next_to(folder, section.text("detections").value_or(""));
   if (!camera.source.empty() && !camera.detections.empty()) {
     section.problem("detections", "it has both a source and detections; keep one of them");
   }
@@ -201,16 +201,16 @@ geometry::GroundSurface read_ground(const toml::node& node, Problems& problems) 
   const Section section(*node.as_table(), "ground", problems);
   section.only({"middle", "half", "across", "along", "dome", "ridge"});
   const auto middle = read_pair(section, "middle"), half = read_pair(section, "half");
-  if (half && !(half->minCoeff() >= kSmallestGround && half->maxCoeff() <= kLargestGround)) {
+  if (half && !(half->minCoeff() >= kMinGround && half->maxCoeff() <= kMaxGround)) {
     section.problem("half", fmt::format("half is [{}, {}]; from the middle to the lines it must be {} to {} m", half->x(),
-                                        half->y(), kSmallestGround, kLargestGround));
+                                        half->y(), kMinGround, kMaxGround));
     return {};
   }
   const auto height = [&](std::string_view key) {
     const double value = section.number(key).value_or(0);
-    if (std::abs(value) <= geometry::GroundSurface::kHighest) return value;
+    if (std::abs(value) <= geometry::GroundSurface::kMaxLevel) return value;
     section.problem(key,
-                    fmt::format("{} is {} m; a pitch is raised by at most {} m", key, value, geometry::GroundSurface::kHighest));
+                    fmt::format("{} is {} m; a pitch is raised by at most {} m", key, value, geometry::GroundSurface::kMaxLevel));
     return 0.0;
   };
   ground.across = height("across"), ground.along = height("along"), ground.dome = height("dome");

@@ -19,7 +19,7 @@ Rig parse_rig(std::string_view text, const std::string& name, const std::string&
 /// it ("" leaves them as they are).
 std::string rig_text(const Rig& rig, const std::string& folder = {});
 
-/// Writes a rig file, whole or not at all. Throws Error where that cannot be.
+/// Writes a rig file, atomically. Throws Error if that cannot be.
 void write_rig(const Rig& rig, const std::string& path);
 
 }  // namespace marey::format::rig

@@ -63,19 +63,19 @@ TEST(RigFile, KeepsACrownedGround) {
 }
 
 TEST(RigFile, AGroundThatIsNoneIsRefused) {
-  const auto told = [](const std::string& from, const std::string& to) {
+  const auto reported = [](const std::string& from, const std::string& to) {
     return problems_of(replaced(kExample, "[[camera]]", replaced(kCrowned, from, to) + "[[camera]]"));
   };
-  EXPECT_NE(told("across = 0.15", "across = 50").find("rig.toml:6: ground: across is 50 m; a pitch is raised by at most 2 m"),
+  EXPECT_NE(reported("across = 0.15", "across = 50").find("rig.toml:6: ground: across is 50 m; a pitch is raised by at most 2 m"),
             std::string::npos);
   for (const char* value : {"nan", "inf", "-inf", "1e300", "\"much\"", "[1]"})
-    EXPECT_NE(told("along = 0.2", fmt::format("along = {}", value)).find("along must be a finite number"), std::string::npos)
+    EXPECT_NE(reported("along = 0.2", fmt::format("along = {}", value)).find("along must be a finite number"), std::string::npos)
         << value;
-  EXPECT_NE(told("half = [52.5, 34.0]", "half = [52.5, 0.0]").find("must be 10 to 500 m"), std::string::npos);
-  EXPECT_NE(told("half = [52.5, 34.0]\n", "").find("half is missing"), std::string::npos);
-  EXPECT_NE(told("middle = [52.5, -34.0]", "middle = [nan, 0]").find("middle must be [x, y] in m"), std::string::npos);
-  EXPECT_NE(told("ridge = 0.25", "ridge = 1.5").find("ridge is 1.5"), std::string::npos);
-  EXPECT_NE(told("ridge = 0.25", "bump = 1").find("unknown key \"bump\""), std::string::npos);
+  EXPECT_NE(reported("half = [52.5, 34.0]", "half = [52.5, 0.0]").find("must be 10 to 500 m"), std::string::npos);
+  EXPECT_NE(reported("half = [52.5, 34.0]\n", "").find("half is missing"), std::string::npos);
+  EXPECT_NE(reported("middle = [52.5, -34.0]", "middle = [nan, 0]").find("middle must be [x, y] in m"), std::string::npos);
+  EXPECT_NE(reported("ridge = 0.25", "ridge = 1.5").find("ridge is 1.5"), std::string::npos);
+  EXPECT_NE(reported("ridge = 0.25", "bump = 1").find("unknown key \"bump\""), std::string::npos);
   EXPECT_NE(problems_of(replaced(kExample, "[[camera]]", "ground = 3\n[[camera]]")).find("ground must be a table"),
             std::string::npos);
 }
@@ -93,7 +93,7 @@ TEST(RigFile, ReadsTheExample) {
   EXPECT_EQ(lens.distortion[4], -0.014);
   EXPECT_EQ(left.camera_from_world->translation, Vector<3>(0, 0, 5));
   EXPECT_TRUE(left.camera());
-  EXPECT_FALSE(rig.cameras[1].offset_s) << "nobody said";
+  EXPECT_FALSE(rig.cameras[1].offset_s) << "no person said";
   EXPECT_FALSE(rig.cameras[1].camera());
   EXPECT_TRUE(rig.cameras[1].ground_view({}));
 }
@@ -185,25 +185,25 @@ TEST(RigFile, KeepsHowALiveCameraIsSet) {
 }
 
 TEST(RigFile, HowNoCameraCanBeSetIsRefused) {
-  const auto told = [](const std::string& line) {
+  const auto reported = [](const std::string& line) {
     return problems_of(replaced(kExample, "name = \"far\"", "name = \"far\"\n" + line));
   };
-  EXPECT_NE(told("exposure = 0").find("exposure is 0; it must be positive"), std::string::npos);
-  EXPECT_NE(told("gain = -1").find("gain is -1; it must not be negative"), std::string::npos);
-  EXPECT_NE(told("threshold = -1").find("threshold is -1"), std::string::npos);
-  EXPECT_NE(told("masks = [[1, 2, 3]]")
+  EXPECT_NE(reported("exposure = 0").find("exposure is 0; it must be positive"), std::string::npos);
+  EXPECT_NE(reported("gain = -1").find("gain is -1; it must not be negative"), std::string::npos);
+  EXPECT_NE(reported("threshold = -1").find("threshold is -1"), std::string::npos);
+  EXPECT_NE(reported("masks = [[1, 2, 3]]")
                 .find("masks must be [[x, y, width, height], …] in px, a polygon its corners [x, y, x, y, x, y, …], 256 at most"),
             std::string::npos);
-  EXPECT_NE(told("masks = [[1, 2, 3, 4, 5]]").find("masks is [1, 2, 3, 4, 5]; it must be"), std::string::npos);
-  EXPECT_NE(told("masks = [[1, 2, 3, 4, 5, 6.5]]").find("or 3 to 64 corners of a polygon"), std::string::npos);
-  EXPECT_NE(told("masks = 3").find("masks must be"), std::string::npos);
-  EXPECT_NE(told("masks = [[1, 2, 0, 3]]").find("masks is [1, 2, 0, 3]; it must be whole px"), std::string::npos);
+  EXPECT_NE(reported("masks = [[1, 2, 3, 4, 5]]").find("masks is [1, 2, 3, 4, 5]; it must be"), std::string::npos);
+  EXPECT_NE(reported("masks = [[1, 2, 3, 4, 5, 6.5]]").find("or 3 to 64 corners of a polygon"), std::string::npos);
+  EXPECT_NE(reported("masks = 3").find("masks must be"), std::string::npos);
+  EXPECT_NE(reported("masks = [[1, 2, 0, 3]]").find("masks is [1, 2, 0, 3]; it must be whole px"), std::string::npos);
   std::string many = "[1, 2, 3, 4]";
   for (int i = 0; i < 256; ++i) many += ", [1, 2, 3, 4]";
-  EXPECT_NE(told("masks = [" + many + "]").find("256 at most"), std::string::npos);
+  EXPECT_NE(reported("masks = [" + many + "]").find("256 at most"), std::string::npos);
 }
 
-TEST(RigFile, WhatAStepDoesNotNeedMayBeMissing) {
+TEST(RigFile, AcceptsMissingOptionalKeys) {
   const Rig rig =
       parse_rig("[[camera]]\nname = \"a\"\nfocal = [900, 900]\nprincipal = [320, 240]\n[[camera]]\nname = \"b\"\n", "rig.toml");
   EXPECT_TRUE(rig.cameras[0].lens);
@@ -212,30 +212,30 @@ TEST(RigFile, WhatAStepDoesNotNeedMayBeMissing) {
 }
 
 TEST(RigFile, RefusesWhatIsWrong) {
-  const auto told = [](const std::string& from, const std::string& to, const std::string& expected) {
+  const auto reported = [](const std::string& from, const std::string& to, const std::string& expected) {
     const std::string problems = problems_of(replaced(kExample, from, to));
-    EXPECT_NE(problems.find(expected), std::string::npos) << "\"" << problems << "\" does not say \"" << expected << "\"";
+    EXPECT_NE(problems.find(expected), std::string::npos) << "\"" << problems << "\" does not specify \"" << expected << "\"";
   };
-  told("[640, 480]", "[640, 0]", ":16: camera \"far\": size is [640, 0]; both must be positive whole numbers of px");
-  told("[640, 480]", "[640.5, 480]", "positive whole numbers");
-  told("[640, 480]", "[640]", "size must be [width, height] in px");
-  told("[0, 0.001, 1]", "[0, 0, 0]", "ground_from_image is singular");
-  told("[0, 0.001, 1]", "[0, 1]", "three rows of three");
-  told("[0, 0.001, 1]", "[0, nan, 1]", "finite");
-  told("[0, 1, 0]", "[0, 1.1, 0]", "no rotation");
-  told("translation", "translatoin", "translation is missing");
-  told("\"brown\"", "\"browne\"", "model \"browne\" is unknown");
-  told("\"brown\"", "\"tsai\"", "distortion must be at most 1 finite numbers");
-  told("name = \"far\"", "", "camera 2: its name is missing");
-  told("\"far\"", "\"a/b\"", "its name may hold no");
-  told("\"far\"", "7", "name must be a text in quotation marks");
-  told("principal = [1642.7, 875.7]", "", "without its principal point");
-  told("offset_s = 0.25", "offset_s = inf", "offset_s must be a finite number");
-  told("offset_s = 0.25", "rate = -1", "rate is -1; it must be positive");
-  told("offset_s = 0.25", "region = [0, 0, 10, 10]", "they must agree");
-  told("offset_s = 0.25", "detections = \"a.txt\"", "both a source and detections");
-  told("[world]", "[wolrd]", "rig.toml:1: unknown key \"wolrd\"");
-  told("[[camera]]", "[[camera]", "rig.toml:3: ");
+  reported("[640, 480]", "[640, 0]", ":16: camera \"far\": size is [640, 0]; both must be positive whole numbers of px");
+  reported("[640, 480]", "[640.5, 480]", "positive whole numbers");
+  reported("[640, 480]", "[640]", "size must be [width, height] in px");
+  reported("[0, 0.001, 1]", "[0, 0, 0]", "ground_from_image is singular");
+  reported("[0, 0.001, 1]", "[0, 1]", "three rows of three");
+  reported("[0, 0.001, 1]", "[0, nan, 1]", "finite");
+  reported("[0, 1, 0]", "[0, 1.1, 0]", "no rotation");
+  reported("translation", "translatoin", "translation is missing");
+  reported("\"brown\"", "\"browne\"", "model \"browne\" is unknown");
+  reported("\"brown\"", "\"tsai\"", "distortion must be at most 1 finite numbers");
+  reported("name = \"far\"", "", "camera 2: its name is missing");
+  reported("\"far\"", "\"a/b\"", "its name may hold no");
+  reported("\"far\"", "7", "name must be a text in quotation marks");
+  reported("principal = [1642.7, 875.7]", "", "without its principal point");
+  reported("offset_s = 0.25", "offset_s = inf", "offset_s must be a finite number");
+  reported("offset_s = 0.25", "rate = -1", "rate is -1; it must be positive");
+  reported("offset_s = 0.25", "region = [0, 0, 10, 10]", "they must agree");
+  reported("offset_s = 0.25", "detections = \"a.txt\"", "both a source and detections");
+  reported("[world]", "[wolrd]", "rig.toml:1: unknown key \"wolrd\"");
+  reported("[[camera]]", "[[camera]", "rig.toml:3: ");
   EXPECT_NE(problems_of("").find("there is no camera"), std::string::npos);
   EXPECT_NE(problems_of("camera = 3").find("[[camera]]"), std::string::npos);
   EXPECT_NE(problems_of("camera = [3]").find("[[camera]]"), std::string::npos);
@@ -272,7 +272,7 @@ TEST(RigFile, SourcesLieBesideTheFile) {
   EXPECT_THROW(read_rig(folder.path()), Error);
 }
 
-TEST(RigFile, WhatIsNestedTooDeepIsRefusedBeforeItIsParsed) {
+TEST(RigFile, RejectsDeepNestingBeforeParsing) {
   for (const std::string& text : {"a" + test::repeated(".a", 50'000) + " = 1", "[a" + test::repeated(".a", 50'000) + "]",
                                   "a = " + test::repeated("[", 200'000), "a = " + test::repeated("{a=", 50'000)}) {
     EXPECT_NE(problems_of(kExample + text).find("nested more than"), std::string::npos);

@@ -13,14 +13,14 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr double kLargestInFile = 1e9;   // of any number in the file
+constexpr double kMaxInFile = 1e9;       // of any number in the file
 constexpr double kRotationSlack = 1e-3;  // what rounding to four digits leaves of RᵀR − I
 constexpr double kRotationExact = 1e-9;  // above, the nearest rotation is taken
 
 std::optional<double> number_in_node(const toml::node& node) {
   if (!node.is_integer() && !node.is_floating_point()) return std::nullopt;
   const double value = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-  if (!(std::abs(value) < kLargestInFile)) return std::nullopt;
+  if (!(std::abs(value) < kMaxInFile)) return std::nullopt;
   return value;
 }
 
@@ -38,12 +38,12 @@ std::optional<std::vector<double>> numbers_of(const toml::node& node) {
 
 }  // namespace
 
-std::string excerpt(std::string_view text, std::size_t most) {
-  std::string result(text.substr(0, most));
+std::string excerpt(std::string_view text, std::size_t maximum) {
+  std::string result(text.substr(0, maximum));
   for (char& c : result) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
   }
-  return text.size() > most ? result + "..." : result;
+  return text.size() > maximum ? result + "..." : result;
 }
 
 void Problems::throw_if_any() {
@@ -102,29 +102,29 @@ std::optional<int> Section::count(std::string_view key) const {
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t fewest, std::size_t most,
+std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t lowest_count, std::size_t maximum,
                                                     std::string_view form) const {
   const toml::node* node = table_.get(key);
   if (node == nullptr) return std::nullopt;
-  if (auto values = numbers_of(*node); values && values->size() >= fewest && values->size() <= most) return values;
+  if (auto values = numbers_of(*node); values && values->size() >= lowest_count && values->size() <= maximum) return values;
   problem(key, fmt::format("{} must be {}", key, form));
   return std::nullopt;
 }
 
-std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t fewest, std::size_t most,
+std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t lowest_count, std::size_t maximum,
                                                std::string_view form) const {
   const toml::node* node = table_.get(key);
   if (node == nullptr) return {};
   const toml::array* array = node->as_array();
   std::vector<std::vector<double>> rows;
-  bool good = array != nullptr && array->size() <= most;
+  bool good = array != nullptr && array->size() <= maximum;
   for (std::size_t i = 0; good && i < array->size(); ++i) {
     auto row = numbers_of(*array->get(i));
-    good = row && row->size() >= fewest;
+    good = row && row->size() >= lowest_count;
     if (good) rows.push_back(std::move(*row));
   }
   if (good) return rows;
-  problem(key, fmt::format("{} must be {}, {} at most", key, form, most));
+  problem(key, fmt::format("{} must be {}, {} at most", key, form, maximum));
   return {};
 }
 
@@ -162,7 +162,7 @@ std::optional<Matrix<3>> Section::rotation(std::string_view key) const {
   const double off = (given->transpose() * *given - Matrix<3>::Identity()).cwiseAbs().maxCoeff();
   if (off > kRotationSlack) {
     problem(key,
-            fmt::format("{} is no rotation: its rows must have length 1 and be perpendicular, and are off by {:.2g}", key, off));
+            fmt::format("{} is not a rotation: its rows must have length 1 and be perpendicular, and are off by {:.2g}", key, off));
   } else if (given->determinant() < 0) {
     problem(key, fmt::format("{} is a mirroring (its determinant is -1); it must be a rotation", key));
   } else if (off < kRotationExact) {

@@ -14,9 +14,9 @@
 namespace marey::format::rig {
 
 /// A text of a file, fit for a one-line message.
-std::string excerpt(std::string_view text, std::size_t most = 40);
+std::string excerpt(std::string_view text, std::size_t maximum = 40);
 
-/// What is wrong with a TOML file, gathered so that all of it is told at once.
+/// What is wrong with a TOML file, gathered so that all of it is reported at once.
 class Problems {
  public:
   explicit Problems(std::string file) : file_(std::move(file)) {}
@@ -31,7 +31,7 @@ class Problems {
   std::vector<std::pair<toml::source_index, std::string>> found_;
 };
 
-/// One table of a TOML file: hands out its values by name, nothing where one is missing, and notes those that are not what they
+/// One table of a TOML file: distributes its values by name, nothing if one is missing, and notes those that are not what they
 /// must be.
 class Section {
  public:
@@ -52,11 +52,12 @@ class Section {
   std::optional<double> positive(std::string_view key) const;
   std::optional<int> count(std::string_view key) const;
   /// Between `fewest` and `most` numbers; `form` says in words what they must be.
-  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t fewest, std::size_t most,
+  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t lowest_count, std::size_t maximum,
                                              std::string_view form) const;
   /// At most `most` rows of at least `fewest` numbers; none where the key is missing, or, with a problem, where it is something
   /// else.
-  std::vector<std::vector<double>> rows(std::string_view key, std::size_t fewest, std::size_t most, std::string_view form) const;
+  std::vector<std::vector<double>> rows(std::string_view key, std::size_t lowest_count, std::size_t maximum,
+                                        std::string_view form) const;
   std::optional<Matrix<3>> matrix(std::string_view key) const;
   std::optional<Matrix<3>> invertible(std::string_view key) const;
   /// A rotation matrix, made exact where it is rounded.

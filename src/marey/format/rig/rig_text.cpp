@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "marey/core/source_name.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/source_name.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/rig/rig_file.h"
 
 namespace marey::format::rig {
@@ -68,10 +68,10 @@ std::string in_quotes(std::string_view text) {
 }
 
 /// `source` as it is found from `folder`, where it has a relative path or lies below it.
-std::string seen_from(const std::string& folder, const std::string& source) {
+std::string observed_from(const std::string& folder, const std::string& source) {
   namespace fs = std::filesystem;
   constexpr std::string_view kPlayed = "play:";
-  if (source.starts_with(kPlayed)) return std::string(kPlayed) + seen_from(folder, source.substr(kPlayed.size()));
+  if (source.starts_with(kPlayed)) return std::string(kPlayed) + observed_from(folder, source.substr(kPlayed.size()));
   if (folder.empty() || !scheme_of(source).empty() || source.find("://") != std::string::npos) return source;
   const fs::path path(source), base = fs::absolute(folder).lexically_normal();
   const fs::path relative = fs::absolute(path).lexically_normal().lexically_relative(base / "");
@@ -119,8 +119,10 @@ std::string camera_text(const RigCamera& camera, const std::string& folder, bool
   Lines lines(first);
   lines.add("name", in_quotes(camera.name));
   if (!camera.source.empty())
-    lines.add("source", in_quotes(seen_from(folder, camera.source)), scheme_of(camera.source).empty() ? "seen from this file" : "");
-  if (!camera.detections.empty()) lines.add("detections", in_quotes(seen_from(folder, camera.detections)), "seen from this file");
+    lines.add("source", in_quotes(observed_from(folder, camera.source)),
+              scheme_of(camera.source).empty() ? "seen from this file" : "");
+  if (!camera.detections.empty())
+    lines.add("detections", in_quotes(observed_from(folder, camera.detections)), "seen from this file");
   if (camera.region) lines.add("region", rect_text(*camera.region), "x, y, width, height in px");
   if (camera.rate_hz) lines.add("rate", number_text(*camera.rate_hz), "Hz");
   if (camera.exposure_ms) lines.add("exposure", number_text(*camera.exposure_ms), "ms, of a live camera");

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/rig_file.h"
@@ -21,16 +21,16 @@
 namespace marey::format::rig {
 namespace {
 
-constexpr std::string_view kTurnsHeader = "time,pan,tilt,focal,pan_sd,tilt_sd,focal_sd,pan_tilt,pan_focal,tilt_focal";
-constexpr std::size_t kTurnsColumns = 10;
+constexpr std::string_view kPtzHeader = "time,pan,tilt,focal,pan_sd,tilt_sd,focal_sd,pan_tilt,pan_focal,tilt_focal";
+constexpr std::size_t kPtzColumns = 10;
 constexpr double kTurnDegree = std::numbers::pi / 180;
-constexpr double kMostDegrees = 1e4;
+constexpr double kMaxDegrees = 1e4;
 
-/// One row's numbers; nothing where one is missing or none.
-std::optional<std::array<double, kTurnsColumns>> numbers_in_row(const std::vector<std::string_view>& fields) {
-  std::array<double, kTurnsColumns> values{};
-  if (fields.size() != kTurnsColumns) return std::nullopt;
-  for (std::size_t i = 0; i < kTurnsColumns; ++i) {
+/// One row's numbers; nothing if one is missing or none.
+std::optional<std::array<double, kPtzColumns>> numbers_in_row(const std::vector<std::string_view>& fields) {
+  std::array<double, kPtzColumns> values{};
+  if (fields.size() != kPtzColumns) return std::nullopt;
+  for (std::size_t i = 0; i < kPtzColumns; ++i) {
     const auto value = number_of(fields[i]);
     if (!value) return std::nullopt;
     values[i] = *value;
@@ -45,8 +45,8 @@ bool is_lost(const std::vector<std::string_view>& fields) {
   return true;
 }
 
-TurningCamera::Turn turn_of(const std::array<double, kTurnsColumns>& row, cv::Size size) {
-  TurningCamera::Turn turn;
+PtzCamera::Turn turn_of(const std::array<double, kPtzColumns>& row, cv::Size size) {
+  PtzCamera::Turn turn;
   turn.time_s = row[0];
   turn.heading = geometry::Heading{row[1] * kTurnDegree, row[2] * kTurnDegree, std::log(row[3] / (size.width / 2.0))};
   const Vector<3> sd(row[4] * kTurnDegree, row[5] * kTurnDegree, row[6] / row[3]);
@@ -58,42 +58,42 @@ TurningCamera::Turn turn_of(const std::array<double, kTurnsColumns>& row, cv::Si
   return turn;
 }
 
-bool in_domain(const std::array<double, kTurnsColumns>& row) {
-  bool good = std::abs(row[1]) < kMostDegrees && std::abs(row[2]) < kMostDegrees && row[3] > 1 && row[3] < 1e7;
+bool in_domain(const std::array<double, kPtzColumns>& row) {
+  bool good = std::abs(row[1]) < kMaxDegrees && std::abs(row[2]) < kMaxDegrees && row[3] > 1 && row[3] < 1e7;
   for (std::size_t i = 4; i < 7; ++i) good = good && row[i] >= 0 && row[i] < 1e6;
-  for (std::size_t i = 7; i < kTurnsColumns; ++i) good = good && std::abs(row[i]) <= 1;
+  for (std::size_t i = 7; i < kPtzColumns; ++i) good = good && std::abs(row[i]) <= 1;
   return good;
 }
 
-/// What a camera's table says of how it turns; nothing where it stands.
-std::shared_ptr<const TurningCamera> turning_in(const Section& section, const std::string& folder) {
+/// What a camera's table says of how it turns; nothing if it stands.
+std::shared_ptr<const PtzCamera> ptz_in(const Section& section, const std::string& folder) {
   const auto file = section.text("turns");
   if (!section.has("turns")) {
     for (const char* key : {"tripod", "lean", "nodal_offset", "bend"}) {
-      if (section.has(key)) section.problem(key, fmt::format("{} is of a camera that turns: add turns = \"FILE.csv\"", key));
+      if (section.has(key)) section.problem(key, fmt::format("{} is of a PTZ camera: add turns = \"FILE.csv\"", key));
     }
     return nullptr;
   }
   for (const char* key : {"focal", "rotation", "translation", "ground_from_image"}) {
     if (section.has(key))
-      section.problem(key, fmt::format("{} is of a camera that stands, and this one has turns; keep one of them", key));
+      section.problem(key, fmt::format("{} is of a static camera, and this one has turns; keep one of them", key));
   }
-  if (!section.has("tripod")) section.problem("turns", "a camera that turns needs its place: add tripod = [x, y, z] in m");
+  if (!section.has("tripod")) section.problem("turns", "a PTZ camera needs its place: add tripod = [x, y, z] in m");
   if (!section.has("size"))
-    section.problem("turns", "a camera that turns needs the size its focal lengths are for: add size = [width, height]");
+    section.problem("turns", "a PTZ camera needs the size its focal lengths are for: add size = [width, height]");
   const auto size = section.numbers("size", 2, 2, "[width, height] in px"),
-             place = section.numbers("tripod", 3, 3, "[x, y, z] in m"),
+             location = section.numbers("tripod", 3, 3, "[x, y, z] in m"),
              lean = section.numbers("lean", 3, 3, "[about x, about y, roll] in degrees");
   const auto ahead = section.number("nodal_offset"), bend = section.number("bend");
-  if (!file || !place || !size) return nullptr;
-  auto camera = std::make_shared<TurningCamera>();
-  camera->tripod.place = {(*place)[0], (*place)[1], (*place)[2]};
+  if (!file || !location || !size) return nullptr;
+  auto camera = std::make_shared<PtzCamera>();
+  camera->tripod.location = {(*location)[0], (*location)[1], (*location)[2]};
   if (lean)
     camera->tripod.lean = {(*lean)[0] * kTurnDegree, (*lean)[1] * kTurnDegree}, camera->tripod.roll = (*lean)[2] * kTurnDegree;
   camera->tripod.ahead = ahead.value_or(0), camera->tripod.bend = bend.value_or(0);
   try {
     const std::string path = (std::filesystem::path(folder) / *file).string();
-    camera->turns = parse_turns(read_file(path), path, cv::Size(static_cast<int>((*size)[0]), static_cast<int>((*size)[1])));
+    camera->rotations = parse_ptz(read_file(path), path, cv::Size(static_cast<int>((*size)[0]), static_cast<int>((*size)[1])));
   } catch (const Error& error) {
     section.problem("turns", error.what());
     return nullptr;
@@ -102,29 +102,29 @@ std::shared_ptr<const TurningCamera> turning_in(const Section& section, const st
 }
 
 /// The keys of a camera's table that tell how it turns.
-std::string tripod_text(const geometry::Tripod& tripod, const std::string& turns) {
+std::string tripod_text(const geometry::Tripod& tripod, const std::string& rotations) {
   return fmt::format(
       "turns = \"{}\"  # where it looks, a row a frame\n"
       "tripod = [{:.6f}, {:.6f}, {:.6f}]  # m: where the axes of pan and tilt meet\n"
       "lean = [{:.6f}, {:.6f}, {:.6f}]  # of the pan axis about x and y, and roll, in degrees\n"
       "nodal_offset = {:.6f}  # m from the axes to the centre of projection\n"
       "bend = {:.8f}  # radial term per half picture width squared\n",
-      turns, tripod.place.x(), tripod.place.y(), tripod.place.z(), tripod.lean.x() / kTurnDegree, tripod.lean.y() / kTurnDegree,
-      tripod.roll / kTurnDegree, tripod.ahead, tripod.bend);
+      rotations, tripod.location.x(), tripod.location.y(), tripod.location.z(), tripod.lean.x() / kTurnDegree,
+      tripod.lean.y() / kTurnDegree, tripod.roll / kTurnDegree, tripod.ahead, tripod.bend);
 }
 
 }  // namespace
 
-std::vector<TurningCamera::Turn> parse_turns(std::string_view text, const std::string& name, cv::Size size) {
-  std::vector<TurningCamera::Turn> turns;
+std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string& name, cv::Size size) {
+  std::vector<PtzCamera::Turn> rotations;
   TextLines lines(text);
   std::string_view line;
   std::vector<std::string_view> fields;
-  if (!lines.next(line) || line != kTurnsHeader) throw Error("{}:1: its first line must read {}", name, kTurnsHeader);
+  if (!lines.next(line) || line != kPtzHeader) throw Error("{}:1: its first line must read {}", name, kPtzHeader);
   while (lines.next(line)) {
     if (line.empty()) continue;
     split_fields(line, ',', fields);
-    TurningCamera::Turn turn;
+    PtzCamera::Turn turn;
     const auto time = number_of(fields[0]);
     if (!time) throw Error("{}:{}: a row begins with its frame's time in s", name, lines.number());
     turn.time_s = *time;
@@ -132,24 +132,24 @@ std::vector<TurningCamera::Turn> parse_turns(std::string_view text, const std::s
       const auto row = numbers_in_row(fields);
       if (!row || !in_domain(*row))
         throw Error(
-            "{}:{}: {} is no row of turns: time in s, pan and tilt in degrees, a positive focal length in px, three standard "
+            "{}:{}: {} is not a row of turns: time in s, pan and tilt in degrees, a positive focal length in px, three standard "
             "deviations, three correlations; or the time alone where the camera is lost",
             name, lines.number(), shown(line));
       turn = turn_of(*row, size);
     }
-    if (!turns.empty() && turn.time_s <= turns.back().time_s)
+    if (!rotations.empty() && turn.time_s <= rotations.back().time_s)
       throw Error("{}:{}: its time {} s is not after that of the row before; rows go by time", name, lines.number(), turn.time_s);
-    turns.push_back(turn);
+    rotations.push_back(turn);
   }
-  if (turns.empty()) throw Error("{}: it has not one frame", name);
-  return turns;
+  if (rotations.empty()) throw Error("{}: it has not one frame", name);
+  return rotations;
 }
 
-std::string turns_text(const TurningCamera& camera, cv::Size size) {
-  std::string text(kTurnsHeader);
+std::string ptz_text(const PtzCamera& camera, cv::Size size) {
+  std::string text(kPtzHeader);
   text += '\n';
   const auto add = std::back_inserter(text);
-  for (const TurningCamera::Turn& turn : camera.turns) {
+  for (const PtzCamera::Turn& turn : camera.rotations) {
     if (!turn.heading) {
       fmt::format_to(add, "{:.6f},,,,,,,,,\n", turn.time_s);
       continue;
@@ -167,7 +167,7 @@ std::string turns_text(const TurningCamera& camera, cv::Size size) {
   return text;
 }
 
-std::vector<std::shared_ptr<const TurningCamera>> read_turning(const std::string& rig_path) {
+std::vector<std::shared_ptr<const PtzCamera>> read_ptz(const std::string& rig_path) {
   const std::string text = read_file(rig_path);
   check_nesting(text, Notation::toml, rig_path);
   toml::table file;
@@ -178,31 +178,31 @@ std::vector<std::shared_ptr<const TurningCamera>> read_turning(const std::string
   }
   const std::string folder = std::filesystem::path(rig_path).parent_path().string();
   Problems problems(rig_path);
-  std::vector<std::shared_ptr<const TurningCamera>> turning;
+  std::vector<std::shared_ptr<const PtzCamera>> ptz;
   const toml::array* cameras = file["camera"].as_array();
   for (std::size_t i = 0; cameras != nullptr && i < cameras->size(); ++i) {
     if (const toml::table* table = cameras->get(i)->as_table())
-      turning.push_back(turning_in(Section(*table, fmt::format("camera {}", i + 1), problems), folder));
+      ptz.push_back(ptz_in(Section(*table, fmt::format("camera {}", i + 1), problems), folder));
   }
   problems.throw_if_any();
-  return turning;
+  return ptz;
 }
 
-void write_turning_rig(const Rig& rig, const std::vector<std::shared_ptr<const TurningCamera>>& turning, const std::string& path) {
-  const std::filesystem::path place(path);
+void write_ptz_rig(const Rig& rig, const std::vector<std::shared_ptr<const PtzCamera>>& ptz, const std::string& path) {
+  const std::filesystem::path location(path);
   std::string text;
-  Rig camera_alone = rig;  // the text is the usual one, camera by camera, each followed by its tripod
-  const std::string folder = place.parent_path().empty() ? "." : place.parent_path().string();
+  Rig camera_alone = rig;  // the text is the typical one, camera by camera, each followed by its tripod
+  const std::string folder = location.parent_path().empty() ? "." : location.parent_path().string();
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     camera_alone.cameras = {rig.cameras[i]};
     const std::string one = rig_text(camera_alone, folder);
     text += i == 0 ? one : one.substr(one.find("\n[[camera]]"));
-    if (i >= turning.size() || !turning[i]) continue;
-    const std::string name = fmt::format("{}_{}_turns.csv", place.stem().string(), rig.cameras[i].name);
-    WholeFile rows((place.parent_path() / name).string());
-    rows.write(turns_text(*turning[i], rig.cameras[i].size.value()));
+    if (i >= ptz.size() || !ptz[i]) continue;
+    const std::string name = fmt::format("{}_{}_turns.csv", location.stem().string(), rig.cameras[i].name);
+    WholeFile rows((location.parent_path() / name).string());
+    rows.write(ptz_text(*ptz[i], rig.cameras[i].size.value()));
     rows.finish();
-    text += tripod_text(turning[i]->tripod, name);
+    text += tripod_text(ptz[i]->tripod, name);
   }
   WholeFile file(path);
   file.write(text);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostCameras = 1000;
+constexpr int kMaxCameras = 1000;
 
 std::ifstream opened(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -52,7 +52,7 @@ using SpacePoint = std::array<double, 4>;  // and how often it came before in th
 std::map<SpacePoint, std::int64_t> ranks(const std::vector<std::vector<SpacePoint>>& by_camera) {
   std::map<SpacePoint, std::set<SpacePoint>> after;
   std::map<SpacePoint, int> waits_for;
-  std::map<SpacePoint, std::pair<std::size_t, std::size_t>> first_seen;  // row, camera: the order where cameras do not tell
+  std::map<SpacePoint, std::pair<std::size_t, std::size_t>> first_seen;  // row, camera: the order where cameras do not specify
   for (std::size_t camera = 0; camera < by_camera.size(); ++camera) {
     const auto& rows = by_camera[camera];
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -75,7 +75,7 @@ std::map<SpacePoint, std::int64_t> ranks(const std::vector<std::vector<SpacePoin
     }
   }
   // Cameras that contradict each other about the order leave a circle: those go last.
-  for (const auto& [point, seen] : first_seen) result.emplace(point, std::ssize(result));
+  for (const auto& [point, detected] : first_seen) result.emplace(point, std::ssize(result));
   return result;
 }
 
@@ -110,15 +110,16 @@ SelfCalFolder::SelfCalFolder(std::string path) : path_(std::move(path)) {
   } else if (fs::exists(file("Pmatrices.dat"))) {
     cameras_ = static_cast<int>(read_number_table(file("Pmatrices.dat")).rows() / 3);
   } else {
-    while (cameras_ < kMostCameras &&
+    while (cameras_ < kMaxCameras &&
            (first_of("cam", cameras_ + 1, ".points4cal.dat") || first_of("camera", cameras_ + 1, ".Pmat.cal"))) {
       ++cameras_;
     }
   }
-  if (cameras_ > kMostCameras) throw Error("{}: {} cameras; a folder has at most {}", path_, cameras_, kMostCameras);
+  if (cameras_ > kMaxCameras) throw Error("{}: {} cameras; a folder has at most {}", path_, cameras_, kMaxCameras);
   if (cameras_ == 0) {
     throw Error(
-        "{}: this is no MultiCamSelfCal folder: there is no points.dat, camN.points4cal.dat, cameraN.Pmat.cal or Pmatrices.dat in "
+        "{}: this is not a MultiCamSelfCal folder: there is no points.dat, camN.points4cal.dat, cameraN.Pmat.cal or Pmatrices.dat "
+        "in "
         "it",
         path_);
   }
@@ -170,19 +171,19 @@ std::vector<SelfCalFolder::Point> SelfCalFolder::points() const {
 
 std::vector<SelfCalFolder::Point> SelfCalFolder::points_of_table() const {
   std::vector<Point> result;
-  const Eigen::MatrixXd places = read_number_table(file("points.dat"));
-  if (places.rows() != 3 * cameras_)
-    throw Error("{}: {} rows for {} cameras; there must be three for each", file("points.dat"), places.rows(), cameras_);
-  Eigen::MatrixXd seen = Eigen::MatrixXd::Ones(cameras_, places.cols());
-  if (fs::exists(file("IdMat.dat"))) seen = read_number_table(file("IdMat.dat"));
-  if (seen.cols() != places.cols()) {
-    throw Error("{}: {} columns, and {} in points.dat; they must agree", file("IdMat.dat"), seen.cols(), places.cols());
+  const Eigen::MatrixXd locations = read_number_table(file("points.dat"));
+  if (locations.rows() != 3 * cameras_)
+    throw Error("{}: {} rows for {} cameras; there must be three for each", file("points.dat"), locations.rows(), cameras_);
+  Eigen::MatrixXd detected = Eigen::MatrixXd::Ones(cameras_, locations.cols());
+  if (fs::exists(file("IdMat.dat"))) detected = read_number_table(file("IdMat.dat"));
+  if (detected.cols() != locations.cols()) {
+    throw Error("{}: {} columns, and {} in points.dat; they must agree", file("IdMat.dat"), detected.cols(), locations.cols());
   }
-  for (Eigen::Index frame = 0; frame < places.cols(); ++frame) {
+  for (Eigen::Index frame = 0; frame < locations.cols(); ++frame) {
     for (int camera = 0; camera < cameras_; ++camera) {
-      const Vector<3> place = places.block<3, 1>(3 * camera, frame);
-      if (!(seen(camera, frame) > 0) || !place.allFinite() || place.z() == 0) continue;
-      result.push_back({camera, frame, place.head<2>()});
+      const Vector<3> location = locations.block<3, 1>(3 * camera, frame);
+      if (!(detected(camera, frame) > 0) || !location.allFinite() || location.z() == 0) continue;
+      result.push_back({camera, frame, location.head<2>()});
     }
   }
   return result;
@@ -196,7 +197,7 @@ std::vector<SelfCalFolder::Point> SelfCalFolder::points_of_lists() const {
     if (!path) continue;
     const Eigen::MatrixXd table = read_number_table(*path);
     if (table.cols() != 7)
-      throw Error("{}: {} columns; there must be seven: the point in space (4) and in the picture (3)", *path, table.cols());
+      throw Error("{}: {} columns; there must be seven: the point in space (4) and in the image (3)", *path, table.cols());
     std::map<SpacePoint, int> times;
     for (Eigen::Index i = 0; i < table.rows(); ++i) {
       if (!table.row(i).allFinite()) continue;
@@ -222,7 +223,7 @@ std::optional<cv::Size> SelfCalFolder::size(int camera) const {
     throw Error("{}: there must be width and height for each of {} cameras", file("Res.dat"), cameras_);
   const double width = table(camera, 0), height = table(camera, 1);
   if (!(width >= 1 && height >= 1 && width <= 1e5 && height <= 1e5))
-    throw Error("{}: a picture of {} x {} px is none", file("Res.dat"), width, height);
+    throw Error("{}: an image of {} x {} px is not one", file("Res.dat"), width, height);
   return cv::Size(static_cast<int>(width), static_cast<int>(height));
 }
 

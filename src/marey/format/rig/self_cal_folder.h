@@ -11,8 +11,8 @@
 
 namespace marey::format::rig {
 
-/// A folder as MultiCamSelfCal (Svoboda, Martinec, Pajdla 2005) reads and leaves it. Files that are missing are told as missing.
-/// All throw Error, `file:LINE: …` where there is a line, for a file that is not what its name says.
+/// A folder as MultiCamSelfCal (Svoboda, Martinec, Pajdla 2005) reads and leaves it. Files that are missing are reported as
+/// missing. All throw Error, `file:LINE: …` where there is a line, for a file that is not what its name says.
 class SelfCalFolder {
  public:
   explicit SelfCalFolder(std::string path);
@@ -56,7 +56,7 @@ class SelfCalFolder {
 };
 
 /// A table of numbers as Octave and Matlab write them: rows of numbers between blanks, commas or semicolons; lines that begin with
-/// # or % are remarks. Throws Error where it cannot be read, rows differ in length, or something is no number (NaN is one).
+/// # or % are remarks. Throws Error if it cannot be read, rows differ in length, or something is no number (NaN is one).
 Eigen::MatrixXd read_number_table(const std::string& path);
 
 }  // namespace marey::format::rig

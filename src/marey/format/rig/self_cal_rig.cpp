@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/rig/imported_rig.h"
 #include "marey/format/rig/self_cal_folder.h"
 #include "marey/geometry/lens_fit.h"
@@ -23,7 +23,7 @@ struct Decomposed {
   Rigid3 camera_from_world;
 };
 
-/// P up to scale as K [R | t], R a rotation. Nothing where its left part is singular.
+/// P up to scale as K [R | t], R a rotation. Nothing if its left part is singular.
 std::optional<Decomposed> decomposed(const Projection& given) {
   Projection P = given / given.leftCols<3>().row(2).norm();
   if (P.leftCols<3>().determinant() < 0) P = -P;
@@ -49,7 +49,7 @@ bool is_mirrored(const Decomposed& camera, const Eigen::Matrix<double, 3, Eigen:
   return 10 * behind > 9 * points.cols();
 }
 
-/// Sets lens and pose; how far the one lens is from the two, px RMS over the picture (the matrix may have a skew).
+/// Sets lens and pose; how far the one lens is from the two, px RMS over the image (the matrix may have a skew).
 double set_lens(RigCamera& camera, const Decomposed& found, const std::optional<geometry::BrownLens>& rad) {
   geometry::BrownLens pinhole;
   pinhole.focal = {found.K(0, 0), found.K(1, 1)};

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/format.h"
 #include "marey/format/nesting.h"
 #include "marey/format/read_file.h"
@@ -21,11 +21,11 @@ namespace {
 using nlohmann::json;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kFarthestPlace = 1e5;  // m
-constexpr double kLargestFocal = 1e7;   // px
+constexpr double kMaxPositionDistance = 1e5;  // m
+constexpr double kMaxFocal = 1e7;             // px
 
 /// Ours from theirs, without the shift of the origin: y and z turned over.
-Matrix<3> turned_over() {
+Matrix<3> rotated_over() {
   return Vector<3>(1, -1, -1).asDiagonal();
 }
 
@@ -60,18 +60,18 @@ class CameraReader {
     try {
       root_ = json::parse(text);
     } catch (const json::parse_error& error) {
-      throw Error("{}: is no JSON: it breaks off or is wrong at byte {}", name, error.byte);
+      throw Error("{}: is not a JSON: it breaks off or is wrong at byte {}", name, error.byte);
     }
-    if (!root_.is_object()) throw Error("{}: is no camera of SoccerNet: it must be an object", name);
+    if (!root_.is_object()) throw Error("{}: is not a camera of SoccerNet: it must be an object", name);
   }
 
-  double number(const char* key, double most) const { return checked(at(key), key, most); }
+  double number(const char* key, double maximum) const { return checked(at(key), key, maximum); }
 
-  std::vector<double> numbers(const char* key, std::size_t count, double most) const {
+  std::vector<double> numbers(const char* key, std::size_t count, double maximum) const {
     const json& list = at(key);
     if (!list.is_array() || list.size() != count) throw Error("{}: \"{}\" must be a list of {} numbers", name_, key, count);
     std::vector<double> values;
-    for (const json& value : list) values.push_back(checked(value, key, most));
+    for (const json& value : list) values.push_back(checked(value, key, maximum));
     return values;
   }
 
@@ -84,9 +84,9 @@ class CameraReader {
     return *found;
   }
 
-  double checked(const json& value, const char* key, double most) const {
-    if (!value.is_number() || !(std::abs(value.get<double>()) <= most))
-      throw Error("{}: \"{}\" must be a number, {} at most", name_, key, most);
+  double checked(const json& value, const char* key, double maximum) const {
+    if (!value.is_number() || !(std::abs(value.get<double>()) <= maximum))
+      throw Error("{}: \"{}\" must be a number, {} at most", name_, key, maximum);
     return value.get<double>();
   }
 
@@ -102,11 +102,11 @@ int size_about(double principal) {
 
 geometry::BrownLens lens_of(const CameraReader& file, const std::string& name) {
   geometry::BrownLens lens;
-  lens.focal = {file.number("x_focal_length", kLargestFocal), file.number("y_focal_length", kLargestFocal)};
+  lens.focal = {file.number("x_focal_length", kMaxFocal), file.number("y_focal_length", kMaxFocal)};
   if (!(lens.focal.minCoeff() > 0)) throw Error("{}: focal lengths must be positive", name);
   const auto principal = file.numbers("principal_point", 2, 1e5);
   lens.principal = {principal[0], principal[1]};
-  if (!(lens.principal.minCoeff() >= 1)) throw Error("{}: \"principal_point\" must lie in the picture", name);
+  if (!(lens.principal.minCoeff() >= 1)) throw Error("{}: \"principal_point\" must lie in the image", name);
   if (file.has("radial_distortion")) {
     const auto k = file.numbers("radial_distortion", 6, 1e6);
     lens.distortion[0] = k[0], lens.distortion[1] = k[1];
@@ -149,8 +149,8 @@ void write_rig_of_one(const Rig& rig, const std::string& path) {
 std::string soccernet_camera_text(const Camera& camera, const geometry::PitchSize& size) {
   const auto* lens = std::get_if<geometry::BrownLens>(&camera.lens());
   if (lens == nullptr) throw Error("SoccerNet's camera file knows the lens model brown alone, not {}", name_of(camera.lens()));
-  const Vector<3> place = turned_over() * (camera.centre() - corner_of(size));
-  const Angles angles = angles_of(turned_over() * camera.camera_from_world().rotation.transpose());
+  const Vector<3> location = rotated_over() * (camera.centre() - corner_of(size));
+  const Angles angles = angles_of(rotated_over() * camera.camera_from_world().rotation.transpose());
   const auto& k = lens->distortion;
   return fmt::format(
       "{{\n  \"pan_degrees\": {:.10g},\n  \"tilt_degrees\": {:.10g},\n  \"roll_degrees\": {:.10g},\n"
@@ -158,7 +158,7 @@ std::string soccernet_camera_text(const Camera& camera, const geometry::PitchSiz
       "  \"principal_point\": [{:.10g}, {:.10g}],\n  \"radial_distortion\": [{:.10g}, {:.10g}, {:.10g}, {:.10g}, {:.10g}, "
       "{:.10g}],\n"
       "  \"tangential_distortion\": [{:.10g}, {:.10g}],\n  \"thin_prism_distortion\": [0.0, 0.0, 0.0, 0.0]\n}}\n",
-      angles.pan / kDegree, angles.tilt / kDegree, angles.roll / kDegree, place.x(), place.y(), place.z(), lens->focal.x(),
+      angles.pan / kDegree, angles.tilt / kDegree, angles.roll / kDegree, location.x(), location.y(), location.z(), lens->focal.x(),
       lens->focal.y(), lens->principal.x(), lens->principal.y(), k[0], k[1], k[4], k[5], k[6], k[7], k[2], k[3]);
 }
 
@@ -166,11 +166,11 @@ Camera parse_soccernet_camera(std::string_view text, const std::string& name, co
   const CameraReader file(text, name);
   const Angles angles{kDegree * file.number("pan_degrees", 1e4), kDegree * file.number("tilt_degrees", 1e4),
                       kDegree * file.number("roll_degrees", 1e4)};
-  const auto place = file.numbers("position_meters", 3, kFarthestPlace);
+  const auto location = file.numbers("position_meters", 3, kMaxPositionDistance);
   const geometry::BrownLens lens = lens_of(file, name);
   Rigid3 pose;
-  pose.rotation = rotation_of(angles).transpose() * turned_over();
-  const Vector<3> centre = turned_over() * Vector<3>(place[0], place[1], place[2]) + corner_of(size);
+  pose.rotation = rotation_of(angles).transpose() * rotated_over();
+  const Vector<3> centre = rotated_over() * Vector<3>(location[0], location[1], location[2]) + corner_of(size);
   pose.translation = -(pose.rotation * centre);
   return {lens, pose, cv::Size(size_about(lens.principal.x()), size_about(lens.principal.y()))};
 }
@@ -181,7 +181,7 @@ Format soccernet_camera_format() {
           .endings = {},
           .holds = Content::rig,
           .detail =
-              "JSON of one camera of a pitch of 105 x 68 m, degrees, m from its middle, z down; the picture's size is twice the "
+              "JSON of one camera of a pitch of 105 x 68 m, degrees, m from its middle, z down; the image's size is twice the "
               "principal point",
           .is = [](const Beginning& file) { return file.is_text() && file.has("\"pan_degrees\"") && file.has("\"tilt_degrees\""); },
           .read_rig = read_rig_of_one,

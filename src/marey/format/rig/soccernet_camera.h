@@ -14,7 +14,7 @@ namespace marey::format::rig {
 /// brown.
 std::string soccernet_camera_text(const Camera& camera, const geometry::PitchSize& size);
 
-/// The same back. The picture's size is not in the file: it is twice the principal point. Throws Error, `name` in front, where
+/// The same back. The image's size is not in the file: it is twice the principal point. Throws Error, `name` in front, where
 /// something is missing or cannot be, and for thin prism distortion, which our lenses do not have.
 Camera parse_soccernet_camera(std::string_view text, const std::string& name, const geometry::PitchSize& size);
 

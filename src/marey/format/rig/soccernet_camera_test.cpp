@@ -15,13 +15,13 @@ const std::string kCamera = R"({"pan_degrees": -30.0, "tilt_degrees": 75.0, "rol
   "radial_distortion": [0.1, 0, 0, 0, 0, 0], "tangential_distortion": [0, 0], "thin_prism_distortion": [0, 0, 0, 0]})";
 
 /// The pixel of a place in SoccerNet's frame, written out as its own code does.
-Vector<2> pixel_by_soccernet(const Vector<3>& place) {
+Vector<2> pixel_by_soccernet(const Vector<3>& location) {
   const double p = -30 * std::numbers::pi / 180, t = 75 * std::numbers::pi / 180, r = 2 * std::numbers::pi / 180;
   Matrix<3> pan, tilt, roll;
   pan << std::cos(p), -std::sin(p), 0, std::sin(p), std::cos(p), 0, 0, 0, 1;
   tilt << 1, 0, 0, 0, std::cos(t), -std::sin(t), 0, std::sin(t), std::cos(t);
   roll << std::cos(r), -std::sin(r), 0, std::sin(r), std::cos(r), 0, 0, 0, 1;
-  const Vector<3> at = (pan * tilt * roll).transpose() * (place - Vector<3>(3, 60, -15));
+  const Vector<3> at = (pan * tilt * roll).transpose() * (location - Vector<3>(3, 60, -15));
   const Vector<2> plane(at.x() / at.z(), at.y() / at.z());
   return 2100 * plane * (1 + 0.1 * plane.squaredNorm()) + Vector<2>(480, 270);
 }
@@ -29,10 +29,10 @@ Vector<2> pixel_by_soccernet(const Vector<3>& place) {
 TEST(SoccernetCamera, SeesWhatTheirCodeSees) {
   const Camera camera = parse_soccernet_camera(kCamera, "camera.json", {});
   EXPECT_EQ(camera.size(), cv::Size(960, 540));
-  for (const Vector<3>& place : {Vector<3>(40, 0, 0), Vector<3>(20, -20, 0), Vector<3>(52.5, 3.66, -2.44)}) {
-    const auto pixel = camera.project({place.x() + 52.5, 34 - place.y(), -place.z()});
+  for (const Vector<3>& location : {Vector<3>(40, 0, 0), Vector<3>(20, -20, 0), Vector<3>(52.5, 3.66, -2.44)}) {
+    const auto pixel = camera.project({location.x() + 52.5, 34 - location.y(), -location.z()});
     ASSERT_TRUE(pixel);
-    EXPECT_LT((*pixel - pixel_by_soccernet(place)).norm(), 1e-9);
+    EXPECT_LT((*pixel - pixel_by_soccernet(location)).norm(), 1e-9);
   }
 }
 
@@ -45,7 +45,7 @@ TEST(SoccernetCamera, IsWrittenAndReadBack) {
   EXPECT_EQ(again.size(), camera.size());
 }
 
-TEST(SoccernetCamera, WhatIsMissingOrImpossibleIsSaid) {
+TEST(SoccernetCamera, ReportsMissingAndImpossibleValues) {
   const auto refused = [](std::string text, const std::string& from, const std::string& to) -> std::string {
     text.replace(text.find(from), from.size(), to);
     try {

@@ -6,8 +6,8 @@
 #include <pugixml.hpp>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/rig/imported_rig.h"
 #include "marey/format/xml_text.h"

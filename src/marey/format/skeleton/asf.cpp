@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/read_file.h"
 #include "marey/format/skeleton/skeleton_file.h"
 #include "marey/format/skeleton/skeleton_recording.h"
@@ -21,7 +21,7 @@ namespace marey::format::skeleton {
 namespace {
 
 constexpr double kInchM = 0.0254;
-constexpr std::size_t kMostBones = 10'000;
+constexpr std::size_t kMaxBones = 10'000;
 constexpr std::size_t kFewNumbers = 1'000'000;
 
 std::vector<std::string> tokens_of(std::string_view line) {
@@ -79,7 +79,7 @@ class AsfText {
     file_.unit_m = unit_m_;
     for (const Bone& bone : bones_) {
       if (!bone.segment)
-        file_.warnings.push_back(fmt::format("{}: the bone {} hangs nowhere; it is left out", name_, shown(bone.name)));
+        file_.warnings.push_back(fmt::format("{}: the bone {} hangs nowhere; it is omitted", name_, shown(bone.name)));
     }
     return std::move(file_);
   }
@@ -110,7 +110,7 @@ class AsfText {
 
   void bone_data(const std::vector<std::string>& words) {
     if (words.front() == "begin") {
-      if (bones_.size() >= kMostBones) fail(fmt::format("more than {} bones", kMostBones));
+      if (bones_.size() >= kMaxBones) fail(fmt::format("more than {} bones", kMaxBones));
       bones_.emplace_back();
     } else if (words.front() != "end") {
       if (bones_.empty()) fail("a bone's data outside begin and end");
@@ -152,14 +152,14 @@ class AsfText {
     }
   }
 
-  Bone& bone_called(const std::string& wanted) {
-    if (wanted == "root") return root_;
-    const auto found = std::find_if(bones_.begin(), bones_.end(), [&](const Bone& bone) { return bone.name == wanted; });
-    if (found == bones_.end()) fail(fmt::format("there is no bone {}", shown(wanted)));
+  Bone& bone_called(const std::string& required) {
+    if (required == "root") return root_;
+    const auto found = std::find_if(bones_.begin(), bones_.end(), [&](const Bone& bone) { return bone.name == required; });
+    if (found == bones_.end()) fail(fmt::format("there is no bone {}", shown(required)));
     return *found;
   }
 
-  static Matrix<3> fixed_turns(const Vector<3>& angles) {
+  static Matrix<3> fixed_rotations(const Vector<3>& angles) {
     return (Eigen::AngleAxisd(angles.z(), Vector<3>::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vector<3>::UnitY()) *
             Eigen::AngleAxisd(angles.x(), Vector<3>::UnitX()))
         .toRotationMatrix();
@@ -168,7 +168,7 @@ class AsfText {
   void hang(Bone& bone, const std::optional<Bone>& parent) {
     Segment segment;
     segment.name = bone.name;
-    const Matrix<3> own_axes = fixed_turns(bone.axis);
+    const Matrix<3> own_axes = fixed_rotations(bone.axis);
     segment.joint.parent_from_joint.rotation = own_axes;
     if (parent) {
       segment.parent = parent->segment;
@@ -188,12 +188,12 @@ class AsfText {
 
   /// The first turn of `dof` is the innermost. A root's shifts come before its own axes.
   void add_axes(const Bone& bone, Joint& joint, bool root, const Matrix<3>& own_axes) {
-    std::vector<JointAxis> shifts, turns;
+    std::vector<JointAxis> shifts, rotations;
     for (std::size_t i = 0; i < bone.dof.size(); ++i) {
       const std::string& dof = bone.dof[i];
       if (dof == "l") continue;
       if (dof.size() != 2 || (dof[0] != 'r' && dof[0] != 't') || dof[1] < 'x' || dof[1] > 'z')
-        fail(fmt::format("{} is no degree of freedom", shown(dof)));
+        fail(fmt::format("{} is not a degree of freedom", shown(dof)));
       const bool is_turn = dof[0] == 'r';
       Coordinate coordinate{fmt::format("{}_{}", bone.name, dof), is_turn, 0, {}, {}, false, {}};
       if (is_turn && i < bone.limits.size() && bone.limits[i].first <= bone.limits[i].second) {
@@ -203,19 +203,19 @@ class AsfText {
       const JointAxis axis{is_turn, Vector<3>::Unit(dof[1] - 'x'), {}, static_cast<int>(file_.skeleton.coordinates.size())};
       file_.skeleton.coordinates.push_back(std::move(coordinate));
       if (is_turn) {
-        turns.insert(turns.begin(), axis);
+        rotations.insert(rotations.begin(), axis);
       } else {
         shifts.push_back(axis);
       }
     }
-    if (turns.size() > 3 || shifts.size() > 3) fail(fmt::format("{} has more than six degrees of freedom", shown(bone.name)));
+    if (rotations.size() > 3 || shifts.size() > 3) fail(fmt::format("{} has more than six degrees of freedom", shown(bone.name)));
     joint.axes = shifts;
     if (root && !own_axes.isIdentity(1e-12)) {  // C before the turns, and back behind them
       const Eigen::AngleAxisd whole(own_axes);
       joint.axes.push_back({true, whole.axis(), CoordinateFunction::constant(whole.angle()), {}});
       joint.joint_from_segment.rotation = own_axes.transpose();
     }
-    joint.axes.insert(joint.axes.end(), turns.begin(), turns.end());
+    joint.axes.insert(joint.axes.end(), rotations.begin(), rotations.end());
   }
 
   TextLines lines_;
@@ -275,7 +275,7 @@ SkeletonMotion parse_amc(std::string_view text, const std::string& name, const S
       if (!value || std::abs(*value) > 1e7)
         throw Error("{}:{}: {} is no number that could stand here", name, lines.number(), shown(words[i + 1]));
       const auto at = static_cast<std::size_t>(bone->second[i]);
-      motion.rows.back()[at] = *value * (asf.coordinates[at].turns ? radians : skeleton.unit_m);
+      motion.rows.back()[at] = *value * (asf.coordinates[at].rotations ? radians : skeleton.unit_m);
     }
   }
   if (motion.rows.empty()) throw Error("{}: has no frames", name);
@@ -287,30 +287,30 @@ std::unique_ptr<FileReader> open_acclaim(const std::string& path, const ReadOpti
   const SkeletonOptions options = skeleton_options(how);
   const std::string text = read_file(path);
   if (text.find(":bonedata") != std::string::npos) return recording_of(parse_asf(text, path, options), path);
-  const std::string asf = how.metadata.empty() ? asf_beside(path) : how.metadata;
+  const std::string asf = how.metadata.empty() ? asf_next_to(path) : how.metadata;
   SkeletonFile file = parse_asf(read_file(asf), asf, options);
   file.motion = parse_amc(text, path, file, options);
   return recording_of(std::move(file), path);
 }
 
 Format acclaim_format() {
-  return {
-      .name = "amc",
-      .title = "an AMC or ASF file",
-      .endings = "",
-      .holds = Content::space,
-      .detail =
-          "units as the .asf says, y up, 120 Hz where not told otherwise; joints as points, bones as bodies. Of an .amc file the "
-          ".asf beside it is read, or `--metadata`",
-      .is =
-          [](const Beginning& file) {
-            if (!file.is_text()) return false;
-            const bool motion = file.has(":FULLY-SPECIFIED") || file.has(":DEGREES") || file.has(":RADIANS");
-            return motion || (file.has(":bonedata") && file.has(":root"));
-          },
-      .open = open_acclaim,
-      .z_up = true,
-      .skeleton = true};
+  return {.name = "amc",
+          .title = "an AMC or ASF file",
+          .endings = "",
+          .holds = Content::space,
+          .detail =
+              "units as the .asf says, y up, 120 Hz where not reported otherwise; joints as points, bones as bodies. Of an .amc "
+              "file the "
+              ".asf beside it is read, or `--metadata`",
+          .is =
+              [](const Beginning& file) {
+                if (!file.is_text()) return false;
+                const bool motion = file.has(":FULLY-SPECIFIED") || file.has(":DEGREES") || file.has(":RADIANS");
+                return motion || (file.has(":bonedata") && file.has(":root"));
+              },
+          .open = open_acclaim,
+          .z_up = true,
+          .skeleton = true};
 }
 
 }  // namespace marey::format::skeleton

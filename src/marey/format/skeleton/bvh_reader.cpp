@@ -11,16 +11,16 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/skeleton/skeleton_file.h"
 #include "marey/format/text_rows.h"
 
 namespace marey::format::skeleton {
 namespace {
 
-constexpr std::size_t kMostJoints = 10'000;
+constexpr std::size_t kMaxJoints = 10'000;
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kFarthestUnits = 1e9;
+constexpr double kMaxDistanceUnits = 1e9;
 
 std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && static_cast<unsigned char>(text.front()) <= ' ') text.remove_prefix(1);
@@ -102,14 +102,14 @@ class BvhText {
     } else if (same_word(word, "CHANNELS")) {
       channels();
     } else {
-      fail(fmt::format("{} is no word of a BVH file's hierarchy", shown(word)));
+      fail(fmt::format("{} is not a word of a BVH file's hierarchy", shown(word)));
     }
   }
 
   void joint(bool root) {
     if (in_end_) fail("a joint within an End Site");
     if (root != open_.empty()) fail(root ? "a ROOT within a joint" : "a JOINT outside any other");
-    if (file_.skeleton.segments.size() >= kMostJoints) fail(fmt::format("more than {} joints", kMostJoints));
+    if (file_.skeleton.segments.size() >= kMaxJoints) fail(fmt::format("more than {} joints", kMaxJoints));
     std::string_view name = rest_;
     const bool opens = name.ends_with('{');
     if (opens) name.remove_suffix(1);
@@ -134,22 +134,22 @@ class BvhText {
 
   double finite_number(std::string_view word) const {
     const auto value = number_of(word);
-    if (!value || std::abs(*value) > kFarthestUnits) fail(fmt::format("{} is no number that could stand here", shown(word)));
+    if (!value || std::abs(*value) > kMaxDistanceUnits) fail(fmt::format("{} is no number that could stand here", shown(word)));
     return *value;
   }
 
   void offset() {
-    Vector<3> place;
-    for (int i = 0; i < 3; ++i) place[i] = finite_number(take_word(rest_)) * options_.unit_m;
+    Vector<3> location;
+    for (int i = 0; i < 3; ++i) location[i] = finite_number(take_word(rest_)) * options_.unit_m;
     Segment& segment = current();
     if (in_end_) {
-      segment.end = place;
+      segment.end = location;
       return;
     }
-    segment.joint.parent_from_joint.translation = place;
+    segment.joint.parent_from_joint.translation = location;
     if (!segment.parent) {
       const Matrix<3> up = z_up_from(options_.up);
-      segment.joint.parent_from_joint = {up, up * place};
+      segment.joint.parent_from_joint = {up, up * location};
     }
   }
 
@@ -159,8 +159,8 @@ class BvhText {
     if (!segment.joint.axes.empty()) fail(fmt::format("{} has CHANNELS twice", shown(segment.name)));
     const auto count = whole_number_of(take_word(rest_));
     if (!count || *count < 0 || *count > 6) fail("CHANNELS of a joint are 0 to 6");
-    std::vector<JointAxis> turns, shifts;
-    for (std::int64_t i = 0; i < *count; ++i) add_channel(segment, take_word(rest_), turns, shifts);
+    std::vector<JointAxis> rotations, shifts;
+    for (std::int64_t i = 0; i < *count; ++i) add_channel(segment, take_word(rest_), rotations, shifts);
     // What positions there are take the place of the offset: the joint rests where it is.
     for (const JointAxis& shift : shifts) {
       const Vector<3> in_file = segment.parent
@@ -170,24 +170,25 @@ class BvhText {
     }
     if (!shifts.empty()) forget_offset(segment, shifts);
     segment.joint.axes = std::move(shifts);
-    segment.joint.axes.insert(segment.joint.axes.end(), turns.begin(), turns.end());
+    segment.joint.axes.insert(segment.joint.axes.end(), rotations.begin(), rotations.end());
   }
 
   void forget_offset(Segment& segment, const std::vector<JointAxis>& shifts) const {
-    Rigid3& place = segment.joint.parent_from_joint;
+    Rigid3& location = segment.joint.parent_from_joint;
     for (const JointAxis& shift : shifts) {
-      const Vector<3> along = place.rotation * shift.axis;
-      place.translation -= along * along.dot(place.translation);
+      const Vector<3> along = location.rotation * shift.axis;
+      location.translation -= along * along.dot(location.translation);
     }
   }
 
-  void add_channel(const Segment& segment, std::string_view word, std::vector<JointAxis>& turns, std::vector<JointAxis>& shifts) {
+  void add_channel(const Segment& segment, std::string_view word, std::vector<JointAxis>& rotations,
+                   std::vector<JointAxis>& shifts) {
     const bool turn = word.size() == 9 && same_word(word.substr(1), "rotation"),
                shift = word.size() == 9 && same_word(word.substr(1), "position");
     const int axis = word.empty() ? -1 : std::toupper(static_cast<unsigned char>(word.front())) - 'X';
-    if ((!turn && !shift) || axis < 0 || axis > 2) fail(fmt::format("{} is no channel; Xposition … Zrotation are", shown(word)));
-    std::vector<JointAxis>& into = turn ? turns : shifts;
-    if (turns.size() + shifts.size() >= 6 || into.size() >= 3) fail("more than three turns, or three positions, of one joint");
+    if ((!turn && !shift) || axis < 0 || axis > 2) fail(fmt::format("{} is not a channel; Xposition … Zrotation are", shown(word)));
+    std::vector<JointAxis>& into = turn ? rotations : shifts;
+    if (rotations.size() + shifts.size() >= 6 || into.size() >= 3) fail("more than three turns, or three positions, of one joint");
     const int index = static_cast<int>(file_.skeleton.coordinates.size());
     std::string name = fmt::format("{}_{}{}", segment.name, static_cast<char>('X' + axis), turn ? "rotation" : "position");
     file_.skeleton.coordinates.push_back({std::move(name), turn, 0, {}, {}, false, {}});
@@ -211,14 +212,14 @@ class BvhText {
       }
     }
     if (!(step > 1e-6 && step < 1e3)) {
-      if (step != 0 || frames.value_or(0) > 1) fail("Frame Time is no time between frames; write seconds");
+      if (step != 0 || frames.value_or(0) > 1) fail("Frame Time is not a time between frames; write seconds");
       return;
     }
     rows(frames, step);
   }
 
   void rows(std::optional<std::int64_t> frames, double step) {
-    SkeletonMotion motion{.rate_hz = usual_rate(1 / step), .times = {}, .rows = {}};
+    SkeletonMotion motion{.rate_hz = default_rate(1 / step), .times = {}, .rows = {}};
     const std::vector<double> rest = file_.skeleton.rest();
     while (next()) {
       std::vector<double> row = rest;
@@ -229,7 +230,7 @@ class BvhText {
       }
       if (count != channels_.size()) {
         if (count < channels_.size() && !lines_.ended()) {
-          file_.warnings.push_back(fmt::format("{}:{}: the last row is cut off; it is left out", name_, lines_.number()));
+          file_.warnings.push_back(fmt::format("{}:{}: the last row is cut off; it is omitted", name_, lines_.number()));
           break;
         }
         fail(fmt::format("{} numbers; the hierarchy has {} channels", count, channels_.size()));
@@ -243,7 +244,7 @@ class BvhText {
   }
 
   /// Frame Time is often written with few digits: 0.008333 means 120 Hz.
-  static double usual_rate(double rate) {
+  static double default_rate(double rate) {
     const double whole = std::round(rate);
     return whole > 0 && std::abs(rate - whole) < 1e-4 * whole ? whole : rate;
   }

@@ -14,8 +14,8 @@
 #include "marey/core/error.h"
 #include "marey/core/recording.h"
 #include "marey/core/skeleton.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/skeleton/bvh.h"
 #include "marey/format/skeleton/skeleton_file.h"
@@ -33,7 +33,7 @@ struct WrittenJoint {
   std::optional<std::size_t> parent;
   bool shifts = false;
   Vector<3> offset = Vector<3>::Zero();
-  std::vector<Vector<3>> places, turns;  // units; degrees, in the order of the channels
+  std::vector<Vector<3>> locations, rotations;  // units; degrees, in the order of the channels
 };
 
 class BvhSink final : public Sink {
@@ -45,12 +45,17 @@ class BvhSink final : public Sink {
 
   std::string name() const override { return path_; }
 
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     rate_hz_ = header.rate_hz;
     for (const Body& body : header.bodies) {
       if (body.skeleton.empty()) continue;
-      WrittenJoint joint{
-          .body = body, .children = {}, .parent = {}, .shifts = false, .offset = Vector<3>::Zero(), .places = {}, .turns = {}};
+      WrittenJoint joint{.body = body,
+                         .children = {},
+                         .parent = {},
+                         .shifts = false,
+                         .offset = Vector<3>::Zero(),
+                         .locations = {},
+                         .rotations = {}};
       if (body.parent) {
         joint.parent = joint_of(*body.parent);
         if (!joint.parent) throw Error("{}: {} hangs on a body that is not there", path_, body.label);
@@ -102,21 +107,22 @@ class BvhSink final : public Sink {
   void add(WrittenJoint& joint, const std::vector<const BodyPose*>& poses, std::size_t i) const {
     const BodyPose* const own = poses[i];
     const BodyPose* const parent = joint.parent ? poses[*joint.parent] : nullptr;
-    Vector<3> near = joint.turns.empty() ? Vector<3>(Vector<3>::Zero()) : Vector<3>(joint.turns.back() * std::numbers::pi / 180);
+    Vector<3> near =
+        joint.rotations.empty() ? Vector<3>(Vector<3>::Zero()) : Vector<3>(joint.rotations.back() * std::numbers::pi / 180);
     if (own == nullptr || (joint.parent && parent == nullptr)) {
-      joint.places.push_back(joint.places.empty() ? joint.offset : joint.places.back());
-      joint.turns.push_back(near * 180 / std::numbers::pi);
+      joint.locations.push_back(joint.locations.empty() ? joint.offset : joint.locations.back());
+      joint.rotations.push_back(near * 180 / std::numbers::pi);
       return;
     }
     const Rigid3 local = parent != nullptr ? parent->world_from_body.inverse() * own->world_from_body : own->world_from_body;
-    const Matrix<3> turned = file_from_world_ * local.rotation * file_from_world_.transpose();
-    joint.places.push_back(in_file(local.translation));
-    joint.turns.push_back(turns_about(turned, axes_, near) * 180 / std::numbers::pi);
+    const Matrix<3> rotated = file_from_world_ * local.rotation * file_from_world_.transpose();
+    joint.locations.push_back(in_file(local.translation));
+    joint.rotations.push_back(rotations_about(rotated, axes_, near) * 180 / std::numbers::pi);
   }
 
   bool shifts(const WrittenJoint& joint) const {
-    return std::any_of(joint.places.begin(), joint.places.end(),
-                       [&](const Vector<3>& place) { return (place - joint.offset).norm() * dialect_.unit_m > kShiftM; });
+    return std::any_of(joint.locations.begin(), joint.locations.end(),
+                       [&](const Vector<3>& location) { return (location - joint.offset).norm() * dialect_.unit_m > kShiftM; });
   }
 
   std::string shown_name(const Body& body) const {
@@ -178,8 +184,8 @@ class BvhSink final : public Sink {
 
   static void append_row(std::string& text, const WrittenJoint& joint, std::size_t frame) {
     auto out = std::back_inserter(text);
-    if (joint.shifts) fmt::format_to(out, "{} ", shown_vector(joint.places[frame]));
-    fmt::format_to(out, "{} ", shown_vector(joint.turns[frame]));
+    if (joint.shifts) fmt::format_to(out, "{} ", shown_vector(joint.locations[frame]));
+    fmt::format_to(out, "{} ", shown_vector(joint.rotations[frame]));
   }
 
   std::string path_;
@@ -249,7 +255,7 @@ Format bvh_format() {
       .endings = ".bvh",
       .holds = Content::space,
       .detail =
-          "cm and y up where not told otherwise; joints as points, bones as bodies. Written: bones alone, with the skeleton's "
+          "cm and y up where not reported otherwise; joints as points, bones as bodies. Written: bones alone, with the skeleton's "
           "motion; its dialects are options of `marey solve`",
       .is =
           [](const Beginning& file) {

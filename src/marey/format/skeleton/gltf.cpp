@@ -18,8 +18,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/recording.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/format.h"
 #include "marey/format/mapped_file.h"
 #include "marey/format/nesting.h"
@@ -31,7 +31,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
 
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
-constexpr double kShortestBoneM = 1e-3;
+constexpr double kMinBoneM = 1e-3;
 
 std::string json_text(const std::string& text) {
   std::string quoted_text = "\"";
@@ -69,12 +69,12 @@ class GltfBuffer {
  private:
   template <typename T>
   static std::string bounds_of(const std::vector<T>& values, std::size_t width) {
-    std::vector<T> least(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width)), greatest = least;
+    std::vector<T> minimum(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width)), greatest = minimum;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      least[i % width] = std::min(least[i % width], values[i]);
+      minimum[i % width] = std::min(minimum[i % width], values[i]);
       greatest[i % width] = std::max(greatest[i % width], values[i]);
     }
-    return fmt::format(",\"min\":[{}],\"max\":[{}]", fmt::join(least, ","), fmt::join(greatest, ","));
+    return fmt::format(",\"min\":[{}],\"max\":[{}]", fmt::join(minimum, ","), fmt::join(greatest, ","));
   }
 
   std::string bytes_;
@@ -91,7 +91,7 @@ struct GltfJoint {
   std::optional<std::size_t> parent;
   Vector<3> rest = Vector<3>::Zero();  ///< in the scene, at rest
   Vector<3> offset = Vector<3>::Zero();
-  std::vector<float> places, turns;
+  std::vector<float> locations, rotations;
   Eigen::Quaterniond last = Eigen::Quaterniond::Identity();
   bool shifts = false;
 };
@@ -106,7 +106,7 @@ struct StickFigure {
   void add_bone(const Vector<3>& from, const Vector<3>& to, std::size_t joint) {
     const Vector<3> along = to - from;
     const double length = along.norm();
-    if (!(length > kShortestBoneM)) return;
+    if (!(length > kMinBoneM)) return;
     const Vector<3> direction = along / length, side = direction.unitOrthogonal() * 0.12 * length, other = direction.cross(side);
     const Vector<3> middle = from + 0.2 * along;
     const std::array<Vector<3>, 4> ring = {middle + side, middle + other, middle - side, middle - other};
@@ -135,10 +135,11 @@ class GlbSink final : public Sink {
 
   std::string name() const override { return path_; }
 
-  Wants begin(const RecordingHeader& header) override {
+  SinkRequirements begin(const RecordingHeader& header) override {
     for (const Body& body : header.bodies) {
       if (body.skeleton.empty()) continue;
-      GltfJoint joint{.body = body, .parent = {}, .rest = {}, .offset = file_from_world_ * body.offset, .places = {}, .turns = {}};
+      GltfJoint joint{
+          .body = body, .parent = {}, .rest = {}, .offset = file_from_world_ * body.offset, .locations = {}, .rotations = {}};
       if (body.parent) {
         joint.parent = joint_of(*body.parent);
         if (!joint.parent) throw Error("{}: {} hangs on a body that is not there", path_, body.label);
@@ -189,21 +190,22 @@ class GlbSink final : public Sink {
 
   void add(GltfJoint& joint, const std::vector<const BodyPose*>& poses, std::size_t i) const {
     const BodyPose* const parent = joint.parent ? poses[*joint.parent] : nullptr;
-    Vector<3> place = joint.places.size() < 3 ? joint.offset
-                                              : Vector<3>(joint.places[joint.places.size() - 3],
-                                                          joint.places[joint.places.size() - 2], joint.places.back());
+    Vector<3> location = joint.locations.size() < 3
+                             ? joint.offset
+                             : Vector<3>(joint.locations[joint.locations.size() - 3], joint.locations[joint.locations.size() - 2],
+                                         joint.locations.back());
     if (poses[i] != nullptr && (!joint.parent || parent != nullptr)) {
       const Rigid3 local =
           parent != nullptr ? parent->world_from_body.inverse() * poses[i]->world_from_body : poses[i]->world_from_body;
-      place = file_from_world_ * local.translation;
+      location = file_from_world_ * local.translation;
       Eigen::Quaterniond turn(Matrix<3>(file_from_world_ * local.rotation * file_from_world_.transpose()));
       if (turn.dot(joint.last) < 0) turn.coeffs() *= -1;
       joint.last = turn.normalized();
     }
-    push_vector(joint.places, place);
+    push_vector(joint.locations, location);
     for (const double c : {joint.last.x(), joint.last.y(), joint.last.z(), joint.last.w()})
-      joint.turns.push_back(static_cast<float>(c));
-    joint.shifts = joint.shifts || !joint.parent || (place - joint.offset).norm() > 1e-4;
+      joint.rotations.push_back(static_cast<float>(c));
+    joint.shifts = joint.shifts || !joint.parent || (location - joint.offset).norm() > 1e-4;
   }
 
   std::string nodes() const {
@@ -270,8 +272,8 @@ class GlbSink final : public Sink {
       samplers.push_back(fmt::format("{{\"input\":{},\"output\":{}}}", input, output));
     };
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      add_channel(i, "rotation", buffer_.add(joints_[i].turns, kFloat, "VEC4", 4, false));
-      if (joints_[i].shifts) add_channel(i, "translation", buffer_.add(joints_[i].places, kFloat, "VEC3", 3, false));
+      add_channel(i, "rotation", buffer_.add(joints_[i].rotations, kFloat, "VEC4", 4, false));
+      if (joints_[i].shifts) add_channel(i, "translation", buffer_.add(joints_[i].locations, kFloat, "VEC3", 3, false));
     }
     return fmt::format("{{\"name\":\"motion\",\"samplers\":[{}],\"channels\":[{}]}}", fmt::join(samplers, ","),
                        fmt::join(channels, ","));
@@ -319,14 +321,14 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 
 std::vector<Fact> facts_of_glb(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kGlbHead || !bytes.starts_with("glTF") || word_at(bytes, 4) != 2)
-    throw Error("{}: is no glTF of version 2", name);
+    throw Error("{}: is not a glTF of version 2", name);
   const std::uint32_t size = word_at(bytes, 12);
   if (bytes.substr(16, 4) != "JSON" || size > bytes.size() - kGlbHead)
     throw Error("{}: its description is cut off; copy it again", name);
   const std::string_view description = bytes.substr(kGlbHead, size);
   check_nesting(description, Notation::json, name);
   const auto json = nlohmann::json::parse(description, nullptr, false);
-  if (!json.is_object()) throw Error("{}: its description is no JSON", name);
+  if (!json.is_object()) throw Error("{}: its description is not a JSON", name);
   const auto count = [&](const char* what) {
     const auto found = json.find(what);
     return found != json.end() && found->is_array() ? std::ssize(*found) : std::ptrdiff_t{0};

@@ -15,7 +15,7 @@ namespace marey::format::skeleton {
 /// without a mesh. Needs all of it, so that memory grows with the length.
 std::unique_ptr<Sink> create_glb(const std::string& path);
 
-/// What the description of a .glb file says, whoever wrote it. Throws Error, with `name` for the file, where it is none.
+/// What the description of a .glb file says, the one who wrote it. Throws Error, with `name` for the file, where it is not one.
 std::vector<Fact> facts_of_glb(std::string_view bytes, const std::string& name);
 
 }  // namespace marey::format::skeleton

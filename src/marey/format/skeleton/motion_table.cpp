@@ -11,8 +11,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/recording.h"
-#include "marey/core/text_safety.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/text_safety.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/read_file.h"
 #include "marey/format/text_rows.h"
 
@@ -70,7 +70,7 @@ MotionTable parse_motion_table(std::string_view text, const std::string& name) {
     if (cells.size() != table.columns.size() + 1)
       throw Error("{}:{}: {} numbers under {} columns", name, lines.number(), cells.size(), table.columns.size() + 1);
     const auto time = number_of(cells.front());
-    if (!time || std::abs(*time) > 1e9) throw Error("{}:{}: {} is no time", name, lines.number(), shown(cells.front()));
+    if (!time || std::abs(*time) > 1e9) throw Error("{}:{}: {} is not a time", name, lines.number(), shown(cells.front()));
     table.times.push_back(*time);
     std::vector<std::optional<double>> row;
     for (std::size_t i = 1; i < cells.size(); ++i) row.push_back(number_of(cells[i]));
@@ -86,7 +86,7 @@ MotionTable read_motion_table(const std::string& path) {
 
 SkeletonMotion motion_of(const MotionTable& table, const Skeleton& skeleton, bool in_degrees) {
   SkeletonMotion motion;
-  std::vector<Recording::Moment> moments;
+  std::vector<Recording::TimeStep> time_steps;
   const bool degrees = table.in_degrees.value_or(in_degrees);
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     std::vector<double> row = skeleton.rest();
@@ -94,13 +94,13 @@ SkeletonMotion motion_of(const MotionTable& table, const Skeleton& skeleton, boo
       const auto coordinate = skeleton.coordinate(table.columns[c]);
       if (!coordinate || !table.rows[r][c]) continue;
       const auto i = static_cast<std::size_t>(*coordinate);
-      row[i] = *table.rows[r][c] * (degrees && skeleton.coordinates[i].turns ? std::numbers::pi / 180 : 1);
+      row[i] = *table.rows[r][c] * (degrees && skeleton.coordinates[i].rotations ? std::numbers::pi / 180 : 1);
     }
     motion.rows.push_back(std::move(row));
     motion.times.push_back(timestamp_from_seconds(table.times[r]));
-    moments.push_back({static_cast<std::int64_t>(r), motion.times.back()});
+    time_steps.push_back({static_cast<std::int64_t>(r), motion.times.back()});
   }
-  motion.rate_hz = median_rate_hz(moments).value_or(kUsualRate);
+  motion.rate_hz = median_rate_hz(time_steps).value_or(kDefaultRate);
   return motion;
 }
 
@@ -111,7 +111,7 @@ void write_motion_table(const std::string& path, const Skeleton& skeleton, const
     table.times.push_back(seconds(motion.times[r]));
     std::vector<std::optional<double>> row;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-      row.emplace_back(motion.rows[r][c] * (skeleton.coordinates[c].turns ? 180 / std::numbers::pi : 1));
+      row.emplace_back(motion.rows[r][c] * (skeleton.coordinates[c].rotations ? 180 / std::numbers::pi : 1));
     table.rows.push_back(std::move(row));
   }
   write_motion_table(path, table);

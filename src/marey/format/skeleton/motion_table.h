@@ -13,7 +13,7 @@ namespace marey::format::skeleton {
 /// A table as it stands.
 struct MotionTable {
   std::string title;
-  std::optional<bool> in_degrees;                        ///< nothing where the head does not say
+  std::optional<bool> in_degrees;                        ///< nothing if the head does not specify
   std::vector<std::string> columns;                      ///< without "time"
   std::vector<double> times;                             ///< s
   std::vector<std::vector<std::optional<double>>> rows;  ///< as wide as `columns`; nothing for NaN and blanks
@@ -23,10 +23,10 @@ struct MotionTable {
 MotionTable parse_motion_table(std::string_view text, const std::string& name);
 MotionTable read_motion_table(const std::string& path);
 
-/// The skeleton's coordinates out of a table; those that it does not have rest. `in_degrees` is what the table does not say.
+/// The skeleton's coordinates out of a table; those that it does not have rest. `in_degrees` is what the table does not specify.
 SkeletonMotion motion_of(const MotionTable& table, const Skeleton& skeleton, bool in_degrees);
 
-/// A .mot or .sto file of a motion, angles in degrees; the file appears whole or not at all.
+/// A .mot or .sto file of a motion, angles in degrees; the file appears atomically.
 void write_motion_table(const std::string& path, const Skeleton& skeleton, const SkeletonMotion& motion);
 /// The same of any columns: `rows` as wide as `columns`, nothing is written as NaN.
 void write_motion_table(const std::string& path, const MotionTable& table);

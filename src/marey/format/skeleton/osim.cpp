@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/skeleton/skeleton_file.h"
 #include "marey/format/text_rows.h"
 #include "marey/format/xml_text.h"
@@ -19,7 +19,7 @@
 namespace marey::format::skeleton {
 namespace {
 
-constexpr double kFarthestM = 1e4;  // no model's numbers are beyond this
+constexpr double kMaxDistanceM = 1e4;  // no model's numbers are beyond this
 
 std::string_view bare(std::string_view text) {
   while (!text.empty() && static_cast<unsigned char>(text.front()) <= ' ') text.remove_prefix(1);
@@ -95,16 +95,16 @@ class OsimModel {
     const std::vector<double> values = numbers_in(node);
     if (values.size() != 3) fail(fmt::format("<{}> has {} numbers where 3 belong", shown(node.name()), values.size()));
     const Vector<3> vector(values[0], values[1], values[2]);
-    if (!(vector.norm() < kFarthestM))
+    if (!(vector.norm() < kMaxDistanceM))
       fail(fmt::format("<{}> is {} m long; is its unit right?", shown(node.name()), vector.norm()));
     return vector;
   }
 
   /// Angles about x, then the new y, then the new z, rad.
-  Rigid3 placed(pugi::xml_node translation, pugi::xml_node orientation) const {
+  Rigid3 located(pugi::xml_node translation, pugi::xml_node orientation) const {
     const Vector<3> angles = vector_in(orientation);
-    Rigid3 place{.rotation = rotation_from_axes(angles), .translation = vector_in(translation)};
-    return place;
+    Rigid3 location{.rotation = rotation_from_axes(angles), .translation = vector_in(translation)};
+    return location;
   }
   static Matrix<3> rotation_from_axes(const Vector<3>& angles) {
     return (Eigen::AngleAxisd(angles.x(), Vector<3>::UnitX()) * Eigen::AngleAxisd(angles.y(), Vector<3>::UnitY()) *
@@ -114,19 +114,19 @@ class OsimModel {
 
   /// The frames that a joint of version 4 names: its own, or a body by itself.
   Frame frame_of(pugi::xml_node joint, const char* socket) const {
-    const std::string wanted = last_part(joint.child(socket).child_value());
-    if (wanted.empty()) fail(fmt::format("joint {} has no <{}>", shown(joint.attribute("name").value()), socket));
+    const std::string required = last_part(joint.child(socket).child_value());
+    if (required.empty()) fail(fmt::format("joint {} has no <{}>", shown(joint.attribute("name").value()), socket));
     for (const pugi::xml_node frame : joint.child("frames").children()) {
-      if (last_part(frame.attribute("name").value()) != wanted) continue;
+      if (last_part(frame.attribute("name").value()) != required) continue;
       return {last_part(frame.child("socket_parent").child_value()),
-              placed(frame.child("translation"), frame.child("orientation"))};
+              located(frame.child("translation"), frame.child("orientation"))};
     }
-    return {wanted, {}};
+    return {required, {}};
   }
 
   void hang(const std::string& body, Hung hung) {
     if (hung_.contains(body)) {
-      file_.warnings.push_back(fmt::format("{}: {} hangs on two joints; {} is left out", name_, shown(body),
+      file_.warnings.push_back(fmt::format("{}: {} hangs on two joints; {} is omitted", name_, shown(body),
                                            shown(hung.joint.attribute("name").value())));
       return;
     }
@@ -144,8 +144,8 @@ class OsimModel {
       if (!joint) continue;
       hang(name, {joint,
                   {last_part(joint.child("parent_body").child_value()),
-                   placed(joint.child("location_in_parent"), joint.child("orientation_in_parent"))},
-                  {name, placed(joint.child("location"), joint.child("orientation"))}});
+                   located(joint.child("location_in_parent"), joint.child("orientation_in_parent"))},
+                  {name, located(joint.child("location"), joint.child("orientation"))}});
     }
     for (const pugi::xml_node joint : model_.child("JointSet").child("objects").children()) {
       if (joint.type() != pugi::node_element) continue;
@@ -201,7 +201,7 @@ class OsimModel {
   void add_axes(pugi::xml_node joint, Joint& into) {
     const std::string kind = joint.name();
     if (bare(joint.child_value("reverse")) == "true")
-      fail(fmt::format("joint {} is reversed (version 2 or 3); write the model anew with OpenSim 4",
+      fail(fmt::format("joint {} is reversed (version 2 or 3); write the model again with OpenSim 4",
                        shown(joint.attribute("name").value())));
     const std::vector<int> coordinates = add_coordinates(joint);
     if (kind == "CustomJoint") return add_custom(joint, coordinates, into);
@@ -217,12 +217,12 @@ class OsimModel {
                        known->second.size()));
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
       const char letter = known->second[i];
-      const bool turns = letter >= 'x';
-      const JointAxis axis{turns, Vector<3>::Unit(letter - (turns ? 'x' : 'X')), {}, coordinates[i]};
-      file_.skeleton.coordinates[static_cast<std::size_t>(coordinates[i])].turns = turns;
+      const bool rotations = letter >= 'x';
+      const JointAxis axis{rotations, Vector<3>::Unit(letter - (rotations ? 'x' : 'X')), {}, coordinates[i]};
+      file_.skeleton.coordinates[static_cast<std::size_t>(coordinates[i])].rotations = rotations;
       // Shifts come before turns: they are along the parent's axes.
       const auto before =
-          std::find_if(into.axes.begin(), into.axes.end(), [&](const JointAxis& other) { return !turns && other.turns; });
+          std::find_if(into.axes.begin(), into.axes.end(), [&](const JointAxis& other) { return !rotations && other.rotations; });
       into.axes.insert(before, axis);
     }
   }
@@ -251,13 +251,13 @@ class OsimModel {
   }
 
   void add_custom(pugi::xml_node joint, const std::vector<int>& coordinates, Joint& into) {
-    std::vector<JointAxis> turns, shifts;
+    std::vector<JointAxis> rotations, shifts;
     pugi::xml_node transform = joint.child("SpatialTransform");
     if (transform.child("objects")) transform = transform.child("objects");
-    for (int i : coordinates) file_.skeleton.coordinates[static_cast<std::size_t>(i)].turns = false;
+    for (int i : coordinates) file_.skeleton.coordinates[static_cast<std::size_t>(i)].rotations = false;
     for (const pugi::xml_node node : transform.children("TransformAxis")) {
       JointAxis axis;
-      axis.turns = std::string_view(node.attribute("name").value()).starts_with("rotation");
+      axis.rotations = std::string_view(node.attribute("name").value()).starts_with("rotation");
       axis.axis = vector_in(node.child("axis"));
       if (!(axis.axis.norm() > 1e-9))
         fail(fmt::format("an axis of joint {} has no direction", shown(joint.attribute("name").value())));
@@ -270,15 +270,15 @@ class OsimModel {
         if (!axis.coordinate)
           fail(fmt::format("joint {} names the coordinate {}, which is not there", shown(joint.attribute("name").value()),
                            shown(named.front())));
-        if (axis.turns) file_.skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].turns = true;
+        if (axis.rotations) file_.skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].rotations = true;
       }
       axis.amount = function_of(node, axis.coordinate.has_value());
-      (axis.turns ? turns : shifts).push_back(std::move(axis));
+      (axis.rotations ? rotations : shifts).push_back(std::move(axis));
     }
-    if (turns.size() > 3 || shifts.size() > 3)
+    if (rotations.size() > 3 || shifts.size() > 3)
       fail(fmt::format("joint {} has more than six axes", shown(joint.attribute("name").value())));
     into.axes = std::move(shifts);
-    into.axes.insert(into.axes.end(), turns.begin(), turns.end());
+    into.axes.insert(into.axes.end(), rotations.begin(), rotations.end());
   }
 
   /// The function below an element: in <function>, or (version 4) by itself.
@@ -319,7 +319,7 @@ class OsimModel {
     if (bare(node.child_value("isEnforced")) == "false" || bare(node.child_value("isDisabled")) == "true") return;
     if (std::strcmp(node.name(), "CoordinateCouplerConstraint") != 0) {
       file_.warnings.push_back(
-          fmt::format("{}: the {} {} is left out; only couplers of coordinates are known", name_, shown(node.name()), shown(name)));
+          fmt::format("{}: the {} {} is omitted; only couplers of coordinates are known", name_, shown(node.name()), shown(name)));
       return;
     }
     const auto of = words(node.child_value("independent_coordinate_names"));
@@ -339,7 +339,7 @@ class OsimModel {
     const auto segment = file_.skeleton.segment(body);
     if (!segment) {
       file_.warnings.push_back(
-          fmt::format("{}: marker {} sits on {}, which is no moving body; it is left out", name_, shown(label), shown(body)));
+          fmt::format("{}: marker {} sits on {}, which is not a moving body; it is omitted", name_, shown(label), shown(body)));
       return;
     }
     file_.skeleton.markers.push_back({label, *segment, vector_in(node.child("location")), 1});

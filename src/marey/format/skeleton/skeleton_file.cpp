@@ -14,7 +14,7 @@ Matrix<3> z_up_from(UpAxis up) {
 namespace {
 
 /// A pose costs as the cube of their number; OpenSim's largest models have some 200.
-constexpr std::size_t kMostCoordinates = 1000;
+constexpr std::size_t kMaxCoordinates = 1000;
 
 SkeletonFile read_any(const std::string& path, const SkeletonOptions& options) {
   const Beginning beginning = beginning_of(path);
@@ -28,7 +28,8 @@ SkeletonFile read_any(const std::string& path, const SkeletonOptions& options) {
   if (text.find(":bonedata") != std::string::npos) return parse_asf(text, path, options);
   if (text.find('\0') == std::string::npos && text.find("[[segment]]") != std::string::npos) return parse_toml(text, path);
   throw Error(
-      "{}: is no skeleton that Marey knows: OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml with [[segment]] tables",
+      "{}: is not a skeleton that Marey knows: OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml with [[segment]] "
+      "tables",
       path);
 }
 
@@ -36,8 +37,8 @@ SkeletonFile read_any(const std::string& path, const SkeletonOptions& options) {
 
 SkeletonFile read_skeleton(const std::string& path, const SkeletonOptions& options) {
   SkeletonFile file = read_any(path, options);
-  if (const std::size_t count = file.skeleton.coordinates.size(); count > kMostCoordinates)
-    throw Error("{}: has {} coordinates; at most {} are solved", path, count, kMostCoordinates);
+  if (const std::size_t count = file.skeleton.coordinates.size(); count > kMaxCoordinates)
+    throw Error("{}: has {} coordinates; at most {} are solved", path, count, kMaxCoordinates);
   return file;
 }
 

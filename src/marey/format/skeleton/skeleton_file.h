@@ -12,11 +12,11 @@
 
 namespace marey::format::skeleton {
 
-/// What files do not say themselves.
+/// What files do not specify themselves.
 struct SkeletonOptions {
   double unit_m = 0.01;   ///< of a BVH file: how many metres its unit has
   UpAxis up = UpAxis::y;  ///< of a BVH, ASF or VSK file
-  double rate_hz = 120;   ///< of an AMC file, which does not say
+  double rate_hz = 120;   ///< of an AMC file, which does not specify
 };
 
 /// A skeleton from a file, in metres and with z up.
@@ -24,7 +24,7 @@ struct SkeletonFile {
   Skeleton skeleton;
   std::optional<SkeletonMotion> motion;  ///< of BVH, where it has one
   double unit_m = 1;                     ///< what one unit of the file is: an AMC file's are its ASF's
-  std::vector<std::string> warnings;     ///< one sentence each: what was left out, what is doubtful
+  std::vector<std::string> warnings;     ///< one sentence each: what was omitted, what is doubtful
 };
 
 /// Known by its content. Throws Error, with the file and the line where there is one.

@@ -37,7 +37,7 @@ std::string error_of(const std::function<void()>& action) {
 constexpr SkeletonOptions kAsWritten{.unit_m = 1, .up = UpAxis::z, .rate_hz = 120};
 
 /// Where the joints and the ends of segments without children are, by name.
-Vector<3> place_of(const Skeleton& skeleton, const std::vector<Rigid3>& pose, const std::string& name) {
+Vector<3> position_of(const Skeleton& skeleton, const std::vector<Rigid3>& pose, const std::string& name) {
   if (const auto segment = skeleton.segment(name)) return pose[static_cast<std::size_t>(*segment)].translation;
   const auto segment = static_cast<std::size_t>(skeleton.segment(name.substr(0, name.size() - 4)).value());  // "Head_End"
   return pose[segment] * skeleton.segments[segment].end.value();
@@ -63,7 +63,7 @@ TEST(Bvh, AgreesWithAnotherPrograms) {
     for (std::string cell; std::getline(cells, cell, ',');) values.push_back(std::stod(cell));
     for (std::size_t c = 1; c + 2 < values.size(); c += 3) {
       const Vector<3> there(values[c], values[c + 1], values[c + 2]);
-      worst = std::max(worst, (place_of(file.skeleton, pose, columns[c].substr(0, columns[c].size() - 2)) - there).norm());
+      worst = std::max(worst, (position_of(file.skeleton, pose, columns[c].substr(0, columns[c].size() - 2)) - there).norm());
     }
   }
   EXPECT_LT(worst, 2e-5) << "units of the file, whose table has five decimals";
@@ -112,10 +112,11 @@ TEST(Asf, AgreesWithItsBvhTwin) {
     const auto by_bvh = pose_of(bvh.skeleton, bvh.motion->rows[k + 1]);
     const auto by_asf = pose_of(asf.skeleton, amc.rows[k]);
     for (const auto& [joint, bone] : same) {
-      worst = std::max(worst, (place_of(bvh.skeleton, by_bvh, joint) - place_of(asf.skeleton, by_asf, bone) / asf.unit_m).norm());
+      worst =
+          std::max(worst, (position_of(bvh.skeleton, by_bvh, joint) - position_of(asf.skeleton, by_asf, bone) / asf.unit_m).norm());
     }
     const double lower =
-        (place_of(bvh.skeleton, by_bvh, "LeftShoulder") - place_of(asf.skeleton, by_asf, "lclavicle") / asf.unit_m).norm();
+        (position_of(bvh.skeleton, by_bvh, "LeftShoulder") - position_of(asf.skeleton, by_asf, "lclavicle") / asf.unit_m).norm();
     lower_least = std::min(lower_least, lower);
     lower_most = std::max(lower_most, lower);
   }
@@ -265,7 +266,7 @@ TEST(Osim, RefusesWhatItDoesNotKnow) {
             std::string::npos);
   EXPECT_NE(error(osim(joint("WeldJoint", "b", "a") + joint("WeldJoint", "a", "b"))).find("a circle"), std::string::npos);
   EXPECT_NE(error(osim(joint("PinJoint", "ground", "a"))).find("has 0 coordinates"), std::string::npos);
-  EXPECT_NE(error("<a><b></a>").find("is no XML"), std::string::npos);
+  EXPECT_NE(error("<a><b></a>").find("is not a XML"), std::string::npos);
   const SkeletonFile file =
       parse_osim(osim(joint("PinJoint", "ground", "a", "<Coordinate name=\"q\"><locked>true</locked></Coordinate>"),
                       "<ConstraintSet><objects><PointConstraint name=\"p\"/></objects></ConstraintSet>"),

@@ -15,14 +15,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kRestRateHz = 30;
-constexpr std::size_t kFewJoints = 100, kMostJointsACoordinate = 10;
+constexpr std::size_t kFewJoints = 100, kMaxJointsACoordinate = 10;
 
 class SkeletonReader : public FileReader {
  public:
   SkeletonReader(SkeletonFile file, const std::string& path) : file_(std::move(file)) {
     Skeleton& skeleton = file_.skeleton;
     if (skeleton.segments.size() > kFewJoints &&
-        skeleton.segments.size() > kMostJointsACoordinate * std::max<std::size_t>(1, skeleton.coordinates.size()))
+        skeleton.segments.size() > kMaxJointsACoordinate * std::max<std::size_t>(1, skeleton.coordinates.size()))
       throw Error("{}: {} joints that {} numbers a frame move; is this a skeleton?", path, skeleton.segments.size(),
                   skeleton.coordinates.size());
     if (skeleton.name.empty()) skeleton.name = fs::path(path).stem().string();
@@ -76,10 +76,10 @@ class SkeletonReader : public FileReader {
     info_.tracks.push_back({TrackId(static_cast<int>(info_.tracks.size()) + 1), label, {}});
   }
 
-  static void add_point(Instant& instant, const Vector<3>& place) {
+  static void add_point(Instant& instant, const Vector<3>& location) {
     Sample sample;
     sample.track = TrackId(static_cast<int>(instant.samples.size()) + 1);
-    sample.position = place;
+    sample.position = location;
     sample.provenance = Provenance::solved;
     instant.samples.push_back(sample);
   }
@@ -103,7 +103,7 @@ std::unique_ptr<FileReader> recording_of(SkeletonFile file, const std::string& p
   return std::make_unique<SkeletonReader>(std::move(file), path);
 }
 
-std::string asf_beside(const std::string& amc) {
+std::string asf_next_to(const std::string& amc) {
   const fs::path path(amc), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const std::string stem = path.stem().string();
   std::vector<fs::path> all;
@@ -111,8 +111,8 @@ std::string asf_beside(const std::string& amc) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (is_asf(entry.path())) all.push_back(entry.path());
   }
-  for (const std::string& wanted : {stem, stem.substr(0, stem.find('_'))}) {
-    const auto found = std::find_if(all.begin(), all.end(), [&](const fs::path& one) { return one.stem() == wanted; });
+  for (const std::string& required : {stem, stem.substr(0, stem.find('_'))}) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const fs::path& one) { return one.stem() == required; });
     if (found != all.end()) return found->string();
   }
   if (all.size() == 1) return all.front().string();

@@ -11,16 +11,16 @@ namespace marey::format::skeleton {
 
 /// Points are the joints by their names, and the ends of bones without children as "NAME.end"; all are `solved`. Bodies are the
 /// segments. A skeleton without motion stands in one frame as it rests, with a warning. Throws Error, with `path` for the file,
-/// where joints are so many beside what moves that a small file would make hours of work.
+/// where joints are this many beside what moves that a small file would make hours of work.
 std::unique_ptr<FileReader> recording_of(SkeletonFile file, const std::string& path);
 
-/// What `read_skeleton` is told of a file that is read as a recording.
+/// What `read_skeleton` is reported of a file that is read as a recording.
 inline SkeletonOptions skeleton_options(const ReadOptions& how) {
   return {.unit_m = how.skeleton_unit_m, .up = how.skeleton_up, .rate_hz = how.amc_rate_hz};
 }
 
 /// The .asf that an .amc file's bones are in: beside it, of its name or its beginning (01_02.amc: 01.asf), or the only one there.
-/// Throws Error where there is none.
-std::string asf_beside(const std::string& amc);
+/// Throws Error if there is none.
+std::string asf_next_to(const std::string& amc);
 
 }  // namespace marey::format::skeleton

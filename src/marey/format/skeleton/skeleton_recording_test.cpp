@@ -41,7 +41,7 @@ Frame Time: 0.02
 10 150 20 90 0 0 -90 0 0
 )";
 
-std::map<std::string, Vector<3>> places(FileReader& reader, const Instant& instant) {
+std::map<std::string, Vector<3>> locations(FileReader& reader, const Instant& instant) {
   std::map<std::string, Vector<3>> by_label;
   const std::vector<TrackName> tracks = reader.tracks();
   for (const Sample& sample : instant.samples) {
@@ -62,10 +62,10 @@ TEST(SkeletonRecording, JointsAreItsPointsAndBonesItsBodies) {
   ASSERT_EQ(reader->header().bodies.size(), 2U);
   EXPECT_EQ(reader->header().bodies[1].label, "Elbow");
   EXPECT_EQ(reader->header().bodies[1].skeleton, "arm");
-  auto found = places(*reader, *reader->next());
+  auto found = locations(*reader, *reader->next());
   EXPECT_LT((found.at("Elbow") - Vector<3>(0.3, 0, 1.5)).norm(), 1e-12) << "cm, y up, into m, z up";
   const auto second = reader->next();
-  found = places(*reader, *second);
+  found = locations(*reader, *second);
   EXPECT_EQ(found.size(), 3U);
   EXPECT_LT((found.at("Shoulder") - Vector<3>(0.1, -0.2, 1.5)).norm(), 1e-12);
   EXPECT_LT((found.at("Elbow") - Vector<3>(0.1, -0.2, 1.8)).norm(), 1e-12) << "the arm is raised";
@@ -82,7 +82,7 @@ TEST(SkeletonRecording, UnitAndAxesAreTheUsers) {
   how.skeleton_unit_m = 0.0254;
   how.skeleton_up = UpAxis::z;
   const auto reader = open_recording(folder / "arm.bvh", how);
-  EXPECT_LT((places(*reader, *reader->next()).at("Elbow") - Vector<3>(0.762, 3.81, 0)).norm(), 1e-12);
+  EXPECT_LT((locations(*reader, *reader->next()).at("Elbow") - Vector<3>(0.762, 3.81, 0)).norm(), 1e-12);
 }
 
 TEST(SkeletonRecording, GoesThroughBvhAgain) {
@@ -91,11 +91,11 @@ TEST(SkeletonRecording, GoesThroughBvhAgain) {
   const Format& bvh = *format_named("bvh", Content::space);
   write_whole(folder / "again.bvh", bvh, read_whole(folder / "arm.bvh", bvh));
   const auto a = open_recording(folder / "arm.bvh"), b = open_recording(folder / "again.bvh");
-  while (const auto wanted = a->next()) {
+  while (const auto required = a->next()) {
     const auto found = b->next();
     ASSERT_TRUE(found);
-    for (std::size_t i = 0; i < wanted->samples.size(); ++i)
-      EXPECT_LT((found->samples.at(i).position - wanted->samples[i].position).norm(), 1e-6);
+    for (std::size_t i = 0; i < required->samples.size(); ++i)
+      EXPECT_LT((found->samples.at(i).position - required->samples[i].position).norm(), 1e-6);
   }
 }
 
@@ -103,7 +103,7 @@ TEST(SkeletonRecording, WithoutMotionItRests) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "arm.bvh", std::string(kArm).substr(0, std::string(kArm).find("MOTION")));
   const auto reader = open_recording(folder / "arm.bvh");
-  EXPECT_LT((places(*reader, *reader->next()).at("Elbow.end") - Vector<3>(0.55, 0, 1.5)).norm(), 1e-12);
+  EXPECT_LT((locations(*reader, *reader->next()).at("Elbow.end") - Vector<3>(0.55, 0, 1.5)).norm(), 1e-12);
   EXPECT_FALSE(reader->next());
   EXPECT_NE(reader->warnings().at(0).find("has no motion"), std::string::npos);
 }
@@ -120,15 +120,15 @@ TEST(Acclaim, FindsTheBonesOfItsFrames) {
   const std::string own = folder / "07_01.amc";
   test::write_file(own, "#!\n:FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n");
   EXPECT_EQ(format_of_content(own)->name, "amc");
-  EXPECT_THROW(asf_beside(own), Error);
+  EXPECT_THROW(asf_next_to(own), Error);
   test::write_file(folder / "other.asf", "");
-  EXPECT_EQ(fs::path(asf_beside(own)).filename(), "other.asf") << "the only one";
+  EXPECT_EQ(fs::path(asf_next_to(own)).filename(), "other.asf") << "the only one";
   test::write_file(folder / "third.asf", "");
-  EXPECT_THROW(asf_beside(own), Error);
+  EXPECT_THROW(asf_next_to(own), Error);
   test::write_file(folder / "07.ASF", "");
-  EXPECT_EQ(fs::path(asf_beside(own)).filename(), "07.ASF") << "the subject's";
+  EXPECT_EQ(fs::path(asf_next_to(own)).filename(), "07.ASF") << "the subject's";
   test::write_file(folder / "07_01.asf", "");
-  EXPECT_EQ(fs::path(asf_beside(own)).filename(), "07_01.asf");
+  EXPECT_EQ(fs::path(asf_next_to(own)).filename(), "07_01.asf");
 }
 
 /// CMU's 01_01 as ASF/AMC and as BVH: legs are the same, the BVH's first frame is a pose of rest.
@@ -147,7 +147,7 @@ TEST(Acclaim, AgreesWithItsBvh) {
   EXPECT_DOUBLE_EQ(a->header().rate_hz, 120);
   b->next();
   for (int frame = 0; frame < 200; ++frame) {
-    const auto bones = places(*a, *a->next()), joints = places(*b, *b->next());
+    const auto bones = locations(*a, *a->next()), joints = locations(*b, *b->next());
     // An AMC bone stands where it begins, as a BVH joint does.
     EXPECT_LT((bones.at("ltibia") - joints.at("LeftLeg")).norm(), 1e-4) << frame;
     EXPECT_LT((bones.at("rfoot") - joints.at("RightFoot")).norm(), 1e-4) << frame;

@@ -1,5 +1,5 @@
 // skeleton.toml, our own: one table a segment with its joint, one a marker, lengths in m, angles in degrees, z up. All that is
-// wrong is told at once.
+// wrong is reported at once.
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/nesting.h"
 #include "marey/format/rig/rig_section.h"
 #include "marey/format/skeleton/skeleton_file.h"
@@ -18,7 +18,7 @@ namespace marey::format::skeleton {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kMostSegments = 10'000;
+constexpr std::size_t kMaxSegments = 10'000;
 
 /// The joints that the file names, and their coordinates: shifts (capital), turns.
 int coordinates_of_kind(std::string_view kind) {
@@ -67,7 +67,7 @@ class SkeletonToml {
   }
 
   void add_segment(const toml::table& table) {
-    if (read_.skeleton.segments.size() >= kMostSegments) return;
+    if (read_.skeleton.segments.size() >= kMaxSegments) return;
     rig::Section section(table, "a segment", problems_);
     section.only({"name", "parent", "at", "turned", "joint", "axes", "coordinates", "limits", "rest", "end"});
     Segment segment;
@@ -77,12 +77,12 @@ class SkeletonToml {
     if (read_.skeleton.segment(segment.name)) section.problem("name", "is there twice");
     if (const auto parent = section.text("parent")) {
       segment.parent = read_.skeleton.segment(*parent);
-      if (!segment.parent) return section.problem("parent", "parent is no segment that stands before it");
+      if (!segment.parent) return section.problem("parent", "parent is not a segment that stands before it");
     }
-    const Vector<3> turned = vector_of(section, "turned") * kDegree;
+    const Vector<3> rotated = vector_of(section, "turned") * kDegree;
     segment.joint.parent_from_joint = {
-        (Eigen::AngleAxisd(turned.x(), Vector<3>::UnitX()) * Eigen::AngleAxisd(turned.y(), Vector<3>::UnitY()) *
-         Eigen::AngleAxisd(turned.z(), Vector<3>::UnitZ()))
+        (Eigen::AngleAxisd(rotated.x(), Vector<3>::UnitX()) * Eigen::AngleAxisd(rotated.y(), Vector<3>::UnitY()) *
+         Eigen::AngleAxisd(rotated.z(), Vector<3>::UnitZ()))
             .toRotationMatrix(),
         vector_of(section, "at")};
     if (section.has("end")) segment.end = vector_of(section, "end");
@@ -101,8 +101,8 @@ class SkeletonToml {
                                         fmt::format("{} numbers: a low and a high one for each coordinate", 2 * count));
     const auto rest = section.numbers("rest", static_cast<std::size_t>(count), static_cast<std::size_t>(count),
                                       fmt::format("{} numbers, one for each coordinate", count));
-    const std::vector<Vector<3>> turns = axes_of(table, section, count == 6 ? 3 : count);
-    if (static_cast<int>(turns.size()) != (count == 6 ? 3 : count)) return;
+    const std::vector<Vector<3>> rotations = axes_of(table, section, count == 6 ? 3 : count);
+    if (static_cast<int>(rotations.size()) != (count == 6 ? 3 : count)) return;
     for (int i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
       const bool shift = count == 6 && i < 3;
@@ -110,7 +110,7 @@ class SkeletonToml {
       coordinate.name = names.empty() ? fmt::format("{}_{}", segment.name, i + 1) : plain_text(names[at]);
       if (read_.skeleton.coordinate(coordinate.name))
         section.problem("coordinates", fmt::format("{} is there twice", coordinate.name));
-      coordinate.turns = !shift;
+      coordinate.rotations = !shift;
       const double unit = shift ? 1 : kDegree;
       if (rest) coordinate.rest = (*rest)[at] * unit;
       if (limits && (*limits)[2 * at] < (*limits)[2 * at + 1]) {
@@ -120,7 +120,7 @@ class SkeletonToml {
         section.problem("limits", fmt::format("of {} do not grow", coordinate.name));
       }
       segment.joint.axes.push_back({!shift,
-                                    shift ? Vector<3>(Vector<3>::Unit(i)) : turns[count == 6 ? at - 3 : at],
+                                    shift ? Vector<3>(Vector<3>::Unit(i)) : rotations[count == 6 ? at - 3 : at],
                                     {},
                                     static_cast<int>(read_.skeleton.coordinates.size())});
       read_.skeleton.coordinates.push_back(std::move(coordinate));
@@ -171,7 +171,7 @@ class SkeletonToml {
     Coordinate& coordinate = read_.skeleton.coordinates[static_cast<std::size_t>(*own)];
     if (coordinate.coupling || read_.skeleton.coordinates[static_cast<std::size_t>(*to)].coupling)
       return section.problem("follows", "must not follow from another itself");
-    const double unit = coordinate.turns ? kDegree : 1;
+    const double unit = coordinate.rotations ? kDegree : 1;
     coordinate.coupling = Coordinate::Coupling{
         *to, CoordinateFunction::linear(section.number("slope").value_or(1), section.number("offset").value_or(0) * unit)};
   }
@@ -219,9 +219,9 @@ void append_joint_toml(std::string& text, const Skeleton& skeleton, const Segmen
   bool limited = true;
   for (const JointAxis& axis : segment.joint.axes) {
     const Coordinate& coordinate = skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)];
-    const double unit = coordinate.turns ? kDegree : 1;
+    const double unit = coordinate.rotations ? kDegree : 1;
     names.push_back(quoted(coordinate.name));
-    if (axis.turns) axes.push_back(bracketed(axis.axis));
+    if (axis.rotations) axes.push_back(bracketed(axis.axis));
     rest.push_back(fmt::format("{}", coordinate.rest / unit));
     limited = limited && coordinate.lowest && coordinate.highest;
     if (limited) limits.push_back(fmt::format("{}, {}", *coordinate.lowest / unit, *coordinate.highest / unit));
@@ -253,9 +253,9 @@ std::string to_toml(const Skeleton& skeleton) {
     if (segment.parent)
       text += fmt::format("parent = {}\n", quoted(skeleton.segments[static_cast<std::size_t>(*segment.parent)].name));
     text += fmt::format("at = {}\n", bracketed(segment.joint.parent_from_joint.translation));
-    const Vector<3> turned =
-        turns_about(segment.joint.parent_from_joint.rotation, Matrix<3>::Identity(), Vector<3>::Zero()) / kDegree;
-    if (turned.norm() > 1e-12) text += fmt::format("turned = {}\n", bracketed(turned));
+    const Vector<3> rotated =
+        rotations_about(segment.joint.parent_from_joint.rotation, Matrix<3>::Identity(), Vector<3>::Zero()) / kDegree;
+    if (rotated.norm() > 1e-12) text += fmt::format("turned = {}\n", bracketed(rotated));
     append_joint_toml(text, skeleton, segment);
     if (segment.end) text += fmt::format("end = {}\n", bracketed(*segment.end));
   }
@@ -265,7 +265,7 @@ std::string to_toml(const Skeleton& skeleton) {
     if (!line) throw Error("{} follows another coordinate by a curve, which a skeleton.toml cannot say", coordinate.name);
     text += fmt::format("\n[[coupling]]\ncoordinate = {}\nfollows = {}\nslope = {}\noffset = {}\n", quoted(coordinate.name),
                         quoted(skeleton.coordinates[static_cast<std::size_t>(coordinate.coupling->to)].name), line->first,
-                        line->second / (coordinate.turns ? kDegree : 1));
+                        line->second / (coordinate.rotations ? kDegree : 1));
   }
   for (const SkeletonMarker& marker : skeleton.markers) {
     text += fmt::format("\n[[marker]]\nname = {}\non = {}\nat = {}\n", quoted(marker.label),

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/skeleton/skeleton_file.h"
 #include "marey/format/text_rows.h"
 #include "marey/format/xml_text.h"
@@ -24,9 +24,9 @@ namespace marey::format::skeleton {
 namespace {
 
 constexpr double kMillimetre = 0.001;
-constexpr double kFarthestMm = 1e6;
-constexpr std::size_t kMostVskSegments = 1000;
-constexpr std::array kShifts = {"tx", "ty", "tz"}, kTurns = {"rx", "ry", "rz"};
+constexpr double kMaxDistanceMm = 1e6;
+constexpr std::size_t kMaxVskSegments = 1000;
+constexpr std::array kShifts = {"tx", "ty", "tz"}, kRotations = {"rx", "ry", "rz"};
 
 /// Numbers by name, and sums and products of them.
 class VskParameters {
@@ -73,7 +73,7 @@ class VskParameters {
 
  private:
   double finite(double value, std::string_view word) const {
-    if (!(std::abs(value) <= kFarthestMm)) throw Error("{}: {} is beyond what a skeleton has", file_, shown(word));
+    if (!(std::abs(value) <= kMaxDistanceMm)) throw Error("{}: {} is beyond what a skeleton has", file_, shown(word));
     return value;
   }
 
@@ -133,10 +133,10 @@ class VskModel {
 
   /// It and all that hangs on it; XML is not nested deeper than the stack bears.
   void add_segment(pugi::xml_node node, std::optional<int> parent) {
-    const Vector<3> place = kMillimetre * parameters_.vector(node, "POSITION");
+    const Vector<3> location = kMillimetre * parameters_.vector(node, "POSITION");
     if (parent && is_end(node)) {
       std::optional<Vector<3>>& end = file_.skeleton.segments[static_cast<std::size_t>(*parent)].end;
-      if (!end) end = place;
+      if (!end) end = location;
       return;
     }
     Segment segment;
@@ -144,8 +144,8 @@ class VskModel {
     segment.parent = parent;
     if (segment.name.empty()) throw Error("{}: a segment without a name", name_);
     if (file_.skeleton.segment(segment.name)) throw Error("{}: two segments are called {}", name_, shown(segment.name));
-    if (file_.skeleton.segments.size() >= kMostVskSegments) throw Error("{}: more than {} segments", name_, kMostVskSegments);
-    segment.joint.parent_from_joint = {turned(node, segment.name), place};
+    if (file_.skeleton.segments.size() >= kMaxVskSegments) throw Error("{}: more than {} segments", name_, kMaxVskSegments);
+    segment.joint.parent_from_joint = {rotated(node, segment.name), location};
     if (!parent)
       segment.joint.parent_from_joint = Rigid3{z_up_from(options_.up), Vector<3>::Zero()} * segment.joint.parent_from_joint;
     add_axes(node, segment);
@@ -154,7 +154,7 @@ class VskModel {
     for (const pugi::xml_node child : node.children("Segment")) add_segment(child, index);
   }
 
-  Matrix<3> turned(pugi::xml_node node, const std::string& segment) {
+  Matrix<3> rotated(pugi::xml_node node, const std::string& segment) {
     if (!node.attribute("ORIENTATION")) return Matrix<3>::Identity();
     const Vector<3> angles = parameters_.vector(node, "ORIENTATION");
     if ((angles.array() != 0).count() > 1)
@@ -171,7 +171,7 @@ class VskModel {
     if (moves_freely || node.child("JointBall")) {
       for (int i = 0; moves_freely && i < 3; ++i)
         add_axis(segment, kShifts[static_cast<std::size_t>(i)], false, Vector<3>::Unit(i));
-      for (int i = 0; i < 3; ++i) add_axis(segment, kTurns[static_cast<std::size_t>(i)], true, Vector<3>::Unit(i));
+      for (int i = 0; i < 3; ++i) add_axis(segment, kRotations[static_cast<std::size_t>(i)], true, Vector<3>::Unit(i));
     } else if (const pugi::xml_node hinge = node.child("JointHinge")) {
       add_axis(segment, "turn", true, axis_of(hinge, 0, "AXIS"));
     } else if (const pugi::xml_node cross = node.child("JointHardySpicer")) {
@@ -183,10 +183,10 @@ class VskModel {
     }
   }
 
-  void add_axis(Segment& segment, const char* name, bool turns, const Vector<3>& axis) {
+  void add_axis(Segment& segment, const char* name, bool rotations, const Vector<3>& axis) {
     const int index = static_cast<int>(file_.skeleton.coordinates.size());
-    file_.skeleton.coordinates.push_back({fmt::format("{}_{}", segment.name, name), turns, 0, {}, {}, false, {}});
-    segment.joint.axes.push_back({turns, axis, {}, index});
+    file_.skeleton.coordinates.push_back({fmt::format("{}_{}", segment.name, name), rotations, 0, {}, {}, false, {}});
+    segment.joint.axes.push_back({rotations, axis, {}, index});
   }
 
   /// Three of an attribute's numbers, from the `first` on.
@@ -209,7 +209,7 @@ class VskModel {
     const auto segment = file_.skeleton.segment(on);
     if (!segment || label.empty()) {
       file_.warnings.push_back(
-          fmt::format("{}: marker {} sits on {}, which is no segment; it is left out", name_, shown(label), shown(on)));
+          fmt::format("{}: marker {} sits on {}, which is not a segment; it is omitted", name_, shown(label), shown(on)));
       return;
     }
     file_.skeleton.markers.push_back({label, *segment, kMillimetre * parameters_.vector(node, "POSITION"), 1});

@@ -32,7 +32,16 @@ enum SampleField {
   sample_keypoints
 };
 enum PosesField { poses_id, poses_rows, poses_at, poses_pose, poses_residual, poses_covariance, poses_tracked };
-enum SeenField { seen_id, seen_rows, seen_at, seen_x, seen_y, seen_sigma, seen_area, seen_track };
+enum ObservedField {
+  observed_id,
+  observed_rows,
+  observed_at,
+  observed_x,
+  observed_y,
+  observed_sigma,
+  observed_area,
+  observed_track
+};
 
 /// Older takes have no keypoints.
 constexpr const char* kSampleFields =

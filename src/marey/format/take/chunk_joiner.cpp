@@ -5,19 +5,19 @@
 namespace marey::format::take {
 namespace {
 
-constexpr std::size_t kMostWaiting = 4;  // groups that a reader who holds on to the file keeps from being joined
+constexpr std::size_t kMaxWaiting = 4;  // groups that a reader who holds on to the file keeps from being joined
 
 }  // namespace
 
 void ChunkJoiner::add(std::int64_t id, const Chunk& chunk) {
   Chunk& whole = group_.chunk;
-  const auto length = [](const Recording::Moment& first, const Recording::Moment& last) { return last.time - first.time; };
+  const auto length = [](const Recording::TimeStep& first, const Recording::TimeStep& last) { return last.time - first.time; };
   const bool fits = whole.empty() || (whole.bytes + chunk.bytes <= kLargestChunk &&
-                                      length(whole.moments.front(), chunk.moments.back()) <= kLongestChunk);
+                                      length(whole.time_steps.front(), chunk.time_steps.back()) <= kMaxChunk);
   if (!fits) seal();
   // One that is long by itself is left as it is.
   const bool long_enough =
-      2 * chunk.bytes > kLargestChunk || 2 * length(chunk.moments.front(), chunk.moments.back()) > kLongestChunk;
+      2 * chunk.bytes > kLargestChunk || 2 * length(chunk.time_steps.front(), chunk.time_steps.back()) > kMaxChunk;
   if (group_.ids.empty() && long_enough) return;
   group_.ids.push_back(id);
   whole.append(chunk);
@@ -25,7 +25,7 @@ void ChunkJoiner::add(std::int64_t id, const Chunk& chunk) {
 
 void ChunkJoiner::seal() {
   if (group_.ids.size() > 1) sealed_.push_back(std::exchange(group_, {}));
-  if (sealed_.size() > kMostWaiting) sealed_.erase(sealed_.begin());
+  if (sealed_.size() > kMaxWaiting) sealed_.erase(sealed_.begin());
   group_.ids.clear();
   group_.chunk.clear();
 }

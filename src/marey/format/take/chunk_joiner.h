@@ -14,7 +14,7 @@ namespace marey::format::take {
 /// Chunks of a take up to here, in the file and in memory: few enough that a track lies in few places, small enough to be gathered
 /// and encoded while the processor still has them at hand.
 constexpr std::size_t kLargestChunk = std::size_t{4} << 20;
-constexpr Duration kLongestChunk = std::chrono::seconds(60);
+constexpr Duration kMaxChunk = std::chrono::seconds(60);
 
 /// Keeps what short chunks hold, so that they can be replaced by one of about a minute without being read again. Memory is that of
 /// the largest chunk, and of those that wait for `join`.

@@ -39,9 +39,9 @@ ChunkReader::ChunkReader(const Database& database, int dimensions)
     : database_(&database),
       dimensions_(dimensions),
       find_(database, "SELECT id, first_index, last_index, instants FROM chunk WHERE last_index >= ? ORDER BY last_index LIMIT 1"),
-      moments_(database, "SELECT indices, times FROM chunk WHERE id = ?"),
+      time_steps_(database, "SELECT indices, times FROM chunk WHERE id = ?"),
       samples_(database, fmt::format("SELECT {} FROM samples WHERE id >= ? AND id < ? ORDER BY id", sample_fields(database))),
-      seen_(database, "SELECT id, rows, at, x, y, sigma, area, track FROM seen WHERE id >= ? AND id < ? ORDER BY id"),
+      detected_(database, "SELECT id, rows, at, x, y, sigma, area, track FROM seen WHERE id >= ? AND id < ? ORDER BY id"),
       one_track_(database, fmt::format("SELECT {} FROM samples WHERE id = ?", sample_fields(database))) {
   Statement columns(database, "SELECT count(*) FROM pragma_table_info('poses') WHERE name IN ('covariance', 'tracked')");
   if (columns.step() && columns.integer(0) == 2)
@@ -51,7 +51,7 @@ ChunkReader::ChunkReader(const Database& database, int dimensions)
 
 ChunkReader::Row ChunkReader::checked_row(const Statement& row) const {
   const Row result{.id = row.integer(0), .first_index = row.integer(1), .last_index = row.integer(2), .instants = row.integer(3)};
-  const bool possible = result.id > 0 && result.id < kMostChunks && result.first_index >= 0 &&
+  const bool possible = result.id > 0 && result.id < kMaxChunks && result.first_index >= 0 &&
                         result.last_index >= result.first_index && result.last_index < kLastIndex && result.instants > 0 &&
                         result.instants <= result.last_index - result.first_index + 1 &&
                         result.instants <= std::numeric_limits<std::int32_t>::max();
@@ -82,14 +82,14 @@ std::optional<ChunkReader::Row> ChunkReader::find(std::int64_t index) {
   return row;
 }
 
-void ChunkReader::read_moments(const Row& row, std::vector<Recording::Moment>& moments) {
-  moments_.reset();
-  moments_.bind(0, row.id);
+void ChunkReader::read_time_steps(const Row& row, std::vector<Recording::TimeStep>& time_steps) {
+  time_steps_.reset();
+  time_steps_.bind(0, row.id);
   const std::string where = fmt::format("{}: chunk {}", database_->path(), row.id);
   const auto count = static_cast<std::size_t>(row.instants);
   const ColumnDecoder decoder(count, where);
-  if (!moments_.step()) decoder.fail("its instants are missing");
-  const auto times = moments_.blob(1), indices = moments_.blob(0);
+  if (!time_steps_.step()) decoder.fail("its instants are missing");
+  const auto times = time_steps_.blob(1), indices = time_steps_.blob(0);
   if (times.size() != count * 8) decoder.fail("it has another number of times than of instants");
   if (indices.empty() && row.last_index - row.first_index + 1 != row.instants) decoder.fail("its indices are missing");
   if (!indices.empty() && indices.size() != count * 4) decoder.fail("it has another number of indices than of instants");
@@ -98,16 +98,16 @@ void ChunkReader::read_moments(const Row& row, std::vector<Recording::Moment>& m
     std::memcpy(&time, times.data() + 8 * i, 8);
     std::uint32_t index = static_cast<std::uint32_t>(i);
     if (!indices.empty()) std::memcpy(&index, indices.data() + 4 * i, 4);
-    moments.push_back({row.first_index + index, Timestamp(Duration(time))});
-    if (i > 0 && moments.back().index <= moments[moments.size() - 2].index) decoder.fail("its instants are out of order");
+    time_steps.push_back({row.first_index + index, Timestamp(Duration(time))});
+    if (i > 0 && time_steps.back().index <= time_steps[time_steps.size() - 2].index) decoder.fail("its instants are out of order");
   }
-  if (moments.back().index != row.last_index) decoder.fail("its instants do not end where it says");
-  moments_.reset();
+  if (time_steps.back().index != row.last_index) decoder.fail("its instants do not end where it says");
+  time_steps_.reset();
 }
 
 void ChunkReader::read(const Row& row, bool with_seen, Chunk& chunk) {
-  const auto offset = static_cast<std::int64_t>(chunk.moments.size());
-  read_moments(row, chunk.moments);
+  const auto offset = static_cast<std::int64_t>(chunk.time_steps.size());
+  read_time_steps(row, chunk.time_steps);
   samples_.reset();
   samples_.bind(0, row_id(row.id, 1));
   samples_.bind(1, row_id(row.id, 0) + kOneChunk);
@@ -120,15 +120,15 @@ void ChunkReader::read(const Row& row, bool with_seen, Chunk& chunk) {
   samples_.reset();
   if (poses_) read_poses(row, offset, chunk.bodies);
   if (!with_seen) return;
-  seen_.reset();
-  seen_.bind(0, row_id(row.id, 0));
-  seen_.bind(1, row_id(row.id, 0) + kOneChunk);
-  while (seen_.step()) {
-    const std::int64_t camera = seen_.integer(seen_id) & 0xffffffff;
+  detected_.reset();
+  detected_.bind(0, row_id(row.id, 0));
+  detected_.bind(1, row_id(row.id, 0) + kOneChunk);
+  while (detected_.step()) {
+    const std::int64_t camera = detected_.integer(observed_id) & 0xffffffff;
     if (camera > 63) throw Error("{}: is damaged (a camera's number is {})", database_->path(), camera);
-    decode_seen(seen_, row, offset, chunk.seen[CameraId{static_cast<int>(camera)}]);
+    decode_observed(detected_, row, offset, chunk.detected[CameraId{static_cast<int>(camera)}]);
   }
-  seen_.reset();
+  detected_.reset();
 }
 
 bool ChunkReader::read_track(const Row& row, std::int64_t offset, TrackColumns& track) {
@@ -158,7 +158,7 @@ void ChunkReader::decode_poses(const Row& chunk, std::int64_t offset, BodyColumn
   ColumnDecoder decoder(checked_count(poses_->integer(poses_rows)), where);
   const std::span<const std::byte> blob = poses_->blob(poses_pose);
   if (blob.size() != decoder.rows() * 12 * sizeof(double)) decoder.fail("it has another number of poses than of rows");
-  decode_places(*poses_, poses_at, chunk, offset, decoder);
+  decode_positions(*poses_, poses_at, chunk, offset, decoder);
   OptionalColumn covariance(21), residual(1);
   decoder.optional(poses_->blob(poses_residual), 0, residual);
   decoder.optional(poses_->blob(poses_covariance), 0, covariance);
@@ -189,7 +189,8 @@ std::size_t ChunkReader::checked_count(std::int64_t count) const {
   return static_cast<std::size_t>(count);
 }
 
-void ChunkReader::decode_places(const Statement& row, int column, const Row& chunk, std::int64_t offset, ColumnDecoder& decoder) {
+void ChunkReader::decode_positions(const Statement& row, int column, const Row& chunk, std::int64_t offset,
+                                   ColumnDecoder& decoder) {
   const auto end = static_cast<std::size_t>(chunk.instants);
   if (row.is_number(column)) {
     const std::int64_t first = row.integer(column);
@@ -198,17 +199,17 @@ void ChunkReader::decode_places(const Statement& row, int column, const Row& chu
     at_.resize(decoder.rows());
     for (std::size_t i = 0; i < at_.size(); ++i) at_[i] = static_cast<std::int32_t>(first + static_cast<std::int64_t>(i));
   } else {
-    decoder.places(row.blob(column), end, column == seen_at && &row == &seen_, at_);
+    decoder.locations(row.blob(column), end, column == observed_at && &row == &detected_, at_);
   }
-  for (std::int32_t& place : at_) place = static_cast<std::int32_t>(place + offset);
+  for (std::int32_t& location : at_) location = static_cast<std::int32_t>(location + offset);
 }
 
 void ChunkReader::decode_samples(const Statement& row, const Row& chunk, std::int64_t offset, TrackColumns& track) {
   const std::string where = fmt::format("{}: chunk {}, track {}", database_->path(), chunk.id, number(track.id()));
   ColumnDecoder decoder(checked_count(row.integer(sample_rows)), where);
-  decoder.numbers(row.blob(sample_x), x_);  // first, as it holds that there are so many rows
+  decoder.numbers(row.blob(sample_x), x_);  // first, as it holds that there are this many rows
   decoder.numbers(row.blob(sample_y), y_);
-  decode_places(row, sample_at, chunk, offset, decoder);
+  decode_positions(row, sample_at, chunk, offset, decoder);
   z_.clear();
   if (track.dimensions() == 3 && (dimensions_ == 3 || !row.blob(sample_z).empty())) decoder.numbers(row.blob(sample_z), z_);
   if (track.dimensions() == 3 && z_.empty()) z_.assign(decoder.rows(), 0);  // a ball on the ground without heights
@@ -235,28 +236,28 @@ void ChunkReader::decode_samples(const Statement& row, const Row& chunk, std::in
   decode_keypoints(row.blob(sample_keypoints), decoder, first, track);
 }
 
-void ChunkReader::decode_seen(const Statement& row, const Row& chunk, std::int64_t offset, SeenColumns& seen) {
+void ChunkReader::decode_observed(const Statement& row, const Row& chunk, std::int64_t offset, ObservedColumns& detected) {
   const std::string where = fmt::format("{}: chunk {}, what was seen", database_->path(), chunk.id);
-  ColumnDecoder decoder(checked_count(row.integer(seen_rows)), where);
-  decoder.numbers(row.blob(seen_x), x_);  // first, as it holds that there are so many rows
-  decoder.numbers(row.blob(seen_y), y_);
-  decode_places(row, seen_at, chunk, offset, decoder);
-  if (row.is_number(seen_track)) {
-    integers_.assign(decoder.rows(), static_cast<std::uint64_t>(row.integer(seen_track)));
+  ColumnDecoder decoder(checked_count(row.integer(observed_rows)), where);
+  decoder.numbers(row.blob(observed_x), x_);  // first, as it holds that there are this many rows
+  decoder.numbers(row.blob(observed_y), y_);
+  decode_positions(row, observed_at, chunk, offset, decoder);
+  if (row.is_number(observed_track)) {
+    integers_.assign(decoder.rows(), static_cast<std::uint64_t>(row.integer(observed_track)));
   } else {
-    decoder.integers(row.blob(seen_track), integers_);
+    decoder.integers(row.blob(observed_track), integers_);
   }
   for (const std::uint64_t track : integers_) {
     if (track > static_cast<std::uint64_t>(std::numeric_limits<int>::max())) decoder.fail("a track cannot be");
   }
-  const std::size_t first = seen.size();
+  const std::size_t first = detected.size();
   const auto put = [](auto& column, const auto& more) { column.insert(column.end(), more.begin(), more.end()); };
-  put(seen.at, at_);
-  put(seen.x, x_);
-  put(seen.y, y_);
-  put(seen.track, integers_);
-  decoder.optional(row.blob(seen_sigma), first, seen.sigma);
-  decoder.optional(row.blob(seen_area), first, seen.area);
+  put(detected.at, at_);
+  put(detected.x, x_);
+  put(detected.y, y_);
+  put(detected.track, integers_);
+  decoder.optional(row.blob(observed_sigma), first, detected.sigma);
+  decoder.optional(row.blob(observed_area), first, detected.area);
 }
 
 }  // namespace marey::format::take

@@ -24,24 +24,24 @@ class ChunkReader {
   std::vector<Row> rows();
   /// The first chunk that ends at this index or later.
   std::optional<Row> find(std::int64_t index);
-  /// These append to what is there; `at` goes on counting from the instants that are there.
+  /// These append to what is there; `at` continues counting from the instants that are there.
   void read(const Row& row, bool with_seen, Chunk& chunk);
-  void read_moments(const Row& row, std::vector<Recording::Moment>& moments);
+  void read_time_steps(const Row& row, std::vector<Recording::TimeStep>& time_steps);
   /// False where the track has nothing there. `offset` is that of the chunk's first instant.
   bool read_track(const Row& row, std::int64_t offset, TrackColumns& track);
 
  private:
   Row checked_row(const Statement& statement) const;
   void decode_samples(const Statement& row, const Row& chunk, std::int64_t offset, TrackColumns& track);
-  void decode_seen(const Statement& row, const Row& chunk, std::int64_t offset, SeenColumns& seen);
+  void decode_observed(const Statement& row, const Row& chunk, std::int64_t offset, ObservedColumns& detected);
   void read_poses(const Row& chunk, std::int64_t offset, std::map<BodyId, BodyColumns>& bodies);
   void decode_poses(const Row& chunk, std::int64_t offset, BodyColumns& body);
   std::size_t checked_count(std::int64_t rows) const;
-  void decode_places(const Statement& row, int column, const Row& chunk, std::int64_t offset, ColumnDecoder& decoder);
+  void decode_positions(const Statement& row, int column, const Row& chunk, std::int64_t offset, ColumnDecoder& decoder);
 
   const Database* database_;
   int dimensions_;
-  Statement find_, moments_, samples_, seen_, one_track_;
+  Statement find_, time_steps_, samples_, detected_, one_track_;
   std::optional<Statement> poses_;  // nothing in takes from before bodies were solved
   std::vector<std::int32_t> at_;
   std::vector<double> x_, y_, z_;

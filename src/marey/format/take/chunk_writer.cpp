@@ -30,8 +30,8 @@ void bind_integers(Statement& statement, int parameter, std::span<const std::uin
   }
 }
 
-bool consecutive(std::span<const std::int32_t> places) {
-  return !places.empty() && static_cast<std::size_t>(places.back() - places.front()) + 1 == places.size();
+bool consecutive(std::span<const std::int32_t> locations) {
+  return !locations.empty() && static_cast<std::size_t>(locations.back() - locations.front()) + 1 == locations.size();
 }
 
 }  // namespace
@@ -39,11 +39,11 @@ bool consecutive(std::span<const std::int32_t> places) {
 ChunkWriter::ChunkWriter(const Database& database)
     : add_instants_(database, "INSERT INTO chunk VALUES (?, ?, ?, ?, ?, ?)"),
       add_samples_(database, "INSERT INTO samples VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
-      add_seen_(database, "INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
+      add_observed_(database, "INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
       add_poses_(database, "INSERT INTO poses VALUES (?, ?, ?, ?, ?, ?, ?)"),
       remove_instants_(database, "DELETE FROM chunk WHERE id = ?"),
       remove_samples_(database, "DELETE FROM samples WHERE id >= ? AND id < ?"),
-      remove_seen_(database, "DELETE FROM seen WHERE id >= ? AND id < ?"),
+      remove_observed_(database, "DELETE FROM seen WHERE id >= ? AND id < ?"),
       remove_poses_(database, "DELETE FROM poses WHERE id >= ? AND id < ?"),
       blobs_(sample_keypoints + 1) {}
 
@@ -52,8 +52,8 @@ void ChunkWriter::write(std::int64_t chunk_id, const Chunk& chunk) {
   for (const auto& [track, columns] : chunk.tracks) {
     if (!columns.empty()) write_samples(row_id(chunk_id, number(track)), columns);
   }
-  for (const auto& [camera, columns] : chunk.seen) {
-    if (columns.size() > 0) write_seen(row_id(chunk_id, number(camera)), columns);
+  for (const auto& [camera, columns] : chunk.detected) {
+    if (columns.size() > 0) write_observed(row_id(chunk_id, number(camera)), columns);
   }
   for (const auto& [body, columns] : chunk.bodies) {
     if (!columns.empty()) write_poses(row_id(chunk_id, number(body)), columns);
@@ -61,12 +61,12 @@ void ChunkWriter::write(std::int64_t chunk_id, const Chunk& chunk) {
 }
 
 void ChunkWriter::write_instants(std::int64_t chunk_id, const Chunk& chunk) {
-  const std::int64_t first = chunk.moments.front().index, last = chunk.moments.back().index;
+  const std::int64_t first = chunk.time_steps.front().index, last = chunk.time_steps.back().index;
   std::vector<std::int64_t> times;
   std::vector<std::uint32_t> indices;
-  for (const Recording::Moment& moment : chunk.moments) {
-    times.push_back(moment.time.time_since_epoch().count());
-    indices.push_back(static_cast<std::uint32_t>(moment.index - first));
+  for (const Recording::TimeStep& time_step : chunk.time_steps) {
+    times.push_back(time_step.time.time_since_epoch().count());
+    indices.push_back(static_cast<std::uint32_t>(time_step.index - first));
   }
   const bool all = last - first + 1 == static_cast<std::int64_t>(times.size());
   add_instants_.bind(0, chunk_id);
@@ -114,20 +114,20 @@ void ChunkWriter::write_samples(std::int64_t row, const TrackColumns& track) {
   to.run();
 }
 
-void ChunkWriter::write_seen(std::int64_t row, const SeenColumns& seen) {
-  Statement& to = add_seen_;
-  to.bind(seen_id, row);
-  to.bind(seen_rows, static_cast<std::int64_t>(seen.size()));
-  to.bind(seen_at, std::as_bytes(std::span(seen.at)));
-  encode_exactly(seen.x, blobs_[seen_x]);
-  encode_exactly(seen.y, blobs_[seen_y]);
-  encode(seen.sigma, seen.size(), false, blobs_[seen_sigma]);
-  encode(seen.area, seen.size(), false, blobs_[seen_area]);
-  to.bind(seen_x, std::span<const std::byte>(blobs_[seen_x]));
-  to.bind(seen_y, std::span<const std::byte>(blobs_[seen_y]));
-  bind_or_null(to, seen_sigma, blobs_[seen_sigma]);
-  bind_or_null(to, seen_area, blobs_[seen_area]);
-  bind_integers(to, seen_track, seen.track, blobs_[seen_track]);
+void ChunkWriter::write_observed(std::int64_t row, const ObservedColumns& detected) {
+  Statement& to = add_observed_;
+  to.bind(observed_id, row);
+  to.bind(observed_rows, static_cast<std::int64_t>(detected.size()));
+  to.bind(observed_at, std::as_bytes(std::span(detected.at)));
+  encode_exactly(detected.x, blobs_[observed_x]);
+  encode_exactly(detected.y, blobs_[observed_y]);
+  encode(detected.sigma, detected.size(), false, blobs_[observed_sigma]);
+  encode(detected.area, detected.size(), false, blobs_[observed_area]);
+  to.bind(observed_x, std::span<const std::byte>(blobs_[observed_x]));
+  to.bind(observed_y, std::span<const std::byte>(blobs_[observed_y]));
+  bind_or_null(to, observed_sigma, blobs_[observed_sigma]);
+  bind_or_null(to, observed_area, blobs_[observed_area]);
+  bind_integers(to, observed_track, detected.track, blobs_[observed_track]);
   to.run();
 }
 
@@ -163,7 +163,7 @@ void ChunkWriter::remove_instants(std::int64_t chunk_id) {
 }
 
 void ChunkWriter::remove_rows(std::int64_t chunk_id) {
-  for (Statement* statement : {&remove_samples_, &remove_seen_, &remove_poses_}) {
+  for (Statement* statement : {&remove_samples_, &remove_observed_, &remove_poses_}) {
     statement->bind(0, row_id(chunk_id, 0));
     statement->bind(1, row_id(chunk_id + 1, 0));
     statement->run();

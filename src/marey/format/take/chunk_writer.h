@@ -23,10 +23,11 @@ class ChunkWriter {
  private:
   void write_instants(std::int64_t id, const Chunk& chunk);
   void write_samples(std::int64_t id, const TrackColumns& track);
-  void write_seen(std::int64_t id, const SeenColumns& seen);
+  void write_observed(std::int64_t id, const ObservedColumns& detected);
   void write_poses(std::int64_t id, const BodyColumns& body);
 
-  Statement add_instants_, add_samples_, add_seen_, add_poses_, remove_instants_, remove_samples_, remove_seen_, remove_poses_;
+  Statement add_instants_, add_samples_, add_observed_, add_poses_, remove_instants_, remove_samples_, remove_observed_,
+      remove_poses_;
   std::vector<Bytes> blobs_;
   std::vector<std::uint64_t> integers_;
 };

@@ -136,8 +136,8 @@ void ColumnDecoder::integers(std::span<const std::byte> blob, std::vector<std::u
   fail("a column has another length than its rows");
 }
 
-void ColumnDecoder::places(std::span<const std::byte> blob, std::size_t end, bool may_repeat,
-                           std::vector<std::int32_t>& values) const {
+void ColumnDecoder::locations(std::span<const std::byte> blob, std::size_t end, bool may_repeat,
+                              std::vector<std::int32_t>& values) const {
   if (blob.size() != rows_ * 4) fail("a column has another length than its rows");
   read_as<std::int32_t>(blob, values);
   std::int64_t next = 0;

@@ -18,11 +18,11 @@ using Bytes = std::vector<std::byte>;
 
 /// float32 where that loses nothing of any value, else float64.
 void encode_exactly(std::span<const double> values, Bytes& blob);
-/// float32, or as above. `blob` stays empty where no row is known.
+/// float32, or as above. `blob` stays empty if no row is known.
 void encode(const OptionalColumn& column, std::size_t rows, bool exactly, Bytes& blob);
 
 template <typename Value>
-void encode_plainly(std::span<const Value> values, Bytes& blob) {
+void encode_unambiguously(std::span<const Value> values, Bytes& blob) {
   const auto bytes = std::as_bytes(values);
   blob.assign(bytes.begin(), bytes.end());
 }
@@ -36,7 +36,7 @@ std::optional<Value> common_value(std::span<const Value> values) {
   return values.empty() ? std::nullopt : std::optional<Value>(values.front());
 }
 
-/// Reads one row of a table; `where` names it in messages. All throw Error, "where: is damaged (…)", for a blob that is none of
+/// Reads one row of a table; `where` names it in messages. All throw Error, "where: is damaged (…)", for a blob that is not one of
 /// ours.
 class ColumnDecoder {
  public:
@@ -50,7 +50,7 @@ class ColumnDecoder {
   /// Unsigned integers of 1, 2, 4 or 8 bytes each, `rows` of them.
   void integers(std::span<const std::byte> blob, std::vector<std::uint64_t>& values) const;
   /// Growing places below `end`, from a blob of uint32.
-  void places(std::span<const std::byte> blob, std::size_t end, bool may_repeat, std::vector<std::int32_t>& values) const;
+  void locations(std::span<const std::byte> blob, std::size_t end, bool may_repeat, std::vector<std::int32_t>& values) const;
 
   [[noreturn]] void fail(std::string_view what) const;
 

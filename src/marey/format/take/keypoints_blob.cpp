@@ -17,7 +17,7 @@ namespace marey::format::take {
 namespace {
 
 constexpr std::size_t kNumbersOfPoint = 7, kBytesOfPoint = 1 + kNumbersOfPoint * sizeof(float);
-constexpr std::size_t kMostBodyPoints = 4096;  // of one set
+constexpr std::size_t kMaxBodyPoints = 4096;  // of one set
 
 void append_bytes(Bytes& blob, const void* from, std::size_t size) {
   const auto* bytes = static_cast<const std::byte*>(from);
@@ -40,9 +40,9 @@ void append_body(Bytes& blob, const Keypoints<2>& body) {
   }
 }
 
-float float_at(std::span<const std::byte> bytes, std::size_t place) {
+float float_at(std::span<const std::byte> bytes, std::size_t location) {
   float value = 0;
-  std::memcpy(&value, bytes.data() + place, sizeof value);
+  std::memcpy(&value, bytes.data() + location, sizeof value);
   return value;
 }
 
@@ -84,7 +84,7 @@ KeypointSet read_set(const nlohmann::json& json) {
   KeypointSet set;
   set.name = json.at("name").get<std::string>();
   set.points = json.at("points").get<std::vector<std::string>>();
-  if (set.points.size() > kMostBodyPoints) throw Error("it has {} points", set.points.size());
+  if (set.points.size() > kMaxBodyPoints) throw Error("it has {} points", set.points.size());
   set.mirrored = indices_of(json.at("mirrored"), set.points.size());
   if (set.mirrored.size() != set.points.size()) throw Error("its points and their other sides differ in number");
   for (const auto& bone : json.at("bones")) {
@@ -123,7 +123,7 @@ void decode_keypoints(std::span<const std::byte> blob, const ColumnDecoder& deco
     if (length > 0) track.set_keypoints(first + row, body_of_record(blob.first(length), decoder));
     blob = blob.subspan(length);
   }
-  if (!blob.empty()) decoder.fail("keypoints go on behind the last row");
+  if (!blob.empty()) decoder.fail("keypoints continue behind the last row");
 }
 
 std::string keypoint_set_text(const KeypointSet& set) {
@@ -138,7 +138,7 @@ KeypointSet keypoint_set_of(std::string_view text, const std::string& where) {
     check_nesting(text, Notation::json, where);
     return read_set(nlohmann::json::parse(text));
   } catch (const nlohmann::json::exception&) {
-    throw Error("{}: is damaged (its set of keypoints is none)", where);
+    throw Error("{}: is damaged (its set of keypoints is not one)", where);
   } catch (const Error& error) {
     throw Error("{}: is damaged (its set of keypoints: {})", where, error.what());
   }

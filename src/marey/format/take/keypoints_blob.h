@@ -13,7 +13,7 @@
 
 namespace marey::format::take {
 
-/// `blob` stays empty where no row has any.
+/// `blob` stays empty if no row has any.
 void encode_keypoints(const TrackColumns& track, Bytes& blob);
 
 /// Puts them into `track`, whose rows begin at `first`. Throws as `decoder` does.
@@ -22,7 +22,7 @@ void decode_keypoints(std::span<const std::byte> blob, const ColumnDecoder& deco
 /// A set of body points as JSON: {"name", "points": ["nose", …], "bones": [[0, 1], …], "mirrored": [0, …]}.
 std::string keypoint_set_text(const KeypointSet& set);
 
-/// Throws Error, "where: is damaged (…)", for what is none.
+/// Throws Error, "where: is damaged (…)", for what is not one.
 KeypointSet keypoint_set_of(std::string_view text, const std::string& where);
 
 }  // namespace marey::format::take

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kHeadBytes = 8;
 constexpr std::size_t kPlainNumbers = 10;  // centre, velocity, scale rate, and their deviations
-constexpr std::size_t kMostPoints = 65535;
+constexpr std::size_t kMaxPoints = 65535;
 enum Flags : std::uint8_t { has_silhouette = 1, has_deviations = 2, is_behind = 4 };
 
 template <typename Value>
@@ -27,7 +27,7 @@ void append_pair(Bytes& blob, const Vector<2>& pair) {
 }
 
 void append_outline(Bytes& blob, const Outline& outline) {
-  const std::size_t points = std::min(outline.control_points.size(), kMostPoints);
+  const std::size_t points = std::min(outline.control_points.size(), kMaxPoints);
   const bool deviations = outline.deviations.size() == outline.control_points.size();
   append(blob, static_cast<std::uint8_t>(outline.state));
   append(blob, static_cast<std::uint8_t>(outline.order));
@@ -135,7 +135,7 @@ void decode_outlines(std::span<const std::byte> blob, const ColumnDecoder& decod
     if (length > 0) track.set_outline(first + row, outline_of(blob.first(length), decoder));
     blob = blob.subspan(length);
   }
-  if (!blob.empty()) decoder.fail("outlines go on behind the last row");
+  if (!blob.empty()) decoder.fail("outlines continue behind the last row");
 }
 
 }  // namespace marey::format::take

@@ -11,7 +11,7 @@
 
 namespace marey::format::take {
 
-/// `blob` stays empty where no row has one.
+/// `blob` stays empty if no row has one.
 void encode_outlines(const TrackColumns& track, Bytes& blob);
 
 /// Puts them into `track`, whose rows begin at `first`. Throws as `decoder` does.

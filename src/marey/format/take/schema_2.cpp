@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_reader.h"
 #include "marey/format/take/frame_names.h"
@@ -22,7 +22,7 @@ constexpr const char* kTables = "'take', 'option', 'input', 'track', 'chunk', 's
 
 /// Where reading stands within the columns of the chunk at hand.
 template <typename Columns>
-struct Place {
+struct Location {
   const Columns* columns;
   std::size_t row;
 };
@@ -43,7 +43,7 @@ class CursorOfSchema2 : public TakeCursor {
     RecordingSummary summary;
     summary.instants = values_.integer("instants");
     summary.samples = values_.integer("samples");
-    summary.seen = values_.integer("seen");
+    summary.detected = values_.integer("seen");
     summary.complete = values_.integer("complete") != 0;
     // Takes of older versions have no kinds; their ball is known by its label.
     const bool kinds = database_->number("SELECT count(*) FROM pragma_table_info('track') WHERE name = 'kind'") != 0;
@@ -64,9 +64,9 @@ class CursorOfSchema2 : public TakeCursor {
     }
     const auto rows = chunks_.rows();
     if (rows.empty()) return summary;
-    std::vector<Recording::Moment> first, last;
-    chunks_.read_moments(rows.front(), first);
-    chunks_.read_moments(rows.back(), last);
+    std::vector<Recording::TimeStep> first, last;
+    chunks_.read_time_steps(rows.front(), first);
+    chunks_.read_time_steps(rows.back(), last);
     summary.first_index = first.front().index;
     summary.first_time = first.front().time;
     summary.last_index = last.back().index;
@@ -90,21 +90,21 @@ class CursorOfSchema2 : public TakeCursor {
   }
 
   std::optional<Instant> next() override {
-    if (at_ == chunk_.moments.size() && !fetch()) return std::nullopt;
+    if (at_ == chunk_.time_steps.size() && !fetch()) return std::nullopt;
     Instant instant;
-    instant.index = chunk_.moments[at_].index;
-    instant.time = chunk_.moments[at_].time;
+    instant.index = chunk_.time_steps[at_].index;
+    instant.time = chunk_.time_steps[at_].time;
     const auto at = static_cast<std::int32_t>(at_++);
     for (auto& [track, row] : tracks_) {
       if (row < track->size() && track->at()[row] == at) instant.samples.push_back(track->sample(row++));
     }
-    for (auto& [camera, place] : seen_) {
-      for (; place.row < place.columns->size() && place.columns->at[place.row] == at; ++place.row)
-        instant.seen.push_back(place.columns->point(camera, place.row));
+    for (auto& [camera, location] : detected_) {
+      for (; location.row < location.columns->size() && location.columns->at[location.row] == at; ++location.row)
+        instant.detected.push_back(location.columns->point(camera, location.row));
     }
-    for (Place<BodyColumns>& place : bodies_) {
-      if (place.row < place.columns->size() && place.columns->at()[place.row] == at)
-        instant.bodies.push_back(place.columns->pose(place.row++));
+    for (Location<BodyColumns>& location : bodies_) {
+      if (location.row < location.columns->size() && location.columns->at()[location.row] == at)
+        instant.bodies.push_back(location.columns->pose(location.row++));
     }
     next_index_ = instant.index + 1;
     return instant;
@@ -115,11 +115,11 @@ class CursorOfSchema2 : public TakeCursor {
     next_index_ = index;
   }
 
-  std::vector<Recording::Moment> moments() override {
+  std::vector<Recording::TimeStep> time_steps() override {
     const ReadTransaction transaction(*database_);
-    std::vector<Recording::Moment> moments;
-    for (const ChunkReader::Row& row : chunks_.rows()) chunks_.read_moments(row, moments);
-    return moments;
+    std::vector<Recording::TimeStep> time_steps;
+    for (const ChunkReader::Row& row : chunks_.rows()) chunks_.read_time_steps(row, time_steps);
+    return time_steps;
   }
 
   TrackColumns read_track(const TrackName& name) override {
@@ -194,7 +194,7 @@ class CursorOfSchema2 : public TakeCursor {
   void leave_chunk() {
     chunk_.clear();
     tracks_.clear();
-    seen_.clear();
+    detected_.clear();
     bodies_.clear();
     at_ = 0;
   }
@@ -206,20 +206,22 @@ class CursorOfSchema2 : public TakeCursor {
     const auto row = chunks_.find(std::max(next_index_, std::int64_t{0}));
     if (!row) return false;
     try {
-      chunks_.read(*row, options_.seen, chunk_);
+      chunks_.read(*row, options_.detected, chunk_);
     } catch (const Error&) {
       leave_chunk();
       throw;
     }
-    const auto first = std::lower_bound(chunk_.moments.begin(), chunk_.moments.end(), next_index_,
-                                        [](const Recording::Moment& moment, std::int64_t index) { return moment.index < index; });
-    at_ = static_cast<std::size_t>(first - chunk_.moments.begin());
+    const auto first =
+        std::lower_bound(chunk_.time_steps.begin(), chunk_.time_steps.end(), next_index_,
+                         [](const Recording::TimeStep& time_step, std::int64_t index) { return time_step.index < index; });
+    at_ = static_cast<std::size_t>(first - chunk_.time_steps.begin());
     const auto begin = static_cast<std::int32_t>(at_);
     const auto row_of = [begin](const auto& at) {
       return static_cast<std::size_t>(std::lower_bound(at.begin(), at.end(), begin) - at.begin());
     };
     for (const auto& [id, columns] : chunk_.tracks) tracks_.push_back({&columns, row_of(columns.at())});
-    for (const auto& [camera, columns] : chunk_.seen) seen_.emplace_back(camera, Place<SeenColumns>{&columns, row_of(columns.at)});
+    for (const auto& [camera, columns] : chunk_.detected)
+      detected_.emplace_back(camera, Location<ObservedColumns>{&columns, row_of(columns.at)});
     for (const auto& [id, columns] : chunk_.bodies) bodies_.push_back({&columns, row_of(columns.at())});
     return true;
   }
@@ -231,9 +233,9 @@ class CursorOfSchema2 : public TakeCursor {
   ChunkReader chunks_;
   Chunk chunk_;
   std::size_t at_ = 0;  // the chunk's instants: the next
-  std::vector<Place<TrackColumns>> tracks_;
-  std::vector<std::pair<CameraId, Place<SeenColumns>>> seen_;
-  std::vector<Place<BodyColumns>> bodies_;
+  std::vector<Location<TrackColumns>> tracks_;
+  std::vector<std::pair<CameraId, Location<ObservedColumns>>> detected_;
+  std::vector<Location<BodyColumns>> bodies_;
   std::int64_t next_index_ = 0;
 };
 

@@ -8,12 +8,12 @@ namespace marey::format::take {
 namespace {
 
 /// No text, blob or row of ours is near this, so a file that claims more is refused before memory is asked for.
-constexpr int kLargestValue = 256 << 20;
+constexpr int kMaxValue = 256 << 20;
 constexpr int kPatienceMs = 5000;
 
 /// Memory holds a page's size once, but a hostile file may bring a schema that does something when it is read.
 void distrust(sqlite3* handle) {
-  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, kLargestValue);
+  sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, kMaxValue);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);

@@ -28,7 +28,7 @@ class Database {
   std::int64_t number(const std::string& sql);
   /// False where the lock that it needs stayed with another connection; to be tried again.
   bool commit();
-  /// Undoes what the open transaction did; nothing where none is open.
+  /// Undoes what the open transaction did; nothing if none is open.
   void roll_back();
 
   sqlite3* handle() const { return handle_.get(); }
@@ -43,7 +43,7 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
-/// While it lives, what is read is of one moment, whatever another program writes meanwhile.
+/// While it lives, what is read is of one instant, whatever another program writes in the meantime.
 class ReadTransaction {
  public:
   explicit ReadTransaction(Database& database) : database_(&database) { database.run("BEGIN"); }

@@ -57,13 +57,13 @@ void append_column(const OptionalColumn& from, std::size_t first, OptionalColumn
 }
 
 /// At once where all know the value, as they do mostly.
-void set_known(std::span<const SeenPoint> points, std::optional<double> SeenPoint::* value, std::size_t first,
+void set_known(std::span<const ImageObservation> points, std::optional<double> ImageObservation::* value, std::size_t first,
                OptionalColumn& column) {
-  const auto knows = [&](const SeenPoint& point) { return (point.*value).has_value(); };
+  const auto knows = [&](const ImageObservation& point) { return (point.*value).has_value(); };
   if (std::all_of(points.begin(), points.end(), knows)) {
     std::vector<double> values;
     values.reserve(points.size());
-    for (const SeenPoint& point : points) values.push_back(*(point.*value));
+    for (const ImageObservation& point : points) values.push_back(*(point.*value));
     column.add_rows(first, values, {});
     return;
   }
@@ -80,7 +80,7 @@ std::vector<std::int32_t> moved_by(std::int32_t offset, std::span<const std::int
 
 }  // namespace
 
-void SeenColumns::append(const SeenColumns& other, std::int32_t offset) {
+void ObservedColumns::append(const ObservedColumns& other, std::int32_t offset) {
   append_column(other.sigma, size(), sigma);
   append_column(other.area, size(), area);
   const auto put = [](auto& column, const auto& more) { column.insert(column.end(), more.begin(), more.end()); };
@@ -90,31 +90,31 @@ void SeenColumns::append(const SeenColumns& other, std::int32_t offset) {
   put(track, other.track);
 }
 
-void SeenColumns::add(std::int32_t instant, std::span<const SeenPoint> points) {
+void ObservedColumns::add(std::int32_t instant, std::span<const ImageObservation> points) {
   const std::size_t first = at.size(), all = first + points.size();
   at.resize(all, instant);
   x.resize(all);
   y.resize(all);
   track.resize(all);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const SeenPoint& point = points[i];
+    const ImageObservation& point = points[i];
     x[first + i] = point.pixel.x();
     y[first + i] = point.pixel.y();
     track[first + i] = point.track ? static_cast<std::uint64_t>(number(*point.track)) : 0;
   }
-  set_known(points, &SeenPoint::sigma, first, sigma);
-  set_known(points, &SeenPoint::area, first, area);
+  set_known(points, &ImageObservation::sigma, first, sigma);
+  set_known(points, &ImageObservation::area, first, area);
 }
 
-SeenPoint SeenColumns::point(CameraId camera, std::size_t row) const {
-  SeenPoint point{.camera = camera, .pixel = {x[row], y[row]}, .sigma = {}, .area = {}, .track = {}};
+ImageObservation ObservedColumns::point(CameraId camera, std::size_t row) const {
+  ImageObservation point{.camera = camera, .pixel = {x[row], y[row]}, .sigma = {}, .area = {}, .track = {}};
   if (sigma.known(row)) point.sigma = *sigma.values(row);
   if (area.known(row)) point.area = *area.values(row);
   if (track[row] != 0) point.track = TrackId{static_cast<int>(track[row])};
   return point;
 }
 
-void SeenColumns::clear() {
+void ObservedColumns::clear() {
   at.clear();
   x.clear();
   y.clear();
@@ -128,8 +128,8 @@ TrackColumns& Chunk::track(TrackId id, int dimensions) {
 }
 
 void Chunk::add(const Instant& instant, int dimensions, std::optional<TrackId> ball) {
-  const auto at = static_cast<std::int32_t>(moments.size());
-  moments.push_back({instant.index, instant.time});
+  const auto at = static_cast<std::int32_t>(time_steps.size());
+  time_steps.push_back({instant.index, instant.time});
   auto column = tracks.begin();
   for (const Sample& sample : instant.samples) {
     const auto make = [&] {
@@ -140,19 +140,19 @@ void Chunk::add(const Instant& instant, int dimensions, std::optional<TrackId> b
     if (sample.keypoints) bytes += 8 + 29 * sample.keypoints->points.size();
     if (sample.outline) bytes += 64 + 16 * sample.outline->control_points.size();
   }
-  for (auto begin = instant.seen.begin(); begin != instant.seen.end();) {
-    const auto of_another = [&](const SeenPoint& point) { return point.camera != begin->camera; };
-    const auto end = std::find_if(begin, instant.seen.end(), of_another);
-    seen[begin->camera].add(at, {begin, end});
+  for (auto begin = instant.detected.begin(); begin != instant.detected.end();) {
+    const auto of_another = [&](const ImageObservation& point) { return point.camera != begin->camera; };
+    const auto end = std::find_if(begin, instant.detected.end(), of_another);
+    detected[begin->camera].add(at, {begin, end});
     begin = end;
   }
   for (const BodyPose& pose : instant.bodies) bodies.try_emplace(pose.body, pose.body).first->second.add(at, pose);
-  bytes += 16 + 32 * instant.seen.size() + 190 * instant.bodies.size();
+  bytes += 16 + 32 * instant.detected.size() + 190 * instant.bodies.size();
 }
 
 void Chunk::append(const Chunk& other) {
-  const auto offset = static_cast<std::int32_t>(moments.size());
-  moments.insert(moments.end(), other.moments.begin(), other.moments.end());
+  const auto offset = static_cast<std::int32_t>(time_steps.size());
+  time_steps.insert(time_steps.end(), other.time_steps.begin(), other.time_steps.end());
   bytes += other.bytes;
   for (const auto& [id, columns] : other.tracks) {
     if (columns.empty()) continue;
@@ -167,17 +167,17 @@ void Chunk::append(const Chunk& other) {
     for (const auto& [row, outline] : columns.outlines()) to.set_outline(first + row, outline);
     for (const auto& [row, body] : columns.keypoints()) to.set_keypoints(first + row, body);
   }
-  for (const auto& [camera, columns] : other.seen) seen[camera].append(columns, offset);
+  for (const auto& [camera, columns] : other.detected) detected[camera].append(columns, offset);
   for (const auto& [body, columns] : other.bodies) bodies.try_emplace(body, body).first->second.append(columns, offset);
 }
 
 void Chunk::clear() {
-  moments.clear();
+  time_steps.clear();
   bytes = 0;
-  // Who was not there this time is gone for good, most likely.
+  // Who was not there this time is gone permanently, most likely.
   std::erase_if(tracks, [](const auto& entry) { return entry.second.empty(); });
   for (auto& [id, columns] : tracks) columns.clear();
-  for (auto& [camera, columns] : seen) columns.clear();
+  for (auto& [camera, columns] : detected) columns.clear();
   bodies.clear();
 }
 
@@ -197,13 +197,13 @@ std::optional<std::string> problem_of(const Sample& sample) {
   return std::nullopt;
 }
 
-bool is_sound(const SeenPoint& point) {
+bool is_sound(const ImageObservation& point) {
   const int camera = number(point.camera);
   return camera >= 0 && camera <= 63 && point.pixel.allFinite() && is_number(point.sigma) && is_number(point.area) &&
          (!point.track || number(*point.track) > 0);
 }
 
-std::optional<std::string> problem_of(const SeenPoint& point) {
+std::optional<std::string> problem_of(const ImageObservation& point) {
   if (is_sound(point)) return std::nullopt;
   const int camera = number(point.camera);
   if (camera < 0 || camera > 63) return fmt::format("camera {} cannot be; a rig has 64 at most", camera);

@@ -111,11 +111,11 @@ Recording random_recording(Kind kind, unsigned seed) {
     }
     for (int camera = 0; camera < 3; ++camera) {
       for (int n = dice.below(4); n > 0; --n) {
-        SeenPoint point{CameraId{camera}, {dice.between(0, 800), dice.between(0, 600)}, {}, {}, {}};
+        ImageObservation point{CameraId{camera}, {dice.between(0, 800), dice.between(0, 600)}, {}, {}, {}};
         if (camera != 1) point.sigma = dice.between(0, 1);
         if (dice.with(0.5)) point.area = dice.between(0, 100);
         if (dice.with(0.5)) point.track = TrackId{7 * (1 + dice.below(tracks))};
-        instant.seen.push_back(point);
+        instant.detected.push_back(point);
       }
     }
     recording.add(instant);
@@ -142,7 +142,7 @@ class TakeColumnsTest : public testing::Test {
     const auto summary = reader.summary();
     while (reader.next()) {
     }
-    reader.moments();
+    reader.time_steps();
     for (const auto& track : summary.tracks) reader.read_track(track.name.id);
   }
 };
@@ -233,13 +233,13 @@ std::vector<std::array<double, 4>> rows_by_sql(const std::string& path, int trac
   return found;
 }
 
-TEST_F(TakeColumnsTest, OneTrackIsReadAsRowByRow) {
+TEST_F(TakeColumnsTest, ReadsTrackAsRowByRow) {
   for (const Kind kind : {Kind::image, Kind::space}) {
     const Recording recording = random_recording(kind, 9);
     write_recording(path_, recording);
     const TakeReader reader(path_);
-    const auto moments = reader.moments();
-    ASSERT_EQ(moments.size(), recording.instants().size());
+    const auto time_steps = reader.time_steps();
+    ASSERT_EQ(time_steps.size(), recording.instants().size());
     for (const auto& track : recording.tracks()) {
       const auto alone = reader.read_track(track.id());
       testing_take::expect_same(alone, track);
@@ -247,7 +247,7 @@ TEST_F(TakeColumnsTest, OneTrackIsReadAsRowByRow) {
       ASSERT_EQ(slow.size(), alone.size());
       for (std::size_t row = 0; row < slow.size(); ++row) {
         EXPECT_EQ(alone.position(row), Vector<3>(slow[row][1], slow[row][2], slow[row][3]));
-        EXPECT_NEAR(seconds(moments[static_cast<std::size_t>(alone.at()[row])].time), slow[row][0], 1e-9);
+        EXPECT_NEAR(seconds(time_steps[static_cast<std::size_t>(alone.at()[row])].time), slow[row][0], 1e-9);
       }
     }
     EXPECT_TRUE(reader.read_track(TrackId{4}).empty());
@@ -292,7 +292,7 @@ TEST_F(TakeColumnsTest, LaterSchemasAndOtherProgramsFilesAreRefused) {
   Database(path_, Database::Mode::create).run("PRAGMA user_version = 3");
   EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("later version of Marey"), std::string::npos);
   Database(path_, Database::Mode::create).run("PRAGMA application_id = 42");
-  EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("is no take"), std::string::npos);
+  EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("is not a take"), std::string::npos);
 }
 
 TEST_F(TakeColumnsTest, HostileTablesAreRefused) {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
-#include "marey/core/text_safety.h"
+#include "marey/core/ground_transform.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/rig/rig_file.h"
 
 namespace marey::format::take {

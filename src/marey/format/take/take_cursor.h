@@ -24,7 +24,7 @@ class TakeCursor {
   virtual std::optional<std::int64_t> head() = 0;
   virtual std::optional<Instant> next() = 0;
   virtual void seek(std::int64_t index) = 0;
-  virtual std::vector<Recording::Moment> moments() = 0;
+  virtual std::vector<Recording::TimeStep> time_steps() = 0;
   virtual TrackColumns read_track(const TrackName& name) = 0;
 };
 
@@ -47,11 +47,11 @@ class TakeValues {
   Statement value_;
 };
 
-/// Throws Error where one of `tables` (in quotes, commas between them) is missing.
+/// Throws Error if one of `tables` (in quotes, commas between them) is missing.
 void require_tables(const Database& database, const char* tables, int count);
 /// A name, a rate, a rig.
 RecordingHeader common_header(const Database& database, TakeValues& values);
-/// Throws Error where the take has `known` tracks already that are as many as there may be, or where a name is too long.
+/// Throws Error if the take has `known` tracks already that are as many as there may be, or where a name is too long.
 void check_name(const TrackName& name, std::size_t known, const Limits& limits, const Database& database);
 /// A track's id as the file has it.
 TrackId checked_track(std::int64_t id, const Database& database);

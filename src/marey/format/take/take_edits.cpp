@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "marey/core/error.h"
-#include "marey/core/file_lock.h"
+#include "marey/files/file_lock.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_file.h"
 #include "marey/format/take/take_schema.h"
@@ -18,7 +18,7 @@ EditState edit_state(const std::vector<Edit>& edits, std::optional<std::int64_t>
 }
 
 void fail_edited_elsewhere(const std::string& path) {
-  throw Error("{}: another program has edited it meanwhile, and nothing was changed; look at it as it is now and do it again",
+  throw Error("{}: another program has edited it in the meantime, and nothing was changed; look at it as it is now and do it again",
               path);
 }
 

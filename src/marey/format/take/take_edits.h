@@ -21,8 +21,8 @@ struct EditState {
 EditState edit_state(const std::vector<Edit>& edits, std::optional<std::int64_t> head);
 
 /// Adds edits to a take that is there and says which one counts, all of it or nothing; what was recorded is not touched. Throws
-/// Error where it is no take, is still being recorded, was written by a version of Marey before edits could be replayed, or cannot
-/// be written; and where its edits no longer stand at `on`, for then another program has edited it meanwhile.
+/// Error where it is not a take, is still being recorded, was written by a version of Marey before edits could be replayed, or
+/// cannot be written; and where its edits no longer stand at `on`, for then another program has edited it in the meantime.
 void add_edits(const std::string& path, std::span<const Edit> more, std::optional<std::int64_t> head, const EditState& on);
 /// Throws that Error.
 [[noreturn]] void fail_edited_elsewhere(const std::string& path);

@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "marey/core/file_lock.h"
-#include "marey/core/limits.h"
 #include "marey/core/recording.h"
 #include "marey/core/recording_reader.h"
 #include "marey/core/sink.h"
+#include "marey/files/file_lock.h"
+#include "marey/files/limits.h"
 
 namespace marey::format::take {
 
 /// Writes a take while it is recorded, into one SQLite file under its own name (docs/take.md has the schema). What was written
 /// reaches the file within half a second of the next `write`, so that a killed program loses less than a second; memory does not
-/// grow with the take. Others may read the file meanwhile. Positions and boxes come back as they were written, the rest with the
-/// precision of a float32; an outline's measurement lines are not kept.
+/// grow with the take. Others may read the file in the meantime. Positions and boxes come back as they were written, the rest with
+/// the precision of a float32; an outline's measurement lines are not kept.
 class TakeWriter : public Sink {
  public:
   explicit TakeWriter(std::string path);
@@ -27,10 +27,10 @@ class TakeWriter : public Sink {
 
   std::string name() const override { return path_; }
   /// Begins a new take, which is in its place from the first thing that is written on, or `flush`; one that bears the name already
-  /// is replaced then. Throws Error where the place cannot be written, where the name is another kind of file's, where another
+  /// is replaced then. Throws Error if the place cannot be written, where the name is another kind of file's, where another
   /// TakeWriter has it open, and where the header is not valid.
-  Wants begin(const RecordingHeader& header) override;
-  /// Instants come in growing order of their indices; some may be left out. Each track has at most one sample. Throws Error where
+  SinkRequirements begin(const RecordingHeader& header) override;
+  /// Instants come in growing order of their indices; some may be omitted. Each track has at most one sample. Throws Error if
   /// the disk is full; all instants but those of the last second are then in the file, and this writer takes no more.
   void write(const Instant& instant) override;
   /// The take is whole: brings everything into the file, joins the short chunks it was recorded in, and closes it.
@@ -54,7 +54,7 @@ class TakeWriter : public Sink {
 };
 
 struct TakeReaderOptions {
-  bool seen = true;                    ///< false: instants come without what the cameras saw, and several times sooner
+  bool detected = true;                ///< false: instants come without what the cameras saw, and several times sooner
   Limits limits = Limits::in_force();  ///< `label_bytes` and `tracks` count
 };
 
@@ -63,7 +63,7 @@ class TakeCursor;
 /// Reads a take instant by instant, or track by track, also while it is being written, and after its writer was killed.
 class TakeReader : public RecordingReader {
  public:
-  /// Throws Error where `path` is no take, a damaged one, or one by a later version of Marey.
+  /// Throws Error if `path` is not a take, a damaged one, or one by a later version of Marey.
   explicit TakeReader(const std::string& path, TakeReaderOptions options = {});
   ~TakeReader() override;
   TakeReader(TakeReader&&) noexcept;
@@ -85,7 +85,7 @@ class TakeReader : public RecordingReader {
   void seek(std::int64_t index);
 
   /// When there were instants: what `TrackColumns::at` counts.
-  std::vector<Recording::Moment> moments() const;
+  std::vector<Recording::TimeStep> time_steps() const;
   /// One track over the whole take, read without the others. Without rows where there is none of that id.
   TrackColumns read_track(TrackId track) const;
 

@@ -26,7 +26,7 @@ Instant instant_of(std::int64_t index, int markers = 3) {
   Instant instant;
   instant.index = index;
   instant.time = timestamp_from_seconds(static_cast<double>(index) / 120);
-  instant.seen.push_back({CameraId(0), {1, 2}, {}, {}, std::nullopt});
+  instant.detected.push_back({CameraId(0), {1, 2}, {}, {}, std::nullopt});
   for (int m = 1; m <= markers; ++m) {
     Sample sample;
     sample.track = TrackId(m);
@@ -37,7 +37,7 @@ Instant instant_of(std::int64_t index, int markers = 3) {
     if (m % 3 == 0) sample.residual_px = 0.125;
     if (m % 3 == 1) sample.residual_m = 0.0625;
     instant.samples.push_back(sample);
-    instant.seen.push_back({CameraId(m), {100.0 / m, static_cast<double>(index)}, 0.0625, 12.5, TrackId(m)});
+    instant.detected.push_back({CameraId(m), {100.0 / m, static_cast<double>(index)}, 0.0625, 12.5, TrackId(m)});
   }
   return instant;
 }
@@ -63,7 +63,7 @@ std::vector<std::int64_t> every(std::int64_t from, std::int64_t to, std::int64_t
   return indices;
 }
 
-/// Runs `body` in a process of its own; returns how it ended, as waitpid says. `until_killed` runs meanwhile, and ends it.
+/// Runs `body` in a process of its own; returns how it ended, as waitpid says. `until_killed` runs in the meantime, and ends it.
 template <typename Body>
 int in_child(Body body, const std::function<void()>& until_killed = {}) {
   const pid_t child = fork();
@@ -225,7 +225,7 @@ TEST_F(TakeFile, SummaryCountsWhatIsThere) {
   EXPECT_TRUE(summary.complete);
   EXPECT_EQ(summary.instants, 9);
   EXPECT_EQ(summary.samples, 27);
-  EXPECT_EQ(summary.seen, 36);
+  EXPECT_EQ(summary.detected, 36);
   EXPECT_EQ(summary.first_index, 10);
   EXPECT_EQ(summary.last_index, 18);
   ASSERT_EQ(summary.tracks.size(), 3U);
@@ -240,13 +240,13 @@ TEST_F(TakeFile, SummaryCountsWhatIsThere) {
 
 TEST_F(TakeFile, SeeksAndLeavesOutWhatWasSeen) {
   write_recording(path_, recording_of(every(0, 500, 2)));
-  TakeReader reader(path_, {.seen = false});
+  TakeReader reader(path_, {.detected = false});
   for (const std::int64_t index : {301, 7, 498, 0}) {
     reader.seek(index);
     const auto instant = reader.next();
     ASSERT_TRUE(instant);
     Instant expected = instant_of(index + index % 2);
-    expected.seen.clear();
+    expected.detected.clear();
     testing_take::expect_same(*instant, expected);
   }
   reader.seek(499);
@@ -370,7 +370,7 @@ TEST_F(TakeFile, SurvivesSigkillAndLosesLessThanASecond) {
 }
 
 TEST_F(TakeFile, KeepsWhatWasWrittenWhenTheDiskIsFull) {
-  const std::string said = folder_ / "said";
+  const std::string stated = folder_ / "said";
   in_child([&] {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{2 << 20, 2 << 20};
@@ -383,9 +383,9 @@ TEST_F(TakeFile, KeepsWhatWasWrittenWhenTheDiskIsFull) {
         if (i % 50 == 0) writer.flush();
       }
     });
-    test::write_file(said, error);
+    test::write_file(stated, error);
   });
-  EXPECT_NE(test::read_file(said).find("cannot be written to the end"), std::string::npos) << test::read_file(said);
+  EXPECT_NE(test::read_file(stated).find("cannot be written to the end"), std::string::npos) << test::read_file(stated);
   TakeReader reader(path_);
   const RecordingSummary summary = reader.summary();
   std::int64_t next = 0;
@@ -396,11 +396,11 @@ TEST_F(TakeFile, KeepsWhatWasWrittenWhenTheDiskIsFull) {
 
 TEST_F(TakeFile, RefusesWhatIsNotATake) {
   test::write_file(path_, "name,x,y\n");
-  EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("is no take"), std::string::npos);
+  EXPECT_NE(error_of([&] { TakeReader reader(path_); }).find("is not a take"), std::string::npos);
   EXPECT_NE(error_of([&] { TakeWriter(path_).begin(header()); }).find("is not overwritten"), std::string::npos);
   EXPECT_EQ(test::read_file(path_), "name,x,y\n");
   EXPECT_NE(error_of([&] { TakeReader reader(folder_ / "none"); }).find("no such file"), std::string::npos);
-  EXPECT_NE(error_of([&] { TakeReader reader(folder_.path()); }).find("is no file"), std::string::npos);
+  EXPECT_NE(error_of([&] { TakeReader reader(folder_.path()); }).find("is not a file"), std::string::npos);
 }
 
 TEST_F(TakeFile, RefusesFramesThatCannotBe) {
@@ -422,10 +422,10 @@ TEST_F(TakeFile, RefusesFramesThatCannotBe) {
 TEST_F(TakeFile, DamagedTakesAreRefused) {
   write_recording(path_, recording_of(every(0, 300)));
   const std::string whole = test::read_file(path_);
-  for (const double share : {0.001, 0.1, 0.5, 0.9, 0.999}) {
+  for (const double fraction : {0.001, 0.1, 0.5, 0.9, 0.999}) {
     test::write_file(path_, whole);
-    test::cut_file(path_, share);
-    EXPECT_THROW(read_recording(path_), Error) << share;
+    test::cut_file(path_, fraction);
+    EXPECT_THROW(read_recording(path_), Error) << fraction;
   }
 }
 

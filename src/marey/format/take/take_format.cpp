@@ -33,7 +33,7 @@ class TakeCopy : public Sink {
  public:
   TakeCopy(const std::string& path, const WritePlan& plan) : writer_(path), info_(plan.info) {}
   std::string name() const override { return writer_.name(); }
-  Wants begin(const RecordingHeader& header) override { return writer_.begin(header); }
+  SinkRequirements begin(const RecordingHeader& header) override { return writer_.begin(header); }
   void write(const Instant& instant) override {
     copy_names();
     writer_.write(instant);
@@ -64,7 +64,7 @@ Format take_format() {
           .title = "a take",
           .endings = ".marey",
           .holds = kRecordings,
-          .detail = "m or px; everything, of recordings in a picture, on a ground and in space: see [the take](take.md)",
+          .detail = "m or px; everything, of recordings in an image, on a ground and in space: see [the take](take.md)",
           .is = [](const Beginning& file) { return !file.folder && take::is_take(file.path); },
           .open = [](const std::string& path, const ReadOptions&) -> std::unique_ptr<FileReader> {
             return std::make_unique<take::TakeFileReader>(path);

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/file_lock.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/text_safety.h"
 #include "marey/edit/operation.h"
+#include "marey/files/file_lock.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/take/sqlite.h"
 #include "marey/format/take/take_cursor.h"
 #include "marey/format/take/take_file.h"
@@ -40,12 +40,12 @@ void require_take(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw Error("{}: no such file", path);
-  if (!fs::is_regular_file(status)) throw Error("{}: is no file; name a take", path);
+  if (!fs::is_regular_file(status)) throw Error("{}: is not a file; name a take", path);
   if (!std::ifstream(path, std::ios::binary)) throw Error("{}: cannot be read; have you the right to?", path);
-  if (!is_take(path)) throw Error("{}: is no take of Marey's; see what it is with \"marey info\"", path);
+  if (!is_take(path)) throw Error("{}: is not a take of Marey's; see what it is with \"marey info\"", path);
 }
 
-/// One file again, where a killed recorder left a journal and its lock beside it. Does nothing where it still records, and nothing
+/// One file again, where a killed recorder left a journal and its lock beside it. Does nothing if it still records, and nothing
 /// where we may not write: the take can be read all the same.
 void tidy_after_kill(const std::string& path) {
   if (!has_lock_file(path)) return;
@@ -73,11 +73,11 @@ void require_whole_pages(Database& database) {
 }
 
 /// One instant that is far from all others: who follows the take would walk through all between.
-std::unique_ptr<TakeCursor> believable(std::unique_ptr<TakeCursor> cursor, const std::string& path) {
+std::unique_ptr<TakeCursor> plausible(std::unique_ptr<TakeCursor> cursor, const std::string& path) {
   const RecordingSummary summary = cursor->summary();
-  if (!summary.first_index || *summary.last_index - *summary.first_index < FrameNumbers::kMostMissing) return cursor;
+  if (!summary.first_index || *summary.last_index - *summary.first_index < FrameNumbers::kMaxMissing) return cursor;
   FrameNumbers numbers;
-  for (const Recording::Moment& moment : cursor->moments()) numbers.add(moment.index);
+  for (const Recording::TimeStep& time_step : cursor->time_steps()) numbers.add(time_step.index);
   numbers.check(path);
   return cursor;
 }
@@ -96,7 +96,7 @@ std::unique_ptr<TakeCursor> open(const std::string& path, TakeReaderOptions opti
     throw Error(
         "{}: is of schema 1, which no release wrote; commit {} is the last that reads it: marey convert there writes schema 2",
         path, kLastCommitOfSchema1);
-  if (version == kTakeSchemaVersion) return believable(open_schema_2(std::move(database), options), path);
+  if (version == kTakeSchemaVersion) return plausible(open_schema_2(std::move(database), options), path);
   throw Error("{}: is damaged (schema version {})", path, version);
 }
 
@@ -133,14 +133,14 @@ std::optional<std::int64_t> TakeReader::instant_count() const {
 std::vector<std::string> TakeReader::warnings() const {
   std::vector<std::string> warnings;
   if (!cursor_->summary().complete)
-    warnings.push_back(path_ + ": its recording was cut off, or still goes on; what there is was read");
+    warnings.push_back(path_ + ": its recording was cut off, or still continues; what there is was read");
   std::set<std::string> unknown;
   for (const Edit& edit : cursor_->edits()) {
     if (!edit::is_known(edit)) unknown.insert(plain_text(edit.operation.substr(0, 40)));
   }
   for (const std::string& operation : unknown) {
     warnings.push_back(
-        fmt::format("{}: holds an edit \"{}\", which this version of Marey cannot do; it is kept, and left out", path_, operation));
+        fmt::format("{}: holds an edit \"{}\", which this version of Marey cannot do; it is kept, and omitted", path_, operation));
   }
   return warnings;
 }
@@ -151,8 +151,8 @@ std::optional<Instant> TakeReader::next() {
 void TakeReader::seek(std::int64_t index) {
   cursor_->seek(index);
 }
-std::vector<Recording::Moment> TakeReader::moments() const {
-  return cursor_->moments();
+std::vector<Recording::TimeStep> TakeReader::time_steps() const {
+  return cursor_->time_steps();
 }
 
 TrackColumns TakeReader::read_track(TrackId id) const {

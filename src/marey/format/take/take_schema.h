@@ -44,9 +44,9 @@ constexpr const char* kTakeSchema = R"(
 constexpr int kTakeTables = 10;
 
 /// The id of a row of `samples`, `seen` and `poses`: whose it is (a track, a camera, a body), within which chunk.
-constexpr std::int64_t row_id(std::int64_t chunk, int whose) {
-  return chunk << 32 | static_cast<std::int64_t>(whose);
+constexpr std::int64_t row_id(std::int64_t chunk, int owner) {
+  return chunk << 32 | static_cast<std::int64_t>(owner);
 }
-constexpr std::int64_t kMostChunks = (std::int64_t{1} << 31) - 1;
+constexpr std::int64_t kMaxChunks = (std::int64_t{1} << 31) - 1;
 
 }  // namespace marey::format::take

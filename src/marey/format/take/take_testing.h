@@ -65,7 +65,7 @@ inline void expect_same(const Sample& a, const Sample& b) {
   EXPECT_EQ(a.outline->silhouette.has_value(), b.outline->silhouette.has_value());
 }
 
-inline void expect_same(const SeenPoint& a, const SeenPoint& b) {
+inline void expect_same(const ImageObservation& a, const ImageObservation& b) {
   EXPECT_EQ(a.camera, b.camera);
   EXPECT_EQ(a.pixel, b.pixel);
   EXPECT_EQ(a.track, b.track);
@@ -93,8 +93,8 @@ inline void expect_same(const Instant& a, const Instant& b) {
   EXPECT_EQ(a.time, b.time);
   ASSERT_EQ(a.samples.size(), b.samples.size()) << a.index;
   for (std::size_t i = 0; i < a.samples.size(); ++i) expect_same(a.samples[i], b.samples[i]);
-  ASSERT_EQ(a.seen.size(), b.seen.size()) << a.index;
-  for (std::size_t i = 0; i < a.seen.size(); ++i) expect_same(a.seen[i], b.seen[i]);
+  ASSERT_EQ(a.detected.size(), b.detected.size()) << a.index;
+  for (std::size_t i = 0; i < a.detected.size(); ++i) expect_same(a.detected[i], b.detected[i]);
   ASSERT_EQ(a.bodies.size(), b.bodies.size()) << a.index;
   for (std::size_t i = 0; i < a.bodies.size(); ++i) expect_same(a.bodies[i], b.bodies[i]);
 }

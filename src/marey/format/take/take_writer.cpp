@@ -13,8 +13,8 @@
 #include <map>
 
 #include "marey/core/error.h"
-#include "marey/core/file_lock.h"
-#include "marey/core/other_ground.h"
+#include "marey/core/ground_transform.h"
+#include "marey/files/file_lock.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/take/body_definition.h"
 #include "marey/format/take/chunk_joiner.h"
@@ -32,7 +32,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kLongestTransaction = std::chrono::milliseconds(500);
+constexpr auto kMaxTransaction = std::chrono::milliseconds(500);
 constexpr std::size_t kLargestTransaction = std::size_t{16} << 20;
 
 void require_valid(const RecordingHeader& header, const std::string& path) {
@@ -48,7 +48,7 @@ void require_valid(const RecordingHeader& header, const std::string& path) {
 class TakeWriter::Recorder {
  public:
   Recorder(const std::string& path, const RecordingHeader& header)
-      : path_(place_for_take(path)),
+      : path_(position_for_take(path)),
         database_((remove_old_take(path_), path_), Database::Mode::create),
         schema_(prepare_schema()),
         dimensions_(header.frame.dimensions()),
@@ -101,7 +101,7 @@ class TakeWriter::Recorder {
     if (!first_index_) first_index_ = instant.index;
     gathered();
     if (chunk_.bytes >= kLargestChunk) cut();
-    if (chunk_.bytes + written_ >= kLargestTransaction || Clock::now() - began_ >= kLongestTransaction) flush();
+    if (chunk_.bytes + written_ >= kLargestTransaction || Clock::now() - began_ >= kMaxTransaction) flush();
   }
 
   void add_edit(const Edit& edit) {
@@ -194,7 +194,7 @@ class TakeWriter::Recorder {
       if (const auto problem = problem_of(sample)) throw Error("{}: frame {}: {}", path_, instant.index, *problem);
       ids_.push_back(sample.track);
     }
-    for (const SeenPoint& point : instant.seen) {
+    for (const ImageObservation& point : instant.detected) {
       if (!is_sound(point)) throw Error("{}: frame {}: {}", path_, instant.index, problem_of(point).value());
     }
     for (const BodyPose& pose : instant.bodies) {
@@ -207,8 +207,8 @@ class TakeWriter::Recorder {
   }
 
   bool fits(const Instant& instant) const {
-    const Recording::Moment& first = chunk_.moments.front();
-    return instant.time - first.time < kLongestChunk && instant.index - first.index < std::numeric_limits<std::uint32_t>::max();
+    const Recording::TimeStep& first = chunk_.time_steps.front();
+    return instant.time - first.time < kMaxChunk && instant.index - first.index < std::numeric_limits<std::uint32_t>::max();
   }
 
   /// Marks what a failure passes through.
@@ -256,7 +256,7 @@ class TakeWriter::Recorder {
     if (chunk_.empty()) return;
     begin();
     count();
-    if (next_id_ == kMostChunks) throw Error("{}: is too long to go on; begin another take", path_);
+    if (next_id_ == kMaxChunks) throw Error("{}: is too long to continue; begin another take", path_);
     const FailureMark mark(broken_);
     chunks_.write(next_id_, chunk_);
     joiner_.add(next_id_++, chunk_);
@@ -265,17 +265,17 @@ class TakeWriter::Recorder {
   }
 
   void count() {
-    instants_ += static_cast<std::int64_t>(chunk_.moments.size());
+    instants_ += static_cast<std::int64_t>(chunk_.time_steps.size());
     for (const auto& [id, columns] : chunk_.tracks) {
       if (columns.empty()) continue;
       Counts& counts = tracks_[id];
       counts.count.name.id = id;
       counts.changed = true;
       for (std::size_t row = 0; row < columns.size(); ++row)
-        counts.count.add(chunk_.moments[static_cast<std::size_t>(columns.at()[row])].index, columns.provenance()[row]);
+        counts.count.add(chunk_.time_steps[static_cast<std::size_t>(columns.at()[row])].index, columns.provenance()[row]);
       samples_ += static_cast<std::int64_t>(columns.size());
     }
-    for (const auto& [camera, columns] : chunk_.seen) seen_ += static_cast<std::int64_t>(columns.size());
+    for (const auto& [camera, columns] : chunk_.detected) detected_ += static_cast<std::int64_t>(columns.size());
   }
 
   template <typename Value>
@@ -292,7 +292,7 @@ class TakeWriter::Recorder {
   void write_counts() {
     set("instants", instants_);
     set("samples", samples_);
-    set("seen", seen_);
+    set("seen", detected_);
     for (auto& [id, counts] : tracks_) {
       if (!counts.changed) continue;
       const RecordingSummary::TrackCount& count = counts.count;
@@ -343,7 +343,7 @@ class TakeWriter::Recorder {
   ChunkJoiner joiner_;
   bool joined_ = false;
   std::int64_t next_id_ = 1;
-  std::int64_t instants_ = 0, samples_ = 0, seen_ = 0;
+  std::int64_t instants_ = 0, samples_ = 0, detected_ = 0;
   std::optional<std::int64_t> first_index_, last_index_;
   std::map<TrackId, Counts> tracks_;
   std::vector<TrackId> ids_;
@@ -366,11 +366,11 @@ TakeWriter::Recorder& TakeWriter::recorder() {
   return *recorder_;
 }
 
-Sink::Wants TakeWriter::begin(const RecordingHeader& header) {
+Sink::SinkRequirements TakeWriter::begin(const RecordingHeader& header) {
   require_valid(header, path_);
-  lock_ = std::make_unique<FileLock>(place_for_take(path_));
+  lock_ = std::make_unique<FileLock>(position_for_take(path_));
   header_ = header;
-  return {.pictures = false, .seen = true};
+  return {.images = false, .detected = true};
 }
 void TakeWriter::write(const Instant& instant) {
   recorder().write(instant);

@@ -12,8 +12,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/input_file.h"
 #include "marey/core/time.h"
+#include "marey/files/input_file.h"
 #include "marey/format/format.h"
 #include "marey/format/nesting.h"
 #include "marey/format/text_rows.h"
@@ -21,15 +21,15 @@
 namespace marey::format::tracks {
 namespace {
 
-constexpr double kFarthestBlob = 1e7;   // px
-constexpr double kUnknownSigma = 0.25;  // px; of a blob whose covariance the file does not tell
+constexpr double kMaxBlob = 1e7;        // px
+constexpr double kUnknownSigma = 0.25;  // px; of a blob whose covariance the file does not specify
 
 enum Column { kFrame, kTime, kX, kY, kVarX, kCovXY, kVarY, kArea, kScore, kLeft, kTop, kWidth, kHeight, kColumns };
 constexpr std::array<std::string_view, kColumns> kColumnNames{"frame", "time",  "x",    "y",   "var_x", "cov_xy", "var_y",
                                                               "area",  "score", "left", "top", "width", "height"};
 constexpr std::string_view kHeader = "camera,frame,time,x,y,var_x,cov_xy,var_y,area,score,left,top,width,height";
 
-/// One line, by column; nothing where the line does not tell.
+/// One line, by column; nothing if the line does not specify.
 struct BlobLine {
   std::string camera;
   std::array<std::optional<double>, kColumns> value;
@@ -105,9 +105,9 @@ class BlobReader::Lines {
       const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), fields_[i]);
       if (known != kColumnNames.end()) columns_[static_cast<std::size_t>(known - kColumnNames.begin())] = i;
     }
-    for (const Column wanted : {kFrame, kX, kY}) {
-      if (!columns_[wanted])
-        throw Error("{}:1: there is no column \"{}\"; the header must be {}", path, kColumnNames[wanted], kHeader);
+    for (const Column required : {kFrame, kX, kY}) {
+      if (!columns_[required])
+        throw Error("{}:1: there is no column \"{}\"; the header must be {}", path, kColumnNames[required], kHeader);
     }
     text_.clear();
   }
@@ -149,7 +149,7 @@ class BlobReader::Lines {
       }
       return line;
     } catch (const nlohmann::json::exception&) {
-      fail("is no JSON of a blob: frame, x and y are wanted");
+      fail("is not a JSON of a blob: frame, x and y are wanted");
     }
   }
 
@@ -158,12 +158,12 @@ class BlobReader::Lines {
     if (!value[kFrame] || *value[kFrame] != std::floor(*value[kFrame]) || *value[kFrame] < 0 || *value[kFrame] > 1e12)
       fail("frame must be a whole number from 0");
     for (const Column k : {kX, kY}) {
-      if (!value[k] || !(std::abs(*value[k]) < kFarthestBlob)) fail(fmt::format("{} must be a number of px", kColumnNames[k]));
+      if (!value[k] || !(std::abs(*value[k]) < kMaxBlob)) fail(fmt::format("{} must be a number of px", kColumnNames[k]));
     }
     const bool spread = value[kVarX].has_value() && value[kVarY].has_value();
     const double across = value[kCovXY].value_or(0);
     if (spread && !(*value[kVarX] >= 0 && *value[kVarY] >= 0 && across * across <= *value[kVarX] * *value[kVarY] * 1.01))
-      fail("var_x, cov_xy and var_y are no covariance");
+      fail("var_x, cov_xy and var_y are not covariance");
     if (number_ > 1 && line.frame() < last_frame_) fail("its frame comes before that of the line above; sort the lines by frame");
     last_frame_ = line.frame();
     if (!first_camera_) first_camera_ = line.camera;
@@ -209,10 +209,10 @@ BlobReader::BlobReader(const std::string& path, std::optional<double> rate_hz) {
   parts_->info.frame_count = frames;
   const auto own_rate = numbers.rate_hz();
   parts_->own_times = !rate_hz && own_rate;
-  parts_->info.rate_hz = rate_hz ? rate_hz : own_rate ? own_rate : std::optional(kUsualRate);
+  parts_->info.rate_hz = rate_hz ? rate_hz : own_rate ? own_rate : std::optional(kDefaultRate);
   if (!rate_hz && !own_rate)
     parts_->warnings.push_back(
-        fmt::format("{}: blobs without times: {} frames a second were assumed; say otherwise with --rate", path, kUsualRate));
+        fmt::format("{}: blobs without times: {} frames a second were assumed; say otherwise with --rate", path, kDefaultRate));
   parts_->pending = parts_->lines.next();
 }
 
@@ -256,16 +256,16 @@ bool begins_blobs(std::string_view line) {
 
 std::vector<Fact> facts_of_blobs(const std::string& path) {
   BlobReader reader(path, std::nullopt);
-  std::int64_t blobs = 0, frames = 0, most = 0;
+  std::int64_t blobs = 0, frames = 0, maximum = 0;
   while (const auto frame = reader.next()) {
     ++frames;
     blobs += std::ssize(*frame->detections);
-    most = std::max<std::int64_t>(most, std::ssize(*frame->detections));
+    maximum = std::max<std::int64_t>(maximum, std::ssize(*frame->detections));
   }
   std::vector<Fact> facts{{"blobs", blobs}, {"frames", frames}};
   if (frames > 0)
     facts.push_back({"blobs_a_frame", static_cast<double>(blobs) / static_cast<double>(frames),
-                     fmt::format("{:.1f}, at most {}", static_cast<double>(blobs) / static_cast<double>(frames), most)});
+                     fmt::format("{:.1f}, at most {}", static_cast<double>(blobs) / static_cast<double>(frames), maximum)});
   return facts;
 }
 
@@ -278,7 +278,7 @@ bool is_blob_file(const std::string& path) {
 
 Format blobs_format() {
   return {.name = "blobs",
-          .title = "blobs that were found in pictures, one a line",
+          .title = "blobs that were found in images, one a line",
           .endings = {},
           .holds = Content::detections,
           .detail =

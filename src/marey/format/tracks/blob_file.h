@@ -11,7 +11,7 @@
 #include "marey/core/frame.h"
 #include "marey/core/frame_set.h"
 #include "marey/core/source.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 
 namespace marey::format::tracks {
 
@@ -24,10 +24,10 @@ enum class BlobText { csv, jsonl };
 /// By the ending of `path`: JSON lines where that is .jsonl.
 BlobText blob_text_of(const std::string& path);
 
-/// Writes what was found in the pictures of one camera, as it comes; the file is there whole or not at all.
+/// Writes what was found in the images of one camera, as it comes; the file is there atomically.
 class BlobWriter {
  public:
-  /// Throws Error where nothing can be written there.
+  /// Throws Error if nothing can be written there.
   BlobWriter(const std::string& path, BlobText text, const std::string& camera);
   void write(const Frame& frame, std::span<const Detection> blobs);
   void finish() { file_.finish(); }
@@ -42,11 +42,11 @@ class BlobWriter {
 /// Whether a file holds blobs: either form of BlobWriter's, or a CSV with columns frame, x and y and without an id.
 bool is_blob_file(const std::string& path);
 
-/// Blobs of one camera, frame by frame, in the place of its pictures and a detector. `frame`, `x` and `y` must be there; what else
+/// Blobs of one camera, frame by frame, in the place of its images and a detector. `frame`, `x` and `y` must be there; what else
 /// BlobWriter writes is read where it is, in any order of the columns. Lines are in the order of frames, which are read one by one.
 class BlobReader {
  public:
-  /// `rate_hz` counts before the file's own times; 25, with a warning, where neither is there. Throws Error where the file cannot
+  /// `rate_hz` counts before the file's own times; 25, with a warning, where neither is there. Throws Error if the file cannot
   /// be read, a line is malformed, frames are not in order, or it holds several cameras' blobs.
   BlobReader(const std::string& path, std::optional<double> rate_hz);
   ~BlobReader();
@@ -54,7 +54,7 @@ class BlobReader {
 
   const SourceInfo& info() const;
   const std::vector<std::string>& warnings() const;
-  /// Frames without pictures, from 0 to the last that has a blob; nothing at the end.
+  /// Frames without images, from 0 to the last that has a blob; nothing at the end.
   std::optional<CameraFrame> next();
 
  private:

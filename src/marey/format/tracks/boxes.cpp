@@ -8,11 +8,11 @@ namespace marey::format::tracks {
 
 MotTable read_boxes(const std::string& path, MotKind kind) {
   const Format* format = path == "-" ? nullptr : format_of_content(path);
-  // What is no format at all is told by the reader of MOT text, which says what it wants.
+  // What is not a format at all is reported by the reader of MOT text, which says what it wants.
   if (format == nullptr || format->name == "mot" || !format->holds.any_of(kRecordings)) return read_mot(path, kind);
   match::GroundMatch match = read_whole(path, *format);
   if (match.recording.header.frame.metric())
-    throw Error("{}: its positions are {}, not px of a picture; --distance judges places", path,
+    throw Error("{}: its positions are {}, not px of an image; --distance judges places", path,
                 to_string(match.recording.header.frame));
   MotTable table{.boxes = {}, .warnings = std::move(match.warnings)};
   InstantRows rows(match.recording);

@@ -20,10 +20,10 @@ namespace marey::format::tracks {
 namespace {
 
 /// The share of detections, by rank, that is too weak to begin a track (TrackerOptions::confident).
-constexpr double kWeakShare = 0.25;
+constexpr double kWeakFraction = 0.25;
 constexpr double kConfident = 0.5;
 
-/// Replaces scores of an unknown scale by their rank, bent so that kWeakShare of them stay below kConfident.
+/// Replaces scores of an unknown scale by their rank, bent so that kWeakFraction of them stay below kConfident.
 void rank_scores(std::vector<LabelledBox>& boxes) {
   std::vector<double> sorted;
   for (const LabelledBox& box : boxes) sorted.push_back(box.score);
@@ -31,24 +31,24 @@ void rank_scores(std::vector<LabelledBox>& boxes) {
   for (LabelledBox& box : boxes) {
     const auto not_better = std::upper_bound(sorted.begin(), sorted.end(), box.score) - sorted.begin();
     const double rank = static_cast<double>(not_better) / static_cast<double>(sorted.size());
-    box.score =
-        rank < kWeakShare ? rank / kWeakShare * kConfident : kConfident + (rank - kWeakShare) / (1 - kWeakShare) * (1 - kConfident);
+    box.score = rank < kWeakFraction ? rank / kWeakFraction * kConfident
+                                     : kConfident + (rank - kWeakFraction) / (1 - kWeakFraction) * (1 - kConfident);
   }
 }
 
-constexpr double kPlaceNoise = 0.05;  // of a detector's boxes, in their heights
+constexpr double kPositionNoise = 0.05;  // of a detector's boxes, in their heights
 
-Detection detection_of(const LabelledBox& seen) {
+Detection detection_of(const LabelledBox& detected) {
   Detection detection;
-  detection.centre = seen.box.centre();
-  detection.covariance = std::pow(kPlaceNoise * seen.box.height, 2) * Matrix<2>::Identity();
-  detection.area = seen.box.area();
-  detection.box = seen.box;
-  detection.score = seen.score;
+  detection.centre = detected.box.centre();
+  detection.covariance = std::pow(kPositionNoise * detected.box.height, 2) * Matrix<2>::Identity();
+  detection.area = detected.box.area();
+  detection.box = detected.box;
+  detection.score = detected.score;
   return detection;
 }
 
-/// What has to be known of all detections before the first is looked at.
+/// What has to be known of all detections before the first is inspected.
 struct Survey {
   std::int64_t frames = 0;  ///< up to the last box's; 0 without any
   bool in_order = true;
@@ -130,8 +130,9 @@ DetectionReader::DetectionReader(const std::string& path, std::optional<double> 
   if (known.frames == 0) throw Error("{}: holds no detections; lines are frame,-1,left,top,width,height,score", path);
   warnings_ = std::move(known.warnings);
   if (!rate_hz) {
-    warnings_.push_back(fmt::format(
-        "{}: detections do not tell their rate: {} frames a second were assumed; say otherwise with --rate", path, kUsualRate));
+    warnings_.push_back(
+        fmt::format("{}: detections do not specify their rate: {} frames a second were assumed; say otherwise with --rate", path,
+                    kDefaultRate));
   }
   if (!known.probabilities || !known.confident) rank_scores(table.boxes);
   if (!known.probabilities) {
@@ -141,7 +142,7 @@ DetectionReader::DetectionReader(const std::string& path, std::optional<double> 
         fmt::format("{}: no score reaches {}, from which a track begins; they were ranked instead", path, kConfident));
   }
   info_.name = path;
-  info_.rate_hz = rate_hz.value_or(kUsualRate);
+  info_.rate_hz = rate_hz.value_or(kDefaultRate);
   info_.frame_count = known.frames;
   boxes_ = piecewise ? std::make_unique<Boxes>(MotReader(path)) : std::make_unique<Boxes>(std::move(table.boxes));
 }
@@ -155,8 +156,9 @@ std::optional<CameraFrame> DetectionReader::next() {
   result.frame.index = next_index_++;
   result.frame.time = timestamp_from_seconds(static_cast<double>(result.frame.index) / *info_.rate_hz);
   auto& detections = result.detections.emplace();
-  for (const LabelledBox* seen = boxes_->front(); seen != nullptr && seen->frame <= result.frame.index; seen = boxes_->front()) {
-    if (seen->frame == result.frame.index) detections.push_back(detection_of(*seen));  // else its frame went by
+  for (const LabelledBox* detected = boxes_->front(); detected != nullptr && detected->frame <= result.frame.index;
+       detected = boxes_->front()) {
+    if (detected->frame == result.frame.index) detections.push_back(detection_of(*detected));  // else its frame went by
     boxes_->pop();
   }
   return result;

@@ -17,7 +17,7 @@ namespace marey::format::tracks {
 /// piece.
 class DetectionReader {
  public:
-  /// `rate_hz` frames a second; 25 where nothing is given, with a warning. Throws Error where the file cannot be read or a line is
+  /// `rate_hz` frames a second; 25 where nothing is given, with a warning. Throws Error if the file cannot be read or a line is
   /// malformed.
   DetectionReader(const std::string& path, std::optional<double> rate_hz);
   ~DetectionReader();
@@ -25,7 +25,7 @@ class DetectionReader {
 
   const SourceInfo& info() const { return info_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Frames without pictures, from the first to the last that has a detection; nothing at the end.
+  /// Frames without images, from the first to the last that has a detection; nothing at the end.
   std::optional<CameraFrame> next();
 
  private:

@@ -45,7 +45,7 @@ match::GroundMatch tracks_of_masks(MaskTable table, const std::string& path, dou
     const Box box = mask.mask.box();
     if (box.empty()) continue;
     builder.add(builder.person(std::to_string(mask.id), mask.id, {}, {}),
-                {.frame = mask.frame, .time = mask.frame / rate_hz, .place = box.centre(), .box = box});
+                {.frame = mask.frame, .time = mask.frame / rate_hz, .location = box.centre(), .box = box});
   }
   match.order = builder.finish(match.recording);
   match.warnings = std::move(table.warnings);
@@ -86,7 +86,7 @@ std::vector<LabelledMask> visible_masks(const Instant& instant, int width, int h
 
 MaskFile::MaskFile(const std::string& path, MaskText format) : path_(path), file_(path), text_(format) {}
 
-Sink::Wants MaskFile::begin(const RecordingHeader& header) {
+Sink::SinkRequirements MaskFile::begin(const RecordingHeader& header) {
   if (header.frame.metric())
     throw Error("{}: such a file has masks in an image, and these positions are {}", path_, to_string(header.frame));
   if (header.rig && !header.rig->cameras.empty() && header.rig->cameras.front().size) {
@@ -94,15 +94,15 @@ Sink::Wants MaskFile::begin(const RecordingHeader& header) {
     height_ = header.rig->cameras.front().size->height;
   }
   if (text_ == MaskText::coco) file_.write("{\"annotations\":[");
-  return {.pictures = width_ == 0};
+  return {.images = width_ == 0};
 }
 
 void MaskFile::write(const Instant& instant) {
   if (width_ == 0) {
-    if (instant.frames.empty() || instant.frames.front().picture.empty())
+    if (instant.frames.empty() || instant.frames.front().image.empty())
       throw Error("{}: the size of the image is not known, which masks need; write it while the video is tracked", path_);
-    width_ = instant.frames.front().picture.size().width;
-    height_ = instant.frames.front().picture.size().height;
+    width_ = instant.frames.front().image.size().width;
+    height_ = instant.frames.front().image.size().height;
   }
   lines_.clear();
   if (text_ == MaskText::mots) {

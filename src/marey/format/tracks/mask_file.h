@@ -6,7 +6,7 @@
 
 #include "marey/core/run_mask.h"
 #include "marey/core/sink.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 
 namespace marey::format::tracks {
 
@@ -17,7 +17,7 @@ namespace marey::format::tracks {
 ///   `track_id`
 enum class MaskText { mots, coco };
 
-/// Writes the contours of tracks as they come; samples without a contour are left out. The file appears atomically.
+/// Writes the contours of tracks as they come; samples without a contour are omitted. The file appears atomically.
 class MaskFile final : public Sink {
  public:
   /// Throws Error if nothing can be written there.
@@ -25,7 +25,7 @@ class MaskFile final : public Sink {
 
   std::string name() const override { return path_; }
   /// Throws Error for positions that are not in an image.
-  Wants begin(const RecordingHeader& header) override;
+  SinkRequirements begin(const RecordingHeader& header) override;
   /// Throws Error if the size of the image is neither in the header nor in the instant's frames.
   void write(const Instant& instant) override;
   void finish() override;

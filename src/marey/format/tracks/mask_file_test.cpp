@@ -82,7 +82,7 @@ TEST(MaskFile, WritesVisiblePartsAsMots) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "masks.txt";
   MaskFile file(path, MaskText::mots);
-  EXPECT_FALSE(file.begin(header_of(60, 40)).pictures);
+  EXPECT_FALSE(file.begin(header_of(60, 40)).images);
   file.write(overlapping());
   file.finish();
   EXPECT_TRUE(has_masks(path));

@@ -21,7 +21,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/frame_numbers.h"
-#include "marey/core/input_file.h"
+#include "marey/files/input_file.h"
 #include "marey/format/read_file.h"
 
 namespace marey::format::tracks {
@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::array<std::string_view, 7> column_names{"frame", "id", "left", "top", "width", "height", "score"};
 constexpr std::size_t required_columns = 6;
-constexpr double kLargestNumber = 1e9;
+constexpr double kMaxNumberValue = 1e9;
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
@@ -63,7 +63,7 @@ class Fields {
     const auto [stop, failed] = std::from_chars(at_, end_, value);
     const bool whole_field = stop == end_ || is_blank(*stop) || *stop == ',';
     if (failed == std::errc::result_out_of_range ||
-        (failed == std::errc() && whole_field && !(std::abs(value) <= kLargestNumber))) {
+        (failed == std::errc() && whole_field && !(std::abs(value) <= kMaxNumberValue))) {
       throw LineError{fmt::format("{} is \"{}\"; it must be a finite number below 1e9", column, shown(field_from(begin)))};
     }
     if (failed != std::errc() || !whole_field) {
@@ -120,8 +120,7 @@ class Parser {
 
   std::vector<std::string> warnings() const {
     if (without_size_ == 0) return {};
-    return {
-        fmt::format("{}:{}: a box without width or height was left out ({} in all)", name_, first_without_size_, without_size_)};
+    return {fmt::format("{}:{}: a box without width or height was omitted ({} in all)", name_, first_without_size_, without_size_)};
   }
 
  private:
@@ -287,7 +286,7 @@ std::optional<std::span<const LabelledBox>> MotReader::next() {
   state.text.erase(0, std::exchange(state.done, 0));
   const bool more = state.fill();
   if (!more && state.text.empty()) return std::nullopt;
-  // The last line may go on in the next piece.
+  // The last line may continue in the next piece.
   state.done = more ? state.text.rfind('\n') + 1 : state.text.size();
   if (state.text.size() - state.done > kLongestLine)
     throw Error("{}: a line has more than {} bytes; is this a text?", state.name, kLongestLine);

@@ -14,12 +14,12 @@ namespace marey::format::tracks {
 /// MOTChallenge text: one box a line, `frame,id,left,top,width,height[,score,...]`. In the file frames and pixels count from 1,
 /// here from 0.
 ///
-/// Read are six columns or more (what follows the seventh is passed over), commas or blanks between them, either line ending, a
+/// Read are six columns or more (what follows the seventh is skipped), commas or blanks between them, either line ending, a
 /// byte order mark, blank lines, and lines in any order of frames. Rules for what is doubtful:
 ///   - numbers must be finite and below 1e9, frames 1 to 1e9, frames and ids whole (`3.0` is);
 ///   - in truth and tracks ids are 0 or more, an id stands once a frame, and width and height are positive: else Error;
-///   - in detections ids are passed over, and a box without width or height is left out with a warning.
-/// In truth the seventh column, read as the score, is 0 where MOTChallenge does not judge a box.
+///   - in detections ids are skipped, and a box without width or height is omitted with a warning.
+/// In truth the seventh column, read as the score, is 0 where MOTChallenge does not evaluate a box.
 enum class MotKind { truth, tracks, detections };
 
 struct MotTable {
@@ -36,7 +36,7 @@ MotTable parse_mot(std::string_view text, const std::string& name, MotKind kind)
 /// Detections a piece of the file at a time, so that memory does not grow with its length. Boxes come in the order of the lines.
 class MotReader {
  public:
-  /// Throws Error where the file cannot be read.
+  /// Throws Error if the file cannot be read.
   explicit MotReader(const std::string& path);
   ~MotReader();
   MotReader(MotReader&&) noexcept;

@@ -62,9 +62,9 @@ TEST(Mot, DetectionsHaveNoIdsAndLoseEmptyBoxes) {
   const MotTable table =
       parse_mot("1,-1,1,1,5,5,0.9\n1,-1,1,1,6,6,0.1\n2,-1,1,1,0,6,0.1\n2,-1,1,1,6,-3,1\n", "d.txt", MotKind::detections);
   ASSERT_EQ(table.boxes.size(), 2U);
-  EXPECT_EQ(table.boxes[0].id, LabelledBox::nobody);
+  EXPECT_EQ(table.boxes[0].id, LabelledBox::no_person);
   ASSERT_EQ(table.warnings.size(), 1U);
-  EXPECT_EQ(table.warnings[0], "d.txt:3: a box without width or height was left out (2 in all)");
+  EXPECT_EQ(table.warnings[0], "d.txt:3: a box without width or height was omitted (2 in all)");
 }
 
 TEST(Mot, ErrorsNameTheLineAndWhatIsExpected) {
@@ -112,9 +112,9 @@ TEST(Mot, ReadsBackWhatItWrites) {
   std::vector<LabelledBox> boxes;
   for (int i = 0; i < 2000; ++i) {
     // Coordinates as they come from a file: a decimal number, less one.
-    const auto place = [&] { return hundredths(random) / 100.0 - 1; };
+    const auto location = [&] { return hundredths(random) / 100.0 - 1; };
     const auto size = [&] { return (std::abs(hundredths(random)) + 1) / 100.0; };
-    boxes.push_back({i / 10, i % 10, {place(), place(), size(), size()}, hundredths(random) / 100.0});
+    boxes.push_back({i / 10, i % 10, {location(), location(), size(), size()}, hundredths(random) / 100.0});
     append_mot(text, boxes.back());
   }
   EXPECT_EQ(parsed(text), boxes);
@@ -137,8 +137,8 @@ TEST(Mot, PieceByPieceIsTheSameAsAtOnce) {
   std::uniform_int_distribution<int> hundredths(1, 300'000);
   std::string text = "\xEF\xBB\xBF";
   for (int i = 0; i < 40'000; ++i) {
-    const auto place = [&] { return hundredths(random) / 100.0; };
-    append_mot(text, {i / 7, LabelledBox::nobody, {place(), place(), i % 1000 == 999 ? 0 : place(), place()}, 0.5});
+    const auto location = [&] { return hundredths(random) / 100.0; };
+    append_mot(text, {i / 7, LabelledBox::no_person, {location(), location(), i % 1000 == 999 ? 0 : location(), location()}, 0.5});
     if (i % 100 == 0) text += "\r\n";
   }
   text.pop_back();  // a last line need not end
@@ -156,7 +156,7 @@ TEST(Mot, PieceByPieceIsTheSameAsAtOnce) {
 TEST(Mot, PiecesNameTheLineThatIsWrong) {
   const test::TemporaryFolder folder;
   std::string text;
-  for (int i = 0; i < 20'000; ++i) append_mot(text, {i, LabelledBox::nobody, {1, 2, 3, 4}, 1});
+  for (int i = 0; i < 20'000; ++i) append_mot(text, {i, LabelledBox::no_person, {1, 2, 3, 4}, 1});
   test::write_file(folder / "a.txt", text + "20001,-1,5,6,7");
   const auto message = [](const std::string& path) -> std::string {
     try {
@@ -172,7 +172,7 @@ TEST(Mot, PiecesNameTheLineThatIsWrong) {
   EXPECT_TRUE(read_piecewise(folder / "empty.txt").empty());
 }
 
-TEST(Mot, OneWildFrameIsNamed) {
+TEST(Mot, ReportsOutlierFrame) {
   for (const MotKind kind : {MotKind::truth, MotKind::tracks, MotKind::detections}) {
     try {
       parse_mot("1,1,5,5,10,20,1\n2,1,5,5,10,20,1\n999999999,1,5,5,10,20,1\n", "a.txt", kind);

@@ -28,13 +28,13 @@ std::string_view next_field(std::string_view& line) {
   return field;
 }
 
-int whole_field(std::string_view& line, const char* name, int least, int most, const std::string& where) {
+int whole_field(std::string_view& line, const char* name, int minimum, int maximum, const std::string& where) {
   const std::string_view field = next_field(line);
   int value = 0;
   const auto [end, code] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (code != std::errc() || end != field.data() + field.size() || value < least || value > most) {
-    throw Error("{}: column {} is no whole number from {} to {}; expected frame id class height width runs", where, name, least,
-                most);
+  if (code != std::errc() || end != field.data() + field.size() || value < minimum || value > maximum) {
+    throw Error("{}: column {} is not a whole number from {} to {}; expected frame id class height width runs", where, name,
+                minimum, maximum);
   }
   return value;
 }

@@ -11,7 +11,7 @@ namespace {
 
 std::string_view name_of(Outline::State state) {
   switch (state) {
-    case Outline::State::seen:
+    case Outline::State::detected:
       return "seen";
     case Outline::State::partly:
       return "partly";

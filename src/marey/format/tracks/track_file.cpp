@@ -98,9 +98,9 @@ std::unique_ptr<Sink> create(const std::string& path, const WritePlan&) {
 
 TrackFile::TrackFile(const std::string& path, TrackText text) : path_(path), file_(path), text_(text) {}
 
-Sink::Wants TrackFile::begin(const RecordingHeader& header) {
+Sink::SinkRequirements TrackFile::begin(const RecordingHeader& header) {
   if (header.frame.metric()) {
-    throw Error("{}: such a file holds boxes in a picture, and these positions are {}", path_, to_string(header.frame));
+    throw Error("{}: such a file holds boxes in an image, and these positions are {}", path_, to_string(header.frame));
   }
   keypoints_ = header.keypoints;
   if (text_ == TrackText::csv)
@@ -134,7 +134,7 @@ void TrackFile::write(const Instant& instant) {
 
 namespace {
 
-match::GroundMatch in_picture(double rate_hz) {
+match::GroundMatch in_image(double rate_hz) {
   match::GroundMatch match;
   match.recording.header.frame.kind = FrameOfReference::Kind::image;
   match.recording.header.rate_hz = rate_hz;
@@ -143,37 +143,39 @@ match::GroundMatch in_picture(double rate_hz) {
 
 match::GroundMatch read_mot_tracks(const std::string& path, const ReadOptions& options) {
   MotTable table = read_mot(path, MotKind::tracks);
-  match::GroundMatch match = in_picture(options.rate_hz);
+  match::GroundMatch match = in_image(options.rate_hz);
   match::GroundBuilder builder(path);
   for (const LabelledBox& box : table.boxes) {
-    builder.add(
-        builder.person(std::to_string(box.id), box.id, {}, {}),
-        {.frame = box.frame, .time = box.frame / options.rate_hz, .place = box.box.centre(), .box = box.box, .score = box.score});
+    builder.add(builder.person(std::to_string(box.id), box.id, {}, {}), {.frame = box.frame,
+                                                                         .time = box.frame / options.rate_hz,
+                                                                         .location = box.box.centre(),
+                                                                         .box = box.box,
+                                                                         .score = box.score});
   }
   match.order = builder.finish(match.recording);
   match.warnings = std::move(table.warnings);
   return match;
 }
 
-/// Lines of JSON as TrackFile writes them. Outlines are passed over.
+/// Lines of JSON as TrackFile writes them. Outlines are skipped.
 class JsonLines {
  public:
   explicit JsonLines(const std::string& path) : path_(path), builder_(path) {}
 
   match::GroundMatch read(const std::string& text, double rate_hz) {
-    match::GroundMatch match = in_picture(rate_hz);
+    match::GroundMatch match = in_image(rate_hz);
     for_each_line(text, path_, [&](std::string_view line, const std::string& where) {
       check_nesting(line, Notation::json, where);
       try {
         add(nlohmann::json::parse(line));
       } catch (const nlohmann::json::exception&) {
-        throw Error("{}: is no JSON of a track: frame, time, id, x and y are wanted", where);
+        throw Error("{}: is not a JSON of a track: frame, time, id, x and y are wanted", where);
       }
     });
     match.order = builder_.finish(match.recording);
     if (const auto rate = median_rate_hz(match.recording.instants())) match.recording.header.rate_hz = *rate;
-    if (outlines_) match.warnings.push_back(path_ + ": its outlines are passed over");
-    if (keypoints_) match.warnings.push_back(path_ + ": its keypoints are passed over");
+    if (outlines_) match.warnings.push_back(path_ + ": its outlines are skipped");
+    if (keypoints_) match.warnings.push_back(path_ + ": its keypoints are skipped");
     return match;
   }
 
@@ -183,11 +185,12 @@ class JsonLines {
     match::GroundBuilder::Row row{.frame = line.at("frame").get<std::int32_t>(),
                                   .provenance = provenance(line.value("state", "measured")),
                                   .time = number("time"),
-                                  .place = {number("x"), number("y")}};
+                                  .location = {number("x"), number("y")}};
     if (line.contains("vx")) row.velocity = Vector<2>(number("vx"), number("vy"));
     if (line.contains("left")) row.box = Box{number("left"), number("top"), number("width"), number("height")};
     const int id = line.at("id").get<int>();
-    if (id < 1 || row.frame < 0 || !row.place.allFinite()) throw Error("{}: track {} in frame {} is nowhere", path_, id, row.frame);
+    if (id < 1 || row.frame < 0 || !row.location.allFinite())
+      throw Error("{}: track {} in frame {} is nowhere", path_, id, row.frame);
     outlines_ |= line.contains("outline");
     keypoints_ |= line.contains("keypoints");
     builder_.add(builder_.person(id, line.value("label", ""), {}), row);
@@ -228,13 +231,13 @@ std::vector<Fact> facts_of_detections(const std::string& path) {
   MotReader reader(path);
   std::int64_t boxes = 0;
   std::int32_t first = std::numeric_limits<std::int32_t>::max(), last = 0;
-  double smallest = std::numeric_limits<double>::max(), largest = 0, least = smallest, most = -smallest;
+  double smallest = std::numeric_limits<double>::max(), largest = 0, minimum = smallest, maximum = -smallest;
   while (const auto piece = reader.next()) {
     for (const LabelledBox& box : *piece) {
       ++boxes;
       first = std::min(first, box.frame), last = std::max(last, box.frame);
       smallest = std::min(smallest, box.box.height), largest = std::max(largest, box.box.height);
-      least = std::min(least, box.score), most = std::max(most, box.score);
+      minimum = std::min(minimum, box.score), maximum = std::max(maximum, box.score);
     }
   }
   std::vector<Fact> facts{{"boxes", boxes}};
@@ -245,7 +248,7 @@ std::vector<Fact> facts_of_detections(const std::string& path) {
   facts.push_back({"boxes_a_frame", static_cast<double>(boxes) / static_cast<double>(frames),
                    fmt::format("{:.1f}", static_cast<double>(boxes) / static_cast<double>(frames))});
   facts.push_back({"heights_px", fmt::format("{:.0f} to {:.0f}", smallest, largest)});
-  facts.push_back({"scores", fmt::format("{:g} to {:g}", least, most)});
+  facts.push_back({"scores", fmt::format("{:g} to {:g}", minimum, maximum)});
   return facts;
 }
 
@@ -265,7 +268,7 @@ Format image_mot_format() {
 
 Format image_csv_format() {
   return {.name = "csv",
-          .title = "tracks in a picture, one row each",
+          .title = "tracks in an image, one row each",
           .endings = ".csv",
           .holds = Content::image,
           .detail =
@@ -279,10 +282,10 @@ Format image_csv_format() {
 
 Format jsonl_format() {
   return {.name = "jsonl",
-          .title = "tracks in a picture, one JSON object a line",
+          .title = "tracks in an image, one JSON object a line",
           .endings = ".jsonl",
           .holds = Content::image,
-          .detail = "px; the names of the CSV, and `outline` and `keypoints` where there are some, which are passed over when read",
+          .detail = "px; the names of the CSV, and `outline` and `keypoints` where there are some, which are skipped when read",
           .is = [](const Beginning& file) { return file.text().starts_with("{\"frame\":"); },
           .read = [](const std::string& path,
                      const ReadOptions& options) { return tracks::JsonLines(path).read(read_file(path), options.rate_hz); },

@@ -5,7 +5,7 @@
 
 #include "marey/core/sink.h"
 #include "marey/core/track_names.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 
 namespace marey::format::tracks {
 
@@ -13,19 +13,19 @@ namespace marey::format::tracks {
 ///   mot    MOTChallenge text: frame,id,left,top,width,height,conf,-1,-1,-1; frames and pixels count from 1
 ///   csv    with a header: frame,time,id,label,x,y,vx,vy,left,top,width,height,state; frames and pixels count from 0, s, px, px/s
 ///          of a recording with keypoints: frame,time,id,point,x,y,sd,visibility,presence, a row for each point
-///   jsonl  one JSON object a line with the same names; what is missing is left out; with "outline" where there is one
+///   jsonl  one JSON object a line with the same names; what is missing is omitted; with "outline" where there is one
 ///          (outline_json.h) and "keypoints" where there are some (keypoints_json.h)
 enum class TrackText { mot, csv, jsonl };
 
-/// Writes tracks as text as they come; the file is there whole or not at all.
+/// Writes tracks as text as they come; the file is there atomically.
 class TrackFile final : public Sink {
  public:
-  /// Throws Error where nothing can be written there.
+  /// Throws Error if nothing can be written there.
   TrackFile(const std::string& path, TrackText format);
 
   std::string name() const override { return path_; }
-  /// Throws Error for positions that are not of a picture.
-  Wants begin(const RecordingHeader& header) override;
+  /// Throws Error for positions that are not of an image.
+  SinkRequirements begin(const RecordingHeader& header) override;
   void write(const Instant& instant) override;
   void finish() override { file_.finish(); }
 

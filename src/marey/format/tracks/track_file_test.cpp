@@ -14,19 +14,19 @@
 namespace marey::format::tracks {
 namespace {
 
-RecordingHeader in_pictures() {
+RecordingHeader in_images() {
   RecordingHeader header;
   header.frame.kind = FrameOfReference::Kind::image;
   return header;
 }
 
 Instant two_tracks() {
-  Sample seen;
-  seen.track = TrackId{3};
-  seen.position = {12.5, 30, 0};
-  seen.velocity = Vector<3>(-1.25, 0, 0);
-  seen.box = Box{9, 20, 8, 21};
-  seen.score = 0.75;
+  Sample detected;
+  detected.track = TrackId{3};
+  detected.position = {12.5, 30, 0};
+  detected.velocity = Vector<3>(-1.25, 0, 0);
+  detected.box = Box{9, 20, 8, 21};
+  detected.score = 0.75;
   Sample guessed;
   guessed.track = TrackId{4};
   guessed.position = {1, 2, 0};
@@ -34,13 +34,13 @@ Instant two_tracks() {
   Instant instant;
   instant.index = 6;
   instant.time = timestamp_from_seconds(0.24);
-  instant.samples = {seen, guessed};
+  instant.samples = {detected, guessed};
   instant.named = {{TrackId{4}, "the \"tall\", one", {}}};
   return instant;
 }
 
-/// Somebody with a nose, of whom the left eye was not found.
-Instant somebody() {
+/// A person with a nose, of whom the left eye was not found.
+Instant any_person() {
   auto body = std::make_shared<Keypoints<2>>();
   body->presence = 0.875;
   body->points.resize(2);
@@ -51,7 +51,7 @@ Instant somebody() {
 }
 
 RecordingHeader with_keypoints() {
-  RecordingHeader header = in_pictures();
+  RecordingHeader header = in_images();
   header.keypoints = KeypointSet{.name = "two", .points = {"nose", "left_eye"}, .bones = {{0, 1}}, .mirrored = {0, 1}};
   return header;
 }
@@ -60,7 +60,7 @@ TEST(TrackFile, KeypointsAreARowEach) {
   const test::TemporaryFolder folder;
   TrackFile file(folder / "points.csv", TrackText::csv);
   file.begin(with_keypoints());
-  file.write(somebody());
+  file.write(any_person());
   file.finish();
   EXPECT_EQ(test::read_file(folder / "points.csv"),
             "frame,time,id,point,x,y,sd,visibility,presence\n6,0.240000,3,nose,10.250,20.000,2.000,0.5000,1.0000\n");
@@ -70,7 +70,7 @@ TEST(TrackFile, JsonLinesHoldKeypoints) {
   const test::TemporaryFolder folder;
   TrackFile file(folder / "points.jsonl", TrackText::jsonl);
   file.begin(with_keypoints());
-  file.write(somebody());
+  file.write(any_person());
   file.finish();
   std::istringstream lines(test::read_file(folder / "points.jsonl"));
   std::string line;
@@ -98,7 +98,7 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
   instant.samples.pop_back();
   const test::TemporaryFolder folder;
   TrackFile file(folder / "tracks", TrackText::jsonl);
-  file.begin(in_pictures());
+  file.begin(in_images());
   file.write(instant);
   file.finish();
   const auto json = nlohmann::json::parse(test::read_file(folder / "tracks"))["outline"];
@@ -118,7 +118,7 @@ TEST(TrackFile, JsonLinesHoldOutlinesWhole) {
 std::string written(TrackText format) {
   const test::TemporaryFolder folder;
   TrackFile file(folder / "tracks", format);
-  file.begin(in_pictures());
+  file.begin(in_images());
   file.write({});
   file.write(two_tracks());
   file.finish();
@@ -139,7 +139,7 @@ TEST(TrackFile, CsvHasAHeaderAndLeavesEmptyWhatIsMissing) {
 TEST(TrackFile, PositionsInMetresAreRefused) {
   const test::TemporaryFolder folder;
   TrackFile file(folder / "tracks", TrackText::csv);
-  RecordingHeader header = in_pictures();
+  RecordingHeader header = in_images();
   header.frame.kind = FrameOfReference::Kind::ground;
   EXPECT_THROW(file.begin(header), Error);
 }

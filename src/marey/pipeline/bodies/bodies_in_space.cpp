@@ -27,7 +27,7 @@ class SettledInstants {
       for (Instant& waiting : waiting_) {
         if (waiting.time < correction.since) continue;
         for (BodyPose& pose : waiting.bodies) {
-          if (pose.body == correction.body) pose.world_from_body = pose.world_from_body * correction.told_from_body;
+          if (pose.body == correction.body) pose.world_from_body = pose.world_from_body * correction.reported_from_body;
         }
       }
     }
@@ -51,32 +51,32 @@ void require_space(const RecordingHeader& header, const std::string& path) {
     throw Error("{}: bodies are found among points in space, and these positions are {}", path, to_string(header.frame));
 }
 
-FollowBodiesSummary summary_of(const solve::bodies::BodyFollower& follower, const std::vector<double>& errors) {
-  FollowBodiesSummary summary;
-  summary.noise_m = follower.noise();
-  for (std::size_t b = 0; b < follower.bodies().size(); ++b) {
-    const auto& counts = follower.counts()[b];
+TrackBodiesSummary summary_of(const solve::bodies::BodyTracker& tracker, const std::vector<double>& errors) {
+  TrackBodiesSummary summary;
+  summary.noise_m = tracker.noise();
+  for (std::size_t b = 0; b < tracker.bodies().size(); ++b) {
+    const auto& counts = tracker.counts()[b];
     std::vector<Vector<3>> layout;
-    for (const BodyMarker& marker : follower.bodies()[b].markers) layout.push_back(marker.position);
-    summary.bodies.push_back({follower.bodies()[b], counts,
+    for (const BodyMarker& marker : tracker.bodies()[b].markers) layout.push_back(marker.position);
+    summary.bodies.push_back({tracker.bodies()[b], counts,
                               counts.measured > 0 ? errors[b] / static_cast<double>(counts.measured) : 0,
                               solve::bodies::symmetries(layout, 0.004)});
     if (counts.measured == 0)
-      summary.warnings.push_back(fmt::format("body \"{}\" was not found in any frame", follower.bodies()[b].label));
+      summary.warnings.push_back(fmt::format("body \"{}\" was not found in any frame", tracker.bodies()[b].label));
   }
   return summary;
 }
 
 }  // namespace
 
-BodiesInSpace::BodiesInSpace(std::vector<Body> bodies, const solve::bodies::FollowOptions& options)
-    : follower_(std::move(bodies), options) {
+BodiesInSpace::BodiesInSpace(std::vector<Body> bodies, const solve::bodies::TrackingOptions& options)
+    : target_tracker_(std::move(bodies), options) {
   std::map<std::string, int> bearers;
-  for (const Body& body : follower_.bodies()) {
+  for (const Body& body : target_tracker_.bodies()) {
     for (const BodyMarker& marker : body.markers) ++bearers[marker.label];
   }
-  for (int b = 0; b < std::ssize(follower_.bodies()); ++b) {
-    const Body& body = follower_.bodies()[static_cast<std::size_t>(b)];
+  for (int b = 0; b < std::ssize(target_tracker_.bodies()); ++b) {
+    const Body& body = target_tracker_.bodies()[static_cast<std::size_t>(b)];
     for (int m = 0; m < std::ssize(body.markers); ++m) {
       const std::string& label = body.markers[static_cast<std::size_t>(m)].label;
       if (bearers[label] == 1) markers_.emplace(label, std::pair(b, m));
@@ -102,20 +102,20 @@ void BodiesInSpace::add_to(Instant& instant) {
     const auto known = named_.find(sample.track);
     points_.push_back({sample.position, known == named_.end() ? std::nullopt : std::optional(known->second)});
   }
-  const auto poses = follower_.step(instant.time, points_);
+  const auto poses = target_tracker_.step(instant.time, points_);
   instant.bodies.assign(poses.begin(), poses.end());
 }
 
-FollowBodiesSummary follow_bodies(const std::string& recording, const std::string& bodies, const std::string& out,
-                                  const FollowBodiesOptions& options, const Hooks& hooks) {
+TrackBodiesSummary track_bodies(const std::string& recording, const std::string& bodies, const std::string& out,
+                                const TrackBodiesOptions& options, const Hooks& hooks) {
   const auto reader = format::open_recording(recording);
   require_space(reader->header(), recording);
   const format::Format& format = format::format_to_write(out, options.format, format::Content::space);
-  BodiesInSpace step(format::bodies::read_bodies(bodies), options.follow);
+  BodiesInSpace step(format::bodies::read_bodies(bodies), options.tracking);
   RecordingHeader header = reader->header();
-  header.bodies = step.follower().bodies();
+  header.bodies = step.tracker().bodies();
   header.made_by = {
-      .program = "marey body follow", .options = hooks.options, .inputs = {format::input_of(recording), format::input_of(bodies)}};
+      .program = "marey body track", .options = hooks.options, .inputs = {format::input_of(recording), format::input_of(bodies)}};
   format::WritePlan plan;
   if (!format.while_recording) plan = format::plan_of(*format::open_recording(recording), recording);
   plan.info.header = header;
@@ -133,48 +133,50 @@ FollowBodiesSummary follow_bodies(const std::string& recording, const std::strin
     for (const BodyPose& pose : instant->bodies) {
       if (pose.tracked) errors[static_cast<std::size_t>(number(pose.body)) - 1] += pose.residual_m.value_or(0);
     }
-    settled.add(*std::move(instant), step.follower().corrections());
+    settled.add(*std::move(instant), step.tracker().corrections());
     stopped = hooks.report({.step = "following bodies", .done = ++instants, .total = reader->instant_count()}) == Continue::no;
     if (stopped) break;
   }
   settled.finish();
   if (!stopped) sink->finish();
-  FollowBodiesSummary summary = summary_of(step.follower(), errors);
+  TrackBodiesSummary summary = summary_of(step.tracker(), errors);
   summary.instants = instants;
   summary.stopped = stopped;
   for (std::string& warning : reader->warnings()) summary.warnings.push_back(std::move(warning));
-  if (auto sentence = format::poses_lost(header, out, format)) summary.warnings.push_back(std::move(*sentence));
-  if (auto sentence = format::beside_lost(reader->info().beside, out, format)) summary.warnings.push_back(std::move(*sentence));
+  if (auto message_text = format::poses_lost(header, out, format)) summary.warnings.push_back(std::move(*message_text));
+  if (auto message_text = format::next_to_lost(reader->info().next_to, out, format))
+    summary.warnings.push_back(std::move(*message_text));
   return summary;
 }
 
 constexpr double kBends = 0.004;  // m; skin and cloth on a limb, and noise, stay below
 
-std::vector<std::string> doubts_of(const solve::bodies::DefinedBody& defined) {
-  std::vector<std::string> doubts;
+std::vector<std::string> review_items_of(const solve::bodies::DefinedBody& defined) {
+  std::vector<std::string> review_items;
   for (const auto& marker : defined.markers) {
     if (marker.loose)
-      doubts.push_back(
-          fmt::format("{} is loose: it varies by {:.1f} mm to the others, and is left out", marker.label, 1000 * marker.deviation));
+      review_items.push_back(
+          fmt::format("{} is loose: it varies by {:.1f} mm to the others, and is omitted", marker.label, 1000 * marker.deviation));
   }
   const solve::bodies::DefinedMarker* bends = nullptr;
   for (const auto& marker : defined.markers) {
     if (!marker.loose && marker.deviation > kBends && (bends == nullptr || marker.deviation > bends->deviation)) bends = &marker;
   }
   if (bends != nullptr)
-    doubts.push_back(
+    review_items.push_back(
         fmt::format("{} varies by {:.1f} mm to the others: is this one rigid thing?", bends->label, 1000 * bends->deviation));
   if (!defined.symmetries.empty()) {
     const auto& first = defined.symmetries.front();
     const std::size_t others = defined.symmetries.size() - 1;
-    doubts.push_back(fmt::format("{} it looks the same to {:.1f} mm{}: after it was hidden it may come back turned; move a marker",
-                                 words_of(first), 1000 * first.worst,
-                                 others == 0 ? "" : fmt::format(" (and {} other ways)", others)));
+    review_items.push_back(
+        fmt::format("{} it appears the same to {:.1f} mm{}: after it was hidden it may come back turned; move a marker",
+                    words_of(first), 1000 * first.worst, others == 0 ? "" : fmt::format(" (and {} other ways)", others)));
   }
   if (defined.shortest_edge < 0.02)
-    doubts.push_back(fmt::format("two of its markers are {:.0f} mm from each other; cameras tell them apart better from 20 mm on",
-                                 1000 * defined.shortest_edge));
-  return doubts;
+    review_items.push_back(
+        fmt::format("two of its markers are {:.0f} mm from each other; cameras distinguish them better from 20 mm on",
+                    1000 * defined.shortest_edge));
+  return review_items;
 }
 
 solve::bodies::DefinedBody define_body(const std::string& recording, const std::string& out, bool add,

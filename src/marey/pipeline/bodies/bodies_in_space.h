@@ -18,30 +18,30 @@ namespace marey::pipeline::bodies {
 /// how they lie to each other.
 class BodiesInSpace {
  public:
-  BodiesInSpace(std::vector<Body> bodies, const solve::bodies::FollowOptions& options = {});
+  BodiesInSpace(std::vector<Body> bodies, const solve::bodies::TrackingOptions& options = {});
 
   void name(const TrackName& track);
   /// `instant.bodies` becomes what is known now. Of its samples those count that were measured or filled.
   void add_to(Instant& instant);
-  const solve::bodies::BodyFollower& follower() const { return follower_; }
+  const solve::bodies::BodyTracker& tracker() const { return target_tracker_; }
 
  private:
-  solve::bodies::BodyFollower follower_;
+  solve::bodies::BodyTracker target_tracker_;
   std::map<std::string, std::pair<int, int>, std::less<>> markers_;  // by label
   std::map<TrackId, std::pair<int, int>> named_;
-  std::vector<solve::bodies::FollowedPoint> points_;
+  std::vector<solve::bodies::BodyTrackPoint> points_;
 };
 
-struct FollowBodiesOptions {
-  solve::bodies::FollowOptions follow;
+struct TrackBodiesOptions {
+  solve::bodies::TrackingOptions tracking;
   std::string format;      ///< of the file to be written; empty: its ending says it
-  double settle_s = 0.25;  ///< instants wait so long for a symmetric body to be found turned
+  double settle_s = 0.25;  ///< instants wait this long for a symmetric body to be found turned
 };
 
-struct FollowBodiesSummary {
+struct TrackBodiesSummary {
   struct OfBody {
     Body body;
-    solve::bodies::FollowCounts counts;
+    solve::bodies::TrackCounts counts;
     double error_m = 0;  ///< mean over the measured instants of the markers' mean distance from their places
     std::vector<solve::bodies::Symmetry> symmetries;
   };
@@ -53,16 +53,16 @@ struct FollowBodiesSummary {
 };
 
 /// Follows the bodies of a file (bodies.toml, or a table of places) through a recording of points in space, and writes it with
-/// them. Throws Error where a file cannot be read or written, or the recording is not one of space.
-FollowBodiesSummary follow_bodies(const std::string& recording, const std::string& bodies, const std::string& out,
-                                  const FollowBodiesOptions& options, const Hooks& hooks = {});
+/// them. Throws Error if a file cannot be read or written, or the recording is not one of space.
+TrackBodiesSummary track_bodies(const std::string& recording, const std::string& bodies, const std::string& out,
+                                const TrackBodiesOptions& options, const Hooks& hooks = {});
 
 /// The body of these markers of a recording; written to `out`, beside those that are there already where `add` is set: one of its
 /// name is replaced.
 solve::bodies::DefinedBody define_body(const std::string& recording, const std::string& out, bool add,
                                        const solve::bodies::DefineOptions& options);
 
-/// What a user should know of a body: "turned 180° about its z axis it looks the same; …". One sentence each.
-std::vector<std::string> doubts_of(const solve::bodies::DefinedBody& defined);
+/// What a user should know of a body: "turned 180° about its z axis it appears the same; …". One sentence each.
+std::vector<std::string> review_items_of(const solve::bodies::DefinedBody& defined);
 
 }  // namespace marey::pipeline::bodies

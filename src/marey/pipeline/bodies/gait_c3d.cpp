@@ -31,7 +31,7 @@ constexpr std::array<Triple, 9> kTriples = {{{"pelvis", "PelvisAngles"},
                                              {"elbow", "ElbowAngles"},
                                              {"wrist", "WristAnglesISB"}}};
 
-/// Three curves as one; a row in which one of them is not known is none.
+/// Three curves as one; a row in which one of them is not known is not one.
 format::AngleTriple triple_of(std::string label, std::span<const analyse::gait::AngleCurve> curves, const Triple& of,
                               std::size_t prefix) {
   format::AngleTriple triple{.label = std::move(label), .description = {}, .rows = {}};
@@ -45,8 +45,8 @@ format::AngleTriple triple_of(std::string label, std::span<const analyse::gait::
     if (!curves[0].values[r] || !curves[1].values[r] || !curves[2].values[r]) {
       triple.rows.emplace_back();
     } else {
-      const Vector<3> turns(*curves[0].values[r], *curves[1].values[r], *curves[2].values[r]);
-      triple.rows.emplace_back(turns.cwiseProduct(degrees));
+      const Vector<3> rotations(*curves[0].values[r], *curves[1].values[r], *curves[2].values[r]);
+      triple.rows.emplace_back(rotations.cwiseProduct(degrees));
     }
   }
   return triple;

@@ -25,7 +25,7 @@
 namespace marey::pipeline::bodies {
 namespace {
 
-constexpr std::int64_t kMostRows = 10'000'000;
+constexpr std::int64_t kMaxRows = 10'000'000;
 constexpr double kStandsStillM = 0.03;
 // Six children, 12 walks: in the worst pair below 6.5 mm at most with the child's own static trial, 28.7 mm at least with
 // another's.
@@ -51,16 +51,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kRigidPa
     {"RHEE", "RTOE"},
 }};
 
-std::optional<double> apart(const gait::MarkerPlaces& places, std::string_view a, std::string_view b) {
-  const auto at = places.find(a), there = places.find(b);
-  if (at == places.end() || there == places.end()) return std::nullopt;
+std::optional<double> apart(const gait::MarkerPositions& locations, std::string_view a, std::string_view b) {
+  const auto at = locations.find(a), there = locations.find(b);
+  if (at == locations.end() || there == locations.end()) return std::nullopt;
   return (at->second - there->second).norm();
 }
 
 /// The median over the walk.
-std::optional<double> mostly_apart(const GaitMarkers& walk, std::string_view a, std::string_view b) {
+std::optional<double> predominantly_apart(const GaitMarkers& walk, std::string_view a, std::string_view b) {
   std::vector<double> all;
-  for (const gait::MarkerPlaces& row : walk.rows) {
+  for (const gait::MarkerPositions& row : walk.rows) {
     if (const auto distance = apart(row, a, b)) all.push_back(*distance);
   }
   if (all.empty()) return std::nullopt;
@@ -89,7 +89,7 @@ const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::str
 }
 
 GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
-                              const gait::BodyMarkerSet& set, const std::optional<std::int64_t>& most) {
+                              const gait::BodyMarkerSet& set, const std::optional<std::int64_t>& maximum) {
   format::ReadOptions how;
   how.up = up;
   const auto reader = format::open_recording(path, format::format_to_read(path, format::Content::space), how);
@@ -113,8 +113,8 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
       markers.begin_s = seconds(instant->time);
     }
     const std::int64_t row = instant->index - *first;
-    if (most && row >= *most) break;
-    if (row >= kMostRows) throw Error("{}: frame {} is beyond what one walk has", path, instant->index);
+    if (maximum && row >= *maximum) break;
+    if (row >= kMaxRows) throw Error("{}: frame {} is beyond what one walk has", path, instant->index);
     markers.rows.resize(static_cast<std::size_t>(row) + 1);
     for (const Sample& sample : instant->samples) {
       const auto label = labels.find(sample.track);
@@ -126,22 +126,22 @@ GaitMarkers read_gait_markers(const std::string& path, const std::optional<forma
   return markers;
 }
 
-gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name) {
-  gait::MarkerPlaces means;
+gait::MarkerPositions standing_positions(const GaitMarkers& markers, const std::string& name) {
+  gait::MarkerPositions means;
   std::map<std::string, int> counts;
-  for (const gait::MarkerPlaces& row : markers.rows) {
-    for (const auto& [label, place] : row) {
-      means.try_emplace(label, Vector<3>::Zero()).first->second += place;
+  for (const gait::MarkerPositions& row : markers.rows) {
+    for (const auto& [label, location] : row) {
+      means.try_emplace(label, Vector<3>::Zero()).first->second += location;
       ++counts[label];
     }
   }
-  for (auto& [label, place] : means) place /= counts[label];
-  for (const gait::MarkerPlaces& row : markers.rows) {
-    for (const auto& [label, place] : row) {
+  for (auto& [label, location] : means) location /= counts[label];
+  for (const gait::MarkerPositions& row : markers.rows) {
+    for (const auto& [label, location] : row) {
       const auto segment = *markers.set->segment_of(label);
       const bool held =
           segment == gait::SegmentId::pelvis || label.ends_with("KNE") || label.ends_with("ANK") || label.ends_with("HEE");
-      const double off = (place - means.at(label)).norm();
+      const double off = (location - means.at(label)).norm();
       if (held && off > kStandsStillM)
         throw Error("{}: {} moves by {:.0f} mm; a static trial is of a person who stands still", name, label, 1000 * off);
     }
@@ -151,14 +151,14 @@ gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string
 
 namespace {
 
-/// Mean speed of the markers of a row, m/s, between the rows `step` before and after it; nothing where it has too few on both
+/// Mean speed of the markers of a row, m/s, between the rows `step` before and after it; nothing if it has too few on both
 /// sides.
 std::optional<double> speed_at(const GaitMarkers& markers, std::size_t row, std::size_t step) {
   if (row < step || row + step >= markers.rows.size()) return std::nullopt;
-  const gait::MarkerPlaces &before = markers.rows[row - step], &after = markers.rows[row + step];
+  const gait::MarkerPositions &before = markers.rows[row - step], &after = markers.rows[row + step];
   double sum = 0;
   std::size_t count = 0;
-  for (const auto& [label, place] : markers.rows[row]) {
+  for (const auto& [label, location] : markers.rows[row]) {
     const auto from = before.find(label), to = after.find(label);
     if (from == before.end() || to == after.end()) continue;
     sum += (to->second - from->second).norm();
@@ -169,7 +169,7 @@ std::optional<double> speed_at(const GaitMarkers& markers, std::size_t row, std:
 }
 
 /// The means over a second about a row, where nothing moves in it; else nothing.
-std::optional<gait::MarkerPlaces> standing_about(const GaitMarkers& markers, std::size_t row, const std::string& name) {
+std::optional<gait::MarkerPositions> standing_about(const GaitMarkers& markers, std::size_t row, const std::string& name) {
   const auto half = static_cast<std::size_t>(std::lround(0.5 * markers.rate_hz));
   if (row < half || row + half >= markers.rows.size()) return std::nullopt;
   GaitMarkers second;
@@ -177,7 +177,7 @@ std::optional<gait::MarkerPlaces> standing_about(const GaitMarkers& markers, std
   second.rows.assign(markers.rows.begin() + static_cast<std::ptrdiff_t>(row - half),
                      markers.rows.begin() + static_cast<std::ptrdiff_t>(row + half + 1));
   try {
-    return standing_places(second, name);
+    return standing_positions(second, name);
   } catch (const Error&) {
     return std::nullopt;  // it moves
   }
@@ -185,39 +185,39 @@ std::optional<gait::MarkerPlaces> standing_about(const GaitMarkers& markers, std
 
 }  // namespace
 
-QuietMoment quietest_moment(const GaitMarkers& markers, const std::string& name) {
-  std::size_t most = 0;
-  for (const gait::MarkerPlaces& row : markers.rows) most = std::max(most, row.size());
-  if (most == 0) throw Error("{}: none of the markers is seen", name);
+QuietTimeStep quietest_time_step(const GaitMarkers& markers, const std::string& name) {
+  std::size_t maximum = 0;
+  for (const gait::MarkerPositions& row : markers.rows) maximum = std::max(maximum, row.size());
+  if (maximum == 0) throw Error("{}: none of the markers is seen", name);
   const auto step = static_cast<std::size_t>(std::max(1L, std::lround(0.05 * markers.rate_hz)));
-  QuietMoment moment;
+  QuietTimeStep time_step;
   std::optional<std::size_t> quietest;
   for (std::size_t row = 0; row < markers.rows.size(); ++row) {
-    if (markers.rows[row].size() < most) continue;
+    if (markers.rows[row].size() < maximum) continue;
     const auto speed = speed_at(markers, row, step);
-    if (quietest && (!speed || *speed >= moment.speed_m_s)) continue;
+    if (quietest && (!speed || *speed >= time_step.speed_m_s)) continue;
     quietest = row;
-    moment.speed_m_s = speed.value_or(std::numeric_limits<double>::infinity());
+    time_step.speed_m_s = speed.value_or(std::numeric_limits<double>::infinity());
   }
-  moment.time_s = static_cast<double>(*quietest) / markers.rate_hz;
+  time_step.time_s = static_cast<double>(*quietest) / markers.rate_hz;
   const auto standing = standing_about(markers, *quietest, name);
-  moment.stands = standing.has_value();
-  moment.places = standing.value_or(markers.rows[*quietest]);
-  if (!std::isfinite(moment.speed_m_s)) moment.speed_m_s = 0;
-  return moment;
+  time_step.stands = standing.has_value();
+  time_step.locations = standing.value_or(markers.rows[*quietest]);
+  if (!std::isfinite(time_step.speed_m_s)) time_step.speed_m_s = 0;
+  return time_step;
 }
 
-std::optional<std::string> other_person(const gait::MarkerPlaces& standing, const GaitMarkers& walk) {
+std::optional<std::string> other_person(const gait::MarkerPositions& standing, const GaitMarkers& walk) {
   double worst = kSamePersonM;
-  std::optional<std::string> said;
+  std::optional<std::string> stated;
   for (const auto& [a, b] : kRigidPairs) {
-    const auto there = apart(standing, a, b), here = mostly_apart(walk, a, b);
+    const auto there = apart(standing, a, b), here = predominantly_apart(walk, a, b);
     if (!there || !here || std::abs(*there - *here) <= worst) continue;
     worst = std::abs(*there - *here);
-    said = fmt::format("{} and {} are {:.0f} mm {} than in the walk", a, b, 1000 * worst,
-                       *there > *here ? "farther apart" : "closer together");
+    stated = fmt::format("{} and {} are {:.0f} mm {} than in the walk", a, b, 1000 * worst,
+                         *there > *here ? "farther apart" : "closer together");
   }
-  return said;
+  return stated;
 }
 
 void take_measures(const std::string& path, gait::GaitSubject& subject) {

@@ -15,13 +15,13 @@ namespace marey::pipeline::bodies {
 
 namespace gait = analyse::gait;
 
-/// By row, one an instant from the first on. 0, 0, 0 is a marker that is missing; a subject's name before a label is left out.
+/// By row, one an instant from the first on. 0, 0, 0 is a marker that is missing; a subject's name before a label is omitted.
 struct GaitMarkers {
   double rate_hz = 0, begin_s = 0;
   std::int64_t first_index = 0;
   format::UpAxis up = format::UpAxis::z;                   ///< the axis of the file that was taken for up
   const gait::BodyMarkerSet* set = &gait::plug_in_gait();  ///< rows have what the model calls its labels
-  std::vector<gait::MarkerPlaces> rows;
+  std::vector<gait::MarkerPositions> rows;
   std::vector<std::string> warnings;
 
   gait::MarkerPath path(std::string_view label) const {
@@ -33,30 +33,31 @@ struct GaitMarkers {
   }
 };
 
-/// The set that a recording's labels are, subjects' names left out; `name`, where one is given. Throws Error with the file's name
-/// where they are none, or that one's lack.
+/// The set that a recording's labels are, subjects' names omitted; `name`, where one is given. Throws Error with the file's name
+/// where they are not any, or that one's lack.
 const gait::BodyMarkerSet& marker_set_of(const std::string& path, const std::string& name);
 
 /// `most` rows, or all.
 GaitMarkers read_gait_markers(const std::string& path, const std::optional<format::UpAxis>& up, const Hooks& hooks,
-                              const gait::BodyMarkerSet& set = gait::plug_in_gait(), const std::optional<std::int64_t>& most = {});
+                              const gait::BodyMarkerSet& set = gait::plug_in_gait(),
+                              const std::optional<std::int64_t>& maximum = {});
 
 /// Means over a standing trial. Throws Error, with `name` for the file, where the person moves: a marker wanders by more than 3 cm.
-gait::MarkerPlaces standing_places(const GaitMarkers& markers, const std::string& name);
+gait::MarkerPositions standing_positions(const GaitMarkers& markers, const std::string& name);
 
-/// Where the markers are at the quietest moment of a motion in which most of them are seen.
-struct QuietMoment {
-  gait::MarkerPlaces places;
+/// Where the markers are at the quietest instant of a motion in which most of them are seen.
+struct QuietTimeStep {
+  gait::MarkerPositions locations;
   double time_s = 0;     ///< since the first row
   double speed_m_s = 0;  ///< of the markers there, on the mean
   bool stands = false;   ///< for a second about it, of which the places are the means
 };
 /// Throws Error, with `name` for the file, where there is no marker at all.
-QuietMoment quietest_moment(const GaitMarkers& markers, const std::string& name);
+QuietTimeStep quietest_time_step(const GaitMarkers& markers, const std::string& name);
 
-/// Where the static trial is of another person, or the markers were put on anew: the pair of one segment's markers that lies most
-/// differently far apart in the walk. Nothing where all pairs agree.
-std::optional<std::string> other_person(const gait::MarkerPlaces& standing, const GaitMarkers& walk);
+/// Where the static trial is of another person, or the markers were put on again: the pair of one segment's markers that lies most
+/// differently far apart in the walk. Nothing if all pairs agree.
+std::optional<std::string> other_person(const gait::MarkerPositions& standing, const GaitMarkers& walk);
 
 /// What Vicon keeps of a person in its C3D files, where `subject` does not have it.
 void take_measures(const std::string& path, gait::GaitSubject& subject);

@@ -18,7 +18,7 @@ struct FoundJoint {
   bool by_motion = false;  ///< the motion has a say; else the conventional model's place stays
   double deviation = 0;    ///< one standard deviation: of a hip's centre m, of a knee's or elbow's axis rad; where it is by motion
   double moved = 0;        ///< from where the conventional model has it, likewise
-  std::string said;        ///< one sentence
+  std::string stated;      ///< one sentence
 };
 
 struct HumanOptions {
@@ -34,16 +34,16 @@ struct HumanSkeleton {
   std::vector<FoundJoint> joints;  ///< that the motion was asked for
   std::vector<std::string> warnings;
   const analyse::gait::BodyMarkerSet* set = nullptr;
-  analyse::gait::MarkerPlaces standing;  ///< m, by the model's labels
+  analyse::gait::MarkerPositions standing;  ///< m, by the model's labels
 };
 
-/// The human skeleton of a person who stands still with a marker set of the field, calibrated to it. Throws Error where the labels
-/// are no set, the pelvis is not known, or who should stand still moves.
+/// The human skeleton of a person who stands still with a marker set of the field, calibrated to it. Throws Error if the labels
+/// are not set, the pelvis is not known, or who should stand still moves.
 HumanSkeleton human_from_static(const std::string& standing, const HumanOptions& options, const Hooks& hooks);
 
 /// The same without a static trial: of a person who moves, from the quietest moment of `motion` (gait_markers.h). Its first warning
-/// says so. What the moment's posture leaves open is for solve/skeleton/calibrate.h to find from the motion. Throws Error where the
-/// labels are no set, or the pelvis is not known.
+/// says so. What the moment's posture leaves open is for solve/skeleton/calibrate.h to find from the motion. Throws Error if the
+/// labels are not set, or the pelvis is not known.
 HumanSkeleton human_from_motion(const std::string& motion, const HumanOptions& options, const Hooks& hooks);
 
 }  // namespace marey::pipeline::bodies

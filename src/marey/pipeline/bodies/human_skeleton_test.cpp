@@ -39,8 +39,8 @@ struct Truth {
       segments.push_back({name, {turn, joint}});
     };
     const gait::BodyMarkerSet& set = triads ? gait::body_marker_set("cleveland-clinic") : gait::plug_in_gait();
-    const auto mark = [&](const std::string& key, const std::string& on, const Vector<3>& place) {
-      if (set.segment_of(key)) markers.push_back({set.label_of(key), on, place});
+    const auto mark = [&](const std::string& key, const std::string& on, const Vector<3>& location) {
+      if (set.segment_of(key)) markers.push_back({set.label_of(key), on, location});
     };
     add("pelvis", up);
     mark("LASI", "pelvis", up + Vector<3>(0, 0.12, 0));
@@ -86,20 +86,20 @@ struct Truth {
       const auto set = [&](const char* name, double degrees) {
         row[static_cast<std::size_t>(skeleton.coordinate(name).value())] = degrees * kTurn;
       };
-      Vector<3> share[2] = {Vector<3>::Zero(), Vector<3>::Zero()};
+      Vector<3> fraction[2] = {Vector<3>::Zero(), Vector<3>::Zero()};
       for (const int side : {0, 1}) {
         if (!moves) break;
         const std::string name = side == 0 ? "left_" : "right_";
-        share[side] = {std::sin(2.1 * t + side), std::sin(1.37 * t + side), std::sin(0.83 * t + 1)};
-        set((name + "hip_flexion").c_str(), 15 + 30 * share[side].x());
-        set((name + "hip_adduction").c_str(), 20 * share[side].y());
-        set((name + "hip_rotation").c_str(), 12 * share[side].z());
+        fraction[side] = {std::sin(2.1 * t + side), std::sin(1.37 * t + side), std::sin(0.83 * t + 1)};
+        set((name + "hip_flexion").c_str(), 15 + 30 * fraction[side].x());
+        set((name + "hip_adduction").c_str(), 20 * fraction[side].y());
+        set((name + "hip_rotation").c_str(), 12 * fraction[side].z());
         set((name + "knee_flexion").c_str(), 40 + 35 * std::sin(1.7 * t));
       }
       const auto pose = marey::pose_of(skeleton, row);
       for (std::size_t m = 0; m < skeleton.markers.size(); ++m) {
         const SkeletonMarker& marker = skeleton.markers[m];
-        const Vector<3> moved = carried[m] * share[marker.label.front() == 'R' ? 1 : 0];
+        const Vector<3> moved = carried[m] * fraction[marker.label.front() == 'R' ? 1 : 0];
         const Vector<3> noise(random.gaussian(0, 0.0003), random.gaussian(0, 0.0003), random.gaussian(0, 0.0003));
         const Vector<3> at = pose[static_cast<std::size_t>(marker.segment)] * (marker.position + moved) + noise;
         text += fmt::format("{},{:.3f},{},{},{:.6f},{:.6f},{:.6f}\n", i, t, m + 1, marker.label, at.x(), at.y(), at.z());
@@ -125,8 +125,8 @@ double knee_off(const Skeleton& skeleton, const Truth& truth) {
 }
 
 struct Errors {
-  double regression = 0, motion = 0, said = 0;              // m
-  double knee_markers = 0, knee_motion = 0, knee_said = 0;  // degrees
+  double regression = 0, motion = 0, stated = 0;              // m
+  double knee_markers = 0, knee_motion = 0, knee_stated = 0;  // degrees
 };
 
 Errors hip_errors(const Truth& truth, double skin_m, std::uint64_t seed, std::vector<FoundJoint>& joints) {
@@ -151,8 +151,8 @@ TEST(HumanSkeleton, FindsTheHipsOfWhomSkinDoesNotDeceive) {
   std::printf("regression %.1f mm off, motion %.2f mm\n", 1000 * errors.regression, 1000 * errors.motion);
   ASSERT_EQ(joints.size(), 4u);
   for (const FoundJoint& joint : joints) {
-    EXPECT_TRUE(joint.by_motion) << joint.said;
-    std::printf("%s\n", joint.said.c_str());
+    EXPECT_TRUE(joint.by_motion) << joint.stated;
+    std::printf("%s\n", joint.stated.c_str());
   }
   std::printf("knee's axis: %.1f deg off by markers, %.1f with the motion\n", errors.knee_markers, errors.knee_motion);
   EXPECT_GT(errors.regression, 0.012);
@@ -208,12 +208,12 @@ TEST(HumanSkeleton, KeepsTheConventionalJointsOfWhoDoesNotMove) {
   ASSERT_EQ(still.joints.size(), 4u);
   for (const FoundJoint& joint : still.joints) {
     EXPECT_FALSE(joint.by_motion);
-    EXPECT_NE(joint.said.find("stays"), std::string::npos) << joint.said;
+    EXPECT_NE(joint.stated.find("stays"), std::string::npos) << joint.stated;
   }
   EXPECT_EQ(joint_in_pelvis(alone.skeleton, "left_thigh"), joint_in_pelvis(still.skeleton, "left_thigh"));
 }
 
-/// No range of motion, but a walk and a turn: what comes of it is a person's all the same, and left is as right.
+/// No range of motion, but a walk and a turn: the result is a person's all the same, and left is as right.
 TEST(HumanSkeleton, OfChildrenIsPlausible) {
   const std::string children = test::data("gait_children/");
   if (!std::filesystem::exists(children)) GTEST_SKIP() << children << " is not here";
@@ -227,7 +227,7 @@ TEST(HumanSkeleton, OfChildrenIsPlausible) {
     const Vector<3> left = joint_in_pelvis(human.skeleton, "left_thigh"), right = joint_in_pelvis(human.skeleton, "right_thigh");
     std::printf("%s: hips %.0f mm apart, left and right differ by %.0f mm\n", child.c_str(), 1000 * (left - right).norm(),
                 1000 * (left - Vector<3>(right.x(), -right.y(), right.z())).norm());
-    for (const FoundJoint& joint : human.joints) std::printf("  %s\n", joint.said.c_str());
+    for (const FoundJoint& joint : human.joints) std::printf("  %s\n", joint.stated.c_str());
     EXPECT_GT((left - right).norm(), 0.08) << child;
     EXPECT_LT((left - right).norm(), 0.22) << child;
     EXPECT_LT((left - Vector<3>(right.x(), -right.y(), right.z())).norm(), 0.03) << child;

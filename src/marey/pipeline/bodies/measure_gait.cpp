@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
 #include "marey/draw/gait_report.h"
+#include "marey/files/whole_file.h"
 #include "marey/pipeline/bodies/gait_c3d.h"
 #include "marey/pipeline/bodies/gait_markers.h"
 
@@ -51,7 +51,7 @@ gait::FeetPaths feet_of(const GaitMarkers& markers) {
   feet.toe = {markers.path("LTOE"), markers.path("RTOE")};
   feet.sacrum = markers.path("SACR");
   for (const char* other : {"LPSI", "LASI"}) {
-    if (std::none_of(feet.sacrum.begin(), feet.sacrum.end(), [](const auto& place) { return place.has_value(); }))
+    if (std::none_of(feet.sacrum.begin(), feet.sacrum.end(), [](const auto& location) { return location.has_value(); }))
       feet.sacrum = markers.path(other);
   }
   return feet;
@@ -138,7 +138,7 @@ std::int64_t hanging_rows(const GaitMeasure& measure, const gait::AngleCurve& cu
   return rows;
 }
 
-/// Which angles are not known at some time, or left out of the cycles' mean; those that share their reason in one sentence.
+/// Which angles are not known at some time, or omitted of the cycles' mean; those that share their reason in one sentence.
 void warn_of_gaps(const std::string& recording, GaitMeasure& measure) {
   std::map<std::string, std::vector<std::string>> names_by_reason;
   for (std::size_t a = 0; a < measure.angles.size(); ++a) {
@@ -157,16 +157,16 @@ void warn_of_gaps(const std::string& recording, GaitMeasure& measure) {
                            static_cast<double>(measure.frames) / measure.rate_hz, why);
     }
     if (over_cycle.jumping > 0) reason.append(reason.empty() ? "" : ", ").append("jumps by more than 90° between two frames");
-    const std::size_t left_out = over_cycle.unknown + over_cycle.jumping;
-    if (left_out > 0 && unknown < std::ssize(curve.values))
-      reason += fmt::format("; left out of the mean: {} of {} cycles", left_out, left_out + over_cycle.cycles.size());
+    const std::size_t excluded = over_cycle.unknown + over_cycle.jumping;
+    if (excluded > 0 && unknown < std::ssize(curve.values))
+      reason += fmt::format("; omitted of the mean: {} of {} cycles", excluded, excluded + over_cycle.cycles.size());
     if (!reason.empty()) names_by_reason[reason].push_back(curve.name);
   }
   for (const auto& [reason, names] : names_by_reason)
     measure.warnings.push_back(fmt::format("{}: {}: {}", recording, listed(names), reason));
 }
 
-/// Throws Error where nothing of a walk is left to be told.
+/// Throws Error if nothing of a walk is left to be reported.
 void need_steps(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {
   if (!measure.events.empty()) return;
   const char* hint = measure.lies            ? "; it lies, by the --up that was given: is that right?"
@@ -175,13 +175,13 @@ void need_steps(const std::string& recording, const GaitMeasure& measure, const 
   throw Error("{}: no steps were found: HEE and TOE of a side are needed, and a person who walks{}", recording, hint);
 }
 
-/// Throws Error where the pelvis' up is the recording's other axis, which was not said. Where it lies across the up that was said,
-/// that is returned, to be told: the person may lie down.
-std::optional<std::string> up_across(const std::string& recording, const std::optional<format::UpAxis>& said,
+/// Throws Error if the pelvis' up is the recording's other axis, which was not said. Where it lies across the up that was said,
+/// that is returned, to be reported: the person may lie down.
+std::optional<std::string> up_across(const std::string& recording, const std::optional<format::UpAxis>& stated,
                                      const GaitMarkers& markers, const gait::GaitSubject& subject) {
   constexpr double kMostly = 0.8;  // cosine
   Vector<3> up = Vector<3>::Zero();
-  for (const gait::MarkerPlaces& row : markers.rows) {
+  for (const gait::MarkerPositions& row : markers.rows) {
     if (const auto pelvis = gait::pose_of(row, subject)[gait::SegmentId::pelvis]) up += pelvis->rotation.col(2);
   }
   if (!(up.norm() > 0)) return std::nullopt;
@@ -189,7 +189,7 @@ std::optional<std::string> up_across(const std::string& recording, const std::op
   const bool y = markers.up == format::UpAxis::y;
   const char *taken = y ? "y" : "z", *there = y ? "z" : "y";
   if (!((y ? -1 : 1) * up.normalized().y() > kMostly)) return std::nullopt;
-  if (!said)
+  if (!stated)
     throw Error("{}: {} was taken for up, and the person's up is along {}: give --up {} (or --up {}, if it lies down)", recording,
                 taken, there, there, taken);
   return fmt::format("{}: --up {} was given, and the person's up is along {}: does it lie down?", recording, taken, there);
@@ -220,10 +220,10 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
   take_measures(recording, measure.subject);
   if (!options.static_trial.empty()) {
     take_measures(options.static_trial, measure.subject);
-    const auto standing = standing_places(read_gait_markers(options.static_trial, options.up, hooks), options.static_trial);
+    const auto standing = standing_positions(read_gait_markers(options.static_trial, options.up, hooks), options.static_trial);
     if (const auto pair = other_person(standing, markers))
       measure.warnings.push_back(
-          fmt::format("{}: {}: another person's static trial, or markers that were put on anew?", options.static_trial, *pair));
+          fmt::format("{}: {}: another person's static trial, or markers that were put on again?", options.static_trial, *pair));
     measure.subject.learn_from(standing);
   } else {
     if (!measure.subject.leg_length[0] && !markers.rows.empty()) measure.subject.learn_from(markers.rows.front());

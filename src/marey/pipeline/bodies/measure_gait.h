@@ -40,9 +40,9 @@ struct GaitMeasure {
   std::vector<std::string> warnings;
 };
 
-/// Throws Error where the recording lacks the markers of the pelvis or of both feet.
+/// Throws Error if the recording lacks the markers of the pelvis or of both feet.
 GaitMeasure measure_gait(const std::string& recording, const GaitOptions& options, const Hooks& hooks = {});
-/// The same, written. Throws Error where cycles or a report are wanted and no angle is known over a whole cycle; the angles of
+/// The same, written. Throws Error if cycles or a report are wanted and no angle is known over a whole cycle; the angles of
 /// every frame are written all the same.
 GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options,
                          const Hooks& hooks = {});

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/skeleton/gltf.h"
@@ -27,9 +27,9 @@ namespace {
 
 using format::Content;
 using format::UpAxis;
-constexpr std::size_t kMostCalibrationFrames = 4096;
+constexpr std::size_t kMaxCalibrationFrames = 4096;
 constexpr double kKeypointSigma_m = 0.02, kKeypointRobust_m = 0.15, kKeypointLost_m = 0.4;  // unswept
-constexpr std::int64_t kLooksAtPerson = 2000;  // rows by which it is told whether the static trial is another's
+constexpr std::int64_t kAppearanceAtPerson = 2000;  // rows by which it is reported whether the static trial is another's
 
 bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
@@ -46,13 +46,13 @@ class SolveCounts {
 
   void add(const solve::skeleton::SolvedPose& pose) {
     starts_ += pose.started ? 1 : 0;
-    if (pose.seen == 0) {
+    if (pose.detected == 0) {
       ++empty_;
       return;
     }
     for (std::size_t j = 0; j < markers_.size(); ++j) {
       if (!pose.residuals[j]) continue;
-      ++markers_[j].seen;
+      ++markers_[j].detected;
       markers_[j].rms_m += *pose.residuals[j] * *pose.residuals[j];
       markers_[j].worst_m = std::max(markers_[j].worst_m, *pose.residuals[j]);
     }
@@ -63,7 +63,7 @@ class SolveCounts {
   }
 
   /// All but the starts is forgotten.
-  void begin_anew() {
+  void restart() {
     const std::int64_t starts = starts_;
     *this = SolveCounts(*skeleton_);
     starts_ = starts;
@@ -76,11 +76,11 @@ class SolveCounts {
     std::int64_t count = 0;
     for (std::size_t j = 0; j < markers_.size(); ++j) {
       SolveSummary::Marker& marker = markers_[j];
-      if (marker.seen == 0) continue;
+      if (marker.detected == 0) continue;
       marker.label = skeleton_->markers[j].label;
       sum += marker.rms_m;
-      count += marker.seen;
-      marker.rms_m = std::sqrt(marker.rms_m / static_cast<double>(marker.seen));
+      count += marker.detected;
+      marker.rms_m = std::sqrt(marker.rms_m / static_cast<double>(marker.detected));
       summary.worst_m = std::max(summary.worst_m, marker.worst_m);
       summary.markers.push_back(marker);
     }
@@ -95,16 +95,16 @@ class SolveCounts {
 
  private:
   SolveSummary::Coordinate coordinate(std::size_t c, const SkeletonMotion& motion) {
-    SolveSummary::Coordinate said{.name = skeleton_->coordinates[c].name, .turns = skeleton_->coordinates[c].turns};
+    SolveSummary::Coordinate stated{.name = skeleton_->coordinates[c].name, .rotations = skeleton_->coordinates[c].rotations};
     for (std::size_t r = 0; r < motion.rows.size(); ++r) {
-      said.lowest = r == 0 ? motion.rows[r][c] : std::min(said.lowest, motion.rows[r][c]);
-      said.highest = r == 0 ? motion.rows[r][c] : std::max(said.highest, motion.rows[r][c]);
+      stated.lowest = r == 0 ? motion.rows[r][c] : std::min(stated.lowest, motion.rows[r][c]);
+      stated.highest = r == 0 ? motion.rows[r][c] : std::max(stated.highest, motion.rows[r][c]);
     }
     std::vector<float>& all = deviations_[c];
-    if (all.empty()) return said;
-    said.deviation = geometry::median(all);
-    said.observed = static_cast<double>(observed_[c]) / static_cast<double>(all.size());
-    return said;
+    if (all.empty()) return stated;
+    stated.deviation = geometry::median(all);
+    stated.observed = static_cast<double>(observed_[c]) / static_cast<double>(all.size());
+    return stated;
   }
 
   const Skeleton* skeleton_;
@@ -116,18 +116,19 @@ class SolveCounts {
 
 /// The frames together: which way limbs are bent, and where it is asked for the second pass. What is said of the motion is then of
 /// the new one.
-void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::SeenMarkers>& seen, const SolveOptions& options,
-                 SolveCounts& counts) {
+void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::ObservedMarkers>& detected,
+                 const SolveOptions& options, SolveCounts& counts) {
   const double rate_hz = solved.motion.rate_hz;
-  const std::vector<bool> settled = solve::skeleton::settle_folds(solved.skeleton, solved.motion.rows, seen, rate_hz, options.pose);
+  const std::vector<bool> settled =
+      solve::skeleton::settle_folds(solved.skeleton, solved.motion.rows, detected, rate_hz, options.pose);
   const bool any = std::find(settled.begin(), settled.end(), true) != settled.end();
   if (!any && !options.smooth) return;
-  if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, seen, rate_hz);
-  counts.begin_anew();
-  solve::skeleton::PoseSolver judge(solved.skeleton, options.pose);
-  judge.learn_noise_of(solved.motion.rows, seen);
-  for (std::size_t f = 0; f < seen.size(); ++f) {
-    const auto& pose = judge.look_at(solved.motion.rows[f], seen[f]);
+  if (options.smooth) solved.motion.rows = solve::skeleton::smooth(solved.skeleton, solved.motion.rows, detected, rate_hz);
+  counts.restart();
+  solve::skeleton::PoseSolver assess(solved.skeleton, options.pose);
+  assess.learn_noise_of(solved.motion.rows, detected);
+  for (std::size_t f = 0; f < detected.size(); ++f) {
+    const auto& pose = assess.inspect_at(solved.motion.rows[f], detected[f]);
     counts.add(pose);
     solved.observed[f] = pose.observed;
     solved.residual_m[f] = pose.rms_m;
@@ -185,7 +186,7 @@ std::optional<std::string> write_output(const std::string& path, const std::stri
   format::WritePlan plan = format::plan_of(*open_markers(recording, options), recording);
   plan.info.header.bodies = bodies_of(solved.skeleton);
   replay_with_bodies(recording, solved, options, *format::create_recording(path, format, plan));
-  return format::beside_lost(plan.info.beside, path, format);
+  return format::next_to_lost(plan.info.next_to, path, format);
 }
 
 }  // namespace
@@ -212,10 +213,10 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
   const auto reader = open_markers(recording, options);
   solved.motion.rate_hz = summary.rate_hz = reader->header().rate_hz;
   markers::SkeletonInSpace solver(std::make_shared<const Skeleton>(file.skeleton), solved.motion.rate_hz, options.pose,
-                                  options.leave_out);
+                                  options.exclude);
   solver.name(reader->tracks());
   SolveCounts counts(solved.skeleton);
-  std::vector<solve::skeleton::SeenMarkers> all;
+  std::vector<solve::skeleton::ObservedMarkers> all;
   while (const auto instant = reader->next()) {
     const auto& pose = solver.solve(*instant);
     counts.add(pose);
@@ -223,7 +224,7 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
     solved.motion.rows.push_back(pose.coordinates);
     solved.observed.push_back(pose.observed);
     solved.residual_m.push_back(pose.rms_m);
-    all.push_back(solver.seen());
+    all.push_back(solver.detected());
     if (hooks.report({.step = "solving", .done = ++summary.frames, .total = reader->instant_count()}) == Continue::no) {
       summary.stopped = true;
       break;
@@ -243,20 +244,20 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
 namespace {
 
 /// The markers of all frames, for a calibration.
-std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording, const Skeleton& skeleton,
-                                                   const SolveOptions& options) {
+std::vector<solve::skeleton::ObservedMarkers> all_observed(const std::string& recording, const Skeleton& skeleton,
+                                                           const SolveOptions& options) {
   const auto reader = open_markers(recording, options);
-  markers::SkeletonMarkers labels(skeleton, options.leave_out);
+  markers::SkeletonMarkers labels(skeleton, options.exclude);
   labels.name(reader->tracks());
-  std::vector<solve::skeleton::SeenMarkers> frames;
+  std::vector<solve::skeleton::ObservedMarkers> frames;
   std::size_t step = 1, count = 0;
   while (const auto instant = reader->next()) {
     labels.name(instant->named);
     if (count++ % step != 0) continue;
-    solve::skeleton::SeenMarkers seen;
-    labels.take(*instant, seen);
-    frames.push_back(std::move(seen));
-    if (frames.size() < kMostCalibrationFrames) continue;
+    solve::skeleton::ObservedMarkers detected;
+    labels.take(*instant, detected);
+    frames.push_back(std::move(detected));
+    if (frames.size() < kMaxCalibrationFrames) continue;
     for (std::size_t i = 0; 2 * i < frames.size(); ++i) frames[i] = std::move(frames[2 * i]);
     frames.resize((frames.size() + 1) / 2);
     step *= 2;
@@ -264,17 +265,18 @@ std::vector<solve::skeleton::SeenMarkers> all_seen(const std::string& recording,
   return frames;
 }
 
-/// The human skeleton of who moves in the recording. Throws Error, with what else there is, where its markers are no set.
+/// The human skeleton of who moves in the recording. Throws Error, with what else there is, where its markers are not set.
 HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& how, const Hooks& hooks) {
   try {
     return human_from_motion(recording, how, hooks);
   } catch (const Error& error) {
-    throw Error("{}; so a skeleton is wanted: --skeleton FILE, or --static of the person standing with a marker set of the field",
-                error.what());
+    throw Error(
+        "{}; so a skeleton is wanted: --skeleton FILE, or --static-trial of the person standing with a marker set of the field",
+        error.what());
   }
 }
 
-/// The skeleton of a person whose body keypoints are recorded; nothing where none are.
+/// The skeleton of a person whose body keypoints are recorded; nothing if none are.
 std::optional<format::skeleton::SkeletonFile> skeleton_by_keypoints(const std::string& recording, SolveOptions& options) {
   const auto reader = open_markers(recording, options);
   const std::vector<std::string> people = keypoints::people_with_keypoints(reader->tracks());
@@ -314,9 +316,9 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
   file.skeleton = std::move(human.skeleton);
   file.warnings = std::move(human.warnings);
   if (!options.static_trial.empty()) {
-    const GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set, kLooksAtPerson);
+    const GaitMarkers moving = read_gait_markers(recording, options.up, hooks, *human.set, kAppearanceAtPerson);
     if (const auto other = other_person(human.standing, moving))
-      file.warnings.push_back(fmt::format("{}: {}: another person's static trial than {}, or markers that were put on anew?",
+      file.warnings.push_back(fmt::format("{}: {}: another person's static trial than {}, or markers that were put on again?",
                                           options.static_trial, *other, recording));
   }
   found.joints = std::move(human.joints);
@@ -325,20 +327,21 @@ format::skeleton::SkeletonFile skeleton_of(const std::string& recording, const s
 }
 
 /// Where the skeleton's up is mostly the recording's other axis: that one is up, unless the person lies down.
-std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxis taken, bool said, const std::string& recording) {
-  constexpr std::size_t kLooks = 64;
+std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxis taken, bool stated,
+                                            const std::string& recording) {
+  constexpr std::size_t kAppearance = 64;
   constexpr double kMostly = 0.8;  // cosine
   const auto& rows = solved.motion.rows;
   if (rows.empty()) return std::nullopt;
   const Matrix<3> rest = pose_of(solved.skeleton, solved.skeleton.rest()).front().rotation;
   Vector<3> up = Vector<3>::Zero();
-  for (std::size_t r = 0; r < rows.size(); r += std::max<std::size_t>(1, rows.size() / kLooks))
+  for (std::size_t r = 0; r < rows.size(); r += std::max<std::size_t>(1, rows.size() / kAppearance))
     up += (pose_of(solved.skeleton, rows[r]).front().rotation * rest.transpose()).col(2);
   // A file's y is z here where its y was taken for up, and its z is then −y.
   const double other = taken == UpAxis::z ? up.normalized().y() : -up.normalized().y();
   if (!(other > kMostly)) return std::nullopt;
   const char *named = taken == UpAxis::z ? "z" : "y", *there = taken == UpAxis::z ? "y" : "z";
-  if (said)
+  if (stated)
     return fmt::format("{}: --up {} was given, and the skeleton's up is along {}: does the person lie down?", recording, named,
                        there);
   return fmt::format("{}: {} was taken for up, and the skeleton's up is along {}: is {} up in this file? then give --up {}",
@@ -361,13 +364,13 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   std::optional<solve::skeleton::Calibration> calibration;
   if (options.calibrate) {
-    calibration = solve::skeleton::calibrate(file.skeleton, all_seen(recording, file.skeleton, options));
+    calibration = solve::skeleton::calibrate(file.skeleton, all_observed(recording, file.skeleton, options));
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
   const UpAxis taken = format::up_axis(open_markers(recording, options)->info(), options.up);
-  if (auto sentence = lies_on_its_side(solved, taken, given.up.has_value(), recording))
-    solved.summary.warnings.push_back(std::move(*sentence));
+  if (auto message_text = lies_on_its_side(solved, taken, given.up.has_value(), recording))
+    solved.summary.warnings.push_back(std::move(*message_text));
   solved.summary.joints = std::move(found.joints);
   solved.summary.marker_set = std::move(found.marker_set);
   if (calibration) {
@@ -387,7 +390,7 @@ SolveSummary solve_skeleton(const std::string& recording, const std::string& ske
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   SolveSummary summary = solved.summary;
   for (const std::string& path : outputs) {
-    if (auto sentence = write_output(path, recording, solved, options)) summary.warnings.push_back(std::move(*sentence));
+    if (auto message_text = write_output(path, recording, solved, options)) summary.warnings.push_back(std::move(*message_text));
   }
   if (!options.write_skeleton.empty()) write_skeleton_file(options.write_skeleton, solved.skeleton);
   return summary;

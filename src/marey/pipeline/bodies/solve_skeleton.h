@@ -21,7 +21,7 @@ struct SolveOptions {
   format::skeleton::SkeletonOptions read_skeleton;
   std::optional<format::UpAxis>
       up;  ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else as it says, else z
-  std::vector<std::string> leave_out;  ///< labels of markers that are not used
+  std::vector<std::string> exclude;  ///< labels of markers that are not used
   format::skeleton::BvhDialect bvh;
   solve::skeleton::PoseOptions pose;
   bool smooth = false;  ///< a second pass over the whole motion
@@ -34,16 +34,16 @@ struct SolveOptions {
   std::string write_skeleton;  ///< skeleton.toml of what was solved with; empty: none
 };
 
-/// What came of it.
+/// The result.
 struct SolveSummary {
   struct Marker {
     std::string label;
-    std::int64_t seen = 0;  ///< instants
+    std::int64_t detected = 0;  ///< instants
     double rms_m = 0, worst_m = 0;
   };
   struct Coordinate {
     std::string name;
-    bool turns = true;
+    bool rotations = true;
     double lowest = 0, highest = 0;  ///< rad or m
     double deviation = 0;            ///< median over the instants in which a marker was seen
     double observed = 0;             ///< share of those instants
@@ -63,7 +63,7 @@ struct SolveSummary {
   std::vector<std::string> warnings;
   std::optional<double> overall_scale;  ///< of a calibration; with what it found:
   double rms_before_m = 0;
-  std::string marker_set;                 ///< whose human skeleton it is; empty where it is another one
+  std::string marker_set;                 ///< whose human skeleton it is; empty if it is another one
   std::vector<FoundJoint> joints;         ///< of the human skeleton that the range of motion was asked for
   std::vector<std::string> undetermined;  ///< segments whose size the recording does not determine
   bool stopped = false;
@@ -78,7 +78,7 @@ struct SolvedRecording {
   SolveSummary summary;
 };
 
-/// Throws Error where none of the skeleton's markers is in the recording.
+/// Throws Error if none of the skeleton's markers is in the recording.
 SolvedRecording solve_recording(const std::string& recording, const format::skeleton::SkeletonFile& skeleton,
                                 const SolveOptions& options, const Hooks& hooks = {});
 

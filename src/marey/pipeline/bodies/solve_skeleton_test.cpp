@@ -36,7 +36,7 @@ AngleErrors angle_errors(const SolvedRecording& solved, const SkeletonMotion& tr
       const auto c = solved.skeleton.coordinate(column);
       if (!c) continue;
       const Coordinate& coordinate = solved.skeleton.coordinates[static_cast<std::size_t>(*c)];
-      if (!coordinate.free() || !coordinate.turns) continue;
+      if (!coordinate.free() || !coordinate.rotations) continue;
       const double off =
           std::abs(solved.motion.rows[r][static_cast<std::size_t>(*c)] - truth.rows[r][static_cast<std::size_t>(*c)]) * kDegrees;
       all.push_back(off);
@@ -75,7 +75,7 @@ TEST(SolveSkeleton, FindsTheAnglesOfThreeWalkingMen) {
     SolveOptions options;
     options.up = format::UpAxis::y;
     for (const char side : {'R', 'L'}) {
-      for (const char* joint : {"HJC", "KJC", "AJC", "SJC", "EJC"}) options.leave_out.push_back(side + std::string(joint));
+      for (const char* joint : {"HJC", "KJC", "AJC", "SJC", "EJC"}) options.exclude.push_back(side + std::string(joint));
     }
     const SolvedRecording solved = solve_recording(own + "markers.trc", model, options);
     const auto table = format::skeleton::read_motion_table(own + "coordinates.sto");
@@ -96,20 +96,20 @@ TEST(SolveSkeleton, PutsMarkersWhereOpenSimDoes) {
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not here";
   const auto model = format::skeleton::read_skeleton(folder + "subject02_registered.osim");
   const auto angles = format::skeleton::read_motion_table(folder + "subject02_running_ik.mot");
-  const auto places = format::skeleton::read_motion_table(folder + "ik_model_marker_locations.sto");
+  const auto locations = format::skeleton::read_motion_table(folder + "ik_model_marker_locations.sto");
   const SkeletonMotion motion = format::skeleton::motion_of(angles, model.skeleton, true);
   const Matrix<3> up = format::skeleton::z_up_from(format::UpAxis::y);
   double worst = 0;
   std::size_t compared = 0;
-  for (std::size_t r = 0; r < std::min(motion.rows.size(), places.rows.size()); r += 10) {
+  for (std::size_t r = 0; r < std::min(motion.rows.size(), locations.rows.size()); r += 10) {
     std::vector<double> row = motion.rows[r];
     model.skeleton.couple(row);
     const auto pose = pose_of(model.skeleton, row);
     for (const SkeletonMarker& marker : model.skeleton.markers) {
-      const auto column = std::find(places.columns.begin(), places.columns.end(), marker.label + "_tx");
-      if (column == places.columns.end()) continue;
-      const auto c = static_cast<std::size_t>(column - places.columns.begin());
-      const Vector<3> there = up * Vector<3>(*places.rows[r][c], *places.rows[r][c + 1], *places.rows[r][c + 2]);
+      const auto column = std::find(locations.columns.begin(), locations.columns.end(), marker.label + "_tx");
+      if (column == locations.columns.end()) continue;
+      const auto c = static_cast<std::size_t>(column - locations.columns.begin());
+      const Vector<3> there = up * Vector<3>(*locations.rows[r][c], *locations.rows[r][c + 1], *locations.rows[r][c + 2]);
       worst = std::max(worst, (pose[static_cast<std::size_t>(marker.segment)] * marker.position - there).norm());
       ++compared;
     }
@@ -129,7 +129,7 @@ TEST(SolveSkeleton, CalibratesAGenericModelToThreeMen) {
     options.up = format::UpAxis::y;
     options.calibrate = true;
     for (const char side : {'R', 'L'}) {
-      for (const char* joint : {"HJC", "KJC", "AJC", "SJC", "EJC"}) options.leave_out.push_back(side + std::string(joint));
+      for (const char* joint : {"HJC", "KJC", "AJC", "SJC", "EJC"}) options.exclude.push_back(side + std::string(joint));
     }
     const SolvedRecording solved = solve_with_skeleton(own + "markers.trc", folder + "unscaled_generic.osim", options);
     const auto truth = format::skeleton::read_skeleton(own + "scaled.osim");
@@ -149,7 +149,7 @@ TEST(SolveSkeleton, CalibratesAGenericModelToThreeMen) {
       }
       for (std::size_t c = 0; c < row.size(); ++c) {
         const auto same = solved.skeleton.coordinate(truth.skeleton.coordinates[c].name);
-        if (!same || !truth.skeleton.coordinates[c].turns || !truth.skeleton.coordinates[c].free()) continue;
+        if (!same || !truth.skeleton.coordinates[c].rotations || !truth.skeleton.coordinates[c].free()) continue;
         angles += std::abs(row[c] - solved.motion.rows[r][static_cast<std::size_t>(*same)]) * kDegrees;
         ++angle_count;
       }
@@ -177,16 +177,16 @@ TEST(SolveSkeleton, BearsHiddenMarkers) {
     std::vector<double> row = truth.rows[r];
     model.skeleton.couple(row);
     const auto pose = pose_of(model.skeleton, row);
-    std::vector<std::optional<Vector<3>>> seen;
+    std::vector<std::optional<Vector<3>>> detected;
     for (std::size_t j = 0; j < model.skeleton.markers.size(); ++j) {
       const SkeletonMarker& marker = model.skeleton.markers[j];
       const bool hidden = marker.label.ends_with("JC") || (r >= 60 && r < 160 && (j * 2654435761U >> 8) % 10 < 3);
-      seen.push_back(hidden ? std::nullopt
-                            : std::optional<Vector<3>>(pose[static_cast<std::size_t>(marker.segment)] * marker.position));
+      detected.push_back(hidden ? std::nullopt
+                                : std::optional<Vector<3>>(pose[static_cast<std::size_t>(marker.segment)] * marker.position));
     }
-    const std::vector<double> found = solver.step(1 / 200.0, seen).coordinates;
+    const std::vector<double> found = solver.step(1 / 200.0, detected).coordinates;
     for (std::size_t c = 0; c < row.size(); ++c) {
-      if (!model.skeleton.coordinates[c].turns || !model.skeleton.coordinates[c].free()) continue;
+      if (!model.skeleton.coordinates[c].rotations || !model.skeleton.coordinates[c].free()) continue;
       if (r > 0) worst_jump = std::max(worst_jump, std::abs(found[c] - before[c]) * kDegrees);
       if (r >= 180) worst_after = std::max(worst_after, std::abs(found[c] - row[c]) * kDegrees);
     }

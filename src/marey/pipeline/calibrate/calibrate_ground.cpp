@@ -9,16 +9,16 @@
 namespace marey::pipeline::calibrate {
 namespace {
 
-constexpr int kMostPictures = 50;  // of a source that are searched for the board
+constexpr int kMaxImages = 50;  // of a source that are searched for the board
 
 std::optional<Rigid3> camera_from_board(const RigCamera& camera, const marey::calibrate::board::Board& board, const Hooks& hooks) {
   corridor::Feed feed(camera, CameraId{}, {.ahead = 0});
   const marey::calibrate::board::BoardDetector detector(board);
-  for (int i = 0; i < kMostPictures; ++i) {
-    hooks.advance({"looking for the board", i, std::nullopt});
+  for (int i = 0; i < kMaxImages; ++i) {
+    hooks.advance({"searching for the board", i, std::nullopt});
     const auto given = feed.next();
     if (!given) break;
-    const auto view = detector.detect(given->frame.picture);
+    const auto view = detector.detect(given->frame.image);
     if (!view) continue;
     if (const auto pose = marey::calibrate::board::board_pose(board, *view, *feed.camera().lens)) return pose;
   }
@@ -42,7 +42,7 @@ marey::calibrate::GroundFound ground_by_frame(Rig& rig, const CalibrateGroundOpt
   CameraBlobs blobs = blobs_of(rig, options.observations, options.markers, hooks);
   warnings = std::move(blobs.warnings);
   std::vector<std::vector<Vector<2>>> still;
-  for (const auto& frames : blobs.seen) still.push_back(marey::calibrate::still_blobs(frames));
+  for (const auto& frames : blobs.detected) still.push_back(marey::calibrate::still_blobs(frames));
   return marey::calibrate::find_ground(rig, still, options.frame, options.scale);
 }
 

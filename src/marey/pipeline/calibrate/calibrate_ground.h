@@ -15,7 +15,7 @@ namespace marey::pipeline::calibrate {
 struct CalibrateGroundOptions {
   std::optional<marey::calibrate::board::Board> board;  ///< that lies on the floor, in the place of an L-frame of markers
   std::vector<Vector<3>> frame;                         ///< the L-frame's markers, m, on the ground
-  std::string observations;  ///< what another program saw of them; empty: they are looked for in the sources
+  std::string observations;  ///< what another program saw of them; empty: they are searched for in the sources
   detect::markers::MarkerOptions markers;
   bool scale = false;  ///< the L-frame's size sets the rig's
 };
@@ -27,7 +27,7 @@ struct GroundCalibration {
 };
 
 /// Origin and axes of a calibrated rig. By a board: its first corner is the origin, x runs along its rows, z up from it; each
-/// camera's first picture that shows it counts, several cameras are averaged. Throws Error where a source cannot be read, none sees
+/// camera's first image that shows it counts, several cameras are averaged. Throws Error if a source cannot be read, none sees
 /// the board, the cameras disagree, or as calibrate::find_ground does; Stopped.
 GroundCalibration calibrate_ground(const Rig& rig, const CalibrateGroundOptions& options, const Hooks& hooks = {});
 

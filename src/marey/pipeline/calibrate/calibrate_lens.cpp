@@ -9,7 +9,7 @@
 namespace marey::pipeline::calibrate {
 namespace {
 
-constexpr std::int64_t kFramesLookedAt = 400;  // of a long film: neighbours show the board in nearly the same place
+constexpr std::int64_t kFramesInspectedAt = 400;  // of a long film: neighbours show the board in nearly the same place
 
 }  // namespace
 
@@ -21,19 +21,18 @@ LensRun calibrate_lens(const std::string& input, const marey::calibrate::board::
   camera.region = options.region;
   corridor::Feed feed(camera, CameraId{});
   FindBoardsOptions how;
-  how.every = std::max<std::int64_t>(1, feed.info().frame_count.value_or(0) / kFramesLookedAt);
+  how.every = std::max<std::int64_t>(1, feed.info().frame_count.value_or(0) / kFramesInspectedAt);
   const BoardSightings found = find_boards(feed, marey::calibrate::board::BoardDetector(board), how, hooks);
   if (found.sightings.empty())
-    throw Error(
-        "{}: the board {} is in none of the {} pictures looked at; are its kind, its numbers of {} and its colours as given?",
-        input, marey::calibrate::board::to_string(board), found.frames,
-        board.kind == marey::calibrate::board::Board::Kind::chess ? "inner corners" : "squares");
+    throw Error("{}: the board {} is in none of the {} images inspected; are its kind, its numbers of {} and its colours as given?",
+                input, marey::calibrate::board::to_string(board), found.frames,
+                board.kind == marey::calibrate::board::Board::Kind::chess ? "inner corners" : "squares");
   LensRun run;
-  run.calibration = lens_by_sightings(board, found, options.most_views, options.lens);
+  run.calibration = lens_by_sightings(board, found, options.max_views, options.lens);
   run.frames = found.frames;
   run.sightings = static_cast<int>(found.sightings.size());
-  for (const std::string& sentence : found.warnings) {
-    if (sentence.find("--rate") == std::string::npos) run.calibration.warnings.push_back(sentence);  // a lens has no rate
+  for (const std::string& message_text : found.warnings) {
+    if (message_text.find("--rate") == std::string::npos) run.calibration.warnings.push_back(message_text);  // a lens has no rate
   }
   return run;
 }

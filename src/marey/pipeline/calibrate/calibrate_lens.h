@@ -10,17 +10,17 @@ namespace marey::pipeline::calibrate {
 
 struct LensRunOptions {
   marey::calibrate::LensOptions lens;
-  std::size_t most_views = kViewsOfLens;  ///< pictures that the solution rests on
+  std::size_t max_views = kViewsOfLens;  ///< images that the solution rests on
   std::optional<cv::Rect> region;
 };
 
 struct LensRun {
   marey::calibrate::LensCalibration calibration;
-  std::int64_t frames = 0;  ///< looked at
+  std::int64_t frames = 0;  ///< inspected
   int sightings = 0;        ///< frames that show the board
 };
 
-/// Calibrates the lens that took `input`: a video, a folder of pictures or a pattern. Throws Error where the board is nowhere to be
+/// Calibrates the lens that took `input`: a video, a folder of images or a pattern. Throws Error if the board is nowhere to be
 /// seen, or where calibrate::calibrate_lens does; Stopped.
 LensRun calibrate_lens(const std::string& input, const marey::calibrate::board::Board& board, const LensRunOptions& options,
                        const Hooks& hooks = {});

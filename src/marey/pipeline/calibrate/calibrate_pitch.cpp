@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
+#include "marey/core/ground_transform.h"
 #include "marey/core/rig_sources.h"
-#include "marey/core/whole_file.h"
-#include "marey/draw/picture_file.h"
+#include "marey/draw/image_file.h"
 #include "marey/draw/pitch_drawing.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/pitch_points.h"
 #include "marey/geometry/median.h"
 #include "marey/pipeline/corridor/feed.h"
@@ -21,8 +21,8 @@
 namespace marey::pipeline::calibrate {
 namespace {
 
-// The empty ground is the median of this many pictures, spread over this long a beginning: who moves is in few of them.
-constexpr int kPictures = 15;
+// The empty ground is the median of this many images, spread over this long a beginning: who moves is in few of them.
+constexpr int kImages = 15;
 constexpr double kSeconds = 60;
 constexpr double kMargin = 2;  // m round the pitch, where people still count
 
@@ -37,22 +37,22 @@ cv::Mat as_bytes(const cv::Mat& luma) {
 cv::Mat empty_ground(corridor::Feed& feed) {
   double span = kSeconds * feed.rate_hz();
   if (feed.info().frame_count) span = std::min(span, static_cast<double>(*feed.info().frame_count));
-  const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / kPictures));
-  std::vector<cv::Mat> pictures;
-  while (pictures.size() < kPictures) {
+  const auto step = std::max<std::int64_t>(1, static_cast<std::int64_t>(span / kImages));
+  std::vector<cv::Mat> images;
+  while (images.size() < kImages) {
     const auto given = feed.next();
     stop_point();
     if (!given) break;
     if (given->frame.index % step != 0) continue;
-    const cv::Mat luma = as_bytes(given->frame.picture.luma());
-    if (luma.size() == feed.info().size) pictures.push_back(luma.clone());
+    const cv::Mat luma = as_bytes(given->frame.image.luma());
+    if (luma.size() == feed.info().size) images.push_back(luma.clone());
   }
-  if (pictures.empty()) throw Error("{}: not one frame could be read", feed.info().name);
-  cv::Mat median(pictures[0].size(), CV_8UC1);
-  std::vector<unsigned char> values(pictures.size());
+  if (images.empty()) throw Error("{}: not one frame could be read", feed.info().name);
+  cv::Mat median(images[0].size(), CV_8UC1);
+  std::vector<unsigned char> values(images.size());
   for (int y = 0; y < median.rows; ++y) {
     for (int x = 0; x < median.cols; ++x) {
-      for (std::size_t i = 0; i < pictures.size(); ++i) values[i] = pictures[i].at<unsigned char>(y, x);
+      for (std::size_t i = 0; i < images.size(); ++i) values[i] = images[i].at<unsigned char>(y, x);
       median.at<unsigned char>(y, x) = geometry::median(values);
     }
   }
@@ -66,7 +66,7 @@ marey::calibrate::pitch::PitchView view_of(RigCamera& camera, const std::string&
   for (const format::PitchClicks::Point& click : clicks.points) view.points.push_back({click.ground, click.pixel, click.name});
   for (const format::PitchClicks::Line& line : clicks.lines) view.lines.push_back({line.from, line.to, line.pixels});
   if (!camera.source.empty()) {
-    RigCamera uncalibrated = camera;  // of whatever size its pictures are
+    RigCamera uncalibrated = camera;  // of whatever size its images are
     uncalibrated.size.reset();
     corridor::Feed feed(uncalibrated, CameraId{}, {.ahead = 0});
     view.empty_ground = empty_ground(feed);
@@ -75,7 +75,7 @@ marey::calibrate::pitch::PitchView view_of(RigCamera& camera, const std::string&
   } else if (camera.size) {
     view.size = *camera.size;
     warnings.push_back(
-        fmt::format("camera \"{}\" has no pictures: it is calibrated by the clicks alone, not by the white lines", camera.name));
+        fmt::format("camera \"{}\" has no images: it is calibrated by the clicks alone, not by the white lines", camera.name));
   } else {
     throw Error("camera \"{}\": its size is not known; give its source, or size = [width, height] in px", camera.name);
   }
@@ -83,7 +83,7 @@ marey::calibrate::pitch::PitchView view_of(RigCamera& camera, const std::string&
   for (const marey::calibrate::pitch::PitchPoint& point : view.points) {
     if (!frame.contains(cv::Point(cvRound(point.pixel.x()), cvRound(point.pixel.y()))))
       throw Error(
-          "{}: the click on {} at ({:.0f}, {:.0f}) is outside camera \"{}\"'s picture of {} x {} px; is it another camera's file?",
+          "{}: the click on {} at ({:.0f}, {:.0f}) is outside camera \"{}\"'s image of {} x {} px; is it another camera's file?",
           clicks_path, point.name, point.pixel.x(), point.pixel.y(), camera.name, view.size.width, view.size.height);
   }
   return view;
@@ -109,57 +109,57 @@ void compare_lens(const RigCamera& before, const Camera& found, std::vector<std:
 
 void draw(const PitchRun& run, const PitchRunOptions& options) {
   std::error_code error;
-  std::filesystem::create_directories(options.pictures, error);
-  if (error) throw Error("{}: this folder cannot be made ({})", options.pictures, error.message());
+  std::filesystem::create_directories(options.images, error);
+  if (error) throw Error("{}: this folder cannot be made ({})", options.images, error.message());
   const Matrix<3> world_from_ground = run.calibration.ground_from_world.inverse();
   const auto to_world = [&](const Vector<2>& pitch) -> Vector<2> {
     return (world_from_ground * (pitch + run.calibration.corner).homogeneous()).hnormalized();
   };
   auto lines = geometry::pitch_lines(options.pitch.size, 0.25);
   for (geometry::PitchLine& line : lines) {
-    for (Vector<2>& place : line.points) place = to_world(place);
+    for (Vector<2>& location : line.points) location = to_world(location);
   }
   for (std::size_t i = 0; i < run.views.size(); ++i) {
     const marey::calibrate::pitch::PitchView& view = run.views[i];
     const marey::calibrate::pitch::PitchViewResult& found = run.calibration.views[i];
     const GroundView ground(found.camera, run.calibration.fit.ground);
-    const PitchPictures files(options.pictures, view.name);
+    const PitchImages files(options.images, view.name);
     if (!view.empty_ground.empty()) {
       std::vector<Vector<2>> paint;
-      for (const marey::calibrate::pitch::LineSighting& seen : found.lines) paint.push_back(seen.pixel);
+      for (const marey::calibrate::pitch::LineSighting& detected : found.lines) paint.push_back(detected.pixel);
       std::vector<draw::DrawnClick> clicks;
       for (std::size_t k = 0; k < view.points.size(); ++k)
         clicks.push_back({view.points[k].pixel, found.inlier[k] != 0, view.points[k].name});
-      draw::write_picture(files.overlay, draw::draw_pitch(Picture(view.empty_ground), ground, lines, paint, clicks));
+      draw::write_image(files.overlay, draw::draw_pitch(Image(view.empty_ground), ground, lines, paint, clicks));
     }
     WholeFile map(files.accuracy);
     map.write(draw::pitch_map_svg(fmt::format("{}: what a pixel is on the ground", view.name), options.pitch.size,
                                   is_reflection(run.calibration.ground_from_world),
                                   [&](const Vector<2>& pitch) -> std::optional<double> {
                                     const auto pixel = ground.pixel(to_world(pitch));
-                                    if (!pixel || !found.camera.in_picture(*pixel)) return std::nullopt;
-                                    const auto place = ground.place(*pixel);
-                                    if (!place) return std::nullopt;
-                                    return place->by_pixel.operatorNorm();
+                                    if (!pixel || !found.camera.in_image(*pixel)) return std::nullopt;
+                                    const auto location = ground.location(*pixel);
+                                    if (!location) return std::nullopt;
+                                    return location->by_pixel.operatorNorm();
                                   }));
     map.finish();
   }
 }
 
-/// Offsets that the rig does not say.
+/// Offsets that the rig does not specify.
 void put_in_step(PitchRun& run, const PitchRunOptions& options, const Hooks& hooks) {
   if (options.synced) {
     for (RigCamera& camera : run.rig.cameras) camera.offset_s = camera.offset_s.value_or(0);
   }
   if (!people::lacks_offsets(run.rig)) return;
-  // A pitch whose corner is elsewhere has no name in the rig yet: then everybody counts.
+  // A pitch whose corner is elsewhere has no name in the rig yet: then every person counts.
   const bool at_origin = run.calibration.corner.norm() < 0.01;
   const reconstruct::GroundArea area(run.rig.ground_from_world, at_origin ? std::optional(options.pitch.size) : std::nullopt,
                                      kMargin);
   try {
     run.offsets = people::find_rig_offsets(run.rig, area, {}, hooks);
   } catch (const Error& error) {
-    run.warnings.push_back(fmt::format("when cameras were started was not looked for: {}", error.what()));
+    run.warnings.push_back(fmt::format("when cameras were started was not searched for: {}", error.what()));
     return;
   }
   people::enter_offsets(run.rig, run.offsets);
@@ -202,7 +202,7 @@ void enter(PitchRun& run) {
 
 }  // namespace
 
-PitchPictures::PitchPictures(const std::string& folder, const std::string& camera)
+PitchImages::PitchImages(const std::string& folder, const std::string& camera)
     : overlay((std::filesystem::path(folder) / (camera + ".jpg")).string()),
       accuracy((std::filesystem::path(folder) / (camera + "_accuracy.svg")).string()) {}
 
@@ -227,7 +227,7 @@ PitchRun calibrate_pitch(const Rig& rig, const std::map<std::string, std::string
   run.calibration = marey::calibrate::pitch::calibrate_pitch(run.views, pitch);
   enter(run);
   put_in_step(run, options, hooks);
-  if (!options.pictures.empty()) draw(run, options);
+  if (!options.images.empty()) draw(run, options);
   return run;
 }
 

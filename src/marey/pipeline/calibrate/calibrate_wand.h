@@ -10,15 +10,15 @@
 #include "marey/core/hooks.h"
 #include "marey/core/instant.h"
 #include "marey/detect/markers/marker_detector.h"
-#include "marey/pipeline/live/camera_desk.h"
+#include "marey/pipeline/live/camera_settings.h"
 
 namespace marey::pipeline::calibrate {
 
 /// How far a wand that is waved before live cameras has been seen.
-struct WandSeen {
+struct WandObserved {
   struct Camera {
     CameraHealth health;
-    double coverage = 0;     ///< share of its picture in which the wand was
+    double coverage = 0;     ///< share of its image in which the wand was
     std::int64_t views = 0;  ///< frames in which it was
     bool covered = false;    ///< that is enough
     std::vector<int> parts;  ///< in which it was, of 10 × 8 row by row
@@ -32,7 +32,7 @@ struct WandSeen {
   double seconds = 0;
   std::vector<Camera> cameras;
   std::vector<Shared> shared;  ///< of all pairs
-  /// What each camera sees now: pictures where it gives some, blobs, those that are the wand's as tracks 1, 2, 3. No time of it is
+  /// What each camera sees now: images where it gives some, blobs, those that are the wand's as tracks 1, 2, 3. No time of it is
   /// exact: cameras' newest frames.
   Instant now;
   bool enough = false;  ///< every camera is covered, and all are chained by views that two of them share
@@ -42,15 +42,16 @@ struct WandSeen {
 bool knows_lenses(const Rig& rig);
 
 struct CalibrateWandOptions {
-  std::string observations;  ///< what another program saw of the wand; empty: it is looked for in the cameras' sources
+  std::string observations;  ///< what another program saw of the wand; empty: it is searched for in the cameras' sources
   detect::markers::MarkerOptions markers;
   marey::calibrate::wand::WandShape wand;
-  marey::calibrate::wand::WandOptions how;  ///< offsets are looked for unless `synced`, or nobody says the cameras' rate
+  marey::calibrate::wand::WandOptions how;  ///< offsets are searched for unless `synced`, or no person says the cameras' rate
   bool synced = false;                      ///< the cameras' clocks are right
-  live::CameraDesk* desk = nullptr;  ///< live cameras: by which they are set while the wand is waved, and the rig that is found too
-  double wave_s = 600;               ///< live cameras: the wand is waved until it was seen enough, at most so long
+  live::CameraSettings* camera_settings =
+      nullptr;          ///< live cameras: by which they are set while the wand is waved, and the rig that is found too
+  double wave_s = 600;  ///< live cameras: the wand is waved until it was seen enough, at most this long
   /// Ten times a second while it is waved; false: what was seen will do. May be empty.
-  std::function<bool(const WandSeen& seen)> waving = {};
+  std::function<bool(const WandObserved& detected)> waving = {};
   /// It has been waved: the rest is computed. May be empty.
   std::function<void()> waved = {};
 };
@@ -60,7 +61,7 @@ struct WandCalibration {
   std::vector<std::string> warnings;  ///< of the cameras' sources, one sentence each
 };
 
-/// Where the rig's cameras stand, by a wand or a light waved before them: in films, or before live cameras now. Throws Error where
+/// Where the rig's cameras stand, by a wand or a light waved before them: in videos, or before live cameras now. Throws Error if
 /// a source cannot be read, and as calibrate::wand::calibrate_wand does; Stopped.
 WandCalibration calibrate_wand(const Rig& rig, const CalibrateWandOptions& options, const Hooks& hooks = {});
 

@@ -35,13 +35,13 @@ marey::calibrate::wand::WandInput input_of(const marey::simulate::room::RoomScen
     camera.camera_from_world.reset();
     camera.offset_s = 0;
   }
-  input.seen.resize(input.rig.cameras.size());
+  input.detected.resize(input.rig.cameras.size());
   for (std::int64_t i = 0; i < scene.options().frames; ++i) {
     const marey::simulate::room::RoomFrame frame = scene.frame(i);
-    for (std::size_t c = 0; c < frame.seen.size(); ++c) {
+    for (std::size_t c = 0; c < frame.detected.size(); ++c) {
       marey::calibrate::wand::BlobFrame blobs{frame.time_s, {}};
-      for (const marey::simulate::room::RoomBlob& blob : frame.seen[c]) blobs.blobs.push_back(blob.pixel);
-      input.seen[c].push_back(std::move(blobs));
+      for (const marey::simulate::room::RoomBlob& blob : frame.detected[c]) blobs.blobs.push_back(blob.pixel);
+      input.detected[c].push_back(std::move(blobs));
     }
   }
   return input;
@@ -70,7 +70,7 @@ Off compare(const Rig& found, const Rig& truth, bool free_scale = false) {
   return off;
 }
 
-/// The message with which it is refused; empty where it is not.
+/// The message with which it is refused; empty if it is not.
 std::string refusal(const marey::calibrate::wand::WandInput& input, const marey::calibrate::wand::WandOptions& options = {}) {
   try {
     marey::calibrate::wand::calibrate_wand(input, options);
@@ -164,17 +164,18 @@ TEST(CalibrateWand, RefusesAWandThatChanges) {
   longer.wand = {0, 0.14, 0.35};
   marey::calibrate::wand::WandInput input = input_of(scene);
   const marey::calibrate::wand::WandInput other = input_of(marey::simulate::room::RoomScene(longer));
-  for (std::size_t c = 0; c < 4; ++c) std::copy(other.seen[c].begin() + 200, other.seen[c].end(), input.seen[c].begin() + 200);
+  for (std::size_t c = 0; c < 4; ++c)
+    std::copy(other.detected[c].begin() + 200, other.detected[c].end(), input.detected[c].begin() + 200);
   EXPECT_NE(refusal(input).find("another wand"), std::string::npos) << refusal(input);
 }
 
 TEST(CalibrateWand, RefusesTwoCamerasInOnePlace) {
   marey::calibrate::wand::WandInput input = input_of(marey::simulate::room::RoomScene(waved(4, 200)));
-  input.seen[2] = input.seen[1];
+  input.detected[2] = input.detected[1];
   input.rig.cameras[2].lens = input.rig.cameras[1].lens;
   EXPECT_NE(refusal(input).find("one place"), std::string::npos) << refusal(input);
   input.rig.cameras.resize(3), input.rig.cameras.erase(input.rig.cameras.begin());
-  input.seen.resize(3), input.seen.erase(input.seen.begin());
+  input.detected.resize(3), input.detected.erase(input.detected.begin());
   EXPECT_NE(refusal(input).find("one place"), std::string::npos) << refusal(input);
 }
 
@@ -182,7 +183,7 @@ TEST(CalibrateWand, RefusesCamerasWithoutACommonView) {
   marey::calibrate::wand::WandInput input = input_of(marey::simulate::room::RoomScene(waved(4, 200)));
   for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t i = 0; i < 200; ++i) {
-      if ((i < 100) == (c < 2)) input.seen[c][i].blobs.clear();
+      if ((i < 100) == (c < 2)) input.detected[c][i].blobs.clear();
     }
   }
   EXPECT_NE(refusal(input, {.find_offsets = false}).find("share no view"), std::string::npos) << refusal(input);
@@ -197,7 +198,7 @@ TEST(CalibrateWand, RefusesAPlane) {
   const marey::simulate::room::RoomScene scene(waved(4, 10));
   marey::calibrate::wand::WandInput input = input_of(scene);
   for (std::size_t c = 0; c < 4; ++c) {
-    input.seen[c].clear();
+    input.detected[c].clear();
     const Camera camera = *scene.rig().cameras[c].camera();
     for (int i = 0; i < 200; ++i) {
       const double turn = 0.05 * i;
@@ -207,7 +208,7 @@ TEST(CalibrateWand, RefusesAPlane) {
         const auto pixel = camera.project(at + s * Vector<3>(std::cos(turn), std::sin(turn), 0));
         if (pixel) frame.blobs.push_back(*pixel);
       }
-      input.seen[c].push_back(frame);
+      input.detected[c].push_back(frame);
     }
   }
   EXPECT_NE(refusal(input).find("plane"), std::string::npos) << refusal(input);
@@ -228,7 +229,7 @@ TEST(CalibrateWand, DoesBetterThanMultiCamSelfCal) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is absent";
   marey::calibrate::wand::WandInput input;
   input.rig = format::rig_of_observations(folder);
-  input.seen = read_blobs(folder, input.rig).seen;
+  input.detected = read_blobs(folder, input.rig).detected;
   const marey::calibrate::wand::WandResult result = marey::calibrate::wand::calibrate_wand(input, {.find_offsets = false});
   EXPECT_LT(result.report.all.mean_px, 0.20) << "its own log: 0.30 px over 303 observations";
   EXPECT_GE(result.report.all.inliers, 1500);
@@ -241,9 +242,9 @@ TEST(CalibrateGround, FindsTheLFrame) {
   room.frames = 30;
   room.ghosts = 0.2;
   const marey::simulate::room::RoomScene scene(room);
-  const marey::calibrate::wand::WandInput seen = input_of(scene);
+  const marey::calibrate::wand::WandInput detected = input_of(scene);
   std::vector<std::vector<Vector<2>>> still;
-  for (const auto& frames : seen.seen) still.push_back(marey::calibrate::still_blobs(frames));
+  for (const auto& frames : detected.detected) still.push_back(marey::calibrate::still_blobs(frames));
   const Rigid3 elsewhere{geometry::rotation_from({0.4, -1.1, 0.3}), {0.5, 1, -2}};
   Rig rig = marey::calibrate::moved_to_ground(scene.rig(), elsewhere, 0.25);
   for (const double scale : {1.0, 4.0}) {

@@ -12,8 +12,8 @@ namespace marey::pipeline::calibrate {
 
 /// What all cameras of a rig saw, by camera and frame, each by its own clock.
 struct CameraBlobs {
-  std::vector<std::vector<marey::calibrate::wand::BlobFrame>> seen;
-  bool timed = true;  ///< false: the rate is not known, frame numbers stand for seconds and cameras run in step
+  std::vector<std::vector<marey::calibrate::wand::BlobFrame>> detected;
+  bool timed = true;  ///< false: the rate is not known, frame numbers stand for seconds and cameras run synchronised
   std::vector<std::string> warnings;
 };
 
@@ -21,8 +21,8 @@ struct CameraBlobs {
 /// other.
 CameraBlobs read_blobs(const std::string& observations, const Rig& rig);
 
-/// Finds markers in the cameras' sources, cameras in parallel; live cameras are looked at for three seconds (live_blobs.h). Sets
-/// the sizes that the rig lacks. Throws Error where a source cannot be read, or its picture does not have the camera's size;
+/// Finds markers in the cameras' sources, cameras in parallel; live cameras are inspected for three seconds (live_blobs.h). Sets
+/// the sizes that the rig lacks. Throws Error if a source cannot be read, or its image does not have the camera's size;
 /// Stopped.
 CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const Hooks& hooks);
 

@@ -21,17 +21,17 @@ BoardSightings find_boards(corridor::Feed& feed, const marey::calibrate::board::
   BoardSightings found;
   found.size = feed.info().size;
   std::vector<Frame> batch;
-  std::vector<std::optional<BoardSighting>> seen;
-  const auto look = [&] {
-    seen.assign(batch.size(), std::nullopt);
+  std::vector<std::optional<BoardSighting>> detected;
+  const auto inspect = [&] {
+    detected.assign(batch.size(), std::nullopt);
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-      const Picture& picture = batch[i].picture;
-      auto view = detector.detect(picture);
+      const Image& image = batch[i].image;
+      auto view = detector.detect(image);
       if (view)
-        seen[i] =
-            BoardSighting{batch[i].index, batch[i].time, marey::calibrate::board::sharpness_of(picture, *view), std::move(*view)};
+        detected[i] =
+            BoardSighting{batch[i].index, batch[i].time, marey::calibrate::board::sharpness_of(image, *view), std::move(*view)};
     });
-    for (auto& sighting : seen) {
+    for (auto& sighting : detected) {
       if (sighting) found.sightings.push_back(std::move(*sighting));
     }
     found.frames += static_cast<std::int64_t>(batch.size());
@@ -41,23 +41,23 @@ BoardSightings find_boards(corridor::Feed& feed, const marey::calibrate::board::
   while (auto next = feed.next()) {
     if (count++ % options.every == 0) batch.push_back(std::move(next->frame));
     if (batch.size() < kFramesAtOnce) continue;
-    look();
+    inspect();
     hooks.advance({options.step, count, feed.info().frame_count});
   }
   if (hooks.stop.stop_requested()) throw Stopped();
-  look();
+  inspect();
   found.warnings = feed.warnings();
   return found;
 }
 
-marey::calibrate::LensCalibration lens_by_sightings(const marey::calibrate::board::Board& board, const BoardSightings& seen,
-                                                    std::size_t most_views, const marey::calibrate::LensOptions& how) {
+marey::calibrate::LensCalibration lens_by_sightings(const marey::calibrate::board::Board& board, const BoardSightings& detected,
+                                                    std::size_t max_views, const marey::calibrate::LensOptions& how) {
   std::vector<marey::calibrate::board::ViewCandidate> candidates;
-  for (const BoardSighting& sighting : seen.sightings) candidates.push_back({&sighting.view, sighting.sharpness});
+  for (const BoardSighting& sighting : detected.sightings) candidates.push_back({&sighting.view, sighting.sharpness});
   std::vector<marey::calibrate::LensView> views;
-  for (const std::size_t i : marey::calibrate::board::choose_views(candidates, seen.size, most_views))
-    views.push_back({fmt::format("frame {}", seen.sightings[i].frame), seen.sightings[i].view});
-  return marey::calibrate::calibrate_lens(board, seen.size, views, how);
+  for (const std::size_t i : marey::calibrate::board::choose_views(candidates, detected.size, max_views))
+    views.push_back({fmt::format("frame {}", detected.sightings[i].frame), detected.sightings[i].view});
+  return marey::calibrate::calibrate_lens(board, detected.size, views, how);
 }
 
 }  // namespace marey::pipeline::calibrate

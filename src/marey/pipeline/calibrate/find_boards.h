@@ -13,7 +13,7 @@
 
 namespace marey::pipeline::calibrate {
 
-/// Pictures that a lens rests on, where nobody says how many.
+/// Images that a lens rests on, where no person says how many.
 constexpr std::size_t kViewsOfLens = 60;
 
 /// A board in one frame of a camera.
@@ -27,23 +27,23 @@ struct BoardSighting {
 /// All that one camera saw of a board.
 struct BoardSightings {
   cv::Size size;                         ///< px
-  std::int64_t frames = 0;               ///< looked at
+  std::int64_t frames = 0;               ///< inspected
   std::vector<BoardSighting> sightings;  ///< in the order of time
   std::vector<std::string> warnings;     ///< the feed's
 };
 
 struct FindBoardsOptions {
-  std::int64_t every = 1;                      ///< look at every so many-th frame only
-  std::string step = "looking for the board";  ///< what its progress is called
+  std::int64_t every = 1;                        ///< look at every this many-th frame only
+  std::string step = "searching for the board";  ///< what its progress is called
 };
 
-/// Looks for the board in the camera's frames, several at once. Throws Stopped.
+/// Searches for the board in the camera's frames, several at once. Throws Stopped.
 BoardSightings find_boards(corridor::Feed& feed, const marey::calibrate::board::BoardDetector& detector,
                            const FindBoardsOptions& options = {}, const Hooks& hooks = {});
 
-/// The lens by the best `most_views` of them. Throws as calibrate::calibrate_lens does.
-marey::calibrate::LensCalibration lens_by_sightings(const marey::calibrate::board::Board& board, const BoardSightings& seen,
-                                                    std::size_t most_views = kViewsOfLens,
+/// The lens by the best `max_views` of them. Throws as calibrate::calibrate_lens does.
+marey::calibrate::LensCalibration lens_by_sightings(const marey::calibrate::board::Board& board, const BoardSightings& detected,
+                                                    std::size_t max_views = kViewsOfLens,
                                                     const marey::calibrate::LensOptions& how = {});
 
 }  // namespace marey::pipeline::calibrate

@@ -8,16 +8,16 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/pipeline/live/live_feeds.h"
 
 namespace marey::pipeline::calibrate {
 namespace {
 
-constexpr double kLookEvery = 0.1;    // s
-constexpr double kNothingAfter = 10;  // s without a frame of any camera
+constexpr double kInspectEvery = 0.1;  // s
+constexpr double kNothingAfter = 10;   // s without a frame of any camera
 
-/// What has come of one camera since the last call.
+/// What has result from one camera since the last call.
 void take_blobs(corridor::Feed& feed, const source::LivePolicy& policy, double offset_s,
                 std::vector<marey::calibrate::wand::BlobFrame>& frames, CameraFrame& newest) {
   for (CameraFrame& given : feed.arrived(policy)) {
@@ -53,35 +53,35 @@ bool has_live_cameras(const Rig& rig) {
                      [](const RigCamera& camera) { return !scheme_of(camera.source).empty(); });
 }
 
-CameraBlobs see_live_blobs(Rig& rig, const LiveBlobsOptions& options, const Hooks& hooks) {
+CameraBlobs observe_live_blobs(Rig& rig, const LiveBlobsOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
   const source::LivePolicy policy{.time = source::steady_time()};
-  live::CameraDesk as_rig_says(rig, options.markers.threshold);
-  live::CameraDesk& desk = options.desk != nullptr ? *options.desk : as_rig_says;
-  std::vector<corridor::Feed> feeds = live::open_live_feeds(rig, policy, options.patience_s, &desk);
+  live::CameraSettings as_rig_says(rig, options.markers.threshold);
+  live::CameraSettings& camera_settings = options.camera_settings != nullptr ? *options.camera_settings : as_rig_says;
+  std::vector<corridor::Feed> feeds = live::open_live_feeds(rig, policy, options.patience_s, &camera_settings);
   for (std::size_t c = 0; c < feeds.size(); ++c) {
-    feeds[c].find(std::make_unique<corridor::TunedMarkers>(options.markers, desk.tuning(c)));
-    feeds[c].tune(desk.tuning(c));
+    feeds[c].find(std::make_unique<corridor::TunedMarkers>(options.markers, camera_settings.tuning(c)));
+    feeds[c].tune(camera_settings.tuning(c));
   }
   CameraBlobs blobs;
-  blobs.seen.resize(feeds.size());
+  blobs.detected.resize(feeds.size());
   std::vector<CameraFrame> newest(feeds.size());
   const double begin = seconds(policy.time->now());
   std::optional<double> first;
-  double looked = begin;
+  double inspected = begin;
   while (true) {
     tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t c) {
-      take_blobs(feeds[c], policy, rig.cameras[c].offset_s.value_or(0), blobs.seen[c], newest[c]);
+      take_blobs(feeds[c], policy, rig.cameras[c].offset_s.value_or(0), blobs.detected[c], newest[c]);
     });
     const double now = seconds(policy.time->now());
     std::int64_t frames = 0;
-    for (const auto& seen : blobs.seen) frames += std::ssize(seen);
-    hooks.advance({"looking for markers", frames, std::nullopt});
+    for (const auto& detected : blobs.detected) frames += std::ssize(detected);
+    hooks.advance({"searching for markers", frames, std::nullopt});
     if (frames > 0 && !first) first = now;
     if (!first && now - begin > kNothingAfter) throw Error("{}", why_nothing_came(feeds));
     if (first && now - *first >= options.for_s) break;
-    if (options.will_do && now - looked >= kLookEvery) {
-      looked = now;
+    if (options.will_do && now - inspected >= kInspectEvery) {
+      inspected = now;
       if (options.will_do({blobs, feeds, newest, policy, first ? now - *first : 0})) break;
     }
     if (std::all_of(feeds.begin(), feeds.end(), [](const corridor::Feed& feed) { return feed.has_ended(); })) break;

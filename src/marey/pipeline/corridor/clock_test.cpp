@@ -78,14 +78,14 @@ TEST(Clock, NoFrameIsGivenTwiceAndTheNearestWins) {
       const Frame& frame = set->cameras[1]->frame;
       EXPECT_TRUE(given.insert(frame.index).second);
       // The slow twin: every frame's distance, among those not given before.
-      double least = HUGE_VAL;
+      double minimum = HUGE_VAL;
       for (int i = 0; i < 100; ++i) {
         if (given.contains(i) && i != frame.index) continue;
         if (!given.empty() && i < *given.rbegin() && i != frame.index) continue;
-        least = std::min(least, std::abs(i / rate + offset - seconds(set->time)));
+        minimum = std::min(minimum, std::abs(i / rate + offset - seconds(set->time)));
       }
-      EXPECT_NEAR(std::abs(seconds(frame.time - set->time)), least, 1e-6);
-      EXPECT_LE(least, 0.505 / 25 + 1e-9);
+      EXPECT_NEAR(std::abs(seconds(frame.time - set->time)), minimum, 1e-6);
+      EXPECT_LE(minimum, 0.505 / 25 + 1e-9);
     }
   }
 }
@@ -189,7 +189,7 @@ TEST(Feed, SaysWhichCameraAndWhy) {
     }
     return std::string();
   };
-  EXPECT_NE(message_of().find("camera \"left\" has neither pictures nor detections"), std::string::npos);
+  EXPECT_NE(message_of().find("camera \"left\" has neither images nor detections"), std::string::npos);
   camera.source = "no_such_film.mp4";
   EXPECT_NE(message_of().find("camera \"left\": no_such_film.mp4"), std::string::npos) << message_of();
   const test::TemporaryFolder folder;
@@ -211,13 +211,13 @@ TEST(Feed, HonoursRegionRateAndOffset) {
   EXPECT_EQ(feed.camera().size, cv::Size(200, 100));
   int count = 0;
   for (auto frame = feed.next(); frame; frame = feed.next()) {
-    EXPECT_EQ(frame->frame.picture.size(), cv::Size(200, 100));
+    EXPECT_EQ(frame->frame.image.size(), cv::Size(200, 100));
     EXPECT_EQ(frame->frame.camera, CameraId{3});
     EXPECT_NEAR(seconds(frame->frame.time), 0.5 + count++ / 5.0, 1e-9);
   }
   EXPECT_EQ(count, 10);
   EXPECT_EQ(feed.state(), FeedState::ended);
-  EXPECT_EQ(feed.again().next()->frame.picture.size(), cv::Size(200, 100));
+  EXPECT_EQ(feed.again().next()->frame.image.size(), cv::Size(200, 100));
   EXPECT_EQ(feed.sample(5, 2, 300).size(), 5u);
 }
 

@@ -11,7 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/rig_sources.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/pipeline/corridor/feed_input.h"
 #include "marey/pipeline/corridor/stopwatch.h"
 #include "marey/source/open_source.h"
@@ -26,16 +26,16 @@ constexpr double kJitter = 0.25;  // of a frame, by which times of files are rou
 
 void check_region(const cv::Rect& region, cv::Size size, const std::string& source) {
   if ((region & cv::Rect({}, size)) == region && region.area() > 0) return;
-  throw Error("its region {}x{} at ({}, {}) is not within the pictures of {}x{} px of {}", region.width, region.height, region.x,
+  throw Error("its region {}x{} at ({}, {}) is not within the images of {}x{} px of {}", region.width, region.height, region.x,
               region.y, size.width, size.height, source);
 }
 
-std::string said_of(const RigCamera& camera, const std::string& sentence) {
-  return camera.name.empty() || sentence.starts_with("camera \"") ? sentence
-                                                                  : fmt::format("camera \"{}\": {}", camera.name, sentence);
+std::string stated_of(const RigCamera& camera, const std::string& message_text) {
+  return camera.name.empty() || message_text.starts_with("camera \"") ? message_text
+                                                                      : fmt::format("camera \"{}\": {}", camera.name, message_text);
 }
 
-/// Ends the waiting for a silent camera when whoever opened the feed is asked to stop, or lets it go.
+/// Ends the waiting for a silent camera when the one who opened the feed is asked to stop, or lets it go.
 class Feed::Life {
  public:
   explicit Life(const std::stop_token& outer) : forward_(outer, [this] { end(); }) {}
@@ -53,7 +53,7 @@ class Feed::Life {
 
 namespace {
 
-std::unique_ptr<Source> open_pictures(const RigCamera& camera, const FeedOptions& options) {
+std::unique_ptr<Source> open_images(const RigCamera& camera, const FeedOptions& options) {
   if (!options.open && !scheme_of(camera.source).empty())
     throw Error("its source {} is live; run marey live, or name a recording in its place", shown_source(camera.source));
   auto source =
@@ -67,7 +67,7 @@ std::unique_ptr<Source> open_pictures(const RigCamera& camera, const FeedOptions
 
 Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : camera_(camera), id_(id), options_(options) {
   if (camera.source.empty() && camera.detections.empty()) {
-    throw Error("camera \"{}\" has neither pictures nor detections; give it a source in the rig, or {}=FILE", camera.name,
+    throw Error("camera \"{}\" has neither images nor detections; give it a source in the rig, or {}=FILE", camera.name,
                 camera.name);
   }
   life_ = std::make_unique<Life>(options.stop);
@@ -77,11 +77,11 @@ Feed::Feed(const RigCamera& camera, CameraId id, const FeedOptions& options) : c
       input_ = detection_input(camera.detections, camera.rate_hz ? camera.rate_hz : options.rate_hz);
       return;
     }
-    auto source = open_pictures(camera, options);
+    auto source = open_images(camera, options);
     fit_to_size(camera_, source->info().size);
     input_ = image_input(std::move(source), options.ahead);
   } catch (const Error& error) {
-    throw Error("{}", said_of(camera, error.what()));
+    throw Error("{}", stated_of(camera, error.what()));
   }
 }
 
@@ -100,7 +100,7 @@ const SourceInfo& Feed::info() const {
 }
 
 double Feed::rate_hz() const {
-  return info().rate_hz.value_or(kUsualRate);
+  return info().rate_hz.value_or(kDefaultRate);
 }
 
 std::string Feed::sound_source() const {
@@ -109,8 +109,8 @@ std::string Feed::sound_source() const {
   return own_rate && std::filesystem::is_regular_file(camera_.source, error) ? camera_.source : std::string();
 }
 
-bool Feed::has_pictures() const {
-  return input_->has_pictures();
+bool Feed::has_images() const {
+  return input_->has_images();
 }
 
 Feed Feed::absent(const RigCamera& camera, CameraId id) {
@@ -122,7 +122,7 @@ Feed Feed::live(const RigCamera& camera, CameraId id, std::unique_ptr<LiveSource
   try {
     feed.input_ = live_input(feed.camera_, std::move(source));
   } catch (const Error& error) {
-    throw Error("{}", said_of(camera, error.what()));
+    throw Error("{}", stated_of(camera, error.what()));
   }
   return feed;
 }
@@ -161,7 +161,7 @@ std::optional<CameraFrame> Feed::next() {
   state_ = result ? FeedState::live : FeedState::ended;
   if (!result) return std::nullopt;
   result->decode_s = decoding.seconds();
-  if (options_.steady_times) result->frame.time = timestamp_from_seconds(steady(seconds(result->frame.time)));
+  if (options_.steady_times) result->frame.time = timestamp_from_seconds(stabilise(seconds(result->frame.time)));
   CameraFrame given = by_rig_clock(std::move(*result));
   search(given);
   return given;
@@ -174,7 +174,7 @@ CameraFrame Feed::by_rig_clock(CameraFrame given) const {
 }
 
 void Feed::search(CameraFrame& given) {
-  if (given.detections && tuning_ != nullptr) leave_out_masked(*given.detections, tuning_->values().masks);
+  if (given.detections && tuning_ != nullptr) exclude_masked(*given.detections, tuning_->values().masks);
   if (detector_ == nullptr || given.detections) return;
   const Stopwatch detecting;
   detect::Detections found = detector_->detect(given.frame, {});
@@ -195,8 +195,8 @@ FeedState Feed::state(Timestamp begin, const source::LivePolicy& policy) const {
   return input_->live_state(begin, policy).value_or(state_);
 }
 
-/// A file rounds its times, to milliseconds often: a camera that keeps its rate is believed more.
-double Feed::steady(double time) {
+/// A file rounds its times, to milliseconds often: a camera that keeps its rate is trusted more.
+double Feed::stabilise(double time) {
   if (!first_s_) first_s_ = time;
   const double frames = (time - *first_s_) * rate_hz();
   return std::abs(frames - std::round(frames)) < kJitter ? *first_s_ + std::round(frames) / rate_hz() : time;
@@ -207,14 +207,14 @@ bool Feed::can_rewind() const {
   if (options_.open) return options_.opens_again;
   const std::string& path = camera_.source.empty() ? camera_.detections : camera_.source;
   std::error_code ignored;
-  // A pattern of names is no file of that name, and can be read again like a folder.
+  // A pattern of names is not a file of that name, and can be read again like a folder.
   return std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored) ||
          !std::filesystem::exists(path, ignored);
 }
 
 Feed Feed::again() const {
   if (can_rewind()) return {camera_, id_, options_};
-  throw Error("{}", said_of(camera_, fmt::format("{} cannot be read a second time; record it to a file first", camera_.source)));
+  throw Error("{}", stated_of(camera_, fmt::format("{} cannot be read a second time; record it to a file first", camera_.source)));
 }
 
 std::function<Feed()> Feed::opener() const {
@@ -241,15 +241,15 @@ std::vector<Frame> Feed::sample(int count, double seconds, int most_frames) cons
 
 std::string Feed::rate_warning() const {
   const std::string warning = input_->rate_warning();
-  return warning.empty() ? warning : said_of(camera_, warning);
+  return warning.empty() ? warning : stated_of(camera_, warning);
 }
 
 std::vector<std::string> Feed::warnings() const {
   std::vector<std::string> all;
-  for (const std::string& warning : input_->warnings()) all.push_back(said_of(camera_, warning));
+  for (const std::string& warning : input_->warnings()) all.push_back(stated_of(camera_, warning));
   if (std::string warning = rate_warning(); !warning.empty()) all.push_back(std::move(warning));
   if (detector_ == nullptr) return all;
-  for (const std::string& warning : detector_->warnings()) all.push_back(said_of(camera_, info().name + ": " + warning));
+  for (const std::string& warning : detector_->warnings()) all.push_back(stated_of(camera_, info().name + ": " + warning));
   return all;
 }
 

@@ -19,7 +19,7 @@ class FeedInput {
   virtual ~FeedInput() = default;
   virtual const SourceInfo& info() const = 0;
   virtual std::vector<std::string> warnings() const { return {}; }
-  virtual bool has_pictures() const { return false; }
+  virtual bool has_images() const { return false; }
   virtual bool is_live() const { return false; }
 
   /// The next frame, with the camera's own time; nothing at the end. Waits for it. Nothing of a live camera.

@@ -15,7 +15,7 @@ constexpr int kDetectedAtOnce = 4;  // frames that a camera that detects is aske
 double file_rate(const std::vector<Feed>& feeds, ClockOptions::Pace pace) {
   if (pace == ClockOptions::Pace::first_camera && !feeds.empty()) return feeds.front().rate_hz();
   double rate = 0;
-  for (const Feed& feed : feeds) rate = std::max(rate, feed.info().rate_hz.value_or(feed.has_pictures() ? kUsualRate : 0));
+  for (const Feed& feed : feeds) rate = std::max(rate, feed.info().rate_hz.value_or(feed.has_images() ? kDefaultRate : 0));
   return rate;
 }
 
@@ -77,7 +77,7 @@ class FileGrouping final : public FrameGrouping {
       lane.ended = !frame;
       if (!frame) break;
       last = std::max(last, frame->frame.time);
-      if (options_.interpolate) frame->frame.picture = {};  // of detections between frames there is no picture
+      if (options_.interpolate) frame->frame.image = {};  // of detections between frames there is no image
       read.push_back(std::move(*frame));
     }
   }

@@ -22,7 +22,7 @@ class ImageInput final : public FeedInput {
 
   const SourceInfo& info() const override { return source_->info(); }
   std::vector<std::string> warnings() const override { return source_->warnings(); }
-  bool has_pictures() const override { return true; }
+  bool has_images() const override { return true; }
   std::optional<CameraFrame> next() override {
     if (ahead_ > 0) source_ = source::read_ahead(std::move(source_), std::exchange(ahead_, 0));
     auto frame = source_->next();
@@ -65,7 +65,7 @@ class ObservationDemux {
   std::optional<double> rate_hz() const { return reader_.rate_hz(); }
 
   /// Cameras ask side by side, each for its own.
-  std::optional<format::SeenFrame> next(std::size_t camera) {
+  std::optional<format::ObservedFrame> next(std::size_t camera) {
     const std::lock_guard lock(dealing_);
     while (waiting_[camera].empty()) {
       if (stop_.stop_requested()) throw Stopped();
@@ -76,7 +76,7 @@ class ObservationDemux {
         waiting_[c].push_back({.frame = frame->frame, .points = {part.begin(), part.end()}, .time = frame->time});
       }
     }
-    format::SeenFrame first = std::move(waiting_[camera].front());
+    format::ObservedFrame first = std::move(waiting_[camera].front());
     waiting_[camera].pop_front();
     return first;
   }
@@ -85,10 +85,10 @@ class ObservationDemux {
   std::stop_token stop_ = StopScope::current();
   std::mutex dealing_;
   format::ObservationReader reader_;
-  std::vector<std::deque<format::SeenFrame>> waiting_;
+  std::vector<std::deque<format::ObservedFrame>> waiting_;
 };
 
-Detection blob_of(const format::SeenPoint& point) {
+Detection blob_of(const format::ImageObservation& point) {
   Detection blob;
   blob.centre = point.pixel;
   if (point.sigma) blob.covariance = *point.sigma * *point.sigma * Matrix<2>::Identity();
@@ -111,13 +111,14 @@ class ObservationInput final : public FeedInput {
 
   const SourceInfo& info() const override { return info_; }
   std::optional<CameraFrame> next() override {
-    const auto seen = demux_->next(camera_);
-    if (!seen) return std::nullopt;
+    const auto detected = demux_->next(camera_);
+    if (!detected) return std::nullopt;
     CameraFrame result;
-    result.frame.index = seen->frame;
-    result.frame.time = seen->time ? *seen->time - offset_ : timestamp_from_seconds(static_cast<double>(seen->frame) / rate_hz_);
+    result.frame.index = detected->frame;
+    result.frame.time =
+        detected->time ? *detected->time - offset_ : timestamp_from_seconds(static_cast<double>(detected->frame) / rate_hz_);
     auto& detections = result.detections.emplace();
-    for (const format::SeenPoint& point : seen->points) detections.push_back(blob_of(point));
+    for (const format::ImageObservation& point : detected->points) detections.push_back(blob_of(point));
     return result;
   }
 

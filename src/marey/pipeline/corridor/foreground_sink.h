@@ -19,7 +19,7 @@ struct FrameForeground {
 
 class ForegroundSink : public Sink {
  public:
-  Wants begin(const RecordingHeader& /*header*/) override { return {}; }
+  SinkRequirements begin(const RecordingHeader& /*header*/) override { return {}; }
   /// Instants are not for it.
   void write(const Instant& /*instant*/) final {}
   /// Throws Error if it cannot be written; the sink then takes no more. A frame may come twice: the later one counts.

@@ -8,14 +8,14 @@
 namespace marey::pipeline::corridor {
 namespace {
 
-constexpr double kFarthest = 60;  // px that a detection may move in a frame and still be found again
+constexpr double kMaxDistance = 60;  // px that a detection may move in a frame and still be found again
 
-std::optional<std::size_t> closest(const Vector<2>& place, const std::vector<Detection>& among) {
+std::optional<std::size_t> closest(const Vector<2>& location, const std::vector<Detection>& among) {
   std::optional<std::size_t> best;
-  double least = kFarthest * kFarthest;
+  double minimum = kMaxDistance * kMaxDistance;
   for (std::size_t i = 0; i < among.size(); ++i) {
-    const double distance = (among[i].centre - place).squaredNorm();
-    if (distance < least) least = distance, best = i;
+    const double distance = (among[i].centre - location).squaredNorm();
+    if (distance < minimum) minimum = distance, best = i;
   }
   return best;
 }
@@ -25,14 +25,14 @@ std::optional<std::size_t> closest(const Vector<2>& place, const std::vector<Det
 std::vector<Detection> moved_to(Timestamp now, const CameraFrame& nearest, const CameraFrame& other) {
   std::vector<std::optional<std::size_t>> partner;
   for (const Detection& detection : *other.detections) partner.push_back(closest(detection.centre, *nearest.detections));
-  const double share = seconds(now - nearest.frame.time) / seconds(other.frame.time - nearest.frame.time);
+  const double fraction = seconds(now - nearest.frame.time) / seconds(other.frame.time - nearest.frame.time);
   std::vector<Detection> moved;
   for (std::size_t i = 0; i < nearest.detections->size(); ++i) {
     const Detection& detection = (*nearest.detections)[i];
     const auto found = closest(detection.centre, *other.detections);
     if (!found || partner[*found] != i) continue;
     moved.push_back(detection);
-    moved.back().centre += share * ((*other.detections)[*found].centre - detection.centre);
+    moved.back().centre += fraction * ((*other.detections)[*found].centre - detection.centre);
   }
   return moved;
 }
@@ -62,14 +62,14 @@ std::optional<CameraFrame> FrameGrouping::take(std::size_t camera, Timestamp now
 
 std::optional<std::size_t> FrameGrouping::nearest(const Lane& lane, Timestamp now) const {
   std::optional<std::size_t> nearest;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < lane.waiting.size(); ++i) {
     const Timestamp time = lane.waiting[i].frame.time;
     if (!options_.interpolate && lane.used && time <= *lane.used) continue;  // given already
     const double off = std::abs(seconds(time - now));
-    if (off < least) least = off, nearest = i;
+    if (off < minimum) minimum = off, nearest = i;
   }
-  if (least > kHalf / rate_hz_) return std::nullopt;
+  if (minimum > kHalf / rate_hz_) return std::nullopt;
   return nearest;
 }
 

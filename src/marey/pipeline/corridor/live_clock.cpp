@@ -1,4 +1,4 @@
-// The clock of live cameras: which moments go on, and which are let go (clock.h tells the policy).
+// The clock of live cameras: which instants continue, and which are dropped (clock.h tells the policy).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,13 +11,13 @@
 namespace marey::pipeline::corridor {
 namespace {
 
-constexpr std::size_t kKept = 16;  // frames of a camera that wait for their moments
-constexpr double kFollow = 0.05;   // of what the moments are off the frames, each time
+constexpr std::size_t kKept = 16;  // frames of a camera that wait for their instants
+constexpr double kTrack = 0.05;    // of what the moments are off the frames, each time
 
 double live_rate(const std::vector<Feed>& feeds) {
   double rate = 0;
   for (const Feed& feed : feeds) rate = std::max(rate, feed.info().rate_hz.value_or(0));
-  return rate > 0 ? rate : kUsualRate;
+  return rate > 0 ? rate : kDefaultRate;
 }
 
 bool is_waited_for(FeedState state) {
@@ -71,11 +71,11 @@ class LiveGrouping final : public FrameGrouping {
     }
     next_ = index + 1;
     forget_before(set.time);
-    follow(set);
+    run_tracker(set);
     return set;
   }
 
-  /// Takes in what has come; the first frame of all begins the moments.
+  /// Takes in what has come; the first frame of all begins the instants.
   void gather() {
     std::vector<std::vector<CameraFrame>> came(feeds_.size());
     tbb::parallel_for(std::size_t{0}, feeds_.size(),
@@ -105,20 +105,20 @@ class LiveGrouping final : public FrameGrouping {
 
   Timestamp time_of(std::int64_t index) const { return *start_ + duration_from_seconds(static_cast<double>(index) / rate_hz_); }
 
-  /// Cameras in step that are faster than they say, or slower, would slip from one moment into the next by and by, not all at the
-  /// same time: the moments follow them.
-  void follow(const FrameSet& set) {
+  /// Cameras synchronised that are faster than they say, or slower, would slip from one instant into the next by and by, not all at
+  /// the same time: the instants follow them.
+  void run_tracker(const FrameSet& set) {
     off_.clear();
     for (const auto& camera : set.cameras) {
       if (camera) off_.push_back(seconds(camera->frame.time - set.time));
     }
     if (off_.empty()) return;
     const double off = geometry::median(off_);
-    if (std::abs(off) > kInStep / rate_hz_) *start_ += duration_from_seconds(kFollow * off);
+    if (std::abs(off) > kInStep / rate_hz_) *start_ += duration_from_seconds(kTrack * off);
   }
 
-  /// The moment that the newest frame belongs to.
-  std::int64_t last_moment() const {
+  /// The instant that the newest frame belongs to.
+  std::int64_t last_time_step() const {
     std::int64_t last = next_ - 1;
     for (const Lane& lane : lanes_) {
       if (lane.waiting.empty()) continue;
@@ -134,7 +134,7 @@ class LiveGrouping final : public FrameGrouping {
     });
   }
 
-  /// Whether every camera that is waited for has given its frame of the moment, or one that comes after it.
+  /// Whether every camera that is waited for has given its frame of the instant, or one that comes after it.
   bool is_whole(std::int64_t index) const {
     const Timestamp now = time_of(index);
     const std::vector<FeedState> states = this->states();
@@ -151,12 +151,12 @@ class LiveGrouping final : public FrameGrouping {
     return std::none_of(lanes_.begin(), lanes_.end(), [&](const Lane& lane) { return has_frame_of(lane, now); });
   }
 
-  /// The moment that goes on now: the newest whole one, else the newest one that is late.
+  /// The instant that continues now: the newest whole one, else the newest one that is late.
   std::optional<std::int64_t> ready() const {
     if (!start_) return std::nullopt;
     std::optional<std::int64_t> late;
     const Timestamp due = options_.live->time->now() - duration_from_seconds(options_.live->late_s);
-    for (std::int64_t index = last_moment(); index >= next_; --index) {
+    for (std::int64_t index = last_time_step(); index >= next_; --index) {
       if (is_empty(index)) continue;
       if (is_whole(index)) return index;
       if (!late && time_of(index) <= due) late = index;
@@ -169,14 +169,14 @@ class LiveGrouping final : public FrameGrouping {
       if (is_empty(gone)) {
         ++drops_.empty;
       } else if (is_whole(gone)) {
-        ++drops_.overtaken;
+        ++drops_.superseded;
       } else {
         ++drops_.incomplete;
       }
     }
   }
 
-  /// Frames that belong to moments that went by; one is kept where motion is told from it.
+  /// Frames that belong to instants that went by; one is kept where motion is distinguished from it.
   void forget_before(Timestamp now) {
     const Timestamp oldest = now - duration_from_seconds((kHalf + (options_.interpolate ? 1 : 0)) / rate_hz_);
     for (Lane& lane : lanes_) {

@@ -1,5 +1,5 @@
-// Live cameras by a time that the test keeps itself: what goes on when one is late, stalls, is lost and comes back, and what is let
-// go.
+// Live cameras by a time that the test keeps itself: what continues when one is late, stalls, is lost and comes back, and what is
+// let go.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -92,7 +92,7 @@ TEST_F(LiveClockTest, EveryMomentGoesOnWhenItsLastFrameHasCome) {
     EXPECT_NEAR(now(), i / kRate + 0.03, 0.0021);
   }
   EXPECT_FALSE(clock.next());
-  EXPECT_EQ(clock.drops()->overtaken + clock.drops()->incomplete + clock.drops()->empty + clock.drops()->late_frames, 0);
+  EXPECT_EQ(clock.drops()->superseded + clock.drops()->incomplete + clock.drops()->empty + clock.drops()->late_frames, 0);
 }
 
 TEST_F(LiveClockTest, AMomentWaitsAsLongAsThePolicySaysAndGoesOnWithItsGap) {
@@ -129,29 +129,29 @@ TEST_F(LiveClockTest, ACameraThatStallsCostsOnlyItselfAndComesBack) {
     EXPECT_EQ(set->cameras[1].has_value(), set->index < 50 || set->index >= 250) << set->index;
     EXPECT_EQ(set->states[0] == FeedState::live || set->index >= 398, true);
     if (set->states[1] == FeedState::stalled || set->states[1] == FeedState::lost) {
-      EXPECT_LT(now() - seconds(set->time), 0.01) << "nobody waits for it";
+      EXPECT_LT(now() - seconds(set->time), 0.01) << "no person waits for it";
     }
     if (changes.empty() || changes.back().second != set->states[1]) changes.emplace_back(seconds(set->time), set->states[1]);
   }
   EXPECT_EQ(last, 399);
-  EXPECT_LE(skipped, 3) << "those that waited for it when it was given up: the newest goes on";
-  EXPECT_EQ(clock.drops()->overtaken, skipped);
+  EXPECT_LE(skipped, 3) << "those that waited for it when it was given up: the newest continues";
+  EXPECT_EQ(clock.drops()->superseded, skipped);
   using enum FeedState;
-  const std::vector<std::pair<double, FeedState>> wanted = {{0, live}, {2.9, stalled}, {6.97, lost}, {10, back}, {11, live}};
-  ASSERT_GE(changes.size(), wanted.size());
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    EXPECT_EQ(changes[i].second, wanted[i].second) << i;
-    EXPECT_NEAR(changes[i].first, wanted[i].first, 0.11) << i;
+  const std::vector<std::pair<double, FeedState>> required = {{0, live}, {2.9, stalled}, {6.97, lost}, {10, back}, {11, live}};
+  ASSERT_GE(changes.size(), required.size());
+  for (std::size_t i = 0; i < required.size(); ++i) {
+    EXPECT_EQ(changes[i].second, required[i].second) << i;
+    EXPECT_NEAR(changes[i].first, required[i].first, 0.11) << i;
   }
 }
 
-TEST_F(LiveClockTest, WhoIsTooSlowGetsTheNewestWholeMoment) {
+TEST_F(LiveClockTest, SlowReaderGetsNewestFrameSet) {
   camera().gives(0, 249, 0.005);
   camera().gives(0, 249, 0.03);
   Clock clock = this->clock();
   std::int64_t last = -1, skipped = 0, sets = 0;
   while (const auto set = clock.next()) {
-    EXPECT_TRUE(set->complete()) << "a newer moment that is not whole does not overtake one that is";
+    EXPECT_TRUE(set->complete()) << "a newer instant that is not whole does not overtake one that is";
     EXPECT_GT(set->index, last);
     if (now() < 249 / kRate) {
       EXPECT_LT(now() - seconds(set->time), 0.03 + 1.1 / kRate) << "an older one was given";
@@ -164,11 +164,11 @@ TEST_F(LiveClockTest, WhoIsTooSlowGetsTheNewestWholeMoment) {
   EXPECT_EQ(last, 249);
   EXPECT_EQ(sets + skipped, 250);
   EXPECT_GE(skipped, 190);
-  EXPECT_EQ(clock.drops()->overtaken + clock.drops()->incomplete, skipped);
+  EXPECT_EQ(clock.drops()->superseded + clock.drops()->incomplete, skipped);
   EXPECT_EQ(clock.drops()->empty, 0);
 }
 
-TEST_F(LiveClockTest, WhereAllAreSilentNothingGoesOnAndTheHoleIsCounted) {
+TEST_F(LiveClockTest, CountsGapIfAllCamerasAreSilent) {
   FakeCamera& one = camera();
   one.gives(0, 9, 0.005);
   one.gives(60, 69, 0.005);
@@ -194,7 +194,7 @@ TEST_F(LiveClockTest, ACameraThatNeverComesIsConnectingThenLost) {
     EXPECT_EQ(set->states[1], now() < 5 ? FeedState::connecting : FeedState::lost) << now();
     EXPECT_LT(now() - seconds(set->time), now() < 5.1 ? 0.103 : 0.01);
   }
-  EXPECT_LE(clock.drops()->overtaken, 3);
+  EXPECT_LE(clock.drops()->superseded, 3);
 }
 
 TEST_F(LiveClockTest, EndsWhereItIsAskedTo) {

@@ -17,20 +17,20 @@ class LiveInput final : public FeedInput {
 
   const SourceInfo& info() const override { return info_; }
   std::vector<std::string> warnings() const override { return source_->warnings(); }
-  bool has_pictures() const override { return true; }
+  bool has_images() const override { return true; }
   bool is_live() const override { return true; }
 
   std::vector<CameraFrame> arrived(const source::LivePolicy& policy) override {
     std::vector<CameraFrame> frames;
     for (CameraFrame& given : source_->arrived()) {
-      Picture& picture = given.frame.picture;
-      if (region_ && !picture.empty()) {
-        if ((*region_ & cv::Rect({}, picture.size())) != *region_) continue;
-        picture = picture.part(*region_);
+      Image& image = given.frame.image;
+      if (region_ && !image.empty()) {
+        if ((*region_ & cv::Rect({}, image.size())) != *region_) continue;
+        image = image.part(*region_);
       }
       frames.push_back(std::move(given));
     }
-    if (!frames.empty()) health_.saw_frame(policy.time->now(), policy);
+    if (!frames.empty()) health_.observed_frame(policy.time->now(), policy);
     return frames;
   }
 

@@ -6,8 +6,8 @@
 namespace marey::pipeline::corridor {
 namespace {
 
-constexpr double kTold = 0.25;   // s between two reports
-constexpr double kMeasured = 1;  // s over which rates are counted
+constexpr double kReported = 0.25;  // s between two reports
+constexpr double kMeasured = 1;     // s over which rates are counted
 constexpr std::ptrdiff_t kNewsKept = 10;
 constexpr double kWindow = 5;  // s of latencies: those of the window before are shown until the next one is full
 
@@ -17,8 +17,8 @@ Summary::StepTime step_of(const char* name, const StageTimes& times) {
 
 }  // namespace
 
-LiveMonitor::LiveMonitor(std::shared_ptr<source::LiveTime> time, Tell tell)
-    : time_(std::move(time)), tell_(std::move(tell)), begin_(time_->now()) {}
+LiveMonitor::LiveMonitor(std::shared_ptr<source::LiveTime> time, Notify notify)
+    : time_(std::move(time)), notify_(std::move(notify)), begin_(time_->now()) {}
 
 void LiveMonitor::watch(const Clock& clock, const Sinks& sinks) {
   clock_ = &clock;
@@ -30,7 +30,7 @@ void LiveMonitor::watch(const Clock& clock, const Sinks& sinks) {
   states_.assign(cameras, FeedState::connecting);
 }
 
-void LiveMonitor::saw(const FrameSet& frames, std::span<const Instant> instants, Timestamp given, Timestamp done) {
+void LiveMonitor::observed(const FrameSet& frames, std::span<const Instant> instants, Timestamp given, Timestamp done) {
   grouping_.add(seconds(given - frames.time));
   solving_.add(seconds(done - given));
   all_.add(seconds(done - frames.time));
@@ -43,12 +43,13 @@ void LiveMonitor::saw(const FrameSet& frames, std::span<const Instant> instants,
   }
   if (!instants.empty() && std::none_of(frames.cameras.begin(), frames.cameras.end(),
                                         [](const auto& camera) { return camera && camera->detections.has_value(); })) {
-    for (const SeenPoint& seen : instants.back().seen) ++detections_[static_cast<std::size_t>(number(seen.camera))];
+    for (const ImageObservation& detected : instants.back().detected)
+      ++detections_[static_cast<std::size_t>(number(detected.camera))];
   }
   tick();
 }
 
-void LiveMonitor::heard(const std::vector<std::string>& news) {
+void LiveMonitor::received(const std::vector<std::string>& news) {
   if (news.empty()) return;
   news_count_ += std::ssize(news);
   news_.insert(news_.end(), news.begin(), news.end());
@@ -62,9 +63,9 @@ void LiveMonitor::tick() {
     window_ = now;
   }
   if (!measured_ || seconds(now - *measured_) >= kMeasured) measure_rates(now);
-  if (!tell_ || (told_ && seconds(now - *told_) < kTold)) return;
-  told_ = now;
-  tell_(status());
+  if (!notify_ || (reported_ && seconds(now - *reported_) < kReported)) return;
+  reported_ = now;
+  notify_(status());
 }
 
 void LiveMonitor::measure_rates(Timestamp now) {

@@ -1,4 +1,4 @@
-// How a live run goes, while it does: every camera's state, rate and losses, how old results are, what was let go and why.
+// How a live run goes, while it does: every camera's state, rate and losses, how old results are, what was dropped and why.
 #pragma once
 
 #include <cstdint>
@@ -27,21 +27,21 @@ struct LiveStatus {
   std::int64_t news_count = 0;        ///< how many there were so far
 };
 
-/// Watches a clock and what is made of its moments. All from the run's own thread.
+/// Watches a clock and what is made of its instants. All from the run's own thread.
 class LiveMonitor {
  public:
-  using Tell = std::function<void(const LiveStatus&)>;
+  using Notify = std::function<void(const LiveStatus&)>;
 
   /// `tell` is called four times a second; it may be empty.
-  LiveMonitor(std::shared_ptr<source::LiveTime> time, Tell tell);
+  LiveMonitor(std::shared_ptr<source::LiveTime> time, Notify notify);
 
   /// What is watched: it must outlive the monitor's use. Before the first call of `saw`.
   void watch(const Clock& clock, const Sinks& sinks);
-  /// A moment went on, and instants came of it.
-  void saw(const FrameSet& frames, std::span<const Instant> instants, Timestamp given, Timestamp done);
+  /// An instant continued, and instants results from it.
+  void observed(const FrameSet& frames, std::span<const Instant> instants, Timestamp given, Timestamp done);
   /// What the job found out, one sentence each.
-  void heard(const std::vector<std::string>& news);
-  /// Time goes on.
+  void received(const std::vector<std::string>& news);
+  /// Time continues.
   void tick();
 
   LiveStatus status() const;
@@ -53,12 +53,12 @@ class LiveMonitor {
   void measure_rates(Timestamp now);
 
   std::shared_ptr<source::LiveTime> time_;
-  Tell tell_;
+  Notify notify_;
   const Clock* clock_ = nullptr;
   const Sinks* sinks_ = nullptr;
   std::function<bool()> recording_;
   Timestamp begin_{};
-  std::optional<Timestamp> told_, measured_, window_;
+  std::optional<Timestamp> reported_, measured_, window_;
   StageTimes grouping_, solving_, all_, recent_, before_;
   std::vector<double> rates_;
   std::vector<std::int64_t> frames_, detections_;

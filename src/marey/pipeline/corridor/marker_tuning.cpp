@@ -13,7 +13,7 @@ detect::markers::MarkerOptions markers_of(const RigCamera& camera, detect::marke
   return options;
 }
 
-void leave_out_masked(std::vector<Detection>& detections, std::span<const Mask> masks) {
+void exclude_masked(std::vector<Detection>& detections, std::span<const Mask> masks) {
   std::erase_if(detections, [&](const Detection& detection) {
     return std::any_of(masks.begin(), masks.end(), [&](const Mask& mask) { return mask.contains(detection.centre); });
   });
@@ -37,7 +37,7 @@ void MarkerTuning::set_threshold(std::optional<double> threshold) {
 
 void MarkerTuning::mask(const Mask& part) {
   change([&](Values& values) {
-    if (values.masks.size() >= kMostMasks) throw Error("it has {} masks already; take some away first", kMostMasks);
+    if (values.masks.size() >= kMaxMasks) throw Error("it has {} masks already; take some away first", kMaxMasks);
     values.masks.push_back(part);
   });
 }
@@ -56,7 +56,7 @@ void MarkerTuning::mask_lit() {
 
 void MarkerTuning::learned(std::span<const cv::Rect> parts) {
   change([&](Values& values) {
-    const std::size_t room = kMostMasks - std::min(kMostMasks, values.masks.size());
+    const std::size_t room = kMaxMasks - std::min(kMaxMasks, values.masks.size());
     values.masks.insert(values.masks.end(), parts.begin(),
                         parts.begin() + static_cast<std::ptrdiff_t>(std::min(room, parts.size())));
     values.learning = false;
@@ -67,7 +67,7 @@ TunedMarkers::TunedMarkers(const detect::markers::MarkerOptions& options, std::s
     : options_(options), tuning_(std::move(tuning)), version_(tuning_ != nullptr ? -1 : 0), detector_(options) {}
 
 void TunedMarkers::retune() {
-  version_ = tuning_->version();  // before the values: who changes them meanwhile is heard next time
+  version_ = tuning_->version();  // before the values: who changes them in the meantime is received next time
   MarkerTuning::Values values = tuning_->values();
   detect::markers::MarkerOptions options = options_;
   options.threshold = values.threshold;

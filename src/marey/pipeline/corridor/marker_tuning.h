@@ -1,4 +1,4 @@
-// A camera's threshold and masks, which may be changed while its pictures are searched.
+// A camera's threshold and masks, which may be changed while its images are searched.
 #pragma once
 
 #include <atomic>
@@ -15,22 +15,22 @@
 
 namespace marey::pipeline::corridor {
 
-/// How markers are looked for in a camera's picture: by `options`, where the rig says nothing of its own for it. A threshold in
+/// How markers are searched for in a camera's image: by `options`, where the rig says nothing of its own for it. A threshold in
 /// `options` counts for all cameras.
 detect::markers::MarkerOptions markers_of(const RigCamera& camera, detect::markers::MarkerOptions options);
 
 /// Takes out what lies in one of the masks.
-void leave_out_masked(std::vector<Detection>& detections, std::span<const Mask> masks);
+void exclude_masked(std::vector<Detection>& detections, std::span<const Mask> masks);
 
 /// What is wanted of a camera's detector. From any thread.
 class MarkerTuning {
  public:
-  static constexpr std::size_t kMostMasks = 256;
+  static constexpr std::size_t kMaxMasks = 256;
   static constexpr double kLitSeconds = 1;  ///< that what is lit must stay for `mask_lit`
 
   struct Values {
-    std::optional<double> threshold;  ///< grey level; nothing: from the picture's noise
-    std::vector<Mask> masks;          ///< px of the camera's picture
+    std::optional<double> threshold;  ///< grey level; nothing: from the image's noise
+    std::vector<Mask> masks;          ///< px of the camera's image
     bool learning = false;            ///< what is lit is being learned, to be masked
     bool operator==(const Values&) const = default;
   };
@@ -39,7 +39,7 @@ class MarkerTuning {
 
   Values values() const;
   void set_threshold(std::optional<double> threshold);
-  /// Throws Error where there are too many.
+  /// Throws Error if there are too many.
   void mask(const Mask& part);
   void unmask(const Mask& part);
   void set_masks(std::vector<Mask> masks);

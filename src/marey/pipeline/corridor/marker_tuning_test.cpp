@@ -10,14 +10,14 @@ namespace {
 
 /// Two lamps that stand, and a marker that moves to the right.
 Frame lamps_at(int frame, int lamp_level = 200) {
-  cv::Mat picture(120, 200, CV_8UC1, cv::Scalar(12));
-  for (const cv::Point place : {cv::Point(40, 30), cv::Point(150, 90)})
-    cv::circle(picture, place, 4, cv::Scalar(lamp_level), cv::FILLED, cv::LINE_AA);
-  cv::circle(picture, {10 + 3 * frame, 60}, 4, cv::Scalar(220), cv::FILLED, cv::LINE_AA);
+  cv::Mat image(120, 200, CV_8UC1, cv::Scalar(12));
+  for (const cv::Point location : {cv::Point(40, 30), cv::Point(150, 90)})
+    cv::circle(image, location, 4, cv::Scalar(lamp_level), cv::FILLED, cv::LINE_AA);
+  cv::circle(image, {10 + 3 * frame, 60}, 4, cv::Scalar(220), cv::FILLED, cv::LINE_AA);
   Frame made;
   made.index = frame;
   made.time = timestamp_from_seconds(frame / 30.0);
-  made.picture = Picture(picture);
+  made.image = Image(image);
   return made;
 }
 
@@ -39,7 +39,7 @@ TEST(MarkerTuning, AMaskAndAThresholdCountFromTheNextFrameOn) {
   EXPECT_EQ(found(5), 2u);
 }
 
-TEST(MarkerTuning, WhatIsLitIsLearnedInASecondAndWhatMovesStays) {
+TEST(MarkerTuning, MasksStaticLightsAndKeepsMovingMarkers) {
   const auto tuning = std::make_shared<MarkerTuning>(MarkerTuning::Values{});
   TunedMarkers detector({}, tuning);
   EXPECT_EQ(detector.detect(lamps_at(0), {}).detections.size(), 3u);
@@ -57,9 +57,9 @@ TEST(MarkerTuning, WhatIsLitIsLearnedInASecondAndWhatMovesStays) {
 
 TEST(MarkerTuning, MasksAreAsManyAsThereIsRoomFor) {
   MarkerTuning tuning({});
-  for (std::size_t i = 0; i < MarkerTuning::kMostMasks - 1; ++i) tuning.mask({static_cast<int>(i), 0, 1, 1});
+  for (std::size_t i = 0; i < MarkerTuning::kMaxMasks - 1; ++i) tuning.mask({static_cast<int>(i), 0, 1, 1});
   tuning.learned(std::vector<cv::Rect>(5, {7, 7, 7, 7}));
-  EXPECT_EQ(tuning.values().masks.size(), MarkerTuning::kMostMasks);
+  EXPECT_EQ(tuning.values().masks.size(), MarkerTuning::kMaxMasks);
   EXPECT_THROW(tuning.mask({1, 2, 3, 4}), Error);
 }
 
@@ -68,7 +68,7 @@ TEST(MarkerTuning, OfReadyMarkersThoseInAMaskAreLeftOut) {
   detections[0].centre = {9.5, 20};   // the first pixel's border
   detections[1].centre = {19.4, 20};  // just within
   detections[2].centre = {19.6, 20};
-  leave_out_masked(detections, std::vector<Mask>{{10, 10, 10, 20}});
+  exclude_masked(detections, std::vector<Mask>{{10, 10, 10, 20}});
   ASSERT_EQ(detections.size(), 1u);
   EXPECT_EQ(detections[0].centre.x(), 19.6);
 }

@@ -27,7 +27,7 @@ class Preview final : public Stage {
   RecordingHeader header() const override { return header_; }
 
   std::span<const Instant> step(const FrameSet& frames) override {
-    tbb::parallel_for(std::size_t{0}, frames.cameras.size(), [&](std::size_t i) { look(frames, i); });
+    tbb::parallel_for(std::size_t{0}, frames.cameras.size(), [&](std::size_t i) { inspect(frames, i); });
     instant_ = {};
     instant_.index = frames.index;
     instant_.time = frames.time;
@@ -36,11 +36,11 @@ class Preview final : public Stage {
       counts_[i].missed += frames.cameras[i] ? 0 : 1;
       counts_[i].detections += std::ssize(found_[i]);
       for (const Detection& detection : found_[i]) {
-        SeenPoint& seen = instant_.seen.emplace_back();
-        seen.camera = CameraId{static_cast<int>(i)};
-        seen.pixel = detection.centre;
-        seen.sigma = detection.sigma();
-        if (detection.area > 0) seen.area = detection.area;
+        ImageObservation& detected = instant_.detected.emplace_back();
+        detected.camera = CameraId{static_cast<int>(i)};
+        detected.pixel = detection.centre;
+        detected.sigma = detection.sigma();
+        if (detection.area > 0) detected.area = detection.area;
       }
     }
     return {&instant_, 1};
@@ -52,7 +52,7 @@ class Preview final : public Stage {
   }
 
  private:
-  void look(const FrameSet& frames, std::size_t i) {
+  void inspect(const FrameSet& frames, std::size_t i) {
     found_[i].clear();
     if (!frames.cameras[i]) return;
     const CameraFrame& given = *frames.cameras[i];

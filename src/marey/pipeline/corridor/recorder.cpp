@@ -6,15 +6,15 @@
 
 namespace marey::pipeline::corridor {
 
-Recorder::Recorder(std::string path, std::shared_ptr<const RecordSwitch> wanted, double preroll_s)
-    : path_(std::move(path)), wanted_(std::move(wanted)), preroll_(duration_from_seconds(preroll_s)) {}
+Recorder::Recorder(std::string path, std::shared_ptr<const RecordSwitch> required, double preroll_s)
+    : path_(std::move(path)), required_(std::move(required)), preroll_(duration_from_seconds(preroll_s)) {}
 
 Recorder::~Recorder() = default;
 
-Sink::Wants Recorder::begin(const RecordingHeader& header) {
+Sink::SinkRequirements Recorder::begin(const RecordingHeader& header) {
   header_ = header;
-  if (wanted_->on()) open();  // where it cannot be written that is told before anything runs
-  return {.seen = true};
+  if (required_->on()) open();  // where it cannot be written that is reported before anything runs
+  return {.detected = true};
 }
 
 void Recorder::open() {
@@ -25,20 +25,20 @@ void Recorder::open() {
 }
 
 void Recorder::write(const Instant& instant) {
-  for (const TrackName& name : instant.named) untold_[name.id] = name;
+  for (const TrackName& name : instant.named) unreported_[name.id] = name;
   Instant kept = instant;
   kept.frames.clear();
   before_.push_back(std::move(kept));
   while (instant.time - before_.front().time > preroll_) before_.pop_front();
-  if (!wanted_->on()) return;
+  if (!required_->on()) return;
   open();
   for (; !before_.empty(); before_.pop_front()) put(std::move(before_.front()));
 }
 
-/// With the names that were told while it was off.
+/// With the names that were reported while it was off.
 void Recorder::put(Instant instant) {
   instant.named.clear();
-  for (auto& [id, name] : std::exchange(untold_, {})) instant.named.push_back(std::move(name));
+  for (auto& [id, name] : std::exchange(unreported_, {})) instant.named.push_back(std::move(name));
   take_->write(instant);
 }
 

@@ -23,15 +23,16 @@ class RecordSwitch {
   std::atomic<bool> on_;
 };
 
-/// Writes a take of what comes while the switch is on, with the seconds before it was put on. Off and on again goes on in the same
-/// take, with a gap. Without having been on it leaves nothing behind. Names that were told before are told to the take.
+/// Writes a take of what comes while the switch is on, with the seconds before it was put on. Off and on again continues in the
+/// same take, with a gap. Without having been on it leaves nothing behind. Names that were reported before are reported to the
+/// take.
 class Recorder final : public Sink {
  public:
-  Recorder(std::string path, std::shared_ptr<const RecordSwitch> wanted, double preroll_s);
+  Recorder(std::string path, std::shared_ptr<const RecordSwitch> required, double preroll_s);
   ~Recorder() override;
 
   std::string name() const override { return path_; }
-  Wants begin(const RecordingHeader& header) override;
+  SinkRequirements begin(const RecordingHeader& header) override;
   void write(const Instant& instant) override;
   void finish() override;
 
@@ -40,11 +41,11 @@ class Recorder final : public Sink {
   void put(Instant instant);
 
   std::string path_;
-  std::shared_ptr<const RecordSwitch> wanted_;
+  std::shared_ptr<const RecordSwitch> required_;
   Duration preroll_;
   RecordingHeader header_;
-  std::map<TrackId, TrackName> untold_;  // names that the take does not have yet
-  std::deque<Instant> before_;           // while it is off
+  std::map<TrackId, TrackName> unreported_;  // names that the take does not have yet
+  std::deque<Instant> before_;               // while it is off
   std::unique_ptr<Sink> take_;
 };
 

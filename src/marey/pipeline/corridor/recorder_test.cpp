@@ -50,15 +50,15 @@ TEST(Recorder, BeginsWithTheSecondsBeforeAndGoesOnAfterAPause) {
     recorder.write(instant_at(i));
   }
   recorder.finish();
-  std::set<std::int64_t> wanted;
-  for (int i = 15; i < 30; ++i) wanted.insert(i);
-  for (int i = 45; i < 60; ++i) wanted.insert(i);
-  EXPECT_EQ(indices(folder / "take.marey"), wanted);
+  std::set<std::int64_t> required;
+  for (int i = 15; i < 30; ++i) required.insert(i);
+  for (int i = 45; i < 60; ++i) required.insert(i);
+  EXPECT_EQ(indices(folder / "take.marey"), required);
   Recording take;
   RecordingSink sink(take);
   replay(*format::open_recording(folder / "take.marey"), sink);
   ASSERT_EQ(take.tracks().size(), 1u);
-  EXPECT_EQ(take.tracks().front().name.label, "knee") << "it was told before recording began";
+  EXPECT_EQ(take.tracks().front().name.label, "knee") << "it was reported before recording began";
 }
 
 TEST(Recorder, LeavesNothingWhereItWasNeverOn) {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "marey/core/error.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/format/input_hash.h"
 
 namespace marey::pipeline::corridor {
@@ -77,14 +77,14 @@ RecordingHeader signed_header(RecordingHeader header, const Clock& clock, const 
 
 void attach(std::vector<Frame>& frames, const FrameSet& set) {
   for (const auto& camera : set.cameras) {
-    if (camera && !camera->frame.picture.empty()) frames.push_back(camera->frame);
+    if (camera && !camera->frame.image.empty()) frames.push_back(camera->frame);
   }
 }
 
-/// The pictures of moments that are past, asked of the feeds once more.
-class Pictures {
+/// The images of instants that are past, asked of the feeds once more.
+class Images {
  public:
-  explicit Pictures(const Clock& clock) : clock_(clock.again()) {}
+  explicit Images(const Clock& clock) : clock_(clock.again()) {}
 
   /// Of the instant of this index, which grows from call to call. Throws Error if the images end before it.
   void attach_to(Instant& instant) {
@@ -103,20 +103,20 @@ class Pictures {
 };
 
 /// What a second pass knows of the whole recording, to the sinks. A run that was stopped draws nothing any more: to read the
-/// pictures again takes as long as the run did.
+/// images again takes as long as the run did.
 void replay(InstantSource& rest, const Clock& clock, Sinks& sinks, Counter& counter, const Hooks& hooks, Summary& summary) {
   if (hooks.stop.stop_requested()) {
-    for (const std::string& name : sinks.drop_pictures())
-      summary.warnings.push_back(name + ": is not written, because the run was stopped before its pictures were drawn");
+    for (const std::string& name : sinks.drop_images())
+      summary.warnings.push_back(name + ": is not written, because the run was stopped before its images were drawn");
   }
-  std::optional<Pictures> pictures;
-  if (sinks.want_pictures()) pictures.emplace(clock);
+  std::optional<Images> images;
+  if (sinks.need_images()) images.emplace(clock);
   std::int64_t done = 0;
   while (auto instant = rest.next()) {
-    if (pictures && instant->frames.empty()) pictures->attach_to(*instant);
+    if (images && instant->frames.empty()) images->attach_to(*instant);
     counter.add(*instant);
     if (!sinks.write(std::move(*instant))) break;
-    if (!sinks.want_pictures() || hooks.report({"drawing", ++done, summary.frames}) == Continue::yes) continue;
+    if (!sinks.need_images() || hooks.report({"drawing", ++done, summary.frames}) == Continue::yes) continue;
     summary.stopped = true;
     break;
   }
@@ -145,8 +145,8 @@ void first_pass(Stage& stage, Clock& clock, Sinks& sinks, Counter& counter, cons
       counter.add(instant);
       if (!sinks.write(std::move(instant))) summary.stopped = true;
     }
-    for (const std::string& sentence : stage.news()) {
-      if (hooks.news) hooks.news(sentence);
+    for (const std::string& message_text : stage.news()) {
+      if (hooks.news) hooks.news(message_text);
     }
     if (!first) first = frames->time;
     ++summary.frames;
@@ -165,7 +165,7 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   Summary summary;
   Counter counter(summary);
   sinks.begin(signed_header(stage.header(), clock, hooks));
-  if (sinks.want_boxes()) stage.want_boxes();
+  if (sinks.need_boxes()) stage.need_boxes();
   if (sinks.need_foregrounds()) {
     stage.need_foregrounds([&](FrameForeground foreground) {
       if (!sinks.write(std::move(foreground))) summary.stopped = true;
@@ -182,11 +182,11 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   counter.finish();
   summary.rate_hz = clock.rate_hz();
   if (const auto drops = clock.drops()) {
-    summary.left_out["moments overtaken"] = drops->overtaken;
-    summary.left_out["moments incomplete"] = drops->incomplete;
-    summary.left_out["moments without a camera"] = drops->empty;
-    summary.left_out["frames late"] = drops->late_frames;
-    summary.left_out["frames overrun"] = drops->overrun;
+    summary.excluded["instants overtaken"] = drops->superseded;
+    summary.excluded["instants incomplete"] = drops->incomplete;
+    summary.excluded["instants without a camera"] = drops->empty;
+    summary.excluded["frames late"] = drops->late_frames;
+    summary.excluded["frames overrun"] = drops->overrun;
   }
   for (std::string& warning : clock.warnings()) summary.warnings.push_back(std::move(warning));
   stage.report(summary);

@@ -1,5 +1,5 @@
-// The one corridor that every job walks: a clock gives what the cameras saw at one moment, a stage makes of it what is known of
-// that moment, sinks take it where the user wants it. What a job does is its stage; where results go are its sinks; nothing else
+// The one corridor that every job walks: a clock gives what the cameras saw at one instant, a stage makes of it what is known of
+// that instant, sinks take it where the user wants it. What a job does is its stage; where results go are its sinks; nothing else
 // differs.
 #pragma once
 
@@ -22,7 +22,7 @@
 
 namespace marey::pipeline::corridor {
 
-/// What came of a run: what is in its results, what was lost on the way and why.
+/// What results from a run: what is in its results, what was lost on the way and why.
 struct Summary {
   /// Its frames are those that were searched, its detections those that the tracker was given.
   struct Camera : CameraHealth {
@@ -37,18 +37,18 @@ struct Summary {
     double median = 0, p99 = 0;
   };
 
-  std::int64_t frames = 0;                                           ///< moments
+  std::int64_t frames = 0;                                           ///< instants
   double seconds = 0;                                                ///< from the first moment to the last
-  double rate_hz = 0;                                                ///< of the moments
+  double rate_hz = 0;                                                ///< of the instants
   double first_pass_s = 0;                                           ///< wall time until the cameras had ended
   std::int64_t tracks = 0;                                           ///< distinct ones in the results
   std::int64_t labelled = 0;                                         ///< of these, with a label
-  std::int64_t samples = 0;                                          ///< tracks times the moments they are in
+  std::int64_t samples = 0;                                          ///< tracks times the instants they are in
   std::int64_t measured = 0, filled = 0, predicted = 0, solved = 0;  ///< of these
   std::int64_t outlines = 0, held_outlines = 0;               ///< samples with an outline; those of which too little was seen
   std::int64_t keypoints = 0;                                 ///< samples with body points
   std::int64_t detections = 0;                                ///< handed to the tracker
-  std::map<std::string, std::int64_t, std::less<>> left_out;  ///< by reason: "noise", "too_brief", …
+  std::map<std::string, std::int64_t, std::less<>> excluded;  ///< by reason: "noise", "too_brief", …
   std::map<std::string, double, std::less<>> figures;         ///< what a stage found out besides: "noise_px", …
   std::vector<Camera> cameras;
   std::vector<StepTime> steps;
@@ -66,35 +66,36 @@ class InstantSource {
   virtual std::optional<Instant> next() = 0;
 };
 
-/// One job's order of steps, from what the cameras saw at a moment to what is known of it.
+/// One job's order of steps, from what the cameras saw at an instant to what is known of it.
 class Stage {
  public:
   virtual ~Stage() = default;
   virtual RecordingHeader header() const = 0;
   /// Sinks want `Instant::boxes`. Before the first step.
-  virtual void want_boxes() {}
+  virtual void need_boxes() {}
   /// Sinks want the foreground of each frame that is searched, in `step` and in `finish`: `give` takes it. Before the first step.
   virtual void need_foregrounds(std::function<void(FrameForeground)> /*give*/) {}
-  /// What is known after this moment, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
+  /// What is known after this instant, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
   /// second pass keeps all for that.
   virtual std::span<const Instant> step(const FrameSet& frames) = 0;
-  /// What somebody who watches should know at once of what the steps since the last call found out, one sentence each.
+  /// What a person who watches should know at once of what the steps since the last call found out, one sentence each.
   virtual std::vector<std::string> news() { return {}; }
   /// What is known only now that the cameras have ended: instants that waited, or the whole recording after a second pass. Nothing
-  /// where all was told.
+  /// where all was reported.
   virtual std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) { return nullptr; }
   /// Puts in what it counted and what it found out.
   virtual void report(Summary& summary) const = 0;
 };
 
-/// The sinks of a run. Each is written behind a bounded queue of its own, so that one that waits (a film, a socket) holds nobody up
-/// before its queue is full. One that fails is closed and named: the run then ends, after the others have finished what there was.
+/// The sinks of a run. Each is written behind a bounded queue of its own, so that one that waits (a video, a socket) holds no
+/// person up before its queue is full. One that fails is closed and named: the run then ends, after the others have finished what
+/// there was.
 class Sinks {
  public:
   /// What happens where a sink is slower than the run.
   enum class Slow {
-    waited_for,   ///< the run waits; one that fails ends it
-    passed_over,  ///< it is given no more before it has caught up, and that is counted; one that fails is closed, the run goes on
+    waited_for,  ///< the run waits; one that fails ends it
+    skipped,     ///< it is given no more before it has caught up, and that is counted; one that fails is closed, the run continues
   };
   explicit Sinks(Slow slow = Slow::waited_for);
   ~Sinks();
@@ -103,19 +104,19 @@ class Sinks {
 
   void add(std::unique_ptr<Sink> sink);
   void begin(const RecordingHeader& header);
-  bool want_pictures() const;
-  bool want_boxes() const;
+  bool need_images() const;
+  bool need_boxes() const;
   bool need_foregrounds() const;
   /// To those that want foregrounds; false as for `write`.
   bool write(FrameForeground foreground);
-  /// To all others. Whether the run may go on: that all still take what they are given, where they are waited for.
+  /// To all others. Whether the run may continue: that all still take what they are given, where they are waited for.
   bool write(Instant instant);
-  /// Of sinks that are passed over: what they missed, and which of them failed, one sentence each.
+  /// Of sinks that are skipped: what they missed, and which of them failed, one sentence each.
   std::vector<std::string> troubles() const;
   bool failed() const;
-  /// Drops those that want pictures: they leave nothing behind. Returns their names.
-  std::vector<std::string> drop_pictures();
-  /// Commits all that did not fail. Throws Error, with the sink's name, where one has failed and is no trouble().
+  /// Drops those that want images: they leave nothing behind. Returns their names.
+  std::vector<std::string> drop_images();
+  /// Commits all that did not fail. Throws Error, with the sink's name, where one has failed and is not a trouble().
   void finish();
 
  private:
@@ -127,9 +128,9 @@ class Sinks {
   std::vector<std::unique_ptr<Lane>> lanes_;
 };
 
-/// Runs a job from its cameras' first frame to its sinks' last. Where a second pass reports moments that are past and a sink wants
-/// their pictures, the clock is asked for them again. A run that is asked to stop writes what is known until then, but for sinks
-/// whose pictures would have to be asked for again: they leave nothing, and a warning names them. Throws Error where not one frame
+/// Runs a job from its cameras' first frame to its sinks' last. Where a second pass reports instants that are past and a sink wants
+/// their images, the clock is asked for them again. A run that is asked to stop writes what is known until then, but for sinks
+/// whose images would have to be asked for again: they leave nothing, and a warning names them. Throws Error if not one frame
 /// could be read, or a sink has failed; Stopped where nothing was tracked before it was asked to stop.
 Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks = {});
 

@@ -17,7 +17,7 @@
 namespace marey::pipeline::corridor {
 namespace {
 
-/// MOT text of one person who walks through `frames` frames; every third is left out.
+/// MOT text of one person who walks through `frames` frames; every third is omitted.
 std::string boxes(int frames) {
   std::string text;
   for (int frame = 1; frame <= frames; ++frame) {
@@ -36,7 +36,7 @@ Clock clock_over(const std::string& path) {
   return Clock(std::move(feeds));
 }
 
-/// Reports every detection as a track; says the last `late` moments only at the end.
+/// Reports every detection as a track; says the last `late` instants only at the end.
 class Echo final : public Stage {
  public:
   explicit Echo(bool all_at_the_end = false) : at_the_end_(all_at_the_end) {}
@@ -73,7 +73,7 @@ class Echo final : public Stage {
     };
     return std::make_unique<All>(std::move(known_));
   }
-  void report(Summary& summary) const override { summary.left_out["nothing"] = 0; }
+  void report(Summary& summary) const override { summary.excluded["nothing"] = 0; }
 
  private:
   bool at_the_end_;
@@ -89,7 +89,7 @@ class Keeper final : public Sink {
   };
   Keeper(Kept& kept, int fails_at = -1) : kept_(kept), fails_at_(fails_at) {}
   std::string name() const override { return "keeper"; }
-  Wants begin(const RecordingHeader&) override { return {}; }
+  SinkRequirements begin(const RecordingHeader&) override { return {}; }
   void write(const Instant& instant) override {
     if (std::ssize(kept_.indices) == fails_at_) throw Error("{}", "keeper: no space left");
     kept_.indices.push_back(instant.index);
@@ -137,16 +137,16 @@ TEST(Run, ASinkThatFailsEndsTheRunAndTheOthersKeepWhatTheyHave) {
     run(stage, clock, sinks);
     FAIL() << "nothing was said";
   } catch (const Error& error) {
-    const std::string_view said = error.what();
-    EXPECT_TRUE(said.starts_with("keeper: no space left; the run ended there, and what was known until then is in keeper, "))
-        << said;
-    EXPECT_TRUE(said.ends_with("out.txt")) << said;
+    const std::string_view stated = error.what();
+    EXPECT_TRUE(stated.starts_with("keeper: no space left; the run ended there, and what was known until then is in keeper, "))
+        << stated;
+    EXPECT_TRUE(stated.ends_with("out.txt")) << stated;
   }
   EXPECT_EQ(broken.indices.size(), 5u);
   EXPECT_FALSE(broken.finished);
   EXPECT_TRUE(whole.finished);
   EXPECT_GE(whole.indices.size(), 6u);
-  EXPECT_LT(whole.indices.size(), 3000u) << "the run went on";
+  EXPECT_LT(whole.indices.size(), 3000u) << "the run continued";
   EXPECT_TRUE(std::filesystem::exists(folder / "out.txt"));
 }
 
@@ -172,7 +172,7 @@ TEST(Run, StoppedHalfWayItFinishesWhatItHas) {
   }
 }
 
-TEST(Run, WhatTheStageThrowsLeavesNoFileBehind) {
+TEST(Run, StageErrorLeavesNoFile) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "boxes.txt", boxes(20));
   struct Throws final : Stage {

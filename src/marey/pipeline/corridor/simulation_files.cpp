@@ -1,4 +1,4 @@
-// Simulations as files: what a scene of `simulate` shows goes through the writers of films, observations, tracks and rigs. Nothing
+// Simulations as files: what a scene of `simulate` shows goes through the writers of videos, observations, tracks and rigs. Nothing
 // is simulated here.
 #include "marey/pipeline/corridor/simulation_files.h"
 
@@ -12,11 +12,11 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
 #include "marey/draw/canvas.h"
 #include "marey/draw/movie_writer.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/corridor/film_file.h"
+#include "marey/pipeline/corridor/video_file.h"
 
 namespace marey::pipeline::corridor {
 namespace {
@@ -50,9 +50,9 @@ std::string run_lengths(const cv::Mat& mask) {
   return text + "]";
 }
 
-/// World: as the film's (simulate/ground_picture.h), whose ground is at z = 0.
-Rig people_rig(const marey::simulate::people::PeopleFilm& film) {
-  const marey::simulate::LevelCamera& level = film.camera();
+/// World: as the video's (simulate/background_image.h), whose ground is at z = 0.
+Rig people_rig(const marey::simulate::people::PeopleVideo& video) {
+  const marey::simulate::LevelCamera& level = video.camera();
   const double c = std::cos(level.pitch), s = std::sin(level.pitch);
   geometry::BrownLens lens;
   lens.focal.setConstant(level.focal);
@@ -82,13 +82,13 @@ class PeopleTruth {
   }
 
   void write(int frame, double time, const marey::simulate::people::TrueFigure& person, cv::Size size) {
-    const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
-    const Box box = geometry::intersection(person.whole.box(), picture);
+    const Box image{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+    const Box box = geometry::intersection(person.whole.box(), image);
     if (box.empty()) return;
     boxes_.write(fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", frame + 1, person.id, box.left + 1, box.top + 1,
-                             box.width, box.height, person.visible_share));
+                             box.width, box.height, person.visible_fraction));
     positions_.write(fmt::format("{},{:.6f},{},{},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f}\n", frame, time, person.id, person.team,
-                                 person.ground.x(), person.ground.y(), person.foot.x(), person.foot.y(), person.visible_share));
+                                 person.ground.x(), person.ground.y(), person.foot.x(), person.foot.y(), person.visible_fraction));
     silhouettes_.write(fmt::format(R"({{"frame":{},"id":{},"size":[{},{}],"whole":{},"visible":{}}})", frame, person.id,
                                    size.height, size.width, run_lengths(person.whole.pixel_mask(size)),
                                    run_lengths(person.visible.pixel_mask(size))) +
@@ -107,10 +107,10 @@ class PeopleTruth {
 
 }  // namespace
 
-void film_markers(const marey::simulate::markers::MarkerScene& scene, const std::string& path, const Hooks& hooks) {
-  FilmFile film(marey::simulate::markers::make_source(scene), path);
-  for (std::int64_t done = 1; film.write_next(); ++done) hooks.advance({"frames", done, std::ssize(scene.frames)});
-  film.finish();
+void video_markers(const marey::simulate::markers::MarkerScene& scene, const std::string& path, const Hooks& hooks) {
+  VideoFile video(marey::simulate::markers::make_source(scene), path);
+  for (std::int64_t done = 1; video.write_next(); ++done) hooks.advance({"frames", done, std::ssize(scene.frames)});
+  video.finish();
 }
 
 void write_markers(const marey::simulate::markers::MarkerScene& scene, const std::string& folder, const Hooks& hooks) {
@@ -122,25 +122,25 @@ void write_markers(const marey::simulate::markers::MarkerScene& scene, const std
                               marker.marker + 1, marker.position.x(), marker.position.y(), marker.visible ? 1 : 0));
     }
   }
-  film_markers(scene, (fs::path(folder) / "video.mp4").string(), hooks);
+  video_markers(scene, (fs::path(folder) / "video.mp4").string(), hooks);
   truth.finish();
 }
 
-void film_people(const marey::simulate::people::PeopleFilm& film, const std::string& folder, const Hooks& hooks) {
-  const fs::path place = folder;
-  const marey::simulate::people::PeopleFilmOptions& options = film.options();
-  draw::MovieWriter movie((place / "video.mp4").string(), options.size, options.rate_hz, draw::MovieWriter::Quality::to_measure);
-  PeopleTruth truth(place);
-  for (int i = 0; i < film.frames(); ++i) {
+void video_people(const marey::simulate::people::PeopleVideo& video, const std::string& folder, const Hooks& hooks) {
+  const fs::path location = folder;
+  const marey::simulate::people::PeopleVideoOptions& options = video.options();
+  draw::MovieWriter movie((location / "video.mp4").string(), options.size, options.rate_hz, draw::MovieWriter::Quality::to_measure);
+  PeopleTruth truth(location);
+  for (int i = 0; i < video.frames(); ++i) {
     const double time = i / options.rate_hz;
-    const marey::simulate::people::RenderedFrame frame = film.render(i);
-    movie.write(frame.picture, timestamp_from_seconds(time));
+    const marey::simulate::people::RenderedFrame frame = video.render(i);
+    movie.write(frame.image, timestamp_from_seconds(time));
     for (const marey::simulate::people::TrueFigure& person : frame.people) truth.write(i, time, person, options.size);
-    hooks.advance({"frames", i + 1, film.frames()});
+    hooks.advance({"frames", i + 1, video.frames()});
   }
   movie.finish();
   truth.finish();
-  write_text(place / "rig.toml", format::rig::rig_text(people_rig(film)));
+  write_text(location / "rig.toml", format::rig::rig_text(people_rig(video)));
 }
 
 }  // namespace marey::pipeline::corridor

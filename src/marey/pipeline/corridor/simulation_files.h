@@ -5,28 +5,28 @@
 
 #include "marey/core/hooks.h"
 #include "marey/simulate/markers/marker_scene.h"
-#include "marey/simulate/people/people_film.h"
+#include "marey/simulate/people/people_video.h"
 
 namespace marey::pipeline::corridor {
 
 // All of these throw Stopped where they are asked to end, and leave nothing that is begun behind.
 
-/// Films a scene into an H.264 file, hardly compressed. Throws Error where it cannot be written.
-void film_markers(const marey::simulate::markers::MarkerScene& scene, const std::string& path, const Hooks& hooks = {});
+/// Videos a scene into an H.264 file, barely compressed. Throws Error if it cannot be written.
+void video_markers(const marey::simulate::markers::MarkerScene& scene, const std::string& path, const Hooks& hooks = {});
 
 /// Writes a scene into a folder, which must exist: video.mp4, and its truth as truth.csv: `frame,time,label,x,y,visible`, 0-based
-/// frames, s, px. Throws Error where a file cannot be written.
+/// frames, s, px. Throws Error if a file cannot be written.
 void write_markers(const marey::simulate::markers::MarkerScene& scene, const std::string& folder, const Hooks& hooks = {});
 
-/// Films people into a folder, which must exist:
-///   video.mp4          H.264, hardly compressed
-///   truth.txt          MOTChallenge truth: the box of each whole person, cut at the picture's border; the ninth column is the
+/// Videos people into a folder, which must exist:
+///   video.mp4          H.264, barely compressed
+///   truth.txt          MOTChallenge truth: the box of each whole person, cut at the image's border; the ninth column is the
 ///                      share that can be seen
-///   rig.toml           the exact camera, its film as its source
+///   rig.toml           the exact camera, its video as its source
 ///   positions.csv      frame,time,id,team,x,y,foot_x,foot_y,visible: 0-based frames, s, m on the ground, px
 ///   silhouettes.jsonl  an object a person and frame: frame, id, size [height, width], and the silhouettes `whole` and `visible`
-///                      within the picture as COCO's run lengths (column by column, background first)
-/// Throws Error where a file cannot be written.
-void film_people(const marey::simulate::people::PeopleFilm& film, const std::string& folder, const Hooks& hooks = {});
+///                      within the image as COCO's run lengths (column by column, background first)
+/// Throws Error if a file cannot be written.
+void video_people(const marey::simulate::people::PeopleVideo& video, const std::string& folder, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline::corridor

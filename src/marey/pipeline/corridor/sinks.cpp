@@ -17,7 +17,7 @@
 namespace marey::pipeline::corridor {
 namespace {
 
-constexpr int kWaiting = 8;        // instants, with their pictures
+constexpr int kWaiting = 8;        // instants, with their images
 constexpr int kWaitingLive = 256;  // without them: what is live is not held up by a disk that is busy for a second
 
 }  // namespace
@@ -43,14 +43,14 @@ class Sinks::Lane {
     writer_.join();
   }
 
-  Sink::Wants begin(const RecordingHeader& header, Slow slow) {
-    wants_ = sink_->begin(header);
-    if (slow == Slow::passed_over && !wants_.pictures) queue_.set_capacity(kWaitingLive);
+  Sink::SinkRequirements begin(const RecordingHeader& header, Slow slow) {
+    needs_ = sink_->begin(header);
+    if (slow == Slow::skipped && !needs_.images) queue_.set_capacity(kWaitingLive);
     writer_ = std::thread([this] { write_all(); });
-    return wants_;
+    return needs_;
   }
 
-  const Sink::Wants& wants() const { return wants_; }
+  const Sink::SinkRequirements& needs() const { return needs_; }
   const std::string& name() const { return name_; }
   bool failed() const { return failed_; }
   /// Called where the run ends because it failed.
@@ -59,12 +59,12 @@ class Sinks::Lane {
   bool needs_foregrounds() const { return foregrounds_ != nullptr && !failed_; }
   void give(const Work& work) { queue_.push(work); }
   /// Only where there is room.
-  void offer(const Work& work) { passed_over_ += failed_ || queue_.try_push(work) ? 0 : 1; }
+  void offer(const Work& work) { skipped_ += failed_ || queue_.try_push(work) ? 0 : 1; }
 
-  /// Nothing where there is none.
+  /// Nothing if there is none.
   std::string trouble() const {
     if (failed_) return message_of_failure();
-    return passed_over_ > 0 ? fmt::format("{}: too slow for {} instants, which it does not have", name_, passed_over_) : "";
+    return skipped_ > 0 ? fmt::format("{}: too slow for {} instants, which it does not have", name_, skipped_) : "";
   }
 
   /// Waits until all that was given is written.
@@ -118,12 +118,12 @@ class Sinks::Lane {
   std::unique_ptr<Sink> sink_;
   ForegroundSink* foregrounds_;  // the sink, if it is one for foregrounds
   std::string name_;
-  Sink::Wants wants_;
+  Sink::SinkRequirements needs_;
   tbb::concurrent_bounded_queue<Work> queue_;  // without either: the end
   std::atomic<bool> failed_ = false, given_up_ = false;
   std::exception_ptr failure_;  // before failed_
   bool ended_run_ = false;
-  std::int64_t passed_over_ = 0;
+  std::int64_t skipped_ = 0;
   std::thread writer_;
 };
 
@@ -140,12 +140,12 @@ void Sinks::begin(const RecordingHeader& header) {
   for (const auto& lane : lanes_) lane->begin(header, slow_);
 }
 
-bool Sinks::want_pictures() const {
-  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().pictures && !lane->failed(); });
+bool Sinks::need_images() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->needs().images && !lane->failed(); });
 }
 
-bool Sinks::want_boxes() const {
-  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->wants().boxes && !lane->failed(); });
+bool Sinks::need_boxes() const {
+  return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->needs().boxes && !lane->failed(); });
 }
 
 bool Sinks::need_foregrounds() const {
@@ -168,7 +168,7 @@ bool Sinks::write(FrameForeground foreground) {
 
 template <typename Work>
 bool Sinks::hand_to(Lane& lane, const Work& work) const {
-  if (slow_ == Slow::passed_over) {
+  if (slow_ == Slow::skipped) {
     lane.offer(work);
     return true;
   }
@@ -181,7 +181,7 @@ bool Sinks::hand_to(Lane& lane, const Work& work) const {
 std::vector<std::string> Sinks::troubles() const {
   std::vector<std::string> all;
   for (const auto& lane : lanes_) {
-    if (std::string trouble = lane->trouble(); slow_ == Slow::passed_over && !trouble.empty()) all.push_back(std::move(trouble));
+    if (std::string trouble = lane->trouble(); slow_ == Slow::skipped && !trouble.empty()) all.push_back(std::move(trouble));
   }
   return all;
 }
@@ -190,10 +190,10 @@ bool Sinks::failed() const {
   return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->failed(); });
 }
 
-std::vector<std::string> Sinks::drop_pictures() {
+std::vector<std::string> Sinks::drop_images() {
   std::vector<std::string> names;
   std::erase_if(lanes_, [&](const auto& lane) {
-    const bool dropped = lane->wants().pictures && !lane->failed();
+    const bool dropped = lane->needs().images && !lane->failed();
     if (dropped) names.push_back(lane->name());
     return dropped;
   });
@@ -202,7 +202,7 @@ std::vector<std::string> Sinks::drop_pictures() {
 
 void Sinks::finish() {
   for (const auto& lane : lanes_) lane->drain();
-  if (slow_ == Slow::passed_over) return;
+  if (slow_ == Slow::skipped) return;
   std::vector<std::string> whole;
   for (const auto& lane : lanes_) {
     if (!lane->failed()) whole.push_back(lane->name());

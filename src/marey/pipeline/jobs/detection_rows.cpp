@@ -4,7 +4,7 @@
 
 #include "marey/detect/keypoints/model_folder.h"
 #include "marey/filter/filters.h"
-#include "marey/pipeline/people/track_in_picture.h"
+#include "marey/pipeline/people/track_in_image.h"
 
 namespace marey::pipeline::jobs {
 namespace {
@@ -25,17 +25,17 @@ void add_people_rows(Table& table, PeopleDetection& detection) {
       .checked(detect::background::parse_background);
   table.input_file("detector", detection.network,
                    "a detection network in addition to the background model: the file that describes it (docs/network.md)");
-  table.whole("every", detection.every, "N", 1, 1000, "run the network on every N-th frame").depending_on({"detector"});
-  table.flag("without-background", detection.without_background, "the network alone").depending_on({"detector"});
+  table.whole("detector-interval", detection.every, "N", 1, 1000, "run the network on every N-th frame").depending_on({"detector"});
+  table.flag("no-background", detection.without_background, "the network alone").depending_on({"detector"});
 }
 
 detect::DetectorOptions detector_of(const PeopleDetection& detection, bool keypoints, const std::string& needs_every_frame) {
   const bool skips = detection.every > 1;
   if (detection.network.empty() && !keypoints && (skips || detection.without_background))
-    throw WrongOption("{} requires --detector", skips ? "--every" : "--without-background");
+    throw WrongOption("{} requires --detector", skips ? "--detector-interval" : "--no-background");
   if (detection.without_background && skips && !needs_every_frame.empty())
     throw WrongOption(
-        "--every {} with --without-background: {} needs detections in every frame; leave out one of the three options",
+        "--detector-interval {} with --no-background: {} needs detections in every frame; omit one of the three options",
         detection.every, needs_every_frame);
   const detect::people::PeopleDetectorOptions people{.background = detect::background::parse_background(detection.background),
                                                      .people = {}};
@@ -67,9 +67,9 @@ void add_threshold_row(Table& table, std::optional<double>& threshold) {
 void add_blob_rows(Table& table, detect::markers::MarkerOptions& markers) {
   add_threshold_row(table, markers.threshold);
   table.flag("dark", markers.dark, "markers are darker than their surroundings");
-  table.number("widest", markers.widest, "px", closed(2, 200),
+  table.number("max-width", markers.widest, "px", closed(2, 200),
                "largest width of a marker; wider regions are removed from the image (default: only where they disturb)");
-  table.whole("most-markers", markers.most_markers, "N", 1, 1'000'000,
+  table.whole("max-markers", markers.max_markers, "N", 1, 1'000'000,
               "per frame; beyond, those at predicted positions are kept, then the largest");
   table.number("min-area", markers.min_area, "px^2", closed(0, 1e8), "smallest marker, pixels that exceed the threshold");
   table.number("max-area", markers.max_area, "px^2", closed(0, 1e8), "largest marker, likewise");
@@ -88,17 +88,16 @@ void add_marker_rows(Table& table, MarkerDetection& detection) {
       .number("saturation", detection.saturation, "share", closed(0.001, 0.999),
               "with --colour: minimum of (largest - smallest of red, green, blue), as a share of white (default: 0.2)")
       .depending_on({"colour"});
-  table.input_file("mask", detection.mask, "an image of the video's size; what is not black in it is left out");
-  table.number(
-      "auto-mask", detection.markers.auto_mask_s, "s", closed(0, 3600),
-      "leave out what is bright and static in the first N seconds (lamps, reflections, and markers that do not move); 0: off");
+  table.input_file("mask", detection.mask, "an image of the video's size; what is not black in it is omitted");
+  table.number("auto-mask", detection.markers.auto_mask_s, "s", closed(0, 3600),
+               "omit what is bright and static in the first N seconds (lamps, reflections, and markers that do not move); 0: off");
 }
 
 detect::markers::MarkerOptions detector_of(const MarkerDetection& detection) {
   detect::markers::MarkerOptions markers = detection.markers;
   if (!detection.colour.empty()) {
     markers.colour = detect::markers::parse_marker_colour(detection.colour);
-    markers.colour->least_saturation = detection.saturation.value_or(markers.colour->least_saturation);
+    markers.colour->min_saturation = detection.saturation.value_or(markers.colour->min_saturation);
   }
   if (!detection.mask.empty()) markers.mask = people::read_mask(detection.mask);
   return markers;

@@ -16,7 +16,7 @@ struct PeopleDetection {
   int every = 1;
 };
 
-/// --background, --detector, --every, --without-background.
+/// --background, --detector, --detector-interval, --no-background.
 void add_people_rows(Table& table, PeopleDetection& detection);
 
 /// `keypoints`: body points are searched too, which brings a detection network of its own. `needs_every_frame`: the option that

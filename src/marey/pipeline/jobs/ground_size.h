@@ -9,7 +9,7 @@
 
 namespace marey::pipeline::jobs {
 
-/// LENGTHxWIDTH in m. Throws WrongOption for what is none, or no pitch.
+/// LENGTHxWIDTH in m. Throws WrongOption for what is not one, or no pitch.
 geometry::PitchSize parse_pitch_size(const std::string& text);
 
 /// A part of the ground: LENGTHxWIDTH in m, a rectangle from the origin on, or its corners, "x,y x,y x,y …". Throws WrongOption.

@@ -37,21 +37,21 @@ TEST(Table, SetsTheBoundMemberAndStatesCanonicalText) {
   std::string path;
   Table table;
   table.number("margin", margin, "m", closed(0, 10), "margin");
-  table.whole("order", order, "N", 2, 8, "order");
+  table.whole("spline-order", order, "N", 2, 8, "spline-order");
   table.flag("no-smooth", smooth, "no smoothing", false);
   table.input_file("labels", path, "labels");
   table.always("targets", "markers");
   EXPECT_EQ(table.find("margin")->fallback, "2");
   EXPECT_EQ(table.find("margin")->value, "m in [0, 10]");
   table.find("margin")->set("2.50");
-  table.find("order")->set("3");
+  table.find("spline-order")->set("3");
   table.find("no-smooth")->set("true");
   table.find("labels")->set("names.txt");
   EXPECT_EQ(margin, 2.5);
   EXPECT_EQ(order, 3);
   EXPECT_FALSE(smooth);
-  EXPECT_EQ(table.given(),
-            (std::map<std::string, std::string>{{"margin", "2.5"}, {"order", "3"}, {"no-smooth", "true"}, {"targets", "markers"}}));
+  EXPECT_EQ(table.given(), (std::map<std::string, std::string>{
+                               {"margin", "2.5"}, {"spline-order", "3"}, {"no-smooth", "true"}, {"targets", "markers"}}));
   EXPECT_EQ(table.files(false), std::vector<std::string>{"names.txt"});
   EXPECT_TRUE(table.files(true).empty());
   EXPECT_EQ(table.find("margins"), nullptr);
@@ -76,11 +76,11 @@ TEST(Table, RefusesAnOptionWithoutTheOneThatItNeeds) {
   bool outline = false;
   std::optional<int> lines;
   Table table;
-  table.flag("outline", outline, "outline");
-  table.whole("lines", lines, "N", 1, 8, "lines").needing("outline");
-  table.find("lines")->set("4");
-  EXPECT_EQ(refusal([&] { table.check_needs(); }), "--lines requires --outline");
-  table.find("outline")->set("true");
+  table.flag("contour", outline, "contour");
+  table.whole("measurement-lines", lines, "N", 1, 8, "measurement-lines").needing("contour");
+  table.find("measurement-lines")->set("4");
+  EXPECT_EQ(refusal([&] { table.check_needs(); }), "--measurement-lines requires --contour");
+  table.find("contour")->set("true");
   EXPECT_EQ(refusal([&] { table.check_needs(); }), "");
 }
 

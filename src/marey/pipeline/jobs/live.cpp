@@ -7,8 +7,8 @@ Table table_of(Live& job) {
   table.flag("ground", job.ground, "people on the ground that the rig's cameras face");
   add_ground_rows(table, job.part);
   table.number("preroll", job.preroll_s, "s", closed(0, 60), "kept from before a recording is switched on");
-  table.number("late", job.late_s, "s", closed(0.001, 1), "longest wait for a late frame of an instant");
-  table.number("patience", job.patience_s, "s", closed(0, 60), "longest wait for cameras at the beginning");
+  table.number("frame-timeout", job.late_s, "s", closed(0.001, 1), "longest wait for a late frame of an instant");
+  table.number("connect-timeout", job.patience_s, "s", closed(0, 60), "longest wait for cameras at the beginning");
   add_name_rows(table, job.names);
   add_blob_rows(table, job.markers);
   table.group("Options for --targets people");
@@ -34,7 +34,7 @@ live::LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::str
   if (keypoints) options.people.keypoints = keypoints::KeypointOptions{.model = job.model, .every = job.detection.every};
   options.keypoints.model = job.model;
   options.keypoints.detector = job.detection.network;
-  options.keypoints.people.most = job.people;
+  options.keypoints.people.maximum = job.people;
   options.people.live = true;
   TrackGround ground{.rig_name = job.rig_name, .detection = job.detection, .ground = job.part};
   ground.options.live = true;

@@ -59,7 +59,7 @@ double number_in(std::string_view text, std::string_view unit, const Interval& i
 
 std::int64_t whole_number_in(std::string_view text, std::string_view unit, std::int64_t low, std::int64_t high) {
   const auto value = whole_number_of(text);
-  if (!value) throw WrongOption("\"{}\" is no whole number; give {} in {}", text, unit, notation(low, high));
+  if (!value) throw WrongOption("\"{}\" is not a whole number; give {} in {}", text, unit, notation(low, high));
   if (*value < low || *value > high) throw WrongOption("{} is out of range; give {} in {}", text, unit, notation(low, high));
   return *value;
 }

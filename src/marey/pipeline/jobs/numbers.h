@@ -11,7 +11,7 @@
 namespace marey::pipeline::jobs {
 
 /// A text that an option does not take, or options that exclude each other: wrong usage, not a failure of the outside world.
-/// Options are spelled as on the command line ("--seen-only"); a front end that spells them otherwise replaces that.
+/// Options are spelled as on the command line ("--measured-only"); a front end that spells them otherwise replaces that.
 class WrongOption : public Error {
  public:
   using Error::Error;
@@ -40,9 +40,9 @@ std::string notation(const Interval& interval);
 /// "[1, 500]"; the largest number that there is reads 2^63 - 1.
 std::string notation(std::int64_t low, std::int64_t high);
 
-/// The whole of `text` as a number; nothing where it is none, is not finite, or is so small that its digits are lost (denormal).
+/// The whole of `text` as a number; nothing if it is not one, is not finite, or is so small that its digits are lost (denormal).
 std::optional<double> number_of(std::string_view text);
-/// The whole of `text` as a whole number of 64 bits; nothing where it is none.
+/// The whole of `text` as a whole number of 64 bits; nothing if it is not one.
 std::optional<std::int64_t> whole_number_of(std::string_view text);
 
 /// A number with its unit. Throws WrongOption, which states what `text` should be.

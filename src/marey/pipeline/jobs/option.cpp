@@ -5,7 +5,7 @@
 
 #include <fmt/ranges.h>
 
-#include "marey/core/overwriting.h"
+#include "marey/files/overwriting.h"
 
 namespace marey::pipeline::jobs {
 namespace {

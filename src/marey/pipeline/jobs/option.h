@@ -33,7 +33,7 @@ enum class Kind {
 
 /// One row.
 struct Option {
-  std::string name;  ///< words with dashes between: "seen-only"
+  std::string name;  ///< words with dashes between: "measured-only"
   Kind kind = Kind::text;
   std::string help;
   std::string value;                 ///< what it takes: "s in [0, 60]", "TEXT", "FILE"; empty for a flag

@@ -19,11 +19,14 @@ Table table_of(ReconstructMarkers& job) {
   add_rate_row(table, how.rate_hz);
   table.number("noise", how.noise_px, "px", closed(1e-3, 100),
                "standard deviation of a blob's position and of the calibration (default: learned)");
-  table.number("fill", how.fill_s, "s", closed(0, 10), "the longest gap that is filled");
-  table.number("predict", how.predict_s, "s", closed(0, 10), "write predictions for this duration of a longer gap; at most --fill")
-      .depending_on({"fill"});
-  table.flag("live", how.live, "write every instant at once, as marey live does: no gap is filled").depending_on({"predict"});
-  table.number("marker-width", how.tracker.marker_width, "m", closed(1e-4, 1), "markers closer than this disturb each other");
+  table.number("max-gap", how.fill_s, "s", closed(0, 10), "the longest gap that is filled");
+  table
+      .number("max-prediction", how.predict_s, "s", closed(0, 10),
+              "write predictions for this duration of a longer gap; at most --max-gap")
+      .depending_on({"max-gap"});
+  table.flag("live", how.live, "write every instant at once, as marey live does: no gap is filled")
+      .depending_on({"max-prediction"});
+  table.number("marker-diameter", how.tracker.marker_width, "m", closed(1e-4, 1), "markers closer than this disturb each other");
   table.number("max-speed", how.tracker.max_speed, "m/s", closed(1e-3, 1e4), "the largest speed of a marker");
   add_blob_rows(table, how.markers);
   return table;
@@ -59,7 +62,7 @@ Table table_of(ReconstructKeypoints& job) {
                    "a detection network in place of the one for people: the file that describes it (docs/network.md)");
   table.flag("with-background", job.detection.without_background,
              "people are detected by what changes too, which is faster; default: by the network alone", false);
-  table.whole("every", job.detection.every, "N", 1, 1000, "run the networks on every N-th frame");
+  table.whole("detector-interval", job.detection.every, "N", 1, 1000, "run the networks on every N-th frame");
   return table;
 }
 

@@ -25,7 +25,7 @@ markers::MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vect
 
 struct ReconstructKeypoints {
   /// How people are detected in cameras' videos: by a network alone unless the user wants the background too, because people who
-  /// fill the image, or stand in it from the beginning, are usual here.
+  /// fill the image, or stand in it from the beginning, are typical here.
   PeopleDetection detection = {.without_background = true};
   std::string model = keypoints::KeypointOptions{}.model;
   keypoints::KeypointsInSpaceOptions options = {};

@@ -9,7 +9,8 @@
 namespace marey::pipeline::jobs {
 
 void add_set_rows(Table& table, SpaceNames& names) {
-  table.input_file("set", names.set, "label the markers, frame by frame, by a set that \"marey label learn\" made: set.toml");
+  table.input_file("marker-set", names.set,
+                   "label the markers, frame by frame, by a set that \"marey label learn\" made: set.toml");
   table.input_file("skeleton", names.skeleton,
                    "solve the pose of this skeleton from the labelled markers in each frame: skeleton.toml or .osim, fitted to the "
                    "person (marey solve --write-skeleton)");

@@ -15,9 +15,9 @@ struct SpaceNames {
   std::string labels, set, skeleton;
 };
 
-/// --labels, --set, --skeleton.
+/// --labels, --marker-set, --skeleton.
 void add_name_rows(Table& table, SpaceNames& names);
-/// --set and --skeleton alone.
+/// --marker-set and --skeleton alone.
 void add_set_rows(Table& table, SpaceNames& names);
 
 /// Reads the files into `options`. Throws Error if one cannot be read, or the set and the skeleton have no marker in common.

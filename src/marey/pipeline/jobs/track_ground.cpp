@@ -18,12 +18,12 @@ void check_association(const std::string& name) {
 
 void check_ground(const TrackGround& job) {
   if (job.ground.association == kBramble && (!job.detection.network.empty() || !job.filter.empty() || !job.ground.teams.empty()))
-    throw WrongOption("--associate bramble has its own likelihood and motion model and no appearance; leave out --{}",
+    throw WrongOption("--association bramble has its own likelihood and motion model and no appearance; omit --{}",
                       !job.detection.network.empty() ? "detector"
                       : !job.filter.empty()          ? "filter"
                                                      : "teams");
   if (job.ball && job.options.live)
-    throw WrongOption("{}", "--ball needs the whole recording before it reports the ball; leave out --live or --ball");
+    throw WrongOption("{}", "--ball needs the whole recording before it reports the ball; omit --live or --ball");
 }
 
 /// A margin belongs to the edge of something.
@@ -81,7 +81,7 @@ void add_ground_rows(Table& table, GroundPart& ground) {
       .checked(analyse::parse_teams)
       .needing("ground");
   table
-      .choice("associate", ground.association, {"gnn", "jpda", "mht", std::string(kBramble)},
+      .choice("association", ground.association, {"gnn", "jpda", "mht", std::string(kBramble)},
               "data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks "
               "by particles in the images, without detections")
       .checked(check_association)
@@ -96,7 +96,7 @@ Table table_of(TrackGround& job) {
   table.output_folder("overlay", job.output.overlays, "a folder for such a video of each camera, CAMERA.mp4");
   add_filter_row(table, job.filter);
   table.flag("live", job.options.live, "write each frame's tracks at once; nothing is corrected by later frames");
-  table.flag("steady", job.options.steady,
+  table.flag("stabilise", job.options.stabilise,
              "the camera shakes (wind, steps): stabilise its images first; results are in the pixels of its rest");
   table.group("Options for --targets people");
   add_people_rows(table, job.detection);

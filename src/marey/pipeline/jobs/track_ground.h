@@ -16,7 +16,7 @@ struct GroundPart {
   std::optional<double> margin;
 };
 
-/// --size, --area, --margin, --teams, --associate.
+/// --size, --area, --margin, --teams, --association.
 void add_ground_rows(Table& table, GroundPart& ground);
 
 struct TrackGround {

@@ -1,13 +1,13 @@
 #include "marey/pipeline/jobs/track_image.h"
 
-#include "marey/core/overwriting.h"
+#include "marey/files/overwriting.h"
 #include "marey/filter/usual_motion.h"
 #include "marey/geometry/bspline.h"
 
 namespace marey::pipeline::jobs {
 namespace {
 
-constexpr int kMostControlPoints = 64, kMostLines = 512;
+constexpr int kMaxControlPoints = 64, kMaxLines = 512;
 
 void add_image_rows(Table& table, ImageInput& input) {
   table.input_file("detections", input.camera.detections,
@@ -19,18 +19,19 @@ void add_image_rows(Table& table, ImageInput& input) {
 }
 
 void add_outline_rows(Table& table, TrackPeople& job) {
-  table.flag("outline", job.outline, "track each person's outline too: a closed spline");
+  table.flag("contour", job.outline, "track each person's outline too: a closed spline");
   table
-      .whole("control-points", job.control_points, "N", 3, kMostControlPoints,
+      .whole("control-points", job.control_points, "N", 3, kMaxControlPoints,
              "of each outline (default: as many as its silhouette needs, at most 40)")
-      .needing("outline");
-  table.whole("order", job.order, "N", 2, geometry::SplineWeights::max_order, "of the spline, degree + 1 (default: 4, cubic)")
-      .needing("outline")
+      .needing("contour");
+  table
+      .whole("spline-order", job.order, "N", 2, geometry::SplineWeights::max_order, "of the spline, degree + 1 (default: 4, cubic)")
+      .needing("contour")
       .depending_on({"control-points"});
   table
-      .whole("lines", job.lines, "N", 1, kMostLines,
+      .whole("measurement-lines", job.lines, "N", 1, kMaxLines,
              "measurement lines across each outline, along which it is searched (default: 24)")
-      .needing("outline");
+      .needing("contour");
 }
 
 void add_keypoint_rows(Table& table, TrackPeople& job) {
@@ -45,7 +46,7 @@ track::contour::OutlineOptions outlines_of(const TrackPeople& job) {
   options.control_points = job.control_points;
   if (options.control_points && *options.control_points < options.order)
     throw WrongOption("--control-points {}: a closed spline of order {} has {} to {} of them here", *options.control_points,
-                      options.order, options.order, kMostControlPoints);
+                      options.order, options.order, kMaxControlPoints);
   return options;
 }
 
@@ -57,12 +58,12 @@ void check(const ImageInput& input) {
 void check(const TrackPeople& job) {
   check(job.input);
   if (job.delay && !job.options.live)
-    throw WrongOption("--delay {}: is an option of --live; without it the whole recording is processed before output is written",
+    throw WrongOption("--lag {}: is an option of --live; without it the whole recording is processed before output is written",
                       *job.delay);
-  if (job.options.steady && !job.input.camera.detections.empty())
-    throw WrongOption("{}", "--steady steadies images, and --detections has none; leave it out");
+  if (job.options.stabilise && !job.input.camera.detections.empty())
+    throw WrongOption("{}", "--stabilise steadies images, and --detections has none; leave it out");
   if (!job.masks.empty() && job.detection.without_background)
-    throw WrongOption("{}", "--masks shows the output of the background model; leave out --without-background");
+    throw WrongOption("{}", "--foreground-masks shows the output of the background model; omit --no-background");
 }
 
 }  // namespace
@@ -71,17 +72,17 @@ Table table_of(TrackPeople& job) {
   Table table;
   if (job.keypoints) table.always("targets", "keypoints");
   add_image_rows(table, job.input);
-  table.output_folder("masks", job.masks,
+  table.output_folder("foreground-masks", job.masks,
                       "a new folder for the output of the background model: bin000001.png of the first frame, white on black");
   add_filter_row(table, job.input.filter);
   table.flag("live", job.options.live, "write each frame's tracks at once; nothing is corrected by later frames");
   table
-      .number("delay", job.delay, "s", closed(0, 60),
+      .number("lag", job.delay, "s", closed(0, 60),
               "with --live: use the frames of this duration before each frame's tracks are written (default: 0)")
       .depending_on({"live"});
-  table.flag("steady", job.options.steady,
+  table.flag("stabilise", job.options.stabilise,
              "the camera shakes (wind, steps): stabilise its images first; results are in the pixels of its rest");
-  table.flag("seen-only", job.options.seen_only, "leave out the rows of people who were not detected in that frame");
+  table.flag("measured-only", job.options.observed_only, "omit the rows of people who were not detected in that frame");
   table.group("Options for --targets people");
   add_people_rows(table, job.detection);
   add_outline_rows(table, job);
@@ -89,11 +90,11 @@ Table table_of(TrackPeople& job) {
   return table;
 }
 
-people::PeopleInPictureOptions resolved(const TrackPeople& job) {
+people::ImagePeopleOptions resolved(const TrackPeople& job) {
   check(job);
-  people::PeopleInPictureOptions options = job.options;
-  options.detector = detector_of(job.detection, job.keypoints, job.outline ? "--outline" : "");
-  if (!job.input.filter.empty()) options.tracker.filter = filter::filter_for_people_in_picture(job.input.filter);
+  people::ImagePeopleOptions options = job.options;
+  options.detector = detector_of(job.detection, job.keypoints, job.outline ? "--contour" : "");
+  if (!job.input.filter.empty()) options.tracker.filter = filter::filter_for_people_in_image(job.input.filter);
   if (job.input.own_filter) options.tracker.filter = *job.input.own_filter;
   if (job.keypoints) options.keypoints = keypoints::KeypointOptions{.model = job.model, .every = job.detection.every};
   if (job.outline) options.outlines = outlines_of(job);
@@ -111,13 +112,13 @@ Table table_of(TrackMarkers& job) {
   table.input_file("labels", job.labels,
                    "a text file with one label per line, for the markers of the first frame from left to right");
   add_marker_rows(table, job.detection);
-  table.flag("fit-noise", job.options.fit_noise, "estimate process and measurement noise from the recording");
+  table.flag("estimate-noise", job.options.fit_noise, "estimate process and measurement noise from the recording");
   return table;
 }
 
-markers::MarkersInPictureOptions resolved(const TrackMarkers& job) {
+markers::ImageMarkerOptions resolved(const TrackMarkers& job) {
   check(job.input);
-  markers::MarkersInPictureOptions options = job.options;
+  markers::ImageMarkerOptions options = job.options;
   options.markers = detector_of(job.detection);
   if (!job.labels.empty()) options.tracker.labels = people::read_labels(job.labels);
   if (!job.input.filter.empty()) options.tracker.filter = filter::filter_named(job.input.filter);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "marey/pipeline/jobs/detection_rows.h"
-#include "marey/pipeline/people/track_in_picture.h"
+#include "marey/pipeline/people/track_in_image.h"
 
 namespace marey::pipeline::jobs {
 
@@ -26,23 +26,23 @@ struct TrackPeople {
   bool outline = false;
   std::optional<int> control_points = {}, order = {}, lines = {};
   std::optional<double> delay = {};
-  std::string masks = {};                       ///< a folder; empty: none
-  people::PeopleInPictureOptions options = {};  ///< rows without dependent defaults are bound to these
+  std::string masks = {};                   ///< a folder; empty: none
+  people::ImagePeopleOptions options = {};  ///< rows without dependent defaults are bound to these
 };
 
 Table table_of(TrackPeople& job);
 /// Throws WrongOption for options that exclude each other.
-people::PeopleInPictureOptions resolved(const TrackPeople& job);
+people::ImagePeopleOptions resolved(const TrackPeople& job);
 
 struct TrackMarkers {
   ImageInput input = {};
   MarkerDetection detection = {};
   std::string labels = {};
-  markers::MarkersInPictureOptions options = {};
+  markers::ImageMarkerOptions options = {};
 };
 
 Table table_of(TrackMarkers& job);
 /// Reads the files of labels and of the mask. Throws Error if one cannot be read.
-markers::MarkersInPictureOptions resolved(const TrackMarkers& job);
+markers::ImageMarkerOptions resolved(const TrackMarkers& job);
 
 }  // namespace marey::pipeline::jobs

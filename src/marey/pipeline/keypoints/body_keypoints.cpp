@@ -15,27 +15,28 @@ namespace {
 using detect::keypoints::Body;
 using detect::keypoints::PersonRegion;
 
-constexpr double kNearBox = 0.5;      // of a box's longer side: how far from its centre a region may lie that was found before
-constexpr double kLeastSide = 0.6;    // of a region about the box, and ...
-constexpr double kMostSide = 2;       // ... the most: outside them the box says where to look
-constexpr double kSameBody = 0.06;    // of its height: two whose points lie so near each other are one
-constexpr double kInBox = 0.15;       // intersection over union of points' hull and box, at least, of the person that is meant
-constexpr double kLongestBridge = 1;  // s between two pictures in which a point was found
-constexpr double kWander = 0.6;       // of a person's height a second: how far a point goes another way than straight
-constexpr double kForgotten = 10;     // s
+constexpr double kNearBox = 0.5;    // of a box's longer side: how far from its centre a region may lie that was found before
+constexpr double kMinSide = 0.6;    // of a region about the box, and ...
+constexpr double kMaxSide = 2;      // ... the most: outside them the box says where to look
+constexpr double kSameBody = 0.06;  // of its height: two whose points lie so near each other are one
+constexpr double kInBox = 0.15;     // intersection over union of points' hull and box, at least, of the person that is meant
+constexpr double kMaxBridge = 1;    // s between two images in which a point was found
+constexpr double kWander = 0.6;     // of a person's height a second: how far a point goes another way than straight
+constexpr double kForgotten = 10;   // s
 
-/// Whether somebody found before may still be meant by the box.
+/// Whether a person found before may still be meant by the box.
 bool fits(const PersonRegion& region, const Box& box) {
   const double longer = std::max(box.width, box.height);
   const double about = detect::keypoints::region_of(box).side;
-  return (region.centre - box.centre()).cwiseAbs().maxCoeff() < kNearBox * longer && region.side > kLeastSide * about &&
-         region.side < kMostSide * about;
+  return (region.centre - box.centre()).cwiseAbs().maxCoeff() < kNearBox * longer && region.side > kMinSide * about &&
+         region.side < kMaxSide * about;
 }
 
 Box hull_of(const Keypoints<2>& keypoints) {
-  Vector<2> least = keypoints.points.front()->position, most = least;
-  for (const auto& point : keypoints.points) least = least.cwiseMin(point->position), most = most.cwiseMax(point->position);
-  return {least.x(), least.y(), most.x() - least.x(), most.y() - least.y()};
+  Vector<2> minimum = keypoints.points.front()->position, maximum = minimum;
+  for (const auto& point : keypoints.points)
+    minimum = minimum.cwiseMin(point->position), maximum = maximum.cwiseMax(point->position);
+  return {minimum.x(), minimum.y(), maximum.x() - minimum.x(), maximum.y() - minimum.y()};
 }
 
 double height_of(const Keypoints<2>& keypoints) {
@@ -51,19 +52,19 @@ double apart(const Keypoints<2>& a, const Keypoints<2>& b) {
 }
 
 /// Points on the straight line through those of two times, at `share` of the way (more than 1: beyond).
-std::shared_ptr<const Keypoints<2>> on_the_way(const Keypoints<2>& from, const Keypoints<2>& to, double share,
-                                               double from_nearest_s) {
+std::shared_ptr<const Keypoints<2>> en_route(const Keypoints<2>& from, const Keypoints<2>& to, double fraction,
+                                             double from_nearest_s) {
   auto result = std::make_shared<Keypoints<2>>(to);
   const double wander = kWander * height_of(to) * from_nearest_s;
   for (std::size_t i = 0; i < to.points.size(); ++i) {
     const Keypoint<2>&a = *from.points[i], &b = *to.points[i];
     Keypoint<2>& point = *result->points[i];
-    point.position = (1 - share) * a.position + share * b.position;
-    point.covariance =
-        (1 - share) * (1 - share) * a.covariance + share * share * b.covariance + Matrix<2>::Identity() * (wander * wander);
-    if (share > 1) continue;
-    point.visibility = (1 - share) * a.visibility + share * b.visibility;
-    point.presence = (1 - share) * a.presence + share * b.presence;
+    point.position = (1 - fraction) * a.position + fraction * b.position;
+    point.covariance = (1 - fraction) * (1 - fraction) * a.covariance + fraction * fraction * b.covariance +
+                       Matrix<2>::Identity() * (wander * wander);
+    if (fraction > 1) continue;
+    point.visibility = (1 - fraction) * a.visibility + fraction * b.visibility;
+    point.presence = (1 - fraction) * a.presence + fraction * b.presence;
   }
   result->presence = std::min(from.presence, to.presence);
   return result;
@@ -82,14 +83,14 @@ BodyKeypoints::Person& BodyKeypoints::person_of(const Sample& sample, Timestamp 
   return person;
 }
 
-void BodyKeypoints::add(Instant instant, const Picture& picture) {
-  const bool looked = frames_++ % options_.every == 0 && !picture.empty();
+void BodyKeypoints::add(Instant instant, const Image& image) {
+  const bool inspected = frames_++ % options_.every == 0 && !image.empty();
   for (const Sample& sample : instant.samples) person_of(sample, instant.time);
-  if (looked) look(instant, picture);
-  waiting_.push_back({std::move(instant), looked});
+  if (inspected) inspect(instant, image);
+  waiting_.push_back({std::move(instant), inspected});
 }
 
-void BodyKeypoints::look(const Instant& instant, const Picture& picture) {
+void BodyKeypoints::inspect(const Instant& instant, const Image& image) {
   const auto begin = std::chrono::steady_clock::now();
   std::vector<const Sample*> samples;
   std::vector<PersonRegion> regions;
@@ -110,7 +111,7 @@ void BodyKeypoints::look(const Instant& instant, const Picture& picture) {
     regions.push_back(region);
   }
   if (samples.empty()) return;
-  const cv::Mat bgr = picture.bgr();
+  const cv::Mat bgr = image.bgr();
   std::vector<Body> bodies = network_.find(bgr, regions);
   // Seen in a region that fits, points are surer by far: once more, where the first was only a box.
   std::erase_if(new_ones, [&](std::size_t i) {
@@ -126,7 +127,7 @@ void BodyKeypoints::look(const Instant& instant, const Picture& picture) {
   times_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
 }
 
-/// Nobody is found twice: of two who have the same points, one keeps them, whose box they fill better.
+/// No person is found twice: of two who have the same points, one keeps them, whose box they fill better.
 void BodyKeypoints::take_in(std::span<const Sample* const> samples, std::span<const Body> bodies, Timestamp now) {
   std::vector<double> fit(samples.size(), 0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -146,7 +147,9 @@ void BodyKeypoints::take_in(std::span<const Sample* const> samples, std::span<co
       person.region.reset();
       continue;
     }
-    const Timestamp before = !person.waiting.empty() ? person.waiting.back() : !person.seen.empty() ? person.seen.back().time : now;
+    const Timestamp before = !person.waiting.empty()    ? person.waiting.back()
+                             : !person.detected.empty() ? person.detected.back().time
+                                                        : now;
     person.swaps.add(bodies[i].keypoints, seconds(now - before));
     person.waiting.push_back(now);
     person.region = bodies[i].next;
@@ -156,29 +159,29 @@ void BodyKeypoints::take_in(std::span<const Sample* const> samples, std::span<co
 }
 
 /// What is known of a person's points at a time, which grows from call to call.
-std::shared_ptr<const Keypoints<2>> BodyKeypoints::at(Person& person, Timestamp time, bool looked) const {
-  while (!person.waiting.empty() && (person.seen.empty() || person.seen.back().time < time)) {
-    person.seen.push_back({person.waiting.front(), std::make_shared<Keypoints<2>>(person.swaps.take())});
+std::shared_ptr<const Keypoints<2>> BodyKeypoints::at(Person& person, Timestamp time, bool inspected) const {
+  while (!person.waiting.empty() && (person.detected.empty() || person.detected.back().time < time)) {
+    person.detected.push_back({person.waiting.front(), std::make_shared<Keypoints<2>>(person.swaps.take())});
     person.waiting.pop_front();
   }
-  const auto after = std::find_if(person.seen.begin(), person.seen.end(), [&](const Seen& seen) { return seen.time >= time; });
-  const auto known = static_cast<std::size_t>(after - person.seen.begin());  // before `time`
+  const auto after =
+      std::find_if(person.detected.begin(), person.detected.end(), [&](const Detected& detected) { return detected.time >= time; });
+  const auto known = static_cast<std::size_t>(after - person.detected.begin());  // before `time`
   std::shared_ptr<const Keypoints<2>> result;
-  if (after != person.seen.end() && after->time == time) {
+  if (after != person.detected.end() && after->time == time) {
     result = after->keypoints;
-  } else if (!looked && known > 0 && after != person.seen.end()) {
-    const Seen& from = person.seen[known - 1];
+  } else if (!inspected && known > 0 && after != person.detected.end()) {
+    const Detected& from = person.detected[known - 1];
     const double whole = seconds(after->time - from.time), part = seconds(time - from.time);
-    if (whole <= kLongestBridge)
-      result = on_the_way(*from.keypoints, *after->keypoints, part / whole, std::min(part, whole - part));
-  } else if (!looked && known > 0) {
-    const Seen& last = person.seen[known - 1];
-    const Seen& earlier = person.seen[known > 1 ? known - 2 : 0];
+    if (whole <= kMaxBridge) result = en_route(*from.keypoints, *after->keypoints, part / whole, std::min(part, whole - part));
+  } else if (!inspected && known > 0) {
+    const Detected& last = person.detected[known - 1];
+    const Detected& earlier = person.detected[known > 1 ? known - 2 : 0];
     const double step = seconds(last.time - earlier.time), part = seconds(time - last.time);
-    if (part <= kLongestBridge)
-      result = on_the_way(*earlier.keypoints, *last.keypoints, step > 0 && step <= kLongestBridge ? 1 + part / step : 1, part);
+    if (part <= kMaxBridge)
+      result = en_route(*earlier.keypoints, *last.keypoints, step > 0 && step <= kMaxBridge ? 1 + part / step : 1, part);
   }
-  while (known > 2 && person.seen.size() > 2 && person.seen[1].time < time) person.seen.pop_front();
+  while (known > 2 && person.detected.size() > 2 && person.detected[1].time < time) person.detected.pop_front();
   return result;
 }
 
@@ -187,18 +190,18 @@ std::optional<Instant> BodyKeypoints::next(bool ended) {
   const Timestamp time = waiting_.front().instant.time;
   if (!live_ && !ended) {
     if (seconds(waiting_.back().instant.time - time) < options_.lag_s) return std::nullopt;
-    const bool later_look = std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& one) { return one.looked; });
+    const bool later_look = std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& one) { return one.inspected; });
     if (!later_look) return std::nullopt;  // what lies between two looks is known after the second
   }
   Instant instant = std::move(waiting_.front().instant);
-  const bool looked = waiting_.front().looked;
+  const bool inspected = waiting_.front().inspected;
   waiting_.pop_front();
   std::erase_if(instant.samples, [&](Sample& sample) {
     Person& person = people_.at(sample.track);
-    const bool nobody = seconds(time - person.last_present) > options_.patience_s;
-    if (!nobody) sample.keypoints = at(person, time, looked);
-    left_out_ += nobody;
-    return nobody;
+    const bool no_person = seconds(time - person.last_present) > options_.patience_s;
+    if (!no_person) sample.keypoints = at(person, time, inspected);
+    excluded_ += no_person;
+    return no_person;
   });
   const Timestamp newest = waiting_.empty() ? time : waiting_.back().instant.time;
   std::erase_if(people_, [&](const auto& entry) { return seconds(newest - entry.second.last_sample) > kForgotten; });

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "marey/core/image.h"
 #include "marey/core/instant.h"
-#include "marey/core/picture.h"
 #include "marey/core/stage_times.h"
 #include "marey/detect/keypoints/landmark_network.h"
 #include "marey/detect/keypoints/limb_swaps.h"
@@ -20,29 +20,29 @@ struct KeypointOptions {
   std::string model = "full";  ///< the landmark network: lite, full, heavy, or an ONNX file
   int every = 1;               ///< it looks at every n-th frame
   double lag_s = 0.5;          ///< that later frames have a say in which side is left; none where `live`
-  double sure = 0.5;           ///< presence from which on there is somebody
-  double patience_s = 2;       ///< that a person is kept in whom the network sees nobody
+  double sure = 0.5;           ///< presence from which on there is a person
+  double patience_s = 2;       ///< that a person is kept in whom the network sees no person
 };
 
 /// Keypoints of people who are tracked with boxes: a region for each from what was found before, else from the box, the network,
-/// left and right put right over time. Between the frames that the network looks at points are interpolated, live carried on as
+/// left and right corrected over time. Between the frames that the network looks at points are interpolated, live carried on as
 /// they moved. Who is not seen by it for long is no person, and leaves the instants.
 class BodyKeypoints {
  public:
-  /// Throws Error where the network is not usable.
+  /// Throws Error if the network is not usable.
   BodyKeypoints(const KeypointOptions& options, bool live);
 
-  /// The next instant, px, and the picture that it is of.
-  void add(Instant instant, const Picture& picture);
+  /// The next instant, px, and the image that it is of.
+  void add(Instant instant, const Image& image);
   /// The next one that is due, with keypoints; all that wait where it is `ended`.
   std::optional<Instant> next(bool ended = false);
 
-  std::int64_t left_out() const { return left_out_; }  ///< samples of those who are no people
-  const StageTimes& times() const { return times_; }   ///< of the network, a picture each
+  std::int64_t excluded() const { return excluded_; }  ///< samples of those who are not people
+  const StageTimes& times() const { return times_; }   ///< of the network, an image each
 
  private:
   /// What the network saw at one time.
-  struct Seen {
+  struct Detected {
     Timestamp time{};
     std::shared_ptr<const Keypoints<2>> keypoints;
   };
@@ -50,28 +50,28 @@ class BodyKeypoints {
     explicit Person(const KeypointSet& set) : swaps(set) {}
 
     Timestamp first{}, last_present{}, last_sample{};
-    std::optional<detect::keypoints::PersonRegion> region;  // where they are to be looked for next, if they were found last
+    std::optional<detect::keypoints::PersonRegion> region;  // where they are to be searched for next, if they were found last
     Box box;                                                // where they were then
     detect::keypoints::LimbSwaps swaps;
     std::deque<Timestamp> waiting;  // the times of those in `swaps`
-    std::deque<Seen> seen;          // with their sides right; the last before what is due, and those after it
+    std::deque<Detected> detected;  // with their sides right; the last before what is due, and those after it
   };
   struct Waiting {
     Instant instant;
-    bool looked = false;
+    bool inspected = false;
   };
 
   Person& person_of(const Sample& sample, Timestamp now);
-  void look(const Instant& instant, const Picture& picture);
+  void inspect(const Instant& instant, const Image& image);
   void take_in(std::span<const Sample* const> samples, std::span<const detect::keypoints::Body> bodies, Timestamp now);
-  std::shared_ptr<const Keypoints<2>> at(Person& person, Timestamp time, bool looked) const;
+  std::shared_ptr<const Keypoints<2>> at(Person& person, Timestamp time, bool inspected) const;
 
   KeypointOptions options_;
   bool live_;
   detect::keypoints::LandmarkNetwork network_;
   std::map<TrackId, Person> people_;
   std::deque<Waiting> waiting_;
-  std::int64_t frames_ = 0, left_out_ = 0;
+  std::int64_t frames_ = 0, excluded_ = 0;
   StageTimes times_;
 };
 

@@ -11,8 +11,8 @@
 #include "marey/detect/keypoints/blazepose.h"
 #include "marey/detect/keypoints/model_folder.h"
 #include "marey/pipeline/keypoints/keypoint_stage.h"
-#include "marey/pipeline/people/people_in_picture.h"
-#include "marey/pipeline/people/track_in_picture.h"
+#include "marey/pipeline/people/image_stage.h"
+#include "marey/pipeline/people/track_in_image.h"
 
 #include "support/data.h"
 #include "support/files.h"
@@ -38,14 +38,14 @@ struct Result {
   corridor::Summary summary;
 };
 
-Result keypoints_of_film(const std::string& film, people::PeopleInPictureOptions options,
-                         KeypointOptions keypoints = {.model = "lite"}) {
+Result keypoints_of_video(const std::string& video, people::ImagePeopleOptions options,
+                          KeypointOptions keypoints = {.model = "lite"}) {
   options.keypoints = keypoints;
   RigCamera camera;
-  camera.source = film;
+  camera.source = video;
   camera.rate_hz = 7;
   corridor::Feed feed(camera, CameraId{});
-  const auto stage = people::people_in_picture(feed, options);
+  const auto stage = people::people_in_image(feed, options);
   Result result;
   corridor::Sinks sinks;
   sinks.add(std::make_unique<RecordingSink>(result.recording));
@@ -73,12 +73,12 @@ Anatomy anatomy_of(const Recording& recording) {
       const Sample sample = track.sample(row);
       if (!sample.keypoints || !sample.box) continue;
       ++anatomy.bodies;
-      const auto share = [&](std::size_t point) {
+      const auto fraction = [&](std::size_t point) {
         return (sample.keypoints->points[point]->position.y() - sample.box->top) / sample.box->height;
       };
-      anatomy.noses += share(kNose) > -0.1 && share(kNose) < 0.35;
+      anatomy.noses += fraction(kNose) > -0.1 && fraction(kNose) < 0.35;
       anatomy.ankles +=
-          share(kLeftAnkle) > 0.7 && share(kLeftAnkle) < 1.15 && share(kRightAnkle) > 0.7 && share(kRightAnkle) < 1.15;
+          fraction(kLeftAnkle) > 0.7 && fraction(kLeftAnkle) < 1.15 && fraction(kRightAnkle) > 0.7 && fraction(kRightAnkle) < 1.15;
     }
   }
   return anatomy;
@@ -87,7 +87,7 @@ Anatomy anatomy_of(const Recording& recording) {
 TEST(BodyKeypoints, OfPeopleInAStreet) {
   SKIP_WITHOUT_MODELS();
   const test::TemporaryFolder folder;
-  const Result result = keypoints_of_film(street(folder, 40), {});
+  const Result result = keypoints_of_video(street(folder, 40), {});
   EXPECT_EQ(result.recording.header.keypoints, detect::keypoints::blazepose());
   EXPECT_EQ(result.summary.frames, 40);
   const Anatomy anatomy = anatomy_of(result.recording);
@@ -100,9 +100,9 @@ TEST(BodyKeypoints, OfPeopleInAStreet) {
 TEST(BodyKeypoints, LiveTellsEachFrameAsItComes) {
   SKIP_WITHOUT_MODELS();
   const test::TemporaryFolder folder;
-  people::PeopleInPictureOptions options;
+  people::ImagePeopleOptions options;
   options.live = true;
-  const Result result = keypoints_of_film(street(folder, 40), options);
+  const Result result = keypoints_of_video(street(folder, 40), options);
   const Anatomy anatomy = anatomy_of(result.recording);
   EXPECT_GT(anatomy.bodies, 50);
   EXPECT_GT(anatomy.noses, 0.85 * anatomy.bodies);
@@ -111,9 +111,9 @@ TEST(BodyKeypoints, LiveTellsEachFrameAsItComes) {
 TEST(BodyKeypoints, BetweenTheFramesThatAreLookedAtPointsGoOn) {
   SKIP_WITHOUT_MODELS();
   const test::TemporaryFolder folder;
-  const std::string film = street(folder, 30);
-  const Recording every = keypoints_of_film(film, {}).recording;
-  const Recording third = keypoints_of_film(film, {}, {.model = "lite", .every = 3}).recording;
+  const std::string video = street(folder, 30);
+  const Recording every = keypoints_of_video(video, {}).recording;
+  const Recording third = keypoints_of_video(video, {}, {.model = "lite", .every = 3}).recording;
   ASSERT_EQ(third.tracks().size(), every.tracks().size());
   int rows = 0, with = 0, near = 0;
   for (std::size_t t = 0; t < every.tracks().size(); ++t) {
@@ -138,25 +138,25 @@ TEST(BodyKeypoints, AFilmWithoutPeopleHasNone) {
       "-f lavfi -i color=0x90a080:size=320x240:rate=7 -f lavfi -i color=0x303040:size=24x60:rate=7 -filter_complex "
       "\"[0][1]overlay=x='-20+15*t':y=60,noise=alls=4:allf=t:all_seed=7\" -t 20 -c:v mpeg4 -q:v 3 " +
       folder / "box.mp4");
-  const Result result = keypoints_of_film(folder / "box.mp4", {});
+  const Result result = keypoints_of_video(folder / "box.mp4", {});
   EXPECT_EQ(result.summary.keypoints, 0);
-  EXPECT_GT(result.summary.left_out.at("nobody"), 20) << "a dark plate that moves is a person no longer than its patience";
+  EXPECT_GT(result.summary.excluded.at("nobody"), 20) << "a dark plate that moves is a person no longer than its patience";
 }
 
-TEST(BodyKeypoints, WhatBringsNoPicturesIsRefused) {
+TEST(BodyKeypoints, RejectsSourcesWithoutImages) {
   SKIP_WITHOUT_MODELS();
   const test::TemporaryFolder folder;
   test::write_file(folder / "det.txt", "1,-1,50,40,40,100,0.9\n2,-1,53,40,40,100,0.9\n");
   RigCamera camera;
   camera.detections = folder / "det.txt";
   camera.rate_hz = 25;
-  people::PeopleInPictureOptions options;
+  people::ImagePeopleOptions options;
   options.keypoints = KeypointOptions{.model = "lite"};
   try {
     people::track_people(camera, {.tracks = folder / "out.csv"}, options);
-    ADD_FAILURE() << "keypoints without pictures";
+    ADD_FAILURE() << "keypoints without images";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("keypoints are looked for in pictures"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("keypoints are searched for in images"), std::string::npos) << error.what();
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out.csv"));
 }

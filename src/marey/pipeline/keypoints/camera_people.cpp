@@ -50,13 +50,13 @@ std::optional<double> CameraPeople::search_due(Timestamp now, bool full) const {
   if (!searched_) return options_.search_s;
   if (full) return std::nullopt;
   const double ago = seconds(now - *searched_);
-  const double due = wanted_ || known_.empty() ? options_.retry_s : options_.search_s;
+  const double due = required_ || known_.empty() ? options_.retry_s : options_.search_s;
   return ago >= due ? std::optional(ago - due) : std::nullopt;
 }
 
 void CameraPeople::searched(std::span<const Box> boxes, Timestamp now) {
   searched_ = now;
-  wanted_ = false;
+  required_ = false;
   for (const Box& box : boxes) {
     if (!box.empty()) propose(detect::keypoints::region_of(box));
   }
@@ -87,29 +87,29 @@ void CameraPeople::take(std::span<const Body> bodies, Timestamp now) {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     Known& known = known_[i];
     const Body& body = bodies[i];
-    if (known.looks++ == 0) known.confirmed = now;
-    const bool first = !known.seen.has_value();
+    if (known.appearances++ == 0) known.confirmed = now;
+    const bool first = !known.detected.has_value();
     if (body.keypoints.presence < options_.presence || (!first && !continues(known.region, body.next, options_))) {
       known.ended = true;
       continue;
     }
     known.body = body.keypoints;
     if (is_complete(body.keypoints)) {
-      known.swaps.add(body.keypoints, known.seen ? seconds(now - *known.seen) : 0);
+      known.swaps.add(body.keypoints, known.detected ? seconds(now - *known.detected) : 0);
       known.body = known.swaps.take();
     }
-    known.seen = now;
+    known.detected = now;
     known.region = body.next;
     known.ended = seconds(now - known.confirmed) > options_.unplaced_s;
   }
   end_doubles();
   const auto gone = std::erase_if(known_, [](const Known& known) { return known.ended; });
   ended_ += static_cast<std::int64_t>(gone);
-  wanted_ |= gone > 0;
+  required_ |= gone > 0;
   people_.clear();
   of_people_.clear();
   for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (known_[i].looks < options_.min_looks) continue;
+    if (known_[i].appearances < options_.min_looks) continue;
     people_.push_back(known_[i].body);
     of_people_.push_back(i);
   }
@@ -125,7 +125,7 @@ void CameraPeople::end_doubles() {
   }
 }
 
-void CameraPeople::placed(std::size_t index, Timestamp now) {
+void CameraPeople::located(std::size_t index, Timestamp now) {
   known_[of_people_[index]].confirmed = now;
 }
 

@@ -35,7 +35,7 @@ class CameraPeople {
   /// How urgently the detector should run in the image of `now`: seconds overdue; nothing if it need not. `full`: all people that
   /// are wanted are in the image.
   std::optional<double> search_due(Timestamp now, bool full) const;
-  /// The detector ran: regions of people who are in none yet are looked at from the next `regions` on.
+  /// The detector ran: regions of people who are in none yet are inspected from the next `regions` on.
   void searched(std::span<const Box> boxes, Timestamp now);
   /// A person that other cameras see should be here. Searched at most every `expect_s` until they are seen.
   void expect(const detect::keypoints::PersonRegion& region, Timestamp now);
@@ -48,7 +48,7 @@ class CameraPeople {
   /// The people of the last image, those that the network saw in `min_looks` images at least; `placed` says which of them other
   /// cameras confirm.
   const std::vector<Keypoints<2>>& people() const { return people_; }
-  void placed(std::size_t index, Timestamp now);
+  void located(std::size_t index, Timestamp now);
 
   std::size_t size() const { return known_.size(); }
   std::int64_t ended() const { return ended_; }  ///< regions that ended, so far
@@ -60,9 +60,9 @@ class CameraPeople {
     detect::keypoints::PersonRegion region;
     detect::keypoints::LimbSwaps swaps;
     Keypoints<2> body;
-    std::optional<Timestamp> seen;  // last
-    Timestamp confirmed{};          // by another camera, last, or else when it began
-    int looks = 0;
+    std::optional<Timestamp> detected;  // last
+    Timestamp confirmed{};              // by another camera, last, or else when it began
+    int appearances = 0;
     bool ended = false;
   };
 
@@ -77,7 +77,7 @@ class CameraPeople {
   std::vector<Keypoints<2>> people_;
   std::vector<std::size_t> of_people_;  // index into `known_`
   std::optional<Timestamp> searched_, expected_;
-  bool wanted_ = true;  // a region has ended since the detector ran
+  bool required_ = true;  // a region has ended since the detector ran
   std::int64_t ended_ = 0;
 };
 

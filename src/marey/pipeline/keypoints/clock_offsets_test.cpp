@@ -9,10 +9,10 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
-std::vector<rk::CameraFrames> clock_frames_of(const SeenRoom& room) {
+std::vector<rk::CameraFrames> clock_frames_of(const ObservedRoom& room) {
   std::vector<rk::CameraFrames> frames(room.cameras.size());
   for (std::size_t c = 0; c < frames.size(); ++c)
-    frames[c] = {.camera = &*room.cameras[c], .people = &room.seen[c].frames, .rate_hz = room.scene.options().rate_hz};
+    frames[c] = {.camera = &*room.cameras[c], .people = &room.detected[c].frames, .rate_hz = room.scene.options().rate_hz};
   return frames;
 }
 
@@ -25,11 +25,11 @@ TEST(ClockOffsets, AreFoundByMotionAndSayHowSureTheyAre) {
     options.actors = seed == 3 ? 3 : 1;
     options.rate_hz = 50;
     options.frames = 300;
-    options.picture = {1080, 1920};
+    options.image = {1080, 1920};
     options.zoom = 1.3;
     options.offset_s = 0.2;
     options.seed = seed;
-    const SeenRoom room(options, {});
+    const ObservedRoom room(options, {});
     const auto found = rk::find_clock_offsets(clock_frames_of(room));
     EXPECT_FALSE(found[0]) << "the first one is what the others are against";
     for (std::size_t c = 1; c < 4; ++c) {
@@ -49,9 +49,9 @@ TEST(ClockOffsets, AreNotSaidWhereNobodyMoves) {
   options.markers = 4;
   options.rate_hz = 50;
   options.frames = 150;
-  options.picture = {1080, 1920};
+  options.image = {1080, 1920};
   options.zoom = 1.3;
-  const SeenRoom room(options, {});
+  const ObservedRoom room(options, {});
   for (const auto& offset : rk::find_clock_offsets(clock_frames_of(room))) EXPECT_FALSE(offset);
 }
 

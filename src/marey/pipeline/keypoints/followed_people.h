@@ -16,9 +16,9 @@ namespace marey::pipeline::keypoints {
 
 struct FollowedPeople {
   std::map<int, reconstruct::keypoints::PersonTrack> tracks;
-  std::int64_t seen = 0, placed = 0;  ///< people in images
-  std::vector<double> squares;        ///< of the triangulated points, per degree of freedom
-  std::vector<double> times_ms;       ///< of each instant
+  std::int64_t detected = 0, located = 0;  ///< people in images
+  std::vector<double> squares;             ///< of the triangulated points, per degree of freedom
+  std::vector<double> times_ms;            ///< of each instant
 };
 
 using CalibratedCameras = std::vector<std::optional<Camera>>;  ///< nothing: it has no keypoints

@@ -34,12 +34,12 @@ void read_camera(RigCamera& camera, const std::string& set, std::optional<double
   if (read.sequence.size) fit_to_size(camera, *read.sequence.size);
   const auto rate = camera.rate_hz ? camera.rate_hz : rate_hz ? rate_hz : read.sequence.rate_hz;
   assumed |= !rate;
-  read.rate_hz = rate.value_or(kUsualRate);
-  if (read.sequence.frames.empty()) warnings.push_back(fmt::format("{}: nobody is in any frame", path));
+  read.rate_hz = rate.value_or(kDefaultRate);
+  if (read.sequence.frames.empty()) warnings.push_back(fmt::format("{}: no person is in any frame", path));
   into = std::move(read);
 }
 
-/// Throws Error where they cannot be of one recording; warns where frames are missing.
+/// Throws Error if they cannot be of one recording; warns where frames are missing.
 void check_together(const std::vector<const KeypointSequence*>& read, bool one_camera, std::vector<std::string>& warnings) {
   if (read.empty() || (read.size() < 2 && !one_camera))
     throw Error("{} with keypoints; two are needed: CAMERA=FOLDER for each",
@@ -49,11 +49,11 @@ void check_together(const std::vector<const KeypointSequence*>& read, bool one_c
       throw Error("{}: has the keypoint set {}, and {} has {}; all cameras must have one set", one->from, one->set.name,
                   read[0]->from, read[0]->set.name);
   }
-  const auto [least, most] = std::minmax_element(read.begin(), read.end(),
-                                                 [](const auto* a, const auto* b) { return a->frames.size() < b->frames.size(); });
-  if ((*least)->frames.size() < (*most)->frames.size())
-    warnings.push_back(fmt::format("{}: has {} frames, and {} has {}; where one camera has none the others go on without it",
-                                   (*least)->from, (*least)->frames.size(), (*most)->from, (*most)->frames.size()));
+  const auto [minimum, maximum] = std::minmax_element(
+      read.begin(), read.end(), [](const auto* a, const auto* b) { return a->frames.size() < b->frames.size(); });
+  if ((*minimum)->frames.size() < (*maximum)->frames.size())
+    warnings.push_back(fmt::format("{}: has {} frames, and {} has {}; where one camera has none the others continue without it",
+                                   (*minimum)->from, (*minimum)->frames.size(), (*maximum)->from, (*maximum)->frames.size()));
 }
 
 }  // namespace
@@ -76,8 +76,9 @@ std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const
       std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
   check_together(read, calibrated == 1, warnings);
   if (assumed)
-    warnings.push_back(fmt::format(
-        "neither the rig nor the keypoints say how many frames there are in a second: {:g} are assumed; give --rate", kUsualRate));
+    warnings.push_back(
+        fmt::format("neither the rig nor the keypoints say how many frames there are in a second: {:g} are assumed; give --rate",
+                    kDefaultRate));
   return cameras;
 }
 

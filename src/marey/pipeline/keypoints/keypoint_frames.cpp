@@ -7,8 +7,8 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
-constexpr double kSameMoment = 0.02;   // of a frame
-constexpr double kSamePersonPx = 0.3;  // mean distance of points from frame to frame, of the person's extent
+constexpr double kSameTimeStep = 0.02;  // of a frame
+constexpr double kSamePersonPx = 0.3;   // mean distance of points from frame to frame, of the person's extent
 
 double extent_of(const Keypoints<2>& person) {
   Vector<2> low = Vector<2>::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -32,15 +32,15 @@ std::optional<double> distance_between(const Keypoints<2>& a, const Keypoints<2>
   return sum / count;
 }
 
-Keypoints<2> blended(const Keypoints<2>& earlier, const Keypoints<2>& later, double share) {
-  Keypoints<2> person = share < 0.5 ? earlier : later;
+Keypoints<2> blended(const Keypoints<2>& earlier, const Keypoints<2>& later, double fraction) {
+  Keypoints<2> person = fraction < 0.5 ? earlier : later;
   for (std::size_t i = 0; i < person.points.size(); ++i) {
     if (!earlier.points[i] || !later.points[i]) continue;
     const Keypoint<2>&a = *earlier.points[i], &b = *later.points[i];
     Keypoint<2>& point = *person.points[i];
-    point.position = (1 - share) * a.position + share * b.position;
-    point.covariance = (1 - share) * a.covariance + share * b.covariance;
-    point.visibility = (1 - share) * a.visibility + share * b.visibility;
+    point.position = (1 - fraction) * a.position + fraction * b.position;
+    point.covariance = (1 - fraction) * a.covariance + fraction * b.covariance;
+    point.visibility = (1 - fraction) * a.visibility + fraction * b.visibility;
   }
   return person;
 }
@@ -48,7 +48,7 @@ Keypoints<2> blended(const Keypoints<2>& earlier, const Keypoints<2>& later, dou
 }  // namespace
 
 std::vector<Keypoints<2>> between_frames(const std::vector<Keypoints<2>>& earlier, const std::vector<Keypoints<2>>& later,
-                                         double share) {
+                                         double fraction) {
   std::vector<Keypoints<2>> people;
   std::vector<char> taken(later.size(), 0);
   for (const Keypoints<2>& person : earlier) {
@@ -62,19 +62,19 @@ std::vector<Keypoints<2>> between_frames(const std::vector<Keypoints<2>>& earlie
     }
     if (same < later.size()) {
       taken[same] = 1;
-      people.push_back(blended(person, later[same], share));
-    } else if (share < 0.5) {
+      people.push_back(blended(person, later[same], fraction));
+    } else if (fraction < 0.5) {
       people.push_back(person);
     }
   }
   for (std::size_t j = 0; j < later.size(); ++j) {
-    if (taken[j] == 0 && share >= 0.5) people.push_back(later[j]);
+    if (taken[j] == 0 && fraction >= 0.5) people.push_back(later[j]);
   }
   return people;
 }
 
 KeypointFrames::KeypointFrames(const std::vector<std::optional<KeypointCamera>>& cameras) : cameras_(cameras.size()) {
-  static const std::vector<Keypoints<2>> nobody;
+  static const std::vector<Keypoints<2>> no_person;
   std::vector<double> firsts, lasts;
   for (const auto& camera : cameras) {
     if (!camera || camera->sequence.frames.empty()) continue;
@@ -89,10 +89,10 @@ KeypointFrames::KeypointFrames(const std::vector<std::optional<KeypointCamera>>&
   // On the first camera's frames, from the second camera's beginning to the last but one's end.
   const auto first =
       std::find_if(cameras.begin(), cameras.end(), [](const auto& camera) { return camera && !camera->sequence.frames.empty(); });
-  first_s_ = (*first)->first_s() + std::ceil((firsts[second] - (*first)->first_s()) * rate_hz_ - kSameMoment) / rate_hz_;
-  const double count = std::floor((lasts[second] - first_s_) * rate_hz_ + kSameMoment) + 1;
+  first_s_ = (*first)->first_s() + std::ceil((firsts[second] - (*first)->first_s()) * rate_hz_ - kSameTimeStep) / rate_hz_;
+  const double count = std::floor((lasts[second] - first_s_) * rate_hz_ + kSameTimeStep) + 1;
   size_ = count > 0 ? static_cast<std::size_t>(count) : 0;
-  people_.assign(size_ * cameras_, &nobody);
+  people_.assign(size_ * cameras_, &no_person);
   for (std::size_t instant = 0; instant < size_; ++instant) {
     for (std::size_t c = 0; c < cameras_; ++c) {
       if (!cameras[c]) continue;
@@ -101,7 +101,7 @@ KeypointFrames::KeypointFrames(const std::vector<std::optional<KeypointCamera>>&
       if (nearest < 0 || nearest >= static_cast<double>(frames.size())) continue;
       const auto& now = frames[static_cast<std::size_t>(nearest)];
       people_[instant * cameras_ + c] = &now;
-      if (std::abs(at - nearest) < kSameMoment) continue;
+      if (std::abs(at - nearest) < kSameTimeStep) continue;
       const double begin = std::floor(at);
       if (begin < 0 || begin + 1 >= static_cast<double>(frames.size())) continue;
       const auto k = static_cast<std::size_t>(begin);

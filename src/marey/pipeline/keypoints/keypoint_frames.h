@@ -1,4 +1,4 @@
-// What the cameras' keypoint files show at one moment of the rig's clock.
+// What the cameras' keypoint files show at one instant of the rig's clock.
 #pragma once
 
 #include <deque>
@@ -20,16 +20,16 @@ struct KeypointCamera {
   double last_s() const { return offset_s + (static_cast<double>(sequence.frames.size()) - 1) / rate_hz; }
 };
 
-/// The keypoints of people in one image, brought to a moment between two frames: each point on the straight way between the two
+/// The keypoints of people in one image, brought to an instant between two frames: each point on the straight way between the two
 /// where both show it, else as the nearer one has it. People are the same whose points lie nearest to each other. `share` in [0, 1]
 /// of the way from the earlier to the later frame.
 std::vector<Keypoints<2>> between_frames(const std::vector<Keypoints<2>>& earlier, const std::vector<Keypoints<2>>& later,
-                                         double share);
+                                         double fraction);
 
-/// All cameras' people at even moments.
+/// All cameras' people at even instants.
 class KeypointFrames {
  public:
-  /// The moments follow each other by the first camera's rate while two cameras at least have frames, or the only one has. The
+  /// The instants follow each other by the first camera's rate while two cameras at least have frames, or the only one has. The
   /// cameras must outlive it.
   explicit KeypointFrames(const std::vector<std::optional<KeypointCamera>>& cameras);
 

@@ -12,9 +12,9 @@ namespace marey::pipeline::keypoints {
 namespace {
 
 constexpr std::size_t kTriedInstants = 60;
-constexpr double kTriedNoise = 1.5;   // times what the files state
-constexpr double kClearlyMore = 0.2;  // of all views, beyond those that are placed as things are
-constexpr double kMostOfThem = 0.6;   // of all views
+constexpr double kTriedNoise = 1.5;      // times what the files state
+constexpr double kDistinctlyMore = 0.2;  // of all views, beyond those that are placed as things are
+constexpr double kMajority = 0.6;        // of all views
 
 /// One camera's calibration and whether its images are mirrored.
 struct TriedCamera {
@@ -32,12 +32,12 @@ Keypoints<2> mirrored(const Keypoints<2>& person, const KeypointSet& set, int wi
   return result;
 }
 
-struct Placed {
-  std::int64_t views = 0, placed = 0;
+struct Located {
+  std::int64_t views = 0, located = 0;
 };
 
 /// How many people in images find a partner, each instant by itself.
-Placed placed_with(const std::vector<TriedCamera>& cameras, const KeypointFrames& frames, const KeypointSet& set) {
+Located located_with(const std::vector<TriedCamera>& cameras, const KeypointFrames& frames, const KeypointSet& set) {
   namespace rk = reconstruct::keypoints;
   constexpr double kCut_s = 10;
   rk::PeopleInViews people(set, static_cast<int>(cameras.size()));
@@ -55,7 +55,7 @@ Placed placed_with(const std::vector<TriedCamera>& cameras, const KeypointFrames
     }
     people.step(kCut_s, views);
   }
-  return {people.views_seen(), people.views_placed()};
+  return {people.views_observed(), people.views_located()};
 }
 
 }  // namespace
@@ -63,17 +63,17 @@ Placed placed_with(const std::vector<TriedCamera>& cameras, const KeypointFrames
 std::vector<std::string> reasons_of_misfit(const Rig& rig, const KeypointFrames& frames, const KeypointSet& set) {
   std::vector<TriedCamera> cameras;
   for (const RigCamera& camera : rig.cameras) cameras.push_back({camera.camera()});
-  const Placed before = placed_with(cameras, frames, set);
-  const auto is_better = [&](const Placed& placed) {
-    return static_cast<double>(placed.placed - before.placed) > kClearlyMore * static_cast<double>(placed.views) &&
-           static_cast<double>(placed.placed) > kMostOfThem * static_cast<double>(placed.views);
+  const Located before = located_with(cameras, frames, set);
+  const auto is_better = [&](const Located& located) {
+    return static_cast<double>(located.located - before.located) > kDistinctlyMore * static_cast<double>(located.views) &&
+           static_cast<double>(located.located) > kMajority * static_cast<double>(located.views);
   };
   std::vector<std::string> reasons;
   for (std::size_t a = 0; a < cameras.size(); ++a) {
     for (std::size_t b = a + 1; b < cameras.size(); ++b) {
       if (!cameras[a].camera || !cameras[b].camera) continue;
       std::swap(cameras[a], cameras[b]);
-      if (is_better(placed_with(cameras, frames, set)))
+      if (is_better(located_with(cameras, frames, set)))
         reasons.push_back(
             fmt::format("with the keypoints of \"{}\" and \"{}\" exchanged the cameras see the same people: exchange them",
                         rig.cameras[a].name, rig.cameras[b].name));
@@ -83,7 +83,7 @@ std::vector<std::string> reasons_of_misfit(const Rig& rig, const KeypointFrames&
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     if (!cameras[c].camera) continue;
     cameras[c].mirrored = true;
-    if (is_better(placed_with(cameras, frames, set)))
+    if (is_better(located_with(cameras, frames, set)))
       reasons.push_back(fmt::format("with the images of \"{}\" mirrored the cameras see the same people: its video was mirrored",
                                     rig.cameras[c].name));
     cameras[c].mirrored = false;

@@ -7,7 +7,7 @@
 
 namespace marey::pipeline::keypoints {
 
-Sink::Wants KeypointCollector::begin(const RecordingHeader& header) {
+Sink::SinkRequirements KeypointCollector::begin(const RecordingHeader& header) {
   if (!header.keypoints || header.frame.kind != FrameOfReference::Kind::image)
     throw Error("{}: contains no body keypoints in an image; make it with marey track --targets keypoints", into_.from);
   into_.set = *header.keypoints;
@@ -19,8 +19,8 @@ Sink::Wants KeypointCollector::begin(const RecordingHeader& header) {
 }
 
 void KeypointCollector::write(const Instant& instant) {
-  if (instant.index < 0 || instant.index > FrameNumbers::kMostMissing)
-    throw Error("{}: frame {} is not supported; a video has at most {}", into_.from, instant.index, FrameNumbers::kMostMissing);
+  if (instant.index < 0 || instant.index > FrameNumbers::kMaxMissing)
+    throw Error("{}: frame {} is not supported; a video has at most {}", into_.from, instant.index, FrameNumbers::kMaxMissing);
   into_.frames.resize(static_cast<std::size_t>(instant.index) + 1);
   for (const Sample& sample : instant.samples) {
     if (sample.keypoints) into_.frames.back().push_back(*sample.keypoints);

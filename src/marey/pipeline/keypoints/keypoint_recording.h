@@ -9,15 +9,15 @@
 
 namespace marey::pipeline::keypoints {
 
-/// Gathers the keypoints of everything that is written to it. A recording's instants are the frames of the sequence: one that is left
-/// out has nobody in it. `into.from` names the source for messages; `into` must outlive the sink.
+/// Gathers the keypoints of everything that is written to it. A recording's instants are the frames of the sequence: one that is
+/// omitted has no person in it. `into.from` names the source for messages; `into` must outlive the sink.
 class KeypointCollector final : public Sink {
  public:
   explicit KeypointCollector(KeypointSequence& into) : into_(into) {}
 
   std::string name() const override { return into_.from; }
   /// Throws Error if the recording's positions are not px of an image, or if it has no keypoints.
-  Wants begin(const RecordingHeader& header) override;
+  SinkRequirements begin(const RecordingHeader& header) override;
   void write(const Instant& instant) override;
   void finish() override {}
 

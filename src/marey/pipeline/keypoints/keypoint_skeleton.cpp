@@ -19,9 +19,9 @@ namespace {
 using solve::skeleton::StandingMarker;
 using solve::skeleton::StandingSegment;
 
-constexpr double kSpineShare = 0.15;  // of the way from hips to shoulders where the trunk bends
-constexpr double kLeastPlaces = 5;    // instants at which something must be seen
-constexpr double kLeastSine = 0.05;   // of the angle between directions that make a frame
+constexpr double kSpineFraction = 0.15;  // of the way from hips to shoulders where the trunk bends
+constexpr double kMinPositions = 5;      // instants at which something must be seen
+constexpr double kMinSine = 0.05;        // of the angle between directions that make a frame
 constexpr double kShinToFloor_m = 0.06;
 constexpr double kHeadAboveNeck = 0.3;  // of the way from the shoulders' middle to the ears' where the head turns
 
@@ -70,7 +70,7 @@ class KeypointTracks {
   std::size_t count_;
 };
 
-/// Median distance of two points, of both sides together; nothing where they are hardly ever seen together.
+/// Median distance of two points, of both sides together; nothing if they are barely ever seen together.
 std::optional<double> length_of(const KeypointTracks& tracks, const std::string& a, const std::string& b) {
   std::vector<double> lengths;
   const auto add = [&](const std::string& from, const std::string& to) {
@@ -81,7 +81,7 @@ std::optional<double> length_of(const KeypointTracks& tracks, const std::string&
   };
   add(a, b);
   if (other_side(a) != b && other_side(a) != a) add(other_side(a), other_side(b));
-  if (static_cast<double>(lengths.size()) < kLeastPlaces) return std::nullopt;
+  if (static_cast<double>(lengths.size()) < kMinPositions) return std::nullopt;
   return geometry::median(lengths);
 }
 
@@ -89,30 +89,30 @@ using FrameAt = std::function<std::optional<Rigid3>(std::size_t instant)>;
 
 /// The median of a point's coordinates in a frame that moves with a segment; of both sides, `mirrored` giving the other side's
 /// frame, with y turned round.
-std::optional<Vector<3>> place_in(const KeypointTracks& tracks, const std::string& point, const FrameAt& frame,
-                                  const FrameAt& mirrored = {}) {
-  std::array<std::vector<double>, 3> places;
+std::optional<Vector<3>> position_in(const KeypointTracks& tracks, const std::string& point, const FrameAt& frame,
+                                     const FrameAt& mirrored = {}) {
+  std::array<std::vector<double>, 3> locations;
   const auto add = [&](const std::string& name, const FrameAt& frame_at, double side) {
     for (std::size_t t = 0; t < tracks.count(); ++t) {
       const auto at = tracks.at(name, t);
       const auto in = frame_at(t);
       if (!at || !in) continue;
       const Vector<3> local = in->inverse() * *at;
-      places[0].push_back(local.x());
-      places[1].push_back(side * local.y());
-      places[2].push_back(local.z());
+      locations[0].push_back(local.x());
+      locations[1].push_back(side * local.y());
+      locations[2].push_back(local.z());
     }
   };
   add(point, frame, 1);
   if (mirrored && other_side(point) != point) add(other_side(point), mirrored, -1);
-  if (static_cast<double>(places[0].size()) < kLeastPlaces) return std::nullopt;
-  return Vector<3>(geometry::median(places[0]), geometry::median(places[1]), geometry::median(places[2]));
+  if (static_cast<double>(locations[0].size()) < kMinPositions) return std::nullopt;
+  return Vector<3>(geometry::median(locations[0]), geometry::median(locations[1]), geometry::median(locations[2]));
 }
 
 /// x ahead, y to the left, z up, from a direction that is exact and one that is about so.
 std::optional<Matrix<3>> axes_of(const Vector<3>& z, const Vector<3>& about_y) {
   const Vector<3> x = about_y.normalized().cross(z.normalized());
-  if (!(x.norm() > kLeastSine)) return std::nullopt;
+  if (!(x.norm() > kMinSine)) return std::nullopt;
   Matrix<3> axes;
   axes.col(0) = x.normalized();
   axes.col(2) = z.normalized();
@@ -178,7 +178,7 @@ class StandingPerson {
     const double height = thigh + shank.value_or(thigh) + kShinToFloor_m;
     const Vector<3> middle(0, 0, height);
     add("pelvis", middle);
-    add("trunk", middle + Vector<3>(0, 0, kSpineShare * shoulder.z()), Vector<3>(middle + Vector<3>(0, 0, shoulder.z())));
+    add("trunk", middle + Vector<3>(0, 0, kSpineFraction * shoulder.z()), Vector<3>(middle + Vector<3>(0, 0, shoulder.z())));
     mark("mid_hip", "pelvis", middle - Vector<3>(0, 0, hip_down));
     for (const std::string side : {"left_", "right_"}) {
       const double left = side == "left_" ? 1 : -1;
@@ -192,31 +192,31 @@ class StandingPerson {
     const std::string name = person_.empty() ? "person" : person_.substr(0, person_.size() - 1);
     Skeleton skeleton = solve::skeleton::human_skeleton(name, segments_, markers_);
     // Two hips do not show how the pelvis is tilted: it goes with the trunk. A wrist does not show how a forearm turns.
-    for (const char* unseen : {"spine_flexion", "left_elbow_pronation", "right_elbow_pronation"})
-      take_out_coordinate(skeleton, unseen);
+    for (const char* unobserved : {"spine_flexion", "left_elbow_pronation", "right_elbow_pronation"})
+      take_out_coordinate(skeleton, unobserved);
     return skeleton;
   }
 
  private:
   double needed(const std::string& a, const std::string& b) const {
     const auto length = length_of(tracks_, a, b);
-    if (!length) throw Error("{}{} and {}{} are hardly ever seen at the same time; a skeleton needs both", person_, a, person_, b);
+    if (!length) throw Error("{}{} and {}{} are barely ever seen at the same time; a skeleton needs both", person_, a, person_, b);
     return *length;
   }
 
   Vector<3> shoulder_in_trunk() const {
     const FrameAt trunk = [this](std::size_t t) { return trunk_at(tracks_, t); };
-    const auto place = place_in(tracks_, "left_shoulder", trunk, trunk);
-    if (!place) throw Error("{}hips and shoulders are hardly ever seen at the same time; a skeleton needs both", person_);
-    return *place;
+    const auto location = position_in(tracks_, "left_shoulder", trunk, trunk);
+    if (!location) throw Error("{}hips and shoulders are barely ever seen at the same time; a skeleton needs both", person_);
+    return *location;
   }
 
   void add(const std::string& segment, const Vector<3>& origin, std::optional<Vector<3>> end = {}) {
     segments_.push_back({segment, Rigid3{Matrix<3>::Identity(), origin}, end});
   }
 
-  void mark(const std::string& point, const std::string& segment, const Vector<3>& place) {
-    if (tracks_.has(point)) markers_.push_back({person_ + point, segment, place});
+  void mark(const std::string& point, const std::string& segment, const Vector<3>& location) {
+    if (tracks_.has(point)) markers_.push_back({person_ + point, segment, location});
   }
 
   void add_leg(const std::string& side, const Vector<3>& knee, const std::optional<double>& shank) {
@@ -227,11 +227,12 @@ class StandingPerson {
     mark(side + "ankle", side + "shank", ankle);
     const FrameAt own = [&](std::size_t t) { return foot_at(tracks_, side, t); };
     const FrameAt other = [&](std::size_t t) { return foot_at(tracks_, other_side(side), t); };
-    const auto toe = place_in(tracks_, side + "big_toe", own, other);
+    const auto toe = position_in(tracks_, side + "big_toe", own, other);
     if (!toe) return;
     add(side + "foot", ankle, ankle + *toe);
     for (const char* point : {"heel", "big_toe", "small_toe"}) {
-      if (const auto place = place_in(tracks_, side + point, own, other)) mark(side + point, side + "foot", ankle + *place);
+      if (const auto location = position_in(tracks_, side + point, own, other))
+        mark(side + point, side + "foot", ankle + *location);
     }
   }
 
@@ -253,7 +254,7 @@ class StandingPerson {
     const FrameAt trunk = [this](std::size_t t) { return trunk_at(tracks_, t); };
     const Vector<3> hips = middle - Vector<3>(0, 0, hip_down);
     for (const char* point : {"neck", "upper_neck"}) {
-      if (const auto place = place_in(tracks_, point, trunk)) mark(point, "trunk", hips + *place);
+      if (const auto location = position_in(tracks_, point, trunk)) mark(point, "trunk", hips + *location);
     }
     // Where the ears' middle is, in the trunk's frame: the head stands there, and turns below it.
     std::array<std::vector<double>, 2> ears;
@@ -265,17 +266,17 @@ class StandingPerson {
       ears[0].push_back(local.x());
       ears[1].push_back(local.z());
     }
-    if (static_cast<double>(ears[0].size()) < kLeastPlaces) return;
+    if (static_cast<double>(ears[0].size()) < kMinPositions) return;
     const Vector<3> between_ears = hips + Vector<3>(geometry::median(ears[0]), 0, geometry::median(ears[1]));
     const Vector<3> shoulders = *segments_[1].end;
     add("head", shoulders + kHeadAboveNeck * (between_ears - shoulders));
     const FrameAt head = [this](std::size_t t) { return head_at(tracks_, t); };
     Vector<3> top = between_ears + Vector<3>(0, 0, 0.12);
     for (const char* point : {"nose", "left_eye", "right_eye", "left_ear", "right_ear", "head_top", "left_mouth", "right_mouth"}) {
-      const auto place = place_in(tracks_, point, head, head);
-      if (!place) continue;
-      mark(point, "head", between_ears + *place);
-      if (std::string_view(point) == "head_top") top = between_ears + *place;
+      const auto location = position_in(tracks_, point, head, head);
+      if (!location) continue;
+      mark(point, "head", between_ears + *location);
+      if (std::string_view(point) == "head_top") top = between_ears + *location;
     }
     segments_.back().end = top;
   }

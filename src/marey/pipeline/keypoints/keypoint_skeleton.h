@@ -11,11 +11,11 @@
 namespace marey::pipeline::keypoints {
 
 /// The people whose keypoints a recording has, by what stands before the points' names: "" of one person, "P1:", "P2:", …; none
-/// where its labels are no keypoints of a body (hips, knees and shoulders at least).
+/// where its labels are not keypoints of a body (hips, knees and shoulders at least).
 std::vector<std::string> people_with_keypoints(const std::vector<TrackName>& tracks);
 
 /// The human skeleton of the person, with its joints beside the points where a network is known to put them elsewhere (BlazePose's
-/// hips). `person` is what stands before the person's labels. Throws Error where a bone of the trunk or the legs is never seen
+/// hips). `person` is what stands before the person's labels. Throws Error if a bone of the trunk or the legs is never seen
 /// whole.
 Skeleton skeleton_of_keypoints(const Recording& recording, const std::string& person);
 

@@ -27,7 +27,7 @@ Recording true_recording(const RoomScene& scene, const std::string& person, doub
   Recording recording(header);
   const KeypointSet& set = marey::simulate::room::room_keypoint_set();
   for (std::int64_t t = 0; t < scene.options().frames; ++t)
-    recording.add_moment({t, timestamp_from_seconds(static_cast<double>(t) / header.rate_hz)});
+    recording.add_time_step({t, timestamp_from_seconds(static_cast<double>(t) / header.rate_hz)});
   marey::simulate::Random random(3);
   for (std::size_t i = 0; i < set.points.size(); ++i) {
     TrackName name;

@@ -10,11 +10,11 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
-/// The instants that waited for the cameras' end, with keypoints out of the pictures, which are read once more.
-class LookedAt final : public corridor::InstantSource {
+/// The instants that waited for the cameras' end, with keypoints out of the images, which are read once more.
+class InspectedAt final : public corridor::InstantSource {
  public:
-  LookedAt(std::unique_ptr<corridor::InstantSource> waited, BodyKeypoints& keypoints,
-           const std::function<corridor::Feed()>& open_again, std::int64_t count, const Hooks& hooks)
+  InspectedAt(std::unique_ptr<corridor::InstantSource> waited, BodyKeypoints& keypoints,
+              const std::function<corridor::Feed()>& open_again, std::int64_t count, const Hooks& hooks)
       : waited_(std::move(waited)), keypoints_(keypoints), count_(count), hooks_(hooks) {
     if (open_again) feed_.emplace(open_again());
   }
@@ -25,22 +25,22 @@ class LookedAt final : public corridor::InstantSource {
       auto instant = waited_->next();
       ended_ = !instant || hooks_.report({"keypoints", ++done_, count_}) == Continue::no;
       if (!ended_) {
-        Picture picture = picture_of(*instant);
-        keypoints_.add(std::move(*instant), picture);
+        Image image = image_of(*instant);
+        keypoints_.add(std::move(*instant), image);
       }
     }
     return keypoints_.next(true);
   }
 
  private:
-  Picture picture_of(const Instant& instant) {
-    if (!instant.frames.empty()) return instant.frames.front().picture;
+  Image image_of(const Instant& instant) {
+    if (!instant.frames.empty()) return instant.frames.front().image;
     if (!feed_) return {};
     while (!now_ || now_->frame.index < instant.index) {
       now_ = feed_->next();
       if (!now_) return {};
     }
-    return now_->frame.index == instant.index ? now_->frame.picture : Picture();
+    return now_->frame.index == instant.index ? now_->frame.image : Image();
   }
 
   std::unique_ptr<corridor::InstantSource> waited_;
@@ -64,7 +64,7 @@ class KeypointStage final : public corridor::Stage {
     header.keypoints = detect::keypoints::blazepose();
     return header;
   }
-  void want_boxes() override { stage_->want_boxes(); }
+  void need_boxes() override { stage_->need_boxes(); }
   void need_foregrounds(std::function<void(corridor::FrameForeground)> give) override { stage_->need_foregrounds(std::move(give)); }
   std::vector<std::string> news() override { return stage_->news(); }
 
@@ -72,13 +72,13 @@ class KeypointStage final : public corridor::Stage {
     ++frames_;
     due_.clear();
     for (const Instant& known : stage_->step(frames)) {
-      Picture picture;
+      Image image;
       if (!known.frames.empty()) {
-        picture = known.frames.front().picture;
+        image = known.frames.front().image;
       } else if (frames.cameras.front() && known.index == frames.index) {
-        picture = frames.cameras.front()->frame.picture;
+        image = frames.cameras.front()->frame.image;
       }
-      keypoints_.add(known, picture);
+      keypoints_.add(known, image);
       while (auto due = keypoints_.next()) due_.push_back(std::move(*due));
     }
     return due_;
@@ -87,12 +87,12 @@ class KeypointStage final : public corridor::Stage {
   std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override {
     auto waited = stage_->finish(hooks);
     if (waited == nullptr) return nullptr;
-    return std::make_unique<LookedAt>(std::move(waited), keypoints_, open_again_, frames_, hooks);
+    return std::make_unique<InspectedAt>(std::move(waited), keypoints_, open_again_, frames_, hooks);
   }
 
   void report(corridor::Summary& summary) const override {
     stage_->report(summary);
-    summary.left_out["nobody"] = keypoints_.left_out();
+    summary.excluded["nobody"] = keypoints_.excluded();
     summary.steps.push_back(
         {"keypoints", keypoints_.times().count(), keypoints_.times().quantile(0.5), keypoints_.times().quantile(0.99)});
   }
@@ -109,9 +109,9 @@ class KeypointStage final : public corridor::Stage {
 
 std::unique_ptr<corridor::Stage> with_keypoints(std::unique_ptr<corridor::Stage> stage, const corridor::Feed& feed,
                                                 const KeypointOptions& options, bool live) {
-  if (!feed.has_pictures()) throw Error("{}: keypoints are looked for in pictures, and it brings none", feed.info().name);
+  if (!feed.has_images()) throw Error("{}: keypoints are searched for in images, and it brings none", feed.info().name);
   if (!live && !feed.can_rewind())
-    throw Error("{}: keypoints are looked for where people were tracked, so it is read twice, and that cannot be: use --live",
+    throw Error("{}: keypoints are searched for where people were tracked, so it is read twice, and that cannot be: use --live",
                 feed.info().name);
   return std::make_unique<KeypointStage>(std::move(stage), feed, options, live);
 }

@@ -5,7 +5,7 @@
 namespace marey::pipeline::keypoints {
 namespace {
 
-constexpr double kMostDeviation_m = 0.15;  // a point known no better is none
+constexpr double kMaxDeviation_m = 0.15;  // a point known no better is not one
 
 Sample sample_of_path(const reconstruct::keypoints::TrajectoryPoint& point, Provenance provenance) {
   Sample sample;
@@ -33,7 +33,7 @@ void add_path(const std::vector<reconstruct::keypoints::TrajectoryPoint>& path, 
     const bool fill = end - k <= longest;
     for (; k <= end; ++k) {
       if (k < end && !fill) continue;
-      if (path[k].covariance.trace() > 3 * kMostDeviation_m * kMostDeviation_m) continue;
+      if (path[k].covariance.trace() > 3 * kMaxDeviation_m * kMaxDeviation_m) continue;
       track.add(static_cast<std::int32_t>(first + k), sample_of_path(path[k], k < end ? Provenance::filled : Provenance::measured));
     }
     k = end;

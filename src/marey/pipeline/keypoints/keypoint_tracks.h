@@ -9,7 +9,7 @@
 namespace marey::pipeline::keypoints {
 
 /// Adds a keypoint's path from the recording's instant `first` on: two cameras' half-lines measure, gaps of up to `longest`
-/// instants between such are filled, and nothing is said where the place is hardly known.
+/// instants between such are filled, and nothing is said where the place is barely known.
 void add_path(const std::vector<reconstruct::keypoints::TrajectoryPoint>& path, std::size_t first, std::size_t longest,
               TrackColumns& track);
 

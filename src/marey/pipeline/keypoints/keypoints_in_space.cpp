@@ -11,7 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/core/keypoint_sets.h"
 #include "marey/core/recording_reader.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/format/input_hash.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
@@ -30,8 +30,8 @@ namespace rk = reconstruct::keypoints;
 
 constexpr double kGateSlack = 1.3;       // times the learned noise, for the question who is who
 constexpr double kWorstNoise = 2.5;      // times what the files state: the rig does not fit
-constexpr double kFewPlaced = 0.5;       // share of views
-constexpr double kMostPlaced = 0.75;     // share of views below which it is asked why
+constexpr double kFewLocated = 0.5;      // share of views
+constexpr double kMaxLocated = 0.75;     // share of views below which it is asked why
 constexpr double kWorstCamera = 2.5;     // times the median of all cameras
 constexpr double kMedianLength = 1.177;  // of a vector of two standard normal variables
 
@@ -66,7 +66,7 @@ class KeypointJob {
                   Recording& recording);
   void count(const rk::PersonTrack& track, const rk::PersonPath* path);
   void count_cameras();
-  void report(const FollowedPeople& followed);
+  void report(const FollowedPeople& tracked);
   void warn_of_misfit();
   RecordingHeader header() const;
 
@@ -109,15 +109,15 @@ void KeypointJob::find_offsets() {
 std::vector<rk::PersonTrack> KeypointJob::people_kept(std::map<int, rk::PersonTrack> tracks) const {
   const auto views_of = [](const rk::PersonTrack& track) {
     std::int64_t views = 0;
-    for (const rk::PlacedPerson& person : track.instants)
+    for (const rk::LocatedPerson& person : track.instants)
       views += std::count_if(person.views.begin(), person.views.end(), [](int view) { return view >= 0; });
     return views;
   };
   std::vector<std::pair<std::int64_t, rk::PersonTrack>> kept;
   for (auto& [id, track] : tracks) {
-    const double placed = static_cast<double>(
+    const double located = static_cast<double>(
         std::count_if(track.instants.begin(), track.instants.end(), [](const auto& person) { return !person.points.empty(); }));
-    if (placed >= options_.shortest_s * frames_->rate_hz()) kept.emplace_back(views_of(track), std::move(track));
+    if (located >= options_.shortest_s * frames_->rate_hz()) kept.emplace_back(views_of(track), std::move(track));
   }
   if (options_.people > 0 && std::ssize(kept) > options_.people) {
     std::stable_sort(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -140,22 +140,22 @@ rk::PersonPath KeypointJob::smooth(rk::PersonTrack& track, double noise) const {
 
 void KeypointJob::count(const rk::PersonTrack& track, const rk::PersonPath* path) {
   for (std::size_t k = 0; k < track.instants.size(); ++k) {
-    const rk::PlacedPerson& person = track.instants[k];
+    const rk::LocatedPerson& person = track.instants[k];
     for (std::size_t c = 0; c < person.views.size(); ++c) {
       if (person.views[c] < 0) continue;
       KeypointsSummary::Camera& camera = summary_.cameras[c];
-      ++camera.placed;
+      ++camera.located;
       camera.swapped += (person.mirrored[c].arms ? 1 : 0) + (person.mirrored[c].legs ? 1 : 0);
-      const Keypoints<2>& seen = frames_->at(track.first + k, c)[static_cast<std::size_t>(person.views[c])];
+      const Keypoints<2>& detected = frames_->at(track.first + k, c)[static_cast<std::size_t>(person.views[c])];
       for (std::size_t i = 0; i < set_.points.size(); ++i) {
-        std::optional<Vector<3>> place;
-        if (path != nullptr && !path->points[i].empty()) place = path->points[i][k].position;
-        if (path == nullptr && person.points[i]) place = person.points[i]->position;
-        if (!place || !seen.points[i]) continue;
-        const auto pixel = cameras_[c]->project(*place);
+        std::optional<Vector<3>> location;
+        if (path != nullptr && !path->points[i].empty()) location = path->points[i][k].position;
+        if (path == nullptr && person.points[i]) location = person.points[i]->position;
+        if (!location || !detected.points[i]) continue;
+        const auto pixel = cameras_[c]->project(*location);
         if (!pixel) continue;
-        residuals_[c].push_back((*pixel - seen.points[i]->position).norm());
-        ratios_[c].push_back(residuals_[c].back() / std::sqrt(std::sqrt(seen.points[i]->covariance.determinant())));
+        residuals_[c].push_back((*pixel - detected.points[i]->position).norm());
+        ratios_[c].push_back(residuals_[c].back() / std::sqrt(std::sqrt(detected.points[i]->covariance.determinant())));
       }
     }
   }
@@ -212,23 +212,24 @@ void KeypointJob::count_cameras() {
 }
 
 KeypointsSummary::Person person_of(const rk::PersonTrack& track, std::string label) {
-  KeypointsSummary::Person said{.label = std::move(label)};
-  for (const rk::PlacedPerson& person : track.instants) {
+  KeypointsSummary::Person stated{.label = std::move(label)};
+  for (const rk::LocatedPerson& person : track.instants) {
     if (person.points.empty()) continue;
-    ++said.instants;
-    said.views += static_cast<double>(std::count_if(person.views.begin(), person.views.end(), [](int view) { return view >= 0; }));
+    ++stated.instants;
+    stated.views +=
+        static_cast<double>(std::count_if(person.views.begin(), person.views.end(), [](int view) { return view >= 0; }));
   }
-  said.views /= static_cast<double>(std::max<std::int64_t>(1, said.instants));
-  return said;
+  stated.views /= static_cast<double>(std::max<std::int64_t>(1, stated.instants));
+  return stated;
 }
 
-void KeypointJob::report(const FollowedPeople& followed) {
+void KeypointJob::report(const FollowedPeople& tracked) {
   summary_.set = set_.name;
   summary_.points = static_cast<int>(set_.points.size());
   summary_.frames = static_cast<std::int64_t>(frames_->size());
   summary_.rate_hz = frames_->rate_hz();
   summary_.seconds = static_cast<double>(frames_->size() - 1) / frames_->rate_hz();
-  std::vector<double> all, ratios, times = followed.times_ms;
+  std::vector<double> all, ratios, times = tracked.times_ms;
   for (std::size_t c = 0; c < residuals_.size(); ++c) {
     all.insert(all.end(), residuals_[c].begin(), residuals_[c].end());
     ratios.insert(ratios.end(), ratios_[c].begin(), ratios_[c].end());
@@ -237,9 +238,9 @@ void KeypointJob::report(const FollowedPeople& followed) {
   }
   summary_.residual_px = geometry::median_or(all, 0);
   summary_.noise = geometry::median_or(ratios, 0) / kMedianLength;
-  summary_.place_ms = geometry::median_or(times, 0);
-  summary_.views = followed.seen;
-  summary_.placed = followed.placed;
+  summary_.position_ms = geometry::median_or(times, 0);
+  summary_.views = tracked.detected;
+  summary_.located = tracked.located;
   warn_of_misfit();
 }
 
@@ -250,27 +251,27 @@ void KeypointJob::warn_of_misfit() {
         "camera; how far a limb is in front of its plane or behind it is not known");
     return;
   }
-  const bool few = static_cast<double>(summary_.placed) < kFewPlaced * static_cast<double>(summary_.views);
+  const bool few = static_cast<double>(summary_.located) < kFewLocated * static_cast<double>(summary_.views);
   if (few)
     summary_.warnings.push_back(fmt::format("only {} of {} people in images are placed: two cameras must see the same person",
-                                            summary_.placed, summary_.views));
+                                            summary_.located, summary_.views));
   if (summary_.noise > kWorstNoise)
     summary_.warnings.push_back(fmt::format(
         "the rig does not fit these keypoints: they lie {:.0f} px (median) from where space has them, {:.1f} times what "
         "keypoints of their confidence do",
         summary_.residual_px, summary_.noise));
   bool misfit =
-      static_cast<double>(summary_.placed) < kMostPlaced * static_cast<double>(summary_.views) || summary_.noise > kWorstNoise;
+      static_cast<double>(summary_.located) < kMaxLocated * static_cast<double>(summary_.views) || summary_.noise > kWorstNoise;
   for (const KeypointsSummary::Camera& camera : summary_.cameras) {
     if (camera.noise <= kWorstCamera * summary_.noise) continue;
     misfit = true;
     summary_.warnings.push_back(fmt::format(
         "camera \"{}\": keypoints lie {:.0f} px (median) from where space has them, and {:.0f} px in all cameras: was it "
-        "moved since it was calibrated, or does it run out of step?",
+        "moved since it was calibrated, or does it run unsynchronised?",
         camera.name, camera.residual_px, summary_.residual_px));
   }
   if (!misfit) return;
-  for (std::string& sentence : reasons_of_misfit(rig_, *frames_, set_)) summary_.warnings.push_back(std::move(sentence));
+  for (std::string& message_text : reasons_of_misfit(rig_, *frames_, set_)) summary_.warnings.push_back(std::move(message_text));
 }
 
 Recording KeypointJob::run() {
@@ -284,20 +285,20 @@ Recording KeypointJob::run() {
   residuals_.resize(cameras_.size());
   ratios_.resize(cameras_.size());
   const double noise = summary_.one_camera ? 1 : keypoint_noise(cameras_, *frames_, set_);
-  FollowedPeople followed = summary_.one_camera ? follow_on_floor(cameras_, *frames_, set_)
-                                                : follow_in_views(cameras_, *frames_, set_, kGateSlack * noise, hooks_);
-  std::vector<rk::PersonTrack> people = people_kept(std::move(followed.tracks));
+  FollowedPeople tracked = summary_.one_camera ? follow_on_floor(cameras_, *frames_, set_)
+                                               : follow_in_views(cameras_, *frames_, set_, kGateSlack * noise, hooks_);
+  std::vector<rk::PersonTrack> people = people_kept(std::move(tracked.tracks));
   if (people.empty() && summary_.one_camera)
-    throw Error("nobody is placed: of {} people in the images none stands on the floor; is z = 0 the floor in the rig?",
-                followed.seen);
+    throw Error("no person is placed: of {} people in the images none stands on the floor; is z = 0 the floor in the rig?",
+                tracked.detected);
   if (people.empty()) {
     const std::vector<std::string> reasons = reasons_of_misfit(rig_, *frames_, set_);
-    throw Error("nobody is placed: no two cameras see the same person among {} people in their images; {}", followed.seen,
+    throw Error("no person is placed: no two cameras see the same person among {} people in their images; {}", tracked.detected,
                 reasons.empty() ? "are the keypoints of this rig's cameras, and at the same time?" : reasons.front());
   }
   Recording recording(header());
   for (std::size_t t = 0; t < frames_->size(); ++t)
-    recording.add_moment({static_cast<std::int64_t>(t), timestamp_from_seconds(static_cast<double>(t) / frames_->rate_hz())});
+    recording.add_time_step({static_cast<std::int64_t>(t), timestamp_from_seconds(static_cast<double>(t) / frames_->rate_hz())});
   for (std::size_t p = 0; p < people.size(); ++p) {
     std::optional<rk::PersonPath> path;
     if (options_.smooth && !summary_.one_camera) path = smooth(people[p], noise);
@@ -306,7 +307,7 @@ Recording KeypointJob::run() {
     summary_.people.push_back(person_of(people[p], people.size() > 1 ? fmt::format("P{}", p + 1) : ""));
     hooks_.advance({.step = "smoothing", .done = static_cast<std::int64_t>(p) + 1, .total = std::ssize(people)});
   }
-  report(followed);
+  report(tracked);
   return recording;
 }
 

@@ -22,14 +22,14 @@ using marey::simulate::room::KeypointErrors;
 using marey::simulate::room::RoomOptions;
 using marey::simulate::room::RoomScene;
 
-RoomOptions filmed_room(int actors) {
+RoomOptions recorded_room(int actors) {
   RoomOptions options;
   options.cameras = 4;
   options.actors = actors;
   options.markers = 4;
   options.rate_hz = 50;
   options.frames = 150;
-  options.picture = {1080, 1920};
+  options.image = {1080, 1920};
   options.zoom = 1.3;
   return options;
 }
@@ -65,7 +65,7 @@ class KeypointsInSpace : public ::testing::Test {
 };
 
 TEST_F(KeypointsInSpace, AreTracksUnderTheirNames) {
-  const RoomScene scene(filmed_room(1));
+  const RoomScene scene(recorded_room(1));
   KeypointsSummary summary;
   const Recording recording = keypoints_in_space(rig_of(scene), {}, summary);
   EXPECT_EQ(recording.tracks().size(), 25U);
@@ -90,8 +90,8 @@ TEST_F(KeypointsInSpace, AreTracksUnderTheirNames) {
 }
 
 TEST_F(KeypointsInSpace, AreFoundInVideosByTheGivenSearch) {
-  RoomOptions small = filmed_room(1);
-  small.picture = {108, 192};
+  RoomOptions small = recorded_room(1);
+  small.image = {108, 192};
   const RoomScene scene(small);
   const KeypointErrors errors{.noise_px = 0.8, .outlier_px = 6};
   Rig rig = scene.rig();
@@ -126,17 +126,17 @@ TEST_F(KeypointsInSpace, AreFoundInVideosByTheGivenSearch) {
 
   KeypointsInSpaceOptions none;
   none.find = [&](const RigCamera& camera, const Hooks&) {
-    KeypointSequence nobody;
-    nobody.set = marey::simulate::room::room_keypoint_set();
-    nobody.frames.resize(10);
-    nobody.from = camera.source;
-    return nobody;
+    KeypointSequence no_person;
+    no_person.set = marey::simulate::room::room_keypoint_set();
+    no_person.frames.resize(10);
+    no_person.from = camera.source;
+    return no_person;
   };
-  EXPECT_NE(error_of(rig, none).find("nobody is placed"), std::string::npos) << "videos without people";
+  EXPECT_NE(error_of(rig, none).find("no person is placed"), std::string::npos) << "videos without people";
 }
 
 TEST_F(KeypointsInSpace, OfOneCameraStandOnTheFloorAndSaySo) {
-  const RoomScene scene(filmed_room(1));
+  const RoomScene scene(recorded_room(1));
   Rig rig = rig_of(scene);
   rig.cameras.resize(1);
   KeypointsSummary summary;
@@ -162,7 +162,7 @@ TEST_F(KeypointsInSpace, OfOneCameraStandOnTheFloorAndSaySo) {
 }
 
 TEST_F(KeypointsInSpace, OfSeveralPeopleBearTheirNumber) {
-  const RoomScene scene(filmed_room(3));
+  const RoomScene scene(recorded_room(3));
   KeypointsSummary summary;
   const Rig rig = rig_of(scene);
   const Recording recording = keypoints_in_space(rig, {}, summary);
@@ -175,7 +175,7 @@ TEST_F(KeypointsInSpace, OfSeveralPeopleBearTheirNumber) {
 }
 
 TEST_F(KeypointsInSpace, FindOffsetsWhereTheRigHasNone) {
-  RoomOptions options = filmed_room(1);
+  RoomOptions options = recorded_room(1);
   options.offset_s = 0.15;
   options.frames = 300;
   const RoomScene scene(options);
@@ -190,22 +190,22 @@ TEST_F(KeypointsInSpace, FindOffsetsWhereTheRigHasNone) {
 }
 
 TEST_F(KeypointsInSpace, SayWhichCamerasAreExchanged) {
-  const RoomScene scene(filmed_room(1));
+  const RoomScene scene(recorded_room(1));
   Rig rig = rig_of(scene);
   std::swap(rig.cameras[0].source, rig.cameras[1].source);
   KeypointsSummary summary;
-  std::string said;
+  std::string stated;
   try {
     keypoints_in_space(rig, {}, summary);
-    for (const std::string& warning : summary.warnings) said += warning;
+    for (const std::string& warning : summary.warnings) stated += warning;
   } catch (const Error& error) {
-    said = error.what();
+    stated = error.what();
   }
-  EXPECT_NE(said.find("\"cam1\" and \"cam2\" exchanged"), std::string::npos) << said;
+  EXPECT_NE(stated.find("\"cam1\" and \"cam2\" exchanged"), std::string::npos) << stated;
 }
 
 TEST_F(KeypointsInSpace, SayWhichCameraIsMirrored) {
-  const RoomScene scene(filmed_room(1));
+  const RoomScene scene(recorded_room(1));
   const Rig rig = rig_of(scene);
   for (auto& frame : sequences_[2].frames) {
     for (auto& person : frame) {
@@ -220,13 +220,13 @@ TEST_F(KeypointsInSpace, SayWhichCameraIsMirrored) {
   write(rig, 2);
   KeypointsSummary summary;
   keypoints_in_space(rig, {}, summary);
-  std::string said;
-  for (const std::string& warning : summary.warnings) said += warning + "\n";
-  EXPECT_NE(said.find("images of \"cam3\" mirrored"), std::string::npos) << said;
+  std::string stated;
+  for (const std::string& warning : summary.warnings) stated += warning + "\n";
+  EXPECT_NE(stated.find("images of \"cam3\" mirrored"), std::string::npos) << stated;
 }
 
 TEST_F(KeypointsInSpace, AreRefusedInOneSentence) {
-  const RoomScene scene(filmed_room(1));
+  const RoomScene scene(recorded_room(1));
   Rig rig = rig_of(scene);
   Rig one = rig;
   for (std::size_t c = 1; c < 4; ++c) one.cameras[c].source.clear();
@@ -245,7 +245,7 @@ TEST_F(KeypointsInSpace, AreRefusedInOneSentence) {
 }
 
 TEST_F(KeypointsInSpace, GoOnWithoutACameraThatEnds) {
-  const RoomScene scene(filmed_room(1));
+  const RoomScene scene(recorded_room(1));
   const Rig rig = rig_of(scene);
   sequences_[3].frames.resize(60);
   write(rig, 3);

@@ -28,7 +28,7 @@ using detect::keypoints::PersonRegion;
 
 constexpr double kFewestPlaced = 0.75;   // fraction of people in images below which the reasons are searched: as for recordings
 constexpr double kWorstLiveNoise = 2.5;  // factor of the stated deviations, numerical: just below where learning begins and ends
-constexpr std::size_t kMostKept = 120;   // numerical: instants that are kept for that
+constexpr std::size_t kMaxKept = 120;    // numerical: instants that are kept for that
 
 class Stopwatch {
  public:
@@ -45,7 +45,7 @@ class Stopwatch {
 FindPeople detector_of(const std::string& file) {
   const auto network = std::make_shared<detect::network::LoadedNetwork>(
       detect::network::read_network_model(file.empty() ? detect::keypoints::model_file("person.toml") : file));
-  return [network](const Picture& image) {
+  return [network](const Image& image) {
     std::vector<Box> boxes;
     for (const detect::network::Candidate& one : network->find(image.bgr()))
       boxes.push_back({one.left, one.top, one.right - one.left, one.bottom - one.top});
@@ -55,7 +55,7 @@ FindPeople detector_of(const std::string& file) {
 
 FindBodies network_of(const std::string& model) {
   const auto network = std::make_shared<detect::keypoints::LandmarkNetwork>(detect::keypoints::landmark_model(model));
-  return [network](std::span<const Look> looks) { return network->find(looks); };
+  return [network](std::span<const Look> appearances) { return network->find(appearances); };
 }
 
 /// Which points of a set say how a body lies in an image.
@@ -99,8 +99,8 @@ class KeypointsLive final : public corridor::Stage {
 
  private:
   void search(const FrameSet& frames);
-  void look(const FrameSet& frames);
-  void place(const FrameSet& frames, double step_s);
+  void inspect(const FrameSet& frames);
+  void location(const FrameSet& frames, double step_s);
   void expect_in_other_cameras(const FrameSet& frames);
   std::optional<PersonRegion> region_in(const Camera& camera, std::span<const std::optional<Vector<3>>> points) const;
   void tell_seen(Instant& instant) const;
@@ -117,11 +117,11 @@ class KeypointsLive final : public corridor::Stage {
   std::vector<CameraPeople> in_images_;
   rk::PeopleInViews views_;
   LiveNoise noise_;
-  PlacedPeople people_;
+  LocatedPeople people_;
   KeypointsLiveOptions options_;
-  std::vector<rk::PlacedPerson> placed_;
-  std::vector<Look> looks_;
-  std::vector<std::size_t> looked_in_;  // camera of each look
+  std::vector<rk::LocatedPerson> located_;
+  std::vector<Look> appearances_;
+  std::vector<std::size_t> looked_in_;  // camera of each inspection
   std::vector<char> has_frame_;
   std::optional<Timestamp> before_;
   Instant instant_;
@@ -146,10 +146,10 @@ RecordingHeader KeypointsLive::header() const {
 
 /// All people that are wanted are known in this camera: no detector is needed.
 bool KeypointsLive::is_full(std::size_t camera) const {
-  if (options_.people.most == 0) return false;
+  if (options_.people.maximum == 0) return false;
   std::int64_t here = 0;
-  for (const rk::PlacedPerson& person : placed_) here += person.views[camera] >= 0 && people_.track_of(person.id, 0) ? 1 : 0;
-  return here >= options_.people.most;
+  for (const rk::LocatedPerson& person : located_) here += person.views[camera] >= 0 && people_.track_of(person.id, 0) ? 1 : 0;
+  return here >= options_.people.maximum;
 }
 
 /// The person detector, in the image that has waited for it longest.
@@ -164,25 +164,25 @@ void KeypointsLive::search(const FrameSet& frames) {
   if (!chosen) return;
   const Stopwatch watch(searching_);
   ++searches_;
-  in_images_[*chosen].searched(find_people_(frames.cameras[*chosen]->frame.picture), frames.time);
+  in_images_[*chosen].searched(find_people_(frames.cameras[*chosen]->frame.image), frames.time);
 }
 
-void KeypointsLive::look(const FrameSet& frames) {
-  looks_.clear();
+void KeypointsLive::inspect(const FrameSet& frames) {
+  appearances_.clear();
   looked_in_.clear();
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
     for (const PersonRegion& region : in_images_[c].regions()) {
-      looks_.push_back({frames.cameras[c]->frame.picture, region});
+      appearances_.push_back({frames.cameras[c]->frame.image, region});
       looked_in_.push_back(c);
     }
   }
   std::vector<Body> bodies;
-  if (!looks_.empty()) {
+  if (!appearances_.empty()) {
     const Stopwatch watch(looking_);
-    bodies = find_bodies_(looks_);
+    bodies = find_bodies_(appearances_);
   }
-  looks_count_ += std::ssize(looks_);
+  looks_count_ += std::ssize(appearances_);
   std::size_t begin = 0;
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
@@ -191,10 +191,10 @@ void KeypointsLive::look(const FrameSet& frames) {
     begin += count;
     counts_[c].detections += std::ssize(in_images_[c].people());
   }
-  looks_.clear();  // the images are not kept
+  appearances_.clear();  // the images are not kept
 }
 
-void KeypointsLive::place(const FrameSet& frames, double step_s) {
+void KeypointsLive::location(const FrameSet& frames, double step_s) {
   std::vector<rk::PersonView> views;
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
@@ -203,11 +203,11 @@ void KeypointsLive::place(const FrameSet& frames, double step_s) {
       views.push_back(rk::view_of(*cameras_[c], static_cast<int>(c), static_cast<int>(i), people[i],
                                   options_.gate_slack * noise_.times_stated()));
   }
-  placed_ = views_.step(step_s, views);
-  noise_.learn(placed_, options_.gate_slack);
-  for (const rk::PlacedPerson& person : placed_) {
+  located_ = views_.step(step_s, views);
+  noise_.learn(located_, options_.gate_slack);
+  for (const rk::LocatedPerson& person : located_) {
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
-      if (person.views[c] >= 0) in_images_[c].placed(static_cast<std::size_t>(person.views[c]), frames.time);
+      if (person.views[c] >= 0) in_images_[c].located(static_cast<std::size_t>(person.views[c]), frames.time);
     }
   }
 }
@@ -239,7 +239,7 @@ std::optional<PersonRegion> KeypointsLive::region_in(const Camera& camera, std::
 }
 
 void KeypointsLive::expect_in_other_cameras(const FrameSet& frames) {
-  for (const rk::PlacedPerson& person : placed_) {
+  for (const rk::LocatedPerson& person : located_) {
     const auto points = people_.points_of(person.id);
     if (points.empty()) continue;
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
@@ -251,17 +251,17 @@ void KeypointsLive::expect_in_other_cameras(const FrameSet& frames) {
 }
 
 void KeypointsLive::tell_seen(Instant& instant) const {
-  for (const rk::PlacedPerson& person : placed_) {
+  for (const rk::LocatedPerson& person : located_) {
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       if (person.views[c] < 0) continue;
       const Keypoints<2>& body = in_images_[c].people()[static_cast<std::size_t>(person.views[c])];
       for (std::size_t i = 0; i < body.points.size(); ++i) {
         if (!body.points[i] || body.points[i]->visibility < options_.min_visibility) continue;
-        SeenPoint& seen = instant.seen.emplace_back();
-        seen.camera = CameraId{static_cast<int>(c)};
-        seen.pixel = body.points[i]->position;
-        seen.sigma = std::sqrt(std::sqrt(body.points[i]->covariance.determinant()));
-        seen.track = people_.track_of(person.id, i);
+        ImageObservation& detected = instant.detected.emplace_back();
+        detected.camera = CameraId{static_cast<int>(c)};
+        detected.pixel = body.points[i]->position;
+        detected.sigma = std::sqrt(std::sqrt(body.points[i]->covariance.determinant()));
+        detected.track = people_.track_of(person.id, i);
       }
     }
   }
@@ -271,7 +271,7 @@ void KeypointsLive::tell_seen(Instant& instant) const {
 void KeypointsLive::keep() {
   std::size_t cameras = 0;
   for (std::size_t c = 0; c < cameras_.size(); ++c) cameras += has_frame_[c] && !in_images_[c].people().empty() ? 1 : 0;
-  if (cameras < 2 || with_people_++ >= static_cast<std::int64_t>(kMostKept)) return;
+  if (cameras < 2 || with_people_++ >= static_cast<std::int64_t>(kMaxKept)) return;
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (kept_[c]) kept_[c]->sequence.frames.push_back(has_frame_[c] ? in_images_[c].people() : std::vector<Keypoints<2>>{});
   }
@@ -282,20 +282,20 @@ std::span<const Instant> KeypointsLive::step(const FrameSet& frames) {
   before_ = frames.time;
   has_frame_.assign(cameras_.size(), 0);
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
-    has_frame_[c] = cameras_[c] && frames.cameras[c] && !frames.cameras[c]->frame.picture.empty() ? 1 : 0;
+    has_frame_[c] = cameras_[c] && frames.cameras[c] && !frames.cameras[c]->frame.image.empty() ? 1 : 0;
     counts_[c].frames += has_frame_[c];
     counts_[c].missed += has_frame_[c] ? 0 : 1;
   }
   search(frames);
-  look(frames);
+  inspect(frames);
   keep();
   instant_ = {};
   instant_.index = frames.index;
   instant_.time = frames.time;
   {
     const Stopwatch watch(placing_);
-    place(frames, step_s);
-    people_.step(placed_, step_s, instant_);
+    location(frames, step_s);
+    people_.step(located_, step_s, instant_);
     expect_in_other_cameras(frames);
     tell_seen(instant_);
   }
@@ -304,13 +304,13 @@ std::span<const Instant> KeypointsLive::step(const FrameSet& frames) {
 
 std::vector<std::string> KeypointsLive::news() {
   std::vector<std::string> news = people_.take_news();
-  if (!told_misfit_ && with_people_ >= static_cast<std::int64_t>(kMostKept)) {
+  if (!told_misfit_ && with_people_ >= static_cast<std::int64_t>(kMaxKept)) {
     told_misfit_ = true;
-    if (static_cast<double>(views_.views_placed()) < kFewestPlaced / 2 * static_cast<double>(views_.views_seen()))
+    if (static_cast<double>(views_.views_located()) < kFewestPlaced / 2 * static_cast<double>(views_.views_observed()))
       news.push_back(
           fmt::format("only {} of {} people in images are placed: two cameras must see the same person, and stand where "
                       "they were calibrated",
-                      views_.views_placed(), views_.views_seen()));
+                      views_.views_located(), views_.views_observed()));
   }
   return news;
 }
@@ -326,27 +326,27 @@ void KeypointsLive::report(corridor::Summary& summary) const {
   summary.figures["people"] = static_cast<double>(people_.numbers());
   summary.figures["person_searches"] = static_cast<double>(searches_);
   summary.figures["regions"] = static_cast<double>(looks_count_);
-  summary.figures["people_in_images"] = static_cast<double>(views_.views_seen());
-  summary.figures["people_placed"] = static_cast<double>(views_.views_placed());
+  summary.figures["people_in_images"] = static_cast<double>(views_.views_observed());
+  summary.figures["people_placed"] = static_cast<double>(views_.views_located());
   summary.figures["noise"] = noise_.times_stated();
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!cameras_[c])
       summary.warnings.push_back(fmt::format("camera \"{}\" is not calibrated: its images are not used", rig_.cameras[c].name));
   }
-  const double seen = static_cast<double>(views_.views_seen()), placed = static_cast<double>(views_.views_placed());
-  if (seen == 0) {
+  const double detected = static_cast<double>(views_.views_observed()), located = static_cast<double>(views_.views_located());
+  if (detected == 0) {
     summary.warnings.push_back("no person was seen in any image");
     return;
   }
-  const bool few = placed < kFewestPlaced * seen, noisy = noise_.is_learned() && noise_.times_stated() > kWorstLiveNoise;
-  if (few) summary.warnings.push_back(fmt::format("only {:.0f} of {:.0f} people in images are placed", placed, seen));
+  const bool few = located < kFewestPlaced * detected, noisy = noise_.is_learned() && noise_.times_stated() > kWorstLiveNoise;
+  if (few) summary.warnings.push_back(fmt::format("only {:.0f} of {:.0f} people in images are placed", located, detected));
   if (noisy)
     summary.warnings.push_back(
         fmt::format("the rig does not fit these keypoints: they are off {:.1f} times as far as keypoints of their confidence",
                     noise_.times_stated()));
   if ((!few && !noisy) || with_people_ == 0) return;
   const KeypointFrames frames(kept_);
-  for (std::string& sentence : reasons_of_misfit(rig_, frames, set_)) summary.warnings.push_back(std::move(sentence));
+  for (std::string& message_text : reasons_of_misfit(rig_, frames, set_)) summary.warnings.push_back(std::move(message_text));
 }
 
 }  // namespace

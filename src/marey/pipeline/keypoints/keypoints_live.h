@@ -3,9 +3,9 @@
 // Each camera's people are searched in the regions that its last image told (camera_people.h), all cameras' regions by one pool of
 // threads. Who is in which camera, and where their points are, say the parts that serve recordings too
 // (reconstruct/keypoints/people_in_views.h); a causal filter follows each point (placed_people.h). A person whom a camera has lost,
-// or who enters its image, is looked for where the others place them; the person detector runs only when a region has ended, when a
-// camera sees nobody, and every few seconds, in one image of an instant at most. Cost: one run of the landmark network for each
-// person and camera.
+// or who enters its image, is searched for where the others place them; the person detector runs only when a region has ended, when
+// a camera sees no person, and every few seconds, in one image of an instant at most. Cost: one run of the landmark network for
+// each person and camera.
 #pragma once
 
 #include <functional>
@@ -25,9 +25,9 @@
 namespace marey::pipeline::keypoints {
 
 /// The boxes of the people in an image, px.
-using FindPeople = std::function<std::vector<Box>(const Picture& image)>;
+using FindPeople = std::function<std::vector<Box>(const Image& image)>;
 /// Who is in each of several cameras' regions.
-using FindBodies = std::function<std::vector<detect::keypoints::Body>(std::span<const detect::keypoints::Look> looks)>;
+using FindBodies = std::function<std::vector<detect::keypoints::Body>(std::span<const detect::keypoints::Look> appearances)>;
 
 struct KeypointsLiveOptions {
   std::string model = "lite";   ///< the landmark network: lite, full, heavy, or an ONNX file

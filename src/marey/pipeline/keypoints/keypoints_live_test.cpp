@@ -30,7 +30,7 @@ RoomOptions small_room(int actors, std::int64_t frames, std::uint64_t seed) {
   options.markers = 4;
   options.rate_hz = kRate;
   options.frames = frames;
-  options.picture = {1080, 1920};
+  options.image = {1080, 1920};
   options.volume = {2.8, 2.8, 2.5};
   options.zoom = 1.3;
   options.seed = seed;
@@ -38,11 +38,11 @@ RoomOptions small_room(int actors, std::int64_t frames, std::uint64_t seed) {
 }
 
 /// An image that only says which camera and frame it is of.
-Picture numbered(int camera, std::int64_t frame) {
+Image numbered(int camera, std::int64_t frame) {
   cv::Mat luma(1, 8, CV_16UC1, cv::Scalar(0));
   luma.at<std::uint16_t>(0, 0) = static_cast<std::uint16_t>(camera);
   luma.at<std::uint16_t>(0, 1) = static_cast<std::uint16_t>(frame);
-  return Picture(luma);
+  return Image(luma);
 }
 
 struct Body2D {
@@ -61,13 +61,13 @@ struct LiveRoom {
 
   LiveRoom(const RoomOptions& options, KeypointErrors given) : scene(options), errors(given) { errors.missing = 0; }
 
-  std::vector<Body2D> bodies(const Picture& image) const {
+  std::vector<Body2D> bodies(const Image& image) const {
     const int camera = image.luma().at<std::uint16_t>(0, 0);
     const std::int64_t frame = image.luma().at<std::uint16_t>(0, 1);
     std::vector<Body2D> bodies;
     if (frame >= hidden_from && frame < hidden_to) return bodies;
     for (Keypoints<2>& person :
-         keypoints_seen(scene, camera, static_cast<double>(frame) / kRate, static_cast<std::uint64_t>(frame), errors)) {
+         keypoints_observed(scene, camera, static_cast<double>(frame) / kRate, static_cast<std::uint64_t>(frame), errors)) {
       Vector<2> low = Vector<2>::Constant(1e9), high = -low, hips = Vector<2>::Zero();
       for (const auto& point : person.points) {
         if (point) low = low.cwiseMin(point->position), high = high.cwiseMax(point->position);
@@ -90,22 +90,22 @@ struct LiveRoom {
   KeypointsLiveOptions options() const {
     KeypointsLiveOptions options;
     options.set = marey::simulate::room::room_keypoint_set();
-    options.find_people = [this](const Picture& image) {
+    options.find_people = [this](const Image& image) {
       std::vector<Box> boxes;
       if (std::count(detected_in.begin(), detected_in.end(), image.luma().at<std::uint16_t>(0, 0)) == 0) return boxes;
       for (const Body2D& body : bodies(image)) boxes.push_back(body.hull);
       return boxes;
     };
-    options.find_bodies = [this](std::span<const detect::keypoints::Look> looks) {
+    options.find_bodies = [this](std::span<const detect::keypoints::Look> appearances) {
       std::vector<detect::keypoints::Body> found;
-      for (const detect::keypoints::Look& look : looks) {
-        const std::vector<Body2D> all = bodies(look.image);
+      for (const detect::keypoints::Look& inspect : appearances) {
+        const std::vector<Body2D> all = bodies(inspect.image);
         detect::keypoints::Body body;
         body.keypoints.points.resize(marey::simulate::room::room_keypoint_set().points.size());
         body.keypoints.presence = 0;
-        double nearest = look.region.side / 2;
+        double nearest = inspect.region.side / 2;
         for (const Body2D& one : all) {
-          const double distance = (one.hips - look.region.centre).norm();
+          const double distance = (one.hips - inspect.region.centre).norm();
           if (distance >= nearest) continue;
           nearest = distance;
           body.keypoints = one.points;
@@ -158,7 +158,7 @@ std::pair<int, double> nearest_actor(const RoomScene& scene, double time_s,
   const auto truth = true_keypoints(scene, time_s);
   for (std::size_t a = 0; a < truth.size(); ++a) {
     double sum = 0;
-    for (const auto& [i, place] : points) sum += (place - truth[a][i]).norm() / static_cast<double>(points.size());
+    for (const auto& [i, location] : points) sum += (location - truth[a][i]).norm() / static_cast<double>(points.size());
     if (sum < nearest.second) nearest = {static_cast<int>(a), sum};
   }
   return nearest;
@@ -248,10 +248,10 @@ TEST(KeypointsLive, SaysThatCamerasAreExchanged) {
   for (std::int64_t k = 0; k < 150; ++k) stage->step(room.frames(k));
   corridor::Summary summary;
   stage->report(summary);
-  const bool said = std::any_of(summary.warnings.begin(), summary.warnings.end(),
-                                [](const std::string& warning) { return warning.find("exchange them") != std::string::npos; });
-  EXPECT_TRUE(said) << summary.figures["people_placed"] << " of " << summary.figures["people_in_images"] << ", noise "
-                    << summary.figures["noise"];
+  const bool stated = std::any_of(summary.warnings.begin(), summary.warnings.end(),
+                                  [](const std::string& warning) { return warning.find("exchange them") != std::string::npos; });
+  EXPECT_TRUE(stated) << summary.figures["people_placed"] << " of " << summary.figures["people_in_images"] << ", noise "
+                      << summary.figures["noise"];
 }
 
 TEST(KeypointsLive, SaysThatNoPersonWasSeen) {
@@ -275,7 +275,7 @@ TEST(KeypointsLive, NeedsTwoCalibratedCameras) {
 TEST(KeypointsLive, TracksAtMostSoManyPeople) {
   LiveRoom room(small_room(3, 60, 8), {});
   KeypointsLiveOptions options = room.options();
-  options.people.most = 2;
+  options.people.maximum = 2;
   const auto stage = keypoints_live(room.scene.rig(), kRate, options);
   std::map<TrackId, std::string> labels;
   for (std::int64_t k = 0; k < 60; ++k) {

@@ -9,12 +9,12 @@ namespace {
 constexpr std::size_t kBlock = 1000;  // points, numerical: enough for a median
 constexpr int kMostBlocks = 10;       // numerical: then the median is known
 // Numerical: never above the start, so that a rig that does not fit cannot widen the gates by its own errors.
-constexpr double kLeast = 0.5, kMost = 2.6;
+constexpr double kMinValue = 0.5, kMaxCount = 2.6;
 constexpr double kMedianOfMean = 0.9;  // by definition: the median of a sum of squares is a little below its mean
 
 }  // namespace
 
-void LiveNoise::learn(std::span<const reconstruct::keypoints::PlacedPerson> people, double slack) {
+void LiveNoise::learn(std::span<const reconstruct::keypoints::LocatedPerson> people, double slack) {
   if (blocks_ >= kMostBlocks) return;
   for (const auto& person : people) {
     for (const auto& point : person.points) {
@@ -24,7 +24,7 @@ void LiveNoise::learn(std::span<const reconstruct::keypoints::PlacedPerson> peop
   if (squares_.size() < kBlock) return;
   const auto middle = squares_.begin() + std::ssize(squares_) / 2;
   std::nth_element(squares_.begin(), middle, squares_.end());
-  noise_ = std::clamp(slack * noise_ * std::sqrt(*middle / kMedianOfMean), kLeast, kMost);
+  noise_ = std::clamp(slack * noise_ * std::sqrt(*middle / kMedianOfMean), kMinValue, kMaxCount);
   squares_.clear();
   ++blocks_;
 }

@@ -15,7 +15,7 @@ class LiveNoise {
   bool is_learned() const { return blocks_ > 0; }
 
   /// The people of one instant, placed with `slack` times the present noise.
-  void learn(std::span<const reconstruct::keypoints::PlacedPerson> people, double slack);
+  void learn(std::span<const reconstruct::keypoints::LocatedPerson> people, double slack);
 
  private:
   double noise_ = 2.6;           // of a network in a rig that is not known yet

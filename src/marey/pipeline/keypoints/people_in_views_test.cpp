@@ -21,14 +21,14 @@ RoomOptions people_room(int actors, int cameras, std::int64_t frames, std::uint6
   options.markers = 4;
   options.rate_hz = 50;
   options.frames = frames;
-  options.picture = {1080, 1920};
+  options.image = {1080, 1920};
   options.volume = {2.8, 2.8, 2.5};
   options.zoom = 1.3;
   options.seed = seed;
   return options;
 }
 
-double mean_error_of(const SeenRoom& room, rk::PersonTrack& track, const rk::PersonPath& path) {
+double mean_error_of(const ObservedRoom& room, rk::PersonTrack& track, const rk::PersonPath& path) {
   double sum = 0, count = 0;
   for (std::size_t k = 0; k < track.instants.size(); ++k) {
     const auto& person = track.instants[k];
@@ -45,8 +45,8 @@ double mean_error_of(const SeenRoom& room, rk::PersonTrack& track, const rk::Per
 
 TEST(PeopleInViews, PlacesExactKeypointsExactly) {
   KeypointErrors none{.bias_m = 0, .noise_px = 0, .outliers = 0, .missing = 0};
-  SeenRoom room(people_room(3, 4, 20, 1), none);
-  room.follow();
+  ObservedRoom room(people_room(3, 4, 20, 1), none);
+  room.run_tracker();
   ASSERT_EQ(room.tracks.size(), 3U);
   for (auto& [id, track] : room.tracks) {
     for (std::size_t k = 0; k < track.instants.size(); ++k) {
@@ -64,8 +64,8 @@ TEST(PeopleInViews, KeepsPeopleApartWhoStandAMetreFromEachOther) {
   for (const int actors : {2, 4, 6}) {
     for (const std::uint64_t seed : {1U, 2U}) {
       SCOPED_TRACE(testing::Message() << actors << " people, seed " << seed);
-      SeenRoom room(people_room(actors, 4, 300, seed), {});
-      room.follow();
+      ObservedRoom room(people_room(actors, 4, 300, seed), {});
+      room.run_tracker();
       ASSERT_EQ(static_cast<int>(room.tracks.size()), actors);
       for (const auto& [id, track] : room.tracks) {
         const int actor = room.actor_of(track.instants.front(), track.first);
@@ -74,14 +74,14 @@ TEST(PeopleInViews, KeepsPeopleApartWhoStandAMetreFromEachOther) {
           EXPECT_EQ(room.actor_of(track.instants[k], track.first + k), actor);
         }
       }
-      EXPECT_EQ(room.views_placed, room.views_seen);
+      EXPECT_EQ(room.views_located, room.views_observed);
     }
   }
 }
 
 TEST(PeopleInViews, TakesNobodyTwiceInACamera) {
-  SeenRoom room(people_room(6, 5, 40, 3), {});
-  room.follow();
+  ObservedRoom room(people_room(6, 5, 40, 3), {});
+  room.run_tracker();
   for (std::size_t t = 0; t < 40; ++t) {
     for (std::size_t c = 0; c < 5; ++c) {
       std::vector<int> taken;
@@ -97,23 +97,23 @@ TEST(PeopleInViews, TakesNobodyTwiceInACamera) {
 }
 
 TEST(PeopleInViews, PlacesNobodyWhereEachCameraSeesAnother) {
-  SeenRoom room(people_room(2, 2, 40, 4), {});
-  for (auto& frame : room.seen[0].frames) frame.resize(std::min<std::size_t>(frame.size(), 1));
+  ObservedRoom room(people_room(2, 2, 40, 4), {});
+  for (auto& frame : room.detected[0].frames) frame.resize(std::min<std::size_t>(frame.size(), 1));
   // The other camera's image is turned upside down: nothing there is what the first one sees.
-  for (auto& frame : room.seen[1].frames) {
+  for (auto& frame : room.detected[1].frames) {
     for (auto& person : frame) {
       for (auto& point : person.points) {
         if (point) point->position.y() = 1919 - point->position.y();
       }
     }
   }
-  room.follow();
+  room.run_tracker();
   EXPECT_TRUE(room.tracks.empty());
 }
 
 TEST(PersonPath, IsNearerThanTheNoiseOfSingleInstants) {
-  SeenRoom room(people_room(1, 4, 250, 5), {});
-  room.follow();
+  ObservedRoom room(people_room(1, 4, 250, 5), {});
+  room.run_tracker();
   ASSERT_EQ(room.tracks.size(), 1U);
   rk::PersonTrack& track = room.tracks.begin()->second;
   const rk::PersonPath path = room.path(track);
@@ -123,8 +123,8 @@ TEST(PersonPath, IsNearerThanTheNoiseOfSingleInstants) {
 TEST(PersonPath, ReadsExchangedLimbsTheOtherWayRound) {
   KeypointErrors errors;
   errors.swapped = 0.1;
-  SeenRoom room(people_room(1, 4, 400, 6), errors);
-  room.follow();
+  ObservedRoom room(people_room(1, 4, 400, 6), errors);
+  room.run_tracker();
   ASSERT_EQ(room.tracks.size(), 1U);
   rk::PersonTrack& track = room.tracks.begin()->second;
   const rk::PersonPath path = room.path(track);

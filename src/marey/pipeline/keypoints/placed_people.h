@@ -21,7 +21,7 @@
 namespace marey::pipeline::keypoints {
 
 struct PlacedPeopleOptions {
-  int most = 0;               ///< people who get a number; 0: all
+  int maximum = 0;            ///< people who get a number; 0: all
   int settle = 3;             ///< instants in which a person is placed before they get one, unswept
   int max_refused = 3;        ///< measurements outside the gate, one after the other, after which a point starts again, unswept
   double max_sigma_m = 0.15;  ///< standard deviation of a triangulated point that is used, as for recordings
@@ -30,16 +30,16 @@ struct PlacedPeopleOptions {
   filter::KalmanOptions filter{.acceleration_noise = 3.46, .initial_speed = 1.5, .gate_sigmas = 4};  ///< m; the gate unswept
 };
 
-class PlacedPeople {
+class LocatedPeople {
  public:
-  PlacedPeople(const KeypointSet& set, const PlacedPeopleOptions& options = {});
+  LocatedPeople(const KeypointSet& set, const PlacedPeopleOptions& options = {});
 
   /// Puts the tracks of an instant, `step_s` after the last one, into it: labels are "P1:left_knee", "P2:…".
-  void step(std::span<const reconstruct::keypoints::PlacedPerson> people, double step_s, Instant& instant);
+  void step(std::span<const reconstruct::keypoints::LocatedPerson> people, double step_s, Instant& instant);
 
-  /// Where the numbered person with this id of PeopleInViews is, by the set; empty where the id has no number.
+  /// Where the numbered person with this id of PeopleInViews is, by the set; empty if the id has no number.
   std::vector<std::optional<Vector<3>>> points_of(int person) const;
-  /// The track of a person's point; nothing where the id has no number.
+  /// The track of a person's point; nothing if the id has no number.
   std::optional<TrackId> track_of(int person, std::size_t point) const;
   /// How many numbers were given, and how many are in use.
   std::size_t numbers() const { return slots_.size(); }
@@ -50,14 +50,14 @@ class PlacedPeople {
  private:
   struct Point {
     filter::Kalman<3> filter;
-    double unseen_s = 0;
+    double unobserved_s = 0;
     int refused = 0;  // measurements outside the gate, one after the other
   };
   struct Slot {
     int person = 0;
-    double unseen_s = 0;
+    double unobserved_s = 0;
     std::vector<std::optional<Point>> points;
-    Vector<3> place = Vector<3>::Zero();
+    Vector<3> location = Vector<3>::Zero();
     bool named = false;
   };
   struct Candidate {
@@ -66,9 +66,9 @@ class PlacedPeople {
 
   Slot* slot_of(int person);
   const Slot* slot_of(int person) const;
-  Slot* give_slot(const reconstruct::keypoints::PlacedPerson& person);
-  void correct(Slot& slot, const reconstruct::keypoints::PlacedPerson& person) const;
-  void tell(const Slot& slot, std::size_t number, const reconstruct::keypoints::PlacedPerson* seen, Instant& instant) const;
+  Slot* give_slot(const reconstruct::keypoints::LocatedPerson& person);
+  void correct(Slot& slot, const reconstruct::keypoints::LocatedPerson& person) const;
+  void notify(const Slot& slot, std::size_t number, const reconstruct::keypoints::LocatedPerson* detected, Instant& instant) const;
 
   KeypointSet set_;
   PlacedPeopleOptions options_;

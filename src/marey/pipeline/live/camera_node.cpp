@@ -10,7 +10,7 @@
 #include "marey/core/error.h"
 #include "marey/draw/jpeg.h"
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/live/camera_desk.h"
+#include "marey/pipeline/live/camera_settings.h"
 #include "marey/pipeline/live/live_feeds.h"
 
 namespace marey::pipeline::live {
@@ -23,7 +23,7 @@ using source::live::NodeFrame;
 using source::live::NodeQuestion;
 using source::live::NodeServer;
 
-/// What hosts are told of the cameras: each as its frames are, which come with its region and by its own clock.
+/// What hosts are reported of the cameras: each as its frames are, which come with its region and by its own clock.
 class AdvertisedCameras {
  public:
   explicit AdvertisedCameras(const Rig& rig, std::shared_ptr<source::LiveTime> time)
@@ -38,17 +38,17 @@ class AdvertisedCameras {
     return rig_;
   }
 
-  void look_at(const std::vector<corridor::Feed>& feeds) {
+  void inspect_at(const std::vector<corridor::Feed>& feeds) {
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 0; i < feeds.size(); ++i) {
-      RigCamera& told = rig_.cameras[i];
-      const auto offset_s = told.offset_s;
-      told = feeds[i].camera();
-      told.offset_s = offset_s;
-      told.source.clear();
-      told.region.reset();
-      if (const cv::Size size = feeds[i].info().size; !size.empty()) told.size = size;
-      if (feeds[i].info().rate_hz) told.rate_hz = feeds[i].info().rate_hz;
+      RigCamera& reported = rig_.cameras[i];
+      const auto offset_s = reported.offset_s;
+      reported = feeds[i].camera();
+      reported.offset_s = offset_s;
+      reported.source.clear();
+      reported.region.reset();
+      if (const cv::Size size = feeds[i].info().size; !size.empty()) reported.size = size;
+      if (feeds[i].info().rate_hz) reported.rate_hz = feeds[i].info().rate_hz;
     }
   }
 
@@ -73,43 +73,46 @@ class AdvertisedCameras {
 };
 
 /// What hosts set of the cameras.
-class HostsWishes {
+class ControlRequests {
  public:
-  HostsWishes(const Rig& rig, const NodeOptions& options, std::uint64_t session)
-      : desk_(rig, options.markers.threshold), allowed_(options.allow_control), finds_(!options.quality), session_(session) {
+  ControlRequests(const Rig& rig, const NodeOptions& options, std::uint64_t session)
+      : camera_settings_(rig, options.markers.threshold),
+        allowed_(options.allow_control),
+        finds_(!options.quality),
+        session_(session) {
     for (const RigCamera& camera : rig.cameras) names_.push_back(camera.name);
   }
 
-  CameraDesk& desk() { return desk_; }
+  CameraSettings& camera_settings() { return camera_settings_; }
 
-  std::optional<NodeControls> hear(const NodeQuestion& question) {
+  std::optional<NodeControls> listen(const NodeQuestion& question) {
     const auto at = std::find(names_.begin(), names_.end(), question.camera);
     if (at == names_.end()) return std::nullopt;
     const auto index = static_cast<std::size_t>(at - names_.begin());
-    source::live::CameraControls& controls = *desk_.controls(index);
-    NodeControls said{.session = session_, .allowed = allowed_, .waits = false, .has = {}, .refused = {}};
-    if (question.wish && allowed_) said.refused = set(index, *question.wish);
+    source::live::CameraControls& controls = *camera_settings_.controls(index);
+    NodeControls stated{.session = session_, .allowed = allowed_, .waits = false, .has = {}, .refused = {}};
+    if (question.request && allowed_) stated.refused = set(index, *question.request);
     // Of a threshold that is known at once; what was refused before it is another matter.
-    const bool of_camera = !question.wish || question.wish->control != Control::threshold;
-    if (of_camera) said.refused = controls.refused();
-    said.waits = controls.waits();
-    said.has = controls.has();
+    const bool of_camera = !question.request || question.request->control != Control::threshold;
+    if (of_camera) stated.refused = controls.refused();
+    stated.waits = controls.waits();
+    stated.has = controls.has();
     if (finds_) {
-      const auto threshold = desk_.camera(index).markers.threshold;
-      said.has.push_back({Control::threshold, 0, CameraDesk::kBrightest, threshold.value_or(0)});
+      const auto threshold = camera_settings_.camera(index).markers.threshold;
+      stated.has.push_back({Control::threshold, 0, CameraSettings::kBrightest, threshold.value_or(0)});
     }
-    return said;
+    return stated;
   }
 
  private:
   /// Why it cannot be, as far as that is known at once.
-  std::string set(std::size_t index, const NodeQuestion::Wish& wish) {
-    if (wish.control != Control::threshold) {
-      desk_.controls(index)->ask(wish.control, wish.value);
+  std::string set(std::size_t index, const NodeQuestion::ControlRequest& request) {
+    if (request.control != Control::threshold) {
+      camera_settings_.controls(index)->request(request.control, request.value);
       return "";
     }
     try {
-      desk_.set_threshold(index, wish.value > 0 ? std::optional(wish.value) : std::nullopt);
+      camera_settings_.set_threshold(index, request.value > 0 ? std::optional(request.value) : std::nullopt);
       return "";
     } catch (const Error& error) {
       const std::string why = error.what(), begin = names_[index] + ": ";
@@ -117,7 +120,7 @@ class HostsWishes {
     }
   }
 
-  CameraDesk desk_;
+  CameraSettings camera_settings_;
   std::vector<std::string> names_;
   bool allowed_, finds_;
   std::uint64_t session_;
@@ -133,12 +136,12 @@ class Outgoing {
     messages_.clear();
     for (CameraFrame& given : feed.arrived(policy)) {
       const Frame& frame = given.frame;
-      NodeFrame sent{.session = session_, .sequence = sent_++, .taken = frame.time, .size = frame.picture.size(), .detections = {}};
+      NodeFrame sent{.session = session_, .sequence = sent_++, .taken = frame.time, .size = frame.image.size(), .detections = {}};
       std::string jpeg;
       if (given.detections) {
         sent.detections = std::move(given.detections);
       } else {
-        jpeg = encoder_.encode(frame.picture, frame.picture.size().width, quality.value_or(draw::JpegEncoder::kToBeSeen));
+        jpeg = encoder_.encode(frame.image, frame.image.size().width, quality.value_or(draw::JpegEncoder::kToBeObserved));
         sent.jpeg = {reinterpret_cast<const std::uint8_t*>(jpeg.data()), jpeg.size()};
       }
       messages_.push_back(message_of(sent));
@@ -176,17 +179,19 @@ NodeSummary serve_cameras(const Rig& rig, const NodeOptions& options, const Hook
   const StopScope scope(hooks.stop);
   const source::LivePolicy policy{.time = source::steady_time()};
   AdvertisedCameras advertised(rig, policy.time);
-  HostsWishes wishes(rig, options, advertised.session());
-  std::vector<corridor::Feed> feeds = open_live_feeds(without_offsets(rig), policy, options.patience_s, &wishes.desk());
-  advertised.look_at(feeds);
+  ControlRequests wishes(rig, options, advertised.session());
+  std::vector<corridor::Feed> feeds = open_live_feeds(without_offsets(rig), policy, options.patience_s, &wishes.camera_settings());
+  advertised.inspect_at(feeds);
   std::vector<std::unique_ptr<Outgoing>> outgoing;
   for (std::size_t i = 0; i < feeds.size(); ++i) {
-    if (!options.quality) feeds[i].find(std::make_unique<corridor::TunedMarkers>(options.markers, wishes.desk().tuning(i)));
+    if (!options.quality)
+      feeds[i].find(std::make_unique<corridor::TunedMarkers>(options.markers, wishes.camera_settings().tuning(i)));
     outgoing.push_back(std::make_unique<Outgoing>(advertised.session()));
   }
   NodeServer server(
       options.address, options.port, [&](const std::string& camera) { return advertised.answer(camera); },
-      [&] { return format::rig::rig_text(advertised.rig()); }, [&](const NodeQuestion& question) { return wishes.hear(question); });
+      [&] { return format::rig::rig_text(advertised.rig()); },
+      [&](const NodeQuestion& question) { return wishes.listen(question); });
   if (options.begun) options.begun(advertised.rig());
   NodeSummary summary;
   std::int64_t frames = 0;
@@ -205,7 +210,7 @@ NodeSummary serve_cameras(const Rig& rig, const NodeOptions& options, const Hook
         any = true;
       }
     }
-    advertised.look_at(feeds);
+    advertised.inspect_at(feeds);
     if (!any) policy.time->wait();
   }
   summary.seconds = seconds(policy.time->now());

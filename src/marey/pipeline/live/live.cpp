@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/pipeline/corridor/preview.h"
-#include "marey/pipeline/live/camera_films.h"
+#include "marey/pipeline/live/camera_videos.h"
 #include "marey/pipeline/live/live_feeds.h"
 #include "marey/pipeline/markers/named_in_take.h"
 #include "marey/pipeline/markers/skeleton_in_space.h"
@@ -29,13 +29,13 @@ class Watched final : public corridor::Stage {
     header.made_by.program = "marey live";
     return header;
   }
-  void want_boxes() override { stage_->want_boxes(); }
+  void need_boxes() override { stage_->need_boxes(); }
   void need_foregrounds(std::function<void(corridor::FrameForeground)> give) override { stage_->need_foregrounds(std::move(give)); }
   std::span<const Instant> step(const FrameSet& frames) override {
     const Timestamp given = time_.now();
     const std::span<const Instant> known = stage_->step(frames);
-    monitor_.heard(stage_->news());
-    monitor_.saw(frames, known, given, time_.now());
+    monitor_.received(stage_->news());
+    monitor_.observed(frames, known, given, time_.now());
     return known;
   }
   std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override { return stage_->finish(hooks); }
@@ -51,13 +51,13 @@ bool feeds_find(LiveJob job, LiveTargets targets) {
   return job == LiveJob::markers_in_space || (job == LiveJob::preview && targets == LiveTargets::markers);
 }
 
-void look_for_markers(std::vector<corridor::Feed>& feeds, LiveJob job, LiveOptions& options) {
+void inspect_for_markers(std::vector<corridor::Feed>& feeds, LiveJob job, LiveOptions& options) {
   for (std::size_t i = 0; i < feeds.size(); ++i) {
-    if (options.targets == LiveTargets::markers) feeds[i].tune(options.desk->tuning(i));
+    if (options.targets == LiveTargets::markers) feeds[i].tune(options.camera_settings->tuning(i));
     if (feeds_find(job, options.targets))
-      feeds[i].find(std::make_unique<corridor::TunedMarkers>(options.space.markers, options.desk->tuning(i)));
+      feeds[i].find(std::make_unique<corridor::TunedMarkers>(options.space.markers, options.camera_settings->tuning(i)));
   }
-  options.markers.tuning = options.desk->tuning(0);
+  options.markers.tuning = options.camera_settings->tuning(0);
 }
 
 std::unique_ptr<corridor::Stage> stage_of(LiveJob job, const std::vector<corridor::Feed>& feeds, const Rig& rig, double rate_hz,
@@ -68,12 +68,12 @@ std::unique_ptr<corridor::Stage> stage_of(LiveJob job, const std::vector<corrido
       options.space.waits_for_names = false;
       options.space.naming = options.naming;
       return markers::markers_in_space(rig, rate_hz, options.space);
-    case LiveJob::markers_in_picture:
+    case LiveJob::markers_in_image:
       options.markers.live = true;
-      return markers::with_naming(markers::markers_in_picture(feeds.front(), options.markers), options.naming);
-    case LiveJob::people_in_picture:
+      return markers::with_naming(markers::markers_in_image(feeds.front(), options.markers), options.naming);
+    case LiveJob::people_in_image:
       options.people.live = true;
-      return markers::with_naming(people::people_in_picture(feeds.front(), options.people), options.naming);
+      return markers::with_naming(people::people_in_image(feeds.front(), options.people), options.naming);
     case LiveJob::people_on_ground:
       options.on_ground.live = true;
       return markers::with_naming(people::people_on_ground(feeds, rig, options.on_ground), options.naming);
@@ -90,9 +90,9 @@ std::unique_ptr<corridor::Stage> stage_of(LiveJob job, const std::vector<corrido
 }
 
 corridor::Sinks sinks_of(LiveOptions& options) {
-  corridor::Sinks sinks(corridor::Sinks::Slow::passed_over);
+  corridor::Sinks sinks(corridor::Sinks::Slow::skipped);
   if (!options.take.empty()) sinks.add(std::make_unique<corridor::Recorder>(options.take, options.recording, options.preroll_s));
-  if (!options.pictures.empty()) sinks.add(std::make_unique<CameraFilms>(options.pictures, options.recording));
+  if (!options.images.empty()) sinks.add(std::make_unique<CameraVideos>(options.images, options.recording));
   for (std::unique_ptr<Sink>& sink : options.sinks) sinks.add(std::move(sink));
   return sinks;
 }
@@ -106,21 +106,21 @@ std::string nothing_came(const corridor::LiveStatus& status) {
   return why;
 }
 
-/// What a user would not like to find out later: that much of what cameras saw was never looked at.
+/// What a user would not like to find out later: that much of what cameras saw was never inspected.
 void warn_of_losses(LiveSummary& summary) {
   constexpr double kMuch = 0.2;
   for (const CameraHealth& camera : summary.last.cameras) {
     const std::int64_t gone = camera.dropped(), all = camera.frames + camera.lost + camera.damaged;
     if (static_cast<double>(gone) <= kMuch * static_cast<double>(all)) continue;
     summary.warnings.push_back(fmt::format(
-        "camera \"{}\" lost {:.0f} % of its frames, or there was no time for them; try a smaller picture, a lower rate or "
+        "camera \"{}\" lost {:.0f} % of its frames, or there was no time for them; try a smaller image, a lower rate or "
         "fewer cameras",
         camera.name, 100.0 * static_cast<double>(gone) / static_cast<double>(all)));
   }
-  const std::int64_t gone = summary.last.drops.overtaken + summary.last.drops.incomplete, all = summary.last.instants + gone;
+  const std::int64_t gone = summary.last.drops.superseded + summary.last.drops.incomplete, all = summary.last.instants + gone;
   if (static_cast<double>(gone) > kMuch * static_cast<double>(all))
     summary.warnings.push_back(
-        fmt::format("{:.0f} % of the moments were let go: cameras are faster than what looks at their pictures",
+        fmt::format("{:.0f} % of the instants were dropped: cameras are faster than what looks at their images",
                     100.0 * static_cast<double>(gone) / static_cast<double>(all)));
 }
 
@@ -142,7 +142,7 @@ void report_cameras_live(LiveSummary& summary, const corridor::Clock& clock, con
   for (corridor::Summary::StepTime& each : monitor.steps()) summary.steps.push_back(std::move(each));
 }
 
-/// The names in the take that all cameras are played from; empty where they are not.
+/// The names in the take that all cameras are played from; empty if they are not.
 MarkerSet names_of_played(const Rig& rig) {
   const std::string path = path_of_source(rig.cameras.front().source);
   for (const RigCamera& camera : rig.cameras) {
@@ -155,12 +155,12 @@ MarkerSet names_of_played(const Rig& rig) {
 
 std::string_view to_string(LiveJob job) {
   switch (job) {
-    case LiveJob::markers_in_picture:
-      return "markers in a picture";
+    case LiveJob::markers_in_image:
+      return "markers in an image";
     case LiveJob::markers_in_space:
       return "markers in space";
-    case LiveJob::people_in_picture:
-      return "people in a picture";
+    case LiveJob::people_in_image:
+      return "people in an image";
     case LiveJob::people_on_ground:
       return "people on the ground";
     case LiveJob::keypoints_in_space:
@@ -173,7 +173,7 @@ std::string_view to_string(LiveJob job) {
 
 LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground) {
   if (ground) return LiveJob::people_on_ground;
-  if (rig.cameras.size() == 1) return targets == LiveTargets::markers ? LiveJob::markers_in_picture : LiveJob::people_in_picture;
+  if (rig.cameras.size() == 1) return targets == LiveTargets::markers ? LiveJob::markers_in_image : LiveJob::people_in_image;
   const auto calibrated =
       std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
   if (targets == LiveTargets::people || calibrated < 2) return LiveJob::preview;
@@ -184,8 +184,9 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   if (options.policy.time == nullptr) options.policy.time = source::steady_time();
   if (options.recording == nullptr) options.recording = std::make_shared<corridor::RecordSwitch>(true);
   const StopScope scope(hooks.stop);
-  if (options.desk == nullptr) options.desk = std::make_shared<CameraDesk>(rig, options.space.markers.threshold);
-  std::vector<corridor::Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s, options.desk.get());
+  if (options.camera_settings == nullptr)
+    options.camera_settings = std::make_shared<CameraSettings>(rig, options.space.markers.threshold);
+  std::vector<corridor::Feed> feeds = open_live_feeds(rig, options.policy, options.patience_s, options.camera_settings.get());
   const Rig fed = corridor::rig_as_fed(rig, feeds);
   LiveSummary summary;
   summary.job = live_job(fed, options.targets, options.ground);
@@ -195,7 +196,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
                 to_string(summary.job));
   if (options.space.learned_set != nullptr && summary.job != LiveJob::markers_in_space)
     throw Error("a set names markers in space, of two calibrated cameras or more; these cameras give {}", to_string(summary.job));
-  look_for_markers(feeds, summary.job, options);
+  inspect_for_markers(feeds, summary.job, options);
   corridor::LiveMonitor monitor(options.policy.time, options.status);
   monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });
   bool begun = false;
@@ -206,7 +207,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   const std::vector<corridor::Feed>& watched = feeds;
   double rate_hz = 0;
   for (const corridor::Feed& feed : watched) rate_hz = std::max(rate_hz, feed.info().rate_hz.value_or(0));
-  if (rate_hz <= 0) rate_hz = kUsualRate;
+  if (rate_hz <= 0) rate_hz = kDefaultRate;
   auto stage = stage_of(summary.job, feeds, fed, rate_hz, options);
   corridor::Clock clock(std::move(feeds), how);
   corridor::Sinks sinks = sinks_of(options);

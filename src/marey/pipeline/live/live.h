@@ -1,4 +1,4 @@
-// The jobs of a rig whose cameras are live: the same stages as for files, with the policy that the newest whole moment wins.
+// The jobs of a rig whose cameras are live: the same stages as for files, with the policy that the newest whole instant wins.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,11 @@
 #include "marey/pipeline/corridor/live_monitor.h"
 #include "marey/pipeline/corridor/recorder.h"
 #include "marey/pipeline/keypoints/keypoints_live.h"
-#include "marey/pipeline/live/camera_desk.h"
-#include "marey/pipeline/markers/markers_in_picture.h"
+#include "marey/pipeline/live/camera_settings.h"
+#include "marey/pipeline/markers/image_stage.h"
 #include "marey/pipeline/markers/markers_in_space.h"
 #include "marey/pipeline/markers/track_naming.h"
-#include "marey/pipeline/people/people_in_picture.h"
+#include "marey/pipeline/people/image_stage.h"
 #include "marey/pipeline/people/people_on_ground.h"
 
 namespace marey::pipeline::live {
@@ -22,7 +22,7 @@ namespace marey::pipeline::live {
 enum class LiveTargets { markers, people, keypoints };
 
 /// What runs, by what is asked for and what is known of the rig.
-enum class LiveJob { preview, markers_in_picture, markers_in_space, people_in_picture, people_on_ground, keypoints_in_space };
+enum class LiveJob { preview, markers_in_image, markers_in_space, people_in_image, people_on_ground, keypoints_in_space };
 
 /// "a preview", "markers in space", …
 std::string_view to_string(LiveJob job);
@@ -31,17 +31,18 @@ struct LiveOptions {
   LiveTargets targets = LiveTargets::markers;
   bool ground = false;  ///< people are placed on the ground that the cameras look at
   markers::MarkersInSpaceOptions space;
-  markers::MarkersInPictureOptions markers;
-  people::PeopleInPictureOptions people;
+  markers::ImageMarkerOptions markers;
+  people::ImagePeopleOptions people;
   people::PeopleOnGroundOptions on_ground;
   keypoints::KeypointsLiveOptions keypoints;  ///< of several cameras; of one: `people.keypoints`
   source::LivePolicy policy = {.time = nullptr, .late_s = 0.05, .stalled_s = 0.5, .lost_s = 5};  ///< without a time: the steady one
-  std::shared_ptr<CameraDesk> desk = {};  ///< what of the cameras is changed while they run; null: they are as the rig says
+  std::shared_ptr<CameraSettings> camera_settings =
+      {};  ///< what of the cameras is changed while they run; null: they are as the rig says
   std::shared_ptr<markers::TrackNaming> naming = {};  ///< names that tracks are given by hand; null: none
   double patience_s = 3;                              ///< that is waited at the beginning for cameras that are not there
 
   std::string take;                                   ///< what is recorded into, NAME.marey; empty: nothing
-  std::string pictures;                               ///< a folder for what each camera saw while it was recorded; empty: not kept
+  std::string images;                                 ///< a folder for what each camera saw while it was recorded; empty: not kept
   std::shared_ptr<corridor::RecordSwitch> recording;  ///< null: all is recorded
   double preroll_s = 5;                               ///< of what came before recording was switched on
 
@@ -60,8 +61,8 @@ struct LiveSummary : corridor::Summary {
 /// a preview.
 LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground);
 
-/// Runs until `hooks.stop` says so, or all that is played has ended; what was recorded is whole then. Throws Error where a source
-/// cannot be meant, a camera's pictures do not fit the rig, no camera gave anything, or the take cannot be begun.
+/// Runs until `hooks.stop` says so, or all that is played has ended; what was recorded is whole then. Throws Error if a source
+/// cannot be meant, a camera's images do not fit the rig, no camera gave anything, or the take cannot be begun.
 LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline::live

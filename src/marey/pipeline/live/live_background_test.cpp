@@ -1,9 +1,9 @@
-// Background models that saw nothing ahead, on films of people before a scene that does not keep still.
+// Background models that saw nothing ahead, on videos of people before a scene that does not keep still.
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
 #include "marey/detect/background/background.h"
-#include "marey/simulate/people/restless_film.h"
+#include "marey/simulate/people/restless_video.h"
 
 namespace marey::pipeline::live {
 namespace {
@@ -14,20 +14,20 @@ using detect::background::make_background;
 using detect::background::Mog2Options;
 
 double f_of(const marey::simulate::people::Unrest& unrest, const BackgroundOptions& options) {
-  marey::simulate::people::RestlessFilmOptions wanted;
-  wanted.frames = 75;
-  wanted.unrest = unrest;
-  const marey::simulate::people::RestlessFilm film(1, wanted);
+  marey::simulate::people::RestlessVideoOptions required;
+  required.frames = 75;
+  required.unrest = unrest;
+  const marey::simulate::people::RestlessVideo video(1, required);
   const auto model = make_background(options);
   double hit = 0, marked = 0, people = 0;
-  for (int i = 0; i < film.frames(); ++i) {
-    const marey::simulate::people::RestlessFrame shown = film.render(i);
+  for (int i = 0; i < video.frames(); ++i) {
+    const marey::simulate::people::RestlessFrame shown = video.render(i);
     Frame frame;
     frame.index = i;
-    frame.time = timestamp_from_seconds(i / film.rate_hz());
-    frame.picture = shown.picture;
-    const Foreground seen = model->apply(frame, {});
-    const cv::Mat& mask = seen.covered.empty() ? seen.mask : seen.covered;
+    frame.time = timestamp_from_seconds(i / video.rate_hz());
+    frame.image = shown.image;
+    const Foreground detected = model->apply(frame, {});
+    const cv::Mat& mask = detected.covered.empty() ? detected.mask : detected.covered;
     hit += cv::countNonZero(mask & shown.people);
     marked += cv::countNonZero(mask);
     people += cv::countNonZero(shown.people);

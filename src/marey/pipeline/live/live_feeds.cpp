@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 #include "marey/pipeline/live/live_node.h"
 #include "marey/pipeline/live/live_take.h"
 #include "marey/pipeline/simulate/live_simulation.h"
@@ -18,8 +18,8 @@
 namespace marey::pipeline::live {
 namespace {
 
-constexpr double kBeforePlay = 0.3;  // s after a film or a simulation was opened until it begins
-constexpr int kKeep = 8;             // frames of a camera that nobody asked for yet
+constexpr double kBeforePlay = 0.3;  // s after a video or a simulation was opened until it begins
+constexpr int kKeep = 8;             // frames of a camera that no person asked for yet
 
 /// A path is played.
 std::string live_name(const std::string& source) {
@@ -114,8 +114,8 @@ Rig rig_of_sources(std::span<const std::string> sources) {
   return rig;
 }
 
-std::vector<corridor::Feed> open_live_feeds(const Rig& rig, const source::LivePolicy& policy, double patience_s, CameraDesk* desk,
-                                            const std::stop_token& stop) {
+std::vector<corridor::Feed> open_live_feeds(const Rig& rig, const source::LivePolicy& policy, double patience_s,
+                                            CameraSettings* camera_settings, const std::stop_token& stop) {
   const std::vector<source::live::Kind> kinds = live_kinds();
   const auto begin = common_begin(policy.time);
   std::vector<source::live::Connect> connects(rig.cameras.size());
@@ -126,7 +126,7 @@ std::vector<corridor::Feed> open_live_feeds(const Rig& rig, const source::LivePo
       const auto address = source::live::parse_address(live_name(camera.source));
       connects[i] = source::live::kind_of(kinds, address).open(address, {policy.time, begin, camera.rate_hz});
     } catch (const Error& error) {
-      throw Error("{}", corridor::said_of(camera, error.what()));
+      throw Error("{}", corridor::stated_of(camera, error.what()));
     }
   }
   std::vector<std::unique_ptr<LiveSource>> sources;
@@ -135,7 +135,7 @@ std::vector<corridor::Feed> open_live_feeds(const Rig& rig, const source::LivePo
       sources.push_back(std::make_unique<NoCamera>());
       continue;
     }
-    auto controls = desk != nullptr ? desk->controls(i) : controls_of(rig.cameras[i]);
+    auto controls = camera_settings != nullptr ? camera_settings->controls(i) : controls_of(rig.cameras[i]);
     sources.push_back(source::live::keep_connected(shown_source(rig.cameras[i].source), connects[i], policy.time,
                                                    {.keep = kKeep, .controls = std::move(controls)}));
   }
@@ -145,7 +145,7 @@ std::vector<corridor::Feed> open_live_feeds(const Rig& rig, const source::LivePo
   std::vector<corridor::Feed> feeds;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     feeds.push_back(corridor::Feed::live(rig.cameras[i], CameraId{static_cast<int>(i)}, std::move(sources[i])));
-    if (desk != nullptr) desk->fit(i, feeds.back().camera());
+    if (camera_settings != nullptr) camera_settings->fit(i, feeds.back().camera());
   }
   return feeds;
 }

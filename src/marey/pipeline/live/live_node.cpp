@@ -8,19 +8,19 @@ namespace marey::pipeline::live {
 namespace {
 
 source::live::Connect open_node(const source::live::Address& address, const source::live::Opening& /*opening*/) {
-  const source::live::NodePlace place = source::live::node_place(address);
-  if (place.camera.empty()) throw Error("{}: stands for all cameras of that node; add /CAMERA for one of them", address.text);
-  return source::live::connect_node(place);
+  const source::live::NodeAddress location = source::live::node_address(address);
+  if (location.camera.empty()) throw Error("{}: stands for all cameras of that node; add /CAMERA for one of them", address.text);
+  return source::live::connect_node(location);
 }
 
 /// With what the node knows of them: their calibration too.
 Rig cameras_of_node(const source::live::Address& address) {
-  const source::live::NodePlace place = source::live::node_place(address);
+  const source::live::NodeAddress location = source::live::node_address(address);
   Rig rig;
-  if (place.camera.empty()) {
-    rig = format::rig::parse_rig(source::live::ask_rig_of_node(place), place.node());
+  if (location.camera.empty()) {
+    rig = format::rig::parse_rig(source::live::query_rig_of_node(location), location.node());
     for (RigCamera& camera : rig.cameras) {
-      camera.source = place.node() + "/" + camera.name;
+      camera.source = location.node() + "/" + camera.name;
       camera.exposure_ms = camera.gain = camera.threshold = std::nullopt;  // it is set there
     }
   } else {

@@ -18,7 +18,7 @@ using source::live::Opening;
 using source::live::Shot;
 
 bool names_take(const Address& address) {
-  return address.place.ends_with(".marey");
+  return address.location.ends_with(".marey");
 }
 
 /// A take's name with its options.
@@ -36,14 +36,14 @@ struct TakeName {
 
 Rig rig_of_take(const std::string& path) {
   const format::take::TakeReader take(path);
-  if (take.summary().seen == 0)
+  if (take.summary().detected == 0)
     throw Error(
         "{}: holds nothing that its cameras saw, so that it cannot stand for them; marey view and marey play show what it holds",
         path);
   return take.header().rig.value();  // whose cameras saw it
 }
 
-/// One camera of a take: its points of each moment, when the moment comes.
+/// One camera of a take: its points of each instant, when the instant comes.
 class TakeCamera final : public source::live::Connection {
  public:
   TakeCamera(std::string path, CameraId camera, bool loop, Timestamp begin, source::LiveTime& time, std::stop_token stop)
@@ -71,18 +71,18 @@ class TakeCamera final : public source::live::Connection {
     shot.sequence = sequence_++;
     shot.taken = due;
     shot.given.detections = points_of(now);
-    return seconds(time_.now() - due) * *info_.rate_hz > source::live::kMostBehind ? Came::nothing : Came::frame;
+    return seconds(time_.now() - due) * *info_.rate_hz > source::live::kMaxBehind ? Came::nothing : Came::frame;
   }
 
  private:
   std::vector<Detection> points_of(const Instant& instant) const {
     std::vector<Detection> points;
-    for (const SeenPoint& seen : instant.seen) {
-      if (seen.camera != camera_) continue;
+    for (const ImageObservation& detected : instant.detected) {
+      if (detected.camera != camera_) continue;
       Detection& point = points.emplace_back();
-      point.centre = seen.pixel;
-      if (seen.sigma) point.covariance = *seen.sigma * *seen.sigma * Matrix<2>::Identity();
-      point.area = seen.area.value_or(0);
+      point.centre = detected.pixel;
+      if (detected.sigma) point.covariance = *detected.sigma * *detected.sigma * Matrix<2>::Identity();
+      point.area = detected.area.value_or(0);
     }
     return points;
   }
@@ -106,13 +106,13 @@ class TakeCamera final : public source::live::Connection {
 
 Connect open_take(const Address& address, const Opening& opening) {
   const TakeName name(address);
-  const Rig rig = rig_of_take(address.place);
+  const Rig rig = rig_of_take(address.location);
   const auto cameras = std::ssize(rig.cameras);
   if (name.camera == 0 && cameras > 1)
     throw Error("{}: stands for {} cameras; add ?camera=1 to ?camera={} for one of them", address.text, cameras, cameras);
   if (name.camera > cameras) throw Error("{}: has {} cameras", address.text, cameras);
   const CameraId camera{std::max(0, name.camera - 1)};
-  return [path = address.place, camera, loop = name.loop, begin = opening.begin](
+  return [path = address.location, camera, loop = name.loop, begin = opening.begin](
              source::LiveTime& time, const std::stop_token& stop) -> std::unique_ptr<source::live::Connection> {
     return std::make_unique<TakeCamera>(path, camera, loop, begin(), time, stop);
   };
@@ -120,12 +120,12 @@ Connect open_take(const Address& address, const Opening& opening) {
 
 Rig cameras_of_take(const Address& address) {
   const TakeName name(address);
-  Rig rig = rig_of_take(address.place);
+  Rig rig = rig_of_take(address.location);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     RigCamera& camera = rig.cameras[i];
     const char* sign = address.options.empty() ? "?" : "&";
     camera.source = name.camera > 0 ? address.text : fmt::format("{}{}camera={}", address.text, sign, i + 1);
-    camera.offset_s.reset();  // a take's moments are by one clock
+    camera.offset_s.reset();  // a take's instants are by one clock
     camera.detections.clear();
     camera.region.reset();
   }
@@ -142,11 +142,11 @@ Rig one_camera(const Address& address) {
 
 }  // namespace
 
-source::live::Kind with_takes(source::live::Kind films) {
-  source::live::Kind both = films;
+source::live::Kind with_takes(source::live::Kind videos) {
+  source::live::Kind both = videos;
   both.form = "play:FILE?loop";
-  both.meaning = "a film, a folder of pictures, or what a take's cameras saw, in real time";
-  both.open = [open = films.open](const Address& address, const Opening& opening) {
+  both.meaning = "a video, a folder of images, or what a take's cameras saw, in real time";
+  both.open = [open = videos.open](const Address& address, const Opening& opening) {
     return names_take(address) ? open_take(address, opening) : open(address, opening);
   };
   both.cameras = [](const Address& address) { return names_take(address) ? cameras_of_take(address) : one_camera(address); };

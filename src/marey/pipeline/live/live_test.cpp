@@ -1,4 +1,5 @@
-// Live runs by a time that the test keeps: the same as from files where nothing is let go, and cameras that run free of each other.
+// Live runs by a time that the test keeps: the same as from files where nothing is dropped, and cameras that run free of each
+// other.
 #include "marey/pipeline/live/live.h"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ class TestTime final : public source::LiveTime {
   Timestamp now_{};
 };
 
-/// Hands over what it was given when its time has come.
+/// Passes what it was given when its time has come.
 class HandedOver final : public LiveSource {
  public:
   struct Due {
@@ -133,9 +134,9 @@ double error_of(const Recording& recording, const marey::simulate::room::RoomSce
     for (std::size_t row = 0; row < track.size(); ++row) {
       const double t = seconds(recording.instants()[static_cast<std::size_t>(track.at()[row])].time - begin);
       if (t < after_s || !track.measured(row)) continue;
-      double least = std::numeric_limits<double>::infinity();
-      for (const Vector<3>& truth : scene.points(t)) least = std::min(least, (truth - track.position(row)).squaredNorm());
-      squares += least;
+      double minimum = std::numeric_limits<double>::infinity();
+      for (const Vector<3>& truth : scene.points(t)) minimum = std::min(minimum, (truth - track.position(row)).squaredNorm());
+      squares += minimum;
       ++points;
     }
   }
@@ -158,7 +159,7 @@ std::vector<std::deque<HandedOver::Due>> free_running(const marey::simulate::roo
       CameraFrame frame;
       frame.frame.index = i;
       auto& detections = frame.detections.emplace();
-      for (const auto& blob : scene.seen_by(c, taken, static_cast<std::uint64_t>(i))) {
+      for (const auto& blob : scene.observed_by(c, taken, static_cast<std::uint64_t>(i))) {
         detections.emplace_back().centre = blob.pixel;
       }
       const Timestamp now = timestamp_from_seconds(10 + taken);
@@ -179,7 +180,7 @@ TEST(Live, CamerasThatRunFreePlaceMarkersNearlyAsWell) {
   const double free = error_of(live_recording(scene.rig(), free_running(scene, true, 50e-6)), scene, begin, 5, free_points);
   RecordProperty("in_step_um", static_cast<int>(1e6 * in_step));
   RecordProperty("free_um", static_cast<int>(1e6 * free));
-  EXPECT_LT(free, 2 * in_step) << in_step << " m in step";
+  EXPECT_LT(free, 2 * in_step) << in_step << " m synchronised";
   EXPECT_GT(free_points, points * 95 / 100);
 }
 
@@ -201,17 +202,17 @@ TEST(Live, SourcesAreNamedOrCounted) {
   EXPECT_THROW(rig_of_sources(unknown), Error);
 }
 
-TEST(Live, WhatRunsGoesByWhatIsKnown) {
+TEST(Live, RunningJobUsesKnownOptions) {
   const std::vector<std::string> calibrated{"sim://room?cameras=3"}, one{"sim://people"}, two{"sim://people", "sim://people"};
   EXPECT_EQ(live_job(rig_of_sources(calibrated), LiveTargets::markers, false), LiveJob::markers_in_space);
   EXPECT_EQ(live_job(rig_of_sources(calibrated), LiveTargets::people, false), LiveJob::preview);
   EXPECT_EQ(live_job(rig_of_sources(calibrated), LiveTargets::people, true), LiveJob::people_on_ground);
-  EXPECT_EQ(live_job(rig_of_sources(one), LiveTargets::people, false), LiveJob::people_in_picture);
+  EXPECT_EQ(live_job(rig_of_sources(one), LiveTargets::people, false), LiveJob::people_in_image);
   EXPECT_EQ(live_job(rig_of_sources(two), LiveTargets::markers, false), LiveJob::preview);
 }
 
-/// A real run of half a second: who is away from the beginning is looked for, the others lose nothing by it.
-TEST(Live, OneCameraOfFourThatIsAwayCostsOnlyItself) {
+/// A real run of half a second: who is away from the beginning is searched for, the others lose nothing by it.
+TEST(Live, MissingCameraAffectsOnlyItself) {
   const std::vector<std::string> given{"sim://room?cameras=4&rate=50&blobs&markers=10&away=2,-1,100"};
   std::stop_source end;
   LiveOptions options;

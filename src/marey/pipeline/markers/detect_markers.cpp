@@ -8,33 +8,33 @@
 #include "marey/core/error.h"
 #include "marey/core/time.h"
 #include "marey/draw/blob_drawing.h"
+#include "marey/draw/image_file.h"
 #include "marey/draw/movie_writer.h"
-#include "marey/draw/picture_file.h"
 #include "marey/format/tracks/blob_file.h"
 #include "marey/pipeline/corridor/feed.h"
 
 namespace marey::pipeline::markers {
 namespace {
 
-/// Draws into the pictures as they come; the first alone where that is what was asked for.
+/// Draws into the images as they come; the first alone where that is what was asked for.
 class BlobOverlay {
  public:
   BlobOverlay(const std::string& path, const SourceInfo& info) : path_(path) {
-    if (path.ends_with(".mp4")) film_.emplace(path, info.size, info.rate_hz);
+    if (path.ends_with(".mp4")) video_.emplace(path, info.size, info.rate_hz);
   }
 
-  void draw(const CameraFrame& seen) {
-    if (film_) return film_->write(draw::draw_blobs(seen.frame.picture, *seen.detections), seen.frame.time);
-    if (!std::exchange(drawn_, true)) draw::write_picture(path_, draw::draw_blobs(seen.frame.picture, *seen.detections));
+  void draw(const CameraFrame& detected) {
+    if (video_) return video_->write(draw::draw_blobs(detected.frame.image, *detected.detections), detected.frame.time);
+    if (!std::exchange(drawn_, true)) draw::write_image(path_, draw::draw_blobs(detected.frame.image, *detected.detections));
   }
 
   void finish() {
-    if (film_) film_->finish();
+    if (video_) video_->finish();
   }
 
  private:
   std::string path_;
-  std::optional<draw::MovieWriter> film_;
+  std::optional<draw::MovieWriter> video_;
   bool drawn_ = false;
 };
 
@@ -55,15 +55,15 @@ BlobSummary detect_markers(const RigCamera& camera, const BlobOutput& output, co
   if (!output.overlay.empty()) overlay.emplace(output.overlay, feed.info());
 
   BlobSummary summary;
-  while (const auto seen = feed.next()) {
+  while (const auto detected = feed.next()) {
     ++summary.frames;
-    summary.blobs += std::ssize(*seen->detections);
-    summary.most = std::max<std::int64_t>(summary.most, std::ssize(*seen->detections));
-    summary.seconds = seconds(seen->frame.time);
-    summary.detect_s += seen->detect_s;
-    if (blobs) blobs->write(seen->frame, *seen->detections);
-    if (overlay) overlay->draw(*seen);
-    summary.stopped = hooks.report({"looking for markers", summary.frames, feed.info().frame_count}) == Continue::no;
+    summary.blobs += std::ssize(*detected->detections);
+    summary.maximum = std::max<std::int64_t>(summary.maximum, std::ssize(*detected->detections));
+    summary.seconds = seconds(detected->frame.time);
+    summary.detect_s += detected->detect_s;
+    if (blobs) blobs->write(detected->frame, *detected->detections);
+    if (overlay) overlay->draw(*detected);
+    summary.stopped = hooks.report({"searching for markers", summary.frames, feed.info().frame_count}) == Continue::no;
     if (summary.stopped) break;
   }
   if (blobs) blobs->finish();

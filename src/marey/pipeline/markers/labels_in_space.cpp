@@ -18,18 +18,18 @@
 namespace marey::pipeline::markers {
 namespace {
 
-Recording points_in(const std::string& path, std::vector<std::string>* warnings, format::BesidePoints* beside = nullptr) {
+Recording points_in(const std::string& path, std::vector<std::string>* warnings, format::AuxiliaryData* next_to = nullptr) {
   const auto reader = format::open_recording(path);
   if (reader->header().frame.kind != FrameOfReference::Kind::space)
     throw Error("{}: names are for points in space, and these positions are {}", path, to_string(reader->header().frame));
   Recording recording = read_all(*reader);
   recording.header.name = path;
   if (warnings != nullptr) *warnings = reader->warnings();
-  if (beside != nullptr) *beside = reader->info().beside;
+  if (next_to != nullptr) *next_to = reader->info().next_to;
   return recording;
 }
 
-constexpr std::size_t kFewFrames = 10;  // that a set is hardly learned from
+constexpr std::size_t kFewFrames = 10;  // that a set is barely learned from
 constexpr double kMisfit = 2;           // times as far off as distances of the subject that taught are
 constexpr double kFewFound = 0.7;       // of the set's markers
 
@@ -77,7 +77,7 @@ void require_of_set(const std::vector<std::string>& accept, const LearnedMarkers
 
 void require_fitted(const std::vector<std::string>& patterns, const std::set<std::string>& fitted, const std::string& where) {
   for (const std::string& pattern : patterns) {
-    if (!fitted.contains(pattern)) throw Error("{}: no point is called {}, so that it cannot be left out", where, pattern);
+    if (!fitted.contains(pattern)) throw Error("{}: no point is called {}, so that it cannot be omitted", where, pattern);
   }
 }
 
@@ -90,7 +90,7 @@ std::optional<std::string> set_misfit(const std::string& set, double misfit, dou
   return fmt::format(
       "{} does not fit: {}{} of its {} markers have names, and of those some may be wrong; is it of another person, or were "
       "markers "
-      "moved? Learn one of this person, or one with --scaled from several",
+      "moved? Learn one of this person, or one with --scale-invariant from several",
       set,
       off ? fmt::format("distances that it knows as rigid are off by {:.0f} mm (median), {:.1f} times what is expected; ",
                         1e3 * misfit_m, misfit)
@@ -99,16 +99,16 @@ std::optional<std::string> set_misfit(const std::string& set, double misfit, dou
 }
 
 LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const std::string& out,
-                            const solve::labels::LearnOptions& options, const std::vector<std::string>& leave_out,
+                            const solve::labels::LearnOptions& options, const std::vector<std::string>& exclude,
                             std::vector<std::string>* warnings) {
   std::vector<Recording> read;
   std::set<std::string> fitted;
   std::size_t frames = 0;
   for (const std::string& path : recordings) {
-    take_out(read.emplace_back(points_in(path, nullptr)), leave_out, fitted);
+    take_out(read.emplace_back(points_in(path, nullptr)), exclude, fitted);
     frames += read.back().instants().size();
   }
-  require_fitted(leave_out, fitted, recordings.size() == 1 ? recordings.front() : "the recordings");
+  require_fitted(exclude, fitted, recordings.size() == 1 ? recordings.front() : "the recordings");
   if (warnings != nullptr && frames < kFewFrames)
     warnings->push_back(fmt::format("learned from {} {}: one cannot know from it what is rigid and what moves; give some seconds",
                                     frames, frames == 1 ? "frame" : "frames"));
@@ -118,31 +118,31 @@ LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const st
 }
 
 std::vector<std::string> warnings_of(const LearnedMarkers& learned) {
-  std::vector<std::string> said;
+  std::vector<std::string> stated;
   if (solve::labels::is_flat(learned))
-    said.push_back(
-        "the set's markers lie in one plane, so that it looks the same from behind: names may be exchanged as in a mirror");
+    stated.push_back(
+        "the set's markers lie in one plane, so that it appears the same from behind: names may be exchanged as in a mirror");
   const std::vector<std::string> near = solve::labels::too_near_for_markers(learned);
-  if (near.empty()) return said;
-  said.push_back(
+  if (near.empty()) return stated;
+  stated.push_back(
       fmt::format("{} of the set's {} points, as {} and {}, lie within 10 mm of another, as points do that a program computed "
-                  "(joints' centres): name the markers alone with --markers, or leave those points out with --leave-out",
+                  "(joints' centres): name the markers alone with --markers, or leave those points out with --exclude",
                   near.size(), learned.size(), near.front(), near.back()));
-  return said;
+  return stated;
 }
 
 LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
                              const solve::labels::LabelOptions& options, const Hooks& hooks,
-                             const std::vector<std::string>& leave_out, const std::vector<std::string>& accept) {
+                             const std::vector<std::string>& exclude, const std::vector<std::string>& accept) {
   LabelSummary summary;
   const format::Format& format = format::format_to_write(out, "", format::Content::space);
   const LearnedMarkers learned = format::bodies::read_label_set(set);
   require_of_set(accept, learned, set);
-  format::BesidePoints beside;
-  Recording read = points_in(recording, &summary.warnings, &beside);
+  format::AuxiliaryData next_to;
+  Recording read = points_in(recording, &summary.warnings, &next_to);
   std::set<std::string> fitted;
-  std::vector<TrackColumns> left_out = take_out(read, leave_out, fitted);
-  require_fitted(leave_out, fitted, recording);
+  std::vector<TrackColumns> excluded = take_out(read, exclude, fitted);
+  require_fitted(exclude, fitted, recording);
   solve::labels::Labelled labelled = solve::labels::label_recording(read, learned, options, hooks);
   if (!accept.empty())
     summary.accepted = solve::labels::accept_suggestions(labelled, is_all(accept) ? std::vector<std::string>() : accept);
@@ -152,29 +152,29 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
       .program = "marey label", .options = hooks.options, .inputs = {format::input_of(recording), format::input_of(set)}};
   summary.instants = std::ssize(named.instants());
   summary.points = named.samples();
-  for (TrackColumns& track : left_out) {
+  for (TrackColumns& track : excluded) {
     track.name.id = TrackId{number(named.tracks().back().id()) + 1};
     named.put(std::move(track));
   }
-  for (const auto& marker : labelled.health) summary.named += marker.seen;
+  for (const auto& marker : labelled.health) summary.named += marker.detected;
   format::WritePlan plan = format::plan_of(*format::reader_of(named), out);
-  plan.info.beside = beside;
+  plan.info.next_to = next_to;
   const auto sink = format::create_recording(out, format, plan, &summary.warnings);
   MemoryReader reader(named);
   replay(reader, *sink);
-  if (auto sentence = format::beside_lost(beside, out, format)) summary.warnings.push_back(std::move(*sentence));
+  if (auto message_text = format::next_to_lost(next_to, out, format)) summary.warnings.push_back(std::move(*message_text));
   summary.health = std::move(labelled.health);
   summary.unnamed = std::move(labelled.unnamed);
   summary.renamed = labelled.renamed;
   summary.scale = labelled.scale;
   summary.misfit = labelled.misfit;
   const auto found =
-      std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.seen > 0; });
-  if (auto sentence = set_misfit(fmt::format("{}: the set {}", recording, set), labelled.misfit, labelled.misfit_m,
-                                 static_cast<std::size_t>(found), summary.health.size()))
-    summary.warnings.push_back(std::move(*sentence));
+      std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.detected > 0; });
+  if (auto message_text = set_misfit(fmt::format("{}: the set {}", recording, set), labelled.misfit, labelled.misfit_m,
+                                     static_cast<std::size_t>(found), summary.health.size()))
+    summary.warnings.push_back(std::move(*message_text));
   for (const auto& marker : summary.health) {
-    if (marker.seen == 0) summary.warnings.push_back(fmt::format("{}: marker {} was not found", recording, marker.label));
+    if (marker.detected == 0) summary.warnings.push_back(fmt::format("{}: marker {} was not found", recording, marker.label));
   }
   return summary;
 }

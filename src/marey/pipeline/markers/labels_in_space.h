@@ -12,12 +12,12 @@
 
 namespace marey::pipeline::markers {
 
-/// Points whose labels are of these patterns are left out: names, in which * stands for any letters. Throws Error where a file
+/// Points whose labels are of these patterns are omitted: names, in which * stands for any letters. Throws Error if a file
 /// cannot be read or written, holds no such set, or a pattern fits no label.
 LearnedMarkers learn_labels(const std::vector<std::string>& recordings, const std::string& out,
-                            const solve::labels::LearnOptions& options, const std::vector<std::string>& leave_out = {},
+                            const solve::labels::LearnOptions& options, const std::vector<std::string>& exclude = {},
                             std::vector<std::string>* warnings = nullptr);
-/// What is to be said of the set besides: points that are no markers.
+/// What is to be said of the set besides: points that are not markers.
 std::vector<std::string> warnings_of(const LearnedMarkers& learned);
 
 /// A sentence if `set` ("the set FILE") is probably of another person: by how far rigid distances are off
@@ -37,11 +37,11 @@ struct LabelSummary {
 };
 
 /// Names the markers of a recording by a set (set.toml) and writes it: a track for each name, and what has none. Whatever its
-/// tracks were called before counts nothing. Tracks of the patterns in `leave_out` get no name and stay as they are. Pieces that
+/// tracks were called before counts nothing. Tracks of the patterns in `exclude` get no name and stay as they are. Pieces that
 /// stay without a name get the best one where it is of `accept`, or that is "all" (solve/labels/accept_suggestions.h). Throws Error
-/// where a file cannot be read or written, the set is not in it, or a name of `accept` is none of the set's.
+/// where a file cannot be read or written, the set is not in it, or a name of `accept` is not one of the set's.
 LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
                              const solve::labels::LabelOptions& options, const Hooks& hooks = {},
-                             const std::vector<std::string>& leave_out = {}, const std::vector<std::string>& accept = {});
+                             const std::vector<std::string>& exclude = {}, const std::vector<std::string>& accept = {});
 
 }  // namespace marey::pipeline::markers

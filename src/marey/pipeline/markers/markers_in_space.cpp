@@ -27,7 +27,7 @@ int frames_in(double duration, double rate_hz) {
 
 track::roster::RosterTrackerOptions tracker_options(const MarkersInSpaceOptions& options) {
   track::roster::RosterTrackerOptions tracker = options.tracker;
-  if (!options.set.has_places()) tracker.labels = options.set.labels;
+  if (!options.set.has_positions()) tracker.labels = options.set.labels;
   tracker.decide_after = options.live ? 0 : kDecideAfterS;
   return tracker;
 }
@@ -60,8 +60,8 @@ class MarkersInSpace : public corridor::Stage {
     times_.corresponding.add(all.seconds());
     const corridor::Stopwatch tracking;
     observations_.clear();
-    for (const reconstruct::Placed& placed : found.points)
-      observations_.push_back({.value = placed.point.position, .covariance = placed.point.covariance, .box = {}});
+    for (const reconstruct::Located& located : found.points)
+      observations_.push_back({.value = located.point.position, .covariance = located.point.covariance, .box = {}});
     const auto tracks = tracker_->step(frames.time, observations_);
     decisions_.add(frames, blobs_, found, tracks);
     times_.tracking.add(tracking.seconds());
@@ -83,7 +83,7 @@ class MarkersInSpace : public corridor::Stage {
     report_step("blobs to instants", times_.all);
     summary.warnings.insert(summary.warnings.begin(), points_.warnings().begin(), points_.warnings().end());
     if (residual) return;
-    summary.warnings.push_back("no marker could be placed: are the cameras of this rig the ones that recorded, and in step?");
+    summary.warnings.push_back("no marker could be placed: are the cameras of this rig the ones that recorded, and synchronised?");
   }
 
  protected:
@@ -178,9 +178,9 @@ track::roster::RosterTrackerOptions space_tracker_options() {
           .labels = {},
           .max_speed = 15,
           .marker_width = 0.02,
-          .place_noise = 1e-4,
+          .position_noise = 1e-4,
           .rigid_neighbours = true,
-          .picture = {}};
+          .image = {}};
 }
 
 std::unique_ptr<corridor::Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options) {
@@ -193,7 +193,8 @@ std::unique_ptr<corridor::Stage> markers_in_space(const Rig& rig, double rate_hz
   markers = with_naming(std::move(markers), options.naming);
   if (options.skeleton == nullptr) return markers;
   if (options.set.labels.empty() && options.learned_set == nullptr)
-    throw Error("{}", "a skeleton is solved from markers that have names, and these have none: name them by --labels or --set");
+    throw Error("{}",
+                "a skeleton is solved from markers that have names, and these have none: name them by --labels or --marker-set");
   return with_skeleton(std::move(markers), options.skeleton, live_pose_options());
 }
 

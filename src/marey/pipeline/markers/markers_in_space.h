@@ -26,11 +26,11 @@ struct MarkersInSpaceOptions {
   std::optional<double> noise_px;  ///< of blobs and calibration together; nothing: learned from how well rays meet
   track::roster::RosterTrackerOptions tracker = space_tracker_options();
   MarkerSet set;                  ///< labels, with places where the markers keep their distances at the beginning; may be empty
-  std::optional<double> rate_hz;  ///< of sources and observations of which nobody says it
+  std::optional<double> rate_hz;  ///< of sources and observations of which no person says it
   double fill_s = 0.5;            ///< longest gap that is filled
   double predict_s = 0;           ///< of a longer gap, this much is reported as it was expected; ≤ fill_s
-  /// Every instant is told as it comes, and no gap is filled; its first `predict_s` are told as they are expected. What a camera
-  /// saw beside the moment is brought to it by the markers' motion.
+  /// Every instant is reported as it comes, and no gap is filled; its first `predict_s` are reported as they are expected. What a
+  /// camera saw beside the instant is brought to it by the markers' motion.
   bool live = false;
   std::shared_ptr<TrackNaming> naming = {};                ///< names that markers are given by hand; null: none
   std::shared_ptr<const LearnedMarkers> learned_set = {};  ///< names the markers that have none, frame by frame; null: none
@@ -39,7 +39,7 @@ struct MarkersInSpaceOptions {
 };
 
 /// `rig` as its feeds are. Instants wait for as long as the longest gap that is filled; memory does not grow with the recording.
-/// Cameras without a calibration are left out, with a warning. Throws Error where a skeleton is to be solved and no marker has a
+/// Cameras without a calibration are omitted, with a warning. Throws Error if a skeleton is to be solved and no marker has a
 /// name.
 std::unique_ptr<corridor::Stage> markers_in_space(const Rig& rig, double rate_hz, const MarkersInSpaceOptions& options);
 

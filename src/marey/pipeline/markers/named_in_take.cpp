@@ -28,7 +28,7 @@ MarkerSet named_in_take(const std::string& path) {
       const auto label = labels.find(sample.track);
       if (label == labels.end()) continue;
       now.labels.push_back(label->second);
-      now.places.push_back(sample.position);
+      now.locations.push_back(sample.position);
     }
     if (now.labels.size() > set.labels.size()) set = std::move(now);
   }

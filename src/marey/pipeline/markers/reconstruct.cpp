@@ -39,7 +39,7 @@ corridor::Clock clock_of(const Rig& rig, const std::string& observations, const 
       observations.empty() ? corridor::open_feeds(rig, {.rate_hz = options.rate_hz, .steady_times = true, .ahead = kAhead}, true)
                            : corridor::open_observations(observations, rig, options.rate_hz);
   for (corridor::Feed& feed : feeds) {
-    if (feed.has_pictures())
+    if (feed.has_images())
       feed.find(std::make_unique<detect::markers::MarkerDetector>(corridor::markers_of(feed.camera(), options.markers)));
   }
   return corridor::Clock(std::move(feeds), {.pace = corridor::ClockOptions::Pace::even, .interpolate = !options.live});
@@ -55,7 +55,7 @@ void report_cameras(const corridor::Clock& clock, const Rig& rig, corridor::Summ
     if (rig.cameras[c].camera() && clock.frames(c) == 0) {
       summary.warnings.push_back(fmt::format("camera \"{}\" gave not one frame", name));
     } else if (clock.missed(c) > 0) {
-      summary.warnings.push_back(fmt::format("camera \"{}\" has no frame for {} of {} instants; the others went on without it",
+      summary.warnings.push_back(fmt::format("camera \"{}\" has no frame for {} of {} instants; the others continued without it",
                                              name, clock.missed(c), summary.frames));
     }
   }

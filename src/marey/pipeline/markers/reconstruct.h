@@ -13,7 +13,7 @@ namespace marey::pipeline::markers {
 /// other endings that format/motion.h knows (.c3d, .trc, .csv) are written at the end, out of a take that is then removed.
 /// `observations` names what another program saw, in place of the rig's sources; empty for none. A take's own names are kept where
 /// `options` bring none. Memory does not grow with the
-/// recording. Throws Error where an input cannot be read or the take cannot be written.
+/// recording. Throws Error if an input cannot be read or the take cannot be written.
 corridor::Summary reconstruct(const Rig& rig, const std::string& observations, const std::string& out,
                               const MarkersInSpaceOptions& options = {}, const Hooks& hooks = {});
 /// The same, into sinks of the caller's.

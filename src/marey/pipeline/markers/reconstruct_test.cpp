@@ -68,7 +68,7 @@ Score score_of(const std::string& path, const marey::simulate::room::RoomScene& 
 TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
   const test::TemporaryFolder folder;
   marey::simulate::room::RoomOptions room{
-      .markers = 30, .frames = 600, .dropped = 0.05, .ghosts = 0.05, .gap_share = 0.02, .bump = {}};
+      .markers = 30, .frames = 600, .dropped = 0.05, .ghosts = 0.05, .gap_fraction = 0.02, .bump = {}};
   const marey::simulate::room::RoomScene scene(room);
   simulate::write_room(scene, folder.path());
   const auto summary = reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
@@ -83,36 +83,36 @@ TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
   EXPECT_LT(Score::middle(score.of_filled), 0.03);
   EXPECT_EQ(score.ids.size(), 30);
   for (const auto& [marker, ids] : score.ids) {
-    int most = 0, all = 0;
-    for (const auto& [id, frames] : ids) most = std::max(most, frames), all += frames;
-    EXPECT_GT(most, 0.98 * all) << "marker " << marker;
+    int maximum = 0, all = 0;
+    for (const auto& [id, frames] : ids) maximum = std::max(maximum, frames), all += frames;
+    EXPECT_GT(maximum, 0.98 * all) << "marker " << marker;
   }
 }
 
 /// Each track's share of points on the marker that it is on the most; the least of all tracks.
-double least_purity(const Score& score) {
+double min_purity(const Score& score) {
   std::map<int, std::map<int, int>> markers;
   for (const auto& [marker, ids] : score.ids) {
     for (const auto& [id, points] : ids) markers[id][marker] += points;
   }
-  double least = 1;
+  double minimum = 1;
   for (const auto& [id, on] : markers) {
-    int most = 0, all = 0;
-    for (const auto& [marker, points] : on) most = std::max(most, points), all += points;
-    if (all > 60) least = std::min(least, static_cast<double>(most) / all);
+    int maximum = 0, all = 0;
+    for (const auto& [marker, points] : on) maximum = std::max(maximum, points), all += points;
+    if (all > 60) minimum = std::min(minimum, static_cast<double>(maximum) / all);
   }
-  return least;
+  return minimum;
 }
 
 TEST(Reconstruct, WithFourCamerasNoNameGoesToAnotherMarker) {
   const test::TemporaryFolder folder;
   const marey::simulate::room::RoomScene scene(
-      {.cameras = 4, .frames = 900, .dropped = 0.05, .ghosts = 0.05, .gap_share = 0.05, .bump = {}, .seed = 2});
+      {.cameras = 4, .frames = 900, .dropped = 0.05, .ghosts = 0.05, .gap_fraction = 0.05, .bump = {}, .seed = 2});
   simulate::write_room(scene, folder.path());
   reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
   const Score score = score_of(folder / "walk.marey", scene);
   EXPECT_GT(score.points, 0.4 * 900 * 50);
-  EXPECT_GT(least_purity(score), 0.9);
+  EXPECT_GT(min_purity(score), 0.9);
 }
 
 TEST(Reconstruct, ACameraThatWasBumpedIsNamedAndSeesOn) {
@@ -151,7 +151,7 @@ TEST(Reconstruct, CamerasOutOfStepAreBroughtToOneInstant) {
 
 TEST(Reconstruct, ATakeIsSolvedAgainFromWhatItsCamerasSaw) {
   const test::TemporaryFolder folder;
-  const marey::simulate::room::RoomScene scene({.markers = 20, .frames = 240, .gap_share = 0.02, .offset_s = 0.02, .bump = {}});
+  const marey::simulate::room::RoomScene scene({.markers = 20, .frames = 240, .gap_fraction = 0.02, .offset_s = 0.02, .bump = {}});
   simulate::write_room(scene, folder.path());
   const Rig rig = format::rig::read_rig(folder / "rig.toml");
   MarkersInSpaceOptions no_gaps;
@@ -168,7 +168,7 @@ TEST(Reconstruct, ATakeIsSolvedAgainFromWhatItsCamerasSaw) {
   Score score = score_of(folder / "better.marey", scene);
   EXPECT_LT(score.median(), 0.001) << "what was moved to an instant is not moved again";
 
-  // What a take keeps of a blob it keeps for good.
+  // What a take keeps of a blob it keeps permanently.
   reconstruct(rig, folder / "better.marey", folder / "again.marey");
   const Recording one = format::take::read_recording(folder / "better.marey");
   const Recording two = format::take::read_recording(folder / "again.marey");
@@ -178,7 +178,7 @@ TEST(Reconstruct, ATakeIsSolvedAgainFromWhatItsCamerasSaw) {
     const auto b = others.next();
     ASSERT_TRUE(b);
     ASSERT_EQ(a->time, b->time);
-    ASSERT_EQ(a->seen, b->seen);
+    ASSERT_EQ(a->detected, b->detected);
     for (std::size_t i = 0; i < a->samples.size(); ++i) ASSERT_EQ(a->samples[i].position, b->samples[i].position);
   }
 }
@@ -227,8 +227,8 @@ TEST(Reconstruct, AMarkerSetNamesTheMarkers) {
   simulate::write_room(scene, folder.path());
   MarkersInSpaceOptions options;
   options.set.labels = scene.labels();
-  const Rigid3 turned{geometry::rotation_from({0, 0, 0.3}), {0.5, -1, 0.2}};
-  for (const Vector<3>& place : scene.points(0)) options.set.places.push_back(turned * place);
+  const Rigid3 rotated{geometry::rotation_from({0, 0, 0.3}), {0.5, -1, 0.2}};
+  for (const Vector<3>& location : scene.points(0)) options.set.locations.push_back(rotated * location);
   const auto summary =
       reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "still.marey", options);
   EXPECT_EQ(summary.labelled, 20);
@@ -295,7 +295,7 @@ Rig rig_of_wing(const std::string& folder) {
   return rig;
 }
 
-/// Root mean square, of all and of what is left when each group's mean is taken away.
+/// Root mean square, of all and of the rest when each group's mean is taken away.
 struct Spread {
   std::map<int, std::vector<Eigen::VectorXd>> groups;
 
@@ -328,17 +328,17 @@ MarkerSet set_of_wing(const std::string& data) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream text(line);
     std::string label;
-    Vector<3> place;
-    text >> label >> place.x() >> place.y() >> place.z();
+    Vector<3> location;
+    text >> label >> location.x() >> location.y() >> location.z();
     set.labels.push_back(label);
-    set.places.push_back(Vector<3>(-place.x(), -place.y(), place.z()) / 1000);
+    set.locations.push_back(Vector<3>(-location.x(), -location.y(), location.z()) / 1000);
   }
   return set;
 }
 
 /// How far the markers of a take are from what the cameras saw of them, and from the rigid wing.
 struct WingErrors {
-  Spread pixels, places;
+  Spread pixels, locations;
   double sum_px = 0;
   int count_px = 0;
 
@@ -350,13 +350,13 @@ struct WingErrors {
       const auto marker = marker_of.find(point.track);
       if (marker == marker_of.end()) continue;
       markers.push_back(marker->second);
-      from.push_back(set.places[static_cast<std::size_t>(markers.back())]);
+      from.push_back(set.locations[static_cast<std::size_t>(markers.back())]);
       to.push_back(point.position);
-      for (const SeenPoint& seen : instant.seen) {
-        if (seen.track != point.track) continue;
-        const int camera = number(seen.camera);
+      for (const ImageObservation& detected : instant.detected) {
+        if (detected.track != point.track) continue;
+        const int camera = number(detected.camera);
         const Vector<2> error =
-            rig.cameras[static_cast<std::size_t>(camera)].camera()->project(point.position).value() - seen.pixel;
+            rig.cameras[static_cast<std::size_t>(camera)].camera()->project(point.position).value() - detected.pixel;
         sum_px += error.norm();
         ++count_px;
         pixels.groups[16 * camera + markers.back()].push_back(error);
@@ -365,7 +365,7 @@ struct WingErrors {
     ASSERT_EQ(markers.size(), 16) << "at " << instant.index;
     const Rigid3 fit = geometry::rigid_fit(from, to);
     for (std::size_t i = 0; i < from.size(); ++i) {
-      places.groups[markers[i]].push_back(fit.rotation.transpose() * (to[i] - fit * from[i]));
+      locations.groups[markers[i]].push_back(fit.rotation.transpose() * (to[i] - fit * from[i]));
     }
   }
 };
@@ -394,14 +394,14 @@ TEST(Reconstruct, TheWingFromItsRawPictures) {
   WingErrors errors;
   while (const auto frame = reader.next()) errors.add(*frame, marker_of, rig, options.set);
   RecordProperty("mean_px", std::to_string(errors.sum_px / errors.count_px));
-  RecordProperty("rigid_mm", std::to_string(1000 * errors.places.all()));
+  RecordProperty("rigid_mm", std::to_string(1000 * errors.locations.all()));
   RecordProperty("random_px", std::to_string(errors.pixels.random()));
-  RecordProperty("random_mm", std::to_string(1000 * errors.places.random()));
+  RecordProperty("random_mm", std::to_string(1000 * errors.locations.random()));
   EXPECT_GE(errors.count_px, 3 * 16 * 6 - 6);
   EXPECT_LE(errors.sum_px / errors.count_px, 0.25);
-  EXPECT_LE(errors.places.all(), 0.60e-3);
+  EXPECT_LE(errors.locations.all(), 0.60e-3);
   EXPECT_LE(errors.pixels.random(), 0.10);
-  EXPECT_LE(errors.places.random(), 0.13e-3);
+  EXPECT_LE(errors.locations.random(), 0.13e-3);
 }
 
 }  // namespace

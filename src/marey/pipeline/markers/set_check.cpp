@@ -27,9 +27,9 @@ std::optional<std::string> SetCheck::misfit(std::size_t found, std::size_t marke
 
 std::optional<std::string> SetCheck::new_misfit(std::size_t found, std::size_t markers) {
   if (reported_ || misfits_.size() < kMinSearches) return std::nullopt;
-  auto sentence = misfit(found, markers);
-  reported_ = sentence.has_value();
-  return sentence;
+  auto message_text = misfit(found, markers);
+  reported_ = message_text.has_value();
+  return message_text;
 }
 
 }  // namespace marey::pipeline::markers

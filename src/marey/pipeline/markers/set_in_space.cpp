@@ -41,34 +41,35 @@ class NamedReader final : public RecordingReader {
 
  private:
   std::unique_ptr<RecordingReader> recording_;
-  SetInSpace named_;
+  LiveLabelling named_;
 };
 
 }  // namespace
 
-SetInSpace::SetInSpace(std::shared_ptr<const LearnedMarkers> set, double rate_hz, const SetInSpaceOptions& options)
+LiveLabelling::LiveLabelling(std::shared_ptr<const LearnedMarkers> set, double rate_hz, const SetInSpaceOptions& options)
     : set_(std::move(set)),
       names_hold_(options.names_hold),
       search_(set_, rate_hz, options),
       check_(set_->size()),
       ids_(set_->size()),
       counts_{.observed = std::vector<std::int64_t>(set_->size(), 0), .found_at_s = {}} {
-  if (set_->size() < kMinMarkers) throw Error("the set has {} markers; names are told from four on", set_->size());
+  if (set_->size() < kMinMarkers) throw Error("the set has {} markers; names are distinguished from four on", set_->size());
   for (std::size_t name = 0; name < set_->size(); ++name) name_of_label_[set_->labels[name]] = static_cast<int>(name);
 }
 
-void SetInSpace::add_to(Instant& instant) {
+void LiveLabelling::add_to(Instant& instant) {
   const corridor::Stopwatch taken;
   note_points(instant);
   search_.remember(instant.index, instant.time, points_now_);
   take_answer(instant.time);
   label_points(instant.time);
   relabel(instant);
-  search_.begin_if_due(instant.time, points_now_.size(), follower_ == nullptr ? std::nullopt : std::optional(follower_->held()));
+  search_.begin_if_due(instant.time, points_now_.size(),
+                       target_tracker_ == nullptr ? std::nullopt : std::optional(target_tracker_->held()));
   times_.add(taken.seconds());
 }
 
-void SetInSpace::note_points(const Instant& instant) {
+void LiveLabelling::note_points(const Instant& instant) {
   for (const TrackName& track : instant.named) name(track);
   points_now_.clear();
   for (const Sample& sample : instant.samples) {
@@ -79,7 +80,7 @@ void SetInSpace::note_points(const Instant& instant) {
   counts_.most_points = std::max(counts_.most_points, points_now_.size());
 }
 
-int SetInSpace::fixed_name(TrackId track) const {
+int LiveLabelling::fixed_name(TrackId track) const {
   if (!names_hold_) return kNoIndex;
   const auto named = names_before_.find(track);
   if (named == names_before_.end()) return kNoIndex;
@@ -87,24 +88,24 @@ int SetInSpace::fixed_name(TrackId track) const {
   return found == name_of_label_.end() ? kNoIndex : found->second;
 }
 
-void SetInSpace::take_answer(Timestamp now) {
+void LiveLabelling::take_answer(Timestamp now) {
   auto found = search_.answer(now);
   if (!found) return;
   if (!counts_.found_at_s) counts_.found_at_s = seconds(now);
   // With a set of a person who stood still, rigid distances are known the better the longer they were observed.
-  if (follower_ == nullptr || !set_->moves ||
-      static_cast<double>(follower_->held()) < SetSearch::kMinObserved * static_cast<double>(set_->size())) {
-    if (follower_ != nullptr) found->follower->take(follower_->borne());
-    follower_ = std::move(found->follower);
+  if (target_tracker_ == nullptr || !set_->moves ||
+      static_cast<double>(target_tracker_->held()) < SetSearch::kMinObserved * static_cast<double>(set_->size())) {
+    if (target_tracker_ != nullptr) found->tracker->take(target_tracker_->borne());
+    target_tracker_ = std::move(found->tracker);
   }
-  follower_->take(found->name_of);
+  target_tracker_->take(found->name_of);
   check_.add(*found);
 }
 
-void SetInSpace::label_points(Timestamp now) {
+void LiveLabelling::label_points(Timestamp now) {
   given_.clear();
-  if (follower_ == nullptr) return;
-  const auto names = follower_->step(now, points_now_);
+  if (target_tracker_ == nullptr) return;
+  const auto names = target_tracker_->step(now, points_now_);
   for (std::size_t p = 0; p < names.size(); ++p) {
     if (names[p] == kNoIndex) continue;
     const auto name = static_cast<std::size_t>(names[p]);
@@ -117,7 +118,7 @@ void SetInSpace::label_points(Timestamp now) {
 }
 
 /// Under which ID and label a track is reported.
-TrackName SetInSpace::reported_name(TrackId track) {
+TrackName LiveLabelling::reported_name(TrackId track) {
   const auto given = given_.find(track);
   const int name = given == given_.end() ? kNoIndex : given->second;
   TrackName reported{ids_.id_of(track, name), {}, {}};
@@ -130,12 +131,12 @@ TrackName SetInSpace::reported_name(TrackId track) {
   return reported;
 }
 
-void SetInSpace::relabel(Instant& instant) {
+void LiveLabelling::relabel(Instant& instant) {
   instant.named.clear();
   std::map<TrackId, TrackId> id_of;
   const auto is_idle = [&](const Sample& sample) {  // the label that it had is another track's
     if (sample.provenance != Provenance::predicted || given_.contains(sample.track)) return false;
-    return follower_ != nullptr && !ids_.is_unlabelled(sample.track);
+    return target_tracker_ != nullptr && !ids_.is_unlabelled(sample.track);
   };
   std::erase_if(instant.samples, is_idle);
   for (Sample& sample : instant.samples) {
@@ -145,8 +146,8 @@ void SetInSpace::relabel(Instant& instant) {
     if (ids_.report(reported)) instant.named.push_back(std::move(reported));
   }
   std::sort(instant.samples.begin(), instant.samples.end(), [](const Sample& a, const Sample& b) { return a.track < b.track; });
-  for (SeenPoint& seen : instant.seen) {
-    if (seen.track) seen.track = id_of.contains(*seen.track) ? std::optional(id_of.at(*seen.track)) : std::nullopt;
+  for (ImageObservation& detected : instant.detected) {
+    if (detected.track) detected.track = id_of.contains(*detected.track) ? std::optional(id_of.at(*detected.track)) : std::nullopt;
   }
   for (BoxInView& box : instant.boxes) {
     if (const auto found = id_of.find(box.track); found != id_of.end()) box.track = found->second;
@@ -154,18 +155,18 @@ void SetInSpace::relabel(Instant& instant) {
 }
 
 /// How many of the set's markers were observed.
-std::size_t SetInSpace::found() const {
+std::size_t LiveLabelling::found() const {
   const auto& observed = counts_.observed;
   return static_cast<std::size_t>(std::count_if(observed.begin(), observed.end(), [](std::int64_t points) { return points > 0; }));
 }
 
-std::vector<std::string> SetInSpace::news() {
-  auto sentence = check_.new_misfit(found(), set_->size());
-  if (!sentence) return {};
-  return {std::move(*sentence)};
+std::vector<std::string> LiveLabelling::news() {
+  auto message_text = check_.new_misfit(found(), set_->size());
+  if (!message_text) return {};
+  return {std::move(*message_text)};
 }
 
-std::vector<std::string> SetInSpace::warnings() const {
+std::vector<std::string> LiveLabelling::warnings() const {
   const double size = static_cast<double>(set_->size());
   if (!counts_.found_at_s) {
     if (static_cast<double>(counts_.most_points) < SetSearch::min_points(*set_))
@@ -174,20 +175,20 @@ std::vector<std::string> SetInSpace::warnings() const {
     const std::string& failure = search_.failure();
     return {"nothing was named: " + (failure.empty() ? std::string("the recording ended before names were found") : failure)};
   }
-  std::vector<std::string> said, missing;
+  std::vector<std::string> stated, missing;
   for (std::size_t name = 0; name < set_->size(); ++name) {
     if (counts_.observed[name] == 0) missing.push_back(set_->labels[name]);
   }
-  if (!missing.empty()) said.push_back(fmt::format("the set's markers {} were not found", fmt::join(missing, ", ")));
-  if (auto sentence = check_.misfit(found(), set_->size())) {
-    said.push_back(std::move(*sentence));
-    return said;
+  if (!missing.empty()) stated.push_back(fmt::format("the set's markers {} were not found", fmt::join(missing, ", ")));
+  if (auto message_text = check_.misfit(found(), set_->size())) {
+    stated.push_back(std::move(*message_text));
+    return stated;
   }
   const double frames = static_cast<double>(*std::max_element(counts_.observed.begin(), counts_.observed.end()));
   if (static_cast<double>(counts_.named) < kMinLabelled * size * frames)
-    said.push_back(fmt::format("of the set's {} markers only {:.0f} had names at a time; is it this subject's?", set_->size(),
-                               static_cast<double>(counts_.named) / std::max(frames, 1.0)));
-  return said;
+    stated.push_back(fmt::format("of the set's {} markers only {:.0f} had names at a time; is it this subject's?", set_->size(),
+                                 static_cast<double>(counts_.named) / std::max(frames, 1.0)));
+  return stated;
 }
 
 std::unique_ptr<RecordingReader> with_set(std::unique_ptr<RecordingReader> recording, std::shared_ptr<const LearnedMarkers> set,

@@ -1,9 +1,9 @@
 // Names out of a learned set for markers in space, within the frame: a step that any stage takes, live too, and any recording that
 // is read.
 //
-// Names are found from nothing over the last half second and more, in a task of its own: frames go by meanwhile. Its answer counts
-// from half a second after it began; from then on a LabelFollower names every frame. Now and then the task looks anew at the last
-// seconds, and what it then finds otherwise is put right.
+// Names are found from nothing over the last half second and more, in a task of its own: frames go by in the meantime. Its answer
+// counts from half a second after it began; from then on a LabelTracker names every frame. Now and then the task looks again at the
+// last seconds, and what it then finds otherwise is corrected.
 //
 // Each search ends with the check that a whole recording gets (solve/labels/check_names.h), over the last seconds. A name that
 // could as well be exchanged with another is tracked, but not reported, until a search decides it; a later
@@ -11,7 +11,7 @@
 // distances are off the learned ones tells whether the set is of another person.
 //
 // A name is one track, whatever tracks its marker had: of the first track that gets a name the number becomes the name's, and all
-// later ones that bear it are told under that. So what is recorded has each marker once, and who listens needs no list.
+// later ones that bear it are reported under that. So what is recorded has each marker once, and who listens needs no list.
 #pragma once
 
 #include <cstdint>
@@ -33,13 +33,13 @@
 
 namespace marey::pipeline::markers {
 
-class SetInSpace {
+class LiveLabelling {
  public:
-  /// Throws Error where the set has fewer than four markers.
-  SetInSpace(std::shared_ptr<const LearnedMarkers> set, double rate_hz, const SetInSpaceOptions& options = {});
+  /// Throws Error if the set has fewer than four markers.
+  LiveLabelling(std::shared_ptr<const LearnedMarkers> set, double rate_hz, const SetInSpaceOptions& options = {});
 
   void name(const TrackName& track) { names_before_[track.id] = track; }
-  /// Its samples are told by name, its names are the set's and those that tracks had, `seen` and `boxes` follow.
+  /// Its samples are reported by name, its names are the set's and those that tracks had, `seen` and `boxes` follow.
   void add_to(Instant& instant);
 
   const StageTimes& times() const { return times_; }                       ///< of a frame, without the task
@@ -73,7 +73,7 @@ class SetInSpace {
   std::map<std::string, int, std::less<>> name_of_label_;
   std::map<TrackId, TrackName> names_before_;  // as tracks come
   std::vector<solve::labels::TrackedPoint> points_now_;
-  std::unique_ptr<solve::labels::LabelFollower> follower_;
+  std::unique_ptr<solve::labels::LabelTracker> target_tracker_;
   std::map<TrackId, int> given_;  // at this instant
   SetSearch search_;
   SetCheck check_;
@@ -82,7 +82,7 @@ class SetInSpace {
   StageTimes times_;
 };
 
-/// The recording with the set's names: those of it that its tracks have count nothing. Throws Error where it has no points in
+/// The recording with the set's names: those of it that its tracks have count nothing. Throws Error if it has no points in
 /// space.
 std::unique_ptr<RecordingReader> with_set(std::unique_ptr<RecordingReader> recording, std::shared_ptr<const LearnedMarkers> set,
                                           SetInSpaceOptions options);

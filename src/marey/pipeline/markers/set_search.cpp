@@ -29,8 +29,8 @@ SetInSpaceOptions options_for(SetInSpaceOptions options, const LearnedMarkers& s
 
 solve::labels::LabelOptions live_label_options() {
   solve::labels::LabelOptions options;
-  options.boots = 2;
-  options.boot.answers = 250;
+  options.initialises = 2;
+  options.initialise.answers = 250;
   return options;
 }
 
@@ -75,7 +75,7 @@ void SetSearch::begin_if_due(Timestamp now, std::size_t points, std::optional<st
 bool SetSearch::is_due(Timestamp now, std::size_t points, std::optional<std::size_t> held) const {
   if (seconds(now - *enough_since_) < options_.first_after_s) return false;
   if (searches_ == 0) return true;
-  double pause = options_.looked_anew_s;
+  double pause = options_.inspected_again_s;
   if (!held) {
     pause = std::min<double>(failures_, kMaxAgainS);
   } else if (searches_ - failures_ <= (set_->moves ? 1 : kStaticSearches) ||
@@ -100,13 +100,13 @@ SetSearch::Answer SetSearch::search_in(const RecentPoints::Instants& recent, dou
     for (const TrackedPoint& point : kept->points) {
       Sample& sample = instant.samples.emplace_back();
       sample.track = point.track;
-      sample.position = point.place;
+      sample.position = point.location;
     }
     recording.add(instant);
   }
   try {
     const Hooks hooks{.progress = {}, .stop = stop, .options = {}};
-    answer.found = solve::labels::find_names(recording, set, options.find, options.follow, hooks);
+    answer.found = solve::labels::find_names(recording, set, options.find, options.tracking, hooks);
   } catch (const std::exception& error) {
     answer.failure = error.what();
   }
@@ -119,7 +119,7 @@ std::optional<solve::labels::FoundNames> SetSearch::answer(Timestamp now) {
   if (!options_.wait && running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
   Answer answer = running_.get();
   longest_s_ = std::max(longest_s_, answer.seconds);
-  if (answer.found.follower != nullptr) return std::move(answer.found);
+  if (answer.found.tracker != nullptr) return std::move(answer.found);
   ++failures_;
   failure_ = answer.failure;
   return std::nullopt;

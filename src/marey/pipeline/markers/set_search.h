@@ -25,13 +25,13 @@ solve::labels::LabelOptions live_label_options();
 
 struct SetInSpaceOptions {
   solve::labels::LabelOptions find = live_label_options();
-  solve::labels::LabelFollowOptions follow = {};
+  solve::labels::LabelTrackerOptions tracking = {};
   bool wait = false;           ///< for the task, where it takes longer than half a second: results are then the same on any machine
   bool names_hold = true;      ///< what a track is called already it stays
-  double first_after_s = 0.5;  ///< of points, that names are looked for in first
-  double answer_after_s = 0.5;  ///< from when on it counts
-  double remembered_s = 3;      ///< of points, that they are looked for in
-  double looked_anew_s = 10;    ///< so often, once they are found
+  double first_after_s = 0.5;  ///< of points, that names are searched for in first
+  double answer_after_s = 0.5;    ///< from when on it counts
+  double remembered_s = 3;        ///< of points, that they are searched for in
+  double inspected_again_s = 10;  ///< this often, once they are found
 };
 
 /// The points of the last seconds, about a hundred times per second.

@@ -10,7 +10,8 @@ namespace {
 /// What waited for the cameras' end, named as it comes.
 class NamedInstants final : public corridor::InstantSource {
  public:
-  NamedInstants(std::unique_ptr<corridor::InstantSource> waited, SetInSpace& named) : waited_(std::move(waited)), named_(named) {}
+  NamedInstants(std::unique_ptr<corridor::InstantSource> waited, LiveLabelling& named)
+      : waited_(std::move(waited)), named_(named) {}
   std::optional<Instant> next() override {
     auto instant = waited_->next();
     if (instant) named_.add_to(*instant);
@@ -19,7 +20,7 @@ class NamedInstants final : public corridor::InstantSource {
 
  private:
   std::unique_ptr<corridor::InstantSource> waited_;
-  SetInSpace& named_;
+  LiveLabelling& named_;
 };
 
 class SetStage final : public corridor::Stage {
@@ -28,7 +29,7 @@ class SetStage final : public corridor::Stage {
       : stage_(std::move(stage)), named_(std::move(set), stage_->header().rate_hz, options) {}
 
   RecordingHeader header() const override { return stage_->header(); }
-  void want_boxes() override { stage_->want_boxes(); }
+  void need_boxes() override { stage_->need_boxes(); }
   std::span<const Instant> step(const FrameSet& frames) override {
     const std::span<const Instant> known = stage_->step(frames);
     instants_.assign(known.begin(), known.end());
@@ -37,7 +38,7 @@ class SetStage final : public corridor::Stage {
   }
   std::vector<std::string> news() override {
     std::vector<std::string> all = stage_->news();
-    for (std::string& sentence : named_.news()) all.push_back(std::move(sentence));
+    for (std::string& message_text : named_.news()) all.push_back(std::move(message_text));
     return all;
   }
   std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override {
@@ -57,7 +58,7 @@ class SetStage final : public corridor::Stage {
 
  private:
   std::unique_ptr<corridor::Stage> stage_;
-  SetInSpace named_;
+  LiveLabelling named_;
   std::vector<Instant> instants_;
 };
 

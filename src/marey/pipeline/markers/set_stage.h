@@ -9,7 +9,7 @@
 
 namespace marey::pipeline::markers {
 
-/// Throws Error where the set has fewer than four markers.
+/// Throws Error if the set has fewer than four markers.
 std::unique_ptr<corridor::Stage> with_set(std::unique_ptr<corridor::Stage> stage, std::shared_ptr<const LearnedMarkers> set,
                                           const SetInSpaceOptions& options);
 

@@ -14,7 +14,7 @@
 namespace marey::pipeline::markers {
 namespace {
 
-constexpr double kSoughtAnewS = 0.25;
+constexpr double kReacquire_s = 0.25;
 constexpr double kPoorFitM = 0.02;  // OpenSim's own advice
 
 /// "A, B, C …"
@@ -58,10 +58,10 @@ class SolvedReader final : public RecordingReader {
 
 }  // namespace
 
-SkeletonMarkers::SkeletonMarkers(const Skeleton& skeleton, const std::vector<std::string>& leave_out)
-    : left_out_(leave_out.begin(), leave_out.end()), count_(skeleton.markers.size()) {
+SkeletonMarkers::SkeletonMarkers(const Skeleton& skeleton, const std::vector<std::string>& exclude)
+    : excluded_(exclude.begin(), exclude.end()), count_(skeleton.markers.size()) {
   for (std::size_t j = 0; j < count_; ++j) {
-    if (!left_out_.contains(skeleton.markers[j].label)) by_label_.emplace(skeleton.markers[j].label, j);
+    if (!excluded_.contains(skeleton.markers[j].label)) by_label_.emplace(skeleton.markers[j].label, j);
   }
 }
 
@@ -84,18 +84,18 @@ void SkeletonMarkers::name(std::span<const TrackName> named) {
     if (found != by_label_.end() && !subject.empty() && subject_.value_or(std::string(subject)) == subject) {
       subject_ = subject;
       give(track, found);
-    } else if (!left_out_.contains(label)) {
+    } else if (!excluded_.contains(label)) {
       unknown_.insert(track.label);
     }
   }
 }
 
-void SkeletonMarkers::take(const Instant& instant, solve::skeleton::SeenMarkers& seen) const {
-  seen.assign(count_, std::nullopt);
+void SkeletonMarkers::take(const Instant& instant, solve::skeleton::ObservedMarkers& detected) const {
+  detected.assign(count_, std::nullopt);
   for (const Sample& sample : instant.samples) {
     if (sample.provenance == Provenance::predicted || sample.position.isZero()) continue;
     const auto marker = marker_of_.find(sample.track);
-    if (marker != marker_of_.end()) seen[marker->second] = sample.position;
+    if (marker != marker_of_.end()) detected[marker->second] = sample.position;
   }
 }
 
@@ -138,10 +138,10 @@ std::vector<BodyPose> segment_poses(const Skeleton& skeleton, std::span<const Bo
 }
 
 SkeletonInSpace::SkeletonInSpace(std::shared_ptr<const Skeleton> skeleton, double rate_hz,
-                                 const solve::skeleton::PoseOptions& options, const std::vector<std::string>& leave_out)
+                                 const solve::skeleton::PoseOptions& options, const std::vector<std::string>& exclude)
     : skeleton_(std::move(skeleton)),
       rate_hz_(rate_hz),
-      markers_(*skeleton_, leave_out),
+      markers_(*skeleton_, exclude),
       solver_(*skeleton_, options),
       bodies_(bodies_of(*skeleton_)),
       rest_(rest_of(*skeleton_)) {}
@@ -149,13 +149,13 @@ SkeletonInSpace::SkeletonInSpace(std::shared_ptr<const Skeleton> skeleton, doubl
 const solve::skeleton::SolvedPose& SkeletonInSpace::solve(const Instant& instant) {
   const corridor::Stopwatch taken;
   markers_.name(instant.named);
-  markers_.take(instant, seen_);
-  const auto& pose = solver_.step(before_ ? seconds(instant.time - *before_) : 1 / rate_hz_, seen_);
+  markers_.take(instant, detected_);
+  const auto& pose = solver_.step(before_ ? seconds(instant.time - *before_) : 1 / rate_hz_, detected_);
   before_ = instant.time;
-  found_ = found_ || pose.seen > 0;
+  found_ = found_ || pose.detected > 0;
   starts_ += pose.started ? 1 : 0;
-  squares_ += pose.rms_m * pose.rms_m * pose.seen;
-  count_ += pose.seen;
+  squares_ += pose.rms_m * pose.rms_m * pose.detected;
+  count_ += pose.detected;
   times_.add(taken.seconds());
   return pose;
 }
@@ -172,22 +172,22 @@ std::optional<double> SkeletonInSpace::rms_m() const {
 }
 
 std::vector<std::string> SkeletonInSpace::warnings() const {
-  std::vector<std::string> said;
+  std::vector<std::string> stated;
   if (!markers_.any()) {
-    said.push_back("the recording has no pose: " + markers_.none_known(skeleton_->name));
+    stated.push_back("the recording has no pose: " + markers_.none_known(skeleton_->name));
   } else if (const auto missing = markers_.not_recorded(); !missing.empty()) {
-    said.push_back(fmt::format("of the skeleton {} no point bears the names {}", skeleton_->name, fmt::join(missing, ", ")));
+    stated.push_back(fmt::format("of the skeleton {} no point bears the names {}", skeleton_->name, fmt::join(missing, ", ")));
   }
   if (const auto rms = rms_m(); rms && *rms > kPoorFitM)
-    said.push_back(fmt::format(
+    stated.push_back(fmt::format(
         "markers lie {:.0f} mm RMS from where the skeleton {} has them: is it scaled to this person, and are the labels right?",
         1000 * *rms, skeleton_->name));
-  return said;
+  return stated;
 }
 
 solve::skeleton::PoseOptions live_pose_options() {
   solve::skeleton::PoseOptions options;
-  options.sought_anew_s = kSoughtAnewS;
+  options.reacquire_s = kReacquire_s;
   return options;
 }
 

@@ -23,15 +23,15 @@ namespace marey::pipeline::markers {
 /// Which tracks of a recording are a skeleton's markers: by their labels. "Jane:LKNE" is LKNE of a subject Jane.
 class SkeletonMarkers {
  public:
-  /// The skeleton must outlive it. Markers of the labels in `leave_out` are nobody's.
-  explicit SkeletonMarkers(const Skeleton& skeleton, const std::vector<std::string>& leave_out = {});
+  /// The skeleton must outlive it. Markers of the labels in `exclude` are no person's.
+  explicit SkeletonMarkers(const Skeleton& skeleton, const std::vector<std::string>& exclude = {});
 
   /// A label counts as the skeleton has it, or with a subject's name before it ("Jane:LASI"): then that of the first subject, and
   /// another one's labels are unknown.
   void name(std::span<const TrackName> named);
   /// Where each of the skeleton's markers is at this instant, as far as it was measured, filled or solved: what is predicted says
   /// nothing new, and some systems write 0, 0, 0 where a marker is missing.
-  void take(const Instant& instant, solve::skeleton::SeenMarkers& seen) const;
+  void take(const Instant& instant, solve::skeleton::ObservedMarkers& detected) const;
 
   std::vector<std::string> not_recorded() const;  ///< the skeleton's labels that no track bears
   std::vector<std::string> unknown() const;       ///< labels that the skeleton has not
@@ -42,8 +42,8 @@ class SkeletonMarkers {
  private:
   std::map<std::string, std::size_t, std::less<>> by_label_;
   std::map<TrackId, std::size_t> marker_of_;
-  std::set<std::string, std::less<>> recorded_, unknown_, left_out_;
-  std::optional<std::string> subject_;  // "Jane:"; empty where labels bear none
+  std::set<std::string, std::less<>> recorded_, unknown_, excluded_;
+  std::optional<std::string> subject_;  // "Jane:"; empty if labels bear none
   std::size_t count_;
 };
 
@@ -52,12 +52,12 @@ std::vector<BodyPose> segment_poses(const Skeleton& skeleton, std::span<const Bo
                                     std::span<const double> coordinates, const std::vector<bool>& observed, double residual_m);
 
 /// Puts into each instant where the skeleton's segments are, frame by frame as `marey solve` finds them. Before the first marker is
-/// seen there are none; while a segment is hidden it is told where it is expected, as not tracked.
+/// seen there are none; while a segment is hidden it is reported where it is expected, as not tracked.
 class SkeletonInSpace {
  public:
-  /// Throws Error where the skeleton has no markers or nothing that moves.
+  /// Throws Error if the skeleton has no markers or nothing that moves.
   SkeletonInSpace(std::shared_ptr<const Skeleton> skeleton, double rate_hz, const solve::skeleton::PoseOptions& options = {},
-                  const std::vector<std::string>& leave_out = {});
+                  const std::vector<std::string>& exclude = {});
 
   const std::vector<Body>& bodies() const { return bodies_; }
   void name(std::span<const TrackName> named) { markers_.name(named); }
@@ -66,7 +66,7 @@ class SkeletonInSpace {
   /// `instant.bodies` becomes the segments' poses.
   void add_to(Instant& instant);
 
-  const solve::skeleton::SeenMarkers& seen() const { return seen_; }  ///< of the last instant
+  const solve::skeleton::ObservedMarkers& detected() const { return detected_; }  ///< of the last instant
   const SkeletonMarkers& markers() const { return markers_; }
   const StageTimes& times() const { return times_; }
   /// RMS distance of all markers so far from where the skeleton has them, m; nothing before one was seen.
@@ -82,7 +82,7 @@ class SkeletonInSpace {
   solve::skeleton::PoseSolver solver_;
   std::vector<Body> bodies_;
   std::vector<Matrix<3>> rest_;
-  solve::skeleton::SeenMarkers seen_;
+  solve::skeleton::ObservedMarkers detected_;
   std::optional<Timestamp> before_;
   bool found_ = false;
   StageTimes times_;
@@ -90,7 +90,7 @@ class SkeletonInSpace {
   std::int64_t count_ = 0, starts_ = 0;
 };
 
-/// Of a live run: who does not fit its skeleton at all is sought anew so often, and no oftener, for a search takes longer than a
+/// Of a live run: who does not fit its skeleton at all is sought again this often, and no oftener, for a search takes longer than a
 /// frame.
 solve::skeleton::PoseOptions live_pose_options();
 
@@ -98,11 +98,11 @@ solve::skeleton::PoseOptions live_pose_options();
 /// OpenMoCap's semantics have it. Its warnings say so.
 format::skeleton::SkeletonFile with_a_marker_a_joint(format::skeleton::SkeletonFile file);
 
-/// From a file, for those who solve as they go. Its warnings are added to `warnings`. Throws Error where the file is no skeleton,
+/// From a file, for those who solve as they go. Its warnings are added to `warnings`. Throws Error if the file is not a skeleton,
 /// or one that has neither markers nor joints.
 std::shared_ptr<const Skeleton> skeleton_with_markers(const std::string& path, std::vector<std::string>& warnings);
 
-/// The recording with the skeleton's segments in the place of its bodies. Throws Error where it has no points in space.
+/// The recording with the skeleton's segments in the place of its bodies. Throws Error if it has no points in space.
 std::unique_ptr<RecordingReader> with_skeleton(std::unique_ptr<RecordingReader> recording,
                                                std::shared_ptr<const Skeleton> skeleton);
 

@@ -109,7 +109,7 @@ TEST(SkeletonInSpace, SaysWhatIsHiddenAndGoesOn) {
   Instant nothing;
   nothing.time = timestamp_from_seconds(-0.01);
   solved.add_to(nothing);
-  EXPECT_TRUE(nothing.bodies.empty()) << "nobody knows where it is";
+  EXPECT_TRUE(nothing.bodies.empty()) << "no person knows where it is";
   double worst = 0, worst_after = 0;
   for (Instant& instant : instants_of(scene, 0.0005, {"left_shank", "left_foot"}, 100, 20)) {
     solved.add_to(instant);
@@ -131,7 +131,7 @@ TEST(SkeletonInSpace, SaysWhatIsHiddenAndGoesOn) {
   EXPECT_TRUE(solved.warnings().empty());
 }
 
-/// Another person's skeleton, twice as large: it is sought anew now and then, not at every frame.
+/// Another person's skeleton, twice as large: it is sought again now and then, not at every frame.
 TEST(SkeletonInSpace, CostsNoMoreWhereItDoesNotFit) {
   const marey::simulate::room::RoomScene scene(walker(300));
   Skeleton large = *scene.skeleton();
@@ -181,10 +181,10 @@ std::vector<double> taken_of(const std::vector<std::string>& labels) {
     sample.position = {static_cast<double>(i) + 1, 0, 1};
   }
   markers.name(names);
-  solve::skeleton::SeenMarkers seen;
-  markers.take(instant, seen);
+  solve::skeleton::ObservedMarkers detected;
+  markers.take(instant, detected);
   std::vector<double> taken;
-  for (const auto& place : seen) taken.push_back(place ? place->x() : 0);
+  for (const auto& location : detected) taken.push_back(location ? location->x() : 0);
   return taken;
 }
 

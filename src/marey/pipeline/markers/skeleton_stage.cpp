@@ -36,7 +36,7 @@ class SkeletonStage final : public corridor::Stage {
     header.bodies = solved_.bodies();
     return header;
   }
-  void want_boxes() override { stage_->want_boxes(); }
+  void need_boxes() override { stage_->need_boxes(); }
   std::span<const Instant> step(const FrameSet& frames) override {
     const std::span<const Instant> known = stage_->step(frames);
     instants_.assign(known.begin(), known.end());

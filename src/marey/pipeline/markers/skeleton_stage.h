@@ -9,7 +9,7 @@
 
 namespace marey::pipeline::markers {
 
-/// Throws Error where the skeleton has no markers or nothing that moves.
+/// Throws Error if the skeleton has no markers or nothing that moves.
 std::unique_ptr<corridor::Stage> with_skeleton(std::unique_ptr<corridor::Stage> stage, std::shared_ptr<const Skeleton> skeleton,
                                                const solve::skeleton::PoseOptions& options);
 

@@ -46,11 +46,11 @@ void SpaceBlobs::collect(const FrameSet& frames, std::span<const Track<3>> expec
   }
 }
 
-std::vector<SeenPoint> SpaceBlobs::recorded() const {
-  std::vector<SeenPoint> points;
+std::vector<ImageObservation> SpaceBlobs::recorded() const {
+  std::vector<ImageObservation> points;
   for (std::size_t i = 0; i < blobs_.size(); ++i) {
     const Observation<2>& blob = blobs_[i];
-    SeenPoint& point = points.emplace_back();
+    ImageObservation& point = points.emplace_back();
     point.camera = blob.camera;
     point.pixel = blob.value;
     point.sigma = sigmas_[i];

@@ -8,7 +8,7 @@
 #include "marey/core/frame_set.h"
 #include "marey/core/instant.h"
 #include "marey/core/rig.h"
-#include "marey/reconstruct/own_time.h"
+#include "marey/reconstruct/time_alignment.h"
 
 namespace marey::pipeline::markers {
 
@@ -26,7 +26,7 @@ class SpaceBlobs {
   /// Valid until the next `collect`.
   std::span<const Observation<2>> all() const { return blobs_; }
   /// The blobs as they are recorded.
-  std::vector<SeenPoint> recorded() const;
+  std::vector<ImageObservation> recorded() const;
 
  private:
   std::vector<bool> calibrated_;  // by camera of the rig

@@ -12,13 +12,13 @@ void SpaceDecisions::add(const FrameSet& frames, const SpaceBlobs& blobs, const 
   Undecided& undecided = undecided_.emplace_back();
   undecided.instant.index = frames.index;
   undecided.instant.time = frames.time;
-  undecided.instant.seen = blobs.recorded();
-  for (const reconstruct::Placed& placed : found.points) {
+  undecided.instant.detected = blobs.recorded();
+  for (const reconstruct::Located& located : found.points) {
     Point& point = undecided.points.emplace_back();
-    point.sample.position = placed.point.position;
-    point.sample.covariance = placed.point.covariance;
-    point.sample.residual_px = placed.point.residual_px;
-    point.blobs.assign(placed.seen.begin(), placed.seen.end());
+    point.sample.position = located.point.position;
+    point.sample.covariance = located.point.covariance;
+    point.sample.residual_px = located.point.residual_px;
+    point.blobs.assign(located.detected.begin(), located.detected.end());
     for (const int i : point.blobs) point.sample.cameras |= mask_of(blobs.all()[static_cast<std::size_t>(i)].camera);
   }
 }
@@ -33,7 +33,7 @@ Instant SpaceDecisions::decided(std::span<const Track<3>> tracks) {
     if (!track.observation) continue;
     Point& point = undecided.points[static_cast<std::size_t>(*track.observation)];
     point.sample.track = track.id;
-    for (const int i : point.blobs) instant.seen[static_cast<std::size_t>(i)].track = track.id;
+    for (const int i : point.blobs) instant.detected[static_cast<std::size_t>(i)].track = track.id;
     squares_ += *point.sample.residual_px * *point.sample.residual_px;
     ++points_;
     instant.samples.push_back(std::move(point.sample));

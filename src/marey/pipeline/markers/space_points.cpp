@@ -16,7 +16,7 @@ SpacePoints::SpacePoints(const Rig& rig, const reconstruct::CorrespondOptions& o
       ids_.push_back(CameraId{static_cast<int>(i)});
       cameras.push_back(*camera);
     } else {
-      warnings_.push_back(fmt::format("camera \"{}\" has no calibration and is left out", name));
+      warnings_.push_back(fmt::format("camera \"{}\" has no calibration and is omitted", name));
     }
   }
   watch_.emplace(cameras, ids_);
@@ -26,7 +26,7 @@ SpacePoints::SpacePoints(const Rig& rig, const reconstruct::CorrespondOptions& o
 reconstruct::CorrespondOptions SpacePoints::options_for(std::size_t cameras) const {
   reconstruct::CorrespondOptions options = options_;
   options.noise_px = noise_.px();
-  if (cameras == 2) options.fewest_rays = 2;
+  if (cameras == 2) options.min_rays = 2;
   return options;
 }
 
@@ -46,7 +46,7 @@ const reconstruct::Correspondences& SpacePoints::find(Timestamp now, std::span<c
     corresponder_->set_noise(noise_.px());
     if (counts_.instants == 0) found = &corresponder_->match(blobs, expected);
   }
-  moved_ = watch_->see(now, blobs, *found, noise_.px());
+  moved_ = watch_->observe_frame(now, blobs, *found, noise_.px());
   if (moved_) warn_of(*moved_);
   count(blobs, *found);
   return *found;
@@ -65,7 +65,7 @@ void SpacePoints::count(std::span<const Observation<2>> blobs, const reconstruct
 void SpacePoints::warn_of(const reconstruct::MovedCamera& moved) {
   warnings_.push_back(fmt::format(
       "camera \"{}\" was moved at {:.2f} s, by {:.2f}° and {:.0f} mm; its new place was found ({} blobs within {:.2f} px) and "
-      "counts from then on: calibrate the rig anew",
+      "counts from then on: calibrate the rig again",
       names_[static_cast<std::size_t>(number(moved.camera))], seconds(moved.since), moved.angle * 180 / std::numbers::pi,
       1000 * moved.distance, moved.pairs, moved.rms_px));
 }
@@ -74,8 +74,8 @@ void SpacePoints::report(corridor::Summary& summary) const {
   summary.figures["noise_px"] = noise_.px();
   summary.figures["observations"] = static_cast<double>(counts_.observations);
   summary.figures["unexplained"] = static_cast<double>(counts_.unexplained);
-  summary.left_out["points of two rays alone"] = counts_.by_two_rays;
-  for (const auto& [reason, count] : counts_.missed) summary.left_out[std::string(reconstruct::meaning(reason))] = count;
+  summary.excluded["points of two rays alone"] = counts_.by_two_rays;
+  for (const auto& [reason, count] : counts_.missed) summary.excluded[std::string(reconstruct::meaning(reason))] = count;
 }
 
 }  // namespace marey::pipeline::markers

@@ -18,7 +18,7 @@ namespace marey::pipeline::markers {
 
 class SpacePoints {
  public:
-  /// `noise_px`: nothing if it is to be learned. Cameras without calibration are left out, with a warning. Throws Error if fewer
+  /// `noise_px`: nothing if it is to be learned. Cameras without calibration are omitted, with a warning. Throws Error if fewer
   /// than two have one.
   SpacePoints(const Rig& rig, const reconstruct::CorrespondOptions& options, std::optional<double> noise_px);
 
@@ -31,7 +31,7 @@ class SpacePoints {
 
   /// Noise, counts, and the reasons for which expected markers have no point.
   void report(corridor::Summary& summary) const;
-  /// Cameras that are left out or were moved, one sentence each.
+  /// Cameras that are omitted or were moved, one sentence each.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:

@@ -14,7 +14,7 @@ class NamedStage final : public corridor::Stage {
       : stage_(std::move(stage)), naming_(std::move(naming)) {}
 
   RecordingHeader header() const override { return stage_->header(); }
-  void want_boxes() override { stage_->want_boxes(); }
+  void need_boxes() override { stage_->need_boxes(); }
   std::span<const Instant> step(const FrameSet& frames) override { return naming_->enter(stage_->step(frames)); }
   std::vector<std::string> news() override { return stage_->news(); }
   std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override { return stage_->finish(hooks); }
@@ -47,7 +47,7 @@ void TrackNaming::name(TrackId track, const std::string& label) {
   if (label.empty()) {
     given_.erase(track);
   } else {
-    given_[track] = {label, ++turns_};
+    given_[track] = {label, ++rotations_};
   }
   fresh_.insert(track);
 }
@@ -63,7 +63,7 @@ void TrackNaming::take_name(TrackId track) {
   fresh_.insert(track);
 }
 
-void TrackNaming::tell_apart(const Instant& instant) {
+void TrackNaming::report_apart(const Instant& instant) {
   if (given_.empty()) return;
   const auto turn_of = [&](TrackId track) { return given_.contains(track) ? given_.at(track).turn : 0; };
   std::map<std::string, TrackId> bearers;
@@ -80,19 +80,19 @@ void TrackNaming::tell_apart(const Instant& instant) {
 
 std::span<const Instant> TrackNaming::enter(std::span<const Instant> instants) {
   const std::lock_guard lock(mutex_);
-  bool told = !fresh_.empty();
+  bool reported = !fresh_.empty();
   for (const Instant& instant : instants) {
     for (const TrackName& name : instant.named) {
       own_[name.id] = name;
-      told = told || given_.contains(name.id);
+      reported = reported || given_.contains(name.id);
     }
     for (const Sample& sample : instant.samples) own_.try_emplace(sample.track, TrackName{sample.track, {}, {}});
   }
   if (instants.empty()) return instants;
   present_.clear();
   for (const Sample& sample : instants.back().samples) present_.insert(sample.track);
-  for (const Instant& instant : instants) tell_apart(instant);
-  if (!told && fresh_.empty()) return instants;
+  for (const Instant& instant : instants) report_apart(instant);
+  if (!reported && fresh_.empty()) return instants;
   changed_.assign(instants.begin(), instants.end());
   for (const TrackId track : fresh_) changed_.front().named.push_back(own_.at(track));
   fresh_.clear();

@@ -17,7 +17,7 @@ namespace marey::pipeline::markers {
 
 class TrackNaming {
  public:
-  /// From any thread. An empty label gives the track back the name that it had. Throws Error where there is no such track, or
+  /// From any thread. An empty label gives the track back the name that it had. Throws Error if there is no such track, or
   /// another one that is seen now has this name.
   void name(TrackId track, const std::string& label);
 
@@ -32,13 +32,13 @@ class TrackNaming {
   };
   const std::string& label_of(TrackId track) const;
   void take_name(TrackId track);
-  void tell_apart(const Instant& instant);
+  void report_apart(const Instant& instant);
 
   std::mutex mutex_;
   std::map<TrackId, TrackName> own_;  // of every track that was there, as the run calls it
   std::map<TrackId, Given> given_;    // by the user
-  int turns_ = 0;
-  std::set<TrackId> present_, fresh_;  // in the newest instant; named anew since
+  int rotations_ = 0;
+  std::set<TrackId> present_, fresh_;  // in the newest instant; named again since
   std::vector<Instant> changed_;
 };
 

@@ -35,7 +35,7 @@ TEST(TrackNaming, ANameIsToldOnceAndGoesBeforeTheRunsOwn) {
 
 TEST(TrackNaming, TwoThatAreSeenTogetherHaveTwoNames) {
   TrackNaming naming;
-  EXPECT_THROW(naming.name(TrackId{1}, "knee"), Error) << "nobody was there yet";
+  EXPECT_THROW(naming.name(TrackId{1}, "knee"), Error) << "no person was there yet";
   naming.enter(std::vector<Instant>{with_tracks({1, 2}, {{2, "heel"}})});
   naming.name(TrackId{1}, "knee");
   EXPECT_THROW(naming.name(TrackId{2}, "knee"), Error);
@@ -47,7 +47,7 @@ TEST(TrackNaming, TwoThatAreSeenTogetherHaveTwoNames) {
   EXPECT_EQ(named_by(naming, with_tracks({2, 3})), (Named{{3, "knee"}}));
 }
 
-TEST(TrackNaming, WhoComesBackWhileAnotherHasItsNameLosesIt) {
+TEST(TrackNaming, ReturningTrackLosesTakenName) {
   TrackNaming naming;
   named_by(naming, with_tracks({1, 2}));
   naming.name(TrackId{1}, "head");
@@ -69,7 +69,7 @@ TEST(TrackNaming, TheRunsOwnNameGivesWayToTheUsers) {
   EXPECT_EQ(named_by(naming, with_tracks({2, 1})), (Named{{1, ""}, {2, "head"}}));
 }
 
-TEST(TrackNaming, WhereNothingIsNamedNothingIsCopied) {
+TEST(TrackNaming, CopiesNothingWithoutNames) {
   TrackNaming naming;
   const Instant instant = with_tracks({1}, {{1, "m1"}});
   EXPECT_EQ(naming.enter({&instant, 1}).data(), &instant);

@@ -12,26 +12,26 @@ namespace {
 /// seen there flies before it.
 detect::ball::BallSize ball_sizes(const GroundView& view, const reconstruct::GroundArea& area) {
   const auto radius_at = [view](const Vector<2>& pixel) -> std::optional<double> {
-    const auto place = view.place(pixel);
-    if (!place) return std::nullopt;
-    const auto seen = view.camera()->project_with_jacobian(
-        {place->ground.x(), place->ground.y(), view.surface().height(place->ground) + track::ball::kBallRadius});
-    if (!seen) return std::nullopt;
-    return track::ball::kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
+    const auto location = view.location(pixel);
+    if (!location) return std::nullopt;
+    const auto detected = view.camera()->project_with_jacobian(
+        {location->ground.x(), location->ground.y(), view.surface().height(location->ground) + track::ball::kBallRadius});
+    if (!detected) return std::nullopt;
+    return track::ball::kBallRadius * std::pow((detected->by_world * detected->by_world.transpose()).determinant(), 0.25);
   };
-  double least = 1e9;
+  double minimum = 1e9;
   constexpr int kGrid = 16;
   for (int y = 0; y < view.size().height; y += kGrid) {
     for (int x = 0; x < view.size().width; x += kGrid) {
-      const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
-      if (!place || !area.holds(place->ground)) continue;
-      least = std::min(least, radius_at({static_cast<double>(x), static_cast<double>(y)}).value_or(least));
+      const auto location = view.location({static_cast<double>(x), static_cast<double>(y)});
+      if (!location || !area.holds(location->ground)) continue;
+      minimum = std::min(minimum, radius_at({static_cast<double>(x), static_cast<double>(y)}).value_or(minimum));
     }
   }
-  return [radius_at, least](const Vector<2>& pixel) -> std::optional<double> {
+  return [radius_at, minimum](const Vector<2>& pixel) -> std::optional<double> {
     const auto radius = radius_at(pixel);
     if (!radius) return std::nullopt;
-    return std::max(*radius, least);
+    return std::max(*radius, minimum);
   };
 }
 
@@ -47,7 +47,7 @@ void BallInView::search(const Frame& frame, const std::vector<Detection>& people
   view.time = frame.time;
   for (const Detection& person : people) view.people.push_back(person.box);
   for (const detect::ball::BallCandidate& candidate : detector_.detect(frame))
-    view.seen.push_back({candidate.centre, candidate.sigma, candidate.score, candidate.company, {}, false});
+    view.detected.push_back({candidate.centre, candidate.sigma, candidate.score, candidate.local_clutter, {}, false});
 }
 
 }  // namespace marey::pipeline::people

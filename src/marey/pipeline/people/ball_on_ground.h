@@ -1,4 +1,4 @@
-// The ball's way over a whole recording, after everybody's is known.
+// The ball's trajectory over a whole recording, after every person's is known.
 #pragma once
 
 #include <memory>
@@ -11,23 +11,23 @@
 #include "marey/pipeline/corridor/run.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/ball/ball_moment.h"
-#include "marey/track/ball/ball_way.h"
+#include "marey/track/ball/ball_trajectory.h"
 
 namespace marey::pipeline::people {
 
 struct BallOptions {
   detect::ball::BallDetectorOptions detector;
-  track::ball::BallWayOptions way;
+  track::ball::BallTrajectoryOptions method;
 };
 
-/// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant a moment), and puts
-/// it into the recording, as a track of three dimensions that is called "ball". Returns its id; nothing where it was never found.
-std::optional<TrackId> follow_ball(std::vector<track::ball::BallMoment> moments, const std::shared_ptr<const GroundViews>& views,
-                                   const reconstruct::GroundArea& area, const BallOptions& options, const Hooks& hooks,
-                                   Recording& recording);
+/// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant an instant), and puts
+/// it into the recording, as a track of three dimensions that is called "ball". Returns its id; nothing if it was never found.
+std::optional<TrackId> track_ball(std::vector<track::ball::BallObservations> time_steps,
+                                  const std::shared_ptr<const GroundViews>& views, const reconstruct::GroundArea& area,
+                                  const BallOptions& options, const Hooks& hooks, Recording& recording);
 
-/// The box of a ball in a camera's picture, px: its centre is over `place` (m, world), `height` m above the ground. Nothing outside
-/// the picture, or for a camera that is not known.
-std::optional<Box> ball_box(const GroundView& view, const Vector<2>& place, double height);
+/// The box of a ball in a camera's image, px: its centre is over `place` (m, world), `height` m above the ground. Nothing outside
+/// the image, or for a camera that is not known.
+std::optional<Box> ball_box(const GroundView& view, const Vector<2>& location, double height);
 
 }  // namespace marey::pipeline::people

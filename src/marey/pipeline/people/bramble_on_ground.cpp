@@ -8,14 +8,14 @@
 
 #include "marey/core/error.h"
 #include "marey/detect/blobs/foreground_evidence.h"
-#include "marey/pipeline/corridor/beside.h"
+#include "marey/pipeline/corridor/next_to.h"
 #include "marey/pipeline/corridor/stopwatch.h"
 #include "marey/pipeline/people/ball_in_view.h"
 #include "marey/pipeline/people/ground_cameras.h"
 #include "marey/pipeline/people/ground_second_pass.h"
 #include "marey/pipeline/people/ground_stage.h"
 #include "marey/pipeline/people/people_in_view.h"
-#include "marey/pipeline/people/view_doubts.h"
+#include "marey/pipeline/people/view_ambiguities.h"
 #include "marey/track/bramble/bramble_tracker.h"
 #include "marey/track/ground/offline/ground_recorder.h"
 
@@ -24,8 +24,8 @@ namespace {
 
 /// Evidence comes from images, through calibrated cameras that are static.
 void check_for_bramble(const RigCamera& camera, const GroundView& view, bool images, bool ptz) {
-  if (!images) throw Error("camera \"{}\" brings detections; bramble looks at pictures", camera.name);
-  if (ptz) throw Error("camera \"{}\" turns, and bramble needs cameras that stand", camera.name);
+  if (!images) throw Error("camera \"{}\" brings detections; bramble looks at images", camera.name);
+  if (ptz) throw Error("camera \"{}\" turns, and bramble needs static cameras", camera.name);
   if (view.camera() == nullptr)
     throw Error("camera \"{}\" is known by ground_from_image alone; bramble must know how tall people are seen: calibrate it",
                 camera.name);
@@ -33,20 +33,20 @@ void check_for_bramble(const RigCamera& camera, const GroundView& view, bool ima
 
 /// How far apart a grid's points are, px, of which a person spans about twelve rows: most do.
 int grid_step(const GroundView& view, const reconstruct::GroundArea& area) {
-  constexpr int every = 24, rows = 12, least = 2, most = 8;  // px, points, px, px
+  constexpr int every = 24, rows = 12, minimum = 2, maximum = 8;  // px, points, px, px
   std::vector<double> heights;
   for (int y = 0; y < view.size().height; y += every) {
     for (int x = 0; x < view.size().width; x += every) {
-      const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
-      if (!place || !area.holds(place->ground, kBeyondArea)) continue;
-      const auto box = person_at(view, place->ground);
+      const auto location = view.location({static_cast<double>(x), static_cast<double>(y)});
+      if (!location || !area.holds(location->ground, kBeyondArea)) continue;
+      const auto box = person_at(view, location->ground);
       if (box && box->height >= kMinBodyHeight) heights.push_back(box->height);
     }
   }
-  if (heights.empty()) return most;
+  if (heights.empty()) return maximum;
   const auto quarter = heights.begin() + std::ssize(heights) / 4;
   std::nth_element(heights.begin(), quarter, heights.end());
-  return std::clamp(static_cast<int>(std::lround(*quarter / rows)), least, most);
+  return std::clamp(static_cast<int>(std::lround(*quarter / rows)), minimum, maximum);
 }
 
 /// One camera: its evidence, in the part of its image where people may appear.
@@ -58,38 +58,38 @@ class BrambleCamera {
         id_(feed.id()),
         part_(part_with_people(view, area)),
         model_({.step = grid_step(view, area)}),
-        doubts_(feed.camera(), options.steady) {
+        review_items_(feed.camera(), options.stabilise) {
     if (options.ball) ball_.emplace(id_, view, area, options.ball->detector);
     if (options.live) return;
     std::vector<Frame> samples = feed.sample_beginning();
-    corridor::Beside beside;
-    beside.run([this, samples] { doubts_.look_at_beginning(samples); });
-    if (ball_) beside.run([this, samples] { ball_->prime(samples); });
-    for (Frame& frame : samples) frame.picture = frame.picture.part(part_);
+    corridor::NextTo next_to;
+    next_to.run([this, samples] { review_items_.inspect_at_beginning(samples); });
+    if (ball_) next_to.run([this, samples] { ball_->prime(samples); });
+    for (Frame& frame : samples) frame.image = frame.image.part(part_);
     model_.prime(samples);
   }
 
   track::bramble::CameraEvidence observe(const Frame& frame) {
     ++frames_;
-    corridor::Beside beside;
-    beside.run([this, &frame] { doubts_.add(frame); });
+    corridor::NextTo next_to;
+    next_to.run([this, &frame] { review_items_.add(frame); });
     Frame searched = frame;
-    searched.picture = frame.picture.part(part_);
+    searched.image = frame.image.part(part_);
     track::bramble::CameraEvidence observed{id_, frame.time, in_whole_image(model_.of(searched))};
-    beside.wait();
+    next_to.wait();
     if (ball_) ball_->search(frame, {});
     return observed;
   }
 
   std::optional<track::ball::BallView> ball() const { return ball_ ? ball_->candidates() : std::nullopt; }
-  std::vector<std::string> news() { return doubts_.news(); }
+  std::vector<std::string> news() { return review_items_.news(); }
 
   void report(corridor::Summary& summary) const {
     corridor::Summary::Camera& counts = summary.cameras.emplace_back();
     counts.name = name_;
     counts.frames = frames_;
     counts.missed = summary.frames - frames_;
-    for (std::string& warning : doubts_.warnings()) summary.warnings.push_back(std::move(warning));
+    for (std::string& warning : review_items_.warnings()) summary.warnings.push_back(std::move(warning));
   }
 
  private:
@@ -104,17 +104,16 @@ class BrambleCamera {
   CameraId id_;
   cv::Rect part_;  // px, that is searched
   detect::blobs::ForegroundEvidence model_;
-  ViewDoubts doubts_;
+  ViewAmbiguities review_items_;
   std::optional<BallInView> ball_;
   std::int64_t frames_ = 0;
 };
 
 GroundScene scene_for(const std::vector<corridor::Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options) {
   Rig fed = ground_rig(rig, feeds);
-  auto views = views_of(fed, options.turning);
+  auto views = views_of(fed, options.ptz);
   for (const corridor::Feed& feed : feeds)
-    check_for_bramble(feed.camera(), views->view_at(feed.id(), {}), feed.has_pictures(),
-                      turning_of(options.turning, feed.id()) != nullptr);
+    check_for_bramble(feed.camera(), views->view_at(feed.id(), {}), feed.has_images(), ptz_of(options.ptz, feed.id()) != nullptr);
   GroundScene scene{.rig = std::move(fed), .views = views, .area = area_of(rig, options), .box_at = {}};
   scene.box_at = [views](CameraId camera, const Vector<2>& position, Timestamp time) {
     return person_at(views->view_at(camera, time), position);
@@ -141,7 +140,7 @@ class BrambleOnGround final : public GroundStage {
   std::vector<std::string> news() override {
     std::vector<std::string> all;
     for (BrambleCamera& camera : cameras_) {
-      for (std::string& sentence : camera.news()) all.push_back(std::move(sentence));
+      for (std::string& message_text : camera.news()) all.push_back(std::move(message_text));
     }
     return all;
   }
@@ -154,7 +153,7 @@ class BrambleOnGround final : public GroundStage {
       return {&instant_, 1};
     }
     boxes_.add_frames(frames);
-    moments_.push_back({frames.index, own_time(frames.time)});
+    time_steps_.push_back({frames.index, own_time(frames.time)});
     if (options_.ball) ball_candidates_.push_back(ball_candidates(frames));
     const track::ground::GroundInstant instant(static_cast<std::int32_t>(frames.index), frames.time, tracker_.observations());
     recorder_.add(instant.frame, frames.time, tracks, instant.cameras, tracker_.matches());
@@ -169,7 +168,7 @@ class BrambleOnGround final : public GroundStage {
         options_.join, [this](const Vector<2>& position, Timestamp time) { return scene_.in_view(position, time); });
     people_ = second_pass(std::move(joined), scene_, header_, boxes_, std::move(ball_candidates_), options_, hooks);
     second_pass_s_ = taken.seconds();
-    return ground_instants(people_, scene_, boxes_, moments_);
+    return ground_instants(people_, scene_, boxes_, time_steps_);
   }
 
   void report(corridor::Summary& summary) const override {
@@ -197,8 +196,8 @@ class BrambleOnGround final : public GroundStage {
     return evidence_;
   }
 
-  track::ball::BallMoment ball_candidates(const FrameSet& frames) const {
-    track::ball::BallMoment candidates;
+  track::ball::BallObservations ball_candidates(const FrameSet& frames) const {
+    track::ball::BallObservations candidates;
     candidates.index = frames.index;
     candidates.time = frames.time;
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
@@ -212,8 +211,8 @@ class BrambleOnGround final : public GroundStage {
   std::vector<BrambleCamera> cameras_;
   std::vector<track::bramble::CameraEvidence> evidence_;  // of the cameras that have a frame
   track::ground::offline::GroundRecorder recorder_;
-  std::vector<Recording::Moment> moments_;  // by the header's clock
-  std::vector<track::ball::BallMoment> ball_candidates_;
+  std::vector<Recording::TimeStep> time_steps_;  // by the header's clock
+  std::vector<track::ball::BallObservations> ball_candidates_;
   GroundPeople people_;
   double second_pass_s_ = 0;
   Instant instant_;

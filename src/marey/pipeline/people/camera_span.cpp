@@ -12,39 +12,39 @@ constexpr double kApart = 1;        // s between the frames that are compared
 constexpr std::size_t kPeople = 4;  // in both frames
 constexpr int kSeconds = 3;         // that must have been compared
 constexpr double kStanding = 0.05;  // heights: people who stand are not known to better than this
-/// What n people's mean displacement is worth beside their spread: 2 in the mean where everybody goes his own way.
+/// What n people's mean displacement is worth beside their spread: 2 in the mean where every person goes his own way.
 constexpr double kTogether = 10;
 
 }  // namespace
 
-void CameraSpan::see(Timestamp now, std::span<const Track<2>> tracks) {
+void CameraSpan::observe_frame(Timestamp now, std::span<const Track<2>> tracks) {
   if (!before_.empty() && seconds(now - taken_) < kApart) return;
-  std::map<TrackId, Place> places;
+  std::map<TrackId, Location> locations;
   for (const Track<2>& track : tracks) {
-    if (track.confirmed && track.box && track.measured()) places[track.id] = {track.position, track.box->height};
+    if (track.confirmed && track.box && track.measured()) locations[track.id] = {track.position, track.box->height};
   }
-  compare(places);
-  before_ = std::move(places);
+  compare(locations);
+  before_ = std::move(locations);
   taken_ = now;
 }
 
-void CameraSpan::compare(const std::map<TrackId, Place>& now) {
-  std::vector<Vector<2>> ways;
+void CameraSpan::compare(const std::map<TrackId, Location>& now) {
+  std::vector<Vector<2>> methods;
   double height = 0;
-  for (const auto& [id, place] : now) {
+  for (const auto& [id, location] : now) {
     const auto before = before_.find(id);
     if (before == before_.end()) continue;
-    ways.push_back(place.place - before->second.place);
-    height += place.height;
+    methods.push_back(location.location - before->second.location);
+    height += location.height;
   }
-  if (ways.size() < kPeople) return;
-  const double n = static_cast<double>(ways.size());
+  if (methods.size() < kPeople) return;
+  const double n = static_cast<double>(methods.size());
   Vector<2> mean = Vector<2>::Zero();
-  for (const Vector<2>& way : ways) mean += way / n;
+  for (const Vector<2>& method : methods) mean += method / n;
   double spread = 0;  // of each axis
-  for (const Vector<2>& way : ways) spread += (way - mean).squaredNorm() / (2 * (n - 1));
-  const double least = kStanding * height / n;
-  coherence_ += n * mean.squaredNorm() / (spread + least * least);
+  for (const Vector<2>& method : methods) spread += (method - mean).squaredNorm() / (2 * (n - 1));
+  const double minimum = kStanding * height / n;
+  coherence_ += n * mean.squaredNorm() / (spread + minimum * minimum);
   farthest_ = std::max(farthest_, mean.norm());
   ++seconds_;
 }

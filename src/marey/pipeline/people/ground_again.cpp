@@ -20,9 +20,9 @@ class GroundAgain final : public PeopleOnGround {
   }
 
   RecordingHeader header() const override { return stage_->header(); }
-  void want_boxes() override {
-    wants_boxes_ = true;
-    stage_->want_boxes();
+  void need_boxes() override {
+    needs_boxes_ = true;
+    stage_->need_boxes();
   }
   const std::vector<analyse::Teams::Team>& teams() const override { return stage_->teams(); }
   std::vector<std::shared_ptr<StandingPeople>> standing() const override { return stage_->standing(); }
@@ -34,9 +34,9 @@ class GroundAgain final : public PeopleOnGround {
 
   std::unique_ptr<corridor::InstantSource> finish(const Hooks& hooks) override {
     found_ = stage_->standing();
-    if (may_look_again() && !hooks.stop.stop_requested()) {
+    if (may_inspect_again() && !hooks.stop.stop_requested()) {
       try {
-        look_again(hooks);
+        inspect_again(hooks);
       } catch (const Stopped&) {  // what was found at first counts
       }
     }
@@ -49,30 +49,31 @@ class GroundAgain final : public PeopleOnGround {
       if (found_[i] == nullptr) continue;
       if (again_ && found_[i]->since_beginning() > 0) {
         summary.notes.push_back(
-            corridor::said_of(rig_.cameras[i], fmt::format("{} of those who left the scene had stood in it since the beginning: "
-                                                           "the recording was looked at again without them in it",
-                                                           found_[i]->since_beginning())));
+            corridor::stated_of(rig_.cameras[i], fmt::format("{} of those who left the scene had stood in it since the beginning: "
+                                                             "the recording was inspected again without them in it",
+                                                             found_[i]->since_beginning())));
       } else if (!again_) {
-        for (const std::string& sentence : found_[i]->said()) summary.notes.push_back(corridor::said_of(rig_.cameras[i], sentence));
+        for (const std::string& message_text : found_[i]->stated())
+          summary.notes.push_back(corridor::stated_of(rig_.cameras[i], message_text));
       }
     }
   }
 
  private:
   /// Not with a ball: in a scene that was corrected, what is left of people's borders was followed as one.
-  bool may_look_again() const {
+  bool may_inspect_again() const {
     return !options_.ball && std::any_of(found_.begin(), found_.end(), [](const auto& one) {
       return one != nullptr && one->since_beginning() > 0;
     }) && std::all_of(openers_.begin(), openers_.end(), [](const auto& opener) { return static_cast<bool>(opener); });
   }
 
-  void look_again(const Hooks& hooks) {
+  void inspect_again(const Hooks& hooks) {
     std::vector<corridor::Feed> feeds;
     for (const auto& opener : openers_) feeds.push_back(opener());
     PeopleOnGroundOptions options = options_;
     options.without.assign(found_.begin(), found_.end());
     auto stage = people_on_ground(feeds, rig_, options);
-    if (wants_boxes_) stage->want_boxes();
+    if (needs_boxes_) stage->need_boxes();
     corridor::Clock clock(std::move(feeds));
     for (std::int64_t done = 0; done < frames_; ++done) {
       const auto frames = clock.next();
@@ -89,7 +90,7 @@ class GroundAgain final : public PeopleOnGround {
   std::vector<std::function<corridor::Feed()>> openers_;
   std::vector<std::shared_ptr<StandingPeople>> found_;
   std::int64_t frames_ = 0;
-  bool wants_boxes_ = false, again_ = false;
+  bool needs_boxes_ = false, again_ = false;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ void GroundBoxes::add(const track::ground::GroundInstant& instant, std::span<con
   if (!enabled_) return;
   for (const track::ground::ObservationMatch& match : matches) {
     const track::ground::CameraObservations& camera = instant.cameras[static_cast<std::size_t>(match.view)];
-    const Observation<2>& observation = camera.seen[static_cast<std::size_t>(match.observation)];
+    const Observation<2>& observation = camera.detected[static_cast<std::size_t>(match.observation)];
     if (!observation.box || observation.shared) continue;
     logs_[static_cast<std::size_t>(number(camera.camera))].add_box(instant.frame, match.track, *observation.box);
   }
@@ -54,7 +54,7 @@ void GroundBoxes::add_to(Instant& instant, Timestamp time, const GroundScene& sc
                                .track = sample.track,
                                .box = *box,
                                .foot = is_ball ? box->centre() : view.pixel(position),
-                               .seen = (sample.cameras & mask_of(camera)) != 0});
+                               .detected = (sample.cameras & mask_of(camera)) != 0});
     }
   }
 }

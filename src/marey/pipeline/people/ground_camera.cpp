@@ -7,18 +7,18 @@
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
 #include "marey/pipeline/people/people_in_view.h"
-#include "marey/pipeline/people/turned_views.h"
+#include "marey/pipeline/people/ptz_views.h"
 #include "marey/reconstruct/place_people.h"
 
 namespace marey::pipeline::people {
 namespace {
 
-/// A camera that turns has no empty scene to learn: a network looks at every frame.
-detect::DetectorOptions for_turning(detect::DetectorOptions options, const std::string& name) {
+/// A PTZ camera has no empty scene to learn: a network looks at every frame.
+detect::DetectorOptions for_ptz(detect::DetectorOptions options, const std::string& name) {
   auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
   if (network == nullptr)
     throw Error(
-        "camera \"{0}\" turns, and background subtraction needs a camera that stands; give a network with --detector MODEL.toml "
+        "camera \"{0}\" turns, and background subtraction needs a static camera; give a network with --detector MODEL.toml "
         "(docs/network.md), or what another program detected: {0}=boxes.txt",
         name);
   network->background = false;
@@ -33,20 +33,20 @@ GroundView ground_view_of(const RigCamera& camera, const geometry::GroundSurface
     throw Error("camera \"{}\": how it sees the ground is not known; run marey calibrate pitch, or give its ground_from_image",
                 camera.name);
   if (camera.source.empty() && !camera.size)
-    throw Error("camera \"{}\" brings detections: the size of its pictures must be told; add size = [width, height] to the rig",
+    throw Error("camera \"{}\" brings detections: the size of its images must be reported; add size = [width, height] to the rig",
                 camera.name);
   if (const auto view = camera.ground_view(ground)) return *view;
-  throw Error("camera \"{}\": its lens or the size of its pictures is not known; calibrate it", camera.name);
+  throw Error("camera \"{}\": its lens or the size of its images is not known; calibrate it", camera.name);
 }
 
 GroundCamera::GroundCamera(const corridor::Feed& feed, std::shared_ptr<const GroundViews> views,
                            const reconstruct::GroundArea& area, const GroundCameraOptions& options)
-    : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)), turning_(options.turning) {
+    : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)), ptz_(options.ptz) {
   const GroundView& view = view_at(Timestamp{});
   const Camera* whole = view.camera();
-  if (feed.has_pictures()) {
-    detect::DetectorOptions detector = turning_ ? for_turning(options.detector, camera_.name) : options.detector;
-    if (whole != nullptr && !turning_) {
+  if (feed.has_images()) {
+    detect::DetectorOptions detector = ptz_ ? for_ptz(options.detector, camera_.name) : options.detector;
+    if (whole != nullptr && !ptz_) {
       const cv::Rect part = part_with_people(view, area);
       if (part.size() != whole->size()) part_ = part;
       if (detect::people::PeopleOptions* people = detect::people_options_of(detector))
@@ -56,17 +56,17 @@ GroundCamera::GroundCamera(const corridor::Feed& feed, std::shared_ptr<const Gro
   }
   const bool sizes_known = whole != nullptr || (detector_ != nullptr && detector_->traits().knows_body_size);
   if (!sizes_known) learned_.emplace();
-  if (options.ball && whole != nullptr && !turning_ && feed.has_pictures()) ball_.emplace(id_, view, area, *options.ball);
-  if (detector_ != nullptr && !turning_) view_.emplace(camera_, options.steadied);
-  if (detector_ != nullptr && !turning_) standing_ = std::make_shared<StandingPeople>(Picture());
+  if (options.ball && whole != nullptr && !ptz_ && feed.has_images()) ball_.emplace(id_, view, area, *options.ball);
+  if (detector_ != nullptr && !ptz_) view_.emplace(camera_, options.stabilised);
+  if (detector_ != nullptr && !ptz_) standing_ = std::make_shared<StandingPeople>(Image());
   if (detector_ == nullptr || !options.prime) return;
   std::vector<Frame> samples = feed.sample_beginning();
-  corridor::Beside beside;
-  if (view_) beside.run([this, samples] { view_->look_at_beginning(samples); });
-  if (ball_) beside.run([this, samples] { ball_->prime(samples); });
+  corridor::NextTo next_to;
+  if (view_) next_to.run([this, samples] { view_->inspect_at_beginning(samples); });
+  if (ball_) next_to.run([this, samples] { ball_->prime(samples); });
   for (Frame& frame : samples) {
-    frame.picture = looked_at(frame.picture);
-    if (options.without) frame.picture = options.without->without_them(frame.picture);
+    frame.image = inspected_at(frame.image);
+    if (options.without) frame.image = options.without->without_them(frame.image);
   }
   detector_->prime(samples);
   if (standing_) standing_ = std::make_shared<StandingPeople>(detector_->scene());
@@ -89,67 +89,67 @@ std::optional<Box> GroundCamera::box_at(const Vector<2>& ground, Timestamp time)
 track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given, std::span<const Track<2>> expected) {
   ++frames_;
   Frame frame = given.frame;
-  if (!frame.picture.empty()) frame.picture = looked_at(frame.picture);
-  corridor::Beside beside;
-  if (view_) beside.run([&] { view_->add(given.frame); });
-  if (standing_) beside.run([&] { standing_->look(frame); });
+  if (!frame.image.empty()) frame.image = inspected_at(frame.image);
+  corridor::NextTo next_to;
+  if (view_) next_to.run([&] { view_->add(given.frame); });
+  if (standing_) next_to.run([&] { standing_->inspect(frame); });
   detect::Detections found;
   if (detector_) {
-    found = detect(frame, expected, beside);
+    found = detect(frame, expected, next_to);
   } else {
     found.detections = *given.detections;
   }
-  if (learned_) learn_sizes(found.detections, detector_ ? frame.picture.size() : view_at(frame.time).size());
-  place(frame, found);
+  if (learned_) learn_sizes(found.detections, detector_ ? frame.image.size() : view_at(frame.time).size());
+  location(frame, found);
   if (ball_) ball_->search(given.frame, found.detections);
-  return {id_, given.frame.time, seen_};
+  return {id_, given.frame.time, detected_};
 }
 
 /// Who is expected is where the detector need not learn the background.
-detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected, corridor::Beside& beside) {
+detect::Detections GroundCamera::detect(const Frame& frame, std::span<const Track<2>> expected, corridor::NextTo& next_to) {
   expected_.clear();
-  in_picture_.clear();
-  const cv::Size size = frame.picture.size();
-  const Box picture{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+  in_image_.clear();
+  const cv::Size size = frame.image.size();
+  const Box image{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
   for (const Track<2>& track : expected) {
     const auto box = box_at(track.position, frame.time);
     if (!box) continue;
-    const Box here = geometry::intersection(moved(*box, -corner()), picture);
+    const Box here = geometry::intersection(moved(*box, -corner()), image);
     if (here.empty()) continue;
     expected_.push_back({here});
-    in_picture_.push_back(track);
-    in_picture_.back().box = here;
+    in_image_.push_back(track);
+    in_image_.back().box = here;
   }
   detect::Detections found = detector_->detect(frame, expected_);
-  beside.wait();
-  if (standing_) standing_->see(frame, in_picture_, *detector_);
+  next_to.wait();
+  if (standing_) standing_->observe_frame(frame, in_image_, *detector_);
   return found;
 }
 
 void GroundCamera::learn_sizes(const std::vector<Detection>& detections, const cv::Size& size) {
-  for (const Detection& detection : detections) learned_->see(detection.box, size);
-  if (learned_->wants_fit()) learned_->fit();
+  for (const Detection& detection : detections) learned_->observe_frame(detection.box, size);
+  if (learned_->needs_fit()) learned_->fit();
 }
 
-void GroundCamera::place(const Frame& frame, detect::Detections& found) {
+void GroundCamera::location(const Frame& frame, detect::Detections& found) {
   std::vector<std::optional<Appearance>> appearances;
   for (std::size_t i = 0; i < found.detections.size(); ++i) {
-    appearances.push_back(detect::upper_body(frame.picture, found.foreground, found.detections, i));
+    appearances.push_back(detect::upper_body(frame.image, found.foreground, found.detections, i));
   }
   for (Detection& detection : found.detections) detection.box = moved(detection.box, corner());
-  reconstruct::PlacePeopleOptions placing;
-  if (detector_) placing.toe = detector_->traits().toe_m;
-  const reconstruct::PlacedPeople placed = reconstruct::place_people(found.detections, view_at(frame.time), id_, placing);
-  seen_.clear();
-  for (std::size_t i = 0; i < placed.seen.size(); ++i) {
-    if (!area_.holds(placed.seen[i].value, kBeyondArea)) continue;
-    seen_.push_back(placed.seen[i]);
-    if (turning_ && seen_.back().box)
-      *seen_.back().covariance += aim_covariance(camera_, *turning_, frame.time, seen_.back().box->foot());
-    seen_.back().appearance = appearances[static_cast<std::size_t>(placed.detection[i])];
+  reconstruct::LocalisePeopleOptions locating;
+  if (detector_) locating.toe = detector_->traits().toe_m;
+  const reconstruct::LocatedPeople located = reconstruct::localise_people(found.detections, view_at(frame.time), id_, locating);
+  detected_.clear();
+  for (std::size_t i = 0; i < located.detected.size(); ++i) {
+    if (!area_.holds(located.detected[i].value, kBeyondArea)) continue;
+    detected_.push_back(located.detected[i]);
+    if (ptz_ && detected_.back().box)
+      *detected_.back().covariance += aim_covariance(camera_, *ptz_, frame.time, detected_.back().box->foot());
+    detected_.back().appearance = appearances[static_cast<std::size_t>(located.detection[i])];
   }
-  outside_ += std::ssize(found.detections) - std::ssize(seen_);
-  detections_ += std::ssize(seen_);
+  outside_ += std::ssize(found.detections) - std::ssize(detected_);
+  detections_ += std::ssize(detected_);
 }
 
 std::vector<std::string> GroundCamera::news() {

@@ -5,20 +5,20 @@
 
 #include <tbb/parallel_for.h>
 
-#include "marey/pipeline/people/turned_views.h"
+#include "marey/pipeline/people/ptz_views.h"
 
 namespace marey::pipeline::people {
 
-std::shared_ptr<GroundViews> views_of(const Rig& fed, const TurningCameras& turning) {
+std::shared_ptr<GroundViews> views_of(const Rig& fed, const PtzCameras& ptz) {
   const auto id_of = [](std::size_t i) { return CameraId{static_cast<int>(i)}; };
   std::vector<GroundView> first;
   for (std::size_t i = 0; i < fed.cameras.size(); ++i) {
-    const auto own = turning_of(turning, id_of(i));
+    const auto own = ptz_of(ptz, id_of(i));
     first.push_back(own ? first_view(fed.cameras[i], *own, fed.ground) : ground_view_of(fed.cameras[i], fed.ground));
   }
   auto views = ground_views(std::move(first));
   for (std::size_t i = 0; i < fed.cameras.size(); ++i) {
-    if (const auto own = turning_of(turning, id_of(i))) enter_turns(*views, id_of(i), fed.cameras[i], *own, fed.ground);
+    if (const auto own = ptz_of(ptz, id_of(i))) enter_ptz(*views, id_of(i), fed.cameras[i], *own, fed.ground);
   }
   return views;
 }
@@ -30,8 +30,8 @@ GroundCameras::GroundCameras(const std::vector<corridor::Feed>& feeds, const std
   tbb::parallel_for(std::size_t{0}, feeds.size(), [&](std::size_t i) {
     const GroundCameraOptions how{.detector = options.detector,
                                   .prime = !options.live,
-                                  .steadied = options.steady,
-                                  .turning = turning_of(options.turning, feeds[i].id()),
+                                  .stabilised = options.stabilise,
+                                  .ptz = ptz_of(options.ptz, feeds[i].id()),
                                   .without = i < options.without.size() ? options.without[i] : nullptr,
                                   .ball = options.ball ? std::optional(options.ball->detector) : std::nullopt};
     opened[i].emplace(feeds[i], views, area, how);
@@ -51,8 +51,8 @@ std::span<const track::ground::CameraObservations> GroundCameras::observe(const 
   return observed_;
 }
 
-track::ball::BallMoment GroundCameras::ball_candidates(const FrameSet& frames) const {
-  track::ball::BallMoment candidates;
+track::ball::BallObservations GroundCameras::ball_candidates(const FrameSet& frames) const {
+  track::ball::BallObservations candidates;
   candidates.index = frames.index;
   candidates.time = frames.time;
   for (std::size_t i = 0; i < cameras_.size(); ++i) {
@@ -75,7 +75,7 @@ std::vector<std::shared_ptr<StandingPeople>> GroundCameras::standing() const {
 std::vector<std::string> GroundCameras::news() {
   std::vector<std::string> all;
   for (GroundCamera& camera : cameras_) {
-    for (std::string& sentence : camera.news()) all.push_back(std::move(sentence));
+    for (std::string& message_text : camera.news()) all.push_back(std::move(message_text));
   }
   return all;
 }

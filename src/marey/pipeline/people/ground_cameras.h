@@ -21,7 +21,7 @@
 namespace marey::pipeline::people {
 
 /// How the cameras see the ground, each with its motion. Throws Error if that is not known of one.
-std::shared_ptr<GroundViews> views_of(const Rig& fed, const TurningCameras& turning);
+std::shared_ptr<GroundViews> views_of(const Rig& fed, const PtzCameras& ptz);
 
 class GroundCameras {
  public:
@@ -35,7 +35,7 @@ class GroundCameras {
   /// Observations of each camera that has a frame, given the tracks `expected` at this time (m, world). Valid until the next call.
   std::span<const track::ground::CameraObservations> observe(const FrameSet& frames, std::span<const Track<2>> expected);
   /// Candidates for the ball in the frames that were observed last.
-  track::ball::BallMoment ball_candidates(const FrameSet& frames) const;
+  track::ball::BallObservations ball_candidates(const FrameSet& frames) const;
   /// Whether any camera searches for the ball.
   bool search_ball() const;
 

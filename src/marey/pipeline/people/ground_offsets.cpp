@@ -12,9 +12,9 @@ namespace marey::pipeline::people {
 namespace {
 
 constexpr double kLogged_s = 20;
-constexpr double kWrongBy_s = 5;  // how wrong an offset that somebody gave is likely to be
+constexpr double kWrongBy_s = 5;  // how wrong an offset that a person gave is likely to be
 
-bool looks_at_ground(const RigCamera& camera) {
+bool appearance_at_ground(const RigCamera& camera) {
   return (!camera.source.empty() || !camera.detections.empty()) && (camera.camera_from_world || camera.ground_from_image);
 }
 
@@ -40,9 +40,9 @@ class SingleCamera {
     const auto given = feed_.next();
     if (!given || seconds(given->frame.time) > seconds_) return false;
     const Timestamp now = given->frame.time;
-    const auto seen = camera_.observe(*given, tracker_->expected(now));
-    tracker_->step(now, {&seen, 1});
-    log_.add({&seen, 1}, tracker_->matches());
+    const auto detected = camera_.observe(*given, tracker_->expected(now));
+    tracker_->step(now, {&detected, 1});
+    log_.add({&detected, 1}, tracker_->matches());
     return true;
   }
 
@@ -63,10 +63,10 @@ class SingleCamera {
 };
 
 /// The paths that each of these cameras sees, followed side by side. `hooks` are called on this thread.
-std::vector<std::vector<marey::calibrate::pitch::GroundPath>> follow_alone(const std::vector<const RigCamera*>& cameras,
-                                                                           const geometry::GroundSurface& ground,
-                                                                           const reconstruct::GroundArea& area,
-                                                                           const RigOffsetsOptions& options, const Hooks& hooks) {
+std::vector<std::vector<marey::calibrate::pitch::GroundPath>> track_alone(const std::vector<const RigCamera*>& cameras,
+                                                                          const geometry::GroundSurface& ground,
+                                                                          const reconstruct::GroundArea& area,
+                                                                          const RigOffsetsOptions& options, const Hooks& hooks) {
   std::vector<std::unique_ptr<SingleCamera>> runs(cameras.size());
   tbb::parallel_for(std::size_t{0}, cameras.size(),
                     [&](std::size_t i) { runs[i] = std::make_unique<SingleCamera>(*cameras[i], ground, area, options); });
@@ -111,26 +111,26 @@ void GroundPathLog::add(std::span<const track::ground::CameraObservations> views
     const auto camera = static_cast<std::size_t>(number(view.camera));
     const double own = seconds(view.time) - offsets_[camera];
     if (own > kLogged_s) continue;
-    const Observation<2>& seen = view.seen[static_cast<std::size_t>(match.observation)];
-    if (seen.shared) continue;
+    const Observation<2>& detected = view.detected[static_cast<std::size_t>(match.observation)];
+    if (detected.shared) continue;
     auto& samples = paths_[{camera, match.track}].samples;
-    if (samples.empty() || own > samples.back().time_s) samples.push_back({own, seen.value, *seen.covariance});
+    if (samples.empty() || own > samples.back().time_s) samples.push_back({own, detected.value, *detected.covariance});
   }
 }
 
 std::vector<marey::calibrate::pitch::GroundPath> GroundPathLog::paths(std::size_t camera) const {
   std::vector<marey::calibrate::pitch::GroundPath> result;
-  for (const auto& [whose, path] : paths_) {
-    if (whose.first == camera) result.push_back(path);
+  for (const auto& [owner, path] : paths_) {
+    if (owner.first == camera) result.push_back(path);
   }
   return result;
 }
 
 bool lacks_offsets(const Rig& rig) {
-  const auto able = std::count_if(rig.cameras.begin(), rig.cameras.end(), looks_at_ground);
-  const auto first = std::find_if(rig.cameras.begin(), rig.cameras.end(), looks_at_ground);
+  const auto able = std::count_if(rig.cameras.begin(), rig.cameras.end(), appearance_at_ground);
+  const auto first = std::find_if(rig.cameras.begin(), rig.cameras.end(), appearance_at_ground);
   return able >= 2 && std::any_of(first + 1, rig.cameras.end(),
-                                  [](const RigCamera& camera) { return looks_at_ground(camera) && !camera.offset_s; });
+                                  [](const RigCamera& camera) { return appearance_at_ground(camera) && !camera.offset_s; });
 }
 
 RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options,
@@ -139,12 +139,12 @@ RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area,
   std::vector<const RigCamera*> cameras;
   std::vector<double> assumed;
   for (const RigCamera& camera : rig.cameras) {
-    if (!looks_at_ground(camera)) continue;
+    if (!appearance_at_ground(camera)) continue;
     cameras.push_back(&camera);
     assumed.push_back(camera.offset_s.value_or(0));
   }
   if (cameras.size() < 2) return result;
-  const auto paths = follow_alone(cameras, rig.ground, area, options, hooks);
+  const auto paths = track_alone(cameras, rig.ground, area, options, hooks);
   const auto found = marey::calibrate::pitch::find_ground_offsets(paths, assumed, options.search);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const RigCamera& camera = *cameras[i];
@@ -160,7 +160,7 @@ RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area,
           moved ? "" : fmt::format("; that is as good as offset_s = {:g}, which is kept", assumed[i])));
     } else if (!camera.offset_s) {
       result.warnings.push_back(fmt::format(
-          "camera \"{}\": when it was started is not known and cannot be told: {}; 0 is taken. Give offset_s in the rig, what "
+          "camera \"{}\": when it was started is not known and cannot be reported: {}; 0 is taken. Give offset_s in the rig, what "
           "is to be added to its times",
           camera.name, reason(found[i].verdict)));
     } else if (moved) {
@@ -189,8 +189,8 @@ std::vector<std::string> contradicted_offsets(const Rig& rig, const GroundPathLo
   }
   if (assumed.empty()) return {};
   marey::calibrate::pitch::GroundOffsetOptions near;
-  const auto [least, most] = std::minmax_element(assumed.begin(), assumed.end());
-  near.most_offset_s = kWrongBy_s + (*most - *least);
+  const auto [minimum, maximum] = std::minmax_element(assumed.begin(), assumed.end());
+  near.max_offset_s = kWrongBy_s + (*maximum - *minimum);
   const auto found = marey::calibrate::pitch::find_ground_offsets(paths, assumed, near);
   std::vector<std::string> warnings;
   for (std::size_t c = 1; c < found.size(); ++c) {

@@ -36,10 +36,10 @@ class GroundPathLog {
 };
 
 struct RigOffsetsOptions {
-  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give pictures
-  std::optional<double> rate_hz;                                               ///< of cameras of which the rig does not say it
+  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give images
+  std::optional<double> rate_hz;                                               ///< of cameras of which the rig does not specify it
   track::ground::GroundTrackerOptions tracker;
-  double seconds = 60;  ///< of each camera that are looked at
+  double seconds = 60;  ///< of each camera that are inspected
   marey::calibrate::pitch::GroundOffsetOptions search;
 };
 
@@ -48,18 +48,18 @@ struct RigOffsets {
   struct Camera {
     std::string name;
     marey::calibrate::pitch::GroundOffset found;  ///< to the first of these
-    double offset_s = 0;  ///< to go on with: as found where that is plainly better than what the rig says or else 0
+    double offset_s = 0;  ///< to continue with: as found where that is plainly better than what the rig says or else 0
   };
-  std::vector<Camera> cameras;        ///< those that see the ground and have pictures or detections, in the rig's order
+  std::vector<Camera> cameras;        ///< those that see the ground and have images or detections, in the rig's order
   std::vector<std::string> notes;     ///< a sentence for each camera that an offset was found for
-  std::vector<std::string> warnings;  ///< a sentence for each of which it cannot be told
+  std::vector<std::string> warnings;  ///< a sentence for each of which it cannot be reported
 };
 
-/// Whether somebody should look for offsets: two cameras or more see the ground, and of one but the first the rig says none.
+/// Whether a person should search for offsets: two cameras or more see the ground, and of one but the first the rig says none.
 bool lacks_offsets(const Rig& rig);
 
 /// Looks at the beginning of every camera, follows people in each alone, and finds when cameras were started that the rig does not
-/// say it of. An offset that the rig says is kept; 0 is too where no other is plainly better. Throws Error where a camera cannot be
+/// say it of. An offset that the rig says is kept; 0 is too where no other is plainly better. Throws Error if a camera cannot be
 /// read; Stopped.
 RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options = {},
                             const Hooks& hooks = {});
@@ -68,7 +68,7 @@ RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area,
 void enter_offsets(Rig& rig, const RigOffsets& offsets);
 
 /// A sentence for each camera whose given offset the people it saw contradict, where it is wrong by a few seconds at most: to look
-/// farther would take longer than to follow everybody.
+/// farther would take longer than to follow every person.
 std::vector<std::string> contradicted_offsets(const Rig& rig, const GroundPathLog& log);
 
 }  // namespace marey::pipeline::people

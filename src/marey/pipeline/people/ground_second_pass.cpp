@@ -32,7 +32,7 @@ void find_teams(const GroundRecorder::Joined& joined, const std::map<TrackId, Tr
                 analyse::TeamOptions options, GroundPeople& people) {
   std::vector<std::optional<Appearance>> appearances(now.size());
   for (const auto& [before, track] : now)
-    appearances[static_cast<std::size_t>(number(track)) - 1] = joined.wears[static_cast<std::size_t>(number(before)) - 1];
+    appearances[static_cast<std::size_t>(number(track)) - 1] = joined.clothing[static_cast<std::size_t>(number(before)) - 1];
   options.pitch = area.pitch();
   people.teams = analyse::find_teams(people.recording, appearances, options);
   analyse::note_teams(people.teams, people.recording);
@@ -42,17 +42,17 @@ void find_teams(const GroundRecorder::Joined& joined, const std::map<TrackId, Tr
 class GroundInstants final : public corridor::InstantSource {
  public:
   GroundInstants(const GroundPeople& people, const GroundScene& scene, const GroundBoxes& boxes,
-                 const std::vector<Recording::Moment>& moments)
-      : people_(people), scene_(scene), boxes_(boxes), moments_(moments), instants_(people.recording) {}
+                 const std::vector<Recording::TimeStep>& time_steps)
+      : people_(people), scene_(scene), boxes_(boxes), time_steps_(time_steps), instants_(people.recording) {}
 
   std::optional<Instant> next() override {
-    if (next_ == moments_.size()) return std::nullopt;
-    const Recording::Moment& moment = moments_[next_++];
+    if (next_ == time_steps_.size()) return std::nullopt;
+    const Recording::TimeStep& time_step = time_steps_[next_++];
     if (!ahead_) ahead_ = instants_.next();
     Instant instant;
-    if (ahead_ && ahead_->index == moment.index) instant = std::move(*std::exchange(ahead_, std::nullopt));
-    instant.index = moment.index;
-    instant.time = moment.time;
+    if (ahead_ && ahead_->index == time_step.index) instant = std::move(*std::exchange(ahead_, std::nullopt));
+    instant.index = time_step.index;
+    instant.time = time_step.time;
     for (TrackName& name : instant.named) name.colour = colour_of(people_.teams, name.id);
     name_ball(instant);
     name_unnamed(instant);
@@ -82,7 +82,7 @@ class GroundInstants final : public corridor::InstantSource {
   const GroundPeople& people_;
   const GroundScene& scene_;
   const GroundBoxes& boxes_;
-  const std::vector<Recording::Moment>& moments_;
+  const std::vector<Recording::TimeStep>& time_steps_;
   InstantsOf instants_;
   std::optional<Instant> ahead_;
   std::set<TrackId> named_;
@@ -92,7 +92,7 @@ class GroundInstants final : public corridor::InstantSource {
 }  // namespace
 
 GroundPeople second_pass(GroundRecorder::Joined joined, const GroundScene& scene, const RecordingHeader& header, GroundBoxes& boxes,
-                         std::vector<track::ball::BallMoment> ball_candidates, const PeopleOnGroundOptions& options,
+                         std::vector<track::ball::BallObservations> ball_candidates, const PeopleOnGroundOptions& options,
                          const Hooks& hooks) {
   GroundPeople people;
   people.links = std::ssize(joined.joins);
@@ -113,17 +113,18 @@ GroundPeople second_pass(GroundRecorder::Joined joined, const GroundScene& scene
     return now->second;
   });
   if (options.ball)
-    people.ball = follow_ball(std::move(ball_candidates), scene.views, scene.area, *options.ball, hooks, people.recording);
+    people.ball = track_ball(std::move(ball_candidates), scene.views, scene.area, *options.ball, hooks, people.recording);
   return people;
 }
 
 std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& people, const GroundScene& scene,
-                                                         const GroundBoxes& boxes, const std::vector<Recording::Moment>& moments) {
-  return std::make_unique<GroundInstants>(people, scene, boxes, moments);
+                                                         const GroundBoxes& boxes,
+                                                         const std::vector<Recording::TimeStep>& time_steps) {
+  return std::make_unique<GroundInstants>(people, scene, boxes, time_steps);
 }
 
 void report_people(const GroundPeople& people, bool with_ball, bool ball_searched, corridor::Summary& summary) {
-  summary.left_out["off_pitch"] = people.outside;
+  summary.excluded["off_pitch"] = people.outside;
   summary.figures["joins"] = static_cast<double>(people.links);
   summary.figures["doubtful_joins"] = static_cast<double>(people.uncertain_links);
   if (!with_ball) return;
@@ -131,7 +132,7 @@ void report_people(const GroundPeople& people, bool with_ball, bool ball_searche
   summary.figures["ball_samples"] = ball == nullptr ? 0.0 : static_cast<double>(ball->size());
   if (!ball_searched)
     summary.warnings.push_back(
-        "the ball was not looked for: that needs pictures of a camera that stands and is calibrated (marey calibrate pitch)");
+        "the ball was not searched for: that needs images of a static camera and is calibrated (marey calibrate pitch)");
   else if (ball == nullptr)
     summary.warnings.push_back("the ball was not found");
 }

@@ -30,13 +30,15 @@ struct GroundPeople {
 /// `joined`: the whole recording's tracks on the world's ground. `header` is that of the result; `boxes` are renamed to its tracks.
 /// `ball_candidates` are used only if `options.ball` is set.
 GroundPeople second_pass(track::ground::offline::GroundRecorder::Joined joined, const GroundScene& scene,
-                         const RecordingHeader& header, GroundBoxes& boxes, std::vector<track::ball::BallMoment> ball_candidates,
-                         const PeopleOnGroundOptions& options, const Hooks& hooks);
+                         const RecordingHeader& header, GroundBoxes& boxes,
+                         std::vector<track::ball::BallObservations> ball_candidates, const PeopleOnGroundOptions& options,
+                         const Hooks& hooks);
 
 /// The result, one instant for each of `moments` (by its header's clock), with boxes if they are wanted. All arguments must outlive
 /// it.
 std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& people, const GroundScene& scene,
-                                                         const GroundBoxes& boxes, const std::vector<Recording::Moment>& moments);
+                                                         const GroundBoxes& boxes,
+                                                         const std::vector<Recording::TimeStep>& time_steps);
 
 /// What was counted of it. `with_ball`: the ball was to be tracked too; `ball_searched`: a camera could search for it.
 void report_people(const GroundPeople& people, bool with_ball, bool ball_searched, corridor::Summary& summary);

@@ -71,11 +71,11 @@ void GroundStage::add_live_boxes(const FrameSet& frames, std::span<const track::
 }
 
 void GroundStage::explain_empty_result(corridor::Summary& summary) {
-  if (const auto why = why_nobody(summary)) summary.warnings.push_back(*why);
+  if (const auto why = why_none(summary)) summary.warnings.push_back(*why);
 }
 
 void GroundStage::report_times(corridor::Summary& summary) const {
-  for (std::string& sentence : contradicted_offsets(scene_.rig, paths_)) summary.warnings.push_back(std::move(sentence));
+  for (std::string& message_text : contradicted_offsets(scene_.rig, paths_)) summary.warnings.push_back(std::move(message_text));
   for (const corridor::Summary::Camera& camera : summary.cameras) {
     if (camera.frames > 0) continue;
     summary.warnings.push_back(fmt::format("camera \"{}\" has no frame within the time of camera \"{}\"; is its offset_s right?",

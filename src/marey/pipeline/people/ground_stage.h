@@ -20,7 +20,7 @@ Rig ground_rig(const Rig& rig, const std::vector<corridor::Feed>& feeds);
 class GroundStage : public PeopleOnGround {
  public:
   RecordingHeader header() const override { return header_; }
-  void want_boxes() override { boxes_.enable(); }
+  void need_boxes() override { boxes_.enable(); }
 
  protected:
   GroundStage(const std::vector<corridor::Feed>& feeds, const PeopleOnGroundOptions& options, GroundScene scene);
@@ -37,7 +37,7 @@ class GroundStage : public PeopleOnGround {
   void add_live_boxes(const FrameSet& frames, std::span<const track::ground::CameraObservations> observed,
                       std::span<const track::ground::ObservationMatch> matches, Instant& instant);
 
-  /// After the cameras have reported: why there is nobody, and cameras without frames or with a wrong offset.
+  /// After the cameras have reported: why there is no person, and cameras without frames or with a wrong offset.
   static void explain_empty_result(corridor::Summary& summary);
   void report_times(corridor::Summary& summary) const;
 

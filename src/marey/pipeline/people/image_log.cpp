@@ -2,25 +2,25 @@
 
 #include <utility>
 
-#include "marey/pipeline/people/picture_rows.h"
+#include "marey/pipeline/people/image_rows.h"
 #include "marey/track/offline/fill_gaps.h"
 
 namespace marey::pipeline::people {
 
 ImageLog::ImageLog(bool contours, std::string contours_beside, bool with_lines)
-    : with_contours_(contours), beside_(std::move(contours_beside)), with_lines_(with_lines), contours_(new_contours()) {}
+    : with_contours_(contours), next_to_(std::move(contours_beside)), with_lines_(with_lines), contours_(new_contours()) {}
 
 std::unique_ptr<track::offline::OutlineLog> ImageLog::new_contours() const {
-  return with_contours_ ? std::make_unique<track::offline::OutlineLog>(beside_, with_lines_) : nullptr;
+  return with_contours_ ? std::make_unique<track::offline::OutlineLog>(next_to_, with_lines_) : nullptr;
 }
 
 void ImageLog::add_searched(const Frame& frame) {
-  searched_.push_back(static_cast<std::int32_t>(moments_.size()));
-  moments_.push_back({frame.index, frame.time});
+  searched_.push_back(static_cast<std::int32_t>(time_steps_.size()));
+  time_steps_.push_back({frame.index, frame.time});
 }
 
 Timestamp ImageLog::time_of(std::int64_t number) const {
-  return moments_[static_cast<std::size_t>(searched_[static_cast<std::size_t>(number)])].time;
+  return time_steps_[static_cast<std::size_t>(searched_[static_cast<std::size_t>(number)])].time;
 }
 
 void ImageLog::add(std::int64_t number, std::span<const Track<2>> tracks, std::span<const track::image::Clothes> clothes,
@@ -41,15 +41,15 @@ void ImageLog::restore(Tracked tracked) {
 }
 
 std::unique_ptr<corridor::InstantSource> ImageLog::finish(const track::offline::JoinOptions& options,
-                                                          track::offline::JoinReport& report, bool seen_only) {
+                                                          track::offline::JoinReport& report, bool observed_only) {
   std::vector<track::offline::TrackRow> rows = track::offline::join(tracks_, options, &report);
-  if (searched_.size() < moments_.size()) {
+  if (searched_.size() < time_steps_.size()) {
     std::vector<Timestamp> times;
-    times.reserve(moments_.size());
-    for (const Recording::Moment& moment : moments_) times.push_back(moment.time);
+    times.reserve(time_steps_.size());
+    for (const Recording::TimeStep& time_step : time_steps_) times.push_back(time_step.time);
     rows = track::offline::fill_between_searches(rows, searched_, times);
   }
-  return instants_of(std::move(rows), std::move(moments_), contours_.get(), seen_only);
+  return instants_of(std::move(rows), std::move(time_steps_), contours_.get(), observed_only);
 }
 
 }  // namespace marey::pipeline::people

@@ -22,8 +22,8 @@ class ImageLog {
   /// `contours_beside`: contours wait in a nameless file next to this path. `with_lines`: their measurement lines too.
   ImageLog(bool contours, std::string contours_beside, bool with_lines);
 
-  /// A frame in which nobody was searched: its rows are interpolated.
-  void add_unsearched(const Frame& frame) { moments_.push_back({frame.index, frame.time}); }
+  /// A frame in which no person was searched: its rows are interpolated.
+  void add_unsearched(const Frame& frame) { time_steps_.push_back({frame.index, frame.time}); }
   /// A frame that was searched; then `add` of what was tracked in it.
   void add_searched(const Frame& frame);
   /// The tracks of searched frame `number`, which counts those.
@@ -31,7 +31,7 @@ class ImageLog {
            const geometry::Similarity2& view_from_scene);
 
   std::int64_t searched() const { return std::ssize(searched_); }
-  std::int64_t frames() const { return std::ssize(moments_); }
+  std::int64_t frames() const { return std::ssize(time_steps_); }
   Timestamp time_of(std::int64_t number) const;
   bool has_contours() const { return contours_ != nullptr; }
 
@@ -45,17 +45,17 @@ class ImageLog {
 
   /// The second pass. The log must outlive the result.
   std::unique_ptr<corridor::InstantSource> finish(const track::offline::JoinOptions& options, track::offline::JoinReport& report,
-                                                  bool seen_only);
+                                                  bool observed_only);
 
  private:
   std::unique_ptr<track::offline::OutlineLog> new_contours() const;
 
   bool with_contours_;
-  std::string beside_;
+  std::string next_to_;
   bool with_lines_;
   track::offline::TrackletLog tracks_;
   std::unique_ptr<track::offline::OutlineLog> contours_;  // null: none
-  std::vector<Recording::Moment> moments_;
+  std::vector<Recording::TimeStep> time_steps_;
   std::vector<std::int32_t> searched_;  // indices into `moments_`: the log counts these
 };
 

@@ -39,10 +39,10 @@ bool needs_static_camera(const detect::DetectorOptions& detector) {
 
 /// Background subtraction needs a static camera; of another program's detections, and of what a network alone searches, nothing is
 /// known.
-track::TrackerOptions image_tracker_options(const corridor::Feed& feed, const PeopleInPictureOptions& options) {
-  track::TrackerOptions tracker = feed.has_pictures() ? options.tracker : track::box_tracker_options(options.tracker);
-  tracker.steady_camera = feed.has_pictures() && needs_static_camera(options.detector);
-  tracker.reidentify = tracker.steady_camera && options.live;
+track::TrackerOptions image_tracker_options(const corridor::Feed& feed, const ImagePeopleOptions& options) {
+  track::TrackerOptions tracker = feed.has_images() ? options.tracker : track::box_tracker_options(options.tracker);
+  tracker.stabilised_camera = feed.has_images() && needs_static_camera(options.detector);
+  tracker.reidentify = tracker.stabilised_camera && options.live;
   tracker.learn_clutter = tracker.learn_noise && options.live;
   return tracker;
 }
@@ -51,29 +51,29 @@ track::TrackerOptions image_tracker_options(const corridor::Feed& feed, const Pe
 
 ObservedFrame observed_in(const Frame& frame, const detect::Detections& found) {
   ObservedFrame observed{.observations = observations_of(found.detections, frame.camera), .clothes = {}};
-  if (!frame.picture.is_colour() || found.foreground.mask.empty()) return observed;
+  if (!frame.image.is_colour() || found.foreground.mask.empty()) return observed;
   for (std::size_t i = 0; i < found.detections.size(); ++i) {
-    observed.clothes.push_back({detect::upper_body(frame.picture, found.foreground, found.detections, i),
-                                detect::lower_body(frame.picture, found.foreground, found.detections, i),
-                                detect::shanks(frame.picture, found.foreground, found.detections, i)});
+    observed.clothes.push_back({detect::upper_body(frame.image, found.foreground, found.detections, i),
+                                detect::lower_body(frame.image, found.foreground, found.detections, i),
+                                detect::shanks(frame.image, found.foreground, found.detections, i)});
   }
   return observed;
 }
 
-ImageTracking::ImageTracking(const corridor::Feed& feed, const PeopleInPictureOptions& options)
+ImageTracking::ImageTracking(const corridor::Feed& feed, const ImagePeopleOptions& options)
     : detector_options_(options.detector),
       tracker_options_(image_tracker_options(feed, options)),
       contour_options_(options.outlines),
       tracker_(track::make_tracker(tracker_options_)) {
-  if (feed.has_pictures() && feed.detector() == nullptr) detector_ = detect::make_detector(options.detector);
+  if (feed.has_images() && feed.detector() == nullptr) detector_ = detect::make_detector(options.detector);
   if (!contour_options_) return;
-  if (!feed.has_pictures()) throw Error("{}: outlines are searched in pictures; give those", feed.info().name);
+  if (!feed.has_images()) throw Error("{}: outlines are searched in images; give those", feed.info().name);
   contours_.emplace(*contour_options_);
 }
 
 detect::Detections ImageTracking::detect(const CameraFrame& given) {
   if (given.detections) {
-    for (const Detection& one : *given.detections) border_.see(one.box);
+    for (const Detection& one : *given.detections) border_.observe_frame(one.box);
     return {.detections = *given.detections, .foreground = {}};
   }
   if (!detector_) return {.detections = {}, .foreground = {}, .searched = false};
@@ -81,7 +81,7 @@ detect::Detections ImageTracking::detect(const CameraFrame& given) {
   if (give_)
     give_({.camera = given.frame.camera,
            .frame = given.frame.index,
-           .size = given.frame.picture.size(),
+           .size = given.frame.image.size(),
            .foreground = {.mask = found.foreground.mask.clone(), .covered = found.foreground.covered.clone()}});
   return found;
 }
@@ -117,7 +117,7 @@ void ImageTracking::report(corridor::Summary& summary) const {
   summary.detections = counts_.detections;
   std::int64_t too_brief = 0;
   for (const TrackId id : counts_.begun) too_brief += !counts_.confirmed.contains(id);
-  summary.left_out["too_brief"] = too_brief;
+  summary.excluded["too_brief"] = too_brief;
 }
 
 }  // namespace marey::pipeline::people

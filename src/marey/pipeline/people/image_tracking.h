@@ -14,9 +14,9 @@
 #include "marey/pipeline/corridor/feed.h"
 #include "marey/pipeline/corridor/foreground_sink.h"
 #include "marey/pipeline/corridor/run.h"
-#include "marey/pipeline/people/people_in_picture.h"
+#include "marey/pipeline/people/image_stage.h"
 #include "marey/track/contour/outline_follower.h"
-#include "marey/track/image/clothes.h"
+#include "marey/track/image/clothing.h"
 #include "marey/track/image/view_border.h"
 #include "marey/track/tracker.h"
 
@@ -32,7 +32,7 @@ ObservedFrame observed_in(const Frame& frame, const detect::Detections& found);
 class ImageTracking {
  public:
   /// Throws Error if contours are wanted of a feed without images.
-  ImageTracking(const corridor::Feed& feed, const PeopleInPictureOptions& options);
+  ImageTracking(const corridor::Feed& feed, const ImagePeopleOptions& options);
 
   /// Null if the feed brings detections.
   detect::Detector* detector() const { return detector_.get(); }
@@ -66,7 +66,7 @@ class ImageTracking {
   std::optional<track::contour::OutlineOptions> contour_options_;
   std::unique_ptr<detect::Detector> detector_;
   std::unique_ptr<track::Tracker<2>> tracker_;
-  std::optional<track::contour::OutlineFollower> contours_;
+  std::optional<track::contour::ContourTracker> contours_;
   track::image::ViewBorder border_;
   std::function<void(corridor::FrameForeground)> give_;
   Counts counts_;

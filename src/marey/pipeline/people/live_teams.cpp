@@ -15,7 +15,7 @@ constexpr double kStepS = 0.2;  // between two instants that are kept; find_team
 constexpr double kKeptS = 60;
 constexpr double kFindEveryS = 1;
 constexpr double kCorrelated =
-    8;  // neighbouring samples have correlated errors: so many count as one (track/ground/offline/ground_join.cpp)
+    8;  // neighbouring samples have correlated errors: this many count as one (track/ground/offline/ground_join.cpp)
 
 /// The median of each component.
 std::optional<Appearance> median_of(std::vector<Appearance>& samples) {
@@ -49,11 +49,11 @@ std::vector<TrackName> LiveTeams::step(const Instant& instant, const std::map<Tr
 
 void LiveTeams::keep(const Instant& instant, const std::map<TrackId, Appearance>& appearances) {
   if (!kept_.empty() && instant.time - kept_.back().time < duration_from_seconds(kStepS)) return;
-  Moment& moment = kept_.emplace_back(Moment{instant.time, {}});
+  TimeStep& time_step = kept_.emplace_back(TimeStep{instant.time, {}});
   for (const Sample& sample : instant.samples) {
     if (!sample.measured()) continue;
     const auto found = appearances.find(sample.track);
-    moment.people.push_back(
+    time_step.people.push_back(
         {sample.track, sample.position.head<2>(), found == appearances.end() ? std::nullopt : std::optional(found->second)});
   }
   while (instant.time - kept_.front().time > duration_from_seconds(kKeptS)) kept_.pop_front();
@@ -66,9 +66,9 @@ std::vector<TrackName> LiveTeams::find() {
   header.frame.kind = FrameOfReference::Kind::user_ground;
   Recording recording(header);
   std::int32_t at = 0;
-  for (const Moment& moment : kept_) {
-    recording.add_moment({at, moment.time});
-    for (const Observed& person : moment.people) {
+  for (const TimeStep& time_step : kept_) {
+    recording.add_time_step({at, time_step.time});
+    for (const Observed& person : time_step.people) {
       Sample sample;
       sample.track = person.track;
       sample.position.head<2>() = person.position;

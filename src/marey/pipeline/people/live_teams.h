@@ -29,7 +29,7 @@ class LiveTeams {
     Vector<2> position = Vector<2>::Zero();
     std::optional<Appearance> appearance;
   };
-  struct Moment {
+  struct TimeStep {
     Timestamp time{};
     std::vector<Observed> people;
   };
@@ -38,7 +38,7 @@ class LiveTeams {
   std::vector<TrackName> find();
 
   analyse::TeamOptions options_;
-  std::deque<Moment> kept_;
+  std::deque<TimeStep> kept_;
   std::optional<Timestamp> found_at_;
   std::map<TrackId, std::string> teams_;
 };

@@ -25,11 +25,11 @@ struct Match {
         Sample& sample = instant.samples.emplace_back();
         sample.track = TrackId{i};
         sample.position = {5.0 * i, 30.0, 0};
-        Appearance seen = names[static_cast<std::size_t>((i + 1) % 2)].colour;
-        seen.lightness += noise(random);
-        seen.a += noise(random);
-        seen.deviation = 5;
-        appearances[sample.track] = seen;
+        Appearance detected = names[static_cast<std::size_t>((i + 1) % 2)].colour;
+        detected.lightness += noise(random);
+        detected.a += noise(random);
+        detected.deviation = 5;
+        appearances[sample.track] = detected;
       }
       for (const TrackName& name : teams.step(instant, appearances)) {
         EXPECT_FALSE(named.contains(name.id)) << "a team that flips";

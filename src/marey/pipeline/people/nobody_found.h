@@ -7,7 +7,7 @@
 
 namespace marey::pipeline::people {
 
-/// Why a search for people has nobody in its results, one sentence; nothing where it has somebody. By what `summary` counts.
-std::optional<std::string> why_nobody(const corridor::Summary& summary);
+/// Why a search for people has no person in its results, one sentence; nothing if it has a person. By what `summary` counts.
+std::optional<std::string> why_none(const corridor::Summary& summary);
 
 }  // namespace marey::pipeline::people

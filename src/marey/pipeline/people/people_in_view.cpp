@@ -7,15 +7,15 @@
 
 namespace marey::pipeline::people {
 
-std::optional<Box> person_at(const GroundView& view, const Vector<2>& place) {
-  return reconstruct::person_box(*view.camera(), {place.x(), place.y(), view.surface().height(place)});
+std::optional<Box> person_at(const GroundView& view, const Vector<2>& location) {
+  return reconstruct::person_box(*view.camera(), {location.x(), location.y(), view.surface().height(location)});
 }
 
 detect::people::PersonSizeMap sizes_over(const GroundView& view, const reconstruct::GroundArea& area, const cv::Rect& part) {
   return {part.size(), [&](double x, double y) -> std::optional<detect::people::PersonSize> {
-            const auto place = view.place({x + part.x, y + part.y});
-            if (!place || !area.holds(place->ground, kBeyondArea)) return std::nullopt;
-            const auto box = person_at(view, place->ground);
+            const auto location = view.location({x + part.x, y + part.y});
+            if (!location || !area.holds(location->ground, kBeyondArea)) return std::nullopt;
+            const auto box = person_at(view, location->ground);
             if (!box || box->height < kMinBodyHeight) return std::nullopt;
             return detect::people::PersonSize{box->height, box->width};
           }};
@@ -27,12 +27,12 @@ cv::Rect part_with_people(const GroundView& view, const reconstruct::GroundArea&
   if (!area.bounded()) return whole;
   constexpr int step = 32;
   std::optional<Box> all;
-  // Feet may be below the picture while the head is in it.
+  // Feet may be below the image while the head is in it.
   for (int y = 0; y < 3 * size.height / 2; y += step) {
     for (int x = -step; x <= size.width + step; x += step) {
-      const auto place = view.place({static_cast<double>(x), static_cast<double>(y)});
-      if (!place || !area.holds(place->ground, kBeyondArea)) continue;
-      const auto box = person_at(view, place->ground);
+      const auto location = view.location({static_cast<double>(x), static_cast<double>(y)});
+      if (!location || !area.holds(location->ground, kBeyondArea)) continue;
+      const auto box = person_at(view, location->ground);
       if (!box || box->height < kMinBodyHeight) continue;
       all = all ? geometry::hull(*all, *box) : *box;
     }

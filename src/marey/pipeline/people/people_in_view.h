@@ -16,7 +16,7 @@ constexpr double kMinBodyHeight = 12;  // px; a smaller body has no shape
 constexpr double kBeyondArea = 5;      // m; a person who stands so far outside is tracked until it is clear whether they come in
 
 /// The box of a person who stands at `place` (m, world), in the view of a calibrated camera.
-std::optional<Box> person_at(const GroundView& view, const Vector<2>& place);
+std::optional<Box> person_at(const GroundView& view, const Vector<2>& location);
 
 /// The size of people at each position of a calibrated camera's image, where they count or nearly so.
 detect::people::PersonSizeMap sizes_over(const GroundView& view, const reconstruct::GroundArea& area, const cv::Rect& part);

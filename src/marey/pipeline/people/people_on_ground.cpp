@@ -31,7 +31,7 @@ track::ground::GroundTrackerOptions tracker_options(track::ground::GroundTracker
 
 GroundScene scene_of(const std::vector<corridor::Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options) {
   Rig fed = ground_rig(rig, feeds);
-  auto views = views_of(fed, options.turning);
+  auto views = views_of(fed, options.ptz);
   return {.rig = std::move(fed), .views = std::move(views), .area = area_of(rig, options), .box_at = {}};
 }
 
@@ -65,7 +65,7 @@ class RecordedGround final : public DetectedGround {
   std::span<const Instant> step(const FrameSet& frames) override {
     const auto observed = cameras_.observe(frames, tracking_.expected(frames.time));
     boxes_.add_frames(frames);
-    moments_.push_back({frames.index, own_time(frames.time)});
+    time_steps_.push_back({frames.index, own_time(frames.time)});
     if (options_.ball) ball_candidates_.push_back(cameras_.ball_candidates(frames));
     tracking_.step(static_cast<std::int32_t>(frames.index), frames.time, observed);
     return {};
@@ -76,7 +76,7 @@ class RecordedGround final : public DetectedGround {
     auto joined = tracking_.finish([this](const Vector<2>& position, Timestamp time) { return scene_.in_view(position, time); });
     people_ = second_pass(std::move(joined), scene_, header_, boxes_, std::move(ball_candidates_), options_, hooks);
     second_pass_s_ = taken.seconds();
-    return ground_instants(people_, scene_, boxes_, moments_);
+    return ground_instants(people_, scene_, boxes_, time_steps_);
   }
 
   void report(corridor::Summary& summary) const override {
@@ -90,15 +90,16 @@ class RecordedGround final : public DetectedGround {
 
  private:
   void report_agreement(corridor::Summary& summary) const {
-    for (std::string& sentence : contradicting_cameras(scene_.rig, tracking_.compared()))
-      summary.warnings.push_back(std::move(sentence));
-    if (moments_.empty() || seconds(moments_.back().time - moments_.front().time) < kMinComparedS) return;
-    for (std::string& sentence : uncompared_cameras(scene_.rig, tracking_.compared())) summary.notes.push_back(std::move(sentence));
+    for (std::string& message_text : contradicting_cameras(scene_.rig, tracking_.compared()))
+      summary.warnings.push_back(std::move(message_text));
+    if (time_steps_.empty() || seconds(time_steps_.back().time - time_steps_.front().time) < kMinComparedS) return;
+    for (std::string& message_text : uncompared_cameras(scene_.rig, tracking_.compared()))
+      summary.notes.push_back(std::move(message_text));
   }
 
   track::ground::GroundRun tracking_;
-  std::vector<Recording::Moment> moments_;  // by the header's clock
-  std::vector<track::ball::BallMoment> ball_candidates_;
+  std::vector<Recording::TimeStep> time_steps_;  // by the header's clock
+  std::vector<track::ball::BallObservations> ball_candidates_;
   GroundPeople people_;
   double second_pass_s_ = 0;
 };
@@ -129,10 +130,10 @@ class LiveGround final : public DetectedGround {
   std::vector<std::string> news() override {
     std::vector<std::string> all;
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      for (std::string& sentence : cameras_.news_of(i)) all.push_back(std::move(sentence));
+      for (std::string& message_text : cameras_.news_of(i)) all.push_back(std::move(message_text));
       if (cameras_[i].standing() == nullptr) continue;
-      for (const std::string& sentence : cameras_[i].standing()->news())
-        all.push_back(corridor::said_of(scene_.rig.cameras[i], sentence));
+      for (const std::string& message_text : cameras_[i].standing()->news())
+        all.push_back(corridor::stated_of(scene_.rig.cameras[i], message_text));
     }
     return all;
   }
@@ -148,7 +149,8 @@ class LiveGround final : public DetectedGround {
   std::map<TrackId, Appearance> appearances(std::span<const CameraObservations> observed) const {
     std::map<TrackId, Appearance> appearances;
     for (const ObservationMatch& match : tracker_->matches()) {
-      const auto& observation = observed[static_cast<std::size_t>(match.view)].seen[static_cast<std::size_t>(match.observation)];
+      const auto& observation =
+          observed[static_cast<std::size_t>(match.view)].detected[static_cast<std::size_t>(match.observation)];
       if (observation.appearance && !observation.shared) appearances.insert_or_assign(match.track, *observation.appearance);
     }
     return appearances;

@@ -1,6 +1,6 @@
-// Everybody on the ground that a rig's cameras look at, under one identity across all of them: each camera's people are placed on
-// the ground, one tracker makes identities of all of them, in metres, and what it has decided is joined, smoothed and told apart by
-// teams once the whole recording is known. Everything before the last step is in the rig's right-handed world.
+// Every person on the ground that a rig's cameras look at, under one identity across all of them: each camera's people are placed
+// on the ground, one tracker makes identities of all of them, in metres, and what it has decided is joined, smoothed and
+// distinguished by teams once the whole recording is known. Everything before the last step is in the rig's right-handed world.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 #include "marey/pipeline/corridor/run.h"
 #include "marey/pipeline/people/ball_on_ground.h"
 #include "marey/pipeline/people/ground_camera.h"
-#include "marey/pipeline/people/turned_views.h"
+#include "marey/pipeline/people/ptz_views.h"
 #include "marey/reconstruct/ground_area.h"
 #include "marey/track/bramble/bramble_options.h"
 #include "marey/track/ground/ground_run.h"
@@ -24,21 +24,21 @@
 namespace marey::pipeline::people {
 
 struct PeopleOnGroundOptions {
-  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give pictures
+  detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};  ///< of cameras that give images
   track::ground::GroundTrackerOptions tracker;
   std::optional<track::bramble::BrambleOptions> bramble = {};  ///< in place of detector and tracker: bramble_on_ground.h
   track::ground::offline::GroundJoinOptions join;
   track::ground::GroundLearnOptions learn;   ///< from the recording; not where `live`
   analyse::TeamOptions teams;                ///< `pitch` is taken from below
-  std::optional<double> rate_hz;             ///< of cameras of which the rig does not say it
-  std::optional<geometry::PitchSize> pitch;  ///< only people on it count; nothing: everybody does
+  std::optional<double> rate_hz;             ///< of cameras of which the rig does not specify it
+  std::optional<geometry::PitchSize> pitch;  ///< only people on it count; nothing: every person does
   std::vector<Vector<2>> area;               ///< corners of another part of the ground, m, in place of a pitch; none: none
-  TurningCameras turning;                    ///< of the rig's cameras, those that turn
+  PtzCameras ptz;                            ///< of the rig's cameras, those that turn
   std::optional<BallOptions> ball = {};      ///< the ball is followed too; not where `live`
-  bool steady = false;                       ///< cameras shake: the pictures of each that stands are steadied first
-  std::vector<std::shared_ptr<const StandingPeople>> without;  ///< by camera: who is no part of its scene; may be empty
+  bool stabilise = false;                    ///< cameras shake: the images of each that stands are stabilised first
+  std::vector<std::shared_ptr<const StandingPeople>> without;  ///< by camera: who is not a part of its scene; may be empty
   double margin = 2;                                           ///< m round the pitch or the area where people still count
-  /// Every instant is told as it comes: nothing is read ahead and nothing improved by what came later.
+  /// Every instant is reported as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;
 };
 
@@ -49,13 +49,13 @@ reconstruct::GroundArea area_of(const Rig& rig, const PeopleOnGroundOptions& opt
 class PeopleOnGround : public corridor::Stage {
  public:
   virtual const std::vector<analyse::Teams::Team>& teams() const = 0;
-  /// Of each camera who was taken for a part of its scene and has left it; nothing where that is not looked for.
+  /// Of each camera who was taken for a part of its scene and has left it; nothing if that is not searched for.
   virtual std::vector<std::shared_ptr<StandingPeople>> standing() const = 0;
 };
 
 /// `feeds` are the rig's cameras; instants are those of a clock over them. The results are in the
 /// user's coordinates (`ground_from_world`), their times by the first camera's own clock. Memory grows with the rows, not where
-/// `live`. Throws Error where a camera is not calibrated or brings nothing.
+/// `live`. Throws Error if a camera is not calibrated or brings nothing.
 std::unique_ptr<PeopleOnGround> people_on_ground(const std::vector<corridor::Feed>& feeds, const Rig& rig,
                                                  const PeopleOnGroundOptions& options);
 

@@ -11,12 +11,12 @@
 
 #include "marey/core/error.h"
 #include "marey/core/rig_sources.h"
-#include "marey/draw/overlay_film.h"
-#include "marey/draw/pitch_view_film.h"
+#include "marey/draw/overlay_video.h"
+#include "marey/draw/pitch_view_video.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/take/take_file.h"
 #include "marey/format/tracks/view_box_file.h"
-#include "marey/pipeline/corridor/steady_camera.h"
+#include "marey/pipeline/corridor/stabilised_camera.h"
 #include "marey/pipeline/people/ground_again.h"
 #include "marey/pipeline/people/ground_offsets.h"
 
@@ -29,9 +29,9 @@ void check(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptio
   if (options.rate_hz && !(*options.rate_hz > 0))
     throw Error("the rate is {} frames a second; it must be positive", *options.rate_hz);
   if (!(options.margin >= 0)) throw Error("the margin is {} m; it must not be negative", options.margin);
-  const auto has_pictures = [](const RigCamera& camera) { return !camera.source.empty(); };
-  if (!output.overlays.empty() && std::none_of(rig.cameras.begin(), rig.cameras.end(), has_pictures))
-    throw Error("{}: no camera has pictures to draw into; ask for a pitch view instead", output.overlays);
+  const auto has_images = [](const RigCamera& camera) { return !camera.source.empty(); };
+  if (!output.overlays.empty() && std::none_of(rig.cameras.begin(), rig.cameras.end(), has_images))
+    throw Error("{}: no camera has images to draw into; ask for a pitch view instead", output.overlays);
 }
 
 CameraId id_of(const Rig& rig, const std::string& name) {
@@ -43,18 +43,18 @@ std::string overlay_of(const GroundOutput& output, const RigCamera& camera) {
   return (fs::path(output.overlays) / (camera.name + ".mp4")).string();
 }
 
-void add_films(corridor::Sinks& sinks, const GroundOutput& output, const std::vector<corridor::Feed>& feeds) {
+void add_videos(corridor::Sinks& sinks, const GroundOutput& output, const std::vector<corridor::Feed>& feeds) {
   fs::create_directories(output.overlays);
   for (const corridor::Feed& feed : feeds) {
-    if (!feed.has_pictures()) continue;
+    if (!feed.has_images()) continue;
     const RigCamera& camera = feed.camera();
-    const draw::OverlayFilm::View view{.camera = feed.id(),
-                                       .size = feed.info().size,
-                                       .rate_hz = feed.info().rate_hz,
-                                       .sound_of = feed.sound_source(),
-                                       .offset = duration_from_seconds(camera.offset_s.value_or(0))};
+    const draw::OverlayVideo::View view{.camera = feed.id(),
+                                        .size = feed.info().size,
+                                        .rate_hz = feed.info().rate_hz,
+                                        .sound_of = feed.sound_source(),
+                                        .offset = duration_from_seconds(camera.offset_s.value_or(0))};
     sinks.add(
-        std::make_unique<draw::OverlayFilm>(overlay_of(output, camera), view, draw::OverlayOptions{.trail_of_centres = true}));
+        std::make_unique<draw::OverlayVideo>(overlay_of(output, camera), view, draw::OverlayOptions{.trail_of_centres = true}));
   }
 }
 
@@ -70,25 +70,25 @@ corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const Peopl
   } else {
     sinks.add(std::make_unique<format::tracks::ViewBoxFile>(output.tracks, id_of(rig, output.boxes_of)));
   }
-  if (!output.overlays.empty()) add_films(sinks, output, feeds);
+  if (!output.overlays.empty()) add_videos(sinks, output, feeds);
   if (!output.pitch_view.empty()) {
     const reconstruct::GroundArea area = area_of(rig, options);
     const draw::ShownGround shown{area.pitch(), area.margin(), area.mirrored()};
-    sinks.add(std::make_unique<draw::PitchViewFilm>(output.pitch_view, shown, feeds.front().info().rate_hz));
+    sinks.add(std::make_unique<draw::PitchViewVideo>(output.pitch_view, shown, feeds.front().info().rate_hz));
   }
   return sinks;
 }
 
-/// The rig's cameras, those that stand steadied; cameras that bring detections have no pictures to steady.
-std::vector<corridor::Feed> open_steadied(const Rig& rig, const PeopleOnGroundOptions& options,
-                                          std::vector<corridor::SteadyCamera>& steady) {
-  std::vector<std::optional<corridor::SteadyCamera>> found(rig.cameras.size());
+/// The rig's cameras, those that stand stabilised; cameras that bring detections have no images to steady.
+std::vector<corridor::Feed> open_stabilised(const Rig& rig, const PeopleOnGroundOptions& options,
+                                            std::vector<corridor::StabilisedCamera>& stabilise) {
+  std::vector<std::optional<corridor::StabilisedCamera>> found(rig.cameras.size());
   std::vector<std::optional<corridor::Feed>> opened(rig.cameras.size());
   tbb::parallel_for(std::size_t{0}, opened.size(), [&](std::size_t i) {
     const RigCamera& camera = rig.cameras[i];
     const CameraId id{static_cast<int>(i)};
     corridor::FeedOptions how{.rate_hz = options.rate_hz};
-    if (!camera.source.empty() && turning_of(options.turning, id) == nullptr) {
+    if (!camera.source.empty() && ptz_of(options.ptz, id) == nullptr) {
       found[i].emplace(camera, how, options.live);
       how = found[i]->feed_options();
     }
@@ -97,7 +97,7 @@ std::vector<corridor::Feed> open_steadied(const Rig& rig, const PeopleOnGroundOp
   std::vector<corridor::Feed> feeds;
   for (auto& feed : opened) feeds.push_back(std::move(*feed));
   for (auto& camera : found) {
-    if (camera) steady.push_back(std::move(*camera));
+    if (camera) stabilise.push_back(std::move(*camera));
   }
   return feeds;
 }
@@ -106,20 +106,20 @@ std::vector<corridor::Feed> open_steadied(const Rig& rig, const PeopleOnGroundOp
 using SinksFor = std::function<corridor::Sinks(const Rig& rig, const std::vector<corridor::Feed>& feeds)>;
 
 GroundSummary run_over(const Rig& rig, const SinksFor& sinks_for, const PeopleOnGroundOptions& options, const Hooks& hooks) {
-  std::vector<corridor::SteadyCamera> steady;
+  std::vector<corridor::StabilisedCamera> stabilise;
   std::vector<corridor::Feed> feeds =
-      options.steady ? open_steadied(rig, options, steady) : corridor::open_feeds(rig, {.rate_hz = options.rate_hz});
+      options.stabilise ? open_stabilised(rig, options, stabilise) : corridor::open_feeds(rig, {.rate_hz = options.rate_hz});
   corridor::Sinks sinks = sinks_for(rig, feeds);
-  const bool pictures = std::any_of(feeds.begin(), feeds.end(), [](const corridor::Feed& feed) { return feed.has_pictures(); });
+  const bool images = std::any_of(feeds.begin(), feeds.end(), [](const corridor::Feed& feed) { return feed.has_images(); });
   PeopleOnGroundOptions own = options;
-  own.steady =
-      options.steady && std::all_of(steady.begin(), steady.end(), [](const corridor::SteadyCamera& one) { return one.steadies(); });
+  own.stabilise = options.stabilise && std::all_of(stabilise.begin(), stabilise.end(),
+                                                   [](const corridor::StabilisedCamera& one) { return one.steadies(); });
   const auto stage = people_on_ground_again(feeds, rig, own);
   corridor::Clock clock(std::move(feeds));
   GroundSummary summary{corridor::run(*stage, clock, sinks, hooks), stage->teams()};
-  for (const corridor::SteadyCamera& camera : steady) camera.report(summary);
-  if (!options.teams.names.empty() && !pictures)
-    summary.warnings.push_back("teams are told by their clothes, and there are no pictures: nobody has a team");
+  for (const corridor::StabilisedCamera& camera : stabilise) camera.report(summary);
+  if (!options.teams.names.empty() && !images)
+    summary.warnings.push_back("teams are reported by their clothes, and there are no images: no person has a team");
   return summary;
 }
 
@@ -129,7 +129,8 @@ GroundSummary track_timed(const Rig& rig, const SinksFor& sinks_for, const Peopl
   RigOffsets offsets;
   if (options.live) {
     offsets.warnings.push_back(
-        "when cameras were started is not known, and live it cannot be looked for: 0 is taken; give each camera's offset_s in the "
+        "when cameras were started is not known, and live it cannot be searched for: 0 is taken; give each camera's offset_s in "
+        "the "
         "rig");
   } else {
     RigOffsetsOptions how;

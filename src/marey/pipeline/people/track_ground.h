@@ -1,4 +1,4 @@
-// The job from a rig's cameras to everybody on the ground.
+// The job from a rig's cameras to every person on the ground.
 #pragma once
 
 #include <memory>
@@ -16,18 +16,18 @@ namespace marey::pipeline::people {
 struct GroundOutput {
   std::string tracks = {};    ///< a take (.marey), else CSV as format/match/ground_file.h has it, unless `boxes_of` names a camera
   std::string boxes_of = {};  ///< a camera: `tracks` then is MOT text, the boxes in that view by that camera's own frames
-  std::string overlays = {};  ///< a folder: <camera>.mp4, a film of each camera that has pictures
-  std::string pitch_view = {};  ///< a film of the ground from above
+  std::string overlays = {};  ///< a folder: <camera>.mp4, a video of each camera that has images
+  std::string pitch_view = {};  ///< a video of the ground from above
 };
 
 struct GroundSummary : corridor::Summary {
   std::vector<analyse::Teams::Team> teams;
 };
 
-/// Follows everybody on the ground that the rig's cameras look at and writes where they were in the coordinates of the rig's user.
-/// Where the rig does not say when its cameras were started, that is found out first. The same input gives the same output, bit for
-/// bit. Throws Error where a camera cannot be read or is not calibrated, or an output not written; nothing half-written stays
-/// behind.
+/// Follows every person on the ground that the rig's cameras look at and writes where they were in the coordinates of the rig's
+/// user. Where the rig does not specify when its cameras were started, that is found out first. The same input gives the same
+/// output, bit for bit. Throws Error if a camera cannot be read or is not calibrated, or an output not written; nothing
+/// half-written stays behind.
 GroundSummary track_ground(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options = {},
                            const Hooks& hooks = {});
 /// The same, into `sinks` besides `output`, whose `tracks` may be empty.

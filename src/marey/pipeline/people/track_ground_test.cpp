@@ -14,7 +14,7 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/tracks/mot.h"
 #include "marey/pipeline/simulate/match_files.h"
-#include "marey/pipeline/take/judge_match.h"
+#include "marey/pipeline/take/evaluate_match.h"
 #include "marey/simulate/match/match_homographies.h"
 
 #include "support/files.h"
@@ -24,11 +24,11 @@ namespace {
 
 constexpr double kReach = 1.5;  // m
 
-take::MatchJudgement judge(const std::string& truth, const std::string& tracks) {
-  return take::judge_match(format::match::read_ground(truth), format::match::read_ground(tracks), kReach);
+take::MatchEvaluation assess(const std::string& truth, const std::string& tracks) {
+  return take::evaluate_match(format::match::read_ground(truth), format::match::read_ground(tracks), kReach);
 }
 
-double share(std::int64_t part, std::int64_t whole) {
+double fraction(std::int64_t part, std::int64_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
@@ -59,7 +59,7 @@ PeopleOnGroundOptions over_pitch(const geometry::PitchSize& pitch = {}, double m
 
 constexpr double kPixelsPerMetre = 20;
 
-/// A picture of 50 m × 68 m of ground seen from straight above, whose left edge is at `from` m.
+/// An image of 50 m × 68 m of ground seen from straight above, whose left edge is at `from` m.
 RigCamera plan(const std::string& name, double from, const std::string& detections) {
   RigCamera camera;
   camera.name = name, camera.detections = detections, camera.rate_hz = 10, camera.offset_s = 0;
@@ -70,7 +70,7 @@ RigCamera plan(const std::string& name, double from, const std::string& detectio
   return camera;
 }
 
-/// One line of MOT text: somebody's box, whose foot is at (x, y) m of a plan that begins at `from`; nothing outside the picture.
+/// One line of MOT text: a person's box, whose foot is at (x, y) m of a plan that begins at `from`; nothing outside the image.
 std::string box_at(int frame, double x, double y, double from) {
   if (x < from + 1 || x > from + 49) return "";
   const double u = kPixelsPerMetre * (x - from), v = kPixelsPerMetre * y;
@@ -84,7 +84,7 @@ TEST(TrackGround, SixCamerasGiveEverybodyOneNumber) {
   EXPECT_EQ(summary.frames, 300);
   EXPECT_EQ(summary.tracks, 25);
   EXPECT_NEAR(summary.seconds, 299 / 12.5, 1e-6);
-  const take::MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
+  const take::MatchEvaluation judgement = assess(folder / "truth.csv", folder / "out.csv");
   EXPECT_GT(*judgement.evaluation.scores.identity.f1, 0.97);
   EXPECT_LT(judgement.evaluation.position->rms, 0.15);
   EXPECT_LT(judgement.evaluation.speed->rms, 0.25);
@@ -98,10 +98,10 @@ TEST(TrackGround, TwoCamerasOnOneStandInTheUsersMirroredFrame) {
   ASSERT_TRUE(rig.ground_from_world);
   ASSERT_LT(rig.ground_from_world->determinant(), 0);
   track_ground(rig, to(folder / "out.csv"), over_pitch());
-  const take::MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
+  const take::MatchEvaluation judgement = assess(folder / "truth.csv", folder / "out.csv");
   const auto& clear = judgement.evaluation.scores.clear;
-  EXPECT_GT(share(clear.matches, clear.matches + clear.misses), 0.85);
-  EXPECT_LT(share(clear.false_positives, clear.matches + clear.false_positives), 0.1);
+  EXPECT_GT(fraction(clear.matches, clear.matches + clear.misses), 0.85);
+  EXPECT_LT(fraction(clear.false_positives, clear.matches + clear.false_positives), 0.1);
   EXPECT_LT(judgement.evaluation.velocity->rms, 1) << "velocities are mirrored too";
 }
 
@@ -121,17 +121,17 @@ TEST(TrackGround, ACameraKnownByItsHomographyAloneIsEnough) {
     camera.lens.reset(), camera.camera_from_world.reset();
   }
   track_ground(rig, to(folder / "out.csv"), over_pitch());
-  const take::MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
+  const take::MatchEvaluation judgement = assess(folder / "truth.csv", folder / "out.csv");
   const auto& clear = judgement.evaluation.scores.clear;
-  EXPECT_GT(share(clear.matches, clear.matches + clear.misses), 0.9);
-  EXPECT_LT(share(clear.false_positives, clear.matches + clear.false_positives), 0.1);
+  EXPECT_GT(fraction(clear.matches, clear.matches + clear.misses), 0.9);
+  EXPECT_LT(fraction(clear.false_positives, clear.matches + clear.false_positives), 0.1);
 }
 
-TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
+TEST(TrackGround, KeepsIdAcrossSeparateGrounds) {
   const test::TemporaryFolder folder;
   std::string left, right;
   for (int frame = 0; frame < 200; ++frame) {
-    const double x = 38 + 0.2 * frame;  // 2 m/s; from 49 to 52 nobody looks
+    const double x = 38 + 0.2 * frame;  // 2 m/s; from 49 to 52 no person looks
     left += box_at(frame, x, 30, 0), right += box_at(frame, x, 30, 51);
     left += box_at(frame, 10, 50, 0);  // so that the first camera lasts
   }
@@ -142,11 +142,11 @@ TEST(TrackGround, OneNumberAcrossCamerasThatShareNoGround) {
   const GroundSummary summary = track_ground(rig, to(folder / "out.csv"));
   EXPECT_EQ(summary.tracks, 2);
   const Recording found = format::match::read_ground(folder / "out.csv");
-  std::map<int, CameraMask> seen_by;
+  std::map<int, CameraMask> observed_by;
   for (const TrackColumns& track : found.tracks()) {
-    for (const CameraMask cameras : track.cameras()) seen_by[number(track.id())] |= cameras;
+    for (const CameraMask cameras : track.cameras()) observed_by[number(track.id())] |= cameras;
   }
-  EXPECT_EQ(seen_by, (std::map<int, CameraMask>{{1, 3}, {2, 1}})) << "who walks is seen by both";
+  EXPECT_EQ(observed_by, (std::map<int, CameraMask>{{1, 3}, {2, 1}})) << "who walks is seen by both";
 }
 
 /// A match of 20 s, cameras behind both touchlines, boxes that end beside the feet for a while, each camera known by a homography
@@ -170,7 +170,7 @@ TEST(TrackGround, TheWholeRecordingIsNoWorseThanLiveWhereFeetErr) {
       if (!as_live) options.tracker.associate = track::ground::GroundAssociation::mht, options.learn.association = true;
       for (const std::string& warning : track_ground(rig, to(folder / "out.csv"), options).warnings)
         EXPECT_EQ(warning.find("look"), std::string::npos) << warning << ": no camera contradicts the others";
-      const take::MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
+      const take::MatchEvaluation judgement = assess(folder / "truth.csv", folder / "out.csv");
       (as_live ? live : offline) += *judgement.evaluation.scores.identity.f1 / 3;
     }
   }
@@ -219,7 +219,7 @@ TEST(TrackGround, PeopleBesideThePitchAreLeftOut) {
   EXPECT_EQ(people(0), 1);
   EXPECT_EQ(people(4), 2);
   EXPECT_EQ(people(8), 3);
-  EXPECT_EQ(track_ground(rig, to(folder / "out.csv")).tracks, 3) << "without a pitch everybody counts";
+  EXPECT_EQ(track_ground(rig, to(folder / "out.csv")).tracks, 3) << "without a pitch every person counts";
 }
 
 TEST(TrackGround, ACameraThatWasStartedLaterIsShifted) {
@@ -258,7 +258,7 @@ TEST(TrackGround, LiveAndLaterTheSameEveryTime) {
     const std::string once = bytes();
     EXPECT_GT(once.size(), 100'000U);
     EXPECT_EQ(once, bytes()) << (live ? "live" : "with the second pass");
-    const take::MatchJudgement judgement = judge(folder / "truth.csv", folder / "out.csv");
+    const take::MatchEvaluation judgement = assess(folder / "truth.csv", folder / "out.csv");
     EXPECT_GT(*judgement.evaluation.scores.identity.f1, 0.9);
   }
 }
@@ -270,30 +270,30 @@ TEST(TrackGround, BoxesInOneViewBearTheSameNumbers) {
   GroundOutput view_of = to(folder / "cam2_out.txt");
   view_of.boxes_of = "cam2";
   track_ground(rig, view_of, over_pitch());
-  std::map<std::pair<int, int>, Vector<2>> places;
+  std::map<std::pair<int, int>, Vector<2>> locations;
   const Recording ground = format::match::read_ground(folder / "out.csv");
   InstantsOf instants(ground);
   while (const auto instant = instants.next()) {
     for (const Sample& sample : instant->samples)
-      places[{static_cast<int>(instant->index), number(sample.track)}] = sample.position.head<2>();
+      locations[{static_cast<int>(instant->index), number(sample.track)}] = sample.position.head<2>();
   }
   const GroundView view = *rig.cameras[1].ground_view(rig.ground);
   const format::tracks::MotTable boxes = format::tracks::read_mot(folder / "cam2_out.txt", format::tracks::MotKind::tracks);
   EXPECT_GT(boxes.boxes.size(), 1500U);
   std::size_t near = 0;
   for (const LabelledBox& box : boxes.boxes) {
-    const auto foot = view.place({box.box.centre().x(), box.box.bottom()});
-    const auto known = places.find({box.frame, box.id});
-    near += foot && known != places.end() && (foot->ground - known->second).norm() < 3 ? 1 : 0;
+    const auto foot = view.location({box.box.centre().x(), box.box.bottom()});
+    const auto known = locations.find({box.frame, box.id});
+    near += foot && known != locations.end() && (foot->ground - known->second).norm() < 3 ? 1 : 0;
   }
-  EXPECT_GT(share(static_cast<std::int64_t>(near), std::ssize(boxes.boxes)), 0.9);
+  EXPECT_GT(fraction(static_cast<std::int64_t>(near), std::ssize(boxes.boxes)), 0.9);
 }
 
 TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
   const test::TemporaryFolder folder;
   simulate::MatchFilesOptions options = match(3, 8);
   options.cameras.stand = marey::simulate::match::MatchStand::corners, options.cameras.size = cv::Size(1280, 720);
-  options.films = true;
+  options.videos = true;
   Rig rig = simulate(folder.path(), options);
   const Rig boxes = format::rig::read_rig(folder / "boxes.toml");
   rig.cameras[1] = boxes.cameras[1];
@@ -302,13 +302,13 @@ TEST(TrackGround, PicturesOfOneCameraAndDetectionsOfAnother) {
   const GroundOutput output{
       .tracks = folder / "out.csv", .boxes_of = "", .overlays = folder / "films", .pitch_view = folder / "above.mp4"};
   const GroundSummary summary = track_ground(rig, output, over_pitch());
-  EXPECT_GT(share(summary.cameras[0].detections, summary.cameras[0].frames), 8);
-  const auto& clear = judge(folder / "truth.csv", folder / "out.csv").evaluation.scores.clear;
-  EXPECT_GT(share(clear.matches, clear.matches + clear.misses), 0.9);
-  EXPECT_LT(share(clear.false_positives, clear.matches + clear.false_positives), 0.1);
+  EXPECT_GT(fraction(summary.cameras[0].detections, summary.cameras[0].frames), 8);
+  const auto& clear = assess(folder / "truth.csv", folder / "out.csv").evaluation.scores.clear;
+  EXPECT_GT(fraction(clear.matches, clear.matches + clear.misses), 0.9);
+  EXPECT_LT(fraction(clear.false_positives, clear.matches + clear.false_positives), 0.1);
   EXPECT_TRUE(std::filesystem::exists(folder / "above.mp4"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() + "/films/" + rig.cameras[0].name + ".mp4"));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() + "/films/" + rig.cameras[1].name + ".mp4")) << "it has no pictures";
+  EXPECT_FALSE(std::filesystem::exists(folder.path() + "/films/" + rig.cameras[1].name + ".mp4")) << "it has no images";
 }
 
 TEST(TrackGround, ARunThatIsStoppedKeepsWhatItHas) {

@@ -11,9 +11,9 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
-#include "marey/simulate/people/people_film.h"
+#include "marey/simulate/people/people_video.h"
 #include "marey/simulate/random.h"
-#include "marey/simulate/room/room_film.h"
+#include "marey/simulate/room/room_video.h"
 #include "marey/simulate/room/to_and_fro.h"
 #include "marey/source/live/played.h"
 
@@ -31,18 +31,18 @@ using source::live::Kind;
 using source::live::Opening;
 using source::live::Shot;
 
-constexpr double kUsualExposure = 2;  // ms, for which pictures are drawn
-constexpr double kLeastExposure = 0.02, kMostGain = 16;
+constexpr double kDefaultExposure = 2;  // ms, for which images are drawn
+constexpr double kMinExposure = 0.02, kMaxGain = 16;
 
 /// How a room's cameras behave beside what they see.
 struct RoomBehaviour {
-  double drawn_s = 0;        ///< so much is drawn before it begins, and shown to and fro: it costs no time later
-  double drift_ppm = 0;      ///< each camera's own clock is wrong by up to so much
+  double drawn_s = 0;        ///< this much is drawn before it begins, and shown to and fro: it costs no time later
+  double drift_ppm = 0;      ///< each camera's own clock is wrong by up to this much
   double jitter_ms = 0;      ///< mean delay of delivery, beside the exposure
-  bool blobs = false;        ///< points come, not pictures
+  bool blobs = false;        ///< points come, not images
   bool frame = false;        ///< an L-frame lies on the floor, whatever else moves
-  int lamps = 0;             ///< bright spots in each camera's picture that do not move
-  double exposure_ms = 0;    ///< of drawn pictures; 0: `kUsualExposure`
+  int lamps = 0;             ///< bright spots in each camera's image that do not move
+  double exposure_ms = 0;    ///< of drawn images; 0: `kDefaultExposure`
   double gain = 1;           ///< likewise, times
   std::vector<double> away;  ///< camera from 1, from when to when it is not there, s
 };
@@ -58,13 +58,13 @@ struct RoomName {
 
 RoomName::RoomName(const Address& address) {
   AddressOptions options(address);
-  room.picture = {640, 480};
+  room.image = {640, 480};
   std::string motion = "walk";
   int seed = 1;
   options.whole("cameras", room.cameras, 1, 64);
   options.whole("markers", room.markers, 1, 2000);
   options.number("rate", room.rate_hz, 1, 1000);
-  options.size("size", room.picture.width, room.picture.height);
+  options.size("size", room.image.width, room.image.height);
   options.text("motion", motion);
   options.whole("seed", seed, 0, 1'000'000'000);
   options.number("noise", room.noise_px, 0, 100);
@@ -76,7 +76,7 @@ RoomName::RoomName(const Address& address) {
   options.flag("frame", behaviour.frame);
   options.whole("lamps", behaviour.lamps, 0, 50);
   options.number("exposure", behaviour.exposure_ms, 0.01, 1000);
-  options.number("gain", behaviour.gain, 1, kMostGain);
+  options.number("gain", behaviour.gain, 1, kMaxGain);
   options.numbers("away", behaviour.away, 3);
   options.whole("camera", camera, 1, room.cameras);
   options.done();
@@ -99,27 +99,27 @@ struct SharedRoom {
   RoomBehaviour behaviour;
   double rate_hz() const { return scene.options().rate_hz; }
   double longest_exposure_ms() const { return 1000 / rate_hz(); }
-  double usual_exposure_ms() const { return std::min(kUsualExposure, longest_exposure_ms()); }
+  double default_exposure_ms() const { return std::min(kDefaultExposure, longest_exposure_ms()); }
 
   /// What a camera sees: markers, an L-frame, and lamps.
-  std::vector<marey::simulate::room::RoomBlob> seen_by(int camera, double time_s, std::uint64_t draw) const {
-    auto seen = scene.seen_by(camera, time_s, draw);
+  std::vector<marey::simulate::room::RoomBlob> observed_by(int camera, double time_s, std::uint64_t draw) const {
+    auto detected = scene.observed_by(camera, time_s, draw);
     marey::simulate::Random random(scene.options().seed * 1009 + static_cast<std::uint64_t>(camera));
-    const cv::Size size = scene.options().picture;
+    const cv::Size size = scene.options().image;
     const auto camera_there = scene.rig().cameras[static_cast<std::size_t>(camera)].camera();
     for (const Vector<3>& corner : behaviour.frame ? scene.options().ground_frame : std::vector<Vector<3>>()) {
       const auto pixel = camera_there->project(corner);
       if (pixel && cv::Rect2d({}, cv::Size2d(size)).contains({pixel->x(), pixel->y()}))
-        seen.push_back({.pixel = *pixel, .marker = {}});
+        detected.push_back({.pixel = *pixel, .marker = {}});
     }
     for (int i = 0; i < behaviour.lamps; ++i) {
       const double x = random.uniform(0.05, 0.95) * size.width, y = random.uniform(0.05, 0.95) * size.height;
-      seen.push_back({.pixel = {x, y}, .marker = {}});
+      detected.push_back({.pixel = {x, y}, .marker = {}});
     }
-    return seen;
+    return detected;
   }
   cv::Mat drawn(int camera, double time_s, std::uint64_t draw) const {
-    return draw_room(scene, static_cast<std::size_t>(camera), time_s, seen_by(camera, time_s, draw), draw);
+    return draw_room(scene, static_cast<std::size_t>(camera), time_s, observed_by(camera, time_s, draw), draw);
   }
 };
 
@@ -142,7 +142,7 @@ DrawnRoom::DrawnRoom(const SharedRoom& room, int camera) : spots(room.scene, sta
   const double length = static_cast<double>(one_way - 1) / room.rate_hz();
   tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t i) {
     const double t = marey::simulate::room::to_and_fro(offset + static_cast<double>(i) / room.rate_hz(), length);
-    drawn[i] = spots.draw(t, room.seen_by(camera, t, i), i);
+    drawn[i] = spots.draw(t, room.observed_by(camera, t, i), i);
   });
 }
 
@@ -158,11 +158,11 @@ class RoomCamera final : public Connection {
              Timestamp begin, source::LiveTime& time, std::stop_token stop)
       : room_(std::move(room)), drawn_(std::move(drawn)), camera_(camera), begin_(begin), time_(time), stop_(std::move(stop)) {
     info_.name = name;
-    info_.size = room_->scene.options().picture;
+    info_.size = room_->scene.options().image;
     info_.rate_hz = room_->rate_hz();
     marey::simulate::Random random(room_->scene.options().seed * 977 + static_cast<std::uint64_t>(camera));
     if (room_->behaviour.drift_ppm > 0) drift_ = 1e-6 * random.uniform(-room_->behaviour.drift_ppm, room_->behaviour.drift_ppm);
-    exposure_ms_ = room_->behaviour.exposure_ms > 0 ? room_->behaviour.exposure_ms : room_->usual_exposure_ms();
+    exposure_ms_ = room_->behaviour.exposure_ms > 0 ? room_->behaviour.exposure_ms : room_->default_exposure_ms();
     gain_ = room_->behaviour.gain;
     offset_ = room_->scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
     check_presence();
@@ -174,15 +174,15 @@ class RoomCamera final : public Connection {
 
   std::vector<ControlRange> controls() override {
     if (room_->behaviour.blobs) return {};
-    return {{Control::exposure, kLeastExposure, room_->longest_exposure_ms(), exposure_ms_}, {Control::gain, 1, kMostGain, gain_}};
+    return {{Control::exposure, kMinExposure, room_->longest_exposure_ms(), exposure_ms_}, {Control::gain, 1, kMaxGain, gain_}};
   }
   void set(Control control, double value) override {
     for (const ControlRange& range : controls()) {
       if (range.control != control) continue;
       const char* unit = control == Control::exposure ? " ms" : "";
-      if (!(value >= range.least && value <= range.most))
-        throw Error("{}: does not take that {}; it must be {:g} to {:g}{}", info_.name, to_string(control), range.least, range.most,
-                    unit);
+      if (!(value >= range.minimum && value <= range.maximum))
+        throw Error("{}: does not take that {}; it must be {:g} to {:g}{}", info_.name, to_string(control), range.minimum,
+                    range.maximum, unit);
       (control == Control::exposure ? exposure_ms_ : gain_) = value;
       return;
     }
@@ -204,7 +204,7 @@ class RoomCamera final : public Connection {
       shot.taken = begin_ + duration_from_seconds(exposed(next_));
     }
     ++next_;
-    if (late > source::live::kMostBehind) next_ += static_cast<std::int64_t>(late);
+    if (late > source::live::kMaxBehind) next_ += static_cast<std::int64_t>(late);
     return Came::frame;
   }
 
@@ -227,29 +227,29 @@ class RoomCamera final : public Connection {
   }
 
   /// As bright as exposure and gain make it.
-  Picture exposed_picture(const cv::Mat& drawn) const {
-    const double times = exposure_ms_ / room_->usual_exposure_ms() * gain_;
-    if (times == 1) return Picture(drawn);
+  Image exposed_image(const cv::Mat& drawn) const {
+    const double times = exposure_ms_ / room_->default_exposure_ms() * gain_;
+    if (times == 1) return Image(drawn);
     cv::Mat bright;
     drawn.convertTo(bright, -1, times);
-    return Picture(bright);
+    return Image(bright);
   }
 
   CameraFrame drawn(std::int64_t frame) const {
     CameraFrame given;
     if (drawn_ != nullptr) {
-      given.frame.picture = exposed_picture(drawn_->spots.picture(drawn_->frame(frame)));
+      given.frame.image = exposed_image(drawn_->spots.image(drawn_->frame(frame)));
       return given;
     }
     const double t = exposed(frame);
     const auto draw = static_cast<std::uint64_t>(frame);
     if (!room_->behaviour.blobs) {
-      given.frame.picture = exposed_picture(room_->drawn(camera_, t, draw));
+      given.frame.image = exposed_image(room_->drawn(camera_, t, draw));
       return given;
     }
-    const auto seen = room_->seen_by(camera_, t, draw);
+    const auto detected = room_->observed_by(camera_, t, draw);
     std::vector<Detection>& detections = given.detections.emplace();
-    for (const marey::simulate::room::RoomBlob& blob : seen) {
+    for (const marey::simulate::room::RoomBlob& blob : detected) {
       Detection& detection = detections.emplace_back();
       detection.centre = blob.pixel;
     }
@@ -309,19 +309,19 @@ source::live::Connect open_room(Rooms& rooms, const Address& address, const Open
 }
 
 source::live::Connect open_people(const Address& address, const Opening& opening) {
-  marey::simulate::people::PeopleFilmOptions film;
+  marey::simulate::people::PeopleVideoOptions video;
   std::string situation = "crowd";
   int seed = 1, people = 6, frames = 1500;
   AddressOptions options(address);
-  options.size("size", film.size.width, film.size.height);
-  options.number("rate", film.rate_hz, 1, 200);
+  options.size("size", video.size.width, video.size.height);
+  options.number("rate", video.rate_hz, 1, 200);
   options.text("situation", situation);
   options.whole("people", people, 0, 100);
   options.whole("frames", frames, 2, 100'000);
   options.whole("seed", seed, 0, 1'000'000'000);
   options.done();
-  film.people = people;
-  film.frames = frames;
+  video.people = people;
+  video.frames = frames;
   std::optional<marey::simulate::people::PeopleSituation> chosen;
   std::vector<std::string_view> known;
   for (const auto& each : marey::simulate::people::people_situations()) {
@@ -330,14 +330,14 @@ source::live::Connect open_people(const Address& address, const Opening& opening
   }
   if (!chosen)
     throw Error("{}: situation={} is not possible; it must be one of {}", address.text, situation, fmt::join(known, ", "));
-  const auto made = std::make_shared<const marey::simulate::people::PeopleFilm>(*chosen, static_cast<std::uint64_t>(seed), film);
+  const auto made = std::make_shared<const marey::simulate::people::PeopleVideo>(*chosen, static_cast<std::uint64_t>(seed), video);
   return source::live::play([made] { return marey::simulate::people::make_source(made); }, {.begin = opening.begin, .loop = true});
 }
 
 /// A room's cameras are calibrated: the simulator knows where they are.
 Rig cameras_in(const Address& address) {
   Rig rig;
-  if (address.place != "room") {
+  if (address.location != "room") {
     rig.cameras.emplace_back().name = "cam1";
     rig.cameras.back().source = address.text;
     return rig;
@@ -361,9 +361,9 @@ Kind simulation_kind() {
           .meaning = "the simulator: a room full of calibrated cameras, or one camera before people",
           .open =
               [rooms = std::make_shared<Rooms>()](const Address& address, const Opening& opening) {
-                if (address.place == "room") return open_room(*rooms, address, opening);
-                if (address.place == "people") return open_people(address, opening);
-                throw Error("{}: there is no simulation {}; there are: room, people", address.text, address.place);
+                if (address.location == "room") return open_room(*rooms, address, opening);
+                if (address.location == "people") return open_people(address, opening);
+                throw Error("{}: there is no simulation {}; there are: room, people", address.text, address.location);
               },
           .cameras = cameras_in};
 }

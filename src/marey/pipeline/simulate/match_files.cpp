@@ -14,8 +14,8 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
 #include "marey/draw/movie_writer.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/rig/rig_file.h"
 
@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLongestMatch = 24 * 3600;  // s
+constexpr double kMaxMatch = 24 * 3600;  // s
 
 /// What one camera of a match yields, in files of its name.
 class MatchCameraFiles {
@@ -33,9 +33,9 @@ class MatchCameraFiles {
       : camera_(camera), truth_((folder / (camera.rig_camera().name + "_truth.txt")).string()) {
     const RigCamera& rig_camera = camera.rig_camera();
     if (options.boxes) detections_.emplace((folder / (rig_camera.name + ".txt")).string());
-    if (!options.films) return;
+    if (!options.videos) return;
     movie_.emplace((folder / (rig_camera.name + ".mp4")).string(), *rig_camera.size, rig_camera.rate_hz);
-    if (options.film.ball) {
+    if (options.video.ball) {
       ball_.emplace((folder / (rig_camera.name + "_ball.csv")).string());
       ball_->write("frame,x,y,radius,visible\n");
     }
@@ -49,14 +49,14 @@ class MatchCameraFiles {
   /// The frame at which the camera stands.
   void write() {
     text_.clear();
-    for (const marey::simulate::match::SeenPerson& person : camera_.seen()) {
+    for (const marey::simulate::match::ObservedPerson& person : camera_.detected()) {
       fmt::format_to(std::back_inserter(text_), "{},{},{:.2f},{:.2f},{:.2f},{:.2f},1,1,{:.3f}\n", camera_.frame() + 1,
                      person.person + 1, person.shown.left + 1, person.shown.top + 1, person.shown.width, person.shown.height,
-                     person.visible_share);
+                     person.visible_fraction);
     }
     truth_.write(text_);
     if (detections_) write_detections();
-    if (movie_) film();
+    if (movie_) video();
   }
 
   void finish() {
@@ -68,12 +68,12 @@ class MatchCameraFiles {
   }
 
  private:
-  void film() {
+  void video() {
     const marey::simulate::match::MatchCamera::Shot shot = camera_.shoot();
-    movie_->write(shot.picture, timestamp_from_seconds(camera_.time()));
+    movie_->write(shot.image, timestamp_from_seconds(camera_.time()));
     if (ball_ && shot.ball)
       ball_->write(fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f}\n", camera_.frame(), shot.ball->at.x(), shot.ball->at.y(),
-                               shot.ball->radius, shot.ball->visible_share));
+                               shot.ball->radius, shot.ball->visible_fraction));
   }
 
   void write_detections() {
@@ -101,9 +101,9 @@ class BallTruthFile {
   }
 
   void write(std::int64_t frame) {
-    const marey::simulate::match::BallPlace ball = truth_.next();
+    const marey::simulate::match::BallPosition ball = truth_.next();
     if (!ball.there) return;
-    const Vector<3>&p = ball.place, &v = ball.velocity;
+    const Vector<3>&p = ball.location, &v = ball.velocity;
     file_.write(fmt::format("{},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", frame,
                             static_cast<double>(frame) / rate_hz_, p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
                             marey::simulate::match::to_string(ball.state), ball.holder < 0 ? "" : std::to_string(ball.holder + 1)));
@@ -124,7 +124,7 @@ void write_match_rigs(const Rig& rig, const MatchFilesOptions& options, const fs
   };
   Rig exact = rig;
   for (RigCamera& camera : exact.cameras) {
-    if (options.films)
+    if (options.videos)
       camera.source = camera.name + ".mp4";
     else if (options.boxes)
       camera.detections = camera.name + ".txt";
@@ -135,7 +135,7 @@ void write_match_rigs(const Rig& rig, const MatchFilesOptions& options, const fs
     for (RigCamera& camera : known.cameras) camera.offset_s.reset();
   }
   write(known, "rig.toml");
-  if (!options.films) return;
+  if (!options.videos) return;
   Rig boxes = known, start = known;
   start.ground_from_world.reset();
   start.ground = {};
@@ -156,22 +156,22 @@ void write_match_rigs(const Rig& rig, const MatchFilesOptions& options, const fs
 
 void write_match(const MatchFilesOptions& options, const std::string& folder, const Hooks& hooks) {
   const marey::simulate::match::MatchScene scene(options.cameras, options.seed);
-  if (!(options.seconds > 0 && options.seconds <= kLongestMatch))
-    throw Error("a match of {} s; more than 0 and {} at most are possible", options.seconds, kLongestMatch);
+  if (!(options.seconds > 0 && options.seconds <= kMaxMatch))
+    throw Error("a match of {} s; more than 0 and {} at most are possible", options.seconds, kMaxMatch);
   const auto frames = std::max<std::int64_t>(1, std::llround(options.seconds * options.cameras.rate_hz));
-  const fs::path place = folder;
+  const fs::path location = folder;
   const std::size_t count = scene.rig.cameras.size();
   std::vector<marey::simulate::match::MatchCamera> cameras;
   cameras.reserve(count);  // the files hold references
   std::vector<std::unique_ptr<MatchCameraFiles>> files;
   for (std::size_t i = 0; i < count; ++i) {
-    cameras.emplace_back(scene, i, options.detector, options.films ? std::optional(options.film) : std::nullopt);
-    files.push_back(std::make_unique<MatchCameraFiles>(cameras[i], options, place));
+    cameras.emplace_back(scene, i, options.detector, options.videos ? std::optional(options.video) : std::nullopt);
+    files.push_back(std::make_unique<MatchCameraFiles>(cameras[i], options, location));
   }
   marey::simulate::match::MatchTruth truth(scene);
   std::optional<BallTruthFile> ball;
-  if (options.films && options.film.ball) ball.emplace(scene, place);
-  format::match::GroundWriter writer((place / "truth.csv").string());
+  if (options.videos && options.video.ball) ball.emplace(scene, location);
+  format::match::GroundWriter writer((location / "truth.csv").string());
   RecordingHeader header;
   header.name = "truth.csv";
   header.frame.kind = FrameOfReference::Kind::user_ground;
@@ -190,7 +190,7 @@ void write_match(const MatchFilesOptions& options, const std::string& folder, co
   for (const auto& each : files) each->finish();
   if (ball) ball->finish();
   writer.finish();
-  write_match_rigs(scene.rig, options, place);
+  write_match_rigs(scene.rig, options, location);
 }
 
 }  // namespace marey::pipeline::simulate

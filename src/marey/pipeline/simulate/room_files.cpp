@@ -1,4 +1,4 @@
-// A simulated room as files: what a scene of `simulate` shows goes through the writers of observations, rigs, bodies and films.
+// A simulated room as files: what a scene of `simulate` shows goes through the writers of observations, rigs, bodies and videos.
 #include "marey/pipeline/simulate/room_files.h"
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/bodies/body_file.h"
 #include "marey/format/keypoints/keypoint_file.h"
 #include "marey/format/observations.h"
@@ -21,7 +21,7 @@
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/skeleton/skeleton_file.h"
-#include "marey/pipeline/corridor/film_file.h"
+#include "marey/pipeline/corridor/video_file.h"
 #include "marey/simulate/random.h"
 
 namespace marey::pipeline::simulate {
@@ -37,19 +37,19 @@ void write_room_text(const fs::path& path, std::string_view text) {
   file.finish();
 }
 
-format::SeenFrame seen_of(const RoomFrame& frame, const std::vector<std::string>& labels) {
-  format::SeenFrame seen;
-  seen.frame = frame.index;
-  for (int camera = 0; camera < std::ssize(frame.seen); ++camera) {
-    for (const marey::simulate::room::RoomBlob& blob : frame.seen[static_cast<std::size_t>(camera)]) {
-      seen.points.push_back({CameraId{camera}, blob.pixel, blob.marker ? labels[static_cast<std::size_t>(*blob.marker)] : ""});
+format::ObservedFrame observed_of(const RoomFrame& frame, const std::vector<std::string>& labels) {
+  format::ObservedFrame detected;
+  detected.frame = frame.index;
+  for (int camera = 0; camera < std::ssize(frame.detected); ++camera) {
+    for (const marey::simulate::room::RoomBlob& blob : frame.detected[static_cast<std::size_t>(camera)]) {
+      detected.points.push_back({CameraId{camera}, blob.pixel, blob.marker ? labels[static_cast<std::size_t>(*blob.marker)] : ""});
     }
   }
-  return seen;
+  return detected;
 }
 
 std::string truth_rows(const RoomScene& scene, const RoomFrame& frame) {
-  const std::vector<int> cameras = marey::simulate::room::cameras_that_see(scene, frame);
+  const std::vector<int> cameras = marey::simulate::room::cameras_that_observe(scene, frame);
   std::string text;
   for (std::size_t i = 0; i < frame.points.size(); ++i) {
     const Vector<3>& p = frame.points[i];
@@ -108,7 +108,7 @@ class TrueAngles {
     const std::vector<double> values = scene_.coordinates(frame.time_s, actor_);
     std::string row = fmt::format("{},{:.6f}", frame.index, frame.time_s);
     for (std::size_t c = 0; c < values.size(); ++c)
-      fmt::format_to(std::back_inserter(row), ",{:.6f}", values[c] * (body_.coordinates[c].turns ? 180 / std::numbers::pi : 1));
+      fmt::format_to(std::back_inserter(row), ",{:.6f}", values[c] * (body_.coordinates[c].rotations ? 180 / std::numbers::pi : 1));
     file_.write(row + '\n');
   }
 
@@ -145,7 +145,7 @@ class TruePoses {
     Instant instant{.index = frame.index,
                     .time = timestamp_from_seconds(frame.time_s),
                     .samples = {},
-                    .seen = {},
+                    .detected = {},
                     .bodies = {},
                     .named = {},
                     .boxes = {},
@@ -183,15 +183,15 @@ class UnnamedPoints {
   }
 
   void write(const RoomFrame& frame) {
-    const std::vector<int> cameras = marey::simulate::room::cameras_that_see(scene_, frame);
+    const std::vector<int> cameras = marey::simulate::room::cameras_that_observe(scene_, frame);
     std::string rows;
-    const auto put = [&](std::int64_t track, const Vector<3>& place) {
+    const auto put = [&](std::int64_t track, const Vector<3>& location) {
       fmt::format_to(std::back_inserter(rows), "{},{:.6f},{},,{:.6f},{:.6f},{:.6f}\n", frame.index, frame.time_s, track,
-                     place.x() + random_.gaussian(0, kNoiseM), place.y() + random_.gaussian(0, kNoiseM),
-                     place.z() + random_.gaussian(0, kNoiseM));
+                     location.x() + random_.gaussian(0, kNoiseM), location.y() + random_.gaussian(0, kNoiseM),
+                     location.z() + random_.gaussian(0, kNoiseM));
     };
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
-      if (cameras[i] < kFewestCameras) {
+      if (cameras[i] < kMinCameras) {
         track_[i].reset();
         continue;
       }
@@ -199,7 +199,7 @@ class UnnamedPoints {
       put(*track_[i], frame.points[i]);
       if (random_.chance(scene_.options().ghosts / kGhostFrames)) begin_ghost();
     }
-    for (Ghost& ghost : ghosts_) put(ghost.track, ghost.place);
+    for (Ghost& ghost : ghosts_) put(ghost.track, ghost.location);
     std::erase_if(ghosts_, [](Ghost& ghost) { return --ghost.left <= 0; });
     file_.write(rows);
   }
@@ -209,17 +209,17 @@ class UnnamedPoints {
  private:
   struct Ghost {
     std::int64_t track = 0;
-    Vector<3> place = Vector<3>::Zero();
+    Vector<3> location = Vector<3>::Zero();
     int left = 0;  // frames
   };
   static constexpr double kNoiseM = 0.0003;
-  static constexpr int kFewestCameras = 2, kGhostFrames = 5;  // a ghost is seen 1 to 9 frames
+  static constexpr int kMinCameras = 2, kGhostFrames = 5;  // a ghost is seen 1 to 9 frames
 
   void begin_ghost() {
     const Vector<3> half = scene_.options().volume / 2;
-    const Vector<3> place(random_.uniform(-half.x(), half.x()), random_.uniform(-half.y(), half.y()),
-                          random_.uniform(0, 2 * half.z()));
-    ghosts_.push_back({++tracks_, place, 1 + static_cast<int>(random_.uniform(0, 2 * kGhostFrames - 1))});
+    const Vector<3> location(random_.uniform(-half.x(), half.x()), random_.uniform(-half.y(), half.y()),
+                             random_.uniform(0, 2 * half.z()));
+    ghosts_.push_back({++tracks_, location, 1 + static_cast<int>(random_.uniform(0, 2 * kGhostFrames - 1))});
   }
 
   const RoomScene& scene_;
@@ -293,34 +293,34 @@ void write_room_keypoints(const RoomScene& scene, const fs::path& folder, const 
 }  // namespace
 
 void write_room(const RoomScene& scene, const std::string& folder, const RoomFilesOptions& options, const Hooks& hooks) {
-  const fs::path place = folder;
-  format::ObservationWriter observations((place / "observations.csv").string(), scene.rig(), false);
-  format::ObservationWriter blobs((place / "blobs.csv").string(), scene.rig(), true);
-  RoomTruth truth(scene, place, options.unnamed);
-  std::vector<std::unique_ptr<corridor::FilmFile>> films;
+  const fs::path location = folder;
+  format::ObservationWriter observations((location / "observations.csv").string(), scene.rig(), false);
+  format::ObservationWriter blobs((location / "blobs.csv").string(), scene.rig(), true);
+  RoomTruth truth(scene, location, options.unnamed);
+  std::vector<std::unique_ptr<corridor::VideoFile>> videos;
   for (std::size_t i = 0; options.videos && i < scene.rig().cameras.size(); ++i) {
-    films.push_back(std::make_unique<corridor::FilmFile>(marey::simulate::room::film_room(scene.options(), i, options.film),
-                                                         (place / (scene.rig().cameras[i].name + ".mp4")).string()));
+    videos.push_back(std::make_unique<corridor::VideoFile>(marey::simulate::room::video_room(scene.options(), i, options.video),
+                                                           (location / (scene.rig().cameras[i].name + ".mp4")).string()));
   }
   for (std::int64_t i = 0; i < scene.options().frames; ++i) {
     const RoomFrame frame = scene.frame(i);
-    const format::SeenFrame seen = seen_of(frame, scene.labels());
-    observations.write(seen);
-    blobs.write(seen);
+    const format::ObservedFrame detected = observed_of(frame, scene.labels());
+    observations.write(detected);
+    blobs.write(detected);
     truth.write(frame);
-    tbb::parallel_for(std::size_t{0}, films.size(), [&](std::size_t camera) { films[camera]->write_next(); });
+    tbb::parallel_for(std::size_t{0}, videos.size(), [&](std::size_t camera) { videos[camera]->write_next(); });
     hooks.advance({"frames", i + 1, scene.options().frames});
   }
   observations.finish();
   blobs.finish();
   truth.finish();
-  for (const auto& film : films) film->finish();
-  write_room_rigs(scene, place, options.videos);
-  write_labels(scene, place);
+  for (const auto& video : videos) video->finish();
+  write_room_rigs(scene, location, options.videos);
+  write_labels(scene, location);
   for (int actor = 0; actor < scene.actors(); ++actor)
-    write_room_text(of_actor(place, "skeleton", actor, ".toml"), format::skeleton::to_toml(*scene.skeleton(actor)));
-  if (options.keypoints) write_room_keypoints(scene, place, options.keypoint_errors);
-  if (!scene.props().empty()) format::bodies::write_bodies((place / "bodies.toml").string(), scene.props());
+    write_room_text(of_actor(location, "skeleton", actor, ".toml"), format::skeleton::to_toml(*scene.skeleton(actor)));
+  if (options.keypoints) write_room_keypoints(scene, location, options.keypoint_errors);
+  if (!scene.props().empty()) format::bodies::write_bodies((location / "bodies.toml").string(), scene.props());
 }
 
 }  // namespace marey::pipeline::simulate

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/whole_file.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/simulate/random.h"
@@ -19,7 +19,7 @@
 namespace marey::pipeline::simulate {
 namespace {
 
-constexpr double kLongestSquare = 24 * 3600;  // s
+constexpr double kMaxSquareLength = 24 * 3600;  // s
 
 /// What one camera's detector says, in a file of its name.
 class SquareCameraFile {
@@ -54,11 +54,11 @@ Instant truth_of(const marey::simulate::square::SquareMotion& motion, std::int64
   instant.index = frame;
   instant.time = timestamp_from_seconds(static_cast<double>(frame) / rate_hz);
   for (const marey::simulate::square::SquarePerson& person : motion.people()) {
-    if (!motion.holds(person.place)) continue;
+    if (!motion.holds(person.location)) continue;
     if (named.insert(person.id).second) instant.named.push_back({TrackId{person.id}, fmt::format("P{}", person.id), {}, {}});
     Sample& sample = instant.samples.emplace_back();
     sample.track = TrackId{person.id};
-    sample.position.head<2>() = person.place;
+    sample.position.head<2>() = person.location;
     sample.velocity.emplace(Vector<3>::Zero()).head<2>() = person.velocity;
   }
   return instant;
@@ -67,8 +67,8 @@ Instant truth_of(const marey::simulate::square::SquareMotion& motion, std::int64
 }  // namespace
 
 void write_square(const SquareFilesOptions& options, const std::string& folder, const Hooks& hooks) {
-  if (!(options.seconds > 0 && options.seconds <= kLongestSquare))
-    throw Error("a square of {} s; more than 0 and {} at most are possible", options.seconds, kLongestSquare);
+  if (!(options.seconds > 0 && options.seconds <= kMaxSquareLength))
+    throw Error("a square of {} s; more than 0 and {} at most are possible", options.seconds, kMaxSquareLength);
   if (!(options.rate_hz > 0)) throw Error("the rate is {} frames a second; it must be positive", options.rate_hz);
   Rig rig = marey::simulate::square::square_cameras(options.cameras, options.rate_hz, options.square, options.seed);
   std::vector<std::unique_ptr<SquareCameraFile>> files;

@@ -20,9 +20,9 @@ struct SquareFilesOptions {
 
 /// Writes an open square with people who come and leave into a folder, which must exist:
 ///   rig.toml   the exact cameras, with their boxes as detections
-///   truth.csv  where everybody in the square is at each frame (format/match/ground_file.h)
+///   truth.csv  where every person in the square is at each frame (format/match/ground_file.h)
 ///   CAM.txt    MOTChallenge detections of each camera
-/// Memory does not grow with the length. Throws Error where an option is out of its domain or a file cannot be written.
+/// Memory does not grow with the length. Throws Error if an option is out of its domain or a file cannot be written.
 void write_square(const SquareFilesOptions& options, const std::string& folder, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline::simulate

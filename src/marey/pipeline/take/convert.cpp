@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
+#include "marey/core/ground_transform.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/take/ground_orientation.h"
@@ -23,7 +23,7 @@ using format::Format;
 using format::UpAxis;
 using format::match::GroundMatch;
 
-/// Whether y grows downwards in the user's frame; nothing where the user does not say.
+/// Whether y grows downwards in the user's frame; nothing if the user does not specify.
 std::optional<bool> stated_y_down(const ConvertOptions& options) {
   if (!options.rig.empty()) return rig_has_y_down(options.rig);
   return options.frame.y_down ? std::optional(true) : std::nullopt;
@@ -50,7 +50,7 @@ ConvertSummary convert_rig(const std::string& from, const std::string& to, const
   other.write_rig(rig, to);
   ConvertSummary summary{.format = "a calibration", .counted = "cameras", .count = std::ssize(rig.cameras), .warnings = {}};
   if (!rig.ground.flat() && other.name != "marey")
-    summary.warnings.push_back(fmt::format("{}: that the ground is not level is not told: this format cannot", to));
+    summary.warnings.push_back(fmt::format("{}: that the ground is not level is not reported: this format cannot", to));
   return summary;
 }
 
@@ -88,10 +88,10 @@ ConvertSummary convert_match(GroundMatch match, const std::string& to, const For
   if (options.labelled) match.recording.erase_tracks_if([](const TrackColumns& track) { return track.name.label.empty(); });
   const std::optional<bool> y_down = stated_y_down(options);
   if (from.from_corner != format.from_corner) {
-    const auto turned = format.from_corner ? format::match::to_corner : format::match::from_corner;
+    const auto rotated = format.from_corner ? format::match::to_corner : format::match::from_corner;
     const format::match::GroundFrame frame{.y_down = y_down.value_or(format.from_corner && y_grows_down(match.recording.header)),
                                            .centred = options.frame.centred};
-    match.recording = turned(std::move(match.recording), match.pitch, frame);
+    match.recording = rotated(std::move(match.recording), match.pitch, frame);
   } else if (y_down && match.recording.header.frame.kind == FrameOfReference::Kind::user_ground) {
     set_y_down(match.recording.header, *y_down);
   }
@@ -103,7 +103,7 @@ ConvertSummary convert_match(GroundMatch match, const std::string& to, const For
 }
 
 /// `tracks` by id.
-void leave_out_others(Instant& instant, const std::vector<TrackName>& tracks) {
+void exclude_others(Instant& instant, const std::vector<TrackName>& tracks) {
   std::erase_if(instant.samples, [&](const Sample& point) {
     const auto by_id = [](const TrackName& track, TrackId id) { return track.id < id; };
     const auto found = std::lower_bound(tracks.begin(), tracks.end(), point.track, by_id);
@@ -111,7 +111,7 @@ void leave_out_others(Instant& instant, const std::vector<TrackName>& tracks) {
   });
 }
 
-/// Throws Error where no frame of `reader` is one of the plan's; warns of frames without channels, and of labels that are others.
+/// Throws Error if no frame of `reader` is one of the plan's; warns of frames without channels, and of labels that are others.
 void compare_with_analog(format::FileReader& reader, const std::string& path, const std::string& from,
                          const format::WritePlan& plan, std::vector<std::string>& warnings) {
   const format::FileInfo& info = reader.info();
@@ -139,17 +139,17 @@ void compare_with_analog(format::FileReader& reader, const std::string& path, co
 }
 
 /// What stands beside the points of another C3D file, in place of what stands beside those of `from`.
-format::BesidePoints analog_of(const std::string& path, const std::string& from, const std::string& to, const Format& out,
-                               const format::WritePlan& plan, std::vector<std::string>& warnings) {
-  if (!out.beside_points) throw format::WrongFormat("{}: --analog is for C3D, which alone holds such channels", to);
+format::AuxiliaryData analog_of(const std::string& path, const std::string& from, const std::string& to, const Format& out,
+                                const format::WritePlan& plan, std::vector<std::string>& warnings) {
+  if (!out.auxiliary_data) throw format::WrongFormat("{}: --analog is for C3D, which alone holds such channels", to);
   const auto reader = format::open_recording(path, format::format_to_read(path, Content::space));
-  const format::BesidePoints beside = reader->info().beside, &own = plan.info.beside;
-  if (!beside.any()) throw Error("{}: holds neither analog channels nor events; --analog wants a C3D file that does", path);
+  const format::AuxiliaryData next_to = reader->info().next_to, &own = plan.info.next_to;
+  if (!next_to.any()) throw Error("{}: holds neither analog channels nor events; --analog wants a C3D file that does", path);
   compare_with_analog(*reader, path, from, plan, warnings);
   if (own.any() && own.path != path)
-    warnings.push_back(fmt::format("{}: its own {} analog channels and {} events are left out; those of {} take their place", from,
+    warnings.push_back(fmt::format("{}: its own {} analog channels and {} events are omitted; those of {} take their place", from,
                                    own.channels, own.events, path));
-  return beside;
+  return next_to;
 }
 
 /// Instant by instant, so that memory does not grow with its length. Read twice: most formats begin with what is known only at the
@@ -171,16 +171,16 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
   plan.up = to_up;
   if (options.labelled) {
     std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
-    if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled all are written", from);
+    if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled-only all are written", from);
   }
-  if (auto sentence = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*sentence));
-  if (!options.analog.empty()) plan.info.beside = analog_of(options.analog, from, to, out, plan, summary.warnings);
-  if (auto sentence = format::beside_lost(plan.info.beside, to, out)) summary.warnings.push_back(std::move(*sentence));
+  if (auto message_text = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*message_text));
+  if (!options.analog.empty()) plan.info.next_to = analog_of(options.analog, from, to, out, plan, summary.warnings);
+  if (auto message_text = format::next_to_lost(plan.info.next_to, to, out)) summary.warnings.push_back(std::move(*message_text));
   const auto reader = opened(from, in, how, options.frames);
   const auto sink = format::create_recording(to, out, plan);
   sink->begin(plan.info.header);
   while (auto instant = reader->next()) {
-    if (options.labelled) leave_out_others(*instant, plan.info.tracks);
+    if (options.labelled) exclude_others(*instant, plan.info.tracks);
     if (frames == 0) instant->named = plan.info.tracks;
     samples += std::ssize(instant->samples);
     sink->write(*instant);

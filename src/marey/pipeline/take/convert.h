@@ -20,7 +20,7 @@ struct ConvertOptions {
   std::optional<format::UpAxis> up;       ///< in the file to be written; in the one that is read, where z is up in the other always
   std::optional<format::UpAxis> from_up;  ///< in the one that is read
   std::optional<edit::FrameRange> frames = {};  ///< these alone, with their numbers and times; nothing: all
-  bool labelled = false;                        ///< tracks without a label are left out
+  bool labelled = false;                        ///< tracks without a label are omitted
   std::string analog;                           ///< a C3D file whose analog channels and events go along into a C3D file
   // Of people on the ground.
   std::string home, away;  ///< teams; empty: as the file says, or by the order of their people

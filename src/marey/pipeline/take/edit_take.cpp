@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/input_file.h"
 #include "marey/edit/decide.h"
 #include "marey/edit/history.h"
 #include "marey/edit/tracks.h"
+#include "marey/files/input_file.h"
 #include "marey/format/take/take_file.h"
 
 namespace marey::pipeline::take {
@@ -21,7 +21,7 @@ using format::take::TakeReader;
 
 /// The take's tracks as its edits have left them. They are read from it when they are wanted.
 edit::Tracks tracks_of(const TakeReader& take, const std::string& path) {
-  edit::Tracks tracks(take.moments(), take.tracks(), [&take](TrackId track) { return take.read_track(track); });
+  edit::Tracks tracks(take.time_steps(), take.tracks(), [&take](TrackId track) { return take.read_track(track); });
   try {
     for (const Edit& one : edit::branch_of(take.edits(), take.head())) {
       if (const auto operation = edit::operation_of(one)) tracks.apply(*operation);
@@ -39,7 +39,7 @@ struct Standing {
   EditState state;
 };
 
-/// Throws Error where they do not stand at `on`.
+/// Throws Error if they do not stand at `on`.
 Standing standing_of(const TakeReader& take, const std::string& path, const std::optional<EditState>& on) {
   Standing standing{.edits = take.edits(), .head = take.head(), .state = {}};
   standing.state = format::take::edit_state(standing.edits, standing.head);
@@ -49,7 +49,7 @@ Standing standing_of(const TakeReader& take, const std::string& path, const std:
 
 void add_tracks_of(const Operation& operation, std::set<TrackId>& tracks) {
   tracks.insert(operation.tracks.begin(), operation.tracks.end());
-  if (operation.born) tracks.insert(*operation.born);
+  if (operation.initiated) tracks.insert(*operation.initiated);
   for (const edit::FilledGap& gap : operation.gaps) tracks.insert(gap.track);
 }
 
@@ -78,7 +78,7 @@ std::vector<EditRequest> read_edit_script(const std::string& path) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.pop_back();
     const std::size_t begin = line.find_first_not_of(" \t");
     if (begin == std::string::npos || line[begin] == '#') continue;
-    if (line.size() > 100'000) throw Error("{}:{}: is no edit; a line has at most 100,000 bytes", path, number);
+    if (line.size() > 100'000) throw Error("{}:{}: is not an edit; a line has at most 100,000 bytes", path, number);
     requests.push_back({.text = line.substr(begin), .where = fmt::format("{}:{}", path, number)});
   }
   return requests;

@@ -21,7 +21,7 @@ struct EditRequest {
   std::string where;
 };
 
-/// A script of edits: one a line, `#` begins a remark. Throws Error where it cannot be read.
+/// A script of edits: one a line, `#` begins a remark. Throws Error if it cannot be read.
 std::vector<EditRequest> read_edit_script(const std::string& path);
 
 /// An edit as it was done.
@@ -44,14 +44,14 @@ EditHistory edit_history(const std::string& path);
 // Error, and changes nothing, where they are others by then.
 
 /// Throws Error, with where it was asked for, at the first that cannot be done; then nothing is. Returns them as they were done.
-/// With `notes` a fill that finds no gap to fill is not done, and is no Error; they get a sentence for it, and for each fill that
-/// leaves gaps open.
+/// With `notes` a fill that finds no gap to fill is not done, and is not an Error; they get a sentence for it, and for each fill
+/// that leaves gaps open.
 std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditRequest>& requests, const Hooks& hooks = {},
                                 const std::optional<EditState>& on = {}, std::vector<std::string>* notes = nullptr);
 
 /// Goes back (steps < 0) or on along the branch that was taken last, and returns the head then; nothing: what was recorded.
 std::optional<std::int64_t> move_head(const std::string& path, std::int64_t steps, const std::optional<EditState>& on = {});
-/// Lets the edits up to this one count; 0: none. Throws Error where there is no such edit.
+/// Lets the edits up to this one count; 0: none. Throws Error if there is no such edit.
 void set_head(const std::string& path, std::int64_t id, const std::optional<EditState>& on = {});
 
 /// The tracks that may be others where `now` counts than where `before` did, by growing id. Both are of one take.

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
+#include "marey/core/ground_transform.h"
 #include "marey/format/match/ground_file.h"
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
@@ -37,7 +37,7 @@ std::optional<std::string> orientation_unknown(const std::string& path, const Re
   if (header.frame.kind != FrameOfReference::Kind::user_ground || (header.rig && has_world(*header.rig)) || format_states_it(path))
     return std::nullopt;
   return fmt::format(
-      "{}: does not state whether y grows upwards or downwards; it is drawn upwards. If the pitch looks mirrored, give --y-down, "
+      "{}: does not specify whether y grows upwards or downwards; it is drawn upwards. If the pitch looks mirrored, give --y-down, "
       "or "
       "--rig with the rig that the recording was made with",
       path);

@@ -1,4 +1,4 @@
-// Which way up the ground of a file is drawn; see core/other_ground.h.
+// Which way up the ground of a file is drawn; see core/ground_transform.h.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace marey::pipeline::take {
 
-/// Whether y grows downwards in the ground coordinates of this rig file's users. Throws Error where it says nothing of them.
+/// Whether y grows downwards in the ground coordinates of this rig file's users. Throws Error if it says nothing of them.
 bool rig_has_y_down(const std::string& rig);
 
-/// What a user should know before the recording of `path` is drawn: nothing in it says whether y grows upwards. Nothing where its
+/// What a user should know before the recording of `path` is drawn: nothing in it says whether y grows upwards. Nothing if its
 /// format or its rig does, or it is not of the ground.
 std::optional<std::string> orientation_unknown(const std::string& path, const RecordingHeader& header);
 

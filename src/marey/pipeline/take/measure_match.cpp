@@ -9,9 +9,9 @@
 
 #include "marey/analyse/colour_names.h"
 #include "marey/core/error.h"
-#include "marey/core/other_ground.h"
-#include "marey/core/whole_file.h"
+#include "marey/core/ground_transform.h"
 #include "marey/draw/match_report.h"
+#include "marey/files/whole_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/text_rows.h"
 #include "marey/pipeline/take/ground_orientation.h"
@@ -25,7 +25,7 @@ std::string zone_name(const std::vector<double>& borders, std::size_t zone) {
   return fmt::format("{:g}-{:g}", zone == 0 ? 0.0 : borders[zone - 1], borders[zone]);
 }
 
-/// Empty where it is not known.
+/// Empty if it is not known.
 std::string shown_if_known(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string();
 }
@@ -49,11 +49,11 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
   page.cells = {fmt::format("{:.0f}", person.distance_m), fmt::format("{:.2f}", person.mean_mps),
                 shown_if_known(person.top_mps, 1),        shown_if_known(person.top_sigma_mps, 1),
                 std::to_string(person.sprints),           std::to_string(person.accelerations),
-                std::to_string(person.decelerations),     fmt::format("{:.0f}", person.seen_s)};
+                std::to_string(person.decelerations),     fmt::format("{:.0f}", person.observed_s)};
   for (const double metres : person.zone_m) page.cells.push_back(fmt::format("{:.0f}", metres));
   for (const analyse::Path& path : person.paths) {
-    page.paths.push_back(path.place);
-    page.seen.push_back(path.seen);
+    page.paths.push_back(path.location);
+    page.detected.push_back(path.detected);
     auto& speeds = page.speeds.emplace_back();
     for (std::size_t i = 0; i < path.velocity.size(); ++i)
       speeds.emplace_back(path.start_s + path.step_s * static_cast<double>(i), path.velocity[i].norm());
@@ -76,8 +76,8 @@ std::string measurement_csv(const analyse::Measurement& measured, const analyse:
     fmt::format_to(std::back_inserter(text), "{},{},{},{:.2f},{:.3f},{},{},{:.2f},{},{},{:.2f},{:.2f},{},{:.2f},{}", person.id,
                    format::quoted_field(person.label), format::quoted_field(person.team), person.distance_m, person.mean_mps,
                    shown_if_known(person.top_mps, 3), person.sprints, person.seconds, person.accelerations, person.decelerations,
-                   person.average_place.x(), person.average_place.y(), shown_if_known(person.top_sigma_mps, 3), person.seen_s,
-                   person.impossible.size());
+                   person.average_position.x(), person.average_position.y(), shown_if_known(person.top_sigma_mps, 3),
+                   person.observed_s, person.impossible.size());
     for (const auto* zones : {&person.zone_s, &person.zone_m}) {
       for (const double value : *zones) fmt::format_to(std::back_inserter(text), ",{:.2f}", value);
     }
@@ -88,14 +88,14 @@ std::string measurement_csv(const analyse::Measurement& measured, const analyse:
 
 void add_impossible(const analyse::Measurement& measured, draw::MatchReport& report) {
   draw::PageTable table;
-  table.title = "Not counted: nobody moves like that";
+  table.title = "Not counted: no person moves like that";
   table.head = {"no.", "name", "from, s", "to, s", "what is wrong"};
   table.bars_from = 5;
   for (const analyse::PersonMeasure& person : measured.people) {
-    for (const analyse::ImpossibleStretch& stretch : person.impossible)
-      table.rows.push_back({std::to_string(person.id), person.label, fmt::format("{:.1f}", stretch.begin_s),
-                            fmt::format("{:.1f}", stretch.end_s),
-                            stretch.one_person ? "the places" : "the number: before and after are two people"});
+    for (const analyse::ImpossibleSegment& segment : person.impossible)
+      table.rows.push_back({std::to_string(person.id), person.label, fmt::format("{:.1f}", segment.begin_s),
+                            fmt::format("{:.1f}", segment.end_s),
+                            segment.one_person ? "the places" : "the number: before and after are two people"});
   }
   if (!table.rows.empty()) report.tables.push_back(std::move(table));
 }
@@ -106,7 +106,7 @@ std::vector<draw::MatchReport::Period> periods_of(const format::match::GroundMat
   const auto time_of = [&](std::int32_t frame) {
     const auto& instants = match.recording.instants();
     const auto at = std::lower_bound(instants.begin(), instants.end(), frame,
-                                     [](const auto& moment, auto index) { return moment.index < index; });
+                                     [](const auto& time_step, auto index) { return time_step.index < index; });
     return instants.empty() ? 0.0 : seconds((at == instants.end() ? instants.back() : *at).time);
   };
   for (const format::match::GroundPeriod& period : match.periods)
@@ -148,8 +148,8 @@ void add_team_table(const std::vector<analyse::TeamMeasure>& teams, draw::MatchR
   for (const analyse::TeamMeasure& team : teams) {
     table.rows.push_back({team.team, std::to_string(team.people), fmt::format("{:.0f}", team.distance_m),
                           fmt::format("{:.1f}", team.length_m), fmt::format("{:.1f}", team.width_m),
-                          fmt::format("{:.0f}", team.hull_m2), fmt::format("{:.1f}", team.average_place.x()),
-                          fmt::format("{:.1f}", team.average_place.y())});
+                          fmt::format("{:.0f}", team.hull_m2), fmt::format("{:.1f}", team.average_position.x()),
+                          fmt::format("{:.1f}", team.average_position.y())});
   }
 }
 
@@ -210,12 +210,13 @@ MatchMeasurement measure_match(const std::string& tracks, const MeasureOutput& o
   const format::ReadOptions reading{options.metadata, options.how.pitch, options.rate_hz};
   const format::match::GroundMatch match = format::read_match(tracks, reading);
   MatchMeasurement result{.measured = analyse::measure(match.recording, options.how), .warnings = {}};
-  if (result.measured.people.empty()) throw Error("{}: nobody is in it for long enough to be measured", tracks);
+  if (result.measured.people.empty()) throw Error("{}: no person is in it for long enough to be measured", tracks);
   WholeFile file(output.figures);
   file.write(measurement_csv(result.measured, options.how));
   if (!output.report.empty()) {
     if (!options.y_down) {
-      if (auto sentence = orientation_unknown(tracks, match.recording.header)) result.warnings.push_back(std::move(*sentence));
+      if (auto message_text = orientation_unknown(tracks, match.recording.header))
+        result.warnings.push_back(std::move(*message_text));
     }
     draw::MatchReport report = report_of(result.measured, options, match, std::filesystem::path(tracks).stem().string());
     report.notes = result.warnings;

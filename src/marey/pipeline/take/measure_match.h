@@ -12,7 +12,7 @@ namespace marey::pipeline::take {
 struct MeasureMatchOptions {
   analyse::MeasureOptions how;
   std::string metadata;             ///< of formats that keep it in a file of its own; empty: it is found under a like name
-  double rate_hz = 25;              ///< where the tracks do not say
+  double rate_hz = 25;              ///< where the tracks do not specify
   std::optional<bool> y_down = {};  ///< of the page; nothing: as the tracks have it
 };
 
@@ -27,8 +27,8 @@ struct MatchMeasurement {
   std::vector<std::string> warnings;  ///< one sentence each: what is doubtful in the page
 };
 
-/// How far and how fast everybody of `tracks` ran, a file of places on the ground that format/match reads. Throws Error where it
-/// cannot be read, nobody is in it for long enough, or an output cannot be written; Stopped.
+/// How far and how fast every person of `tracks` ran, a file of places on the ground that format/match reads. Throws Error if it
+/// cannot be read, no person is in it for long enough, or an output cannot be written; Stopped.
 MatchMeasurement measure_match(const std::string& tracks, const MeasureOutput& output, const MeasureMatchOptions& options,
                                const Hooks& hooks = {});
 

@@ -15,7 +15,7 @@ std::unique_ptr<format::FileReader> part_of(std::unique_ptr<format::FileReader> 
 /// The same of a recording in memory. Throws Error, with `name` for the file, where it has none of those frames.
 Recording part_of(const Recording& recording, const edit::FrameRange& frames, const std::string& name);
 
-/// Throws Error where a part that was read has no frame.
+/// Throws Error if a part that was read has no frame.
 void require_frames(std::int64_t count, const edit::FrameRange& frames, const std::string& name);
 
 }  // namespace marey::pipeline::take

@@ -11,12 +11,12 @@
 namespace marey::pipeline::take {
 namespace {
 
-using Steady = std::chrono::steady_clock;
+using Stabilise = std::chrono::steady_clock;
 
 /// Waits until then, and looks at the token now and then; false where it is to stop.
-bool wait_until(Steady::time_point due, const std::stop_token& stop) {
+bool wait_until(Stabilise::time_point due, const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const auto now = Steady::now();
+    const auto now = Stabilise::now();
     if (now >= due) return true;
     std::this_thread::sleep_until(std::min(due, now + kStopSlice));
   }
@@ -55,7 +55,7 @@ class Player {
   PlaySummary finish(bool stopped) {
     for (const auto& sink : sinks_) sink->finish();
     summary_.stopped = stopped;
-    summary_.seconds = std::chrono::duration<double>(Steady::now() - began_).count();
+    summary_.seconds = std::chrono::duration<double>(Stabilise::now() - began_).count();
     return std::move(summary_);
   }
 
@@ -64,39 +64,39 @@ class Player {
     if (header.name.empty()) header.name = options_.name;
     for (const auto& sink : sinks_) sink->begin(header);
     period_ = duration_from_seconds(1 / header.rate_hz);
-    began_ = origin_ = Steady::now();
+    began_ = origin_ = Stabilise::now();
   }
 
-  /// A later round goes on where the last one ended: its indices and its times are moved.
+  /// A later round continues where the last one ended: its indices and its times are moved.
   void start_round(const Instant& first) {
     index_shift_ = next_index_ - first.index;
     time_shift_ = next_time_ - first.time.time_since_epoch();
     if (summary_.rounds == 1) index_shift_ = 0, time_shift_ = Duration::zero();
     const Timestamp time = first.time + time_shift_;
-    const auto due = summary_.rounds == 1 ? Steady::now() : std::max(Steady::now(), due_at(time));
+    const auto due = summary_.rounds == 1 ? Stabilise::now() : std::max(Stabilise::now(), due_at(time));
     zero_ = time;
     origin_ = due;
     if (clock_ != nullptr) clock_->set(time, std::chrono::nanoseconds(due.time_since_epoch()).count(), options_.speed);
   }
 
-  Steady::time_point due_at(Timestamp time) const {
+  Stabilise::time_point due_at(Timestamp time) const {
     return origin_ + std::chrono::nanoseconds(std::llround(static_cast<double>((time - zero_).count()) / options_.speed));
   }
 
   /// False where it was stopped. `following`: the time of the next instant, as read.
-  bool give(Instant instant, std::optional<Timestamp> following, std::optional<std::int64_t> total) {
+  bool give(Instant instant, std::optional<Timestamp> tracking, std::optional<std::int64_t> total) {
     instant.index += index_shift_;
     instant.time += time_shift_;
     next_index_ = instant.index + 1;
     next_time_ = instant.time.time_since_epoch() + period_;
     keep_names(instant);
-    if (!is_wanted(instant.time)) {
-      ++summary_.left_out;
+    if (!is_required(instant.time)) {
+      ++summary_.excluded;
       return !hooks_.stop.stop_requested();
     }
     const auto due = due_at(instant.time);
-    const auto now = Steady::now();
-    if (now - due > kTooLate && following && due_at(*following + time_shift_) <= now) {
+    const auto now = Stabilise::now();
+    if (now - due > kTooLate && tracking && due_at(*tracking + time_shift_) <= now) {
       ++summary_.skipped;
       return !hooks_.stop.stop_requested();
     }
@@ -105,21 +105,21 @@ class Player {
     for (const auto& sink : sinks_) sink->write(instant);
     ++summary_.instants;
     if (total) total = *total * (options_.loop ? summary_.rounds : 1);
-    const std::int64_t done = summary_.instants + summary_.left_out + summary_.skipped;
+    const std::int64_t done = summary_.instants + summary_.excluded + summary_.skipped;
     return hooks_.report({"playing", done, options_.loop ? std::nullopt : total}) == Continue::yes;
   }
 
-  /// Names of an instant that is left out go with the next one.
+  /// Names of an instant that is omitted go with the next one.
   void keep_names(Instant& instant) {
     names_.insert(names_.end(), std::make_move_iterator(instant.named.begin()), std::make_move_iterator(instant.named.end()));
     instant.named.clear();
   }
 
-  bool is_wanted(Timestamp time) {
+  bool is_required(Timestamp time) {
     if (!options_.rate_hz) return true;
     const Duration step = duration_from_seconds(1 / *options_.rate_hz);
-    if (wanted_ && time + period_ / 2 < *wanted_) return false;
-    wanted_ = wanted_ && time - *wanted_ < step ? *wanted_ + step : time + step;
+    if (required_ && time + period_ / 2 < *required_) return false;
+    required_ = required_ && time - *required_ < step ? *required_ + step : time + step;
     return true;
   }
 
@@ -128,11 +128,11 @@ class Player {
   stream::CaptureClock* clock_;
   const Hooks& hooks_;
   PlaySummary summary_;
-  Steady::time_point began_, origin_;
+  Stabilise::time_point began_, origin_;
   Timestamp zero_{};  // is due at the origin
   Duration period_{}, time_shift_{}, next_time_{};
   std::int64_t index_shift_ = 0, next_index_ = 0;
-  std::optional<Timestamp> wanted_;
+  std::optional<Timestamp> required_;
   std::vector<TrackName> names_;
 };
 
@@ -140,7 +140,7 @@ class Player {
 
 PlaySummary play(const std::function<std::unique_ptr<RecordingReader>()>& open, const std::vector<std::unique_ptr<Sink>>& sinks,
                  const PlayOptions& options, stream::CaptureClock* clock, const Hooks& hooks) {
-  const StopScope finishes_in_order{{}};  // what listens is told that it is over
+  const StopScope finishes_in_order{{}};  // what listens is reported that it is over
   Player player(sinks, options, clock, hooks);
   bool goes_on = true;
   do {

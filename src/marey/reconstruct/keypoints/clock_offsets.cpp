@@ -15,10 +15,10 @@
 namespace marey::reconstruct::keypoints {
 namespace {
 
-constexpr int kBlocks = 10;        // of time, for the jackknife
-constexpr double kBound = 25;      // squared standard deviations of a point
-constexpr double kMostMisfit = 9;  // of a person: nobody there is the same
-constexpr int kLeastPoints = 4;
+constexpr int kBlocks = 10;       // of time, for the jackknife
+constexpr double kBound = 25;     // squared standard deviations of a point
+constexpr double kMaxMisfit = 9;  // of a person: no person there is the same
+constexpr int kMinPoints = 4;
 constexpr int kRounds = 20;
 constexpr std::size_t kKept = 2;  // frames in memory, times the candidates
 constexpr double kFlat = 0.02;    // a parabola that rises by less than this over its width says nothing
@@ -36,7 +36,7 @@ struct PairCost {
       sum += sums[candidate][static_cast<std::size_t>(block)];
       count += counts[candidate][static_cast<std::size_t>(block)];
     }
-    return count > 0 ? sum / count : kMostMisfit;
+    return count > 0 ? sum / count : kMaxMisfit;
   }
 };
 
@@ -49,7 +49,7 @@ double misfit_of(const PersonView& a, const PersonView& b) {
     sum += pair ? std::min(kBound, pair->square) : kBound;
     ++count;
   }
-  return count < kLeastPoints ? kMostMisfit : std::min(kMostMisfit, sum / count);
+  return count < kMinPoints ? kMaxMisfit : std::min(kMaxMisfit, sum / count);
 }
 
 class OffsetSearch {
@@ -84,7 +84,7 @@ class OffsetSearch {
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       if (cameras_[c].camera == nullptr || fixed_[c]) continue;
       const double sigma = std::sqrt((kBlocks - 1.0) / kBlocks * spread[c] + disagreement[c]);
-      if (std::isfinite(all[c]) && sigma <= options_.most_sigma)
+      if (std::isfinite(all[c]) && sigma <= options_.max_sigma)
         found[c] = ClockOffset{cameras_[c].offset_s + all[c] * step_s_, sigma * step_s_};
     }
     return found;
@@ -130,9 +130,9 @@ class OffsetSearch {
         const auto [there, is_new] = known.try_emplace(static_cast<std::size_t>(frame));
         if (is_new) there->second = views_at(b, static_cast<std::size_t>(frame));
         for (const PersonView& person : here) {
-          double least = kMostMisfit;
-          for (const PersonView& same : there->second) least = std::min(least, misfit_of(person, same));
-          cost.sums[candidate][block] += least;
+          double minimum = kMaxMisfit;
+          for (const PersonView& same : there->second) minimum = std::min(minimum, misfit_of(person, same));
+          cost.sums[candidate][block] += minimum;
           cost.counts[candidate][block] += 1;
         }
       }
@@ -153,7 +153,7 @@ class OffsetSearch {
       bool changed = false;
       for (std::size_t c = 0; c < cameras_.size(); ++c) {
         if (cameras_[c].camera == nullptr || fixed_[c]) continue;
-        double best = offsets[c], least = -1;
+        double best = offsets[c], minimum = -1;
         for (int candidate = -farthest_; candidate <= farthest_; ++candidate) {
           double sum = 0;
           for (const PairCost& pair : pairs_) {
@@ -161,8 +161,8 @@ class OffsetSearch {
             if (round == 0 && std::max(pair.a, pair.b) > c) continue;  // the others are not set yet
             sum += at(pair, pair.b == c ? candidate - offsets[pair.a] : offsets[pair.b] - candidate, without);
           }
-          if (least >= 0 && sum >= least) continue;
-          least = sum;
+          if (minimum >= 0 && sum >= minimum) continue;
+          minimum = sum;
           best = candidate;
         }
         changed |= best != offsets[c];
@@ -184,7 +184,7 @@ class OffsetSearch {
     double curvature = 0, vertex = 0;
   };
 
-  /// Nothing where the misfit is flat.
+  /// Nothing if the misfit is flat.
   std::optional<Parabola> parabola_of(const PairCost& pair, double middle, int without) const {
     const int half = std::max(2, static_cast<int>(std::lround(options_.vertex_s / step_s_)));
     double s0 = 0, s2 = 0, s4 = 0, y0 = 0, y1 = 0, y2 = 0;

@@ -1,11 +1,11 @@
 // By how much cameras were started after each other, by how people move before them: at the right offset the half-lines to a
 // person's points meet.
 //
-// For two cameras and a candidate offset, each person of the one is compared with everybody of the other at the frame that the
+// For two cameras and a candidate offset, each person of the one is compared with every person of the other at the frame that the
 // offset names; the best counts, by the mean bounded squared distance of the half-lines. Near its least value that is a parabola
-// over the offset, whose vertex lies between frames; its curvature says how much the pair knows (nothing, where nobody moves across
-// the half-planes through both cameras). All pairs' parabolas together give the offsets by least squares. How sure they are is said
-// by leaving out one tenth of the time after another (the jackknife; Efron and Tibshirani, "An Introduction to the Bootstrap",
+// over the offset, whose vertex lies between frames; its curvature says how much the pair knows (nothing, where no person moves
+// across the half-planes through both cameras). All pairs' parabolas together give the offsets by least squares. How sure they are
+// is said by omitting one tenth of the time after another (the jackknife; Efron and Tibshirani, "An Introduction to the Bootstrap",
 // 1993, chapter 11), and by how far the pairs disagree, as they do where the calibration is off. Cost: pairs of cameras × samples ×
 // offsets × pairs of people × keypoints.
 #pragma once
@@ -36,7 +36,7 @@ struct ClockOptions {
   double farthest_s = 0.5;  ///< from the offset that the camera has
   int samples = 200;        ///< frames of a camera that are compared
   double vertex_s = 0.07;   ///< half the width of the parabola, at least two frames
-  double most_sigma = 1;    ///< frames: what is known no better is not known
+  double max_sigma = 1;     ///< frames: what is known no better is not known
 };
 
 /// Of each camera whose offset is not known, against those that are known, or else the first one. Nothing for the others, and for

@@ -12,8 +12,8 @@
 namespace marey::reconstruct::keypoints {
 namespace {
 
-constexpr double kFarthest_m = 200;   // numerical: from the camera; rays beyond are near the horizon
-constexpr double kLeastSlope = 0.02;  // numerical: of a ray towards the ground, and of one towards the plane
+constexpr double kMaxDistance_m = 200;  // numerical: from the camera; rays beyond are near the horizon
+constexpr double kMinSlope = 0.02;      // numerical: of a ray towards the ground, and of one towards the plane
 
 /// Physical: how high points of a foot are when it stands; parts of names and m.
 constexpr std::array<std::pair<std::string_view, double>, 5> kStandingHeights{
@@ -39,9 +39,9 @@ std::optional<Vector<3>> PeopleBeforeCamera::foot_at(const Keypoints<2>& person,
     const auto& point = person.points[one.point];
     if (!point || point->visibility * point->presence < options_.min_confidence) continue;
     const auto ray = camera_.ray(point->position);
-    if (!ray || ray->direction.z() > -kLeastSlope) continue;
+    if (!ray || ray->direction.z() > -kMinSlope) continue;
     const double distance = (one.height_m - ray->origin.z()) / ray->direction.z();
-    if (!(distance > 0) || distance > kFarthest_m) continue;
+    if (!(distance > 0) || distance > kMaxDistance_m) continue;
     sum += ray->origin + distance * ray->direction;
     ++count;
   }
@@ -58,9 +58,9 @@ std::optional<Vector<3>> PeopleBeforeCamera::stands_at(const Keypoints<2>& perso
 }
 
 /// Where the rays to the keypoints meet the vertical plane through `place` that faces the camera.
-std::vector<std::optional<SpacePoint>> PeopleBeforeCamera::points_at(const Keypoints<2>& person, const Vector<3>& place) const {
+std::vector<std::optional<SpacePoint>> PeopleBeforeCamera::points_at(const Keypoints<2>& person, const Vector<3>& location) const {
   std::vector<std::optional<SpacePoint>> points(person.points.size());
-  Vector<3> normal = camera_.centre() - place;
+  Vector<3> normal = camera_.centre() - location;
   normal.z() = 0;
   if (!(normal.norm() > 1e-3)) return points;
   normal.normalize();
@@ -69,14 +69,14 @@ std::vector<std::optional<SpacePoint>> PeopleBeforeCamera::points_at(const Keypo
     const auto ray = camera_.ray(person.points[i]->position);
     if (!ray) continue;
     const double towards = ray->direction.dot(normal);
-    if (towards > -kLeastSlope) continue;
-    const double distance = (place - ray->origin).dot(normal) / towards;
+    if (towards > -kMinSlope) continue;
+    const double distance = (location - ray->origin).dot(normal) / towards;
     SpacePoint point;
     point.position = ray->origin + distance * ray->direction;
-    const auto seen = camera_.project_with_jacobian(point.position);
-    if (!seen) continue;
+    const auto detected = camera_.project_with_jacobian(point.position);
+    if (!detected) continue;
     // Across the view as the image says, along it as people are deep.
-    const double scale = std::sqrt(seen->by_world.squaredNorm() / 2),
+    const double scale = std::sqrt(detected->by_world.squaredNorm() / 2),
                  sigma_px = std::sqrt(person.points[i]->covariance.trace() / 2);
     const double across = sigma_px / std::max(1e-6, scale);
     point.covariance = across * across * Matrix<3>::Identity() +
@@ -89,50 +89,50 @@ std::vector<std::optional<SpacePoint>> PeopleBeforeCamera::points_at(const Keypo
 }
 
 /// Of each place whose it is: those nearest to where people were first. 0 where there is no place.
-std::vector<int> PeopleBeforeCamera::numbers_of(std::span<const std::optional<Vector<3>>> places) {
+std::vector<int> PeopleBeforeCamera::numbers_of(std::span<const std::optional<Vector<3>>> locations) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // distance, known, place
   for (std::size_t k = 0; k < known_.size(); ++k) {
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (!places[i]) continue;
-      const double distance = (known_[k].place - *places[i]).norm();
-      if (distance < options_.gate_m + options_.speed_m_s * known_[k].unseen_s) pairs.emplace_back(distance, k, i);
+    for (std::size_t i = 0; i < locations.size(); ++i) {
+      if (!locations[i]) continue;
+      const double distance = (known_[k].location - *locations[i]).norm();
+      if (distance < options_.gate_m + options_.speed_m_s * known_[k].unobserved_s) pairs.emplace_back(distance, k, i);
     }
   }
   std::sort(pairs.begin(), pairs.end());
-  std::vector<int> numbers(places.size(), 0);
+  std::vector<int> numbers(locations.size(), 0);
   std::vector<char> taken(known_.size(), 0);
   for (const auto& [distance, k, i] : pairs) {
     if (taken[k] != 0 || numbers[i] != 0) continue;
     taken[k] = 1;
     numbers[i] = known_[k].id;
-    known_[k].place = *places[i];
-    known_[k].unseen_s = 0;
+    known_[k].location = *locations[i];
+    known_[k].unobserved_s = 0;
   }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (!places[i] || numbers[i] != 0) continue;
+  for (std::size_t i = 0; i < locations.size(); ++i) {
+    if (!locations[i] || numbers[i] != 0) continue;
     numbers[i] = next_id_++;
-    known_.push_back({.id = numbers[i], .place = *places[i], .unseen_s = 0});
+    known_.push_back({.id = numbers[i], .location = *locations[i], .unobserved_s = 0});
   }
   return numbers;
 }
 
-const std::vector<PlacedPerson>& PeopleBeforeCamera::step(double seconds, std::span<const Keypoints<2>> people) {
-  for (Known& known : known_) known.unseen_s += seconds;
-  std::erase_if(known_, [&](const Known& known) { return known.unseen_s > options_.lost_s; });
-  std::vector<std::optional<Vector<3>>> places;
-  for (const Keypoints<2>& person : people) places.push_back(stands_at(person));
-  const std::vector<int> numbers = numbers_of(places);
-  placed_.clear();
+const std::vector<LocatedPerson>& PeopleBeforeCamera::step(double seconds, std::span<const Keypoints<2>> people) {
+  for (Known& known : known_) known.unobserved_s += seconds;
+  std::erase_if(known_, [&](const Known& known) { return known.unobserved_s > options_.lost_s; });
+  std::vector<std::optional<Vector<3>>> locations;
+  for (const Keypoints<2>& person : people) locations.push_back(stands_at(person));
+  const std::vector<int> numbers = numbers_of(locations);
+  located_.clear();
   for (std::size_t i = 0; i < people.size(); ++i) {
-    if (!places[i]) continue;
-    PlacedPerson& placed = placed_.emplace_back();
-    placed.id = numbers[i];
-    placed.views.assign(static_cast<std::size_t>(cameras_), -1);
-    placed.views[static_cast<std::size_t>(number_)] = static_cast<int>(i);
-    placed.mirrored.resize(static_cast<std::size_t>(cameras_));
-    placed.points = points_at(people[i], *places[i]);
+    if (!locations[i]) continue;
+    LocatedPerson& located = located_.emplace_back();
+    located.id = numbers[i];
+    located.views.assign(static_cast<std::size_t>(cameras_), -1);
+    located.views[static_cast<std::size_t>(number_)] = static_cast<int>(i);
+    located.mirrored.resize(static_cast<std::size_t>(cameras_));
+    located.points = points_at(people[i], *locations[i]);
   }
-  return placed_;
+  return located_;
 }
 
 }  // namespace marey::reconstruct::keypoints

@@ -35,7 +35,7 @@ class PeopleBeforeCamera {
 
   /// The people of an image, `seconds` after the last one; a person that shows no foot, or none on the ground, is not placed. Valid
   /// until the next call.
-  const std::vector<PlacedPerson>& step(double seconds, std::span<const Keypoints<2>> people);
+  const std::vector<LocatedPerson>& step(double seconds, std::span<const Keypoints<2>> people);
 
   /// Where a person stands, z = 0.
   std::optional<Vector<3>> stands_at(const Keypoints<2>& person) const;
@@ -47,13 +47,13 @@ class PeopleBeforeCamera {
   };
   struct Known {
     int id = 0;
-    Vector<3> place = Vector<3>::Zero();
-    double unseen_s = 0;
+    Vector<3> location = Vector<3>::Zero();
+    double unobserved_s = 0;
   };
 
   std::optional<Vector<3>> foot_at(const Keypoints<2>& person, const std::vector<FootPoint>& foot) const;
-  std::vector<std::optional<SpacePoint>> points_at(const Keypoints<2>& person, const Vector<3>& place) const;
-  std::vector<int> numbers_of(std::span<const std::optional<Vector<3>>> places);
+  std::vector<std::optional<SpacePoint>> points_at(const Keypoints<2>& person, const Vector<3>& location) const;
+  std::vector<int> numbers_of(std::span<const std::optional<Vector<3>>> locations);
 
   KeypointSet set_;
   Camera camera_;
@@ -61,7 +61,7 @@ class PeopleBeforeCamera {
   OneCameraOptions options_;
   std::vector<FootPoint> left_, right_;
   std::vector<Known> known_;
-  std::vector<PlacedPerson> placed_;
+  std::vector<LocatedPerson> located_;
   int next_id_ = 1;
 };
 

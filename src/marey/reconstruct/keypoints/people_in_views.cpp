@@ -11,11 +11,11 @@
 namespace marey::reconstruct::keypoints {
 namespace {
 
-constexpr double kOneStep_s = 1;       // longer steps are a cut: everybody is where he was, and may be anywhere near
-constexpr double kForget_s = 0.5;      // a keypoint that was not seen for so long is not expected anywhere
+constexpr double kOneStep_s = 1;       // longer steps are a cut: every person is where he was, and may be anywhere near
+constexpr double kForget_s = 0.5;      // a keypoint that was not seen for this long is not expected anywhere
 constexpr double kSamePerson_m = 0.3;  // mean distance of keypoints below which a start is a known person's
-constexpr double kShortest_m = 0.08, kLongest_m = 0.75;  // of thighs, shanks, upper arms and forearms, of a child and of a giant
-constexpr double kSoundBones = 0.7;                      // share
+constexpr double kMinLength_m = 0.08, kMaxLength_m = 0.75;  // of thighs, shanks, upper arms and forearms, of a child and of a giant
+constexpr double kSoundBones = 0.7;                         // share
 
 constexpr std::array<std::pair<const char*, const char*>, 8> kMeasuredBones{{{"left_hip", "left_knee"},
                                                                              {"right_hip", "right_knee"},
@@ -36,28 +36,28 @@ PeopleInViews::PeopleInViews(const KeypointSet& set, int cameras, const PeopleOp
   }
 }
 
-const std::vector<PlacedPerson>& PeopleInViews::step(double seconds, std::span<const PersonView> views) {
+const std::vector<LocatedPerson>& PeopleInViews::step(double seconds, std::span<const PersonView> views) {
   if (seconds > kOneStep_s) people_.clear();
   for (Person& person : people_) expect(person, seconds);
-  views_seen_ += std::ssize(views);
+  views_observed_ += std::ssize(views);
   taken_.assign(views.size(), 0);
   give_views(views);
   begin_people(views);
-  placed_.clear();
+  located_.clear();
   for (std::size_t p = 0; p < people_.size(); ++p) {
-    if (auto placed = place(people_[p], views, given_[p], seconds)) placed_.push_back(std::move(*placed));
+    if (auto located = location(people_[p], views, given_[p], seconds)) located_.push_back(std::move(*located));
   }
-  std::erase_if(people_, [&](const Person& person) { return person.unseen_s > options_.lost_s; });
-  return placed_;
+  std::erase_if(people_, [&](const Person& person) { return person.unobserved_s > options_.lost_s; });
+  return located_;
 }
 
 void PeopleInViews::expect(Person& person, double seconds) const {
-  person.unseen_s += seconds;
+  person.unobserved_s += seconds;
   for (auto& point : person.points) {
     if (!point) continue;
     point->position += seconds * point->velocity;
-    point->unseen_s += seconds;
-    if (point->unseen_s > kForget_s && person.unseen_s < kForget_s) point.reset();
+    point->unobserved_s += seconds;
+    if (point->unobserved_s > kForget_s && person.unobserved_s < kForget_s) point.reset();
   }
 }
 
@@ -65,12 +65,12 @@ std::optional<double> PeopleInViews::point_misfit(const Point& point, const Sigh
   const double depth = line.depth(point.position);
   const double bound = options_.bound * options_.bound;
   if (depth <= 0.1) return bound;
-  const double place = options_.place_m + options_.place_m_s * point.unseen_s;
-  const double spread = place * line.scale() / depth;
+  const double location = options_.position_m + options_.position_m_s * point.unobserved_s;
+  const double spread = location * line.scale() / depth;
   return std::min(bound, line.error(point.position).squaredNorm() / (2 * (line.sigma * line.sigma + spread * spread)));
 }
 
-/// Mean square of the bounded errors, in standard deviations; nothing where too few points are in common.
+/// Mean square of the bounded errors, in standard deviations; nothing if too few points are in common.
 std::optional<double> PeopleInViews::misfit(const Person& person, const PersonView& view) const {
   double sum = 0;
   int count = 0;
@@ -79,7 +79,7 @@ std::optional<double> PeopleInViews::misfit(const Person& person, const PersonVi
     sum += *point_misfit(*person.points[i], *view.points[i]);
     ++count;
   }
-  if (count < options_.least_points) return std::nullopt;
+  if (count < options_.min_points) return std::nullopt;
   return sum / count;
 }
 
@@ -123,7 +123,7 @@ std::optional<PeopleInViews::Start> PeopleInViews::start_of(const PersonView& a,
     start.points[i] = Point{.position = pair->position};
     ++met;
   }
-  if (met < options_.least_points) return std::nullopt;
+  if (met < options_.min_points) return std::nullopt;
   start.cost /= count;
   if (start.cost > options_.pair_gate * options_.pair_gate || !is_body(start.points)) return std::nullopt;
   return start;
@@ -136,7 +136,7 @@ bool PeopleInViews::is_body(const std::vector<std::optional<Point>>& points) con
     if (!from || !to) continue;
     const double length = (from->position - to->position).norm();
     ++bones;
-    sound += length > kShortest_m && length < kLongest_m ? 1 : 0;
+    sound += length > kMinLength_m && length < kMaxLength_m ? 1 : 0;
   }
   return sound >= kSoundBones * bones;
 }
@@ -146,15 +146,15 @@ void PeopleInViews::extend(Start& start, std::span<const PersonView> views) cons
   const Person person{.points = start.points};
   for (int camera = 0; camera < cameras_; ++camera) {
     int best = -1;
-    double least = options_.gate * options_.gate;
+    double minimum = options_.gate * options_.gate;
     bool has = false;
     for (int v = 0; v < std::ssize(views); ++v) {
       if (views[static_cast<std::size_t>(v)].camera != camera) continue;
       has |= std::find(start.views.begin(), start.views.end(), v) != start.views.end();
       if (taken_[static_cast<std::size_t>(v)] != 0) continue;
       const auto cost = misfit(person, views[static_cast<std::size_t>(v)]);
-      if (cost && *cost < least) {
-        least = *cost;
+      if (cost && *cost < minimum) {
+        minimum = *cost;
         best = v;
       }
     }
@@ -162,7 +162,7 @@ void PeopleInViews::extend(Start& start, std::span<const PersonView> views) cons
   }
 }
 
-/// The person who is there already; nothing where nobody is.
+/// The person who is there already; nothing if no person is.
 std::optional<std::size_t> PeopleInViews::known_at(const Start& start) const {
   for (std::size_t p = 0; p < people_.size(); ++p) {
     double sum = 0;
@@ -213,7 +213,7 @@ void PeopleInViews::begin_people(std::span<const PersonView> views) {
       given_[*known] = std::move(start.views);
       continue;
     }
-    people_.push_back({.id = next_id_++, .unseen_s = 0, .points = std::move(start.points)});
+    people_.push_back({.id = next_id_++, .unobserved_s = 0, .points = std::move(start.points)});
     given_.push_back(std::move(start.views));
   }
 }
@@ -230,87 +230,87 @@ void PeopleInViews::find_mirrored(const Person& person, std::span<const PersonVi
       gain[static_cast<std::size_t>(*limbs_[i])] +=
           *point_misfit(*person.points[i], *view.points[i]) - *point_misfit(*person.points[other], *view.points[i]);
     }
-    const double least = options_.swap_gain * options_.swap_gain / 2;
+    const double minimum = options_.swap_gain * options_.swap_gain / 2;
     Mirrored& of = mirrored[static_cast<std::size_t>(view.camera)];
-    of = {.arms = gain[0] > least, .legs = gain[1] > least};
+    of = {.arms = gain[0] > minimum, .legs = gain[1] > minimum};
     arms += of.arms ? 1 : 0;
     legs += of.legs ? 1 : 0;
   }
-  const int most = static_cast<int>(own.size());
+  const int maximum = static_cast<int>(own.size());
   for (Mirrored& of : mirrored) {
-    of.arms &= 2 * arms <= most;
-    of.legs &= 2 * legs <= most;
+    of.arms &= 2 * arms <= maximum;
+    of.legs &= 2 * legs <= maximum;
   }
 }
 
-void PeopleInViews::triangulate(std::span<const PersonView> views, const std::vector<int>& own, PlacedPerson& placed,
+void PeopleInViews::triangulate(std::span<const PersonView> views, const std::vector<int>& own, LocatedPerson& located,
                                 const Person* expected) const {
   std::array<SightLine, 64> lines;
   for (std::size_t i = 0; i < set_.points.size(); ++i) {
     std::size_t count = 0;
     for (const int v : own) {
       const PersonView& view = views[static_cast<std::size_t>(v)];
-      const bool swapped = placed.mirrored[static_cast<std::size_t>(view.camera)].of(limbs_[i]);
+      const bool swapped = located.mirrored[static_cast<std::size_t>(view.camera)].of(limbs_[i]);
       const auto& line = view.points[swapped ? static_cast<std::size_t>(set_.mirrored[i]) : i];
       if (line && count < lines.size()) lines[count++] = *line;
     }
     const std::span<const SightLine> rays(lines.data(), count);
     const auto found =
         expected != nullptr && expected->points[i] ? triangulator_(rays, expected->points[i]->position) : triangulator_(rays);
-    placed.points[i].reset();
+    located.points[i].reset();
     if (const SpacePoint* point = std::get_if<SpacePoint>(&found)) {
-      placed.points[i] = *point;
+      located.points[i] = *point;
       std::uint64_t cameras = 0;
       for (std::size_t r = 0; r < count; ++r) {
         if (point->used >> r & 1) cameras |= std::uint64_t{1} << lines[r].camera;
       }
-      placed.points[i]->used = cameras;
+      located.points[i]->used = cameras;
     }
   }
 }
 
-std::optional<PlacedPerson> PeopleInViews::place(Person& person, std::span<const PersonView> views, const std::vector<int>& own,
-                                                 double seconds) {
+std::optional<LocatedPerson> PeopleInViews::location(Person& person, std::span<const PersonView> views, const std::vector<int>& own,
+                                                     double seconds) {
   if (own.size() < 2) return std::nullopt;
-  PlacedPerson placed{.id = person.id,
-                      .views = std::vector<int>(static_cast<std::size_t>(cameras_), -1),
-                      .mirrored = std::vector<Mirrored>(static_cast<std::size_t>(cameras_)),
-                      .points = std::vector<std::optional<SpacePoint>>(set_.points.size())};
+  LocatedPerson located{.id = person.id,
+                        .views = std::vector<int>(static_cast<std::size_t>(cameras_), -1),
+                        .mirrored = std::vector<Mirrored>(static_cast<std::size_t>(cameras_)),
+                        .points = std::vector<std::optional<SpacePoint>>(set_.points.size())};
   for (const int v : own) {
     const PersonView& view = views[static_cast<std::size_t>(v)];
-    placed.views[static_cast<std::size_t>(view.camera)] = view.index;
+    located.views[static_cast<std::size_t>(view.camera)] = view.index;
   }
-  views_placed_ += std::ssize(own);
-  find_mirrored(person, views, own, placed.mirrored);
-  triangulate(views, own, placed, &person);
-  learn(person, placed, person.is_new ? 0 : seconds);
+  views_located_ += std::ssize(own);
+  find_mirrored(person, views, own, located.mirrored);
+  triangulate(views, own, located, &person);
+  learn(person, located, person.is_new ? 0 : seconds);
   person.is_new = false;
-  person.unseen_s = 0;
-  return placed;
+  person.unobserved_s = 0;
+  return located;
 }
 
 /// An alpha-beta filter of each keypoint (Benedict and Bordner's relation of its two gains).
-void PeopleInViews::learn(Person& person, const PlacedPerson& placed, double seconds) const {
+void PeopleInViews::learn(Person& person, const LocatedPerson& located, double seconds) const {
   const double alpha = seconds > 0 ? 1 - std::exp(-seconds / options_.settle_s) : 1, beta = alpha * alpha / (2 - alpha);
   Vector<3> velocity = Vector<3>::Zero();
   int moving = 0;
-  for (std::size_t i = 0; i < placed.points.size(); ++i) {
-    if (!placed.points[i]) continue;
+  for (std::size_t i = 0; i < located.points.size(); ++i) {
+    if (!located.points[i]) continue;
     auto& point = person.points[i];
     if (!point || seconds <= 0) {
-      point = Point{.position = placed.points[i]->position, .velocity = point ? point->velocity : Vector<3>::Zero()};
+      point = Point{.position = located.points[i]->position, .velocity = point ? point->velocity : Vector<3>::Zero()};
       continue;
     }
-    const Vector<3> ahead = placed.points[i]->position - point->position;
+    const Vector<3> ahead = located.points[i]->position - point->position;
     point->position += alpha * ahead;
     point->velocity += beta / seconds * ahead;
-    point->unseen_s = 0;
+    point->unobserved_s = 0;
     velocity += point->velocity;
     ++moving;
   }
   if (moving == 0) return;
-  for (auto& point : person.points) {  // what is not seen goes on with the body
-    if (point && point->unseen_s > 0) point->velocity += alpha * (velocity / moving - point->velocity);
+  for (auto& point : person.points) {  // what is not seen continues with the body
+    if (point && point->unobserved_s > 0) point->velocity += alpha * (velocity / moving - point->velocity);
   }
 }
 

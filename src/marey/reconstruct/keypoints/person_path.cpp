@@ -10,9 +10,9 @@
 namespace marey::reconstruct::keypoints {
 namespace {
 
-constexpr double kMostSquare = 25;
+constexpr double kMaxSquare = 25;
 constexpr double kWide = 1.5;  // times the noise, of the first paths
-constexpr double kLeastNoise = 0.1;
+constexpr double kMinNoise = 0.1;
 constexpr double kMedianSquare = 1.386;  // of two standard normal variables' squares
 constexpr double kLastingBound = 3;      // standard deviations at which an error has a quarter of its weight
 constexpr double kFewErrors = 5;         // instants by which a mean error is drawn to none
@@ -28,11 +28,11 @@ class PathFinder {
     PersonPath path;
     path.points.resize(set_.points.size());
     smooth_all(path);
-    if (exchange(path)) smooth_all(path);
+    if (interchange(path)) smooth_all(path);
     if (options_.lasting_s > 0) take_lasting(path);
     learn_noise(path);
     smooth_all(path);
-    if (exchange(path)) {
+    if (interchange(path)) {
       learn_noise(path);
       smooth_all(path);
     }
@@ -42,11 +42,11 @@ class PathFinder {
 
  private:
   std::optional<SightLine> line_at(std::size_t instant, int camera, std::size_t point, bool other_side) const {
-    const PlacedPerson& placed = track_.instants[instant];
-    const int index = placed.views.empty() ? -1 : placed.views[static_cast<std::size_t>(camera)];
-    const Keypoints<2>* seen = index < 0 ? nullptr : find_(track_.first + instant, camera, index);
-    if (seen == nullptr) return std::nullopt;
-    const auto& keypoint = seen->points[other_side ? static_cast<std::size_t>(set_.mirrored[point]) : point];
+    const LocatedPerson& located = track_.instants[instant];
+    const int index = located.views.empty() ? -1 : located.views[static_cast<std::size_t>(camera)];
+    const Keypoints<2>* detected = index < 0 ? nullptr : find_(track_.first + instant, camera, index);
+    if (detected == nullptr) return std::nullopt;
+    const auto& keypoint = detected->points[other_side ? static_cast<std::size_t>(set_.mirrored[point]) : point];
     if (!keypoint) return std::nullopt;
     const Camera& eye = *cameras_[static_cast<std::size_t>(camera)];
     if (lasting_.empty()) return line_of(eye, camera, *keypoint, noise_);
@@ -59,7 +59,7 @@ class PathFinder {
     PointLines lines;
     for (std::size_t t = 0; t < track_.instants.size(); ++t) {
       for (int camera = 0; camera < std::ssize(track_.instants[t].views); ++camera) {
-        if (const auto line = placed_line(t, camera, point)) lines.add(*line);
+        if (const auto line = located_line(t, camera, point)) lines.add(*line);
       }
       lines.end_instant();
     }
@@ -84,7 +84,7 @@ class PathFinder {
     std::vector<double> squares;
     for (std::size_t i = 0; i < set_.points.size(); ++i) append_squares(lines_of(i), path.points[i], squares);
     if (squares.empty()) return;
-    noise_ = std::max(kLeastNoise, noise_ * std::sqrt(geometry::median(squares) / kMedianSquare));
+    noise_ = std::max(kMinNoise, noise_ * std::sqrt(geometry::median(squares) / kMedianSquare));
   }
 
   /// Of each camera and point the mean error over a while, px: errors are averaged across the view at the point's distance, those
@@ -102,15 +102,15 @@ class PathFinder {
         std::vector<double> scales(count, 0);                       // px/m
         for (std::size_t t = 0; t < count; ++t) {
           sums[t + 1] = sums[t];
-          const auto line = placed_line(t, static_cast<int>(c), i);
+          const auto line = located_line(t, static_cast<int>(c), i);
           if (!line) continue;
           const double depth = line->depth(path.points[i][t].position);
           if (!(depth > 0.1)) continue;
           scales[t] = line->scale() / depth;
           const Vector<2> error = line->error(path.points[i][t].position);
-          const double share =
+          const double fraction =
               kLastingBound * kLastingBound / (kLastingBound * kLastingBound + error.squaredNorm() / (line->sigma * line->sigma));
-          sums[t + 1] += share * share * Vector<3>(error.x() / scales[t], error.y() / scales[t], 1);
+          sums[t + 1] += fraction * fraction * Vector<3>(error.x() / scales[t], error.y() / scales[t], 1);
         }
         for (std::size_t t = 0; t < count; ++t) {
           const Vector<3> sum = sums[std::min(count, t + half + 1)] - sums[t > half ? t - half : 0];
@@ -122,7 +122,7 @@ class PathFinder {
   }
 
   /// The line by the names that the view is read with.
-  std::optional<SightLine> placed_line(std::size_t t, int camera, std::size_t point) const {
+  std::optional<SightLine> located_line(std::size_t t, int camera, std::size_t point) const {
     if (track_.instants[t].views.empty()) return std::nullopt;
     return line_at(t, camera, point, track_.instants[t].mirrored[static_cast<std::size_t>(camera)].of(limbs_[point]));
   }
@@ -136,8 +136,8 @@ class PathFinder {
       const auto line = line_at(t, camera, i, false);
       if (!line) continue;
       const auto square = [&](const Vector<3>& at) {
-        return line->depth(at) > 0.1 ? std::min(kMostSquare, line->error(at).squaredNorm() / (line->sigma * line->sigma))
-                                     : kMostSquare;
+        return line->depth(at) > 0.1 ? std::min(kMaxSquare, line->error(at).squaredNorm() / (line->sigma * line->sigma))
+                                     : kMaxSquare;
       };
       gain[static_cast<std::size_t>(*limbs_[i])] += square(path.points[i][t].position) - square(path.points[other][t].position);
     }
@@ -145,9 +145,9 @@ class PathFinder {
   }
 
   /// Whether any view is read otherwise than before.
-  bool exchange(const PersonPath& path) {
+  bool interchange(const PersonPath& path) {
     bool changed = false;
-    const double least = options_.swap_gain * options_.swap_gain;
+    const double minimum = options_.swap_gain * options_.swap_gain;
     for (std::size_t t = 0; t < track_.instants.size(); ++t) {
       std::vector<Mirrored>& mirrored = track_.instants[t].mirrored;
       std::vector<Mirrored> now(mirrored.size());
@@ -155,9 +155,9 @@ class PathFinder {
       for (int camera = 0; camera < std::ssize(mirrored); ++camera) {
         if (track_.instants[t].views[static_cast<std::size_t>(camera)] < 0) continue;
         const auto gain = gain_of(path, t, camera);
-        now[static_cast<std::size_t>(camera)] = {.arms = gain[0] > least, .legs = gain[1] > least};
-        arms += gain[0] > least ? 1 : 0;
-        legs += gain[1] > least ? 1 : 0;
+        now[static_cast<std::size_t>(camera)] = {.arms = gain[0] > minimum, .legs = gain[1] > minimum};
+        arms += gain[0] > minimum ? 1 : 0;
+        legs += gain[1] > minimum ? 1 : 0;
         ++views;
       }
       for (Mirrored& of : now) {

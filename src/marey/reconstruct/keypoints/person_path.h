@@ -4,7 +4,7 @@
 // A network puts a point beside its joint, by about as much as long as it sees the body from about the same side, and a calibration
 // that is a little wrong does the same. Where a camera's point then is missing for a frame, or has less weight, the place in space
 // would jump. So the first paths are made with wide deviations, in which every camera has its say; of every camera and point the
-// mean error over three seconds is taken out; and the final paths are made of what is left, with the deviation that it shows. The
+// mean error over three seconds is taken out; and the final paths are made of the rest, with the deviation that it shows. The
 // mean over all cameras stays: what they share cannot be known. Cost: three times that of the paths.
 #pragma once
 
@@ -23,10 +23,10 @@ namespace marey::reconstruct::keypoints {
 struct PersonTrack {
   int id = 0;
   std::size_t first = 0;  ///< the instant of `instants[0]`
-  std::vector<PlacedPerson> instants;
+  std::vector<LocatedPerson> instants;
 };
 
-/// The keypoints of a person in a camera at an instant; nothing where the camera does not see them.
+/// The keypoints of a person in a camera at an instant; nothing if the camera does not see them.
 using FindKeypoints = std::function<const Keypoints<2>*(std::size_t instant, int camera, int index)>;
 
 struct PersonPathOptions {

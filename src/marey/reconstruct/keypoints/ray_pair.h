@@ -12,7 +12,7 @@ struct RayPair {
   double square = 0;                       ///< of both reprojection errors, in standard deviations: one degree of freedom
 };
 
-/// Nothing where they are parallel or pass behind a camera.
+/// Nothing if they are parallel or pass behind a camera.
 std::optional<RayPair> pass_of(const SightLine& a, const SightLine& b);
 
 }  // namespace marey::reconstruct::keypoints

@@ -13,7 +13,7 @@ using State = Vector<6>;
 using StateMatrix = Matrix<6>;
 
 constexpr double kAnywhere_m = 5, kAnySpeed_m_s = 5;  // deviations before the first instant
-constexpr double kHasSay = 0.25;                      // weight
+constexpr double kHasReport = 0.25;                   // weight
 
 /// What an instant's half-lines say near a place: information and gradient.
 struct Evidence {
@@ -22,8 +22,8 @@ struct Evidence {
 };
 
 double weight_of(double square, double bound) {
-  const double share = bound * bound / (bound * bound + square);
-  return share * share;
+  const double fraction = bound * bound / (bound * bound + square);
+  return fraction * fraction;
 }
 
 Evidence evidence_of(std::span<const SightLine> lines, const Vector<3>& at, double bound) {
@@ -47,8 +47,8 @@ std::vector<Vector<3>> filled(std::span<const std::optional<Vector<3>>> start) {
   for (std::size_t i = 0; i < start.size(); ++i) {
     if (!start[i]) continue;
     for (std::size_t j = last ? *last + 1 : 0; j < i; ++j) {
-      const double share = last ? static_cast<double>(j - *last) / static_cast<double>(i - *last) : 1;
-      path[j] = last ? Vector<3>((1 - share) * *start[*last] + share * *start[i]) : *start[i];
+      const double fraction = last ? static_cast<double>(j - *last) / static_cast<double>(i - *last) : 1;
+      path[j] = last ? Vector<3>((1 - fraction) * *start[*last] + fraction * *start[i]) : *start[i];
     }
     path[i] = *start[i];
     last = i;
@@ -135,7 +135,7 @@ void count_rays(std::span<const SightLine> lines, double bound, TrajectoryPoint&
   for (const SightLine& line : lines) {
     if (!(line.depth(point.position) > 0.1)) continue;
     const double square = line.error(point.position).squaredNorm();
-    if (weight_of(square / (line.sigma * line.sigma), bound) < kHasSay) continue;
+    if (weight_of(square / (line.sigma * line.sigma), bound) < kHasReport) continue;
     sum += square;
     ++point.rays;
     point.cameras |= std::uint64_t{1} << line.camera;
@@ -147,7 +147,7 @@ void count_rays(std::span<const SightLine> lines, double bound, TrajectoryPoint&
 
 std::vector<TrajectoryPoint> smooth_trajectory(const PointLines& lines, std::span<const std::optional<Vector<3>>> start,
                                                double step_s, const TrajectoryOptions& options) {
-  const bool known = std::any_of(start.begin(), start.end(), [](const auto& place) { return place.has_value(); });
+  const bool known = std::any_of(start.begin(), start.end(), [](const auto& location) { return location.has_value(); });
   if (!known || lines.instants() == 0) return {};
   std::vector<Vector<3>> path = filled(start);
   Smoother smoother(lines, step_s, options);

@@ -39,8 +39,8 @@ cv::Range pixels(double low, double high, int size) {
 }
 
 /// How much of the pixel at `place` lies within [low, high).
-double overlap(int place, double low, double high) {
-  return std::max(0.0, std::min(place + 0.5, high) - std::max(place - 0.5, low));
+double overlap(int location, double low, double high) {
+  return std::max(0.0, std::min(location + 0.5, high) - std::max(location - 0.5, low));
 }
 
 /// The standard normal's quantiles at (i + ½) / 65536, found by Newton's method outwards from the median.
@@ -99,8 +99,8 @@ void draw_discs(cv::Mat& image, std::span<const Disc> discs, int points) {
     for (int y = touched.y; y < touched.br().y; ++y) {
       float* row = image.ptr<float>(y);
       for (int x = touched.x; x < touched.br().x; ++x) {
-        const double share = coverage(disc, x, y, points);
-        row[x] = static_cast<float>((1 - share) * row[x] + share * disc.level);
+        const double fraction = coverage(disc, x, y, points);
+        row[x] = static_cast<float>((1 - fraction) * row[x] + fraction * disc.level);
       }
     }
   }
@@ -114,18 +114,18 @@ void draw_barrier(cv::Mat& image, const Box& box, double level) {
     float* row = image.ptr<float>(y);
     const double down = overlap(y, box.top - 0.5, box.bottom() - 0.5);
     for (int x = columns.start; x < columns.end; ++x) {
-      const double share = down * overlap(x, box.left - 0.5, box.right() - 0.5);
-      row[x] = static_cast<float>((1 - share) * row[x] + share * level);
+      const double fraction = down * overlap(x, box.left - 0.5, box.right() - 0.5);
+      row[x] = static_cast<float>((1 - fraction) * row[x] + fraction * level);
     }
   }
 }
 
 cv::Mat expose(const cv::Mat& image, double noise, std::uint64_t seed, int depth) {
   CV_Assert(image.type() == CV_32FC1 && (depth == CV_8U || depth == CV_16U));
-  cv::Mat seen = image.clone();
-  if (noise > 0) add_noise(seen, static_cast<float>(noise), seed);
+  cv::Mat detected = image.clone();
+  if (noise > 0) add_noise(detected, static_cast<float>(noise), seed);
   cv::Mat result;
-  seen.convertTo(result, depth);
+  detected.convertTo(result, depth);
   return result;
 }
 

@@ -19,22 +19,22 @@ void fill(cv::Mat& ground, const std::vector<cv::Point2f>& corners, double level
   std::vector<cv::Point> fine;
   for (const cv::Point2f& corner : corners) fine.emplace_back(cvRound(corner.x * 16), cvRound(corner.y * 16));
   cv::fillPoly(mask, std::vector<std::vector<cv::Point>>{fine}, cv::Scalar(255), cv::LINE_AA, 4);
-  cv::Mat share;
-  mask.convertTo(share, CV_32F, 1 / 255.0);
-  cv::GaussianBlur(share, share, {}, softness);
-  ground = ground.mul(1 - share) + level * share;
+  cv::Mat fraction;
+  mask.convertTo(fraction, CV_32F, 1 / 255.0);
+  cv::GaussianBlur(fraction, fraction, {}, softness);
+  ground = ground.mul(1 - fraction) + level * fraction;
 }
 
 }  // namespace
 
-Vector<2> MarkerStage::place(double margin) {
+Vector<2> MarkerStage::location(double margin) {
   return {random.uniform(margin, ground.cols - 1 - margin), random.uniform(margin, ground.rows - 1 - margin)};
 }
 
 void lay_bar(MarkerStage& stage, double width, double level) {
   const double angle = stage.random.uniform(0, std::numbers::pi);
   const Vector<2> along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
-  const Vector<2> middle = stage.place(0.25 * stage.ground.rows);
+  const Vector<2> middle = stage.location(0.25 * stage.ground.rows);
   std::vector<cv::Point2f> corners;
   for (const auto& [u, v] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
     const Vector<2> corner = middle + along * (2000.0 * u) + across * (width / 2 * v);
@@ -45,7 +45,7 @@ void lay_bar(MarkerStage& stage, double width, double level) {
 
 void lay_levels(MarkerStage& stage, int areas) {
   for (int i = 0; i < areas; ++i) {
-    const Vector<2> middle = stage.place(0);
+    const Vector<2> middle = stage.location(0);
     const double reach = stage.ground.cols * stage.random.uniform(0.06, 0.3);
     const int corner_count = stage.random.integer(3, 7);
     const double turn = stage.random.uniform(0, 2 * std::numbers::pi);
@@ -60,7 +60,7 @@ void lay_levels(MarkerStage& stage, int areas) {
 }
 
 void lay_texture(MarkerStage& stage) {
-  const Vector<2> lit = stage.place(0.2 * stage.ground.rows);
+  const Vector<2> lit = stage.location(0.2 * stage.ground.rows);
   const double reach = stage.ground.cols * stage.random.uniform(0.15, 0.4), height = stage.random.uniform(8, 30);
   const double grain = stage.random.uniform(2.5, 9);  // px
   for (int y = 0; y < stage.ground.rows; ++y) {
@@ -75,12 +75,12 @@ void lay_texture(MarkerStage& stage) {
   }
 }
 
-void strew_specks(MarkerStage& stage, int count, double least, double most) {
+void strew_specks(MarkerStage& stage, int count, double minimum, double maximum) {
   std::vector<Disc> specks;
   for (int i = 0; i < count; ++i) {
-    const Vector<2> at = stage.place(3);
+    const Vector<2> at = stage.location(3);
     const float under = stage.ground.at<float>(static_cast<int>(at.y()), static_cast<int>(at.x()));
-    specks.push_back({at, stage.random.uniform(0.6, 1.2), under + stage.random.uniform(least, most), 0.6});
+    specks.push_back({at, stage.random.uniform(0.6, 1.2), under + stage.random.uniform(minimum, maximum), 0.6});
   }
   for (const Disc& speck : specks) stage.specks.push_back(speck.centre);
   draw_discs(stage.ground, specks, 2);
@@ -135,7 +135,7 @@ void lay_glow(MarkerStage& stage) {
 }
 
 void lay_reflection(MarkerStage& stage) {
-  Vector<2> at = stage.place(60);
+  Vector<2> at = stage.location(60);
   double angle = stage.random.uniform(0, 2 * std::numbers::pi);
   cv::Mat mask = cv::Mat::zeros(stage.ground.size(), CV_8U);
   const int parts = stage.random.integer(3, 6);
@@ -148,10 +148,10 @@ void lay_reflection(MarkerStage& stage) {
     angle += stage.random.uniform(-0.8, 0.8);
     at += Vector<2>(std::cos(angle), std::sin(angle)) * stage.random.uniform(8, 24);
   }
-  cv::Mat share;
-  mask.convertTo(share, CV_32F, 1 / 255.0);
-  cv::GaussianBlur(share, share, {}, stage.random.uniform(0.7, 1.5));
-  stage.ground += stage.random.uniform(300, 700) * share;
+  cv::Mat fraction;
+  mask.convertTo(fraction, CV_32F, 1 / 255.0);
+  cv::GaussianBlur(fraction, fraction, {}, stage.random.uniform(0.7, 1.5));
+  stage.ground += stage.random.uniform(300, 700) * fraction;
 }
 
 }  // namespace marey::simulate::markers

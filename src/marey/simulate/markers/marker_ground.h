@@ -10,7 +10,7 @@
 
 namespace marey::simulate::markers {
 
-/// A picture of markers while it is made.
+/// An image of markers while it is made.
 struct MarkerStage {
   Random random;
   std::uint64_t seed;
@@ -20,26 +20,26 @@ struct MarkerStage {
   std::vector<Vector<2>> specks;  ///< px
 
   /// Anywhere but within `margin` px of the border.
-  Vector<2> place(double margin);
+  Vector<2> location(double margin);
 };
 
 // What is laid over the ground before there are markers.
 
-/// A bar `width` px wide through the picture's middle part, at any angle.
+/// A bar `width` px wide through the image's middle part, at any angle.
 void lay_bar(MarkerStage& stage, double width, double level);
-/// So many areas of one level each, up to 120.
+/// This many areas of one level each, up to 120.
 void lay_levels(MarkerStage& stage, int areas);
 /// A lit part with bumps of all sizes.
 void lay_texture(MarkerStage& stage);
-/// So many spots of 2 to 4 px, that stand out by `least` to `most` levels.
-void strew_specks(MarkerStage& stage, int count, double least = 7, double most = 40);
-/// The ground rises by so many levels from one side to the other.
+/// This many spots of 2 to 4 px, that stand out by `least` to `most` levels.
+void strew_specks(MarkerStage& stage, int count, double minimum = 7, double maximum = 40);
+/// The ground rises by this many levels from one side to the other.
 void lay_gradient(MarkerStage& stage, double rise);
 /// A lit ground that falls off towards the corners.
 void lay_vignette(MarkerStage& stage);
 /// A lamp and the light that the lens spreads round it: a saturated core and a halo that falls off by e in a few tens of pixels.
 void lay_lamp(MarkerStage& stage, const Vector<2>& at, double radius);
-/// One or two lamps at or beyond the picture's edge.
+/// One or two lamps at or beyond the image's edge.
 void lay_glow(MarkerStage& stage);
 /// Light on metal: a chain of saturated ellipses of all sizes.
 void lay_reflection(MarkerStage& stage);

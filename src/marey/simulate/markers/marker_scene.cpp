@@ -30,16 +30,17 @@ struct Range {
   double draw(Random& random) const { return random.uniform(low, high); }
 };
 
-bool inside(const Vector<2>& place, const cv::Size& size) {
-  return place.x() > kMargin && place.y() > kMargin && place.x() < size.width - kMargin && place.y() < size.height - kMargin;
+bool inside(const Vector<2>& location, const cv::Size& size) {
+  return location.x() > kMargin && location.y() > kMargin && location.x() < size.width - kMargin &&
+         location.y() < size.height - kMargin;
 }
 
 Vector<2> middle(const cv::Size& size) {
   return {size.width / 2.0, size.height / 2.0};
 }
 
-double heading_inwards(const Vector<2>& place, const cv::Size& size, Random& random) {
-  const Vector<2> to_middle = middle(size) - place;
+double heading_inwards(const Vector<2>& location, const cv::Size& size, Random& random) {
+  const Vector<2> to_middle = middle(size) - location;
   return std::atan2(to_middle.y(), to_middle.x()) + random.uniform(-0.5, 0.5);
 }
 
@@ -53,25 +54,25 @@ constexpr ZigzagMotion kRapidZigzag{{16, 28}, 3, 5, {1.2, 2.2}};
 
 Path zigzag(const ZigzagMotion& motion, int frames, const cv::Size& size, Random& random) {
   const double speed = motion.speed.draw(random);
-  Vector<2> place(random.uniform(0.19, 0.81) * size.width, random.uniform(0.25, 0.75) * size.height);
+  Vector<2> location(random.uniform(0.19, 0.81) * size.width, random.uniform(0.25, 0.75) * size.height);
   double heading = random.uniform(0, 2 * kPi);
   double side = 1;
   double course = 0;
   int left = 0;
-  Path path{place};
+  Path path{location};
   while (std::ssize(path) < frames) {
     if (left-- <= 0) {
       side = -side;
       course = heading + side * motion.turn.draw(random) / 2;
       left = random.integer(motion.shortest_leg, motion.longest_leg) - 1;
     }
-    if (!inside(place + speed * direction(course), size)) {
-      heading = heading_inwards(place, size, random);
+    if (!inside(location + speed * direction(course), size)) {
+      heading = heading_inwards(location, size, random);
       course = heading + side * motion.turn.draw(random) / 4;
       left = random.integer(motion.shortest_leg, motion.longest_leg) - 1;
     }
-    place += speed * direction(course);
-    path.push_back(place);
+    location += speed * direction(course);
+    path.push_back(location);
   }
   return path;
 }
@@ -83,11 +84,11 @@ Path accelerating(int frames, const cv::Size& size, Random& random) {
   constexpr Range kTurn{1.2, 2.8};          // rad
   constexpr int kShortestLeg = 12, kLongestLeg = 20;
   const double acceleration = kAcceleration.draw(random);
-  Vector<2> place(random.uniform(0.25, 0.75) * size.width, random.uniform(0.29, 0.71) * size.height);
+  Vector<2> location(random.uniform(0.25, 0.75) * size.width, random.uniform(0.29, 0.71) * size.height);
   double course = random.uniform(0, 2 * kPi);
   double speed = kStart.draw(random);
   int left = random.integer(kShortestLeg, kLongestLeg);
-  Path path{place};
+  Path path{location};
   const auto new_leg = [&](double new_course) {
     course = new_course;
     speed = kStart.draw(random);
@@ -95,10 +96,10 @@ Path accelerating(int frames, const cv::Size& size, Random& random) {
   };
   while (std::ssize(path) < frames) {
     if (left-- <= 0) new_leg(course + (random.chance(0.5) ? 1 : -1) * kTurn.draw(random));
-    if (!inside(place + speed * direction(course), size)) new_leg(heading_inwards(place, size, random));
-    place += speed * direction(course);
+    if (!inside(location + speed * direction(course), size)) new_leg(heading_inwards(location, size, random));
+    location += speed * direction(course);
     speed += acceleration;
-    path.push_back(place);
+    path.push_back(location);
   }
   return path;
 }
@@ -109,8 +110,8 @@ Path through(const Vector<2>& crossing, double course, double speed, double bend
   const int half = frames / 2;
   path[half] = crossing;
   const auto course_at = [&](double frame) {
-    const double share = bend_frames > 0 ? std::clamp((frame - half) / bend_frames + 0.5, 0.0, 1.0) : (frame > half ? 1.0 : 0.0);
-    return course + (share - 0.5) * bend;
+    const double fraction = bend_frames > 0 ? std::clamp((frame - half) / bend_frames + 0.5, 0.0, 1.0) : (frame > half ? 1.0 : 0.0);
+    return course + (fraction - 0.5) * bend;
   };
   for (int i = half + 1; i < frames; ++i) path[i] = path[i - 1] + speed * direction(course_at(i - 0.5));
   for (int i = half - 1; i >= 0; --i) path[i] = path[i + 1] - speed * direction(course_at(i + 0.5));
@@ -119,17 +120,17 @@ Path through(const Vector<2>& crossing, double course, double speed, double bend
 
 /// The longest stretch of frames around the meeting in which the whole path keeps inside the image.
 bool stays_inside(const Path& path, const cv::Size& size) {
-  for (const Vector<2>& place : path) {
-    if (!inside(place, size)) return false;
+  for (const Vector<2>& location : path) {
+    if (!inside(location, size)) return false;
   }
   return true;
 }
 
-/// How often a motion is drawn anew until it fits, which for some lengths and sizes it never does: at most so many places are
+/// How often a motion is drawn again until it fits, which for some lengths and sizes it never does: at most this many places are
 /// computed.
-int most_draws(int frames) {
-  constexpr int kPlaces = 5'000'000;
-  return std::clamp(kPlaces / std::max(1, frames), 10, 100'000);
+int max_draws(int frames) {
+  constexpr int kPositions = 5'000'000;
+  return std::clamp(kPositions / std::max(1, frames), 10, 100'000);
 }
 
 struct OcclusionMotion {
@@ -144,7 +145,7 @@ OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random)
   const bool bent = random.chance(0.5);
   const double width = kBarrier.draw(random);
   const double height = kBarrier.draw(random) + width / 2;
-  for (int draw = most_draws(frames); draw > 0; --draw) {
+  for (int draw = max_draws(frames); draw > 0; --draw) {
     const double speed = kSpeed.draw(random) * size.width / 640;
     const double bend = bent ? (random.chance(0.5) ? 1 : -1) * kBend.draw(random) : 0;
     const Vector<2> centre = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
@@ -152,7 +153,7 @@ OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random)
     Path path = through(centre, random.uniform(0, 2 * kPi), speed, bend, bend_frames, frames);
     if (stays_inside(path, size)) return {std::move(path), Box::from_centre(centre, width, height)};
   }
-  throw Error("no path of {} frames past a barrier stays within {} x {} px; ask for fewer frames or a larger picture", frames,
+  throw Error("no path of {} frames past a barrier stays within {} x {} px; ask for fewer frames or a larger image", frames,
               size.width, size.height);
 }
 
@@ -162,7 +163,7 @@ struct BarMotion {
   double level;
 };
 
-/// Upright bars of `width` px that share the picture out evenly.
+/// Upright bars of `width` px that share the image out evenly.
 std::vector<Box> bars_across(int count, double width, const cv::Size& size) {
   std::vector<Box> bars;
   for (int i = 0; i < count; ++i) {
@@ -182,7 +183,7 @@ BarMotion behind_bars(int markers, int frames, const MarkerSceneOptions& options
   constexpr Range kBend{-0.08, 0.08};   // rad over the whole path
   constexpr Range kLane{-15, 15};       // px beside the common lane
   constexpr Range kDelay{-4, 4};        // frames
-  for (int draw = most_draws(frames); draw > 0; --draw) {
+  for (int draw = max_draws(frames); draw > 0; --draw) {
     const double width = kBar.draw(random) * size.width / 640 / options.bars;
     BarMotion motion{{}, bars_across(options.bars, width, size), kGrey.draw(random)};
     const double lane = random.uniform(-0.3, 0.3) * size.height;
@@ -200,15 +201,15 @@ BarMotion behind_bars(int markers, int frames, const MarkerSceneOptions& options
     }
     if (fits) return motion;
   }
-  throw Error("no path of {} frames past a bar stays within {} x {} px; ask for fewer frames or a larger picture", frames,
-              size.width, size.height);
+  throw Error("no path of {} frames past a bar stays within {} x {} px; ask for fewer frames or a larger image", frames, size.width,
+              size.height);
 }
 
 std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& size, Random& random) {
   constexpr Range kSpeed{2, 6};       // px a frame, drawn for each marker
   constexpr Range kAngle{0.35, 2.8};  // rad, between the two courses
   constexpr Range kBend{-0.5, 0.5};   // rad
-  for (int draw = most_draws(frames); draw > 0; --draw) {
+  for (int draw = max_draws(frames); draw > 0; --draw) {
     const Vector<2> crossing = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
     const double course = random.uniform(0, 2 * kPi);
     const Vector<2> miss = random.uniform(0, radius) * direction(random.uniform(0, 2 * kPi));
@@ -224,7 +225,7 @@ std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& siz
   throw Error(
       "no two markers cross in {} frames within {} x {} px, {:g} px apart at the beginning and at the end; ask for about 80 "
       "frames, smaller "
-      "markers or a larger picture",
+      "markers or a larger image",
       frames, size.width, size.height, 8 * radius);
 }
 
@@ -259,10 +260,10 @@ int paper_length(MarkerSituation situation) {
   return 80;
 }
 
-bool hidden(const Vector<2>& place, const std::vector<Box>& barriers) {
+bool hidden(const Vector<2>& location, const std::vector<Box>& barriers) {
   for (const Box& box : barriers) {
-    if (place.x() >= box.left - 0.5 && place.x() < box.right() - 0.5 && place.y() >= box.top - 0.5 &&
-        place.y() < box.bottom() - 0.5)
+    if (location.x() >= box.left - 0.5 && location.x() < box.right() - 0.5 && location.y() >= box.top - 0.5 &&
+        location.y() < box.bottom() - 0.5)
       return true;
   }
   return false;
@@ -275,9 +276,9 @@ void put_in_frames(const std::vector<Path>& paths, int frames, Random& random, M
   scene.clutter.resize(frames);
   for (int i = 0; i < frames; ++i) {
     for (int marker = 0; marker < std::ssize(paths); ++marker) {
-      const Vector<2>& place = paths[marker][i];
-      const bool in_image = image.contains(cv::Point2d(place.x(), place.y()));
-      scene.frames[i].push_back({marker, place, in_image && !hidden(place, scene.barriers)});
+      const Vector<2>& location = paths[marker][i];
+      const bool in_image = image.contains(cv::Point2d(location.x(), location.y()));
+      scene.frames[i].push_back({marker, location, in_image && !hidden(location, scene.barriers)});
     }
     for (int light = 0; light < scene.options.clutter; ++light) {
       scene.clutter[i].emplace_back(random.uniform(0, scene.options.size.width - 1),
@@ -371,7 +372,7 @@ class SceneSource final : public Source {
   std::optional<Frame> next() override {
     if (next_ >= std::ssize(scene_.frames)) return std::nullopt;
     const int index = next_++;
-    return Frame{CameraId{}, index, timestamp_from_seconds(index / scene_.options.rate_hz), Picture(render_frame(scene_, index))};
+    return Frame{CameraId{}, index, timestamp_from_seconds(index / scene_.options.rate_hz), Image(render_frame(scene_, index))};
   }
 
  private:

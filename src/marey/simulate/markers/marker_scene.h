@@ -21,9 +21,9 @@ enum class MarkerSituation {
   acceleration,
   occlusion,  ///< one marker passes behind a barrier, on a straight or a bent path
   crossing,   ///< the paper's marker swapping: two markers meet and part
-  bar,        ///< one marker, nearly straight, 12 to 32 frames behind a bar of any grey that crosses the picture
+  bar,        ///< one marker, nearly straight, 12 to 32 frames behind a bar of any grey that crosses the image
   opposite,   ///< the same with two, from opposite sides, hidden at the same time in one lane
-  plain,      ///< smooth curves that do not fail anyone: for timing
+  plain,      ///< smooth curves that do not fail any person: for timing
 };
 
 /// All situations with the names that the command line uses.

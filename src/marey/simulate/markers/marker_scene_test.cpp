@@ -36,10 +36,11 @@ TEST(MarkerScene, MarkersStayInTheImageAndKeepToTheirSpeeds) {
       const MarkerScene scene = simulate_markers(named.situation, seed);
       for (std::size_t i = 0; i < scene.frames.size(); ++i) {
         for (std::size_t marker = 0; marker < scene.frames[i].size(); ++marker) {
-          const Vector<2>& place = scene.frames[i][marker].position;
-          ASSERT_TRUE(place.x() > 0 && place.x() < 639 && place.y() > 0 && place.y() < 479) << named.name << " seed " << seed;
+          const Vector<2>& location = scene.frames[i][marker].position;
+          ASSERT_TRUE(location.x() > 0 && location.x() < 639 && location.y() > 0 && location.y() < 479)
+              << named.name << " seed " << seed;
           if (i > 0) {
-            ASSERT_LT((place - scene.frames[i - 1][marker].position).norm(), 60) << named.name << " seed " << seed;
+            ASSERT_LT((location - scene.frames[i - 1][marker].position).norm(), 60) << named.name << " seed " << seed;
           }
         }
       }
@@ -57,7 +58,7 @@ TEST(MarkerScene, ABarrierHidesTheMarkerForAWhileAndNeverAtTheEnds) {
   }
 }
 
-TEST(MarkerScene, WhereNoMotionFitsItSaysSo) {
+TEST(MarkerScene, ReportsMissingMotionModel) {
   MarkerSceneOptions options;
   for (const int frames : {1, 2, 3, 5, 5000, 1'000'000}) {
     options.frames = frames;

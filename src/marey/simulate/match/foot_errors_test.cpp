@@ -47,11 +47,11 @@ std::vector<Vector<2>> found_errors(double foot_error) {
     camera.advance();
     const Instant instant = truth.next({&camera, 1});
     for (const LabelledBox& box : camera.detect()) {
-      const auto place = view.place(box.box.foot());
-      if (!place || box.box.bottom() > view.size().height - 3) continue;
+      const auto location = view.location(box.box.foot());
+      if (!location || box.box.bottom() > view.size().height - 3) continue;
       Vector<2> nearest(1e3, 1e3);
       for (const Sample& sample : instant.samples) {
-        const Vector<2> apart = place->ground - sample.position.head<2>();
+        const Vector<2> apart = location->ground - sample.position.head<2>();
         if (apart.norm() < nearest.norm()) nearest = apart;
       }
       if (nearest.norm() < 1.2) errors.push_back(nearest);

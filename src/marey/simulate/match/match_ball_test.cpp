@@ -15,19 +15,19 @@ TEST(MatchBall, RollsFliesIsHeldAndGoesOutAsBallsDo) {
   std::array<int, 4> states{};
   double highest = 0, fastest = 0;
   for (int i = 1; i < 25 * 180; ++i) {
-    const BallPlace before = motion.ball_place();
+    const BallPosition before = motion.ball_position();
     motion.advance(i / 25.0);
-    const BallPlace ball = motion.ball_place();
+    const BallPosition ball = motion.ball_position();
     ++states[static_cast<std::size_t>(ball.state)];
-    ASSERT_GE(ball.place.z(), kBallRadius - 1e-9);
-    highest = std::max(highest, ball.place.z());
+    ASSERT_GE(ball.location.z(), kBallRadius - 1e-9);
+    highest = std::max(highest, ball.location.z());
     fastest = std::max(fastest, ball.velocity.norm());
     if (!before.there || !ball.there || ball.state == BallState::dead) continue;
-    ASSERT_LT((ball.place - before.place).norm(), 45 / 25.0)
+    ASSERT_LT((ball.location - before.location).norm(), 45 / 25.0)
         << "it jumps at " << i / 25.0 << " s, " << to_string(before.state) << " to " << to_string(ball.state);
     if (ball.state == BallState::held && before.state == BallState::held && before.holder == ball.holder) {
-      const Vector<2> holder = motion.people()[static_cast<std::size_t>(ball.holder)].place;
-      EXPECT_LT((ball.place.head<2>() - holder).norm(), 12) << i / 25.0;
+      const Vector<2> holder = motion.people()[static_cast<std::size_t>(ball.holder)].location;
+      EXPECT_LT((ball.location.head<2>() - holder).norm(), 12) << i / 25.0;
     }
   }
   for (const int count : states) EXPECT_GT(count, 25);
@@ -41,13 +41,13 @@ TEST(MatchBall, FliesUnderGravityAndSlowsInTheAir) {
   int checked = 0;
   for (int i = 1; i < 50 * 120; ++i) {
     motion.advance(i / 50.0);
-    const BallPlace a = motion.ball_place();
+    const BallPosition a = motion.ball_position();
     motion.advance((i + 0.9) / 50.0);
-    if (a.state != BallState::flying || a.place.z() < 1 || std::abs(a.velocity.z()) > 8) continue;
+    if (a.state != BallState::flying || a.location.z() < 1 || std::abs(a.velocity.z()) > 8) continue;
     MatchMotion later = motion;
     later.advance((i + 2) / 50.0);
-    const BallPlace b = later.ball_place();
-    if (b.state != BallState::flying || b.place.z() < 1) continue;
+    const BallPosition b = later.ball_position();
+    if (b.state != BallState::flying || b.location.z() < 1) continue;
     EXPECT_NEAR(b.velocity.z() - a.velocity.z(), -9.81 * 0.04, 0.3);  // to a step of 0.02 s
     EXPECT_LT(b.velocity.norm() - a.velocity.norm(), 0.5);
     ++checked;

@@ -22,7 +22,7 @@ MatchScene::Stances MatchScene::stances(std::span<const MatchPerson, kMatchPeopl
 }
 
 MatchCamera::MatchCamera(const MatchScene& scene, std::size_t index, const MatchDetectorOptions& detector,
-                         const std::optional<MatchFilmOptions>& film)
+                         const std::optional<MatchVideoOptions>& video)
     : scene_(scene),
       index_(index),
       rig_camera_(scene.rig.cameras[index]),
@@ -31,10 +31,10 @@ MatchCamera::MatchCamera(const MatchScene& scene, std::size_t index, const Match
       detector_(detector),
       random_((scene.seed * 64 + index) * 2654435761u + 41) {
   if (detector.foot_error > 0) feet_.emplace(detector.foot_error, (scene.seed * 64 + index) * 2654435761u + 43);
-  if (!film) return;
-  film_.emplace(view_, scene.world_from_pitch, scene.options.pitch, *film, film_seed());
-  has_ball_ = film->ball;
-  exposure_s_ = film->exposure_s;
+  if (!video) return;
+  video_.emplace(view_, scene.world_from_pitch, scene.options.pitch, *video, video_seed());
+  has_ball_ = video->ball;
+  exposure_s_ = video->exposure_s;
 }
 
 double MatchCamera::time() const {
@@ -47,48 +47,48 @@ void MatchCamera::advance() {
   match_time_ = scene_.match_time(time() + rig_camera_.offset_s.value_or(0));
   motion_.advance(match_time_);
   stances_ = scene_.stances(motion_.people());
-  seen_ = people_in_view(view_, scene_.figures, stances_);
+  detected_ = people_in_view(view_, scene_.figures, stances_);
 }
 
 std::vector<LabelledBox> MatchCamera::detect() {
-  std::vector<SeenPerson> moved = seen_;
-  for (SeenPerson& person : moved) {
+  std::vector<ObservedPerson> moved = detected_;
+  for (ObservedPerson& person : moved) {
     if (!feet_) break;
-    const Vector<2>& place = stances_[static_cast<std::size_t>(person.person)].place;
-    const Vector<2> along = (place - view_.camera()->centre().head<2>()).normalized(), across(-along.y(), along.x());
+    const Vector<2>& location = stances_[static_cast<std::size_t>(person.person)].location;
+    const Vector<2> along = (location - view_.camera()->centre().head<2>()).normalized(), across(-along.y(), along.x());
     const Vector<2> error = feet_->of(person.person);
-    const double share = detector_.foot_along;
-    person = with_foot_moved(person, view_, place,
-                             std::sqrt(2 * share) * error.x() * along + std::sqrt(2 * (1 - share)) * error.y() * across);
+    const double fraction = detector_.foot_along;
+    person = with_foot_moved(person, view_, location,
+                             std::sqrt(2 * fraction) * error.x() * along + std::sqrt(2 * (1 - fraction)) * error.y() * across);
   }
   return detect_match(moved, view_, scene_.world_from_pitch, scene_.options.pitch, static_cast<std::int32_t>(frame_), detector_,
                       random_);
 }
 
-Picture MatchCamera::picture() const {
-  return film_ ? film_->render(scene_.figures, stances_, match_time_, frame_) : Picture();
+Image MatchCamera::image() const {
+  return video_ ? video_->render(scene_.figures, stances_, match_time_, frame_) : Image();
 }
 
 MatchCamera::Shot MatchCamera::shoot() const {
-  if (!film_) return {};
+  if (!video_) return {};
   std::vector<people::PosedBall> balls;
-  const BallPlace ball = motion_.ball_place();
+  const BallPosition ball = motion_.ball_position();
   if (has_ball_ && ball.there) {
     const auto in_world = [&](const Vector<3>& at) -> Vector<3> {
       const Vector<3> ground = scene_.world_from_pitch * Vector<3>(at.x(), at.y(), 1);
       return {ground.x(), ground.y(), at.z()};
     };
     const Vector<3> half = 0.5 * exposure_s_ * ball.velocity;
-    balls.push_back({in_world(ball.place - half), in_world(ball.place + half), kBallRadius});
+    balls.push_back({in_world(ball.location - half), in_world(ball.location + half), kBallRadius});
   }
-  people::RenderedFrame frame = film_->render_with(scene_.figures, stances_, balls, match_time_, frame_);
-  Shot shot{std::move(frame.picture), {}};
+  people::RenderedFrame frame = video_->render_with(scene_.figures, stances_, balls, match_time_, frame_);
+  Shot shot{std::move(frame.image), {}};
   if (!frame.balls.empty()) shot.ball = frame.balls.front();
   return shot;
 }
 
 std::vector<MatchClick> MatchCamera::clicks(double noise, int wrong) const {
-  return match_clicks(view_, scene_.world_from_pitch, scene_.options.pitch, noise, wrong, film_seed());
+  return match_clicks(view_, scene_.world_from_pitch, scene_.options.pitch, noise, wrong, video_seed());
 }
 
 MatchTruth::MatchTruth(const MatchScene& scene) : scene_(scene), motion_(scene.seed, scene.options.pitch) {
@@ -100,13 +100,13 @@ Instant MatchTruth::next(std::span<const MatchCamera> cameras) {
   const double time = static_cast<double>(frame_) / scene_.options.rate_hz;
   motion_.advance(scene_.match_time(time));
   const auto stances = scene_.stances(motion_.people());
-  std::array<CameraMask, kMatchPeople> seen_by{};
+  std::array<CameraMask, kMatchPeople> observed_by{};
   for (std::size_t i = 0; i < views_.size(); ++i) {
-    std::vector<SeenPerson> own;
+    std::vector<ObservedPerson> own;
     const bool in_step = scene_.rig.cameras[i].offset_s.value_or(0) == 0;
     if (!in_step) own = people_in_view(views_[i], scene_.figures, stances);
-    for (const SeenPerson& person : in_step ? cameras[i].seen() : std::span<const SeenPerson>(own)) {
-      if (person.visible_share >= kHiddenShare) seen_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
+    for (const ObservedPerson& person : in_step ? cameras[i].detected() : std::span<const ObservedPerson>(own)) {
+      if (person.visible_fraction >= kHiddenFraction) observed_by[static_cast<std::size_t>(person.person)] |= CameraMask{1} << i;
     }
   }
   Instant instant;
@@ -117,17 +117,17 @@ Instant MatchTruth::next(std::span<const MatchCamera> cameras) {
     const MatchPerson& person = motion_.people()[i];
     Sample& sample = instant.samples.emplace_back();
     sample.track = people_[i].id;
-    sample.position.head<2>() = person.place;
+    sample.position.head<2>() = person.location;
     sample.velocity.emplace(Vector<3>::Zero()).head<2>() = person.velocity;
-    sample.cameras = seen_by[i];
+    sample.cameras = observed_by[i];
   }
   ++frame_;
   return instant;
 }
 
-BallPlace BallTruth::next() {
+BallPosition BallTruth::next() {
   motion_.advance(scene_.match_time(static_cast<double>(frame_++) / scene_.options.rate_hz));
-  return motion_.ball_place();
+  return motion_.ball_position();
 }
 
 }  // namespace marey::simulate::match

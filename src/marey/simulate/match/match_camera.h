@@ -6,25 +6,25 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/image.h"
 #include "marey/core/instant.h"
-#include "marey/core/picture.h"
 #include "marey/core/rig.h"
 #include "marey/simulate/match/foot_errors.h"
 #include "marey/simulate/match/match_cameras.h"
-#include "marey/simulate/match/match_film.h"
 #include "marey/simulate/match/match_motion.h"
+#include "marey/simulate/match/match_renderer.h"
 #include "marey/simulate/match/match_view.h"
 #include "marey/simulate/people/figure.h"
 #include "marey/simulate/random.h"
 
 namespace marey::simulate::match {
 
-/// A match with its people and the cameras that stand round it.
+/// A match with its people and the static cameras round it.
 struct MatchScene {
   using Figures = std::array<people::Figure, kMatchPeople>;
   using Stances = std::array<people::Stance, kMatchPeople>;
 
-  /// Throws Error where an option is out of its domain.
+  /// Throws Error if an option is out of its domain.
   MatchScene(const MatchCamerasOptions& how, std::uint64_t its_seed);
 
   /// s since the kick-off at a time of the rig's clock; no camera begins before it.
@@ -42,33 +42,33 @@ struct MatchScene {
 /// What one camera sees of a match, frame by frame, by its own clock.
 class MatchCamera {
  public:
-  /// Camera `index` of the scene's rig, which must outlive it. Without `film` it has no pictures.
+  /// Camera `index` of the scene's rig, which must outlive it. Without `film` it has no images.
   MatchCamera(const MatchScene& scene, std::size_t index, const MatchDetectorOptions& detector,
-              const std::optional<MatchFilmOptions>& film);
+              const std::optional<MatchVideoOptions>& video);
 
   /// Goes to the next frame, the first one to begin with.
   void advance();
 
   std::int64_t frame() const { return frame_; }
-  double time() const;                                        ///< s, by its own clock
-  std::span<const SeenPerson> seen() const { return seen_; }  ///< the truth: who is seen
-  /// What a detector says of this frame; errs anew at each call.
+  double time() const;                                                    ///< s, by its own clock
+  std::span<const ObservedPerson> detected() const { return detected_; }  ///< the truth: who is seen
+  /// What a detector says of this frame; errs again at each call.
   std::vector<LabelledBox> detect();
-  Picture picture() const;
+  Image image() const;
   /// A ball in the match as this camera sees it, halfway through the exposure.
   struct Shot {
-    Picture picture;
-    std::optional<people::TrueBall> ball;  ///< nothing where there is none, or it lies behind the camera
+    Image image;
+    std::optional<people::TrueBall> ball;  ///< nothing if there is none, or it lies behind the camera
   };
-  /// The picture with the ball, where the film has one.
+  /// The image with the ball, where the video has one.
   Shot shoot() const;
 
   const RigCamera& rig_camera() const { return rig_camera_; }
-  /// What a user would click in its picture: see match_clicks.
+  /// What a user would click in its image: see match_clicks.
   std::vector<MatchClick> clicks(double noise, int wrong) const;
 
  private:
-  std::uint64_t film_seed() const { return scene_.seed * 64 + index_; }
+  std::uint64_t video_seed() const { return scene_.seed * 64 + index_; }
 
   const MatchScene& scene_;
   std::size_t index_;
@@ -78,13 +78,13 @@ class MatchCamera {
   MatchDetectorOptions detector_;
   Random random_;
   std::optional<FootErrors> feet_;
-  std::optional<MatchFilm> film_;
+  std::optional<MatchRenderer> video_;
   double exposure_s_ = 0;
   bool has_ball_ = false;
   std::int64_t frame_ = -1;  // before the first
   double match_time_ = 0;
   MatchScene::Stances stances_;
-  std::vector<SeenPerson> seen_;
+  std::vector<ObservedPerson> detected_;
 };
 
 /// Where each person truly is at the first camera's frames.
@@ -112,7 +112,7 @@ class BallTruth {
   /// The scene must outlive it.
   explicit BallTruth(const MatchScene& scene) : scene_(scene), motion_(scene.seed, scene.options.pitch) {}
   /// At the next frame.
-  BallPlace next();
+  BallPosition next();
 
  private:
   const MatchScene& scene_;

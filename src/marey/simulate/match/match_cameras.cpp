@@ -12,7 +12,7 @@
 namespace marey::simulate::match {
 namespace {
 
-constexpr int kMostCameras = 64;
+constexpr int kMaxCameras = 64;
 constexpr double kBehind = 14;  // m from the lines to the cameras
 
 class Builder {
@@ -45,12 +45,12 @@ class Builder {
   }
 
  private:
-  /// `focal` in widths of the picture.
-  void add(const std::string& name, cv::Size usual, double focal, const Vector<3>& centre, const Vector<3>& target) {
+  /// `focal` in widths of the image.
+  void add(const std::string& name, cv::Size typical, double focal, const Vector<3>& centre, const Vector<3>& target) {
     RigCamera camera;
     camera.name = name;
     camera.rate_hz = options_.rate_hz;
-    camera.size = options_.size.value_or(usual);
+    camera.size = options_.size.value_or(typical);
     geometry::BrownLens lens;
     const double px = focal * camera.size->width * random_.uniform(0.99, 1.01);
     lens.focal = {px, px};
@@ -67,7 +67,7 @@ class Builder {
     rig_.cameras.push_back(std::move(camera));
   }
 
-  Vector<2> jitter(double most) { return {random_.uniform(-most, most), random_.uniform(-most, most)}; }
+  Vector<2> jitter(double maximum) { return {random_.uniform(-maximum, maximum), random_.uniform(-maximum, maximum)}; }
 
   void round() {
     const Vector<2> middle(options_.pitch.length / 2, options_.pitch.width / 2);
@@ -134,20 +134,20 @@ class Builder {
 
 Rig match_cameras(const MatchCamerasOptions& options, std::uint64_t seed) {
   const bool counted = options.stand == MatchStand::round || options.stand == MatchStand::sides;
-  if (counted && (options.cameras < 1 || options.cameras > kMostCameras))
-    throw Error("{} cameras round a match; 1 to {} are possible", options.cameras, kMostCameras);
+  if (counted && (options.cameras < 1 || options.cameras > kMaxCameras))
+    throw Error("{} cameras round a match; 1 to {} are possible", options.cameras, kMaxCameras);
   if (!(options.rate_hz > 0) || !std::isfinite(options.rate_hz))
     throw Error("a rate of {} frames a second; it must be positive", options.rate_hz);
   if (!(options.offset_s >= 0) || !std::isfinite(options.offset_s))
     throw Error("cameras started within {} s of each other; it cannot be negative", options.offset_s);
   if (options.size && (options.size->width < 64 || options.size->height < 64))
-    throw Error("pictures of {} x {} pixels; 64 x 64 is the least", options.size->width, options.size->height);
+    throw Error("images of {} x {} pixels; 64 x 64 is the least", options.size->width, options.size->height);
   if (!(options.pitch.length >= 40 && options.pitch.width >= 25))
     throw Error("a pitch of {} x {} m; 40 x 25 m is the least", options.pitch.length, options.pitch.width);
   const geometry::GroundSurface& ground = options.ground;
   for (const double height : {ground.across, ground.along, ground.dome}) {
-    if (!(std::abs(height) <= geometry::GroundSurface::kHighest))
-      throw Error("a pitch raised by {} m; up to {} m are possible", height, geometry::GroundSurface::kHighest);
+    if (!(std::abs(height) <= geometry::GroundSurface::kMaxLevel))
+      throw Error("a pitch raised by {} m; up to {} m are possible", height, geometry::GroundSurface::kMaxLevel);
   }
   return Builder(options, seed).build();
 }

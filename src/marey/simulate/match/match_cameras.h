@@ -35,7 +35,7 @@ struct MatchCamerasOptions {
 
 /// The exact cameras, "cam1", "cam2", …, of the football stand "left" and "right". x, y and z of the world are the pitch's
 /// own; on the football stand the pitch's y grows towards the cameras, and `ground_from_world` is a reflection. Sizes, lenses and
-/// places are a little different for each seed. Throws Error where an option is out of its domain.
+/// places are a little different for each seed. Throws Error if an option is out of its domain.
 Rig match_cameras(const MatchCamerasOptions& options, std::uint64_t seed);
 
 }  // namespace marey::simulate::match

@@ -1,4 +1,4 @@
-// Every pixel looks along its rays to what they meet: the ground, or a wall round it that stands for boards and trees, or the sky.
+// Every pixel faces along its rays to what they meet: the ground, or a wall round it that stands for boards and trees, or the sky.
 // Grass is mowing stripes and value noise at several sizes, each faded where it is too small for a pixel; a pixel near a line is
 // asked at many places, so that lines narrower than a pixel, as those across the pitch are, keep their share of it. Rays are
 // undistorted at every sixteenth pixel and interpolated, which is exact to some hundredths of a pixel.
@@ -31,9 +31,9 @@ struct Patch {
 };
 constexpr std::array<Patch, 5> kPatches{{{14, 0.05}, {5, 0.05}, {1.3, 0.05}, {0.35, 0.06}, {0.1, 0.12}}};
 
-people::Rgb mix(const people::Rgb& a, const people::Rgb& b, double share) {
+people::Rgb mix(const people::Rgb& a, const people::Rgb& b, double fraction) {
   people::Rgb result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = a[i] + share * (b[i] - a[i]);
+  for (std::size_t i = 0; i < 3; ++i) result[i] = a[i] + fraction * (b[i] - a[i]);
   return result;
 }
 people::Rgb times(const people::Rgb& a, double factor) {
@@ -65,7 +65,7 @@ class Painter {
   }
 
  private:
-  /// The direction that is seen at a place of the picture, in the world; its length is about 1.
+  /// The direction that is seen at a place of the image, in the world; its length is about 1.
   Vector<3> ray(double x, double y) const {
     const double u = std::max(0.0, x / kGrid), v = std::max(0.0, y / kGrid);
     const auto column = static_cast<int>(u), row = static_cast<int>(v);
@@ -117,8 +117,8 @@ class Painter {
   people::Rgb grass(const Vector<2>& at, double foot, bool line) const {
     double bright = 1;
     for (std::size_t i = 0; i < kPatches.size(); ++i) {
-      const double seen = std::clamp(kPatches[i].size / foot / 2 - 0.5, 0.0, 1.0);
-      if (seen > 0) bright += seen * kPatches[i].strength * value_noise(at / kPatches[i].size, seed_ + i);
+      const double detected = std::clamp(kPatches[i].size / foot / 2 - 0.5, 0.0, 1.0);
+      if (detected > 0) bright += detected * kPatches[i].strength * value_noise(at / kPatches[i].size, seed_ + i);
     }
     if (line && distance_to_line(pitch_, at) < geometry::kPitchLineWidth / 2) return times(kPaint, 0.5 + 0.5 * bright);
     if (outside(at) > kMown) return times(kBeyond, bright);
@@ -152,14 +152,14 @@ class Painter {
 
 }  // namespace
 
-Picture draw_match_ground(const GroundView& view, const Matrix<3>& pitch_from_world, const geometry::PitchSize& pitch,
-                          std::uint64_t seed) {
+Image draw_match_ground(const GroundView& view, const Matrix<3>& pitch_from_world, const geometry::PitchSize& pitch,
+                        std::uint64_t seed) {
   const Painter painter(view, pitch_from_world, pitch, seed);
   cv::Mat bgr(view.size(), CV_8UC3);
   cv::parallel_for_(cv::Range(0, bgr.rows), [&](const cv::Range& rows) {
     for (int y = rows.start; y < rows.end; ++y) painter.paint(bgr, y);
   });
-  return Picture::from_bgr(bgr);
+  return Image::from_bgr(bgr);
 }
 
 }  // namespace marey::simulate::match

@@ -13,20 +13,20 @@ namespace {
 constexpr double kStep = 0.02;        // s
 constexpr double kResponse = 0.5;     // s that reaching a wanted velocity takes
 constexpr double kEffortTime = 0.18;  // s that an effort takes to build up
-constexpr double kMostEffort = 5;     // m/s²
+constexpr double kMaxEffort = 5;      // m/s²
 constexpr double kApproach = 2.0;     // m/s²; how people brake before a place they want to stand on
 constexpr double kApart = 0.45;       // m between bodies
 constexpr double kBrake = 8;          // m/s² that two have together, not to run into each other
-constexpr double kForesight = 1.5;    // s that people look ahead for others ahead
+constexpr double kForesight = 1.5;    // s that people use later frames for others ahead
 constexpr double kPass = 0.8;         // m at which they like to pass each other
 constexpr double kSwerve = 3.5;       // m/s² that they spend on it
 constexpr int kRounds = 6;            // over all pairs that are too fast towards each other
-constexpr double kFollow = 1.2;       // 1/s: how a gap to a person who is followed closes
-constexpr double kTurning = 5;        // rad/s
+constexpr double kTrack = 1.2;        // 1/s: how a gap to a person who is followed closes
+constexpr double kPtz = 5;            // rad/s
 constexpr double kStature = 1.79;     // m; decides the length of strides
 constexpr double kWatchBelow = 0.6;   // m/s; slower people face the ball
 
-Vector<2> at_most(const Vector<2>& value, double length) {
+Vector<2> clamped_to(const Vector<2>& value, double length) {
   const double norm = value.norm();
   return norm > length ? Vector<2>(value * (length / norm)) : value;
 }
@@ -47,12 +47,12 @@ std::string_view match_team(int index) {
 MatchMotion::MatchMotion(std::uint64_t seed, const geometry::PitchSize& pitch)
     : play_(seed * 2654435761u + 11, pitch), ball_(seed * 2654435761u + 13, pitch, play_.ball()) {
   Random random(seed * 2654435761u + 12);
-  const auto places = play_.beginning();
+  const auto locations = play_.beginning();
   for (std::size_t i = 0; i < kMatchPeople; ++i) {
-    begin_[i].place = places[i];
+    begin_[i].location = locations[i];
     begin_[i].phase = random.uniform(0, 2 * std::numbers::pi);
     bodies_[i].top_speed = random.uniform(8.2, 9.4);
-    const Vector<2> to_ball = play_.ball() - places[i];
+    const Vector<2> to_ball = play_.ball() - locations[i];
     begin_[i].heading = std::atan2(to_ball.y(), to_ball.x());
   }
   now_ = begin_;
@@ -60,11 +60,11 @@ MatchMotion::MatchMotion(std::uint64_t seed, const geometry::PitchSize& pitch)
   advance(0);
 }
 
-Vector<2> MatchMotion::wanted_velocity(std::size_t i, const MatchIntent& intent) const {
+Vector<2> MatchMotion::required_velocity(std::size_t i, const MatchIntent& intent) const {
   if (intent.speed <= 0) return Vector<2>::Zero();
-  const Vector<2> to_target = intent.target - begin_[i].place;
+  const Vector<2> to_target = intent.target - begin_[i].location;
   const double top = std::min(intent.speed, bodies_[i].top_speed);
-  if (intent.target_velocity.squaredNorm() > 0.25) return at_most(intent.target_velocity + kFollow * to_target, top);
+  if (intent.target_velocity.squaredNorm() > 0.25) return clamped_to(intent.target_velocity + kTrack * to_target, top);
   const double distance = to_target.norm();
   if (distance < 0.05) return Vector<2>::Zero();
   return to_target / distance * std::min(top, std::sqrt(2 * kApproach * distance));
@@ -75,7 +75,7 @@ Vector<2> MatchMotion::wanted_velocity(std::size_t i, const MatchIntent& intent)
 Vector<2> MatchMotion::swerve(std::size_t i) const {
   Vector<2> sum = Vector<2>::Zero();
   for (std::size_t j = 0; j < kMatchPeople; ++j) {
-    const Vector<2> between = begin_[j].place - begin_[i].place;
+    const Vector<2> between = begin_[j].location - begin_[i].location;
     const Vector<2> closing = begin_[i].velocity - begin_[j].velocity;
     const double approach = between.dot(closing);
     if (j == i || approach <= 0 || closing.squaredNorm() < 1) continue;
@@ -87,21 +87,21 @@ Vector<2> MatchMotion::swerve(std::size_t i) const {
     const Vector<2> sideways = miss.norm() > 0.1 ? Vector<2>(-miss / miss.norm()) : Vector<2>(hand / hand.norm());
     sum += std::min(kSwerve, (kPass - miss.norm()) / (when * when + 0.05)) * sideways;
   }
-  return at_most(sum, kSwerve);
+  return clamped_to(sum, kSwerve);
 }
 
 /// The effort goes towards what the wanted velocity asks for; forward, less is left the faster it is.
-void MatchMotion::exert(std::size_t i, const Vector<2>& wanted) {
+void MatchMotion::exert(std::size_t i, const Vector<2>& required) {
   const Vector<2>& velocity = begin_[i].velocity;
-  Vector<2> asked = at_most((wanted - velocity) / kResponse + swerve(i), kMostEffort);
+  Vector<2> requested = clamped_to((required - velocity) / kResponse + swerve(i), kMaxEffort);
   const double speed = velocity.norm();
   if (speed > 0.1) {
     const Vector<2> ahead = velocity / speed;
-    const double forward = asked.dot(ahead);
-    const double most = kMostEffort * std::max(0.0, 1 - speed / bodies_[i].top_speed);
-    if (forward > most) asked -= (forward - most) * ahead;
+    const double forward = requested.dot(ahead);
+    const double maximum = kMaxEffort * std::max(0.0, 1 - speed / bodies_[i].top_speed);
+    if (forward > maximum) requested -= (forward - maximum) * ahead;
   }
-  bodies_[i].effort += kStep / kEffortTime * (asked - bodies_[i].effort);
+  bodies_[i].effort += kStep / kEffortTime * (requested - bodies_[i].effort);
 }
 
 /// No one approaches another faster than both can brake within what is left between them.
@@ -110,7 +110,7 @@ void MatchMotion::keep_apart(Velocities& next) const {
     bool calm = true;
     for (std::size_t i = 0; i < kMatchPeople; ++i) {
       for (std::size_t j = i + 1; j < kMatchPeople; ++j) {
-        const Vector<2> between = begin_[j].place - begin_[i].place;
+        const Vector<2> between = begin_[j].location - begin_[i].location;
         const double distance = between.norm();
         if (distance > 6 || distance < 1e-6) continue;
         const Vector<2> toward = between / distance;
@@ -132,26 +132,26 @@ void MatchMotion::keep_apart(Velocities& next) const {
 void MatchMotion::turn(std::size_t i) {
   const MatchPerson& person = begin_[i];
   const double speed = person.velocity.norm();
-  const Vector<2> face = speed > kWatchBelow ? person.velocity : Vector<2>(play_.ball() - person.place);
+  const Vector<2> face = speed > kWatchBelow ? person.velocity : Vector<2>(play_.ball() - person.location);
   const double off = std::remainder(std::atan2(face.y(), face.x()) - person.heading, 2 * std::numbers::pi);
-  bodies_[i].turning = std::clamp(off / 0.3, -kTurning, kTurning);
+  bodies_[i].ptz = std::clamp(off / 0.3, -kPtz, kPtz);
   bodies_[i].gait = 2 * std::numbers::pi * speed / people::stride_length(speed, kStature);
 }
 
 void MatchMotion::step() {
-  std::array<MatchPlace, kMatchPeople> places;
-  for (std::size_t i = 0; i < kMatchPeople; ++i) places[i] = {begin_[i].place, begin_[i].velocity};
-  const auto& intents = play_.decide(kStep, places);
-  ball_.step(kStep, play_, places);
+  std::array<MatchPosition, kMatchPeople> locations;
+  for (std::size_t i = 0; i < kMatchPeople; ++i) locations[i] = {begin_[i].location, begin_[i].velocity};
+  const auto& intents = play_.decide(kStep, locations);
+  ball_.step(kStep, play_, locations);
   Velocities next;
   for (std::size_t i = 0; i < kMatchPeople; ++i) {
-    exert(i, wanted_velocity(i, intents[i]));
+    exert(i, required_velocity(i, intents[i]));
     next[i] = begin_[i].velocity + kStep * bodies_[i].effort;
   }
   keep_apart(next);
   for (std::size_t i = 0; i < kMatchPeople; ++i) {
     bodies_[i].acceleration = (next[i] - begin_[i].velocity) / kStep;
-    bodies_[i].effort = at_most(bodies_[i].acceleration, kMostEffort);
+    bodies_[i].effort = clamped_to(bodies_[i].acceleration, kMaxEffort);
     turn(i);
   }
 }
@@ -161,13 +161,13 @@ void MatchMotion::advance(double time) {
     for (std::size_t i = 0; i < kMatchPeople; ++i) {
       const Body& body = bodies_[i];
       now_[i] = begin_[i];
-      now_[i].place += seconds * begin_[i].velocity + 0.5 * seconds * seconds * body.acceleration;
+      now_[i].location += seconds * begin_[i].velocity + 0.5 * seconds * seconds * body.acceleration;
       now_[i].velocity += seconds * body.acceleration;
-      now_[i].heading += seconds * body.turning;
+      now_[i].heading += seconds * body.ptz;
       now_[i].phase += seconds * body.gait;
     }
   };
-  assert(time >= static_cast<double>(steps_) * kStep && "a match is looked at forwards");
+  assert(time >= static_cast<double>(steps_) * kStep && "a match is inspected forwards");
   while (static_cast<double>(steps_ + 1) * kStep <= time) {
     after(kStep);
     begin_ = now_;
@@ -175,7 +175,7 @@ void MatchMotion::advance(double time) {
     step();
   }
   const double rest = time - static_cast<double>(steps_) * kStep;
-  share_ = rest / kStep;
+  fraction_ = rest / kStep;
   after(rest);
 }
 

@@ -18,10 +18,10 @@ TEST(MatchMotion, IsTheSameAtEveryRate) {
     slow.advance(k * 0.01);
     other.advance(k * 0.01);
     for (std::size_t i = 0; i < kMatchPeople; ++i) {
-      EXPECT_EQ(fast.people()[i].place, slow.people()[i].place);
+      EXPECT_EQ(fast.people()[i].location, slow.people()[i].location);
       EXPECT_EQ(fast.people()[i].velocity, slow.people()[i].velocity);
       EXPECT_EQ(fast.people()[i].heading, slow.people()[i].heading);
-      apart = std::max(apart, (fast.people()[i].place - other.people()[i].place).norm());
+      apart = std::max(apart, (fast.people()[i].location - other.people()[i].location).norm());
     }
   }
   EXPECT_GT(apart, 1) << "seeds make no difference";
@@ -36,7 +36,7 @@ TEST(MatchMotion, VelocityIsTheDerivativeOfPlace) {
     now.advance(t);
     after.advance(t + kShort);
     for (std::size_t i = 0; i < kMatchPeople; ++i) {
-      const Vector<2> slope = (after.people()[i].place - before.people()[i].place) / (2 * kShort);
+      const Vector<2> slope = (after.people()[i].location - before.people()[i].location) / (2 * kShort);
       EXPECT_LT((slope - now.people()[i].velocity).norm(), 0.01);
     }
   }
@@ -65,9 +65,9 @@ Motion motion_over(std::uint64_t seed, double seconds) {
       all.longest_stand[i] = std::max(all.longest_stand[i], stood[i]);
       if (k > 0 && (person.velocity - last[i]).norm() / kStep > 6) all.hard += 1.0 / (count * kMatchPeople);
       last[i] = person.velocity;
-      EXPECT_TRUE(person.place.x() > -3 && person.place.x() < 108 && person.place.y() > -3 && person.place.y() < 71);
+      EXPECT_TRUE(person.location.x() > -3 && person.location.x() < 108 && person.location.y() > -3 && person.location.y() < 71);
       for (std::size_t j = 0; j < i; ++j) {
-        const double away = (person.place - match.people()[j].place).norm();
+        const double away = (person.location - match.people()[j].location).norm();
         all.nearest = std::min(all.nearest, away);
         if (away < 1.2) all.close_pairs += 1.0 / count;
       }
@@ -88,13 +88,13 @@ TEST(MatchMotion, PeopleMoveAsInAMatch) {
       EXPECT_LT(a_minute, keeper ? 70 : 170) << i;
       if (!keeper) outfield += a_minute / 20;
       EXPECT_LT(all.fastest[i], 9.5);
-      EXPECT_GT(all.longest_stand[i], 4) << "nobody stands as little as " << i;
+      EXPECT_GT(all.longest_stand[i], 4) << "no person stands as little as " << i;
     }
     EXPECT_GT(outfield, 95);
     EXPECT_LT(outfield, 135);
-    EXPECT_GT(*std::max_element(all.fastest.begin(), all.fastest.end()), 7.5) << "nobody sprints";
+    EXPECT_GT(*std::max_element(all.fastest.begin(), all.fastest.end()), 7.5) << "no person sprints";
     EXPECT_GT(all.nearest, 0.4);
-    EXPECT_GT(all.close_pairs, 0.1) << "nobody meets anybody";
+    EXPECT_GT(all.close_pairs, 0.1) << "no person meets any person";
     EXPECT_LT(all.hard, 1e-3) << "bodies are thrown about";
   }
 }

@@ -29,7 +29,7 @@ constexpr double kBallSpeed = 15;    // m/s, of a pass
 constexpr double kReach = 1.2;       // m; the ball is a player's within it
 constexpr double kWanderTime = 9;    // s
 constexpr double kWander = 2.4;      // m
-constexpr double kBeside = 0.55;     // m between two who fight for the ball
+constexpr double kNextTo = 0.55;     // m between two who fight for the ball
 constexpr double kSprint = 9.5;      // m/s; as fast as possible
 constexpr double kOutOfPlay = 0.15;  // of all times that a player gives the ball away
 constexpr double kLost = 0.24;       // of all passes
@@ -43,8 +43,8 @@ bool is_keeper(int player) {
 const Role& role_of(int player) {
   return kFormations[static_cast<std::size_t>(side_of(player))][static_cast<std::size_t>(player % kMatchSide - 1)];
 }
-std::size_t index(int who) {
-  return static_cast<std::size_t>(who);
+std::size_t index(int identity) {
+  return static_cast<std::size_t>(identity);
 }
 
 }  // namespace
@@ -52,51 +52,51 @@ std::size_t index(int who) {
 MatchPlay::MatchPlay(std::uint64_t seed, const geometry::PitchSize& pitch)
     : pitch_(pitch), random_(seed), ball_(pitch.length / 2, pitch.width / 2), ball_from_(ball_), ball_to_(ball_) {
   for (Mind& mind : minds_) {
-    mind.haste = random_.uniform(0.9, 1.12);
+    mind.pace = random_.uniform(0.9, 1.12);
     mind.wander = kWander * Vector<2>(random_.gaussian(), random_.gaussian());
     mind.rethink_at = random_.uniform(0, 2);
   }
 }
 
-double MatchPlay::along(int side, const Vector<2>& place) const {
-  return side == 0 ? place.x() : pitch_.length - place.x();
+double MatchPlay::along(int side, const Vector<2>& location) const {
+  return side == 0 ? location.x() : pitch_.length - location.x();
 }
 
 Vector<2> MatchPlay::from_goal(int side, double ahead, double aside) const {
   return side == 0 ? Vector<2>(ahead, pitch_.width / 2 + aside) : Vector<2>(pitch_.length - ahead, pitch_.width / 2 - aside);
 }
 
-Vector<2> MatchPlay::on_pitch(const Vector<2>& place, double margin) const {
-  return {std::clamp(place.x(), margin, pitch_.length - margin), std::clamp(place.y(), margin, pitch_.width - margin)};
+Vector<2> MatchPlay::on_pitch(const Vector<2>& location, double margin) const {
+  return {std::clamp(location.x(), margin, pitch_.length - margin), std::clamp(location.y(), margin, pitch_.width - margin)};
 }
 
 std::array<Vector<2>, kMatchPeople> MatchPlay::beginning() {
-  std::array<Vector<2>, kMatchPeople> places;
+  std::array<Vector<2>, kMatchPeople> locations;
   for (int i = 0; i < kMatchPlayers; ++i) {
     if (is_keeper(i)) {
-      places[index(i)] = from_goal(side_of(i), 5, 0);
+      locations[index(i)] = from_goal(side_of(i), 5, 0);
       continue;
     }
     const Role& role = role_of(i);
     const double half = pitch_.length / 2;
-    places[index(i)] = from_goal(side_of(i), (0.42 + 0.5 * role.depth) * half, role.aside * 0.42 * pitch_.width) +
-                       Vector<2>(random_.uniform(-1, 1), random_.uniform(-1, 1));
+    locations[index(i)] = from_goal(side_of(i), (0.42 + 0.5 * role.depth) * half, role.aside * 0.42 * pitch_.width) +
+                          Vector<2>(random_.uniform(-1, 1), random_.uniform(-1, 1));
   }
-  places[index(holder_)] = ball_ + Vector<2>(-0.6, 0.3);
-  places[22] = ball_ + Vector<2>(-4, 9);
-  places[23] = {0.32 * pitch_.length, -1};
-  places[24] = {0.68 * pitch_.length, pitch_.width + 1};
-  for (std::size_t i = 0; i < places.size(); ++i) intents_[i].target = places[i];
-  return places;
+  locations[index(holder_)] = ball_ + Vector<2>(-0.6, 0.3);
+  locations[22] = ball_ + Vector<2>(-4, 9);
+  locations[23] = {0.32 * pitch_.length, -1};
+  locations[24] = {0.68 * pitch_.length, pitch_.width + 1};
+  for (std::size_t i = 0; i < locations.size(); ++i) intents_[i].target = locations[i];
+  return locations;
 }
 
-int MatchPlay::nearest(const Vector<2>& place, int side, People people) const {
+int MatchPlay::nearest(const Vector<2>& location, int side, People people) const {
   int best = side * kMatchSide + 1;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (int i = side * kMatchSide + 1; i < (side + 1) * kMatchSide; ++i) {
-    const double away = (people[index(i)].place - place).norm();
-    if (away >= least) continue;
-    least = away;
+    const double away = (people[index(i)].location - location).norm();
+    if (away >= minimum) continue;
+    minimum = away;
     best = i;
   }
   return best;
@@ -133,9 +133,9 @@ void MatchPlay::pass(People people) {
   std::array<double, kMatchPlayers> weights{};
   double sum = 0;
   for (int i = side * kMatchSide + 1; i < (side + 1) * kMatchSide; ++i) {
-    const double away = (people[index(i)].place - ball_).norm();
+    const double away = (people[index(i)].location - ball_).norm();
     if (i == holder_ || away < 4) continue;
-    const double ahead = along(side, people[index(i)].place) - along(side, ball_);
+    const double ahead = along(side, people[index(i)].location) - along(side, ball_);
     sum += weights[index(i)] = std::exp(-away / 14 + ahead / 40) * (run_ && run_->runner == i ? 4 : 1);
   }
   double pick = random_.uniform(0, sum);
@@ -146,12 +146,12 @@ void MatchPlay::pass(People people) {
     pick -= weights[index(i)];
     if (pick < 0) break;
   }
-  const MatchPlace& to = people[index(receiver_)];
-  const double flight = (to.place - ball_).norm() / kBallSpeed + 0.2;
+  const MatchPosition& to = people[index(receiver_)];
+  const double flight = (to.location - ball_).norm() / kBallSpeed + 0.2;
   ball_from_ = ball_;
-  ball_to_ = on_pitch(to.place + 0.8 * flight * to.velocity + 1.5 * Vector<2>(random_.gaussian(), random_.gaussian()), 0.5);
+  ball_to_ = on_pitch(to.location + 0.8 * flight * to.velocity + 1.5 * Vector<2>(random_.gaussian(), random_.gaussian()), 0.5);
   if (random_.chance(kLost))
-    ball_to_ = on_pitch(0.4 * ball_to_ + 0.6 * people[index(nearest(ball_to_, 1 - side, people))].place, 0.5);
+    ball_to_ = on_pitch(0.4 * ball_to_ + 0.6 * people[index(nearest(ball_to_, 1 - side, people))].location, 0.5);
   phase_ = Phase::flying;
   flight_begin_ = now_;
   phase_until_ = now_ + flight;
@@ -163,13 +163,13 @@ void MatchPlay::end_hold(People people) {
 }
 
 void MatchPlay::play_on(double step, People people) {
-  const auto within_reach = [&](int player) { return (people[index(player)].place - ball_).norm() < kReach; };
+  const auto within_reach = [&](int player) { return (people[index(player)].location - ball_).norm() < kReach; };
   switch (phase_) {
     case Phase::held: {
-      const MatchPlace& by = people[index(holder_)];
+      const MatchPosition& by = people[index(holder_)];
       const double speed = by.velocity.norm();
-      const Vector<2> wanted = by.place + (speed > 0.5 ? Vector<2>(0.7 * by.velocity / speed) : Vector<2>(0.4, 0.2));
-      ball_ += std::min(1.0, step / 0.2) * (wanted - ball_);
+      const Vector<2> required = by.location + (speed > 0.5 ? Vector<2>(0.7 * by.velocity / speed) : Vector<2>(0.4, 0.2));
+      ball_ += std::min(1.0, step / 0.2) * (required - ball_);
       if (now_ >= phase_until_) end_hold(people);
       return;
     }
@@ -204,16 +204,16 @@ void MatchPlay::maybe_run(People people) {
   if (runner == holder_) return;
   Run run;
   run.runner = runner;
-  const double ahead = std::min(along(attackers_, people[index(runner)].place) + random_.uniform(15, 38), pitch_.length - 5);
-  const Vector<2> place = people[index(runner)].place;
-  run.target = on_pitch({from_goal(attackers_, ahead, 0).x(), place.y() + random_.uniform(-9, 9)}, 2);
-  run.marker = nearest(place, 1 - attackers_, people);
+  const double ahead = std::min(along(attackers_, people[index(runner)].location) + random_.uniform(15, 38), pitch_.length - 5);
+  const Vector<2> location = people[index(runner)].location;
+  run.target = on_pitch({from_goal(attackers_, ahead, 0).x(), location.y() + random_.uniform(-9, 9)}, 2);
+  run.marker = nearest(location, 1 - attackers_, people);
   run.until = now_ + random_.uniform(2.5, 5);
   run.speed = random_.uniform(6.5, kSprint);
   run_ = run;
 }
 
-Vector<2> MatchPlay::role_place(int player) const {
+Vector<2> MatchPlay::role_position(int player) const {
   const int side = side_of(player);
   const double ball_ahead = along(side, ball_);
   const double ball_aside = (side == 0 ? 1 : -1) * (ball_.y() - pitch_.width / 2);
@@ -233,24 +233,25 @@ Vector<2> MatchPlay::role_place(int player) const {
   return on_pitch(from_goal(side, line + role.depth * length, aside) + wander, 1);
 }
 
-Vector<2> MatchPlay::referee_place(int official, People people) const {
+Vector<2> MatchPlay::referee_position(int official, People people) const {
   if (official == 22) {  // some metres from the ball, on the diagonal that leaves the sides to the assistants
     const double turn = (ball_.x() / pitch_.length - 0.5) * 12;
     return on_pitch(ball_ + Vector<2>(ball_.x() > pitch_.length / 2 ? -9 : 9, 5 + turn) + minds_[22].wander, 3);
   }
   const int side = official == 23 ? 0 : 1;  // whose half it runs along: level with its last man but the keeper
   double last = pitch_.length / 2;
-  for (int i = side * kMatchSide + 1; i < (side + 1) * kMatchSide; ++i) last = std::min(last, along(side, people[index(i)].place));
+  for (int i = side * kMatchSide + 1; i < (side + 1) * kMatchSide; ++i)
+    last = std::min(last, along(side, people[index(i)].location));
   return {from_goal(side, last, 0).x(), side == 0 ? -1.0 : pitch_.width + 1.0};
 }
 
 /// Thinks again now and then; stands while its place is near, else goes there the faster the farther it is.
-void MatchPlay::hold_role(int who, const Vector<2>& target, double deadband, People people) {
-  Mind& mind = minds_[index(who)];
+void MatchPlay::hold_role(int identity, const Vector<2>& target, double deadband, People people) {
+  Mind& mind = minds_[index(identity)];
   if (now_ < mind.rethink_at) return;
   mind.rethink_at = now_ + random_.uniform(0.4, 2.2);
-  MatchIntent& intent = intents_[index(who)];
-  const double away = (target - people[index(who)].place).norm();
+  MatchIntent& intent = intents_[index(identity)];
+  const double away = (target - people[index(identity)].location).norm();
   mind.standing = away < (mind.standing ? 1.5 : 0.5) * deadband;
   intent.target = target;
   intent.target_velocity.setZero();
@@ -262,7 +263,7 @@ void MatchPlay::hold_role(int who, const Vector<2>& target, double deadband, Peo
   else if (away < 16)
     speed = 4.2;
   if (phase_ == Phase::stopped) speed = std::min(speed, corner_ ? 3.0 : 1.9);
-  intent.speed = mind.standing ? 0 : speed * mind.haste;
+  intent.speed = mind.standing ? 0 : speed * mind.pace;
 }
 
 /// Who has the ball, who is to get it, and who wants to take it away.
@@ -283,24 +284,24 @@ void MatchPlay::chase(People people) {
     for (const int side : {0, 1}) go(nearest(ball_, side, people), ball_, kSprint);
     return;
   }
-  const MatchPlace& by = people[index(holder_)];
+  const MatchPosition& by = people[index(holder_)];
   const Vector<2> goal = from_goal(1 - attackers_, 8, 0);
-  go(holder_, goal, 3.2 + 1.6 * (minds_[index(holder_)].haste - 0.9) / 0.2);
-  const int presser = nearest(by.place, 1 - attackers_, people);
-  const Vector<2> ahead = (goal - by.place).normalized();
-  const double left =
-      ahead.x() * (people[index(presser)].place - by.place).y() - ahead.y() * (people[index(presser)].place - by.place).x();
-  const Vector<2> aside = (left > 0 ? kBeside : -kBeside) * Vector<2>(-ahead.y(), ahead.x());
-  intents_[index(presser)] = {by.place + aside + 0.2 * ahead, by.velocity, 7.5};
+  go(holder_, goal, 3.2 + 1.6 * (minds_[index(holder_)].pace - 0.9) / 0.2);
+  const int presser = nearest(by.location, 1 - attackers_, people);
+  const Vector<2> ahead = (goal - by.location).normalized();
+  const double left = ahead.x() * (people[index(presser)].location - by.location).y() -
+                      ahead.y() * (people[index(presser)].location - by.location).x();
+  const Vector<2> aside = (left > 0 ? kNextTo : -kNextTo) * Vector<2>(-ahead.y(), ahead.x());
+  intents_[index(presser)] = {by.location + aside + 0.2 * ahead, by.velocity, 7.5};
 }
 
 /// Who sprints, and who goes along, between the sprinter and the goal.
 void MatchPlay::mark(People people) {
   if (!run_) return;
   intents_[index(run_->runner)] = {run_->target, Vector<2>::Zero(), run_->speed};
-  const MatchPlace& runner = people[index(run_->runner)];
+  const MatchPosition& runner = people[index(run_->runner)];
   const Vector<2> goal = from_goal(side_of(run_->marker), 0, 0);
-  intents_[index(run_->marker)] = {runner.place + 0.8 * (goal - runner.place).normalized(), runner.velocity, kSprint};
+  intents_[index(run_->marker)] = {runner.location + 0.8 * (goal - runner.location).normalized(), runner.velocity, kSprint};
 }
 
 const std::array<MatchIntent, kMatchPeople>& MatchPlay::decide(double step, People people) {
@@ -311,9 +312,9 @@ const std::array<MatchIntent, kMatchPeople>& MatchPlay::decide(double step, Peop
   }
   play_on(step, people);
   maybe_run(people);
-  for (int i = 0; i < kMatchPlayers; ++i) hold_role(i, role_place(i), is_keeper(i) ? 1.0 : 2.5, people);
-  hold_role(22, referee_place(22, people), 4, people);
-  for (const int assistant : {23, 24}) hold_role(assistant, referee_place(assistant, people), 1.5, people);
+  for (int i = 0; i < kMatchPlayers; ++i) hold_role(i, role_position(i), is_keeper(i) ? 1.0 : 2.5, people);
+  hold_role(22, referee_position(22, people), 4, people);
+  for (const int assistant : {23, 24}) hold_role(assistant, referee_position(assistant, people), 1.5, people);
   mark(people);
   chase(people);
   return intents_;

@@ -1,4 +1,4 @@
-// What each person on a football pitch wants to do at a moment: the ball is held, passed, lost, run after and out of play; each
+// What each person on a football pitch wants to do at an instant: the ball is held, passed, lost, run after and out of play; each
 // side keeps a formation that moves and breathes with it, closes the holder down and marks who runs; some stand and watch. It is no
 // model of tactics: it makes people move, meet, run side by side, cross and stand as they do in a match. Cost: 25 people × 25 a
 // step.
@@ -20,8 +20,8 @@ inline constexpr int kMatchPlayers = 22;  ///< of them
 inline constexpr int kMatchSide = 11;     ///< players of a side; the first is its keeper
 
 /// Where a person is and how it moves; m and m/s on the pitch.
-struct MatchPlace {
-  Vector<2> place = Vector<2>::Zero();
+struct MatchPosition {
+  Vector<2> location = Vector<2>::Zero();
   Vector<2> velocity = Vector<2>::Zero();
 };
 
@@ -40,7 +40,7 @@ class MatchPlay {
   std::array<Vector<2>, kMatchPeople> beginning();
 
   /// What each wants after `step` s more. Steps are short (some hundredths of a second).
-  const std::array<MatchIntent, kMatchPeople>& decide(double step, std::span<const MatchPlace, kMatchPeople> people);
+  const std::array<MatchIntent, kMatchPeople>& decide(double step, std::span<const MatchPosition, kMatchPeople> people);
 
   /// m on the pitch.
   const Vector<2>& ball() const { return ball_; }
@@ -62,9 +62,9 @@ class MatchPlay {
     double rethink_at = 0;  // s
     bool standing = true;
     Vector<2> wander = Vector<2>::Zero();  // m off the place of the role
-    double haste = 1;                      // factor on speeds
+    double pace = 1;                       // factor on speeds
   };
-  using People = std::span<const MatchPlace, kMatchPeople>;
+  using People = std::span<const MatchPosition, kMatchPeople>;
 
   void play_on(double step, People people);
   void end_hold(People people);
@@ -72,15 +72,15 @@ class MatchPlay {
   void stop_play();
   void take(int holder);
   void maybe_run(People people);
-  Vector<2> role_place(int player) const;
-  Vector<2> referee_place(int official, People people) const;
-  void hold_role(int who, const Vector<2>& target, double deadband, People people);
+  Vector<2> role_position(int player) const;
+  Vector<2> referee_position(int official, People people) const;
+  void hold_role(int identity, const Vector<2>& target, double deadband, People people);
   void chase(People people);
   void mark(People people);
-  int nearest(const Vector<2>& place, int side, People people) const;
-  double along(int side, const Vector<2>& place) const;  // m from that side's own goal line
+  int nearest(const Vector<2>& location, int side, People people) const;
+  double along(int side, const Vector<2>& location) const;  // m from that side's own goal line
   Vector<2> from_goal(int side, double ahead, double aside) const;
-  Vector<2> on_pitch(const Vector<2>& place, double margin) const;
+  Vector<2> on_pitch(const Vector<2>& location, double margin) const;
 
   geometry::PitchSize pitch_;
   Random random_;

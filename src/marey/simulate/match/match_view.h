@@ -15,7 +15,7 @@
 
 namespace marey::simulate::match {
 
-/// Where a point is seen by a view's camera, which must be whole, as in all of these; nothing where it cannot be. Its height counts
+/// Where a point is seen by a view's camera, which must be whole, as in all of these; nothing if it cannot be. Its height counts
 /// from the ground below it: what stands on a crowned pitch is raised with it.
 std::optional<people::Sighting> sight(const GroundView& view, const Vector<3>& point);
 
@@ -26,19 +26,19 @@ std::array<people::Figure, kMatchPeople> match_figures(std::uint64_t seed);
 people::Stance match_stance(const MatchPerson& person, const Matrix<3>& world_from_pitch);
 
 /// A person as one camera sees it.
-struct SeenPerson {
-  int person = 0;            ///< 0 … kMatchPeople − 1
-  Box whole;                 ///< px; round the figure, hidden parts and what lies outside the picture included
-  Box shown;                 ///< `whole` cut at the picture's border
-  double visible_share = 0;  ///< of the box `whole`: within the picture and not behind boxes of nearer people
+struct ObservedPerson {
+  int person = 0;               ///< 0 … kMatchPeople − 1
+  Box whole;                    ///< px; round the figure, hidden parts and what lies outside the image included
+  Box shown;                    ///< `whole` cut at the image's border
+  double visible_fraction = 0;  ///< of the box `whole`: within the image and not behind boxes of nearer people
 };
 
-/// Each person of whom something lies within the picture, in the order of their numbers.
-std::vector<SeenPerson> people_in_view(const GroundView& view, std::span<const people::Figure, kMatchPeople> figures,
-                                       std::span<const people::Stance, kMatchPeople> stances);
+/// Each person of whom something lies within the image, in the order of their numbers.
+std::vector<ObservedPerson> people_in_view(const GroundView& view, std::span<const people::Figure, kMatchPeople> figures,
+                                           std::span<const people::Stance, kMatchPeople> stances);
 
-/// A person of whom less is to be seen is hardly ever detected.
-inline constexpr double kHiddenShare = 0.35;
+/// A person of whom less is to be seen is barely ever detected.
+inline constexpr double kHiddenFraction = 0.35;
 
 /// How a detector errs, from frame to frame independently but for `foot_error`.
 struct MatchDetectorOptions {
@@ -47,18 +47,19 @@ struct MatchDetectorOptions {
   double false_alarms = 0.5;   ///< a frame, on average; boxes of people where there is none
   double hidden_found = 0.05;  ///< of people who are hidden, the share that is detected all the same
   double foot_error = 0;       ///< m on the ground, standard deviation per axis, by which boxes end beside the feet for a while
-                               ///< (foot_errors.h); unlike the rest it is no frame's own
+                               ///< (foot_errors.h); unlike the rest it is not a frame's own
   double foot_along = 0.5;  ///< share of its variance along the view, in [0, 1]: a box that ends too low or high errs there alone
 };
 
 /// `seen` as if each had stood `by` m from its `place`, both in the world: the bottom of its box and its sides move, its top stays.
-/// A box that the picture's border cuts at the bottom keeps that.
-SeenPerson with_foot_moved(const SeenPerson& seen, const GroundView& view, const Vector<2>& place, const Vector<2>& by);
+/// A box that the image's border cuts at the bottom keeps that.
+ObservedPerson with_foot_moved(const ObservedPerson& detected, const GroundView& view, const Vector<2>& location,
+                               const Vector<2>& by);
 
 /// What such a detector says of one frame, from left to right; `margin` m round the pitch is where it sees people who are not
 /// there.
-std::vector<LabelledBox> detect_match(std::span<const SeenPerson> seen, const GroundView& view, const Matrix<3>& world_from_pitch,
-                                      const geometry::PitchSize& pitch, std::int32_t frame, const MatchDetectorOptions& options,
-                                      Random& random);
+std::vector<LabelledBox> detect_match(std::span<const ObservedPerson> detected, const GroundView& view,
+                                      const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch, std::int32_t frame,
+                                      const MatchDetectorOptions& options, Random& random);
 
 }  // namespace marey::simulate::match

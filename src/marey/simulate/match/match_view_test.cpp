@@ -23,7 +23,7 @@ TEST(MatchCameras, EveryStandSeesThePitch) {
     const Rig rig = match_cameras(options, 1);
     const Matrix<3> world_from_pitch =
         rig.ground_from_world ? Matrix<3>(rig.ground_from_world->inverse()) : Matrix<3>(Matrix<3>::Identity());
-    int unseen = 0;
+    int unobserved = 0;
     for (double x = 1; x < 105; x += 2) {
       for (double y = 1; y < 68; y += 2) {
         const Vector<3> at = world_from_pitch * Vector<3>(x, y, 1);
@@ -31,12 +31,12 @@ TEST(MatchCameras, EveryStandSeesThePitch) {
         for (const RigCamera& eye : rig.cameras) {
           const Camera camera = *eye.camera();
           const auto pixel = camera.project({at.x(), at.y(), 0});
-          if (pixel && camera.in_picture(*pixel)) ++cameras;
+          if (pixel && camera.in_image(*pixel)) ++cameras;
         }
-        if (cameras == 0) ++unseen;
+        if (cameras == 0) ++unobserved;
       }
     }
-    EXPECT_LT(unseen, 53 * 34 / 30) << static_cast<int>(stand);
+    EXPECT_LT(unobserved, 53 * 34 / 30) << static_cast<int>(stand);
   }
 }
 
@@ -51,7 +51,7 @@ TEST(MatchCameras, TheFootballStandIsLeftHandedOnTheGround) {
   EXPECT_NEAR((left - right).norm(), 0.5, 1e-9);
   const Vector<3> far_left = *rig.ground_from_world * Vector<3>(10, -20, 1);
   EXPECT_EQ(far_left, Vector<3>(10, 20, 1));
-  EXPECT_TRUE(rig.cameras[0].camera()->in_picture(*rig.cameras[0].camera()->project({10, -20, 0})));
+  EXPECT_TRUE(rig.cameras[0].camera()->in_image(*rig.cameras[0].camera()->project({10, -20, 0})));
 }
 
 TEST(MatchCameras, RefuseWhatCannotBe) {
@@ -79,25 +79,25 @@ TEST(MatchView, BoxesHoldHeadAndFeetAndHideWhatIsBehind) {
     const auto stances = stances_of(motion, Matrix<3>::Identity());
     for (const RigCamera& eye : rig.cameras) {
       const Camera camera = *eye.camera();
-      for (const SeenPerson& seen : people_in_view(GroundView(camera), figures, stances)) {
-        const auto i = static_cast<std::size_t>(seen.person);
-        const Vector<2> at = motion.people()[i].place;
+      for (const ObservedPerson& detected : people_in_view(GroundView(camera), figures, stances)) {
+        const auto i = static_cast<std::size_t>(detected.person);
+        const Vector<2> at = motion.people()[i].location;
         const auto foot = camera.project({at.x(), at.y(), 0});
         const auto chest = camera.project({at.x(), at.y(), 0.65 * figures[i].stature});
         ASSERT_TRUE(foot && chest);
         // The box is round a figure that strides and leans: its foot and its head lie at its ends to a quarter of its height.
-        EXPECT_NEAR(foot->y(), seen.whole.bottom() - 0.5, 0.25 * seen.whole.height);
-        EXPECT_GT(chest->y(), seen.whole.top);
-        EXPECT_LT(chest->y(), seen.whole.bottom());
-        EXPECT_GT(chest->x(), seen.whole.left - 0.5);
-        EXPECT_LT(chest->x(), seen.whole.right() - 0.5);
-        EXPECT_GE(seen.visible_share, 0);
-        EXPECT_LE(seen.visible_share, 1);
-        if (seen.visible_share < kHiddenShare && seen.shown == seen.whole) ++hidden;
+        EXPECT_NEAR(foot->y(), detected.whole.bottom() - 0.5, 0.25 * detected.whole.height);
+        EXPECT_GT(chest->y(), detected.whole.top);
+        EXPECT_LT(chest->y(), detected.whole.bottom());
+        EXPECT_GT(chest->x(), detected.whole.left - 0.5);
+        EXPECT_LT(chest->x(), detected.whole.right() - 0.5);
+        EXPECT_GE(detected.visible_fraction, 0);
+        EXPECT_LE(detected.visible_fraction, 1);
+        if (detected.visible_fraction < kHiddenFraction && detected.shown == detected.whole) ++hidden;
       }
     }
   }
-  EXPECT_GT(hidden, 5) << "nobody hides anybody";
+  EXPECT_GT(hidden, 5) << "no person hides any person";
 }
 
 TEST(MatchView, TheDetectorErrsAsOftenAsItSays) {
@@ -116,15 +116,15 @@ TEST(MatchView, TheDetectorErrsAsOftenAsItSays) {
   constexpr int kFrames = 800;
   for (int k = 0; k < kFrames; ++k) {
     motion.advance(0.2 * k);
-    const auto seen = people_in_view(GroundView(camera), figures, stances_of(motion, Matrix<3>::Identity()));
+    const auto detected = people_in_view(GroundView(camera), figures, stances_of(motion, Matrix<3>::Identity()));
     const auto detect = [&](const MatchDetectorOptions& options) {
-      return detect_match(seen, GroundView(camera), Matrix<3>::Identity(), cameras.pitch, k, options, random);
+      return detect_match(detected, GroundView(camera), Matrix<3>::Identity(), cameras.pitch, k, options, random);
     };
-    EXPECT_EQ(detect(truthful).size(), seen.size());
-    people += static_cast<double>(seen.size());
+    EXPECT_EQ(detect(truthful).size(), detected.size());
+    people += static_cast<double>(detected.size());
     found += static_cast<double>(detect(missing).size());
-    alarms += static_cast<double>(detect(ghosts).size() - seen.size());
-    const std::vector<SeenPerson> one(seen.begin(), seen.begin() + 1);
+    alarms += static_cast<double>(detect(ghosts).size() - detected.size());
+    const std::vector<ObservedPerson> one(detected.begin(), detected.begin() + 1);
     const auto box = detect_match(one, GroundView(camera), Matrix<3>::Identity(), cameras.pitch, k, noisy, random);
     squares += std::pow(box.front().box.height / one.front().shown.height - 1, 2);
   }

@@ -18,8 +18,8 @@ namespace marey::simulate::match {
 struct OperatorOptions {
   double answer = 2.2;     ///< rad/s: natural frequency of pan and tilt
   double zoom = 0.9;       ///< rad/s: of the zoom
-  double patience = 0.05;  ///< rad: the play may be so far off the middle of the picture before the operator follows
-  double width = 38;       ///< m of the pitch that the picture shows across, on average
+  double patience = 0.05;  ///< rad: the play may be so far off the middle of the image before the operator follows
+  double width = 38;       ///< m of the pitch that the image shows across, on average
   double tremble = 2e-4;   ///< rad, standard deviation, slower than 3 Hz
 };
 
@@ -28,23 +28,23 @@ class OperatorMotion {
   OperatorMotion(const geometry::Tripod& tripod, const geometry::PitchSize& pitch, const OperatorOptions& options,
                  std::uint64_t seed);
 
-  /// Goes on by `step` s, the ball at this place of the pitch, m. The first call starts there.
-  geometry::Heading follow(const Vector<2>& ball, double step);
+  /// Continues by `step` s, the ball at this place of the pitch, m. The first call starts there.
+  geometry::Heading run_tracker(const Vector<2>& ball, double step);
 
  private:
   struct Spring {
     double value = 0, speed = 0;
     void pull(double target, double frequency, double step);
   };
-  geometry::Heading wanted(const Vector<2>& ball) const;
+  geometry::Heading required(const Vector<2>& ball) const;
   void advance(const geometry::Heading& aim, double step);
 
   geometry::Tripod tripod_;
   geometry::PitchSize pitch_;
   OperatorOptions options_;
   Random random_;
-  bool begun_ = false, following_ = false;
-  double closeness_ = 0;  // ln of how much nearer than usual the operator shows the play
+  bool begun_ = false, tracking_ = false;
+  double closeness_ = 0;  // ln of how much nearer than normal the operator shows the play
   Spring pan_, tilt_, log_focal_, shake_[2];
 };
 

@@ -47,22 +47,22 @@ void shift_right(cv::Mat& plane, double by) {
 
 }  // namespace
 
-void apply(const CameraLook& look, cv::Mat& luma, cv::Mat& cb, cv::Mat& cr) {
-  if (look.plain()) return;
-  blur_plane(luma, look.blur);
-  if (look.halo > 0) {
+void apply(const ImageDegradation& degradation, cv::Mat& luma, cv::Mat& cb, cv::Mat& cr) {
+  if (degradation.plain()) return;
+  blur_plane(luma, degradation.blur);
+  if (degradation.halo > 0) {
     cv::Mat wide;
-    cv::GaussianBlur(luma, wide, {}, look.halo_px);
-    cv::addWeighted(luma, 1 + look.halo, wide, -look.halo, 0, luma);
+    cv::GaussianBlur(luma, wide, {}, degradation.halo_px);
+    cv::addWeighted(luma, 1 + degradation.halo, wide, -degradation.halo, 0, luma);
   }
   for (cv::Mat* chroma : {&cb, &cr}) {
-    blur_plane(*chroma, std::hypot(look.blur, look.chroma_bleed) / 2);
-    shift_right(*chroma, look.chroma_shift / 2);
+    blur_plane(*chroma, std::hypot(degradation.blur, degradation.chroma_bleed) / 2);
+    shift_right(*chroma, degradation.chroma_shift / 2);
   }
-  if (look.quantizer <= 0) return;
-  quantize_blocks(luma, look.quantizer);
-  quantize_blocks(cb, look.quantizer);
-  quantize_blocks(cr, look.quantizer);
+  if (degradation.quantizer <= 0) return;
+  quantize_blocks(luma, degradation.quantizer);
+  quantize_blocks(cb, degradation.quantizer);
+  quantize_blocks(cr, degradation.quantizer);
 }
 
 }  // namespace marey::simulate::people

@@ -1,6 +1,6 @@
 // A shoe hides half of the sky from the ground that touches it, and less and less of it farther away: here a Gaussian of the
 // distance from the shoe on the ground, wider and weaker the higher the shoe is lifted; two shoes side by side darken what is
-// between them twice. The ground near a shoe is taken for flat in the picture. Cost: the pixels within a few decimetres.
+// between them twice. The ground near a shoe is taken for flat in the image. Cost: the pixels within a few decimetres.
 #include "marey/simulate/people/contact_shadow.h"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ struct Sole {
 
   double distance(const Vector<2>& at) const {
     const Vector<2> along = toe - heel;
-    const double share = std::clamp((at - heel).dot(along) / std::max(along.squaredNorm(), 1e-9), 0.0, 1.0);
-    return std::max(0.0, (at - heel - share * along).norm() - radius);
+    const double fraction = std::clamp((at - heel).dot(along) / std::max(along.squaredNorm(), 1e-9), 0.0, 1.0);
+    return std::max(0.0, (at - heel - fraction * along).norm() - radius);
   }
 };
 
@@ -37,18 +37,18 @@ void darken(const Sole& sole, const Projection& projection, double strength, con
             cv::Mat& cr) {
   constexpr double kStep = 0.1;  // m
   const Vector<2> middle = (sole.heel + sole.toe) / 2;
-  const auto seen = projection({middle.x(), middle.y(), 0}), beside = projection({middle.x() + kStep, middle.y(), 0}),
+  const auto detected = projection({middle.x(), middle.y(), 0}), next_to = projection({middle.x() + kStep, middle.y(), 0}),
              behind = projection({middle.x(), middle.y() + kStep, 0});
-  if (!seen || !beside || !behind) return;
+  if (!detected || !next_to || !behind) return;
   Matrix<2> by_ground;
-  by_ground << (beside->at - seen->at) / kStep, (behind->at - seen->at) / kStep;
+  by_ground << (next_to->at - detected->at) / kStep, (behind->at - detected->at) / kStep;
   if (!(std::abs(by_ground.determinant()) > 1e-9)) return;
   const Matrix<2> by_pixel = by_ground.inverse();
   const double deviation = kReach + kByHeight * sole.height;
   const double dark = strength / (1 + sole.height / kFades);
   const double reach = (sole.toe - sole.heel).norm() / 2 + sole.radius + kCut * deviation;
   const double across = reach * by_ground.row(0).norm(), down = reach * by_ground.row(1).norm();
-  const Vector<2> at = seen->at + shift;
+  const Vector<2> at = detected->at + shift;
   const cv::Rect area = cv::Rect(cv::Point(static_cast<int>(at.x() - across), static_cast<int>(at.y() - down)),
                                  cv::Point(static_cast<int>(at.x() + across) + 1, static_cast<int>(at.y() + down) + 1)) &
                         cv::Rect({0, 0}, luma.size());

@@ -25,33 +25,33 @@ cv::Mat lookup(const PixelMap& map, cv::Size size, int margin, int scale) {
   return fine;
 }
 
-cv::Mat mean_of(const cv::Mat& plane, const std::vector<PixelMap>& moments, int margin, int scale) {
+cv::Mat mean_of(const cv::Mat& plane, const std::vector<PixelMap>& time_steps, int margin, int scale) {
   const cv::Size size(plane.cols - 2 * margin / scale, plane.rows - 2 * margin / scale);
   cv::Mat sum = cv::Mat::zeros(size, CV_32F);
-  for (const PixelMap& map : moments) {
-    cv::Mat seen, as_float;
-    cv::remap(plane, seen, lookup(map, size, margin, scale), cv::Mat(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
-    seen.convertTo(as_float, CV_32F);
+  for (const PixelMap& map : time_steps) {
+    cv::Mat detected, as_float;
+    cv::remap(plane, detected, lookup(map, size, margin, scale), cv::Mat(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    detected.convertTo(as_float, CV_32F);
     sum += as_float;
   }
   cv::Mat mean;
-  sum.convertTo(mean, CV_8U, 1.0 / static_cast<double>(moments.size()));
+  sum.convertTo(mean, CV_8U, 1.0 / static_cast<double>(time_steps.size()));
   return mean;
 }
 
 }  // namespace
 
-Planes seen_through(const Planes& planes, const std::vector<PixelMap>& moments, int margin) {
+Planes observed_through(const Planes& planes, const std::vector<PixelMap>& time_steps, int margin) {
   Planes result;
-  if (moments.empty()) {
+  if (time_steps.empty()) {
     const auto inner = [](const cv::Mat& plane, int edge) {
       return plane({edge, edge, plane.cols - 2 * edge, plane.rows - 2 * edge}).clone();
     };
     return {inner(planes.luma, margin), inner(planes.cb, margin / 2), inner(planes.cr, margin / 2)};
   }
-  result.luma = mean_of(planes.luma, moments, margin, 1);
-  result.cb = mean_of(planes.cb, moments, margin, 2);
-  result.cr = mean_of(planes.cr, moments, margin, 2);
+  result.luma = mean_of(planes.luma, time_steps, margin, 1);
+  result.cb = mean_of(planes.cb, time_steps, margin, 2);
+  result.cr = mean_of(planes.cr, time_steps, margin, 2);
   return result;
 }
 

@@ -8,12 +8,12 @@
 
 namespace marey::simulate::people {
 
-/// Where a pixel of the picture lies in the picture of the camera at rest, px.
+/// Where a pixel of the image lies in the image of the camera at rest, px.
 using PixelMap = std::function<Vector<2>(const Vector<2>&)>;
 
 /// What a camera sees that moves while the shutter is open: the mean of `planes` as seen at the moments of `moments`. `planes`
-/// reach `margin` px, an even number, beyond the picture on each side; what comes back is the picture's size. Pre: there is a
-/// moment.
-Planes exposed(const Planes& planes, const std::vector<PixelMap>& moments, int margin);
+/// reach `margin` px, an even number, beyond the image on each side; what comes back is the image's size. Pre: there is a
+/// instant.
+Planes exposed(const Planes& planes, const std::vector<PixelMap>& time_steps, int margin);
 
 }  // namespace marey::simulate::people

@@ -1,8 +1,8 @@
 // A person is some twenty balls and tapered rods on a tree of joints: hips, knees, ankles, shoulders, elbows. Lengths are shares of
 // the stature (Winter, "Biomechanics and Motor Control of Human Movement", fig. 4.1, rounded). Joint angles are low harmonics of
 // the gait phase: the hip swings as a sine, the knee bends while its leg swings forward, arms swing against their leg. Walking
-// passes into running between 1.8 and 3.2 m/s: wider swings, bent elbows, a leaning trunk and a moment of flight. It looks like a
-// person from some metres on, and is no model of forces.
+// passes into running between 1.8 and 3.2 m/s: wider swings, bent elbows, a leaning trunk and an instant of flight. It looks like a
+// person from some metres on, and is not a model of forces.
 #include "marey/simulate/people/figure.h"
 
 #include <algorithm>
@@ -20,16 +20,16 @@ struct SideAngles {
   double hip = 0, knee = 0, shoulder = 0, elbow = 0;
 };
 
-double mix(double a, double b, double share) {
-  return a + share * (b - a);
+double mix(double a, double b, double fraction) {
+  return a + fraction * (b - a);
 }
 
-double running_share(double speed) {
+double running_fraction(double speed) {
   return std::clamp((speed - 1.8) / 1.4, 0.0, 1.0);
 }
 
 SideAngles side_angles(const Stance& stance, double phase) {
-  const double run = running_share(stance.speed);
+  const double run = running_fraction(stance.speed);
   const double swing = std::min(1.0, stance.speed / 1.1);
   const double sine = std::sin(phase);
   const double bend = std::max(0.0, std::cos(phase + 0.45));  // largest soon after the foot has left the ground
@@ -132,15 +132,15 @@ Figure draw_figure(Random& random, int team) {
     figure.colours[static_cast<std::size_t>(FigurePart::skin)][c] = skin * light[c];
     figure.colours[static_cast<std::size_t>(FigurePart::hair)][c] = hair * brown[c];
   }
-  const auto wear = [&](FigurePart part, const Rgb& colour) { figure.colours[static_cast<std::size_t>(part)] = colour; };
-  wear(FigurePart::shirt, team == 0 ? Rgb{205, 30, 38} : Rgb{235, 235, 238});
-  wear(FigurePart::shorts, team == 0 ? Rgb{240, 240, 240} : Rgb{28, 40, 105});
-  wear(FigurePart::socks, team == 0 ? Rgb{190, 28, 34} : Rgb{225, 225, 232});
-  wear(FigurePart::shoes, random.chance(0.5) ? Rgb{25, 25, 28} : Rgb{225, 190, 40});
+  const auto clothe = [&](FigurePart part, const Rgb& colour) { figure.colours[static_cast<std::size_t>(part)] = colour; };
+  clothe(FigurePart::shirt, team == 0 ? Rgb{205, 30, 38} : Rgb{235, 235, 238});
+  clothe(FigurePart::shorts, team == 0 ? Rgb{240, 240, 240} : Rgb{28, 40, 105});
+  clothe(FigurePart::socks, team == 0 ? Rgb{190, 28, 34} : Rgb{225, 225, 232});
+  clothe(FigurePart::shoes, random.chance(0.5) ? Rgb{25, 25, 28} : Rgb{225, 190, 40});
   return figure;
 }
 
-void dress_everybody(std::span<Figure> figures, std::uint64_t seed) {
+void dress_all(std::span<Figure> figures, std::uint64_t seed) {
   Random random(seed ^ 0xc107e5);
   constexpr std::array<FigurePart, 4> kWorn{FigurePart::shirt, FigurePart::shorts, FigurePart::socks, FigurePart::shoes};
   for (Figure& figure : figures) {
@@ -161,7 +161,7 @@ double stride_length(double speed, double stature) {
 }
 
 std::vector<Limb> pose(const Figure& figure, const Stance& stance) {
-  const double run = running_share(stance.speed);
+  const double run = running_fraction(stance.speed);
   const double swing = std::min(1.0, stance.speed / 1.1);
   const double lean = mix(kDegree * (1 + swing * mix(2, 11, run)), 42 * kDegree, stance.crouch);
   const SideAngles left = side_angles(stance, stance.phase);
@@ -179,14 +179,14 @@ std::vector<Limb> pose(const Figure& figure, const Stance& stance) {
   const double lift = flight - lowest(limbs);
   const double c = std::cos(stance.heading);
   const double s = std::sin(stance.heading);
-  const auto placed = [&](const Vector<3>& p) -> Vector<3> {
+  const auto located = [&](const Vector<3>& p) -> Vector<3> {
     const double x = figure.stature * p.x();
     const double y = figure.stature * p.y();
-    return {stance.place.x() + c * x - s * y, stance.place.y() + s * x + c * y, figure.stature * (p.z() + lift)};
+    return {stance.location.x() + c * x - s * y, stance.location.y() + s * x + c * y, figure.stature * (p.z() + lift)};
   };
   for (Limb& limb : limbs) {
-    limb.from = placed(limb.from);
-    limb.to = placed(limb.to);
+    limb.from = located(limb.from);
+    limb.to = located(limb.to);
     limb.from_radius *= figure.stature;
     limb.to_radius *= figure.stature;
   }

@@ -29,17 +29,17 @@ struct Figure {
 /// A person of everyday size in the kit of a team (0 or 1), skin and hair drawn from `random`.
 Figure draw_figure(Random& random, int team);
 
-/// Everybody in clothes of their own, as they are bought: shirt, shorts, socks and shoes of any colours, most of them subdued.
-void dress_everybody(std::span<Figure> figures, std::uint64_t seed);
+/// Every person in clothes of their own, as they are bought: shirt, shorts, socks and shoes of any colours, most of them subdued.
+void dress_all(std::span<Figure> figures, std::uint64_t seed);
 
 /// How a person stands at one instant. The ground is z = 0, z points up.
 struct Stance {
-  Vector<2> place = Vector<2>::Zero();  ///< m on the ground, below the hips
-  double heading = 0;                   ///< rad, anticlockwise from +x as seen from above
-  double speed = 0;                     ///< m/s: decides how far the limbs swing, and whether the person walks or runs
-  double phase = 0;                     ///< rad, of the gait: 2π is one stride, two steps
-  double crouch = 0;                    ///< 0 upright … 1 squatting
-  double reach = 0;                     ///< 0 arms swing … 1 both arms thrown up
+  Vector<2> location = Vector<2>::Zero();  ///< m on the ground, below the hips
+  double heading = 0;                      ///< rad, anticlockwise from +x as seen from above
+  double speed = 0;                        ///< m/s: decides how far the limbs swing, and whether the person walks or runs
+  double phase = 0;                        ///< rad, of the gait: 2π is one stride, two steps
+  double crouch = 0;                       ///< 0 upright … 1 squatting
+  double reach = 0;                        ///< 0 arms swing … 1 both arms thrown up
 };
 
 /// Length of a stride (two steps) at a speed, m: gait phase grows by 2π · distance / stride.

@@ -1,6 +1,6 @@
 // People go from goal to goal: they gain and lose speed by 3 m/s² and turn by a few rad/s, as people do, unless a situation wants
-// it abrupt. Where they shall keep apart, the picture is cut into lanes one above the other, with room for a person and its arms; a
-// goal is a place in one's own lane. Meetings (crossing, post) are laid out backwards from the moment of the meeting.
+// it abrupt. Where they shall keep apart, the image is cut into lanes one above the other, with room for a person and its arms; a
+// goal is a place in one's own lane. Meetings (crossing, post) are laid out backwards from the instant of the meeting.
 #include "marey/simulate/people/people_motion.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kLaneHeights = 1.9;  // a lane, in heights of the people in it
 
 class Director {
  public:
-  Director(const LevelCamera& camera, const PeopleFilmOptions& options, Random& random)
+  Director(const LevelCamera& camera, const PeopleVideoOptions& options, Random& random)
       : camera_(camera), options_(options), random_(random), dt_(1 / options.rate_hz) {
     motion_.frames.resize(static_cast<std::size_t>(*options.frames));
   }
@@ -39,13 +39,13 @@ class Director {
   }
   double stature(int id) const { return motion_.figures[static_cast<std::size_t>(id - 1)].stature; }
   double speed() { return options_.pace * (random_.chance(0.6) ? random_.uniform(0.9, 1.9) : random_.uniform(2.5, 5.0)); }
-  /// Height in the picture, px, of a person whose feet are at a row.
+  /// Height in the image, px, of a person whose feet are at a row.
   double height_at(double row) const {
     const auto at = camera_.on_ground({camera_.size.width / 2.0, row});
     return at ? 1.78 * std::cos(camera_.pitch) * camera_(Vector<3>(at->x(), at->y(), 0))->scale : 1;
   }
   Vector<2> ground(double column, double row) const {
-    // Above the horizon no one can stand: as far away as the picture's top row that shows ground.
+    // Above the horizon no one can stand: as far away as the image's top row that shows ground.
     for (double r = row;; r += 1) {
       if (const auto at = camera_.on_ground({column, r})) return *at;
     }
@@ -53,27 +53,27 @@ class Director {
   struct Lane {
     double top = 0, bottom = 0;  // rows between which the feet go
   };
-  std::vector<Lane> lanes(int wanted) const;
-  void begin(Walker& walker, const Vector<2>& place, const Vector<2>& goal);
+  std::vector<Lane> lanes(int required) const;
+  void begin(Walker& walker, const Vector<2>& location, const Vector<2>& goal);
   Vector<2> anywhere(bool outside);
   void walk_anywhere(Walker& walker, double now, int& team);
   void walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander);
   void change_shape(Walker& walker, bool abrupt);
 
   LevelCamera camera_;
-  PeopleFilmOptions options_;
+  PeopleVideoOptions options_;
   Random& random_;
   double dt_;
   PeopleMotion motion_;
 };
 
-std::vector<Director::Lane> Director::lanes(int wanted) const {
-  // As many as wanted and as fit, about the middle of the picture.
+std::vector<Director::Lane> Director::lanes(int required) const {
+  // As many as wanted and as fit, about the middle of the image.
   const double middle = camera_.size.height / 2.0;
-  const double room = wanted * kLaneHeights * height_at(middle);
+  const double room = required * kLaneHeights * height_at(middle);
   std::vector<Lane> found;
   for (double row = std::min(camera_.size.height - 6.0, middle + room / 2 - 0.4 * height_at(middle));
-       static_cast<int>(found.size()) < wanted;) {
+       static_cast<int>(found.size()) < required;) {
     const double height = height_at(row);
     const double top = row - kLaneHeights * height;
     if (top < 4 && !found.empty()) break;
@@ -83,19 +83,19 @@ std::vector<Director::Lane> Director::lanes(int wanted) const {
   return found;
 }
 
-void Director::begin(Walker& walker, const Vector<2>& place, const Vector<2>& goal) {
+void Director::begin(Walker& walker, const Vector<2>& location, const Vector<2>& goal) {
   walker.goal = goal;
-  walker.stance.place = place;
-  walker.stance.heading = std::atan2((goal - place).y(), (goal - place).x());
+  walker.stance.location = location;
+  walker.stance.heading = std::atan2((goal - location).y(), (goal - location).x());
   walker.stance.phase = random_.uniform(0, 2 * std::numbers::pi);
-  walker.wished_speed = speed();
-  walker.stance.speed = walker.wished_speed;
+  walker.requested_speed = speed();
+  walker.stance.speed = walker.requested_speed;
 }
 
 void Director::change_shape(Walker& walker, bool abrupt) {
   if (!abrupt || !random_.chance(0.9 * dt_)) return;
-  walker.wished_crouch = random_.chance(0.5) ? random_.uniform(0.4, 1) : 0;
-  walker.wished_reach = random_.chance(0.5) ? random_.uniform(0.5, 1) : 0;
+  walker.requested_crouch = random_.chance(0.5) ? random_.uniform(0.4, 1) : 0;
+  walker.requested_reach = random_.chance(0.5) ? random_.uniform(0.5, 1) : 0;
 }
 
 void Director::in_lanes(bool abrupt, bool over_border) {
@@ -105,13 +105,13 @@ void Director::in_lanes(bool abrupt, bool over_border) {
     const double height = height_at(lane.bottom);
     const double low = over_border ? -0.6 * height : 0.7 * height;
     const double high = over_border ? width + 0.6 * height : width - 0.7 * height;
-    const auto place = [&](double column) { return ground(column, random_.uniform(lane.top, lane.bottom)); };
-    const auto side = [&](bool right) { return place(right ? high : low); };
+    const auto location = [&](double column) { return ground(column, random_.uniform(lane.top, lane.bottom)); };
+    const auto side = [&](bool right) { return location(right ? high : low); };
     Walker walker;
     walker.id = new_figure(team++ % 2);
     bool right = random_.chance(0.5);
-    begin(walker, place(random_.uniform(std::max(low, 0.1 * width), std::min(high, 0.9 * width))),
-          over_border ? side(right) : place(random_.uniform(low, high)));
+    begin(walker, location(random_.uniform(std::max(low, 0.1 * width), std::min(high, 0.9 * width))),
+          over_border ? side(right) : location(random_.uniform(low, high)));
     for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
       const double now = static_cast<double>(frame) * dt_;
       motion_.frames[frame].push_back({walker.id, walker.stance});
@@ -119,33 +119,33 @@ void Director::in_lanes(bool abrupt, bool over_border) {
       const bool bored = abrupt && random_.chance(0.7 * dt_);
       if (!walker.walk(now, dt_, stature(walker.id), abrupt) && !bored) continue;
       if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.3, 1.5);
-      walker.wished_speed = speed();
+      walker.requested_speed = speed();
       if (over_border) {
-        const double column = camera_(Vector<3>(walker.stance.place.x(), walker.stance.place.y(), 0))->at.x();
+        const double column = camera_(Vector<3>(walker.stance.location.x(), walker.stance.location.y(), 0))->at.x();
         const bool gone = column < -0.3 * height || column > width - 1 + 0.3 * height;
         if (gone) {
           walker.id = new_figure(team++ % 2);
-          walker.stance.place = side(right);
+          walker.stance.location = side(right);
         }
         // Some turn back at the very border, half of them outside.
         right = !right;
         if (random_.chance(0.35)) {
-          walker.goal = place(right ? width - 1 : 0);
+          walker.goal = location(right ? width - 1 : 0);
           continue;
         }
       }
-      walker.goal = over_border ? side(right) : place(random_.uniform(low, high));
+      walker.goal = over_border ? side(right) : location(random_.uniform(low, high));
     }
   }
 }
 
-/// On a path that passes a place at a moment; its heading swings by up to `wander` rad, for no person walks like a machine.
+/// On a path that passes a place at an instant; its heading swings by up to `wander` rad, for no person walks like a machine.
 void Director::walk_straight(int id, const Vector<2>& at, double when, const Vector<2>& velocity, double wander) {
   Walker walker;
   walker.id = id;
   walker.stance.speed = velocity.norm();
   walker.stance.heading = std::atan2(velocity.y(), velocity.x());
-  walker.stance.place = at - when * velocity;
+  walker.stance.location = at - when * velocity;
   walker.stance.phase = random_.uniform(0, 2 * std::numbers::pi);
   const double beat = random_.uniform(0.15, 0.4);  // Hz
   const double heading = walker.stance.heading;
@@ -177,7 +177,7 @@ void Director::crossing() {
   walk_straight(near, near_at, middle, common - Vector<2>(side * apart, drift), random_.uniform(0.05, 0.2));
 }
 
-/// One comes up to the other from the side, stays in part before or behind it, and goes on or turns back.
+/// One comes up to the other from the side, stays in part before or behind it, and continues or turns back.
 void Director::overlap() {
   const int team = random_.integer(0, 1);
   const std::array<int, 2> ids{new_figure(team), new_figure(options_.same_shirts ? team : 1 - team)};
@@ -194,24 +194,25 @@ void Director::overlap() {
   const double begin = 0.35 * length, end = begin + std::min(2.0, 0.3 * length);
   const int comes = random_.integer(0, 1);  // the farther or the nearer one
   std::array<Walker, 2> walkers;
-  for (int who = 0; who < 2; ++who) {
-    walkers[who].id = ids[who];
-    walkers[who].stance.phase = random_.uniform(0, 2 * std::numbers::pi);
+  for (int identity = 0; identity < 2; ++identity) {
+    walkers[identity].id = ids[identity];
+    walkers[identity].stance.phase = random_.uniform(0, 2 * std::numbers::pi);
   }
   for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
     const double now = static_cast<double>(frame) * dt_;
     const double apart = side * offset + (now < begin ? side * pace * (begin - now) : now > end ? after * (now - end) : 0);
     const double relative = now < begin ? -side * pace : now > end ? after : 0;
-    for (int who = 0; who < 2; ++who) {
-      Stance& stance = walkers[who].stance;
-      const Vector<2> velocity = common + Vector<2>(who == comes ? relative : 0, 0);
-      stance.place = (who == 0 ? far_at : near_at) + (now - (begin + end) / 2) * common + Vector<2>(who == comes ? apart : 0, 0);
+    for (int identity = 0; identity < 2; ++identity) {
+      Stance& stance = walkers[identity].stance;
+      const Vector<2> velocity = common + Vector<2>(identity == comes ? relative : 0, 0);
+      stance.location =
+          (identity == 0 ? far_at : near_at) + (now - (begin + end) / 2) * common + Vector<2>(identity == comes ? apart : 0, 0);
       stance.speed += std::clamp(velocity.norm() - stance.speed, -kAbruptGain * dt_, kAbruptGain * dt_);
       const double turn = wrapped(std::atan2(velocity.y(), velocity.x()) - stance.heading);
       stance.heading += frame == 0 ? turn : std::clamp(turn, -kAbruptTurn * dt_, kAbruptTurn * dt_);
       stance.phase =
-          wrapped(stance.phase + 2 * std::numbers::pi * stance.speed * dt_ / stride_length(stance.speed, stature(ids[who])));
-      motion_.frames[frame].push_back({ids[who], stance});
+          wrapped(stance.phase + 2 * std::numbers::pi * stance.speed * dt_ / stride_length(stance.speed, stature(ids[identity])));
+      motion_.frames[frame].push_back({ids[identity], stance});
     }
   }
 }
@@ -225,7 +226,7 @@ void Director::behind_posts() {
     const double hidden = random_.uniform(0.2, 1) * options_.hidden_s;
     const Vector<2> at = ground(camera_.size.width * random_.uniform(0.4, 0.6), row);
     const double px_per_m = camera_(Vector<3>(at.x(), at.y(), 0))->scale;
-    // The board hides the whole width of a person for that long; the path ends within the picture.
+    // The board hides the whole width of a person for that long; the path ends within the image.
     const double length = static_cast<double>(motion_.frames.size()) * dt_;
     const double person = kWide * height / px_per_m;
     const double half = 0.36 * camera_.size.width / px_per_m;
@@ -239,7 +240,7 @@ void Director::behind_posts() {
   }
 }
 
-/// A place on the ground in the lower part of the picture, or at its side without.
+/// A place on the ground in the lower part of the image, or at its side without.
 Vector<2> Director::anywhere(bool outside) {
   const double width = camera_.size.width;
   const double low_row = camera_.size.height - 4;
@@ -249,10 +250,10 @@ Vector<2> Director::anywhere(bool outside) {
   return ground(random_.chance(0.5) ? -height_at(row) : width + height_at(row), row);
 }
 
-/// A step of somebody who goes from goal to goal; who leaves the picture is replaced by somebody else.
+/// A step of a person who goes from goal to goal; who leaves the image is replaced by another person.
 void Director::walk_anywhere(Walker& walker, double now, int& team) {
   if (!walker.walk(now, dt_, stature(walker.id), false)) return;
-  const double column = camera_(Vector<3>(walker.stance.place.x(), walker.stance.place.y(), 0))->at.x();
+  const double column = camera_(Vector<3>(walker.stance.location.x(), walker.stance.location.y(), 0))->at.x();
   if (column < -10 || column > camera_.size.width + 10) {
     walker.id = new_figure(team++ % 2);
     const Vector<2> goal = anywhere(false);
@@ -260,7 +261,7 @@ void Director::walk_anywhere(Walker& walker, double now, int& team) {
     return;
   }
   if (random_.chance(0.3)) walker.rests_until = now + random_.uniform(0.5, 4);
-  walker.wished_speed = speed();
+  walker.requested_speed = speed();
   walker.goal = anywhere(random_.chance(0.25));
 }
 
@@ -281,11 +282,11 @@ void Director::crowd() {
   }
 }
 
-/// Half of them stand from the first frame on, shifting their weight, and walk off in the second half of the film, each at a
-/// moment of their own; the others walk about between them.
+/// Half of them stand from the first frame on, shifting their weight, and walk off in the second half of the video, each at a
+/// instant of their own; the others walk about between them.
 void Director::standing() {
   constexpr double kApart = 1.5, kSway = 0.02, kBeat = 0.3;  // m, m, Hz
-  constexpr double kShortest = 0.55, kLongest = 0.8;         // of the film, that they stand
+  constexpr double kMinLength = 0.55, kLongest = 0.8;        // of the video, that they stand
   const double length = static_cast<double>(motion_.frames.size()) * dt_;
   std::vector<Walker> people(static_cast<std::size_t>(*options_.people));
   const std::size_t standing = (people.size() + 1) / 2;
@@ -294,17 +295,17 @@ void Director::standing() {
   int team = 0;
   for (std::size_t i = 0; i < people.size(); ++i) {
     people[i].id = new_figure(team++ % 2);
-    Vector<2> place = anywhere(false);
-    const auto crowded = [&](const Vector<2>& other) { return (other - place).norm() < kApart; };
+    Vector<2> location = anywhere(false);
+    const auto crowded = [&](const Vector<2>& other) { return (other - location).norm() < kApart; };
     for (int tries = 0;
          i < standing && tries < 100 && std::any_of(home.begin(), home.begin() + static_cast<std::ptrdiff_t>(i), crowded); ++tries)
-      place = anywhere(false);
-    begin(people[i], place, anywhere(i < standing));
+      location = anywhere(false);
+    begin(people[i], location, anywhere(i < standing));
     if (i >= standing) continue;
     people[i].stance.speed = 0;
     people[i].stance.heading = random_.uniform(0, 2 * std::numbers::pi);
-    home[i] = place;
-    leaves[i] = random_.uniform(kShortest, kLongest) * length;
+    home[i] = location;
+    leaves[i] = random_.uniform(kMinLength, kLongest) * length;
   }
   for (std::size_t frame = 0; frame < motion_.frames.size(); ++frame) {
     const double now = static_cast<double>(frame) * dt_;
@@ -312,7 +313,7 @@ void Director::standing() {
       motion_.frames[frame].push_back({people[i].id, people[i].stance});
       if (i < standing && now < leaves[i]) {
         const double phase = 2 * std::numbers::pi * kBeat * now + static_cast<double>(i);
-        people[i].stance.place = home[i] + kSway * Vector<2>(std::sin(phase), std::cos(0.7 * phase));
+        people[i].stance.location = home[i] + kSway * Vector<2>(std::sin(phase), std::cos(0.7 * phase));
       } else {
         walk_anywhere(people[i], now, team);
       }
@@ -322,7 +323,7 @@ void Director::standing() {
 
 }  // namespace
 
-PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, const PeopleFilmOptions& options, Random& random) {
+PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, const PeopleVideoOptions& options, Random& random) {
   Director director(camera, options, random);
   switch (situation) {
     case PeopleSituation::apart:

@@ -2,22 +2,22 @@
 
 #include <vector>
 
-#include "marey/simulate/people/people_film.h"
+#include "marey/simulate/people/people_video.h"
 
 namespace marey::simulate::people {
 
-/// Who stands where in each frame of a film, and what hides them.
+/// Who stands where in each frame of a video, and what hides them.
 struct PeopleMotion {
-  struct Placed {
+  struct Located {
     int id = 0;  ///< from 1: figures[id − 1]
     Stance stance;
   };
   std::vector<Figure> figures;
-  std::vector<std::vector<Placed>> frames;
+  std::vector<std::vector<Located>> frames;
   std::vector<Post> posts;
 };
 
 /// Lets people move as a situation asks, before a camera. `options.frames` and `options.people` must be given.
-PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, const PeopleFilmOptions& options, Random& random);
+PeopleMotion move_people(PeopleSituation situation, const LevelCamera& camera, const PeopleVideoOptions& options, Random& random);
 
 }  // namespace marey::simulate::people

@@ -44,15 +44,15 @@ void scale_levels(cv::Mat& plane, double factor, double zero) {
 void add_shadow_rim(std::vector<cv::Point2f>& rim, const Projection& projection, const Vector<3>& centre, double radius,
                     const Vector<3>& sun, const Vector<2>& shift) {
   const Vector<2> away = -sun.head<2>() / sun.z();
-  const double stretch = std::sqrt(1 + away.squaredNorm());
+  const double segment = std::sqrt(1 + away.squaredNorm());
   const Vector<2> along = away.norm() > 0 ? Vector<2>(away.normalized()) : Vector<2>(1, 0);
   const Vector<2> across(-along.y(), along.x());
   const Vector<2> middle = centre.head<2>() + centre.z() * away;
   for (int i = 0; i < kRimPoints; ++i) {
     const double angle = 2 * std::numbers::pi * i / kRimPoints;
-    const Vector<2> at = middle + radius * (std::cos(angle) * stretch * along + std::sin(angle) * across);
-    if (const auto seen = projection({at.x(), at.y(), 0})) {
-      rim.emplace_back(static_cast<float>(seen->at.x() + shift.x()), static_cast<float>(seen->at.y() + shift.y()));
+    const Vector<2> at = middle + radius * (std::cos(angle) * segment * along + std::sin(angle) * across);
+    if (const auto detected = projection({at.x(), at.y(), 0})) {
+      rim.emplace_back(static_cast<float>(detected->at.x() + shift.x()), static_cast<float>(detected->at.y() + shift.y()));
     }
   }
 }
@@ -65,12 +65,12 @@ std::vector<Vector<2>> hull_of(const std::vector<cv::Point2f>& points) {
   return polygon;
 }
 
-bool meets(const Silhouette& silhouette, cv::Size picture) {
-  return !silhouette.empty() && !(silhouette.pixels() & cv::Rect({0, 0}, picture)).empty();
+bool meets(const Silhouette& silhouette, cv::Size image) {
+  return !silhouette.empty() && !(silhouette.pixels() & cv::Rect({0, 0}, image)).empty();
 }
 
 /// How many points of each pixel lie in a shadow: the most of all shadows counted.
-void count_points(const Silhouette& shadow, const cv::Rect& where, cv::Mat& share) {
+void count_points(const Silhouette& shadow, const cv::Rect& where, cv::Mat& fraction) {
   for (int y = where.y; y < where.br().y; ++y) {
     for (int x = where.x; x < where.br().x; ++x) {
       int points = 0;
@@ -79,21 +79,21 @@ void count_points(const Silhouette& shadow, const cv::Rect& where, cv::Mat& shar
             shadow.mask.ptr<std::uint8_t>(y * shadow.samples + row - shadow.lattice.y) + x * shadow.samples - shadow.lattice.x;
         for (int column = 0; column < shadow.samples; ++column) points += point[column] != 0 ? 1 : 0;
       }
-      auto& cell = share.at<std::uint8_t>(y, x);
+      auto& cell = fraction.at<std::uint8_t>(y, x);
       cell = std::max(cell, static_cast<std::uint8_t>(points));
     }
   }
 }
 
 /// The same of the blocks of 2 × 2 pixels that `where` touches.
-void add_up_blocks(const cv::Mat& share, const cv::Rect& where, cv::Mat& chroma_share) {
+void add_up_blocks(const cv::Mat& fraction, const cv::Rect& where, cv::Mat& chroma_share) {
   const cv::Rect blocks = half_of(where);
   for (int y = blocks.y; y < blocks.br().y; ++y) {
     for (int x = blocks.x; x < blocks.br().x; ++x) {
-      const cv::Rect block = cv::Rect(2 * x, 2 * y, 2, 2) & cv::Rect({0, 0}, share.size());
+      const cv::Rect block = cv::Rect(2 * x, 2 * y, 2, 2) & cv::Rect({0, 0}, fraction.size());
       int points = 0;
       for (int row = block.y; row < block.br().y; ++row) {
-        for (int column = block.x; column < block.br().x; ++column) points += share.at<std::uint8_t>(row, column);
+        for (int column = block.x; column < block.br().x; ++column) points += fraction.at<std::uint8_t>(row, column);
       }
       chroma_share.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(points * 4 / block.area());
     }
@@ -101,10 +101,10 @@ void add_up_blocks(const cv::Mat& share, const cv::Rect& where, cv::Mat& chroma_
 }
 
 /// Brings levels nearer to `zero` by `dark` for each point, which are used up: what lies in two shadows is darkened once.
-void scale_levels(cv::Mat& plane, double zero, double dark, const cv::Rect& where, cv::Mat& share) {
+void scale_levels(cv::Mat& plane, double zero, double dark, const cv::Rect& where, cv::Mat& fraction) {
   for (int y = where.y; y < where.br().y; ++y) {
     for (int x = where.x; x < where.br().x; ++x) {
-      auto& points = share.at<std::uint8_t>(y, x);
+      auto& points = fraction.at<std::uint8_t>(y, x);
       if (points == 0) continue;
       auto& level = plane.at<std::uint8_t>(y, x);
       level = clamp_level(static_cast<float>(zero + (1 - dark * points) * (level - zero)));
@@ -113,11 +113,11 @@ void scale_levels(cv::Mat& plane, double zero, double dark, const cv::Rect& wher
   }
 }
 
-/// Convex outlines as one silhouette within the picture.
-std::optional<Silhouette> union_of(const std::vector<std::vector<Vector<2>>>& outlines, cv::Size picture) {
+/// Convex outlines as one silhouette within the image.
+std::optional<Silhouette> union_of(const std::vector<std::vector<Vector<2>>>& outlines, cv::Size image) {
   Box box;
   for (const auto& outline : outlines) box = box.empty() ? bounds(outline) : geometry::hull(box, bounds(outline));
-  box = geometry::intersection(box, {0, 0, static_cast<double>(picture.width), static_cast<double>(picture.height)});
+  box = geometry::intersection(box, {0, 0, static_cast<double>(image.width), static_cast<double>(image.height)});
   Silhouette result = blank_silhouette(box, kShadowSamples);
   if (result.empty()) return std::nullopt;
   for (const auto& outline : outlines) fill_convex(result, outline, 255);
@@ -156,10 +156,10 @@ std::optional<BallSprite> PeopleRenderer::sprite_of(const PosedBall& ball, const
   return sprite;
 }
 
-/// Of points all over a ball's disc, the share within the picture that nothing nearer covers.
-double PeopleRenderer::share_seen(const BallSprite& ball, std::span<const Sprite> sprites) const {
+/// Of points all over a ball's disc, the share within the image that nothing nearer covers.
+double PeopleRenderer::fraction_observed(const BallSprite& ball, std::span<const Sprite> sprites) const {
   constexpr int kSide = 7;
-  int all = 0, seen = 0;
+  int all = 0, detected = 0;
   for (int i = 0; i < kSide * kSide; ++i) {
     const Vector<2> off(2.0 * (i % kSide + 0.5) / kSide - 1, 2.0 * (i / kSide + 0.5) / kSide - 1);
     if (off.squaredNorm() > 1) continue;
@@ -167,14 +167,14 @@ double PeopleRenderer::share_seen(const BallSprite& ball, std::span<const Sprite
     const Vector<2> at = ball.middle() + ball.radius * off;
     if (at.x() < -0.5 || at.y() < -0.5 || at.x() >= luma_.cols - 0.5 || at.y() >= luma_.rows - 0.5) continue;
     const auto covers = [&](const Sprite& sprite) { return sprite.depth < ball.depth && sprite.covers(at); };
-    if (std::none_of(sprites.begin(), sprites.end(), covers)) ++seen;
+    if (std::none_of(sprites.begin(), sprites.end(), covers)) ++detected;
   }
-  return static_cast<double>(seen) / all;
+  return static_cast<double>(detected) / all;
 }
 
-PeopleRenderer::PeopleRenderer(const Picture& ground, Projection projection, std::vector<Post> posts, const RenderOptions& options)
+PeopleRenderer::PeopleRenderer(const Image& ground, Projection projection, std::vector<Post> posts, const RenderOptions& options)
     : projection_(std::move(projection)), posts_(std::move(posts)), options_(options) {
-  const Picture scene = ground.is_colour() && ground.range() == Picture::Range::limited ? ground : Picture::from_bgr(ground.bgr());
+  const Image scene = ground.is_colour() && ground.range() == Image::Range::limited ? ground : Image::from_bgr(ground.bgr());
   luma_ = scene.luma().clone();
   cb_ = scene.cb().clone();
   cr_ = scene.cr().clone();
@@ -184,12 +184,12 @@ PeopleRenderer::PeopleRenderer(const Picture& ground, Projection projection, std
 }
 
 std::optional<Sprite> PeopleRenderer::sprite_of(const PosedFigure& person, const Vector<2>& shift) const {
-  struct Seen {
+  struct Detected {
     RoundCone2 cone;
     double depth;
     FigurePart part;
   };
-  std::vector<Seen> limbs;
+  std::vector<Detected> limbs;
   Box box;
   for (const Limb& limb : pose(*person.figure, person.stance)) {
     const auto from = projection_(limb.from), to = projection_(limb.to);
@@ -199,21 +199,21 @@ std::optional<Sprite> PeopleRenderer::sprite_of(const PosedFigure& person, const
                      limb.part});
     box = box.empty() ? bounds(limbs.back().cone) : geometry::hull(box, bounds(limbs.back().cone));
   }
-  const Vector<2>& place = person.stance.place;
-  const auto foot = projection_({place.x(), place.y(), 0});
+  const Vector<2>& location = person.stance.location;
+  const auto foot = projection_({location.x(), location.y(), 0});
   if (!foot) return std::nullopt;
   Sprite sprite;
   sprite.depth = foot->depth;
   sprite.shape = blank_silhouette(box, options_.samples);
   if (!meets(sprite.shape, size())) return std::nullopt;
-  std::stable_sort(limbs.begin(), limbs.end(), [](const Seen& a, const Seen& b) { return a.depth > b.depth; });
-  for (const Seen& limb : limbs) {
+  std::stable_sort(limbs.begin(), limbs.end(), [](const Detected& a, const Detected& b) { return a.depth > b.depth; });
+  for (const Detected& limb : limbs) {
     fill(sprite.shape, limb.cone, static_cast<std::uint8_t>(1 + kShades * static_cast<int>(limb.part)), kShades);
   }
-  // The sun's side of the picture: which way a step towards it goes.
-  const Vector<2> lit = place + 0.1 * options_.sun.head<2>();
-  const auto beside = projection_({lit.x(), lit.y(), 0});
-  const double side = beside && beside->at.x() < foot->at.x() ? -1 : 1;
+  // The sun's side of the image: which way a step towards it goes.
+  const Vector<2> lit = location + 0.1 * options_.sun.head<2>();
+  const auto next_to = projection_({lit.x(), lit.y(), 0});
+  const double side = next_to && next_to->at.x() < foot->at.x() ? -1 : 1;
   for (std::size_t part = 0; part < kFigureParts; ++part) {
     for (int shade = 0; shade < kShades; ++shade) {
       sprite.palette[1 + kShades * part + static_cast<std::size_t>(shade)] =
@@ -228,15 +228,15 @@ std::optional<Sprite> PeopleRenderer::sprite_of(const Post& post, const Vector<2
   Sprite sprite;
   for (const Vector<2>& end : {post.from, post.to}) {
     for (const double z : {0.0, post.height}) {
-      const auto seen = projection_({end.x(), end.y(), z});
-      if (!seen) return std::nullopt;
-      corners.emplace_back(static_cast<float>(seen->at.x() + shift.x()), static_cast<float>(seen->at.y() + shift.y()));
-      if (z == 0) sprite.depth += seen->depth / 2;
+      const auto detected = projection_({end.x(), end.y(), z});
+      if (!detected) return std::nullopt;
+      corners.emplace_back(static_cast<float>(detected->at.x() + shift.x()), static_cast<float>(detected->at.y() + shift.y()));
+      if (z == 0) sprite.depth += detected->depth / 2;
     }
   }
   const std::vector<Vector<2>> outline = hull_of(corners);
-  const Box picture{0, 0, static_cast<double>(luma_.cols), static_cast<double>(luma_.rows)};
-  sprite.shape = blank_silhouette(geometry::intersection(bounds(outline), picture), options_.samples);
+  const Box image{0, 0, static_cast<double>(luma_.cols), static_cast<double>(luma_.rows)};
+  sprite.shape = blank_silhouette(geometry::intersection(bounds(outline), image), options_.samples);
   if (sprite.shape.empty()) return std::nullopt;
   fill_convex(sprite.shape, outline, 1, kShades);
   for (int shade = 0; shade < kShades; ++shade) {
@@ -282,16 +282,16 @@ Planes PeopleRenderer::ground(const FrameConditions& conditions) const {
 
 void PeopleRenderer::darken(Planes& planes, std::span<const Silhouette> shadows) const {
   // Points in shadow: of kShadowSamples² a pixel, and of four times as many for each pixel of chroma.
-  cv::Mat share = cv::Mat::zeros(planes.luma.size(), CV_8UC1), cb_share = cv::Mat::zeros(planes.cb.size(), CV_8UC1);
-  const cv::Rect picture({0, 0}, share.size());
-  for (const Silhouette& shadow : shadows) count_points(shadow, shadow.pixels() & picture, share);
-  for (const Silhouette& shadow : shadows) add_up_blocks(share, shadow.pixels() & picture, cb_share);
+  cv::Mat fraction = cv::Mat::zeros(planes.luma.size(), CV_8UC1), cb_share = cv::Mat::zeros(planes.cb.size(), CV_8UC1);
+  const cv::Rect image({0, 0}, fraction.size());
+  for (const Silhouette& shadow : shadows) count_points(shadow, shadow.pixels() & image, fraction);
+  for (const Silhouette& shadow : shadows) add_up_blocks(fraction, shadow.pixels() & image, cb_share);
   cv::Mat cr_share = cb_share.clone();
   constexpr double kPoints = kShadowSamples * kShadowSamples;
   const double dark = 1 - options_.shadow_level;
   for (const Silhouette& shadow : shadows) {
-    const cv::Rect where = shadow.pixels() & picture;
-    scale_levels(planes.luma, 16, dark / kPoints, where, share);
+    const cv::Rect where = shadow.pixels() & image;
+    scale_levels(planes.luma, 16, dark / kPoints, where, fraction);
     scale_levels(planes.cb, 128, dark / (4 * kPoints), half_of(where), cb_share);
     scale_levels(planes.cr, 128, dark / (4 * kPoints), half_of(where), cr_share);
   }
@@ -313,27 +313,27 @@ void PeopleRenderer::add_noise(Planes& planes, std::uint64_t seed) const {
   add(planes.cr, options_.noise / 2);
 }
 
-/// What others, who stand nearer, and the picture's border leave of `truth`, whose sprite is `own`.
-void PeopleRenderer::see_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const {
+/// What others, who stand nearer, and the image's border leave of `truth`, whose sprite is `own`.
+void PeopleRenderer::observe_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const {
   for (const Sprite& other : sprites) {
     if (&other != &own && other.depth < own.depth) take_away(truth.visible, other.shape);
   }
   crop(truth.visible, size());
-  truth.visible_share = truth.visible.area() / truth.whole.area();
+  truth.visible_fraction = truth.visible.area() / truth.whole.area();
 }
 
-/// The truth in the pixels of the picture without its margin, and without those who are in the margin alone.
+/// The truth in the pixels of the image without its margin, and without those who are in the margin alone.
 void PeopleRenderer::come_from_margin(RenderedFrame& frame) const {
   const int margin = options_.margin;
   if (margin == 0) return;
-  const cv::Size picture = size() - cv::Size(2 * margin, 2 * margin);
+  const cv::Size image = size() - cv::Size(2 * margin, 2 * margin);
   for (TrueFigure& person : frame.people) {
     for (Silhouette* shape : {&person.whole, &person.visible}) shape->lattice -= cv::Point(margin, margin) * shape->samples;
-    crop(person.visible, picture);
-    person.visible_share = person.visible.empty() ? 0 : person.visible.area() / person.whole.area();
+    crop(person.visible, image);
+    person.visible_fraction = person.visible.empty() ? 0 : person.visible.area() / person.whole.area();
     person.foot -= Vector<2>(margin, margin);
   }
-  std::erase_if(frame.people, [&](const TrueFigure& person) { return !meets(person.whole, picture); });
+  std::erase_if(frame.people, [&](const TrueFigure& person) { return !meets(person.whole, image); });
   for (TrueBall& ball : frame.balls) ball.at -= Vector<2>(margin, margin);
 }
 
@@ -351,7 +351,7 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
     if (options_.shadows) keep_shadow(shadow_of(pose(*person.figure, person.stance), conditions.shift));
     auto sprite = sprite_of(person, conditions.shift);
     if (!sprite) continue;
-    TrueFigure truth{person.id, person.figure->team, person.stance.place, Vector<2>::Zero(), sprite->shape, sprite->shape, 0};
+    TrueFigure truth{person.id, person.figure->team, person.stance.location, Vector<2>::Zero(), sprite->shape, sprite->shape, 0};
     truth.whole.mask = sprite->shape.mask.clone();
     truth.visible.mask = sprite->shape.mask.clone();
     truth.foot = projection_({truth.ground.x(), truth.ground.y(), 0})->at + conditions.shift;
@@ -363,7 +363,7 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
     if (options_.shadows) keep_shadow(shadow_of(post, conditions.shift));
     if (auto sprite = sprite_of(post, conditions.shift)) sprites.push_back(std::move(*sprite));
   }
-  for (std::size_t i = 0; i < frame.people.size(); ++i) see_past(sprites, sprites[sprite_of_person[i]], frame.people[i]);
+  for (std::size_t i = 0; i < frame.people.size(); ++i) observe_past(sprites, sprites[sprite_of_person[i]], frame.people[i]);
   std::vector<BallSprite> ball_sprites;
   for (const PosedBall& ball : balls) {
     auto sprite = sprite_of(ball, conditions.shift);
@@ -371,7 +371,7 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
     const Vector<3> middle = (ball.from + ball.to) / 2;
     const std::array<Limb, 1> round{{{middle, middle, ball.radius, ball.radius, FigurePart::skin}}};
     if (options_.shadows) keep_shadow(shadow_of(round, conditions.shift));
-    frame.balls.push_back({sprite->middle(), sprite->radius, share_seen(*sprite, sprites)});
+    frame.balls.push_back({sprite->middle(), sprite->radius, fraction_observed(*sprite, sprites)});
     ball_sprites.push_back(*sprite);
   }
   darken(planes, shadows);
@@ -382,11 +382,12 @@ RenderedFrame PeopleRenderer::render(std::span<const PosedFigure> people, const 
   }
   lay_all(std::move(sprites), std::move(ball_sprites), planes);
   if (conditions.light != 1) dim(planes, conditions.light);
-  if (!conditions.moments.empty() || options_.margin > 0) planes = seen_through(planes, conditions.moments, options_.margin);
+  if (!conditions.time_steps.empty() || options_.margin > 0)
+    planes = observed_through(planes, conditions.time_steps, options_.margin);
   come_from_margin(frame);
   add_noise(planes, conditions.seed);
-  apply(options_.look, planes.luma, planes.cb, planes.cr);
-  frame.picture = Picture(planes.luma, planes.cb, planes.cr, Picture::Range::limited);
+  apply(options_.degradation, planes.luma, planes.cb, planes.cr);
+  frame.image = Image(planes.luma, planes.cb, planes.cr, Image::Range::limited);
   return frame;
 }
 

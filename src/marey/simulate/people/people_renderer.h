@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "marey/core/geometry.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/simulate/people/camera_look.h"
 #include "marey/simulate/people/exposure.h"
 #include "marey/simulate/people/figure.h"
@@ -53,16 +53,16 @@ struct RenderOptions {
   double shadow_level = 0.55;                 ///< what a shadow leaves of the ground's brightness
   double contact = 0;                         ///< share of the light that shoes keep from the ground right under them
   double noise = 2;                           ///< standard deviation of luma, grey levels; chroma has half of it
-  CameraLook look;                            ///< lens, sharpening and codec
-  int margin = 0;                             ///< px, even: so far the ground given reaches beyond the pictures, on each side
+  ImageDegradation degradation;               ///< lens, sharpening and codec
+  int margin = 0;                             ///< px, even: so far the ground given reaches beyond the images, on each side
 };
 
 /// What changes from frame to frame besides the people.
 struct FrameConditions {
-  double light = 1;                     ///< factor on every level
-  Vector<2> shift = Vector<2>::Zero();  ///< px that the picture moves, and its truth with it
-  std::vector<PixelMap> moments = {};   ///< of a camera that moves while the shutter is open; its truth is that of the rest
-  std::uint64_t seed = 0;               ///< of the noise
+  double light = 1;                       ///< factor on every level
+  Vector<2> shift = Vector<2>::Zero();    ///< px that the image moves, and its truth with it
+  std::vector<PixelMap> time_steps = {};  ///< of a camera that moves while the shutter is open; its truth is that of the rest
+  std::uint64_t seed = 0;                 ///< of the noise
 };
 
 /// Where one person truly is in one frame.
@@ -71,21 +71,21 @@ struct TrueFigure {
   int team = 0;
   Vector<2> ground = Vector<2>::Zero();  ///< m, below the hips
   Vector<2> foot = Vector<2>::Zero();    ///< px; `ground` as the camera sees it
-  Silhouette whole;                      ///< hidden parts included; reaches outside the picture where the person does
-  Silhouette visible;                    ///< what is left in front of posts and nearer people, within the picture
-  double visible_share = 0;              ///< of the area of `whole`
+  Silhouette whole;                      ///< hidden parts included; reaches outside the image where the person does
+  Silhouette visible;                    ///< what is left in front of posts and nearer people, within the image
+  double visible_fraction = 0;           ///< of the area of `whole`
 };
 
 /// Where a ball truly is in one frame.
 struct TrueBall {
   Vector<2> at = Vector<2>::Zero();  ///< px: its centre halfway through the exposure
   double radius = 0;                 ///< px
-  double visible_share = 0;          ///< of its disc: within the picture and behind nobody
+  double visible_fraction = 0;       ///< of its disc: within the image and behind no person
 };
 
 struct RenderedFrame {
-  Picture picture;                 ///< colour, limited range
-  std::vector<TrueFigure> people;  ///< in the order given, those of whom a part of `whole` lies within the picture
+  Image image;                     ///< colour, limited range
+  std::vector<TrueFigure> people;  ///< in the order given, those of whom a part of `whole` lies within the image
   std::vector<TrueBall> balls;     ///< those given that lie before the camera
 };
 
@@ -93,12 +93,12 @@ struct BallSprite;
 struct Planes;
 struct Sprite;
 
-/// Draws people, their shadows and posts over a picture of the ground.
+/// Draws people, their shadows and posts over an image of the ground.
 class PeopleRenderer {
  public:
   /// `ground` is the empty scene as the camera sees it, colour or grey, of the size that frames will have and `margin` more on each
-  /// side; `projection` goes to its pixels. Posts stand in it for good.
-  PeopleRenderer(const Picture& ground, Projection projection, std::vector<Post> posts = {}, const RenderOptions& options = {});
+  /// side; `projection` goes to its pixels. Posts stand in it permanently.
+  PeopleRenderer(const Image& ground, Projection projection, std::vector<Post> posts = {}, const RenderOptions& options = {});
 
   /// The same for the same arguments. Safe to call from several threads.
   RenderedFrame render(std::span<const PosedFigure> people, const FrameConditions& conditions = {},
@@ -113,8 +113,8 @@ class PeopleRenderer {
   std::optional<Silhouette> shadow_of(std::span<const Limb> limbs, const Vector<2>& shift) const;
   std::optional<Silhouette> shadow_of(const Post& post, const Vector<2>& shift) const;
   Planes ground(const FrameConditions& conditions) const;
-  double share_seen(const BallSprite& ball, std::span<const Sprite> sprites) const;
-  void see_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const;
+  double fraction_observed(const BallSprite& ball, std::span<const Sprite> sprites) const;
+  void observe_past(std::span<const Sprite> sprites, const Sprite& own, TrueFigure& truth) const;
   void darken(Planes& planes, std::span<const Silhouette> shadows) const;
   void add_noise(Planes& planes, std::uint64_t seed) const;
   void come_from_margin(RenderedFrame& frame) const;

@@ -6,6 +6,6 @@ namespace marey::simulate::people {
 
 /// PeopleSituation::returns. Who leaves at a side walks about outside, at paces of their own, and comes back where that has led
 /// them.
-PeopleMotion move_returning(const LevelCamera& camera, const PeopleFilmOptions& options, Random& random);
+PeopleMotion move_returning(const LevelCamera& camera, const PeopleVideoOptions& options, Random& random);
 
 }  // namespace marey::simulate::people

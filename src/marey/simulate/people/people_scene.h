@@ -19,8 +19,8 @@ struct PeopleSceneOptions {
   double camera_height = 2.5;         ///< m
   int people = 10;                    ///< in view at a time, about
   double nearest = 4, farthest = 22;  ///< m; where people walk
-  double group_share = 0.3;           ///< of people who walk beside another
-  double stop_share = 0.2;            ///< of people who stand still for some seconds
+  double group_fraction = 0.3;        ///< of people who walk beside another
+  double stop_fraction = 0.2;         ///< of people who stand still for some seconds
   double camera_speed = 0;            ///< m/s forward
   double camera_turn = 0;             ///< standard deviation of the turning rate, rad/s
   double camera_shake = 0;            ///< standard deviation of the pitch from frame to frame, rad
@@ -33,20 +33,20 @@ struct TrueBox {
   Box box;        ///< the whole person, hidden parts included, px
 };
 
-/// People who walk through the picture, side by side, across each other, standing at times. In the order of frames, then ids.
+/// People who walk through the image, side by side, across each other, standing at times. In the order of frames, then ids.
 std::vector<TrueBox> simulate_people(const PeopleSceneOptions& options, std::uint64_t seed);
 
 /// How a detector errs. Its misses last, its boxes wander, its false alarms come back to the same places.
 struct DetectorModel {
-  double miss = 0.12;          ///< share of visible people missed
-  double miss_duration = 0.3;  ///< s that a miss lasts on average
-  double place_noise = 0.025;  ///< standard deviation of a centre, in heights of the person
-  double size_noise = 0.045;   ///< standard deviation of the logarithm of width and height
-  double noise_memory = 0.1;   ///< s over which an error persists
-  double hidden_from = 0.35;   ///< people of whom a smaller share is visible are not seen
-  double clip_chance = 0.5;    ///< that a box of a person partly hidden spans the visible part only
-  double false_alarms = 0.15;  ///< a frame, anywhere
-  int haunted_places = 2;      ///< that look like a person, half of the time
+  double miss = 0.12;             ///< share of visible people missed
+  double miss_duration = 0.3;     ///< s that a miss lasts on average
+  double position_noise = 0.025;  ///< standard deviation of a centre, in heights of the person
+  double size_noise = 0.045;      ///< standard deviation of the logarithm of width and height
+  double noise_memory = 0.1;      ///< s over which an error persists
+  double hidden_from = 0.35;      ///< people of whom a smaller share is visible are not seen
+  double clip_chance = 0.5;       ///< that a box of a person partly hidden spans the visible part only
+  double false_alarms = 0.15;     ///< a frame, anywhere
+  int haunted_positions = 2;      ///< that look like a person, half of the time
 };
 
 /// What such a detector says of the truth, frame by frame, with scores that are informative but not more.

@@ -39,7 +39,7 @@ void add_polygon(Interval& row, std::span<const Vector<2>> polygon, double y) {
   }
 }
 
-/// The corners of the tangents that touch both discs; nothing where one disc holds the other.
+/// The corners of the tangents that touch both discs; nothing if one disc holds the other.
 std::optional<std::array<Vector<2>, 4>> tangents(const RoundCone2& shape) {
   const Vector<2> d = shape.to - shape.from;
   const double length = d.norm();
@@ -122,10 +122,10 @@ Vector<2> Silhouette::centre() const {
   return {(lattice.x + sum_x / count + 0.5) / samples - 0.5, (lattice.y + sum_y / count + 0.5) / samples - 0.5};
 }
 
-cv::Mat Silhouette::pixel_mask(cv::Size picture) const {
-  cv::Mat out = cv::Mat::zeros(picture, CV_8UC1);
+cv::Mat Silhouette::pixel_mask(cv::Size image) const {
+  cv::Mat out = cv::Mat::zeros(image, CV_8UC1);
   const cv::Rect all = pixels();
-  const cv::Rect shown = all & cv::Rect({0, 0}, picture);
+  const cv::Rect shown = all & cv::Rect({0, 0}, image);
   for (int y = shown.y; y < shown.br().y; ++y) {
     for (int x = shown.x; x < shown.br().x; ++x) {
       const cv::Rect cell((x - all.x) * samples, (y - all.y) * samples, samples, samples);
@@ -141,8 +141,8 @@ void take_away(Silhouette& silhouette, const Silhouette& front) {
   silhouette.mask(shared - silhouette.lattice.tl()).setTo(0, front.mask(shared - front.lattice.tl()));
 }
 
-void crop(Silhouette& silhouette, cv::Size picture) {
-  const cv::Rect all({0, 0}, picture * silhouette.samples);
+void crop(Silhouette& silhouette, cv::Size image) {
+  const cv::Rect all({0, 0}, image * silhouette.samples);
   const cv::Rect kept = silhouette.lattice & all;
   if (kept == silhouette.lattice) return;
   silhouette.mask = kept.empty() ? cv::Mat() : silhouette.mask(kept - silhouette.lattice.tl()).clone();

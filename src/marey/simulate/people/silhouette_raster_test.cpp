@@ -23,8 +23,8 @@ bool inside(const RoundCone2& shape, const Vector<2>& at) {
 TEST(SilhouetteRaster, RoundConesAgreeWithBruteForce) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Random random(seed);
-    const auto place = [&] { return Vector<2>(random.uniform(-6, 14), random.uniform(-6, 14)); };
-    const RoundCone2 shape{place(), place(), random.uniform(0.2, 5), random.uniform(0.2, 5)};
+    const auto location = [&] { return Vector<2>(random.uniform(-6, 14), random.uniform(-6, 14)); };
+    const RoundCone2 shape{location(), location(), random.uniform(0.2, 5), random.uniform(0.2, 5)};
     Silhouette silhouette = blank_silhouette(bounds(shape), 3);
     fill(silhouette, shape, 7);
     int wrong = 0, marked = 0;
@@ -53,7 +53,7 @@ TEST(SilhouetteRaster, ADiscHasItsAreaCentreAndBox) {
   EXPECT_NEAR(cv::countNonZero(silhouette.pixel_mask({64, 48})), 36 * M_PI, 6);
 }
 
-TEST(SilhouetteRaster, WhatIsTakenAwayAndCutOffIsGone) {
+TEST(SilhouetteRaster, RemovesSubtractedAndClippedParts) {
   const RoundCone2 behind{{5, 5}, {5, 5}, 4, 4}, front{{8, 5}, {8, 5}, 4, 4};
   Silhouette a = blank_silhouette(bounds(behind), 4), b = blank_silhouette(bounds(front), 4);
   fill(a, behind, 1);

@@ -10,11 +10,11 @@ namespace {
 void mix(const cv::Mat& chroma, const cv::Rect& blocks, const Ycc& colour, Planes& planes) {
   for (int y = 0; y < blocks.height; ++y) {
     for (int x = 0; x < blocks.width; ++x) {
-      const float share = chroma.at<float>(y, x);
+      const float fraction = chroma.at<float>(y, x);
       auto& cb = planes.cb.at<std::uint8_t>(y + blocks.y, x + blocks.x);
       auto& cr = planes.cr.at<std::uint8_t>(y + blocks.y, x + blocks.x);
-      cb = clamp_level((1 - share) * cb + share * colour[1]);
-      cr = clamp_level((1 - share) * cr + share * colour[2]);
+      cb = clamp_level((1 - fraction) * cb + fraction * colour[1]);
+      cr = clamp_level((1 - fraction) * cr + fraction * colour[2]);
     }
   }
 }
@@ -39,7 +39,7 @@ void Sprite::lay(Planes& planes) const {
   const int samples = shape.samples;
   const float unit = 1.0F / static_cast<float>(samples * samples);
   struct Sum {
-    float share = 0, y = 0, cb = 0, cr = 0;
+    float fraction = 0, y = 0, cb = 0, cr = 0;
   };
   const int chroma_left = shown.x / 2;
   std::vector<Sum> chroma(static_cast<std::size_t>(shown.br().x / 2 - chroma_left) + 1);
@@ -52,21 +52,21 @@ void Sprite::lay(Planes& planes) const {
         for (int column = 0; column < samples; ++column) {
           if (point[column] == 0) continue;
           const Ycc& colour = palette[point[column]];
-          sum = {sum.share + 1, sum.y + colour[0], sum.cb + colour[1], sum.cr + colour[2]};
+          sum = {sum.fraction + 1, sum.y + colour[0], sum.cb + colour[1], sum.cr + colour[2]};
         }
       }
-      if (sum.share == 0) continue;
-      luma[x] = clamp_level((1 - unit * sum.share) * luma[x] + unit * sum.y);
+      if (sum.fraction == 0) continue;
+      luma[x] = clamp_level((1 - unit * sum.fraction) * luma[x] + unit * sum.y);
       Sum& cell = chroma[static_cast<std::size_t>(x / 2 - chroma_left)];
-      cell = {cell.share + sum.share, 0, cell.cb + sum.cb, cell.cr + sum.cr};
+      cell = {cell.fraction + sum.fraction, 0, cell.cb + sum.cb, cell.cr + sum.cr};
     }
     if (y % 2 == 0 && y + 1 < shown.br().y) continue;
     auto* cb = planes.cb.ptr<std::uint8_t>(y / 2) + chroma_left;
     auto* cr = planes.cr.ptr<std::uint8_t>(y / 2) + chroma_left;
     for (std::size_t i = 0; i < chroma.size(); ++i) {
-      if (chroma[i].share == 0) continue;
-      cb[i] = clamp_level((1 - unit / 4 * chroma[i].share) * cb[i] + unit / 4 * chroma[i].cb);
-      cr[i] = clamp_level((1 - unit / 4 * chroma[i].share) * cr[i] + unit / 4 * chroma[i].cr);
+      if (chroma[i].fraction == 0) continue;
+      cb[i] = clamp_level((1 - unit / 4 * chroma[i].fraction) * cb[i] + unit / 4 * chroma[i].cb);
+      cr[i] = clamp_level((1 - unit / 4 * chroma[i].fraction) * cr[i] + unit / 4 * chroma[i].cr);
       chroma[i] = {};
     }
   }
@@ -87,21 +87,22 @@ void BallSprite::lay(Planes& planes) const {
   cv::Mat chroma = cv::Mat::zeros(blocks.size(), CV_32FC1);
   for (int y = shown.y; y < shown.br().y; ++y) {
     for (int x = shown.x; x < shown.br().x; ++x) {
-      float share = 0, shade = 0;
+      float fraction = 0, shade = 0;
       for (int sample = 0; sample < kMoments * kPoints * kPoints; ++sample) {
         const int point = sample / kMoments;
         const Vector<2> centre = from + (sample % kMoments + 0.5) / kMoments * (to - from);
         const Vector<2> off =
             Vector<2>(x + (point % kPoints + 0.5) / kPoints - 0.5, y + (point / kPoints + 0.5) / kPoints - 0.5) - centre;
         if (off.squaredNorm() > radius * radius) continue;
-        share += 1;
+        fraction += 1;
         shade += static_cast<float>(0.86 - 0.14 * off.y() / radius);
       }
-      if (share == 0) continue;
+      if (fraction == 0) continue;
       constexpr float kUnit = 1.0F / (kMoments * kPoints * kPoints);
       auto& level = planes.luma.at<std::uint8_t>(y, x);
-      level = clamp_level((1 - kUnit * share) * level + kUnit * (16 * share + shade * (colour[0] - 16)));
-      if (x / 2 < blocks.br().x && y / 2 < blocks.br().y) chroma.at<float>(y / 2 - blocks.y, x / 2 - blocks.x) += kUnit * share / 4;
+      level = clamp_level((1 - kUnit * fraction) * level + kUnit * (16 * fraction + shade * (colour[0] - 16)));
+      if (x / 2 < blocks.br().x && y / 2 < blocks.br().y)
+        chroma.at<float>(y / 2 - blocks.y, x / 2 - blocks.x) += kUnit * fraction / 4;
     }
   }
   mix(chroma, blocks, colour, planes);

@@ -7,7 +7,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "marey/core/geometry.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/simulate/people/figure.h"
 #include "marey/simulate/people/silhouette_raster.h"
 

@@ -1,4 +1,4 @@
-// A person bound for a goal on the ground, as the director of a film moves one.
+// A person bound for a goal on the ground, as the director of a video moves one.
 #pragma once
 
 #include <algorithm>
@@ -25,28 +25,28 @@ inline double wrapped(double angle) {
 struct Walker {
   int id = 0;
   Stance stance;
-  double wished_speed = 0, wished_crouch = 0, wished_reach = 0;
+  double requested_speed = 0, requested_crouch = 0, requested_reach = 0;
   Vector<2> goal = Vector<2>::Zero();
   double rests_until = 0;  // s
 
   /// Moves on by dt; true where the goal is reached.
   bool walk(double now, double dt, double stature, bool abrupt) {
-    const Vector<2> to_goal = goal - stance.place;
+    const Vector<2> to_goal = goal - stance.location;
     const double wished_heading = std::atan2(to_goal.y(), to_goal.x());
     const double turn = wrapped(wished_heading - stance.heading);
-    const double wish = now < rests_until ? 0 : wished_speed * std::max(0.25, std::cos(std::min(std::abs(turn), 1.4)));
+    const double request = now < rests_until ? 0 : requested_speed * std::max(0.25, std::cos(std::min(std::abs(turn), 1.4)));
     const double gain = abrupt ? kAbruptGain : kGain;
-    const double most = (abrupt ? kAbruptTurn : kTurn) * dt;
-    stance.speed += std::clamp(wish - stance.speed, -gain * dt, gain * dt);
-    if (now >= rests_until) stance.heading += std::clamp(turn, -most, most);
-    stance.crouch += std::clamp(wished_crouch - stance.crouch, -kAbruptShape * dt, kAbruptShape * dt);
-    stance.reach += std::clamp(wished_reach - stance.reach, -kAbruptShape * dt, kAbruptShape * dt);
+    const double maximum = (abrupt ? kAbruptTurn : kTurn) * dt;
+    stance.speed += std::clamp(request - stance.speed, -gain * dt, gain * dt);
+    if (now >= rests_until) stance.heading += std::clamp(turn, -maximum, maximum);
+    stance.crouch += std::clamp(requested_crouch - stance.crouch, -kAbruptShape * dt, kAbruptShape * dt);
+    stance.reach += std::clamp(requested_reach - stance.reach, -kAbruptShape * dt, kAbruptShape * dt);
     step(dt, stature);
     return to_goal.norm() < std::max(0.4, 0.35 * stance.speed);
   }
 
   void step(double dt, double stature) {
-    stance.place += stance.speed * dt * Vector<2>(std::cos(stance.heading), std::sin(stance.heading));
+    stance.location += stance.speed * dt * Vector<2>(std::cos(stance.heading), std::sin(stance.heading));
     stance.phase = wrapped(stance.phase + 2 * std::numbers::pi * stance.speed * dt / stride_length(stance.speed, stature));
   }
 };

@@ -1,4 +1,4 @@
-// A body of 15 capsules (a line and a radius) joined at the usual joints. Segment lengths are the usual shares of a height of
+// A body of 15 capsules (a line and a radius) joined at the typical joints. Segment lengths are the typical shares of a height of
 // 1.75 m. A marker is hidden where the line to the camera comes nearer to a capsule's line than its radius: 15 distances between
 // two segments for each marker and camera. Skin slides over the bone as joints bend, most on the thigh (Leardini et al., "Human
 // movement analysis using stereophotogrammetry. Part 3", Gait & Posture 21, 2005: up to 30 mm there, 10 to 15 mm on the shank).
@@ -86,22 +86,22 @@ const std::array<LimbShape, kLimbs>& limb_shapes() {
   return kShapes;
 }
 
-std::vector<BodyMarker> place_markers(int count, Random& random) {
+std::vector<BodyMarker> position_markers(int count, Random& random) {
   const BodyPose upright = standing_pose({});
   std::vector<BodyMarker> markers;
-  std::vector<Vector<3>> places;
+  std::vector<Vector<3>> locations;
   std::array<int, kLimbs> on{};
   double apart = 0.12;  // m, given up little by little until all fit
   while (std::ssize(markers) < count) {
     const int limb = limb_by_surface(random);
     const LimbShape& shape = limb_shapes()[static_cast<std::size_t>(limb)];
     const Vector<3> in_limb = on_limb(shape, random.uniform(0.05, 0.95), random.uniform(0, 2 * std::numbers::pi));
-    const Vector<3> place = upright[static_cast<std::size_t>(limb)] * in_limb;
+    const Vector<3> location = upright[static_cast<std::size_t>(limb)] * in_limb;
     const bool free =
-        std::all_of(places.begin(), places.end(), [&](const Vector<3>& other) { return (other - place).norm() > apart; });
+        std::all_of(locations.begin(), locations.end(), [&](const Vector<3>& other) { return (other - location).norm() > apart; });
     apart *= 0.999;
-    if (!free || inside_another(upright, limb, place)) continue;
-    places.push_back(place);
+    if (!free || inside_another(upright, limb, location)) continue;
+    locations.push_back(location);
     markers.push_back({limb, in_limb, fmt::format("{}{}", shape.name, ++on[static_cast<std::size_t>(limb)])});
   }
   return markers;
@@ -111,11 +111,11 @@ Skeleton body_skeleton(std::span<const BodyMarker> markers) {
   const BodyPose rest = upright_pose({});
   Skeleton skeleton;
   skeleton.name = "body";
-  const auto add_axis = [&](Segment& segment, bool turns, int axis) {
+  const auto add_axis = [&](Segment& segment, bool rotations, int axis) {
     Coordinate coordinate;
-    coordinate.name = segment.name + (turns ? "_r" : "_t") + "xyz"[axis];
-    coordinate.turns = turns;
-    segment.joint.axes.push_back({turns, Vector<3>::Unit(axis), {}, static_cast<int>(skeleton.coordinates.size())});
+    coordinate.name = segment.name + (rotations ? "_r" : "_t") + "xyz"[axis];
+    coordinate.rotations = rotations;
+    segment.joint.axes.push_back({rotations, Vector<3>::Unit(axis), {}, static_cast<int>(skeleton.coordinates.size())});
     skeleton.coordinates.push_back(std::move(coordinate));
   };
   for (std::size_t limb = 0; limb < kLimbs; ++limb) {

@@ -29,7 +29,7 @@ struct BodyMarker {
 };
 
 /// Spreads markers over the body by the limbs' surfaces, as far from each other as they fit.
-std::vector<BodyMarker> place_markers(int count, Random& random);
+std::vector<BodyMarker> position_markers(int count, Random& random);
 
 /// The body as a skeleton, its segments the limbs in their order: at rest upright with the arms down, the pelvis free, hands and
 /// feet fixed, everything else balls.

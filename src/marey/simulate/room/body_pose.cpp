@@ -39,7 +39,7 @@ const Vector<3>& end_of(int limb) {
   return limb_shapes()[static_cast<std::size_t>(limb)].end;
 }
 
-void place_arm(BodyPose& pose, const Joints& joints, int side) {
+void position_arm(BodyPose& pose, const Joints& joints, int side) {
   const int arm = side == 0 ? arm_l : arm_r;
   const double left = side == 0 ? 1 : -1;
   const Rigid3& trunk = pose[chest];
@@ -54,7 +54,7 @@ void place_arm(BodyPose& pose, const Joints& joints, int side) {
   hand.rotation = fore.rotation;
 }
 
-void place_leg(BodyPose& pose, const Joints& joints, int side) {
+void position_leg(BodyPose& pose, const Joints& joints, int side) {
   const int thigh = side == 0 ? thigh_l : thigh_r;
   const Rigid3& hips = pose[pelvis];
   Rigid3& upper = pose[static_cast<std::size_t>(thigh)];
@@ -77,8 +77,8 @@ BodyPose pose_of(const BodyStance& stance, const Joints& joints) {
   pose[head].translation = pose[chest] * Vector<3>(0.02, 0, 0.55);
   pose[head].rotation = pose[pelvis].rotation;
   for (const int side : {0, 1}) {
-    place_arm(pose, joints, side);
-    place_leg(pose, joints, side);
+    position_arm(pose, joints, side);
+    position_leg(pose, joints, side);
   }
   return pose;
 }
@@ -164,10 +164,10 @@ BodyPose kneeling_pose(const BodyStance& stance, double time_s) {
 
 BodyPose rolling_pose(const BodyStance& stance, double time_s) {
   constexpr double kThick = 0.16;  // m
-  const double turned = 2 * std::numbers::pi * std::sin(0.45 * time_s);
+  const double rotated = 2 * std::numbers::pi * std::sin(0.45 * time_s);
   Joints joints;
-  joints.tilt = geometry::rotation_from({0, -std::numbers::pi / 2, 0}) * turn_left(turned);  // on the back, head behind
-  const double aside = std::sin(turned), prone = (1 - std::cos(turned)) / 2;                 // on an arm; on the toes
+  joints.tilt = geometry::rotation_from({0, -std::numbers::pi / 2, 0}) * turn_left(rotated);  // on the back, head behind
+  const double aside = std::sin(rotated), prone = (1 - std::cos(rotated)) / 2;                // on an arm; on the toes
   joints.bob = 0.17 + 0.1 * aside * aside + 0.07 * prone - kHipHeight;
   for (const int side : {0, 1}) {
     joints.hip[side] = 0.15 + 0.15 * std::sin(0.9 * time_s + side);
@@ -176,8 +176,8 @@ BodyPose rolling_pose(const BodyStance& stance, double time_s) {
     joints.elbow[side] = 0.3;
   }
   BodyStance rolled = stance;  // to its side, as far as it turns
-  rolled.x += -std::sin(stance.heading) * kThick * turned;
-  rolled.y += std::cos(stance.heading) * kThick * turned;
+  rolled.x += -std::sin(stance.heading) * kThick * rotated;
+  rolled.y += std::cos(stance.heading) * kThick * rotated;
   return pose_of(rolled, joints);
 }
 

@@ -13,7 +13,7 @@
 
 #include "marey/simulate/random.h"
 #include "marey/simulate/room/body.h"
-#include "marey/simulate/room/room_cast.h"
+#include "marey/simulate/room/room_actors.h"
 #include "marey/simulate/room/room_rig.h"
 
 namespace marey::simulate::room {
@@ -40,7 +40,7 @@ struct RoomScene::Parts {
   std::vector<Body> props;
   std::vector<RoomProp> flying;  // the same
   std::vector<Drift> cloud;
-  Drift wand_place, wand_turn;
+  Drift wand_position, wand_turn;
 
   bool is_bumped(double time_s) const { return options.bump && time_s >= options.bump->time_s; }
   const Camera& camera(int index, double time_s) const {
@@ -52,7 +52,7 @@ struct RoomScene::Parts {
   void add_props();
   std::vector<Vector<3>> points(double t) const;
   bool covered(int marker, double t) const;
-  bool sees(int index, double t, const Vector<3>& point, std::span<const BodyPose> bodies, Vector<2>& pixel) const;
+  bool observes(int index, double t, const Vector<3>& point, std::span<const BodyPose> bodies, Vector<2>& pixel) const;
   std::vector<RoomBlob> blobs(int index, double t, std::uint64_t draw) const;
   void merge(std::vector<RoomBlob>& blobs, std::span<const double> far) const;
 };
@@ -80,8 +80,8 @@ std::vector<Vector<3>> RoomScene::Parts::points(double t) const {
     const double up = 1.4 * turn.x(), round = 2 * kPi * turn.y() + 0.4 * t;
     const Vector<3> axis(std::cos(up) * std::cos(round), std::cos(up) * std::sin(round), std::sin(up));
     const double middle = (options.wand.front() + options.wand.back()) / 2;
-    const Vector<3> place = Vector<3>(0, 0, half.z()) + 0.92 * half.cwiseProduct(wand_place.at(t));
-    for (const double along : options.wand) result.push_back(place + (along - middle) * axis);
+    const Vector<3> location = Vector<3>(0, 0, half.z()) + 0.92 * half.cwiseProduct(wand_position.at(t));
+    for (const double along : options.wand) result.push_back(location + (along - middle) * axis);
   }
   for (const RoomProp& prop : flying) {
     const Rigid3 at = prop.pose(options, t);
@@ -92,24 +92,26 @@ std::vector<Vector<3>> RoomScene::Parts::points(double t) const {
 
 /// Time is cut into slots, each of which may hold one gap of a marker, drawn from the slot's own number.
 bool RoomScene::Parts::covered(int marker, double t) const {
-  if (options.gap_share <= 0) return false;
-  const double longest = options.gap_s, mean = 0.55 * longest, slot = std::max(0.4 * longest / options.gap_share, 1.05 * longest);
+  if (options.gap_fraction <= 0) return false;
+  const double longest = options.gap_s, mean = 0.55 * longest,
+               slot = std::max(0.4 * longest / options.gap_fraction, 1.05 * longest);
   const double which = std::floor(t / slot);
   const auto drawn = [&](std::uint64_t what) {
     const auto number = static_cast<std::uint64_t>(static_cast<std::int64_t>(which));
     return static_cast<double>(mixed(options.seed * 4 + what, number, static_cast<std::uint64_t>(marker)) >> 11) * 0x1.0p-53;
   };
-  if (drawn(1) >= options.gap_share * slot / mean) return false;
+  if (drawn(1) >= options.gap_fraction * slot / mean) return false;
   const double length = longest * (0.1 + 0.9 * drawn(2)), begin = drawn(3) * (slot - length);
   const double within = t - which * slot;
   return within >= begin && within < begin + length;
 }
 
-bool RoomScene::Parts::sees(int index, double t, const Vector<3>& point, std::span<const BodyPose> bodies, Vector<2>& pixel) const {
+bool RoomScene::Parts::observes(int index, double t, const Vector<3>& point, std::span<const BodyPose> bodies,
+                                Vector<2>& pixel) const {
   const Camera& eye = camera(index, t);
-  const auto seen = eye.project(point);
-  if (!seen || !eye.in_picture(*seen)) return false;
-  pixel = *seen;
+  const auto detected = eye.project(point);
+  if (!detected || !eye.in_image(*detected)) return false;
+  pixel = *detected;
   return !options.occlusion ||
          std::none_of(bodies.begin(), bodies.end(), [&](const BodyPose& at) { return hidden_by_body(at, point, eye.centre()); });
 }
@@ -138,17 +140,17 @@ void RoomScene::Parts::merge(std::vector<RoomBlob>& blobs, std::span<const doubl
 }
 
 std::vector<RoomBlob> RoomScene::Parts::blobs(int index, double t, std::uint64_t draw) const {
-  const std::vector<Vector<3>> places = points(t);
+  const std::vector<Vector<3>> locations = points(t);
   const std::vector<BodyPose> at = poses(t);
   Random random(mixed(options.seed, draw, static_cast<std::uint64_t>(index)));
   std::vector<RoomBlob> result;
   std::vector<double> far;
-  for (int marker = 0; marker < std::ssize(places); ++marker) {
-    const Vector<3>& place = places[static_cast<std::size_t>(marker)];
+  for (int marker = 0; marker < std::ssize(locations); ++marker) {
+    const Vector<3>& location = locations[static_cast<std::size_t>(marker)];
     Vector<2> pixel;
-    if (!sees(index, t, place, at, pixel) || covered(marker, t)) continue;
+    if (!observes(index, t, location, at, pixel) || covered(marker, t)) continue;
     result.push_back({pixel, marker, false});
-    far.push_back((place - camera(index, t).centre()).norm());
+    far.push_back((location - camera(index, t).centre()).norm());
   }
   const std::size_t there = result.size();
   if (options.merge_px > 0) merge(result, far);
@@ -157,7 +159,7 @@ std::vector<RoomBlob> RoomScene::Parts::blobs(int index, double t, std::uint64_t
   for (std::size_t i = 0; i < there; ++i) {
     if (!random.chance(options.ghosts)) continue;
     result.push_back(
-        {{random.uniform(0, options.picture.width - 1), random.uniform(0, options.picture.height - 1)}, std::nullopt, false});
+        {{random.uniform(0, options.image.width - 1), random.uniform(0, options.image.height - 1)}, std::nullopt, false});
   }
   std::stable_sort(result.begin(), result.end(), [](const RoomBlob& a, const RoomBlob& b) { return a.pixel.y() < b.pixel.y(); });
   return result;
@@ -189,7 +191,7 @@ RoomScene::RoomScene(const RoomOptions& options) : parts_(std::make_unique<Parts
 
   Random random(mixed(options.seed, 1));
   const double first_angle = random.uniform(0, 2 * kPi), step_phase = random.uniform(0, 2 * kPi);
-  parts.wand_place = Drift::drawn(1.3, random);
+  parts.wand_position = Drift::drawn(1.3, random);
   parts.wand_turn = Drift::drawn(1.1, random);
   switch (options.motion) {
     case RoomMotion::walk:
@@ -221,7 +223,7 @@ void RoomScene::Parts::add_actors(Random& random, double first_angle, double ste
     RoomActor& actor = actors.emplace_back(RoomActor{.number = i,
                                                      .of = options.actors,
                                                      .name = i == 0 ? "" : fmt::format("actor{}:", i + 1),
-                                                     .markers = place_markers(options.markers, random),
+                                                     .markers = position_markers(options.markers, random),
                                                      .first_angle = first_angle,
                                                      .step_phase = step_phase + 2.4 * i});
     for (BodyMarker& marker : actor.markers) labels.push_back(marker.label.insert(0, actor.name));
@@ -289,7 +291,7 @@ std::vector<bool> RoomScene::visible(int camera, double time_s, std::span<const 
   std::vector<bool> result;
   for (int marker = 0; marker < std::ssize(points); ++marker) {
     Vector<2> pixel;
-    result.push_back(parts_->sees(camera, time_s, points[static_cast<std::size_t>(marker)], at, pixel) &&
+    result.push_back(parts_->observes(camera, time_s, points[static_cast<std::size_t>(marker)], at, pixel) &&
                      !parts_->covered(marker, time_s));
   }
   return result;
@@ -302,12 +304,12 @@ RoomFrame RoomScene::frame(std::int64_t index) const {
   frame.points = parts_->points(frame.time_s);
   for (int camera = 0; camera < parts_->options.cameras; ++camera) {
     const double offset = parts_->rig.cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
-    frame.seen.push_back(seen_by(camera, frame.time_s + offset, static_cast<std::uint64_t>(index)));
+    frame.detected.push_back(observed_by(camera, frame.time_s + offset, static_cast<std::uint64_t>(index)));
   }
   return frame;
 }
 
-std::vector<RoomBlob> RoomScene::seen_by(int camera, double time_s, std::uint64_t draw) const {
+std::vector<RoomBlob> RoomScene::observed_by(int camera, double time_s, std::uint64_t draw) const {
   return parts_->blobs(camera, time_s, draw);
 }
 

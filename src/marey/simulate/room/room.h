@@ -47,18 +47,18 @@ struct RoomOptions {
   double rate_hz = 120;
   std::int64_t frames = 1200;
 
-  Vector<3> volume{4, 4, 2.5};   ///< m: that the cameras stand round, its floor's middle the world's origin
-  cv::Size picture{1280, 1024};  ///< px
-  bool distorted = true;         ///< lenses bend as real ones do; else all coefficients are 0
-  double zoom = 1;               ///< times the focal length of a lens that sees 66° across
+  Vector<3> volume{4, 4, 2.5};  ///< m: that the cameras stand round, its floor's middle the world's origin
+  cv::Size image{1280, 1024};   ///< px
+  bool distorted = true;        ///< lenses bend as real ones do; else all coefficients are 0
+  double zoom = 1;              ///< times the focal length of a lens that sees 66° across
 
-  double noise_px = 0.1;  ///< standard deviation of a blob's place, per axis
-  double dropped = 0;     ///< share of blobs that a camera misses, each by itself
-  double ghosts = 0;      ///< false blobs in a picture, as a share of the markers there
-  double merge_px = 0;    ///< blobs nearer than this are seen as one, in their middle
-  bool occlusion = true;  ///< limbs hide markers
-  double gap_share = 0;   ///< share of the time during which a marker is covered for all cameras at once
-  double gap_s = 0.5;     ///< the longest such time; the shortest is a tenth of it
+  double noise_px = 0.1;    ///< standard deviation of a blob's place, per axis
+  double dropped = 0;       ///< share of blobs that a camera misses, each by itself
+  double ghosts = 0;        ///< false blobs in an image, as a share of the markers there
+  double merge_px = 0;      ///< blobs nearer than this are seen as one, in their middle
+  bool occlusion = true;    ///< limbs hide markers
+  double gap_fraction = 0;  ///< share of the time during which a marker is covered for all cameras at once
+  double gap_s = 0.5;       ///< the longest such time; the shortest is a tenth of it
 
   double offset_s = 0;  ///< cameras were started up to this much before or after the first one
   struct Bump {
@@ -84,9 +84,9 @@ struct RoomBlob {
 /// clock.
 struct RoomFrame {
   std::int64_t index = 0;
-  double time_s = 0;                        ///< index / rate
-  std::vector<Vector<3>> points;            ///< m: where each marker truly is at `time_s` by the rig's clock
-  std::vector<std::vector<RoomBlob>> seen;  ///< by camera, from top to bottom as a detector finds them
+  double time_s = 0;                            ///< index / rate
+  std::vector<Vector<3>> points;                ///< m: where each marker truly is at `time_s` by the rig's clock
+  std::vector<std::vector<RoomBlob>> detected;  ///< by camera, from top to bottom as a detector finds them
 };
 
 /// A room full of cameras with exact truth. Every frame is a function of the options and its index: frames can be asked for in any
@@ -109,7 +109,7 @@ class RoomScene {
 
   /// People with markers on them.
   int actors() const;
-  /// The body of one of them; nothing where there is none.
+  /// The body of one of them; nothing if there is none.
   std::optional<Skeleton> skeleton(int actor = 0) const;
   /// Where its segments truly are at a time by the rig's clock: world_from_segment, m. Only where there is a body.
   std::vector<Rigid3> segments(double time_s, int actor = 0) const;
@@ -121,12 +121,12 @@ class RoomScene {
 
   /// Where the markers are at a time by the rig's clock, m.
   std::vector<Vector<3>> points(double time_s) const;
-  /// Which of `points` (of the same time) that camera could see: in its picture, not hidden, not covered.
+  /// Which of `points` (of the same time) that camera could see: in its image, not hidden, not covered.
   std::vector<bool> visible(int camera, double time_s, std::span<const Vector<3>> points) const;
   RoomFrame frame(std::int64_t index) const;
   /// What one camera sees at a time by the rig's clock, whenever its frames are; noise, what is missed and ghosts are drawn by
   /// `draw`. With a frame's own time and its index that is the frame's `seen`.
-  std::vector<RoomBlob> seen_by(int camera, double time_s, std::uint64_t draw) const;
+  std::vector<RoomBlob> observed_by(int camera, double time_s, std::uint64_t draw) const;
 
   struct Parts;
 

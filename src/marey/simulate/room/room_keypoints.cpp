@@ -12,8 +12,8 @@
 namespace marey::simulate::room {
 namespace {
 
-constexpr double kSpell_s = 0.4;    // that an exchange of left and right lasts
-constexpr double kLeastSeen = 0.5;  // share of a person's points
+constexpr double kSpell_s = 0.4;      // that an exchange of left and right lasts
+constexpr double kMinObserved = 0.5;  // share of a person's points
 
 struct BodyPoint {
   const char* name;
@@ -61,12 +61,12 @@ std::uint64_t keypoint_seed(std::initializer_list<std::uint64_t> numbers) {
 }
 
 /// Whether a limb's sides are exchanged: time is cut into spells, each of which is drawn.
-bool is_swapped(const RoomScene& scene, int camera, int actor, bool leg, double time_s, double share) {
-  if (share <= 0) return false;
+bool is_swapped(const RoomScene& scene, int camera, int actor, bool leg, double time_s, double fraction) {
+  if (fraction <= 0) return false;
   const auto spell = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(time_s / kSpell_s)));
   Random random(
       keypoint_seed({scene.options().seed, 7, static_cast<std::uint64_t>(camera), static_cast<std::uint64_t>(actor), leg, spell}));
-  return random.chance(share);
+  return random.chance(fraction);
 }
 
 bool is_of(const std::string& name, std::initializer_list<const char*> parts) {
@@ -74,8 +74,8 @@ bool is_of(const std::string& name, std::initializer_list<const char*> parts) {
 }
 
 /// The image of a point beside the joint: as far across the view as the bias says, always to the same side.
-std::optional<Vector<2>> biased_pixel(const Camera& camera, const Vector<3>& place, double bias_m, Random fixed) {
-  const auto at = camera.project_with_jacobian(place);
+std::optional<Vector<2>> biased_pixel(const Camera& camera, const Vector<3>& location, double bias_m, Random fixed) {
+  const auto at = camera.project_with_jacobian(location);
   if (!at) return std::nullopt;
   const double round = fixed.uniform(0, 2 * std::numbers::pi);
   const double scale = std::sqrt(at->by_world.squaredNorm() / 2);  // px/m across the view
@@ -84,10 +84,10 @@ std::optional<Vector<2>> biased_pixel(const Camera& camera, const Vector<3>& pla
 
 }  // namespace
 
-std::vector<Vector<3>> keypoint_places(const BodyPose& pose) {
-  std::vector<Vector<3>> places;
-  for (const BodyPoint& point : body_points()) places.push_back(pose[static_cast<std::size_t>(point.limb)] * point.in_limb);
-  return places;
+std::vector<Vector<3>> keypoint_positions(const BodyPose& pose) {
+  std::vector<Vector<3>> locations;
+  for (const BodyPoint& point : body_points()) locations.push_back(pose[static_cast<std::size_t>(point.limb)] * point.in_limb);
+  return locations;
 }
 
 const KeypointSet& room_keypoint_set() {
@@ -100,60 +100,60 @@ std::vector<std::vector<Vector<3>>> true_keypoints(const RoomScene& scene, doubl
     const std::vector<Rigid3> segments = scene.segments(time_s, actor);
     BodyPose pose;
     std::copy(segments.begin(), segments.end(), pose.begin());
-    all.push_back(keypoint_places(pose));
+    all.push_back(keypoint_positions(pose));
   }
   return all;
 }
 
-std::vector<Keypoints<2>> keypoints_seen(const RoomScene& scene, int camera, double time_s, std::uint64_t draw,
-                                         const KeypointErrors& errors) {
+std::vector<Keypoints<2>> keypoints_observed(const RoomScene& scene, int camera, double time_s, std::uint64_t draw,
+                                             const KeypointErrors& errors) {
   const Camera eye = *scene.rig_at(time_s).cameras[static_cast<std::size_t>(camera)].camera();
   const std::uint64_t seed = scene.options().seed, own = static_cast<std::uint64_t>(camera);
   const KeypointSet& set = room_keypoint_set();
-  const auto places = true_keypoints(scene, time_s);
+  const auto locations = true_keypoints(scene, time_s);
   Random random(keypoint_seed({seed, 5, own, draw}));
   std::vector<std::pair<double, Keypoints<2>>> found;
-  for (std::size_t actor = 0; actor < places.size(); ++actor) {
+  for (std::size_t actor = 0; actor < locations.size(); ++actor) {
     Keypoints<2> person;
     person.points.resize(set.points.size());
-    std::size_t in_picture = 0;
+    std::size_t in_image = 0;
     const bool legs = is_swapped(scene, camera, static_cast<int>(actor), true, time_s, errors.swapped);
     const bool arms = is_swapped(scene, camera, static_cast<int>(actor), false, time_s, errors.swapped);
     for (std::size_t i = 0; i < set.points.size(); ++i) {
       const std::string& name = set.points[i];
       const bool swap = (legs && is_of(name, {"knee", "ankle", "toe", "heel"})) || (arms && is_of(name, {"elbow", "wrist"}));
       const std::size_t of = swap ? static_cast<std::size_t>(set.mirrored[i]) : i;
-      const auto pixel = biased_pixel(eye, places[actor][of], errors.bias_m, Random(keypoint_seed({seed, 6, own, actor, of})));
+      const auto pixel = biased_pixel(eye, locations[actor][of], errors.bias_m, Random(keypoint_seed({seed, 6, own, actor, of})));
       const bool missing = random.chance(errors.missing), outlier = random.chance(errors.outliers);
       const double sigma = outlier ? errors.outlier_px : errors.noise_px;
       const Vector<2> noise(random.gaussian(0, sigma), random.gaussian(0, sigma));
       const double confidence = outlier ? random.uniform(0.2, 0.9) : random.uniform(0.6, 1.0);
-      if (!pixel || !eye.in_picture(*pixel)) continue;
-      ++in_picture;
+      if (!pixel || !eye.in_image(*pixel)) continue;
+      ++in_image;
       if (missing) continue;
       person.points[i] = Keypoint<2>{.position = *pixel + noise,
                                      .covariance = std::max(0.25, errors.noise_px * errors.noise_px) * Matrix<2>::Identity(),
                                      .visibility = confidence};
     }
-    const double place = random.uniform();
-    if (static_cast<double>(in_picture) >= kLeastSeen * static_cast<double>(set.points.size()))
-      found.emplace_back(place, std::move(person));
+    const double location = random.uniform();
+    if (static_cast<double>(in_image) >= kMinObserved * static_cast<double>(set.points.size()))
+      found.emplace_back(location, std::move(person));
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Keypoints<2>> people;
-  for (auto& [place, person] : found) people.push_back(std::move(person));
+  for (auto& [location, person] : found) people.push_back(std::move(person));
   return people;
 }
 
 KeypointSequence keypoints_of_camera(const RoomScene& scene, int camera, const KeypointErrors& errors) {
   KeypointSequence sequence;
   sequence.set = room_keypoint_set();
-  sequence.size = scene.options().picture;
+  sequence.size = scene.options().image;
   sequence.rate_hz = scene.options().rate_hz;
   const double offset = scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
   for (std::int64_t frame = 0; frame < scene.options().frames; ++frame)
-    sequence.frames.push_back(keypoints_seen(scene, camera, static_cast<double>(frame) / scene.options().rate_hz + offset,
-                                             static_cast<std::uint64_t>(frame), errors));
+    sequence.frames.push_back(keypoints_observed(scene, camera, static_cast<double>(frame) / scene.options().rate_hz + offset,
+                                                 static_cast<std::uint64_t>(frame), errors));
   return sequence;
 }
 

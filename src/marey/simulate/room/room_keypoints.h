@@ -16,22 +16,22 @@ struct KeypointErrors {
   double bias_m = 0.020;   ///< how far a point lies from its joint across the view, of each camera and point in its own direction
   double noise_px = 8;     ///< standard deviation along each axis, another one in each frame
   double outliers = 0.05;  ///< share of points that are far off
-  double outlier_px = 60;  ///< by so much along each axis, one standard deviation
+  double outlier_px = 60;  ///< by this much along each axis, one standard deviation
   double missing = 0.10;   ///< share of points
   double swapped = 0;      ///< share of time during which arms, or legs, are exchanged in a camera
 };
 
 /// Joints of a body as the keypoint set body_25b has them, m.
-std::vector<Vector<3>> keypoint_places(const BodyPose& pose);
+std::vector<Vector<3>> keypoint_positions(const BodyPose& pose);
 const KeypointSet& room_keypoint_set();
 
 /// Where the people's points truly are at a time by the rig's clock, by actor. The scene has people.
 std::vector<std::vector<Vector<3>>> true_keypoints(const RoomScene& scene, double time_s);
 
 /// What a camera's network finds at a time by the rig's clock: those of the people of whom at least half of the points are in the
-/// picture, in an order that says nothing. `draw` is that of the noise: the frame's number.
-std::vector<Keypoints<2>> keypoints_seen(const RoomScene& scene, int camera, double time_s, std::uint64_t draw,
-                                         const KeypointErrors& errors = {});
+/// image, in an order that says nothing. `draw` is that of the noise: the frame's number.
+std::vector<Keypoints<2>> keypoints_observed(const RoomScene& scene, int camera, double time_s, std::uint64_t draw,
+                                             const KeypointErrors& errors = {});
 
 /// All of a camera's frames.
 KeypointSequence keypoints_of_camera(const RoomScene& scene, int camera, const KeypointErrors& errors = {});

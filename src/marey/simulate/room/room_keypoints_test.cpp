@@ -13,7 +13,7 @@ RoomOptions keypoint_room() {
   options.markers = 4;
   options.rate_hz = 50;
   options.frames = 400;
-  options.picture = {1080, 1920};
+  options.image = {1080, 1920};
   options.zoom = 1.3;
   return options;
 }
@@ -32,7 +32,7 @@ TEST(RoomKeypoints, HaveTheErrorsThatAreAskedFor) {
       const auto truth = true_keypoints(scene, static_cast<double>(f) / 50)[0];
       for (std::size_t i = 0; i < truth.size(); ++i) {
         const auto at = camera.project_with_jacobian(truth[i]);
-        if (!at || !camera.in_picture(at->pixel)) continue;
+        if (!at || !camera.in_image(at->pixel)) continue;
         const auto& point = sequence.frames[f][0].points[i];
         missing += point ? 0 : 1;
         ++count;
@@ -59,7 +59,7 @@ TEST(RoomKeypoints, HaveTheErrorsThatAreAskedFor) {
 
 TEST(RoomKeypoints, AreTheSameInAnyOrder) {
   const RoomScene scene(keypoint_room());
-  const auto once = keypoints_seen(scene, 1, 0.4, 20), again = keypoints_seen(scene, 1, 0.4, 20);
+  const auto once = keypoints_observed(scene, 1, 0.4, 20), again = keypoints_observed(scene, 1, 0.4, 20);
   ASSERT_EQ(once.size(), again.size());
   for (std::size_t i = 0; i < 25; ++i) {
     ASSERT_EQ(once[0].points[i].has_value(), again[0].points[i].has_value());
@@ -75,7 +75,7 @@ TEST(RoomKeypoints, ExchangeLimbsForAShareOfTheTime) {
   double swapped = 0, all = 0;
   for (std::size_t f = 0; f < 4000; f += 10) {
     const double time_s = static_cast<double>(f) / 50;
-    const auto people = keypoints_seen(scene, 0, time_s, f, errors);
+    const auto people = keypoints_observed(scene, 0, time_s, f, errors);
     if (people.empty() || !people[0].points[13]) continue;
     const auto truth = true_keypoints(scene, time_s)[0];
     ++all;

@@ -19,9 +19,9 @@ Vector<3> some_direction(Random& random) {
 
 geometry::BrownLens some_lens(const RoomOptions& options, Random& random) {
   geometry::BrownLens lens;
-  const double focal = options.zoom * options.picture.width * random.uniform(0.74, 0.80);  // about 66° across at 1
+  const double focal = options.zoom * options.image.width * random.uniform(0.74, 0.80);  // about 66° across at 1
   lens.focal = {focal, focal * random.uniform(0.999, 1.001)};
-  lens.principal = {options.picture.width / 2.0 + random.uniform(-8, 8), options.picture.height / 2.0 + random.uniform(-8, 8)};
+  lens.principal = {options.image.width / 2.0 + random.uniform(-8, 8), options.image.height / 2.0 + random.uniform(-8, 8)};
   if (options.distorted) {
     lens.distortion = {random.uniform(-0.14, -0.06), random.uniform(0.01, 0.05), random.uniform(-5e-4, 5e-4),
                        random.uniform(-5e-4, 5e-4)};
@@ -45,7 +45,7 @@ Rig room_rig(const RoomOptions& options) {
     RigCamera camera;
     camera.name = fmt::format("cam{}", i + 1);
     camera.rate_hz = options.rate_hz;
-    camera.size = options.picture;
+    camera.size = options.image;
     camera.lens = some_lens(options, random);
     camera.camera_from_world = looking_at(centre, aim);
     const double offset = random.uniform(-options.offset_s, options.offset_s);

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "marey/simulate/room/body.h"
-#include "marey/simulate/room/room_film.h"
+#include "marey/simulate/room/room_video.h"
 #include "marey/simulate/room/to_and_fro.h"
 
 namespace marey::simulate::room {
@@ -21,12 +21,12 @@ TEST(Room, BlobsLieWhereTheRigSeesTheirMarkers) {
   int count = 0, offset = 0;
   for (const std::int64_t index : {0, 77, 1199}) {
     const RoomFrame frame = scene.frame(index);
-    ASSERT_EQ(frame.seen.size(), 8u);
+    ASSERT_EQ(frame.detected.size(), 8u);
     for (std::size_t c = 0; c < 8; ++c) {
       const RigCamera& camera = scene.rig().cameras[c];
       offset += camera.offset_s != 0;
       const auto points = scene.points(frame.time_s + *camera.offset_s);
-      for (const RoomBlob& blob : frame.seen[c]) {
+      for (const RoomBlob& blob : frame.detected[c]) {
         sum += (blob.pixel - *camera.camera()->project(points[static_cast<std::size_t>(blob.marker.value())])).squaredNorm();
         ++count;
       }
@@ -76,10 +76,10 @@ TEST(Room, TheBodyHidesWhatIsBehindIt) {
     double depth = 1;  // m from the nearest capsule's surface
     for (std::size_t limb = 0; limb < kLimbs; ++limb) {
       for (int s = 0; s <= 300; ++s) {
-        const Vector<3> place = from + (to - from) * s / 300.0;
+        const Vector<3> location = from + (to - from) * s / 300.0;
         for (int t = 0; t <= 60; ++t) {
-          depth = std::min(depth,
-                           (place - pose[limb] * Vector<3>(limb_shapes()[limb].end * t / 60)).norm() - limb_shapes()[limb].radius);
+          depth = std::min(
+              depth, (location - pose[limb] * Vector<3>(limb_shapes()[limb].end * t / 60)).norm() - limb_shapes()[limb].radius);
         }
       }
     }
@@ -92,7 +92,7 @@ TEST(Room, TheBodyHidesWhatIsBehindIt) {
 
 TEST(Room, MarkersKeepTheirPlaceOnTheirLimb) {
   Random random(3);
-  const auto markers = place_markers(60, random);
+  const auto markers = position_markers(60, random);
   for (const BodyMarker& marker : markers) {
     const LimbShape& limb = limb_shapes()[static_cast<std::size_t>(marker.limb)];
     const double along = marker.in_limb.dot(limb.end) / limb.end.squaredNorm();
@@ -141,12 +141,13 @@ TEST(Room, CoordinatesArePosesOfTheSkeleton) {
     for (double t = 0; t < 12; t += 0.37) {
       const std::vector<double> coordinates = scene.coordinates(t);
       ASSERT_EQ(coordinates.size(), skeleton->coordinates.size());
-      const auto told = pose_of(*skeleton, coordinates);
+      const auto reported = pose_of(*skeleton, coordinates);
       const auto segments = scene.segments(t);
       for (std::size_t s = 0; s < segments.size(); ++s) {
-        EXPECT_NEAR((told[s].translation - segments[s].translation).norm(), 0, 1e-9)
+        EXPECT_NEAR((reported[s].translation - segments[s].translation).norm(), 0, 1e-9)
             << motion.name << " " << skeleton->segments[s].name;
-        EXPECT_NEAR((told[s].rotation - segments[s].rotation).norm(), 0, 1e-9) << motion.name << " " << skeleton->segments[s].name;
+        EXPECT_NEAR((reported[s].rotation - segments[s].rotation).norm(), 0, 1e-9)
+            << motion.name << " " << skeleton->segments[s].name;
       }
     }
   }
@@ -184,19 +185,19 @@ TEST(Room, DropsGhostsMergesAndGapsAreAsMany) {
   RoomOptions merged = clean;
   merged.merge_px = 6;
   RoomOptions gaps = clean;
-  gaps.gap_share = 0.1;
+  gaps.gap_fraction = 0.1;
   const RoomScene a(clean), b(dirty), c(merged), d(gaps);
   double all = 0, kept = 0, ghosts = 0, joint = 0, joint_blobs = 0, covered = 0;
   for (std::int64_t i = 0; i < 3000; i += 30) {
     const RoomFrame clean_frame = a.frame(i), dirty_frame = b.frame(i), merged_frame = c.frame(i), gap_frame = d.frame(i);
     for (std::size_t camera = 0; camera < 2; ++camera) {
-      all += static_cast<double>(clean_frame.seen[camera].size());
-      for (const RoomBlob& blob : dirty_frame.seen[camera]) (blob.marker ? kept : ghosts) += 1;
-      joint += static_cast<double>(merged_frame.seen[camera].size());
-      joint_blobs += static_cast<double>(std::count_if(merged_frame.seen[camera].begin(), merged_frame.seen[camera].end(),
+      all += static_cast<double>(clean_frame.detected[camera].size());
+      for (const RoomBlob& blob : dirty_frame.detected[camera]) (blob.marker ? kept : ghosts) += 1;
+      joint += static_cast<double>(merged_frame.detected[camera].size());
+      joint_blobs += static_cast<double>(std::count_if(merged_frame.detected[camera].begin(), merged_frame.detected[camera].end(),
                                                        [](const RoomBlob& blob) { return blob.merged; }));
-      covered += static_cast<double>(gap_frame.seen[camera].size());
-      EXPECT_TRUE(std::is_sorted(dirty_frame.seen[camera].begin(), dirty_frame.seen[camera].end(),
+      covered += static_cast<double>(gap_frame.detected[camera].size());
+      EXPECT_TRUE(std::is_sorted(dirty_frame.detected[camera].begin(), dirty_frame.detected[camera].end(),
                                  [](const RoomBlob& x, const RoomBlob& y) { return x.pixel.y() < y.pixel.y(); }));
     }
   }
@@ -213,30 +214,30 @@ TEST(Room, AFrameIsTheSameInAnyOrder) {
   const RoomScene one(options), two(options);
   one.frame(3);
   const RoomFrame a = one.frame(500), b = two.frame(500);
-  for (std::size_t camera = 0; camera < a.seen.size(); ++camera) {
-    ASSERT_EQ(a.seen[camera].size(), b.seen[camera].size());
-    for (std::size_t i = 0; i < a.seen[camera].size(); ++i) EXPECT_EQ(a.seen[camera][i].pixel, b.seen[camera][i].pixel);
+  for (std::size_t camera = 0; camera < a.detected.size(); ++camera) {
+    ASSERT_EQ(a.detected[camera].size(), b.detected[camera].size());
+    for (std::size_t i = 0; i < a.detected[camera].size(); ++i) EXPECT_EQ(a.detected[camera][i].pixel, b.detected[camera][i].pixel);
   }
   options.seed = 2;
   EXPECT_NE(RoomScene(options).rig().cameras[0].camera_from_world->translation,
             one.rig().cameras[0].camera_from_world->translation);
 }
 
-TEST(RoomFilm, SpotsOverAFieldOfNoiseAreThePicture) {
+TEST(RoomVideo, SpotsOverAFieldOfNoiseAreThePicture) {
   RoomOptions options;
   options.motion = RoomMotion::cloud;  // spots that touch, and at the border
   options.markers = 300;
-  options.picture = {321, 240};
+  options.image = {321, 240};
   options.cameras = 2;
   const RoomScene scene(options);
   for (const double noise : {0.0, 0.7}) {
-    const RoomFilmOptions film{.picture_noise = noise};
-    const RoomSpots spots(scene, 1, film);
+    const RoomVideoOptions video{.image_noise = noise};
+    const RoomSpots spots(scene, 1, video);
     for (const std::uint64_t i : {0u, 7u}) {
       const double time = static_cast<double>(i) / options.rate_hz;
-      const std::vector<RoomBlob> seen = scene.seen_by(1, time, i);
-      ASSERT_GT(seen.size(), 100u);
-      const cv::Mat whole = draw_room(scene, 1, time, seen, i, film), together = spots.picture(spots.draw(time, seen, i));
+      const std::vector<RoomBlob> detected = scene.observed_by(1, time, i);
+      ASSERT_GT(detected.size(), 100u);
+      const cv::Mat whole = draw_room(scene, 1, time, detected, i, video), together = spots.image(spots.draw(time, detected, i));
       ASSERT_EQ(together.size(), whole.size());
       EXPECT_LE(cv::norm(whole, together, cv::NORM_INF), 10 * noise);
       const double rms = cv::norm(whole, together, cv::NORM_L2) / std::sqrt(static_cast<double>(whole.total()));
@@ -245,12 +246,12 @@ TEST(RoomFilm, SpotsOverAFieldOfNoiseAreThePicture) {
   }
 }
 
-TEST(RoomFilm, SpotsTakeAFiftiethOfThePicture) {
+TEST(RoomVideo, SpotsTakeAFiftiethOfThePicture) {
   RoomOptions options;
   const RoomScene scene(options);
   const RoomSpots spots(scene, 0);
-  const RoomSpots::Drawn drawn = spots.draw(0, scene.seen_by(0, 0, 0), 0);
-  EXPECT_LT(drawn.pixels.size() + drawn.places.size() * sizeof(cv::Rect), static_cast<std::size_t>(options.picture.area()) / 50);
+  const RoomSpots::Drawn drawn = spots.draw(0, scene.observed_by(0, 0, 0), 0);
+  EXPECT_LT(drawn.pixels.size() + drawn.locations.size() * sizeof(cv::Rect), static_cast<std::size_t>(options.image.area()) / 50);
 }
 
 TEST(ToAndFro, TurnsWithoutAJerk) {

@@ -19,8 +19,8 @@ struct SquareDetectorOptions {
   double false_alarms = 0;     ///< a frame, on average
 };
 
-/// What a detector says of one frame of one camera of the people in the square, from left to right. Who is cut by the picture's
-/// border is left out where less than half of it is within.
+/// What a detector says of one frame of one camera of the people in the square, from left to right. Who is cut by the image's
+/// border is omitted where less than half of it is within.
 std::vector<LabelledBox> square_boxes(std::span<const SquarePerson> people, const SquareMotion& square, const Camera& camera,
                                       std::int32_t frame, const SquareDetectorOptions& options, Random& random);
 

@@ -11,9 +11,9 @@ constexpr double kStep = 0.04;       // s
 constexpr double kFilling = 40;      // s before the beginning
 constexpr double kArrived = 0.7;     // m from a goal
 constexpr double kHesitation = 0.6;  // s in which people take up the velocity they want
-constexpr double kMostPush = 3;      // m/s²
+constexpr double kMaxPush = 3;       // m/s²
 constexpr double kApart = 0.45;      // m between the middles of two who pass each other
-constexpr double kBeside = 0.55;     // m between those of a group
+constexpr double kNextTo = 0.55;     // m between those of a group
 
 }  // namespace
 
@@ -30,12 +30,12 @@ void SquareMotion::advance(double time) {
   now_.clear();
   for (const Walker& walker : walkers_) {
     now_.push_back(walker.person);
-    now_.back().place += rest * walker.person.velocity;
+    now_.back().location += rest * walker.person.velocity;
   }
 }
 
-bool SquareMotion::holds(const Vector<2>& place) const {
-  return place.x() >= 0 && place.y() >= 0 && place.x() <= options_.length && place.y() <= options_.width;
+bool SquareMotion::holds(const Vector<2>& location) const {
+  return location.x() >= 0 && location.y() >= 0 && location.x() <= options_.length && location.y() <= options_.width;
 }
 
 void SquareMotion::step() {
@@ -43,35 +43,35 @@ void SquareMotion::step() {
   if (random_.chance(options_.arrivals * kStep)) arrive();
   std::vector<Vector<2>> accelerations;
   for (Walker& walker : walkers_) {
-    Vector<2> a = (wanted(walker) - walker.person.velocity) / kHesitation + pushed(walker);
+    Vector<2> a = (required(walker) - walker.person.velocity) / kHesitation + pushed(walker);
     a += Vector<2>(random_.gaussian(0, 0.8), random_.gaussian(0, 0.8));
-    if (a.norm() > kMostPush) a *= kMostPush / a.norm();
+    if (a.norm() > kMaxPush) a *= kMaxPush / a.norm();
     accelerations.push_back(a);
   }
   for (std::size_t i = 0; i < walkers_.size(); ++i) {
     SquarePerson& person = walkers_[i].person;
-    person.place += kStep * person.velocity + kStep * kStep / 2 * accelerations[i];
+    person.location += kStep * person.velocity + kStep * kStep / 2 * accelerations[i];
     person.velocity += kStep * accelerations[i];
   }
   std::erase_if(walkers_, [&](const Walker& walker) {
-    const Vector<2>& at = walker.person.place;
+    const Vector<2>& at = walker.person.location;
     const double out = std::max({-at.x(), -at.y(), at.x() - options_.length, at.y() - options_.width});
     return out > options_.around;
   });
 }
 
 Vector<2> SquareMotion::at_side(int side) {
-  const double most = options_.around - 0.1;
+  const double maximum = options_.around - 0.1;
   const double x = random_.uniform(0, options_.length), y = random_.uniform(0, options_.width);
   switch (side) {
     case 0:
-      return {x, -most};
+      return {x, -maximum};
     case 1:
-      return {x, options_.width + most};
+      return {x, options_.width + maximum};
     case 2:
-      return {-most, y};
+      return {-maximum, y};
     default:
-      return {options_.length + most, y};
+      return {options_.length + maximum, y};
   }
 }
 
@@ -97,10 +97,10 @@ void SquareMotion::arrive() {
   const Vector<2> left(-ahead.y(), ahead.x());
   for (int i = 0; i < size; ++i) {
     Walker walker = first;
-    walker.slot = {-random_.uniform(0, 0.4) * (i % 2), kBeside * (i % 2 == 0 ? i / 2 : -(i + 1) / 2)};
+    walker.slot = {-random_.uniform(0, 0.4) * (i % 2), kNextTo * (i % 2 == 0 ? i / 2 : -(i + 1) / 2)};
     walker.pace = pace;
     walker.person.id = next_id_++;
-    walker.person.place = start + walker.slot.y() * left;
+    walker.person.location = start + walker.slot.y() * left;
     walker.person.velocity = pace * ahead;
     walker.person.height = std::clamp(random_.gaussian(1.72, 0.09), 1.45, 1.98);
     walkers_.push_back(walker);
@@ -112,7 +112,7 @@ const SquareMotion::Walker* SquareMotion::first_of(const Walker& walker) const {
   return &*found;
 }
 
-Vector<2> SquareMotion::wanted(Walker& walker) {
+Vector<2> SquareMotion::required(Walker& walker) {
   const Walker& first = *first_of(walker);
   if (&first != &walker) {
     const Vector<2>& v = first.person.velocity;
@@ -120,20 +120,20 @@ Vector<2> SquareMotion::wanted(Walker& walker) {
     walker.stop_for = first.stop_for;
     if (v.norm() < 0.3) return Vector<2>::Zero();
     const Vector<2> ahead = v.normalized();
-    const Vector<2> slot = first.person.place + walker.slot.x() * ahead + walker.slot.y() * Vector<2>(-ahead.y(), ahead.x());
-    Vector<2> velocity = v + 0.8 * (slot - walker.person.place);
-    const double most = 1.4 * walker.pace;
-    return velocity.norm() > most ? Vector<2>(velocity * (most / velocity.norm())) : velocity;
+    const Vector<2> slot = first.person.location + walker.slot.x() * ahead + walker.slot.y() * Vector<2>(-ahead.y(), ahead.x());
+    Vector<2> velocity = v + 0.8 * (slot - walker.person.location);
+    const double maximum = 1.4 * walker.pace;
+    return velocity.norm() > maximum ? Vector<2>(velocity * (maximum / velocity.norm())) : velocity;
   }
-  const Vector<2> way = walker.goals.front() - walker.person.place;
-  if (way.norm() < kArrived && walker.goals.size() > 1) {
+  const Vector<2> method = walker.goals.front() - walker.person.location;
+  if (method.norm() < kArrived && walker.goals.size() > 1) {
     if (walker.stop_for > 0) {
       walker.stop_for -= kStep;
       return Vector<2>::Zero();
     }
     walker.goals.erase(walker.goals.begin());
   }
-  return walker.pace * way.normalized();
+  return walker.pace * method.normalized();
 }
 
 /// Away from who is near, and a little to the right of who comes.
@@ -141,7 +141,7 @@ Vector<2> SquareMotion::pushed(const Walker& walker) const {
   Vector<2> push = Vector<2>::Zero();
   for (const Walker& other : walkers_) {
     if (&other == &walker) continue;
-    const Vector<2> apart = walker.person.place - other.person.place;
+    const Vector<2> apart = walker.person.location - other.person.location;
     const double distance = std::max(apart.norm(), 0.05);
     if (distance > 1.5) continue;
     const Vector<2> away = apart / distance;

@@ -1,5 +1,5 @@
 // An open square: people come in at every side, alone and in groups, cross it, run, stand together or sit on benches for a while,
-// and leave at another side for good.
+// and leave at another side permanently.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace marey::simulate::square {
 
 struct SquareOptions {
-  double length = 36, width = 12;  ///< m, of the part that is looked at: x in [0, length], y in [0, width]
+  double length = 36, width = 12;  ///< m, of the part that is inspected: x in [0, length], y in [0, width]
   double around = 4;               ///< m beyond it, where people come from and go to
   double arrivals = 1.1;           ///< groups a second
   double runners = 0.04;           ///< share of groups that run
@@ -22,13 +22,13 @@ struct SquareOptions {
 };
 
 struct SquarePerson {
-  int id = 0;                           ///< from 1, never given twice
-  Vector<2> place = Vector<2>::Zero();  ///< m
+  int id = 0;                              ///< from 1, never given twice
+  Vector<2> location = Vector<2>::Zero();  ///< m
   Vector<2> velocity = Vector<2>::Zero();
   double height = 1.72;  ///< m
 };
 
-/// The same for the same seed, at whatever rate it is looked at: stepped at a fixed 25 Hz, between steps people go straight on.
+/// The same for the same seed, at whatever rate it is inspected: stepped at a fixed 25 Hz, between steps people go straight on.
 class SquareMotion {
  public:
   SquareMotion(std::uint64_t seed, const SquareOptions& options = {});
@@ -37,8 +37,8 @@ class SquareMotion {
   void advance(double time);
 
   std::span<const SquarePerson> people() const { return now_; }
-  /// Whether a place lies in the part that is looked at.
-  bool holds(const Vector<2>& place) const;
+  /// Whether a place lies in the part that is inspected.
+  bool holds(const Vector<2>& location) const;
 
  private:
   struct Walker {
@@ -53,7 +53,7 @@ class SquareMotion {
   void step();
   void arrive();
   Vector<2> at_side(int side);
-  Vector<2> wanted(Walker& walker);
+  Vector<2> required(Walker& walker);
   Vector<2> pushed(const Walker& walker) const;
   const Walker* first_of(const Walker& walker) const;
 

@@ -1,16 +1,15 @@
-// Rigid bodies followed through points in space, live: what is told of an instant needs nothing that comes after it.
+// Rigid bodies followed through points in space, live: what is reported of an instant needs nothing that comes after it.
 //
-// Each body is predicted with the velocity and the turning rate it had. Markers are looked for near where they are then due, within
-// what the prediction may be off; points are shared out among the markers of all bodies at once, so that two bodies that pass each
-// other do not take each other's. Three markers or more, not in a line, give the pose: what is told is the most probable one of
-// this instant alone. With two or one the prediction is corrected and told as predicted, with what is left unknown of it; with none
-// it goes on, up to `predict_s`. Bodies that are not there are looked for among the points that no other body has (body_boot.h);
-// identical ones are told apart by where each was last.
-// A body that looks the same after a turn has as many possible poses. They are told apart by continuity: when it comes back out of
-// hiding, by its predicted pose; a moment later, when its turning rate is known again, by the mean of the rates before and after.
-// All poses stay in question until then, and a decision that turns out wrong is corrected, and said (`Correction`).
-// Where markers differ by little, what they add up to over many instants decides.
-// Cost: a few µs a body and instant. Memory: bounded by bodies and points.
+// Each body is predicted with the velocity and the turning rate it had. Markers are searched for near where they are then due,
+// within what the prediction may be off; points are shared out among the markers of all bodies at once, so that two bodies that
+// pass each other do not take each other's. Three markers or more, not in a line, give the pose: what is reported is the most
+// probable one of this instant alone. With two or one the prediction is corrected and reported as predicted, with the rest unknown
+// of it; with none it continues, up to `predict_s`. Bodies that are not there are searched for among the points that no other body
+// has (body_initialisation.h); identical ones are distinguished by where each was last. A body that appears the same after a turn
+// has as many possible poses. They are distinguished by continuity: when it comes back out of hiding, by its predicted pose; an
+// instant later, when its turning rate is known again, by the mean of the rates before and after. All poses stay in question until
+// then, and a decision that turns out wrong is corrected, and said (`Correction`). Where markers differ by little, what they add up
+// to over many instants decides. Cost: a few µs a body and instant. Memory: bounded by bodies and points.
 #pragma once
 
 #include <cstdint>
@@ -21,55 +20,55 @@
 #include "marey/assign/gated_assignment.h"
 #include "marey/core/body.h"
 #include "marey/core/time.h"
-#include "marey/solve/bodies/body_boot.h"
+#include "marey/solve/bodies/body_initialisation.h"
 #include "marey/solve/bodies/body_motion.h"
 #include "marey/solve/bodies/pose_fit.h"
 #include "marey/solve/bodies/symmetry.h"
 
 namespace marey::solve::bodies {
 
-struct FollowOptions {
+struct TrackingOptions {
   double tolerance = 0.004;           ///< m: farther from its place no marker is the body's
   std::optional<double> noise;        ///< m: standard deviation of a point along each axis; nothing: learned from how markers fit
   double acceleration = 30;           ///< m/s², standard deviation of a body's
   double angular_acceleration = 150;  ///< rad/s²
-  double predict_s = 0.5;             ///< so long a body is told without three of its markers
-  double by_chance = 1e-4;  ///< so many like it to be expected by chance among the points: no body is found (docs/bodies.md)
+  double predict_s = 0.5;             ///< this long a body is reported without three of its markers
+  double by_chance = 1e-4;  ///< this many like it to be expected by chance among the points: no body is found (docs/bodies.md)
   double fastest = 15;      ///< m/s: a body is not found again farther away than that allows
 };
 
-struct FollowedPoint {
+struct BodyTrackPoint {
   Vector<3> position = Vector<3>::Zero();     ///< m
   std::optional<std::pair<int, int>> marker;  ///< whose its label says it is: the body's and its marker's index
 };
 
-/// What was told of a body from `since` on, up to this instant, was another of the poses in which it looks the same.
+/// What was reported of a body from `since` on, up to this instant, was another of the poses in which it appears the same.
 struct Correction {
   BodyId body{};
   Timestamp since{};
-  Rigid3 told_from_body;  ///< the true pose is the told one times this
+  Rigid3 reported_from_body;  ///< the true pose is the told one times this
 };
 
-/// What came of following one body.
-struct FollowCounts {
+/// What results from following one body.
+struct TrackCounts {
   std::int64_t measured = 0, predicted = 0, absent = 0;  ///< instants
   std::int64_t lost = 0;                                 ///< times it was given up after it had been followed
   std::int64_t corrected = 0;                            ///< times it was found to be turned by a symmetry
 };
 
-class BodyFollower {
+class BodyTracker {
  public:
   /// Throws Error for a body with fewer than three markers, or with all in a line.
-  BodyFollower(std::vector<Body> bodies, const FollowOptions& options = {});
+  BodyTracker(std::vector<Body> bodies, const TrackingOptions& options = {});
 
   /// Instants come in growing order of time. By body, those of which something is known; valid until the next call.
-  std::span<const BodyPose> step(Timestamp now, std::span<const FollowedPoint> points);
+  std::span<const BodyPose> step(Timestamp now, std::span<const BodyTrackPoint> points);
   /// Of the last step.
   std::span<const Correction> corrections() const { return corrections_; }
   /// By point of the last step: the body and its marker that it was found to be.
   std::span<const std::optional<std::pair<int, int>>> owners() const { return owner_; }
   /// By body, in the order given.
-  const std::vector<FollowCounts>& counts() const { return counts_; }
+  const std::vector<TrackCounts>& counts() const { return counts_; }
   const std::vector<Body>& bodies() const { return bodies_; }
   double noise() const { return noise_; }  ///< m, as given or learned by now
 
@@ -79,16 +78,16 @@ class BodyFollower {
     Timestamp since{}, lost{};
     Rigid3 before, after;                       ///< its poses when it was seen last, and first
     Vector<3> rate_before = Vector<3>::Zero();  ///< rad/s
-    int seen = 0;                               ///< instants since
+    int detected = 0;                           ///< instants since
   };
-  struct Followed {
-    std::vector<Vector<3>> places;
-    std::vector<Symmetry> turns;
+  struct Tracked {
+    std::vector<Vector<3>> locations;
+    std::vector<Symmetry> rotations;
     double shortest_edge = 0, reach = 0;  ///< m: of two markers; from the origin to the farthest one
     std::optional<BodyMotion> motion;     ///< nothing before it was found first
-    Timestamp seen_at{};                  ///< three markers or more
-    Rigid3 seen_pose;
-    Vector<3> seen_rate = Vector<3>::Zero();
+    Timestamp observed_at{};              ///< three markers or more
+    Rigid3 observed_pose;
+    Vector<3> observed_rate = Vector<3>::Zero();
     bool present = false;        ///< told at the last instant
     std::vector<int> point_of;   ///< by marker, this instant; or kNoIndex
     std::optional<PoseFit> fit;  ///< this instant's
@@ -99,33 +98,33 @@ class BodyFollower {
   };
 
   void predict(Timestamp now);
-  void take_labelled(std::span<const FollowedPoint> points);
-  void look_near(std::span<const FollowedPoint> points);
-  void settle_near(int body, std::span<const FollowedPoint> points);
-  bool measure(int body, std::span<const FollowedPoint> points, std::vector<int> candidates);
-  void look_everywhere(Timestamp now, std::span<const FollowedPoint> points);
-  void accept(int body, std::span<const FollowedPoint> points, const BootCandidate& candidate, std::span<const int> names);
-  Rigid3 nearest_turn(const Followed& body, Rigid3 pose) const;
+  void take_labelled(std::span<const BodyTrackPoint> points);
+  void inspect_near(std::span<const BodyTrackPoint> points);
+  void settle_near(int body, std::span<const BodyTrackPoint> points);
+  bool measure(int body, std::span<const BodyTrackPoint> points, std::vector<int> candidates);
+  void inspect_everywhere(Timestamp now, std::span<const BodyTrackPoint> points);
+  void accept(int body, std::span<const BodyTrackPoint> points, const PoseCandidate& candidate, std::span<const int> names);
+  Rigid3 nearest_turn(const Tracked& body, Rigid3 pose) const;
   void turn_body(int body, const Symmetry& turn, Timestamp since);
-  void weigh_turns(int body, Timestamp now, std::span<const FollowedPoint> points);
-  void judge_return(int body, Timestamp now);
+  void weigh_rotations(int body, Timestamp now, std::span<const BodyTrackPoint> points);
+  void evaluate_return(int body, Timestamp now);
   void report(Timestamp now);
-  double gate(const Followed& body, int marker) const;
+  double gate(const Tracked& body, int marker) const;
   void learn_noise(const PoseFit& fit, std::size_t markers);
 
   std::vector<Body> bodies_;
-  FollowOptions options_;
-  std::vector<Followed> followed_;
-  BodyBoot boot_;
+  TrackingOptions options_;
+  std::vector<Tracked> tracked_;
+  BodyInitialiser initialise_;
   assign::GatedAssigner assigner_;
   std::vector<assign::GatedPair> pairs_;
   std::vector<std::optional<std::pair<int, int>>> owner_;
   std::vector<BodyPose> poses_;
   std::vector<Correction> corrections_;
-  std::vector<FollowCounts> counts_;
+  std::vector<TrackCounts> counts_;
   std::optional<Timestamp> last_;
   double noise_ = 0, squares_ = 0, freedoms_ = 0;
-  int next_boot_ = 0;  // bodies are looked for in turn
+  int next_initialise_ = 0;  // bodies are searched for in turn
 };
 
 }  // namespace marey::solve::bodies

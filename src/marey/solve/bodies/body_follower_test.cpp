@@ -22,8 +22,8 @@ struct Scene {
 
 /// What is seen at an instant, in no order; `visible` says of a body's marker whether it can be.
 template <typename Visible>
-std::vector<FollowedPoint> seen_at(const Scene& scene, double time, moving::Random& random, const Visible& visible) {
-  std::vector<FollowedPoint> points;
+std::vector<BodyTrackPoint> observed_at(const Scene& scene, double time, moving::Random& random, const Visible& visible) {
+  std::vector<BodyTrackPoint> points;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     for (std::size_t m = 0; m < scene.bodies[b].markers.size(); ++m) {
       const Vector<3> noise = random.gaussian(scene.sigma);
@@ -53,16 +53,16 @@ Scene scene_of(int bodies, int markers, moving::Random& random) {
   return scene;
 }
 
-TEST(BodyFollower, FindsAndFollowsBodiesWithoutNames) {
+TEST(BodyTracker, FindsAndFollowsBodiesWithoutNames) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     moving::Random random(seed);
     Scene scene = scene_of(6, 5, random);
     scene.ghosts = 20;
-    BodyFollower follower(scene.bodies);
+    BodyTracker tracker(scene.bodies);
     int measured = 0, wrong = 0;
     for (int i = 0; i < 300; ++i) {
-      const auto points = seen_at(scene, i / 100.0, random, [](auto, auto) { return true; });
-      const auto poses = follower.step(timestamp_from_seconds(i / 100.0), points);
+      const auto points = observed_at(scene, i / 100.0, random, [](auto, auto) { return true; });
+      const auto poses = tracker.step(timestamp_from_seconds(i / 100.0), points);
       for (const BodyPose& pose : poses) {
         if (!pose.tracked) continue;
         ++measured;
@@ -73,66 +73,66 @@ TEST(BodyFollower, FindsAndFollowsBodiesWithoutNames) {
     }
     EXPECT_EQ(wrong, 0) << "seed " << seed;
     EXPECT_GT(measured, 6 * 300 * 0.97) << "seed " << seed;
-    EXPECT_NEAR(follower.noise(), 0.0002, 0.00003) << "seed " << seed;
+    EXPECT_NEAR(tracker.noise(), 0.0002, 0.00003) << "seed " << seed;
   }
 }
 
-/// Points drift through a room as markers of people do; the bodies that are looked for are not there.
-TEST(BodyFollower, FindsNoBodyThatIsNotThere) {
+/// Points drift through a room as markers of people do; the bodies that are searched for are not there.
+TEST(BodyTracker, FindsNoBodyThatIsNotThere) {
   for (const auto& [count, half] : {std::pair{60, 0.4}, {100, 0.5}, {300, 0.8}}) {
-    int found = 0, looks = 0;
+    int found = 0, appearances = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       moving::Random random(seed);
       std::vector<Body> bodies;
       for (int b = 0; b < 9; ++b) bodies.push_back(moving::body_of(b + 1, moving::scattered(random, 3 + b / 3, 0.12, 0.04)));
       std::vector<moving::Path> paths;
       for (int p = 0; p < count; ++p) paths.emplace_back(random, random.in_box(half));
-      BodyFollower follower(bodies);
+      BodyTracker tracker(bodies);
       for (int i = 0; i < 200; ++i) {
-        std::vector<FollowedPoint> points;
+        std::vector<BodyTrackPoint> points;
         for (const moving::Path& path : paths) points.push_back({path.at(i / 100.0).translation + random.gaussian(0.0002), {}});
-        for (const BodyPose& pose : follower.step(timestamp_from_seconds(i / 100.0), points)) found += pose.tracked;
-        looks += static_cast<int>(bodies.size());
+        for (const BodyPose& pose : tracker.step(timestamp_from_seconds(i / 100.0), points)) found += pose.tracked;
+        appearances += static_cast<int>(bodies.size());
       }
     }
-    std::printf("%d points: of %d looks for bodies that are absent %d found one\n", count, looks, found);
-    EXPECT_LT(found, 0.003 * looks) << count << " points";
+    std::printf("%d points: of %d searches for bodies that are absent %d found one\n", count, appearances, found);
+    EXPECT_LT(found, 0.003 * appearances) << count << " points";
   }
 }
 
-TEST(BodyFollower, TwoMarkersOrOnePredictAndNoneForHalfASecond) {
+TEST(BodyTracker, TwoMarkersOrOnePredictAndNoneForHalfASecond) {
   moving::Random random(8);
   Scene scene = scene_of(1, 5, random);
   scene.hidden = 0;
-  BodyFollower follower(scene.bodies);
-  int told = 0, inside = 0;
+  BodyTracker tracker(scene.bodies);
+  int reported = 0, inside = 0;
   for (int i = 0; i < 400; ++i) {
     const int phase = i % 100;
     const std::size_t visible = phase < 60 ? 5 : i < 200 ? 2 : i < 300 ? 1 : 0;
-    const auto points = seen_at(scene, i / 100.0, random, [&](auto, std::size_t m) { return m < visible; });
-    const auto pose = pose_of(follower.step(timestamp_from_seconds(i / 100.0), points), BodyId{1});
+    const auto points = observed_at(scene, i / 100.0, random, [&](auto, std::size_t m) { return m < visible; });
+    const auto pose = pose_of(tracker.step(timestamp_from_seconds(i / 100.0), points), BodyId{1});
     ASSERT_TRUE(pose) << i;
     EXPECT_EQ(pose->tracked, visible == 5) << i;
     const Rigid3 truth = scene.paths[0].at(i / 100.0);
     if (pose->tracked) continue;
-    ++told;
+    ++reported;
     const double off = (pose->world_from_body.translation - truth.translation).norm();
     inside += off < 3 * std::sqrt(pose->covariance->bottomRightCorner<3, 3>().trace());
   }
-  EXPECT_EQ(told, 160);
+  EXPECT_EQ(reported, 160);
   EXPECT_GT(inside, 152) << "the covariance is honest";
   for (int i = 400; i < 500; ++i) {
-    const auto poses = follower.step(timestamp_from_seconds(i / 100.0), {});
-    EXPECT_EQ(poses.empty(), i > 409) << i << ": it was hidden from 360 on, and is told for half a second";
+    const auto poses = tracker.step(timestamp_from_seconds(i / 100.0), {});
+    EXPECT_EQ(poses.empty(), i > 409) << i << ": it was hidden from 360 on, and is reported for half a second";
   }
 }
 
-TEST(BodyFollower, LabelsNameMarkersFromTheFirstInstant) {
+TEST(BodyTracker, LabelsNameMarkersFromTheFirstInstant) {
   moving::Random random(9);
   Scene scene = scene_of(2, 3, random);
-  scene.bodies[1].markers = scene.bodies[0].markers;  // identical: nothing but labels tells them apart
-  BodyFollower follower(scene.bodies);
-  std::vector<FollowedPoint> points;
+  scene.bodies[1].markers = scene.bodies[0].markers;  // identical: nothing but labels distinguishes them
+  BodyTracker tracker(scene.bodies);
+  std::vector<BodyTrackPoint> points;
   for (int b = 1; b >= 0; --b) {
     for (int m = 0; m < 3; ++m) {
       const auto& body = scene.bodies[static_cast<std::size_t>(b)];
@@ -140,7 +140,7 @@ TEST(BodyFollower, LabelsNameMarkersFromTheFirstInstant) {
           {scene.paths[static_cast<std::size_t>(b)].at(0) * body.markers[static_cast<std::size_t>(m)].position, {{b, m}}});
     }
   }
-  const auto poses = follower.step({}, points);
+  const auto poses = tracker.step({}, points);
   ASSERT_EQ(poses.size(), 2U);
   for (int b = 0; b < 2; ++b)
     EXPECT_LT((poses[static_cast<std::size_t>(b)].world_from_body.translation -
@@ -149,37 +149,37 @@ TEST(BodyFollower, LabelsNameMarkersFromTheFirstInstant) {
               1e-9);
 }
 
-TEST(BodyFollower, IdenticalBodiesKeepWhoTheyAre) {
+TEST(BodyTracker, IdenticalBodiesKeepWhoTheyAre) {
   int swapped = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     moving::Random random(seed);
     Scene scene;
-    const auto places = moving::scattered(random, 4, 0.06, 0.04);
+    const auto locations = moving::scattered(random, 4, 0.06, 0.04);
     for (int b = 0; b < 4; ++b) {
-      scene.bodies.push_back(moving::body_of(b + 1, places));
+      scene.bodies.push_back(moving::body_of(b + 1, locations));
       scene.paths.emplace_back(random, random.in_box(0.3));
     }
-    BodyFollower follower(scene.bodies);
+    BodyTracker tracker(scene.bodies);
     std::map<BodyId, std::size_t> is;  // which of them it found first
     for (int i = 0; i < 600; ++i) {
-      const auto points = seen_at(scene, i / 100.0, random, [](auto, auto) { return true; });
-      for (const BodyPose& pose : follower.step(timestamp_from_seconds(i / 100.0), points)) {
+      const auto points = observed_at(scene, i / 100.0, random, [](auto, auto) { return true; });
+      for (const BodyPose& pose : tracker.step(timestamp_from_seconds(i / 100.0), points)) {
         if (!pose.tracked) continue;
         std::size_t nearest = 0;
-        double least = 1e9;
+        double minimum = 1e9;
         for (std::size_t b = 0; b < 4; ++b) {
           const double off = (pose.world_from_body.translation - scene.paths[b].at(i / 100.0).translation).norm();
-          if (off < least) least = off, nearest = b;
+          if (off < minimum) minimum = off, nearest = b;
         }
         const auto known = is.emplace(pose.body, nearest).first;
-        swapped += least < 0.002 && known->second != nearest;
+        swapped += minimum < 0.002 && known->second != nearest;
       }
     }
   }
   EXPECT_EQ(swapped, 0);
 }
 
-TEST(BodyFollower, ASymmetricBodyComesBackAsItWas) {
+TEST(BodyTracker, ASymmetricBodyComesBackAsItWas) {
   int flips = 0, gaps = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     moving::Random random(seed);
@@ -187,28 +187,28 @@ TEST(BodyFollower, ASymmetricBodyComesBackAsItWas) {
     scene.hidden = 0;
     scene.bodies.push_back(moving::body_of(1, {{-0.1, 0, 0}, {0.1, 0, 0}, {0, 0, 0.2}, {0, 0, -0.15}}));
     scene.paths.emplace_back(random, Vector<3>(0, 0, 1));
-    BodyFollower follower(scene.bodies);
-    bool turned = false;  // which of the two poses it took at first, nobody can know
+    BodyTracker tracker(scene.bodies);
+    bool rotated = false;  // which of the two poses it took at first, no person can know
     for (int i = 0; i < 500; ++i) {
       const bool hidden = i % 50 >= 35;
-      const auto points = seen_at(scene, i / 100.0, random, [&](auto, auto) { return !hidden; });
-      const auto pose = pose_of(follower.step(timestamp_from_seconds(i / 100.0), points), BodyId{1});
+      const auto points = observed_at(scene, i / 100.0, random, [&](auto, auto) { return !hidden; });
+      const auto pose = pose_of(tracker.step(timestamp_from_seconds(i / 100.0), points), BodyId{1});
       if (!pose || !pose->tracked) continue;
       const bool is = moving::degrees_between(pose->world_from_body, scene.paths[0].at(i / 100.0)) > 90;
-      if (i == 0) turned = is;
+      if (i == 0) rotated = is;
       if (i % 50 != 34) continue;  // long enough after the gap
       ++gaps;
-      flips += is != turned;
-      turned = is;
+      flips += is != rotated;
+      rotated = is;
     }
   }
   EXPECT_EQ(gaps, 200);
   EXPECT_LE(flips, 1);
 }
 
-TEST(BodyFollower, RefusesWhatHasNoPose) {
-  EXPECT_THROW(BodyFollower({moving::body_of(1, {{0, 0, 0}, {1, 0, 0}})}), Error);
-  EXPECT_THROW(BodyFollower({moving::body_of(1, {{0, 0, 0}, {0.1, 0, 0}, {0.3, 0, 0}})}), Error);
+TEST(BodyTracker, RefusesWhatHasNoPose) {
+  EXPECT_THROW(BodyTracker({moving::body_of(1, {{0, 0, 0}, {1, 0, 0}})}), Error);
+  EXPECT_THROW(BodyTracker({moving::body_of(1, {{0, 0, 0}, {0.1, 0, 0}, {0.3, 0, 0}})}), Error);
 }
 
 }  // namespace

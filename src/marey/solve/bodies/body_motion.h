@@ -1,7 +1,7 @@
 // How a body moves on between two looks: with constant velocity and constant turning rate, but for accelerations that are white
 // noise. Turn and place are followed apart, each as if it were alike in all directions, so that a step costs a few dozen operations
-// instead of those of a filter of twelve states: these beliefs gate and predict; what is told of a body that is seen is what was
-// seen at that instant alone.
+// instead of those of a filter of twelve states: these beliefs gate and predict; what is reported of a body that is seen is what
+// was seen at that instant alone.
 #pragma once
 
 #include "marey/core/geometry.h"
@@ -19,7 +19,7 @@ struct RateBelief {
     both += dt * rate + noise * dt / 2;
     rate += noise;
   }
-  /// What a look with that variance changes: by how much of the innovation the value and its rate move.
+  /// What a inspection with that variance changes: by how much of the innovation the value and its rate move.
   std::pair<double, double> correct(double variance) {
     const double sum = value + variance, gain = value / sum, rate_gain = both / sum;
     rate -= rate_gain * both;
@@ -33,13 +33,13 @@ struct BodyMotion {
   Rigid3 world_from_body;
   Vector<3> velocity = Vector<3>::Zero();      ///< m/s, of the origin
   Vector<3> turning_rate = Vector<3>::Zero();  ///< rad/s, about the world's axes
-  RateBelief place, turn;
+  RateBelief location, turn;
 
-  /// A body that was seen there for the first time, with rates up to so much.
+  /// A body that was seen there for the first time, with rates up to this much.
   static BodyMotion at(const Rigid3& pose, double rate, double turning_rate) {
     BodyMotion motion;
     motion.world_from_body = pose;
-    motion.place = {1e-6, 0, rate * rate};
+    motion.location = {1e-6, 0, rate * rate};
     motion.turn = {1e-4, 0, turning_rate * turning_rate};
     return motion;
   }
@@ -47,17 +47,17 @@ struct BodyMotion {
   void predict(double dt, double acceleration, double angular_acceleration) {
     world_from_body.translation += dt * velocity;
     world_from_body.rotation = geometry::rotation_from(dt * turning_rate) * world_from_body.rotation;
-    place.predict(dt, acceleration);
+    location.predict(dt, acceleration);
     turn.predict(dt, angular_acceleration);
   }
 
-  void correct(const Rigid3& seen, double turn_variance, double place_variance) {
-    const auto [gain, rate_gain] = place.correct(place_variance);
-    const Vector<3> shift = seen.translation - world_from_body.translation;
+  void correct(const Rigid3& detected, double turn_variance, double position_variance) {
+    const auto [gain, rate_gain] = location.correct(position_variance);
+    const Vector<3> shift = detected.translation - world_from_body.translation;
     world_from_body.translation += gain * shift;
     velocity += rate_gain * shift;
     const auto [turn_gain, turning_gain] = turn.correct(turn_variance);
-    const Vector<3> angle = geometry::angle_axis_of(seen.rotation * world_from_body.rotation.transpose());
+    const Vector<3> angle = geometry::angle_axis_of(detected.rotation * world_from_body.rotation.transpose());
     world_from_body.rotation = geometry::rotation_from(turn_gain * angle) * world_from_body.rotation;
     turning_rate += turning_gain * angle;
   }

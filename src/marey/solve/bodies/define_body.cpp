@@ -13,13 +13,13 @@
 namespace marey::solve::bodies {
 namespace {
 
-constexpr std::size_t kMostInstants = 2000;  // evenly spread
-constexpr std::size_t kFewestInstants = 3;
+constexpr std::size_t kMaxInstants = 2000;  // evenly spread
+constexpr std::size_t kMinInstantCount = 3;
 constexpr int kRounds = 12;
 constexpr double kTukey = 4.685 * 1.4826;  // of the median distance
-constexpr double kLeastLoose = 0.001;      // m: what varies less is not loose, however still the others are
+constexpr double kMinLoose = 0.001;        // m: what varies less is not loose, however still the others are
 
-using Places = std::vector<std::optional<Vector<3>>>;  // of one instant, by marker
+using Locations = std::vector<std::optional<Vector<3>>>;  // of one instant, by marker
 
 std::vector<const TrackColumns*> tracks_of(const Recording& recording, const std::vector<std::string>& labels) {
   std::vector<const TrackColumns*> tracks;
@@ -45,56 +45,57 @@ std::vector<const TrackColumns*> tracks_of(const Recording& recording, const std
 }
 
 /// Instants at which at least `fewest` of the markers are measured, evenly spread where there are many.
-std::vector<Places> instants_with(const std::vector<const TrackColumns*>& tracks, std::size_t instants, std::size_t fewest) {
-  std::vector<Places> found;
+std::vector<Locations> instants_with(const std::vector<const TrackColumns*>& tracks, std::size_t instants,
+                                     std::size_t lowest_count) {
+  std::vector<Locations> found;
   for (std::size_t i = 0; i < instants; ++i) {
-    Places places(tracks.size());
-    std::size_t seen = 0;
+    Locations locations(tracks.size());
+    std::size_t detected = 0;
     for (std::size_t m = 0; m < tracks.size(); ++m) {
       const auto row = tracks[m]->row_at(static_cast<std::int32_t>(i));
       if (!row || !tracks[m]->measured(*row)) continue;
-      places[m] = tracks[m]->position(*row);
-      ++seen;
+      locations[m] = tracks[m]->position(*row);
+      ++detected;
     }
-    if (seen >= fewest) found.push_back(std::move(places));
+    if (detected >= lowest_count) found.push_back(std::move(locations));
   }
-  if (found.size() <= kMostInstants) return found;
-  std::vector<Places> spread;
-  for (std::size_t i = 0; i < kMostInstants; ++i) spread.push_back(std::move(found[i * found.size() / kMostInstants]));
+  if (found.size() <= kMaxInstants) return found;
+  std::vector<Locations> spread;
+  for (std::size_t i = 0; i < kMaxInstants; ++i) spread.push_back(std::move(found[i * found.size() / kMaxInstants]));
   return spread;
 }
 
 /// The mean shape of those markers that count, and how each varies about it.
 class MeanShape {
  public:
-  MeanShape(const std::vector<Places>& instants, std::vector<bool> counts) : instants_(instants), counts_(std::move(counts)) {
-    const auto most =
-        std::max_element(instants_.begin(), instants_.end(), [&](const Places& a, const Places& b) { return seen(a) < seen(b); });
-    shape_ = *most;
+  MeanShape(const std::vector<Locations>& instants, std::vector<bool> counts) : instants_(instants), counts_(std::move(counts)) {
+    const auto maximum = std::max_element(instants_.begin(), instants_.end(),
+                                          [&](const Locations& a, const Locations& b) { return detected(a) < detected(b); });
+    shape_ = *maximum;
     for (int round = 0; round < kRounds; ++round) advance();
   }
 
-  const Places& shape() const { return shape_; }
+  const Locations& shape() const { return shape_; }
   double deviation(std::size_t marker) const { return deviations_[marker]; }
 
  private:
-  std::int64_t seen(const Places& places) const {
+  std::int64_t detected(const Locations& locations) const {
     std::int64_t count = 0;
-    for (std::size_t m = 0; m < places.size(); ++m) count += places[m].has_value() && counts_[m];
+    for (std::size_t m = 0; m < locations.size(); ++m) count += locations[m].has_value() && counts_[m];
     return count;
   }
 
   void advance() {
     std::vector<std::vector<Vector<3>>> brought(shape_.size());
-    for (const Places& places : instants_) {
+    for (const Locations& locations : instants_) {
       std::vector<Vector<3>> from, to;
-      for (std::size_t m = 0; m < places.size(); ++m) {
-        if (places[m] && shape_[m] && counts_[m]) from.push_back(*places[m]), to.push_back(*shape_[m]);
+      for (std::size_t m = 0; m < locations.size(); ++m) {
+        if (locations[m] && shape_[m] && counts_[m]) from.push_back(*locations[m]), to.push_back(*shape_[m]);
       }
       if (from.size() < 3) continue;
       const Rigid3 shape_from_world = geometry::rigid_fit(from, to);
-      for (std::size_t m = 0; m < places.size(); ++m) {
-        if (places[m]) brought[m].push_back(shape_from_world * *places[m]);
+      for (std::size_t m = 0; m < locations.size(); ++m) {
+        if (locations[m]) brought[m].push_back(shape_from_world * *locations[m]);
       }
     }
     deviations_.assign(shape_.size(), 0);
@@ -103,55 +104,55 @@ class MeanShape {
     }
   }
 
-  static Vector<3> robust_mean(const std::vector<Vector<3>>& places, const Vector<3>& about, double& deviation) {
+  static Vector<3> robust_mean(const std::vector<Vector<3>>& locations, const Vector<3>& about, double& deviation) {
     std::vector<double> distances;
     double squares = 0;
-    for (const Vector<3>& place : places) {
-      distances.push_back((place - about).norm());
+    for (const Vector<3>& location : locations) {
+      distances.push_back((location - about).norm());
       squares += distances.back() * distances.back();
     }
-    deviation = std::sqrt(squares / (3 * static_cast<double>(places.size())));
+    deviation = std::sqrt(squares / (3 * static_cast<double>(locations.size())));
     const double limit = std::max(kTukey * geometry::median_or(std::vector(distances), 0), 1e-9);
     Vector<3> sum = Vector<3>::Zero();
     double weights = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const double share = std::min(distances[i] / limit, 1.0), weight = (1 - share * share) * (1 - share * share);
-      sum += weight * places[i];
+    for (std::size_t i = 0; i < locations.size(); ++i) {
+      const double fraction = std::min(distances[i] / limit, 1.0), weight = (1 - fraction * fraction) * (1 - fraction * fraction);
+      sum += weight * locations[i];
       weights += weight;
     }
     return weights > 0 ? Vector<3>(sum / weights) : about;
   }
 
-  const std::vector<Places>& instants_;
+  const std::vector<Locations>& instants_;
   std::vector<bool> counts_;
-  Places shape_;
+  Locations shape_;
   std::vector<double> deviations_;
 };
 
 /// The body's own frame within the frame the shape is in.
 Rigid3 shape_from_body(const DefineOptions& options, const Body& body) {
-  const auto place_of = [&](const std::string& label) {
+  const auto position_of = [&](const std::string& label) {
     for (const BodyMarker& marker : body.markers) {
       if (marker.label == label) return marker.position;
     }
-    throw Error("\"{}\" is none of the body's markers that are fixed to each other; pivot and axes go by those", label);
+    throw Error("\"{}\" is not one of the body's markers that are fixed to each other; pivot and axes go by those", label);
   };
   Rigid3 frame;
   for (const BodyMarker& marker : body.markers) frame.translation += marker.position / static_cast<double>(body.markers.size());
-  if (options.pivot) frame.translation = place_of(*options.pivot);
+  if (options.pivot) frame.translation = position_of(*options.pivot);
   if (!options.axes) return frame;
   const auto& [origin, along, side] = *options.axes;
-  const Vector<3> x = (place_of(along) - place_of(origin)).normalized();
-  const Vector<3> z = x.cross(place_of(side) - place_of(origin));
-  if (!(z.norm() > 1e-3 * (place_of(side) - place_of(origin)).norm()))
+  const Vector<3> x = (position_of(along) - position_of(origin)).normalized();
+  const Vector<3> z = x.cross(position_of(side) - position_of(origin));
+  if (!(z.norm() > 1e-3 * (position_of(side) - position_of(origin)).norm()))
     throw Error("the markers {}, {} and {} lie in a line and give no axes; name others", origin, along, side);
   frame.rotation << x, z.normalized().cross(x), z.normalized();
   return frame;
 }
 
-/// The shape of the markers that are fixed to each other. The one that varies most is judged by the shape of the others, which it
-/// does not spoil: where it varies more than they do, it is left out, and the next one is judged.
-MeanShape fixed_shape(const std::vector<Places>& instants, double loose, std::vector<bool>& fixed) {
+/// The shape of the markers that are fixed to each other. The one that varies most is evaluated by the shape of the others, which
+/// it does not spoil: where it varies more than they do, it is omitted, and the next one is evaluated.
+MeanShape fixed_shape(const std::vector<Locations>& instants, double loose, std::vector<bool>& fixed) {
   for (;;) {
     MeanShape shape(instants, fixed);
     std::size_t loosest = fixed.size();
@@ -166,7 +167,7 @@ MeanShape fixed_shape(const std::vector<Places>& instants, double loose, std::ve
     for (std::size_t m = 0; m < fixed.size(); ++m) {
       if (others[m]) deviations.push_back(without.deviation(m));
     }
-    if (without.deviation(loosest) <= std::max(kLeastLoose, loose * geometry::median_or(deviations, 0))) return shape;
+    if (without.deviation(loosest) <= std::max(kMinLoose, loose * geometry::median_or(deviations, 0))) return shape;
     fixed = others;
   }
 }
@@ -177,11 +178,11 @@ DefinedBody define_body(const Recording& recording, const DefineOptions& options
   const std::size_t count = options.markers.size();
   if (count < 3) throw Error("a body takes three markers or more; {} {} named", count, count == 1 ? "is" : "are");
   const auto tracks = tracks_of(recording, options.markers);
-  std::vector<Places> instants = instants_with(tracks, recording.instants().size(), count);
-  if (instants.size() < kFewestInstants) instants = instants_with(tracks, recording.instants().size(), 3);
-  if (instants.size() < kFewestInstants)
+  std::vector<Locations> instants = instants_with(tracks, recording.instants().size(), count);
+  if (instants.size() < kMinInstantCount) instants = instants_with(tracks, recording.instants().size(), 3);
+  if (instants.size() < kMinInstantCount)
     throw Error("{}: the markers {} are seen together in {} frames only; {} are needed", recording.header.name,
-                fmt::join(options.markers, ", "), instants.size(), kFewestInstants);
+                fmt::join(options.markers, ", "), instants.size(), kMinInstantCount);
   std::vector<bool> fixed(count, true);
   const MeanShape shape = fixed_shape(instants, options.loose, fixed);
   DefinedBody defined;

@@ -2,8 +2,8 @@
 //
 // Generalised Procrustes analysis (Gower 1975): the shape is laid onto each instant by least squares, each instant is brought back
 // into the shape's frame, and the shape becomes their mean, until it stands still. Within the mean, what lies far from a marker's
-// usual place weighs little (Tukey's biweight). A marker whose place varies several times as much as the others' is loose: it is
-// named, and left out.
+// typical place weighs little (Tukey's biweight). A marker whose place varies several times as much as the others' is loose: it is
+// named, and omitted.
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@ struct DefineOptions {
   std::optional<std::array<std::string, 3>> axes =
       {};                    ///< x goes from the first to the second, the third is on the side of y; nothing:
                              ///< the world's axes as the body lies at the first instant that counts
-  double loose = 3;          ///< so many times the other markers' deviation makes one loose
+  double loose = 3;          ///< this many times the other markers' deviation makes one loose
   double tolerance = 0.004;  ///< m: distances that differ by less than twice that count as the same
 };
 
 struct DefinedMarker {
   std::string label;
   double deviation = 0;  ///< m, RMS along one axis
-  bool loose = false;    ///< and left out
+  bool loose = false;    ///< and omitted
 };
 
 struct DefinedBody {
@@ -42,7 +42,7 @@ struct DefinedBody {
   double shortest_edge = 0;  ///< m
 };
 
-/// Throws Error where a label is missing or borne by two tracks, where too few markers are seen together or fixed to each other, or
+/// Throws Error if a label is missing or borne by two tracks, where too few markers are seen together or fixed to each other, or
 /// where they lie in a line.
 DefinedBody define_body(const Recording& recording, const DefineOptions& options);
 

@@ -8,7 +8,7 @@
 namespace marey::solve::bodies {
 namespace {
 
-Recording recording_of(const std::vector<Vector<3>>& places, double sigma, int loose = 0, double hidden = 0) {
+Recording recording_of(const std::vector<Vector<3>>& locations, double sigma, int loose = 0, double hidden = 0) {
   moving::Random random(11);
   const moving::Path path(random, {0, 0, 1});
   Recording recording;
@@ -18,17 +18,17 @@ Recording recording_of(const std::vector<Vector<3>>& places, double sigma, int l
     Instant instant;
     instant.index = i;
     instant.time = timestamp_from_seconds(i / 100.0);
-    for (int m = 0; m < std::ssize(places); ++m) {
+    for (int m = 0; m < std::ssize(locations); ++m) {
       if (random.chance(hidden)) continue;
       Sample sample;
       sample.track = TrackId{m + 1};
       const double its = m + 1 == loose ? 0.008 : sigma;
-      sample.position = path.at(i / 100.0) * places[static_cast<std::size_t>(m)] + random.gaussian(its);
+      sample.position = path.at(i / 100.0) * locations[static_cast<std::size_t>(m)] + random.gaussian(its);
       instant.samples.push_back(sample);
     }
     recording.add(instant);
   }
-  for (int m = 0; m < std::ssize(places); ++m)
+  for (int m = 0; m < std::ssize(locations); ++m)
     recording.set_name({.id = TrackId{m + 1}, .label = std::string(1, static_cast<char>('a' + m)), .team = {}});
   return recording;
 }

@@ -31,46 +31,47 @@ class Path {
   Path(Random& random, const Vector<3>& about) : about_(about) {
     for (int i = 0; i < 6; ++i) rates_[i] = random.uniform(0.3, 1.2), phases_[i] = random.uniform(0, 6);
     axis_ = random.in_box(1).normalized();
-    turns_ = random.uniform(-1, 1);
+    rotations_ = random.uniform(-1, 1);
   }
   Rigid3 at(double time) const {
-    Vector<3> place, angles;
+    Vector<3> location, angles;
     for (int i = 0; i < 3; ++i) {
-      place[i] = 0.4 * std::sin(6.283 * rates_[i] * time + phases_[i]);
+      location[i] = 0.4 * std::sin(6.283 * rates_[i] * time + phases_[i]);
       angles[i] = 0.5 * std::sin(6.283 * rates_[3 + i] * time + phases_[3 + i]);
     }
-    return {geometry::rotation_from(angles) * geometry::rotation_from(6.283 * turns_ * time * axis_), about_ + place};
+    return {geometry::rotation_from(angles) * geometry::rotation_from(6.283 * rotations_ * time * axis_), about_ + location};
   }
 
  private:
   Vector<3> about_, axis_;
-  double rates_[6], phases_[6], turns_ = 0;
+  double rates_[6], phases_[6], rotations_ = 0;
 };
 
-inline Body body_of(int id, const std::vector<Vector<3>>& places) {
+inline Body body_of(int id, const std::vector<Vector<3>>& locations) {
   Body body;
   body.id = BodyId{id};
   body.label = "body " + std::to_string(id);
-  for (const Vector<3>& place : places) body.markers.push_back({body.label + ":" + std::to_string(body.markers.size()), place});
+  for (const Vector<3>& location : locations)
+    body.markers.push_back({body.label + ":" + std::to_string(body.markers.size()), location});
   return body;
 }
 
 /// Markers at least `apart` m from each other, and no two of their distances within `apart` / 4.
 inline std::vector<Vector<3>> scattered(Random& random, int count, double half, double apart) {
   for (;;) {
-    std::vector<Vector<3>> places;
+    std::vector<Vector<3>> locations;
     std::vector<double> distances;
     bool good = true;
     for (int i = 0; i < count && good; ++i) {
-      places.push_back(random.in_box(half));
+      locations.push_back(random.in_box(half));
       for (int k = 0; k < i; ++k) {
-        const double distance = (places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(k)]).norm();
+        const double distance = (locations[static_cast<std::size_t>(i)] - locations[static_cast<std::size_t>(k)]).norm();
         good &= distance > apart;
         for (const double other : distances) good &= std::abs(other - distance) > apart / 4;
         distances.push_back(distance);
       }
     }
-    if (good) return places;
+    if (good) return locations;
   }
 }
 

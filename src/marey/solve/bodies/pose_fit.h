@@ -24,18 +24,19 @@ struct PoseFit {
 
 /// `places` in the body's frame and where each is `seen` with a standard deviation of `sigma` m along each axis. Nothing for fewer
 /// than three, or where they lie so near to a line that a turn about it is not known to `loosest_turn` rad.
-std::optional<PoseFit> fit_pose(std::span<const Vector<3>> places, std::span<const Vector<3>> seen, double sigma,
+std::optional<PoseFit> fit_pose(std::span<const Vector<3>> locations, std::span<const Vector<3>> detected, double sigma,
                                 double loosest_turn = 0.2);
 
 /// What is known of a pose before it is seen: the same in all directions.
 struct PoseBelief {
   Rigid3 world_from_body;
-  double turn_variance = 1;   ///< rad², about each axis
-  double place_variance = 1;  ///< m², of the origin along each axis
+  double turn_variance = 1;      ///< rad², about each axis
+  double position_variance = 1;  ///< m², of the origin along each axis
 };
 
 /// Any number of markers, none included.
-PoseFit correct_pose(const PoseBelief& belief, std::span<const Vector<3>> places, std::span<const Vector<3>> seen, double sigma);
+PoseFit correct_pose(const PoseBelief& belief, std::span<const Vector<3>> locations, std::span<const Vector<3>> detected,
+                     double sigma);
 
 /// [v]×: skew(v) w = v × w.
 Matrix<3> skew(const Vector<3>& v);

@@ -36,7 +36,7 @@ class Backtracking {
   }
 
   void extend() {
-    if (found_.size() >= kMostSymmetries) return;
+    if (found_.size() >= kMaxSymmetries) return;
     if (onto_.size() == layout_.size()) return keep();
     for (int candidate = 0; candidate < std::ssize(layout_); ++candidate) {
       if (!fits(candidate)) continue;

@@ -1,4 +1,4 @@
-// In which ways a set of markers looks the same after it was turned: who sees the points alone cannot tell these poses apart.
+// In which ways a set of markers appears the same after it was turned: who sees the points alone cannot tell these poses apart.
 #pragma once
 
 #include <span>
@@ -17,11 +17,11 @@ struct Symmetry {
   double worst = 0;       ///< m: the largest distance that is left
 };
 
-/// All of them: markers are exchanged where no distance between two changes by more than `tolerance` m, mirrored ones left out.
-/// A line of markers turns about itself without end; such layouts are refused elsewhere. At most `kMostSymmetries`, as of a sphere
-/// full of markers. Cost: by backtracking, next to nothing where distances differ.
+/// All of them: markers are exchanged where no distance between two changes by more than `tolerance` m, mirrored ones omitted.
+/// A line of markers turns about itself without end; such layouts are refused elsewhere. At most `kMaxSymmetries`, as of a sphere
+/// full of markers. Cost: by backtracking, next to nothing if distances differ.
 std::vector<Symmetry> symmetries(std::span<const Vector<3>> layout, double tolerance);
-inline constexpr std::size_t kMostSymmetries = 120;
+inline constexpr std::size_t kMaxSymmetries = 120;
 
 /// "turned 180° about its z axis": for people.
 std::string words_of(const Symmetry& symmetry);

@@ -50,7 +50,7 @@ bool give_name(Labelled& labelled, const Unnamed& piece) {
   const TrackColumns rows = rows_of(*from, piece, true);
   TrackColumns rest = rows_of(*from, piece, false), whole = merged(*named, rows);
   for (MarkerHealth& health : labelled.health) {
-    if (health.label == piece.best) health.seen += static_cast<std::int64_t>(rows.size());
+    if (health.label == piece.best) health.detected += static_cast<std::int64_t>(rows.size());
   }
   labelled.recording.put(std::move(rest));
   labelled.recording.put(std::move(whole));

@@ -22,11 +22,11 @@ TrackColumns track_of(int id, const std::string& label, std::vector<std::pair<in
 Labelled labelled() {
   Labelled labelled;
   labelled.recording = Recording(RecordingHeader{});
-  for (int i = 0; i < 40; ++i) labelled.recording.add_moment({i, timestamp_from_seconds(0.01 * i)});
+  for (int i = 0; i < 40; ++i) labelled.recording.add_time_step({i, timestamp_from_seconds(0.01 * i)});
   labelled.recording.put(track_of(1, "C7", {{0, 9}, {20, 29}}));
   labelled.recording.put(track_of(2, "T10", {{0, 39}}));
   labelled.recording.put(track_of(3, "", {{10, 19}, {30, 34}}));
-  labelled.health = {{.label = "C7", .seen = 20}, {.label = "T10", .seen = 40}};
+  labelled.health = {{.label = "C7", .detected = 20}, {.label = "T10", .detected = 40}};
   labelled.unnamed = {{TrackId{3}, 30, 34, "T10", "C7"}, {TrackId{3}, 10, 19, "C7", "T10"}};
   return labelled;
 }
@@ -42,7 +42,7 @@ TEST(AcceptSuggestions, APieceGetsItsBestNameWhereNobodyElseBearsIt) {
   EXPECT_EQ(result.recording.find(TrackId{3})->size(), 5u) << "T10 was there: it stays";
   ASSERT_EQ(result.unnamed.size(), 1u);
   EXPECT_EQ(result.unnamed.front().best, "T10");
-  EXPECT_EQ(result.health.front().seen, 30);
+  EXPECT_EQ(result.health.front().detected, 30);
 }
 
 TEST(AcceptSuggestions, OnlyTheNamesThatAreAskedFor) {

@@ -16,19 +16,23 @@ namespace {
 using assign::kNoIndex;
 
 constexpr std::size_t kNear = 6;        // neighbours with which names are exchanged
-constexpr std::size_t kLongestRow = 5;  // names that shift by one at once
-constexpr double kLooseShare = 0.2;     // of a distance that is not among the tightest
+constexpr std::size_t kMaxRow = 5;      // names that shift by one at once
+constexpr double kLooseFraction = 0.2;  // of a distance that is not among the tightest
 constexpr std::size_t kSideInstants = 5;
-constexpr int kMostChanges = 40;
+constexpr int kMaxChanges = 40;
 constexpr std::size_t kTightest = 3;
 
 using Holders = std::vector<int>;  // by name: whose points it has
 
 class Check {
  public:
-  Check(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& model, const BootOptions& options,
+  Check(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& model, const LabelInitOptions& options,
         std::size_t neighbours, double margin)
-      : model_(model), seen_(chains.named_distances()), neighbours_(neighbours), margin_(margin), holders_(model.size(), kNoIndex) {
+      : model_(model),
+        detected_(chains.named_distances()),
+        neighbours_(neighbours),
+        margin_(margin),
+        holders_(model.size(), kNoIndex) {
     for (std::size_t name = 0; name < model.size(); ++name) {
       for (std::size_t other = 0; other < model.size(); ++other) {
         if (other != name && between(name, other).count > 0) holders_[name] = static_cast<int>(name);
@@ -43,7 +47,7 @@ class Check {
   }
 
   CheckedNames run() {
-    for (int change = 0; change < kMostChanges; ++change) {
+    for (int change = 0; change < kMaxChanges; ++change) {
       best_ = {};
       try_all();
       if (!(best_.loss < -1e-6)) break;
@@ -61,27 +65,27 @@ class Check {
     Holders holders;
   };
 
-  const DistanceSeen& between(std::size_t a, std::size_t b) const { return seen_[LearnedMarkers::index_of(a, b)]; }
+  const DistanceObserved& between(std::size_t a, std::size_t b) const { return detected_[LearnedMarkers::index_of(a, b)]; }
 
-  void add_sides(const NamedChains& chains, const LearnedMarkers& learned, const BootOptions& options) {
+  void add_sides(const NamedChains& chains, const LearnedMarkers& learned, const LabelInitOptions& options) {
     for (std::size_t part = 0; part < kSideInstants; ++part) {
       const std::size_t begin = part * chains.instants() / kSideInstants, end = (part + 1) * chains.instants() / kSideInstants;
-      std::size_t best = begin, most = 0;
+      std::size_t best = begin, maximum = 0;
       for (std::size_t instant = begin; instant < end; instant += std::max<std::size_t>(1, (end - begin) / 20)) {
         std::size_t count = 0;
         for (std::size_t name = 0; name < model_.size(); ++name) count += chains.holder(instant, name).chain != kNoIndex;
-        if (count > most) most = count, best = instant;
+        if (count > maximum) maximum = count, best = instant;
       }
-      if (most < 4) continue;
-      BootScene scene;
+      if (maximum < 4) continue;
+      InitialiseScene scene;
       std::vector<int> point_of(model_.size(), kNoIndex);
       std::vector<std::size_t> names;
       for (std::size_t name = 0; name < model_.size(); ++name) {
         if (chains.holder(best, name).chain == kNoIndex) continue;
         point_of[name] = static_cast<int>(names.size());
-        for (const std::size_t other : names) scene.seen.push_back(between(name, other));
+        for (const std::size_t other : names) scene.detected.push_back(between(name, other));
         names.push_back(name);
-        scene.places.push_back(chains.holder(best, name).place);
+        scene.locations.push_back(chains.holder(best, name).location);
       }
       sides_.push_back({std::make_unique<SideCosts>(std::move(scene), learned, model_, options), std::move(point_of)});
     }
@@ -92,12 +96,12 @@ class Check {
     if (holders[name] == kNoIndex) return 0;
     const auto its = static_cast<std::size_t>(holders[name]);
     double sum = 0;
-    std::size_t asked = 0;
+    std::size_t requested = 0;
     for (const std::size_t other : model_.partners(name)) {
       if (holders[other] == kNoIndex) continue;
-      const DistanceSeen& seen = between(its, static_cast<std::size_t>(holders[other]));
-      if (seen.count == 0) continue;
-      sum += (asked++ < neighbours_ ? 1 : kLooseShare) * model_.ratio(name, other, seen);
+      const DistanceObserved& detected = between(its, static_cast<std::size_t>(holders[other]));
+      if (detected.count == 0) continue;
+      sum += (requested++ < neighbours_ ? 1 : kLooseFraction) * model_.ratio(name, other, detected);
     }
     return sum;
   }
@@ -190,7 +194,7 @@ class Check {
   /// The first of a row has no points: it gets those of the next, and so on; the last is left without.
   void try_rows(std::vector<std::size_t>& row) {
     if (row.size() > 1) try_ring(row);
-    if (row.size() > kLongestRow) return;
+    if (row.size() > kMaxRow) return;
     for (const std::size_t next : near_[row.back()]) {
       if (holders_[next] == kNoIndex || std::find(row.begin(), row.end(), next) != row.end()) continue;
       row.push_back(next);
@@ -200,7 +204,7 @@ class Check {
   }
 
   const DistanceModel& model_;
-  std::vector<DistanceSeen> seen_;  // by those whose points they are
+  std::vector<DistanceObserved> detected_;  // by those whose points they are
   std::size_t neighbours_;
   double margin_;
   Holders holders_;
@@ -214,21 +218,21 @@ class Check {
 }  // namespace
 
 CheckedNames check_names(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& learned_model,
-                         const BootOptions& options, std::size_t neighbours, double margin) {
+                         const LabelInitOptions& options, std::size_t neighbours, double margin) {
   return Check(chains, learned, learned_model, options, neighbours, margin).run();
 }
 
-Misfit misfit_of(const std::vector<DistanceSeen>& named, const DistanceModel& learned_model) {
+Misfit misfit_of(const std::vector<DistanceObserved>& named, const DistanceModel& learned_model) {
   std::vector<double> ratios, off;
   for (std::size_t name = 0; name < learned_model.size(); ++name) {
-    std::size_t asked = 0;
+    std::size_t requested = 0;
     for (const std::size_t other : learned_model.partners(name)) {
-      const DistanceSeen& seen = named[LearnedMarkers::index_of(name, other)];
-      const auto deviation = learned_model.rigid_deviation(name, other, seen);
-      if (seen.count == 0 || !deviation) continue;
-      off.push_back(std::abs(seen.mean - learned_model.mean(name, other)));
+      const DistanceObserved& detected = named[LearnedMarkers::index_of(name, other)];
+      const auto deviation = learned_model.rigid_deviation(name, other, detected);
+      if (detected.count == 0 || !deviation) continue;
+      off.push_back(std::abs(detected.mean - learned_model.mean(name, other)));
       ratios.push_back(off.back() / *deviation);
-      if (++asked == kTightest) break;
+      if (++requested == kTightest) break;
     }
   }
   if (off.empty()) return {};

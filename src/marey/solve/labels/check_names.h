@@ -4,16 +4,16 @@
 // little, and also a wrong answer fit itself. So at the end the names are held against the learned distances and sides again,
 // together with what a search that moves one name at a time does not reach: two names exchanged, two pairs of a cluster exchanged
 // at once (a flat cluster turned over, which keeps its inner distances), three names in a ring, and a row of names along a limb
-// shifted by one into a name that nobody has. Of a name the tightest distances count whole, and all others a share, because they
-// tell of one posture again and again. An alternative that is better is taken; one that is hardly worse leaves its names undecided.
+// shifted by one into a name that no person has. Of a name the tightest distances count whole, and all others a share, because they
+// tell of one posture again and again. An alternative that is better is taken; one that is barely worse leaves its names undecided.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "marey/core/learned_markers.h"
-#include "marey/solve/labels/boot_labels.h"
 #include "marey/solve/labels/distance_model.h"
+#include "marey/solve/labels/initialise_labels.h"
 #include "marey/solve/labels/named_chains.h"
 
 namespace marey::solve::labels {
@@ -25,7 +25,7 @@ struct CheckedNames {
 
 /// `learned_model`: of what was learned alone. `margin`: log-likelihood by which an alternative must be worse.
 CheckedNames check_names(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& learned_model,
-                         const BootOptions& options, std::size_t neighbours, double margin);
+                         const LabelInitOptions& options, std::size_t neighbours, double margin);
 
 /// How far distances that the set knows as rigid are from the learned ones.
 struct Misfit {
@@ -33,7 +33,7 @@ struct Misfit {
   double off_m = 0;  ///< median
 };
 
-/// Of the three tightest distances of each name; nothing seen is no misfit.
-Misfit misfit_of(const std::vector<DistanceSeen>& named, const DistanceModel& learned_model);
+/// Of the three tightest distances of each name; nothing seen is not a misfit.
+Misfit misfit_of(const std::vector<DistanceObserved>& named, const DistanceModel& learned_model);
 
 }  // namespace marey::solve::labels

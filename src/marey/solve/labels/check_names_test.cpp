@@ -33,13 +33,13 @@ class Doll {
       return trunk * Vector<3>(size_ * (plate * kPlate[marker - 4]));
     }
     const int along = marker - 8;  // two markers a segment, which bend against each other
-    Vector<3> place(0.3, 0.3, 0.3);
+    Vector<3> location(0.3, 0.3, 0.3);
     for (int segment = 0; segment <= along / 2; ++segment) {
       const double angle = 0.4 * segment + 0.5 * std::sin(4 * time + segment);
       const double length = segment < along / 2 ? 0.2 : 0.05 + 0.1 * (along % 2);
-      place += length * Vector<3>(std::cos(angle), 0.2 * std::sin(angle), std::sin(angle));
+      location += length * Vector<3>(std::cos(angle), 0.2 * std::sin(angle), std::sin(angle));
     }
-    return trunk * Vector<3>(size_ * place);
+    return trunk * Vector<3>(size_ * location);
   }
 
  private:
@@ -50,7 +50,7 @@ std::string doll_label(int marker) {
   return (marker < 10 ? "d0" : "d") + std::to_string(marker);  // by their letters as by their numbers
 }
 
-Recording doll_recording(const Doll& doll, double from, const std::vector<int>& left_out = {}) {
+Recording doll_recording(const Doll& doll, double from, const std::vector<int>& excluded = {}) {
   Recording recording;
   recording.header.name = "doll";
   recording.header.rate_hz = 50;
@@ -59,7 +59,7 @@ Recording doll_recording(const Doll& doll, double from, const std::vector<int>& 
     instant.index = i;
     instant.time = timestamp_from_seconds(i / 50.0);
     for (int m = 0; m < Doll::kMarkers; ++m) {
-      if (std::find(left_out.begin(), left_out.end(), m) != left_out.end()) continue;
+      if (std::find(excluded.begin(), excluded.end(), m) != excluded.end()) continue;
       Sample sample;
       sample.track = TrackId{m + 1};
       sample.position = doll.at(m, from + i / 50.0);
@@ -138,14 +138,14 @@ TEST_F(CheckNames, ARowThatIsShiftedByOneIsShiftedBack) {
   EXPECT_EQ(markers_of(check(named_doll(recording, names)), names), right);
 }
 
-TEST_F(CheckNames, WhatCouldAsWellBeExchangedIsUndecided) {
-  LearnedMarkers alike = learned_;  // two of the trunk, whose distances are told the same
+TEST_F(CheckNames, LeavesAmbiguousSwapUndecided) {
+  LearnedMarkers alike = learned_;  // two of the trunk, whose distances are reported the same
   for (std::size_t other = 0; other < alike.size(); ++other) {
     if (other == 1 || other == 2) continue;
     const double mean = 0.5 * (alike.between(1, other).mean + alike.between(2, other).mean);
     alike.between(1, other) = alike.between(2, other) = {mean, 0.1};
   }
-  alike.places.assign(alike.size(), Vector<3>::Zero());  // and no sides
+  alike.locations.assign(alike.size(), Vector<3>::Zero());  // and no sides
   const Recording recording = doll_recording(Doll(), 1);
   const CheckedNames checked = check_names(named_doll(recording, right_names()), alike, DistanceModel(alike, 1), {}, 8, 3);
   EXPECT_EQ(checked.undecided[1], 2);

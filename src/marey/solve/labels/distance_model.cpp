@@ -8,7 +8,7 @@
 namespace marey::solve::labels {
 namespace {
 
-constexpr double kAnyDistance = 1.5;  // m: distances of any two markers are spread evenly over so much
+constexpr double kAnyDistance = 1.5;  // m: distances of any two markers are spread evenly over this much
 constexpr int kOftenEnough = 40;      // instants
 constexpr std::size_t kTies = 3;      // to those before it, that say how well a label is tied
 constexpr double kStillCount = 2;     // times a variance counts against being rigid
@@ -27,8 +27,8 @@ DistanceModel::DistanceModel(const LearnedMarkers& learned, double scale, const 
     const double mean = scale * distance.mean;
     const double spread = moves_ ? scale * distance.deviation : options_.still_spread * mean;
     const double shift = moves_ ? options_.shift : options_.still_shift,
-                 share = (moves_ ? options_.share : options_.still_share) * mean;
-    set(term, mean, std::sqrt(spread * spread + shift * shift + share * share));
+                 fraction = (moves_ ? options_.fraction : options_.still_fraction) * mean;
+    set(term, mean, std::sqrt(spread * spread + shift * shift + fraction * fraction));
   }
   rank();
 }
@@ -40,32 +40,32 @@ void DistanceModel::set(Term& term, double mean, double deviation) const {
   term.weight = 1 / (2 * deviation * deviation);
 }
 
-double DistanceModel::ratio(std::size_t a, std::size_t b, const DistanceSeen& seen) const {
+double DistanceModel::ratio(std::size_t a, std::size_t b, const DistanceObserved& detected) const {
   const Term& term = terms_[LearnedMarkers::index_of(a, b)];
-  const double off = seen.mean - term.mean;
-  if (moves_ || term.adopted) return std::max(term.top - (off * off + seen.variance) * term.weight, options_.floor);
+  const double off = detected.mean - term.mean;
+  if (moves_ || term.adopted) return std::max(term.top - (off * off + detected.variance) * term.weight, options_.floor);
   // Learned from one who stood still: either both are on one segment, and the distance is as it was; or the posture is another.
-  const double share = options_.still_share * term.mean, other = options_.still_spread * term.mean + options_.still_joint;
-  const double rigid = options_.still_shift * options_.still_shift + share * share, loose = other * other;
+  const double fraction = options_.still_fraction * term.mean, other = options_.still_spread * term.mean + options_.still_joint;
+  const double rigid = options_.still_shift * options_.still_shift + fraction * fraction, loose = other * other;
   const double same = options_.same_segment * std::exp(-term.mean / options_.segment);
-  const double square = off * off + seen.variance;
-  const double as_segment = std::log(same) + top_of(std::sqrt(rigid)) - (off * off + kStillCount * seen.variance) / (2 * rigid);
+  const double square = off * off + detected.variance;
+  const double as_segment = std::log(same) + top_of(std::sqrt(rigid)) - (off * off + kStillCount * detected.variance) / (2 * rigid);
   const double as_posture = std::log(1 - same) + options_.posture * (top_of(other) - square / (2 * loose));
-  const double most = std::max(as_segment, as_posture);
-  return std::max(most + std::log1p(std::exp(-std::abs(as_segment - as_posture))), options_.floor);
+  const double maximum = std::max(as_segment, as_posture);
+  return std::max(maximum + std::log1p(std::exp(-std::abs(as_segment - as_posture))), options_.floor);
 }
 
-std::optional<double> DistanceModel::rigid_deviation(std::size_t a, std::size_t b, const DistanceSeen& seen) const {
+std::optional<double> DistanceModel::rigid_deviation(std::size_t a, std::size_t b, const DistanceObserved& detected) const {
   if (moves_) return deviation(a, b);
-  if (seen.variance > options_.shift * options_.shift) return std::nullopt;
-  return std::hypot(options_.still_shift, options_.still_share * mean(a, b));
+  if (detected.variance > options_.shift * options_.shift) return std::nullopt;
+  return std::hypot(options_.still_shift, options_.still_fraction * mean(a, b));
 }
 
-void DistanceModel::adopt(std::size_t a, std::size_t b, const DistanceSeen& seen) {
+void DistanceModel::adopt(std::size_t a, std::size_t b, const DistanceObserved& detected) {
   Term& term = terms_[LearnedMarkers::index_of(a, b)];
-  if (seen.count < kOftenEnough) return;
+  if (detected.count < kOftenEnough) return;
   term.adopted = true;
-  set(term, seen.mean, std::sqrt(seen.variance + options_.shift * options_.shift / 2));
+  set(term, detected.mean, std::sqrt(detected.variance + options_.shift * options_.shift / 2));
 }
 
 void DistanceModel::rank_partners(std::size_t label) {
@@ -97,10 +97,10 @@ void DistanceModel::rank() {
   while (!left.empty()) {
     const std::vector<std::size_t>& among = order_.empty() ? left : order_;
     std::size_t best = 0;
-    double most = -std::numeric_limits<double>::max();
+    double maximum = -std::numeric_limits<double>::max();
     for (std::size_t i = 0; i < left.size(); ++i) {
       const double its = tightness(left[i], among);
-      if (its > most) most = its, best = i;
+      if (its > maximum) maximum = its, best = i;
     }
     order_.push_back(left[best]);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));

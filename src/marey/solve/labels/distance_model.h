@@ -2,7 +2,7 @@
 // under any two names', bounded below, so that one mistaken neighbour does no more harm than that.
 //
 // A distribution is normal, as wide as the distance varied where the set was learned, and wider by what differs from one recording
-// to the next: where markers sit, how skin moves. Where the set was learned from somebody who stood still, what is rigid is not
+// to the next: where markers sit, how skin moves. Where the set was learned from a person who stood still, what is rigid is not
 // known from there: a distance is then of one segment, the more probably the shorter it is, and is what it was and stays; or it
 // goes across a joint, and may be any that another posture makes of it.
 #pragma once
@@ -17,9 +17,9 @@ namespace marey::solve::labels {
 
 struct DistanceOptions {
   double shift = 0.005;        ///< m: what a rigid distance is off between two recordings
-  double share = 0.008;        ///< of a distance, besides
+  double fraction = 0.008;     ///< of a distance, besides
   double still_shift = 0.008;  ///< the same where the set was learned from one who stood still
-  double still_share = 0.02;
+  double still_fraction = 0.02;
   double still_spread = 0.15;  ///< of a distance: how much another posture changes it
   double still_joint = 0.05;   ///< m, besides
   double posture = 0.2;        ///< what such a distance counts: all distances across a joint tell the same, again and again
@@ -29,7 +29,7 @@ struct DistanceOptions {
 };
 
 /// The mean and the variance of a distance over the instants at which both points are there.
-struct DistanceSeen {
+struct DistanceObserved {
   double mean = 0, variance = 0;  ///< m, m²
   int count = 0;
 };
@@ -46,11 +46,11 @@ class DistanceModel {
     const double off = distance - term.mean;
     return std::max(term.top - off * off * term.weight, options_.floor);
   }
-  double ratio(std::size_t a, std::size_t b, const DistanceSeen& seen) const;
-  /// Standard deviation that a distance is believed to have, m.
+  double ratio(std::size_t a, std::size_t b, const DistanceObserved& detected) const;
+  /// Standard deviation that a distance is trusted to have, m.
   double deviation(std::size_t a, std::size_t b) const { return terms_[LearnedMarkers::index_of(a, b)].deviation; }
   /// Standard deviation of a distance that was seen, if it is rigid: nothing if it was not learned, and varies here.
-  std::optional<double> rigid_deviation(std::size_t a, std::size_t b, const DistanceSeen& seen) const;
+  std::optional<double> rigid_deviation(std::size_t a, std::size_t b, const DistanceObserved& detected) const;
   double mean(std::size_t a, std::size_t b) const { return terms_[LearnedMarkers::index_of(a, b)].mean; }
   /// The others by how much their distances tell, the most first.
   const std::vector<std::size_t>& partners(std::size_t label) const { return partners_[label]; }
@@ -58,7 +58,7 @@ class DistanceModel {
   const std::vector<std::size_t>& order() const { return order_; }
 
   /// What was found in the recording at hand: replaces what was learned elsewhere, as far as it was seen often enough.
-  void adopt(std::size_t a, std::size_t b, const DistanceSeen& seen);
+  void adopt(std::size_t a, std::size_t b, const DistanceObserved& detected);
   /// Only for the order in which names are asked for, where what is rigid was not learned: how much two of them vary, m.
   void set_rank(std::size_t a, std::size_t b, double deviation) { terms_[LearnedMarkers::index_of(a, b)].deviation = deviation; }
   /// To be called when all were adopted, or ranked.

@@ -7,7 +7,7 @@
 namespace marey::solve::labels {
 namespace {
 
-constexpr std::size_t kMostLooked = 200;  // instants at which distances are taken
+constexpr std::size_t kMaxInspected = 200;  // instants at which distances are taken
 
 /// The named tracks by name; null where a name was not found.
 std::vector<const TrackColumns*> named_tracks(const Recording& labelled, const LearnedMarkers& learned) {
@@ -23,33 +23,33 @@ std::vector<const TrackColumns*> named_tracks(const Recording& labelled, const L
   return tracks;
 }
 
-std::vector<DistanceSeen> distances_of(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
-  std::vector<DistanceSeen> seen(tracks.size() * (tracks.size() - 1) / 2);
-  const std::size_t step = std::max<std::size_t>(1, instants / kMostLooked);
+std::vector<DistanceObserved> distances_of(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
+  std::vector<DistanceObserved> detected(tracks.size() * (tracks.size() - 1) / 2);
+  const std::size_t step = std::max<std::size_t>(1, instants / kMaxInspected);
   for (std::size_t instant = 0; instant < instants; instant += step) {
-    std::vector<std::optional<Vector<3>>> places;
+    std::vector<std::optional<Vector<3>>> locations;
     for (const TrackColumns* track : tracks) {
       const auto row = track == nullptr ? std::nullopt : track->row_at(static_cast<std::int32_t>(instant));
-      places.push_back(row ? std::optional(track->position(*row)) : std::nullopt);
+      locations.push_back(row ? std::optional(track->position(*row)) : std::nullopt);
     }
-    for (std::size_t a = 1; a < places.size(); ++a) {
+    for (std::size_t a = 1; a < locations.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        if (!places[a] || !places[b]) continue;
-        const double distance = (*places[a] - *places[b]).norm();
-        DistanceSeen& pair = seen[LearnedMarkers::index_of(a, b)];
-        const double share = 1.0 / ++pair.count, off = distance - pair.mean;
-        pair.mean += share * off;
-        pair.variance += share * ((1 - share) * off * off - pair.variance);
+        if (!locations[a] || !locations[b]) continue;
+        const double distance = (*locations[a] - *locations[b]).norm();
+        DistanceObserved& pair = detected[LearnedMarkers::index_of(a, b)];
+        const double fraction = 1.0 / ++pair.count, off = distance - pair.mean;
+        pair.mean += fraction * off;
+        pair.variance += fraction * ((1 - fraction) * off * off - pair.variance);
       }
     }
   }
-  return seen;
+  return detected;
 }
 
 }  // namespace
 
 FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, const LabelOptions& options,
-                      const LabelFollowOptions& follow, const Hooks& hooks) {
+                      const LabelTrackerOptions& tracking, const Hooks& hooks) {
   const Labelled labelled = label_recording(recent, learned, options, hooks);
   const std::vector<const TrackColumns*> named = named_tracks(labelled.recording, learned);
   FoundNames found;
@@ -81,7 +81,7 @@ FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, co
     if (!is_first && bearer->second < its) bearer->second = its;
   }
   std::erase_if(found.name_of, [&](const auto& each) { return latest.at(each.second).second != each.first; });
-  found.follower = std::make_unique<LabelFollower>(learned, labelled.scale, distances_of(named, recent.instants().size()), follow);
+  found.tracker = std::make_unique<LabelTracker>(learned, labelled.scale, distances_of(named, recent.instants().size()), tracking);
   return found;
 }
 

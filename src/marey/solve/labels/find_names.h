@@ -13,9 +13,9 @@
 namespace marey::solve::labels {
 
 struct FoundNames {
-  std::map<TrackId, int> name_of;           ///< of the tracks that had a name when the recording ended, as it found them last
-  std::unique_ptr<LabelFollower> follower;  ///< that goes on with the distances that were found
-  double scale = 1;                         ///< of the subject against the learned set
+  std::map<TrackId, int> name_of;         ///< of the tracks that had a name when the recording ended, as it found them last
+  std::unique_ptr<LabelTracker> tracker;  ///< that continues with the distances that were found
+  double scale = 1;                       ///< of the subject against the learned set
   /// By name: not 0 if it is undecided as `Labelled` has it, or no track has it and it is the best of one that stayed without a
   /// name.
   std::vector<char> undecided;
@@ -24,8 +24,8 @@ struct FoundNames {
 };
 
 /// `recent`: tracks in space over some seconds. Takes about as long as `label_recording`: for a task of its own. `learned` must
-/// outlive what comes out. Throws Error where too few of the set's markers can be told.
+/// outlive what comes out. Throws Error if too few of the set's markers can be reported.
 FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, const LabelOptions& options,
-                      const LabelFollowOptions& follow, const Hooks& hooks = {});
+                      const LabelTrackerOptions& tracking, const Hooks& hooks = {});
 
 }  // namespace marey::solve::labels

@@ -15,45 +15,45 @@ namespace {
 using assign::kNoIndex;
 
 constexpr std::size_t kNoneOfThem = std::numeric_limits<std::size_t>::max();
-constexpr double kNever = -1e6;           // nats: no name for this track
-constexpr std::size_t kFewestAsked = 3;   // neighbours, below which nothing is said
-constexpr double kMostLack = 8;           // nats that one distance is off by, at most
-constexpr double kSteady = 0.008;         // m: what varies less is rigid, and has a side
-constexpr double kSteadyLearned = 0.012;  // m, of what is learned on the way where a moving subject taught
-constexpr double kWrongSide = 6;          // nats
-constexpr std::size_t kMostSides = 6;
-constexpr std::size_t kSideNeighboursAsked = 6;
-constexpr double kLeastHeight = 0.012;                      // m
-constexpr double kLostFloor = -6, kLostMost = 0.15;         // nats; m, of the expected place's deviation
+constexpr double kNever = -1e6;               // nats: no name for this track
+constexpr std::size_t kMinRequested = 3;      // neighbours, below which nothing is said
+constexpr double kMaxLack = 8;                // nats that one distance is off by, at most
+constexpr double kStationary = 0.008;         // m: what varies less is rigid, and has a side
+constexpr double kStationaryLearned = 0.012;  // m, of what is learned on the way where a moving subject taught
+constexpr double kWrongSide = 6;              // nats
+constexpr std::size_t kMaxSides = 6;
+constexpr std::size_t kSideNeighboursRequested = 6;
+constexpr double kMinHeight = 0.012;                        // m
+constexpr double kLostFloor = -6, kMaxLost = 0.15;          // nats; m, of the expected place's deviation
 constexpr double kLostDeviation = 0.01, kLostDrift = 0.05;  // m, m/s
-constexpr double kMostFrames = 60;                          // that a mean remembers
+constexpr double kMaxFrames = 60;                           // that a mean remembers
 constexpr double kLearnEveryS = 0.02;
 constexpr int kRemembered = 1500, kOften = 50;    // instants
 constexpr double kOffLearned = 4;                 // deviations: what is further off was named wrongly
 constexpr double kVaried = 0.25, kVaries = 0.01;  // of all distances that vary by more, m: the subject moved its joints
-constexpr double kForgottenS = 10;                // a track that is gone for so long
-constexpr double kTrustedShare = 0.5;             // of the names that are there; with fewer in no doubt, all count
+constexpr double kForgottenS = 10;                // a track that is gone for this long
+constexpr double kTrustedFraction = 0.5;          // of the names that are there; with fewer in no doubt, all count
 
 }  // namespace
 
-LabelFollower::LabelFollower(const LearnedMarkers& learned, double scale, std::span<const DistanceSeen> seen,
-                             const LabelFollowOptions& options)
+LabelTracker::LabelTracker(const LearnedMarkers& learned, double scale, std::span<const DistanceObserved> detected,
+                           const LabelTrackerOptions& options)
     : learned_(&learned),
       options_(options),
       first_(learned, scale, options.distances),
       model_(first_),
-      seen_(seen.begin(), seen.end()),
+      detected_(detected.begin(), detected.end()),
       sides_(learned.size()),
-      places_(learned.size()),
+      locations_(learned.size()),
       before_(learned.size()),
       trusted_(learned.size(), 0),
       names_open_(learned.size(), 0),
       lost_(learned.size()) {
-  seen_.resize(learned.distances.size());
+  detected_.resize(learned.distances.size());
   for (std::size_t name = 0; name < learned.size(); ++name) refine(name);
 }
 
-void LabelFollower::take(const std::map<TrackId, int>& found) {
+void LabelTracker::take(const std::map<TrackId, int>& found) {
   std::vector<char> taken(names(), 0);
   for (const auto& [track, name] : found) {
     if (name != kNoIndex) taken[static_cast<std::size_t>(name)] = 1;
@@ -65,13 +65,13 @@ void LabelFollower::take(const std::map<TrackId, int>& found) {
     if (name == kNoIndex) continue;
     Known& known = known_[track];
     known.name = name;
-    known.doubted.reset();
+    known.flagged.reset();
     known.frames = 0;
     known.sums.clear();
   }
 }
 
-std::map<TrackId, int> LabelFollower::borne() const {
+std::map<TrackId, int> LabelTracker::borne() const {
   std::map<TrackId, int> names;
   for (const auto& [track, known] : known_) {
     if (known.name != kNoIndex) names[track] = known.name;
@@ -79,37 +79,37 @@ std::map<TrackId, int> LabelFollower::borne() const {
   return names;
 }
 
-std::span<const int> LabelFollower::step(Timestamp now, std::span<const TrackedPoint> points) {
+std::span<const int> LabelTracker::step(Timestamp now, std::span<const TrackedPoint> points) {
   find_points(now, points);
   note_lost();
-  find_doubts(now, points);
+  find_review_items(now, points);
   if (!open_.empty()) {
     expect_lost(now);
     weigh(points);
-    share_out(now);
+    distribute(now);
   }
   given_.assign(points.size(), kNoIndex);
-  places_.assign(names(), std::nullopt);
+  locations_.assign(names(), std::nullopt);
   held_ = 0;
   for (std::size_t p = 0; p < points.size(); ++p) {
     given_[p] = of_point_[p]->name;
     if (given_[p] == kNoIndex) continue;
-    places_[static_cast<std::size_t>(given_[p])] = points[p].place;
+    locations_[static_cast<std::size_t>(given_[p])] = points[p].location;
     ++held_;
   }
   learn(now);
-  before_ = places_;
+  before_ = locations_;
   before_at_ = now;
   return given_;
 }
 
 /// Whose track each point is; names by hand hold.
-void LabelFollower::find_points(Timestamp now, std::span<const TrackedPoint> points) {
+void LabelTracker::find_points(Timestamp now, std::span<const TrackedPoint> points) {
   of_point_.clear();
   for (const TrackedPoint& point : points) {
     Known& known = known_[point.track];
     of_point_.push_back(&known);
-    known.seen = now;
+    known.detected = now;
     if (point.fixed != kNoIndex) {
       for (auto& [track, other] : known_) {
         if (other.name == point.fixed && track != point.track) other.name = kNoIndex;
@@ -117,27 +117,27 @@ void LabelFollower::find_points(Timestamp now, std::span<const TrackedPoint> poi
       known.name = point.fixed;
     }
   }
-  std::erase_if(known_, [&](const auto& each) { return seconds(now - each.second.seen) > kForgottenS; });
-  places_.assign(names(), std::nullopt);
+  std::erase_if(known_, [&](const auto& each) { return seconds(now - each.second.detected) > kForgottenS; });
+  locations_.assign(names(), std::nullopt);
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (of_point_[p]->name == kNoIndex) continue;
     const auto name = static_cast<std::size_t>(of_point_[p]->name);
-    places_[name] = points[p].place;
+    locations_[name] = points[p].location;
   }
 }
 
 /// Names that were there in the frame before, and are not now: with where their neighbours were.
-void LabelFollower::note_lost() {
+void LabelTracker::note_lost() {
   for (std::size_t name = 0; name < names(); ++name) {
-    if (places_[name]) lost_[name].reset();
-    if (places_[name] || !before_[name]) continue;
+    if (locations_[name]) lost_[name].reset();
+    if (locations_[name] || !before_[name]) continue;
     Lost lost;
     lost.at = before_at_;
-    lost.place = *before_[name];
+    lost.location = *before_[name];
     for (const std::size_t other : model_.partners(name)) {
       if (!before_[other]) continue;
       lost.others[lost.count] = other;
-      lost.their_places[lost.count] = *before_[other];
+      lost.their_positions[lost.count] = *before_[other];
       if (++lost.count == lost.others.size()) break;
     }
     lost_[name] = lost;
@@ -145,86 +145,89 @@ void LabelFollower::note_lost() {
 }
 
 /// How far the distances to the neighbours are off, in all; per neighbour that was asked.
-double LabelFollower::lack(std::size_t name, const Vector<3>& place) const {
+double LabelTracker::lack(std::size_t name, const Vector<3>& location) const {
   double sum = 0;
-  std::size_t asked = 0;
+  std::size_t requested = 0;
   for (const std::size_t other : model_.partners(name)) {
-    if (!places_[other]) continue;
-    const double off = ((*places_[other] - place).norm() - model_.mean(name, other)) / model_.deviation(name, other);
-    sum += std::min(off * off / 2, kMostLack);
-    if (++asked == options_.neighbours) break;
+    if (!locations_[other]) continue;
+    const double off = ((*locations_[other] - location).norm() - model_.mean(name, other)) / model_.deviation(name, other);
+    sum += std::min(off * off / 2, kMaxLack);
+    if (++requested == options_.neighbours) break;
   }
-  if (asked < kFewestAsked) return 0;
-  return (sum + side_cost(name, place, name)) / static_cast<double>(asked);
+  if (requested < kMinRequested) return 0;
+  return (sum + side_cost(name, location, name)) / static_cast<double>(requested);
 }
 
-/// What is open: tracks without a name, and those in doubt. Who is in doubt says nothing of others.
-void LabelFollower::find_doubts(Timestamp now, std::span<const TrackedPoint> points) {
+/// What is open: tracks without a name, and those uncertain. Who is uncertain says nothing of others.
+void LabelTracker::find_review_items(Timestamp now, std::span<const TrackedPoint> points) {
   open_.clear();
   std::size_t there = 0, sure = 0;
-  for (std::size_t name = 0; name < names(); ++name) names_open_[name] = !places_[name], trusted_[name] = 0;
+  for (std::size_t name = 0; name < names(); ++name) names_open_[name] = !locations_[name], trusted_[name] = 0;
   for (std::size_t p = 0; p < points.size(); ++p) {
     Known& known = *of_point_[p];
     if (known.name == kNoIndex) {
       if (known.sums.empty()) known.start(names());
-      known.doubted.reset();
+      known.flagged.reset();
       open_.push_back(p);
       continue;
     }
     ++there;
     const auto name = static_cast<std::size_t>(known.name);
-    const bool doubted = points[p].fixed == kNoIndex && lack(name, points[p].place) > options_.doubt;
-    if (!doubted) {
-      known.doubted.reset();
+    const bool flagged = points[p].fixed == kNoIndex && lack(name, points[p].location) > options_.review_item;
+    if (!flagged) {
+      known.flagged.reset();
       known.sums.clear();
       trusted_[name] = 1;
       ++sure;
       continue;
     }
-    if (!known.doubted) known.doubted = now, known.start(names());
+    if (!known.flagged) known.flagged = now, known.start(names());
     names_open_[name] = 1;
     open_.push_back(p);
   }
-  if (static_cast<double>(sure) < kTrustedShare * static_cast<double>(there)) {
-    for (std::size_t name = 0; name < names(); ++name) trusted_[name] = places_[name].has_value();
+  if (static_cast<double>(sure) < kTrustedFraction * static_cast<double>(there)) {
+    for (std::size_t name = 0; name < names(); ++name) trusted_[name] = locations_[name].has_value();
   }
 }
 
-void LabelFollower::expect_lost(Timestamp now) {
+void LabelTracker::expect_lost(Timestamp now) {
   for (std::size_t name = 0; name < names(); ++name) {
     if (!lost_[name]) continue;
     Lost& lost = *lost_[name];
     std::vector<Vector<3>> from, to;
     double deviation = 0;
     for (std::size_t i = 0; i < lost.count; ++i) {
-      if (!trusted_[lost.others[i]] || (from.size() >= kFewestAsked && model_.deviation(name, lost.others[i]) > 2 * kSteady))
+      if (!trusted_[lost.others[i]] || (from.size() >= kMinRequested && model_.deviation(name, lost.others[i]) > 2 * kStationary))
         continue;
-      from.push_back(lost.their_places[i]);
-      to.push_back(*places_[lost.others[i]]);
+      from.push_back(lost.their_positions[i]);
+      to.push_back(*locations_[lost.others[i]]);
       deviation += model_.deviation(name, lost.others[i]);
     }
     lost.expected.reset();
-    if (from.size() < kFewestAsked) continue;
-    lost.expected = geometry::rigid_fit(from, to) * lost.place;
+    if (from.size() < kMinRequested) continue;
+    lost.expected = geometry::rigid_fit(from, to) * lost.location;
     lost.deviation = std::min(
-        std::hypot(deviation / static_cast<double>(from.size()), kLostDeviation) + kLostDrift * seconds(now - lost.at), kLostMost);
+        std::hypot(deviation / static_cast<double>(from.size()), kLostDeviation) + kLostDrift * seconds(now - lost.at), kMaxLost);
   }
 }
 
 /// By how much the likelier a point there bears the name that was lost than any point of a cubic metre.
-double LabelFollower::lost_gain(std::size_t name, const Vector<3>& place) const {
+double LabelTracker::lost_gain(std::size_t name, const Vector<3>& location) const {
   if (!lost_[name] || !lost_[name]->expected) return 0;
-  const double deviation = lost_[name]->deviation, squares = (place - *lost_[name]->expected).squaredNorm();
+  const double deviation = lost_[name]->deviation, squares = (location - *lost_[name]->expected).squaredNorm();
   const double top = -1.5 * std::log(2 * std::numbers::pi * deviation * deviation);
   return std::max(top - squares / (2 * deviation * deviation), kLostFloor);
 }
 
-double LabelFollower::side_cost(std::size_t name, const Vector<3>& place, std::size_t self) const {
+double LabelTracker::side_cost(std::size_t name, const Vector<3>& location, std::size_t self) const {
   double cost = 0;
   for (const Side& side : sides_[name]) {
-    const auto is_there = [&](std::size_t other) { return other != self && places_[other] && (self == name || trusted_[other]); };
+    const auto is_there = [&](std::size_t other) {
+      return other != self && locations_[other] && (self == name || trusted_[other]);
+    };
     if (!std::all_of(side.others.begin(), side.others.end(), is_there)) continue;
-    const double height = signed_height({place, *places_[side.others[0]], *places_[side.others[1]], *places_[side.others[2]]});
+    const double height =
+        signed_height({location, *locations_[side.others[0]], *locations_[side.others[1]], *locations_[side.others[2]]});
     if (height * side.height < 0 && std::abs(height) > 0.5 * std::abs(side.height) &&
         std::abs(height) < 2.5 * std::abs(side.height))
       cost += kWrongSide;
@@ -233,26 +236,26 @@ double LabelFollower::side_cost(std::size_t name, const Vector<3>& place, std::s
 }
 
 /// `self`: the name that the point bears, whose place is its own.
-double LabelFollower::fit(std::size_t name, const Vector<3>& place, std::size_t self) const {
+double LabelTracker::fit(std::size_t name, const Vector<3>& location, std::size_t self) const {
   double sum = 0;
-  std::size_t asked = 0;
+  std::size_t requested = 0;
   for (const std::size_t other : model_.partners(name)) {
     if (!trusted_[other] || other == self) continue;
-    sum += model_.ratio(name, other, DistanceSeen{(*places_[other] - place).norm(), 0, 1});
-    if (++asked == options_.neighbours) break;
+    sum += model_.ratio(name, other, DistanceObserved{(*locations_[other] - location).norm(), 0, 1});
+    if (++requested == options_.neighbours) break;
   }
-  if (asked < kFewestAsked) return kNever;
-  return sum - side_cost(name, place, self) + lost_gain(name, place);
+  if (requested < kMinRequested) return kNever;
+  return sum - side_cost(name, location, self) + lost_gain(name, location);
 }
 
-void LabelFollower::weigh(std::span<const TrackedPoint> points) {
+void LabelTracker::weigh(std::span<const TrackedPoint> points) {
   weights_.resize(std::max(weights_.size(), open_.size()));
   for (std::size_t i = 0; i < open_.size(); ++i) {
     Known& known = *of_point_[open_[i]];
     const std::size_t self = known.name == kNoIndex ? kNoneOfThem : static_cast<std::size_t>(known.name);
     std::vector<double>& its = weights_[i];
     its.assign(names(), kNever);
-    if (known.frames >= kMostFrames) {
+    if (known.frames >= kMaxFrames) {
       known.frames /= 2;
       for (double& sum : known.sums) sum /= 2;
     }
@@ -262,7 +265,7 @@ void LabelFollower::weigh(std::span<const TrackedPoint> points) {
         known.sums[name] = kNever;  // it was another's while this one was there already
         continue;
       }
-      const double now = fit(name, points[open_[i]].place, self);
+      const double now = fit(name, points[open_[i]].location, self);
       known.sums[name] = known.sums[name] <= kNever ? now * known.frames : known.sums[name] + now;
       its[name] = known.sums[name] / known.frames;
     }
@@ -270,32 +273,32 @@ void LabelFollower::weigh(std::span<const TrackedPoint> points) {
 }
 
 /// By how much the open track's name is better than what else could be.
-double LabelFollower::margin(std::size_t open, std::size_t name) const {
+double LabelTracker::margin(std::size_t open, std::size_t name) const {
   const double own = weights_[open][name];
-  double least = own;
+  double minimum = own;
   for (std::size_t j = 0; j < open_.size(); ++j) {
     if (j == open) continue;
     const int its = shared_[j];
     if (its == kNoIndex) {
-      least = std::min(least, own - weights_[j][name]);
+      minimum = std::min(minimum, own - weights_[j][name]);
     } else {  // they could exchange
       const auto other = static_cast<std::size_t>(its);
-      least = std::min(least, own - weights_[open][other] + weights_[j][other] - std::max(weights_[j][name], 0.0));
+      minimum = std::min(minimum, own - weights_[open][other] + weights_[j][other] - std::max(weights_[j][name], 0.0));
     }
   }
   for (std::size_t other = 0; other < names(); ++other) {
     if (other == name || !names_open_[other]) continue;
     const bool is_shared = std::find(shared_.begin(), shared_.end(), static_cast<int>(other)) != shared_.end();
-    if (!is_shared) least = std::min(least, own - weights_[open][other]);
+    if (!is_shared) minimum = std::min(minimum, own - weights_[open][other]);
   }
-  return least;
+  return minimum;
 }
 
-void LabelFollower::share_out(Timestamp now) {
+void LabelTracker::distribute(Timestamp now) {
   pairs_.clear();
   for (std::size_t i = 0; i < open_.size(); ++i) {
     for (std::size_t name = 0; name < names(); ++name) {
-      if (weights_[i][name] > options_.least_fit / 2)
+      if (weights_[i][name] > options_.min_fit / 2)
         pairs_.push_back({static_cast<int>(i), static_cast<int>(name), weights_[i][name]});
     }
   }
@@ -305,15 +308,15 @@ void LabelFollower::share_out(Timestamp now) {
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (shared_[i] == kNoIndex) continue;
     const auto name = static_cast<std::size_t>(shared_[i]);
-    const double wanted = options_.least_margin * (1 + options_.first_margin / of_point_[open_[i]]->frames);
-    if (weights_[i][name] >= options_.least_fit && margin(i, name) >= wanted) decided[i] = shared_[i];
+    const double required = options_.min_margin * (1 + options_.first_margin / of_point_[open_[i]]->frames);
+    if (weights_[i][name] >= options_.min_fit && margin(i, name) >= required) decided[i] = shared_[i];
   }
   for (std::size_t i = 0; i < open_.size(); ++i) {  // who is open no more first, so that no name is borne twice
     Known& known = *of_point_[open_[i]];
     if (known.name == kNoIndex || decided[i] == known.name) continue;
     const bool to_other = std::find(decided.begin(), decided.end(), known.name) != decided.end();
-    const bool unfit = known.doubted && seconds(now - *known.doubted) >= options_.taken_after_s &&
-                       weights_[i][static_cast<std::size_t>(known.name)] < options_.least_fit;
+    const bool unfit = known.flagged && seconds(now - *known.flagged) >= options_.taken_after_s &&
+                       weights_[i][static_cast<std::size_t>(known.name)] < options_.min_fit;
     if (to_other || unfit || decided[i] != kNoIndex) known.name = kNoIndex;
   }
   for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -321,41 +324,41 @@ void LabelFollower::share_out(Timestamp now) {
   }
 }
 
-void LabelFollower::give(std::size_t point, int name) {
+void LabelTracker::give(std::size_t point, int name) {
   Known& bearer = *of_point_[point];
   if (bearer.name == name) return;
   for (auto& [track, known] : known_) {  // who bore it before is not there
     if (known.name == name) known.name = kNoIndex;
   }
   bearer.name = name;
-  bearer.doubted.reset();
+  bearer.flagged.reset();
   bearer.frames = 0;
   bearer.sums.clear();
 }
 
 /// Distances of names in no doubt; of one name a frame the model is brought up to them.
-void LabelFollower::learn(Timestamp now) {
+void LabelTracker::learn(Timestamp now) {
   refine(refined_);
   refined_ = (refined_ + 1) % names();
   if (learned_at_ && seconds(now - *learned_at_) < kLearnEveryS) return;
   learned_at_ = now;
   for (std::size_t a = 1; a < names(); ++a) {
-    if (!places_[a] || !trusted_[a]) continue;
+    if (!locations_[a] || !trusted_[a]) continue;
     for (std::size_t b = 0; b < a; ++b) {
-      if (!places_[b] || !trusted_[b]) continue;
-      const double distance = (*places_[a] - *places_[b]).norm();
-      DistanceSeen& pair = seen_[LearnedMarkers::index_of(a, b)];
+      if (!locations_[b] || !trusted_[b]) continue;
+      const double distance = (*locations_[a] - *locations_[b]).norm();
+      DistanceObserved& pair = detected_[LearnedMarkers::index_of(a, b)];
       pair.count = std::min(pair.count + 1, kRemembered);
-      const double share = 1.0 / pair.count, off = distance - pair.mean;
-      pair.mean += share * off;
-      pair.variance += share * ((1 - share) * off * off - pair.variance);
+      const double fraction = 1.0 / pair.count, off = distance - pair.mean;
+      pair.mean += fraction * off;
+      pair.variance += fraction * ((1 - fraction) * off * off - pair.variance);
     }
   }
 }
 
-bool LabelFollower::posture_varied() const {
+bool LabelTracker::posture_varied() const {
   std::size_t known = 0, varied = 0;
-  for (const DistanceSeen& pair : seen_) {
+  for (const DistanceObserved& pair : detected_) {
     if (pair.count < kOften) continue;
     ++known;
     varied += pair.variance > kVaries * kVaries;
@@ -363,15 +366,15 @@ bool LabelFollower::posture_varied() const {
   return static_cast<double>(varied) > kVaried * static_cast<double>(known);
 }
 
-void LabelFollower::refine(std::size_t name) {
+void LabelTracker::refine(std::size_t name) {
   const bool varied = learned_->moves || posture_varied();
   for (std::size_t other = 0; other < names() && varied; ++other) {
     if (other == name) continue;
-    const DistanceSeen& pair = seen_[LearnedMarkers::index_of(name, other)];
+    const DistanceObserved& pair = detected_[LearnedMarkers::index_of(name, other)];
     if (pair.count < kOften || std::abs(pair.mean - first_.mean(name, other)) > kOffLearned * first_.deviation(name, other))
       continue;
-    if (learned_->moves && first_.deviation(name, other) > kSteadyLearned) continue;  // it may vary more than it did here
-    DistanceSeen widened = pair;
+    if (learned_->moves && first_.deviation(name, other) > kStationaryLearned) continue;  // it may vary more than it did here
+    DistanceObserved widened = pair;
     if (pair.variance > kVaries * kVaries) widened.variance *= 4;
     model_.adopt(name, other, widened);
   }
@@ -379,25 +382,25 @@ void LabelFollower::refine(std::size_t name) {
   find_sides(name);
 }
 
-void LabelFollower::find_sides(std::size_t name) {
+void LabelTracker::find_sides(std::size_t name) {
   sides_[name].clear();
-  const auto& places = learned_->places;
-  const auto has_place = [&](std::size_t each) { return !places[each].isZero(0); };
-  if (!has_place(name)) return;
-  std::array<std::size_t, kSideNeighboursAsked> near{};
+  const auto& locations = learned_->locations;
+  const auto has_position = [&](std::size_t each) { return !locations[each].isZero(0); };
+  if (!has_position(name)) return;
+  std::array<std::size_t, kSideNeighboursRequested> near{};
   std::size_t count = 0;
   for (const std::size_t other : model_.partners(name)) {
-    if (count == near.size() || model_.deviation(name, other) > kSteady) break;
-    if (has_place(other)) near[count++] = other;
+    if (count == near.size() || model_.deviation(name, other) > kStationary) break;
+    if (has_position(other)) near[count++] = other;
   }
   for (std::size_t i = 2; i < count; ++i) {
     for (std::size_t j = 1; j < i; ++j) {
       for (std::size_t k = 0; k < j; ++k) {
-        if (model_.deviation(near[i], near[j]) > kSteady || model_.deviation(near[i], near[k]) > kSteady ||
-            model_.deviation(near[j], near[k]) > kSteady)
+        if (model_.deviation(near[i], near[j]) > kStationary || model_.deviation(near[i], near[k]) > kStationary ||
+            model_.deviation(near[j], near[k]) > kStationary)
           continue;
-        const double height = signed_height({places[name], places[near[i]], places[near[j]], places[near[k]]});
-        if (std::abs(height) < kLeastHeight || sides_[name].size() == kMostSides) continue;
+        const double height = signed_height({locations[name], locations[near[i]], locations[near[j]], locations[near[k]]});
+        if (std::abs(height) < kMinHeight || sides_[name].size() == kMaxSides) continue;
         sides_[name].push_back({{near[i], near[j], near[k]}, height});
       }
     }

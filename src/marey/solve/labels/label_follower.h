@@ -1,13 +1,13 @@
 // Names for markers within the frame, once they were found (find_names.h): nothing of what comes later is known.
 //
 // A track keeps its name while its distances to its steadiest named neighbours are about the learned ones, and while it lies on the
-// learned side of those that are rigid with it. A track without a name, and one in doubt, are open; so are the names that nobody
-// bears for certain. How well open names fit open tracks is the mean, since a track is open, of
+// learned side of those that are rigid with it. A track without a name, and one uncertain, are open; so are the names that no
+// person bears for certain. How well open names fit open tracks is the mean, since a track is open, of
 //   - the distances to the neighbours, as DistanceModel has it,
 //   - the side (four_points.h),
 //   - where the name was lost: how far it lies from where its neighbours carried it since.
-// Names are then shared out so that each is given once; who fits badly, or hardly better than something else could, stays open, and
-// a margin is the lower the longer a track was looked at. Two that bear each other's names are both in doubt, and both are right a
+// Names are then shared out so that each is given once; who fits badly, or barely better than something else could, stays open, and
+// a margin is the lower the longer a track was inspected. Two that bear each other's names are both uncertain, and both are right a
 // frame later. Distances that are steady are learned on the way, one name's at a frame.
 // Cost: names × neighbours a frame, and open tracks × open names × neighbours.
 #pragma once
@@ -28,29 +28,29 @@
 
 namespace marey::solve::labels {
 
-struct LabelFollowOptions {
+struct LabelTrackerOptions {
   DistanceOptions distances;
   std::size_t neighbours = 8;  ///< that say how well a name fits
-  double least_fit = 6;        ///< nats, below which a name is not given
-  double least_margin = 3;     ///< nats that a name must be better than what else could be, after many frames
-  double first_margin = 4;     ///< times `least_margin` more is wanted at a track's first frame, half of it at the second, …
-  double doubt = 2;            ///< nats a neighbour by which a name's distances are off, and from which on it is in doubt
-  double taken_after_s = 0.1;  ///< a name that is in doubt for so long, and does not fit, is taken away
+  double min_fit = 6;          ///< nats, below which a name is not given
+  double min_margin = 3;       ///< nats that a name must be better than what else could be, after many frames
+  double first_margin = 4;     ///< times `min_margin` more is wanted at a track's first frame, half of it at the second, …
+  double review_item = 2;      ///< nats a neighbour by which a name's distances are off, and from which on it is uncertain
+  double taken_after_s = 0.1;  ///< a name that is uncertain for this long, and does not fit, is taken away
 };
 
 /// One point of an instant, m.
 struct TrackedPoint {
   TrackId track{};
-  Vector<3> place = Vector<3>::Zero();
+  Vector<3> location = Vector<3>::Zero();
   int fixed = assign::kNoIndex;  ///< the name that a user gave it; it stays
 };
 
-class LabelFollower {
+class LabelTracker {
  public:
   /// `learned` must outlive it. `seen`: distances of each two names in the recording at hand, of none or all; `scale` as
   /// DistanceModel has it.
-  LabelFollower(const LearnedMarkers& learned, double scale, std::span<const DistanceSeen> seen,
-                const LabelFollowOptions& options = {});
+  LabelTracker(const LearnedMarkers& learned, double scale, std::span<const DistanceObserved> detected,
+               const LabelTrackerOptions& options = {});
 
   /// Names that were found for tracks, by name: they replace what these bear, and a name is taken from who bore it.
   void take(const std::map<TrackId, int>& found);
@@ -59,14 +59,14 @@ class LabelFollower {
   /// For every point its name or assign::kNoIndex; no name twice. Times grow. Valid until the next call.
   std::span<const int> step(Timestamp now, std::span<const TrackedPoint> points);
 
-  std::size_t names() const { return places_.size(); }
+  std::size_t names() const { return locations_.size(); }
   std::size_t held() const { return held_; }  ///< names that were given in the last step
 
  private:
   struct Known {
     int name = assign::kNoIndex;
-    Timestamp seen{};
-    std::optional<Timestamp> doubted;  // since when
+    Timestamp detected{};
+    std::optional<Timestamp> flagged;  // since when
     double frames = 0;                 // that it is open, and that `sums` are of
     std::vector<double> sums;          // by name
 
@@ -78,9 +78,9 @@ class LabelFollower {
   };
   struct Lost {
     Timestamp at{};
-    Vector<3> place = Vector<3>::Zero();
+    Vector<3> location = Vector<3>::Zero();
     std::array<std::size_t, 6> others{};
-    std::array<Vector<3>, 6> their_places{};
+    std::array<Vector<3>, 6> their_positions{};
     std::size_t count = 0;
     std::optional<Vector<3>> expected;  // at this frame
     double deviation = 0;               // m
@@ -88,10 +88,10 @@ class LabelFollower {
 
   void find_points(Timestamp now, std::span<const TrackedPoint> points);
   void note_lost();
-  void find_doubts(Timestamp now, std::span<const TrackedPoint> points);
+  void find_review_items(Timestamp now, std::span<const TrackedPoint> points);
   void expect_lost(Timestamp now);
   void weigh(std::span<const TrackedPoint> points);
-  void share_out(Timestamp now);
+  void distribute(Timestamp now);
   double margin(std::size_t open, std::size_t name) const;
   void give(std::size_t point, int name);
   void learn(Timestamp now);
@@ -99,20 +99,20 @@ class LabelFollower {
   void find_sides(std::size_t name);
   bool posture_varied() const;
 
-  double lack(std::size_t name, const Vector<3>& place) const;
-  double fit(std::size_t name, const Vector<3>& place, std::size_t self) const;
-  double side_cost(std::size_t name, const Vector<3>& place, std::size_t self) const;
-  double lost_gain(std::size_t name, const Vector<3>& place) const;
+  double lack(std::size_t name, const Vector<3>& location) const;
+  double fit(std::size_t name, const Vector<3>& location, std::size_t self) const;
+  double side_cost(std::size_t name, const Vector<3>& location, std::size_t self) const;
+  double lost_gain(std::size_t name, const Vector<3>& location) const;
 
   const LearnedMarkers* learned_;
-  LabelFollowOptions options_;
+  LabelTrackerOptions options_;
   DistanceModel first_, model_;  // as learned; with what was seen since
-  std::vector<DistanceSeen> seen_;
+  std::vector<DistanceObserved> detected_;
   std::vector<std::vector<Side>> sides_;
   std::map<TrackId, Known> known_;
   std::vector<Known*> of_point_;
-  std::vector<int> given_;                                 // by point
-  std::vector<std::optional<Vector<3>>> places_, before_;  // by name: now, in the frame before
+  std::vector<int> given_;                                    // by point
+  std::vector<std::optional<Vector<3>>> locations_, before_;  // by name: now, in the frame before
   std::vector<char> trusted_, names_open_;
   std::vector<std::optional<Lost>> lost_;
   std::vector<std::size_t> open_;             // points

@@ -19,10 +19,10 @@ namespace {
 
 using assign::kNoIndex;
 
-constexpr double kBootS = 0.15;        // s: a chain that a name is looked for from nothing is at least so long
-constexpr double kFewestBooted = 0.4;  // of the set's markers, below which nothing is told
-constexpr std::size_t kMostPointsToBoot = 160;
-constexpr double kMisfit = 2, kMostWider = 4;  // times as far off as distances of the subject that taught are
+constexpr double kInitialiseS = 0.15;    // s: a chain that a name is searched for from nothing is at least this long
+constexpr double kMinInitialised = 0.4;  // of the set's markers, below which nothing is reported
+constexpr std::size_t kMaxPointsToInitialise = 160;
+constexpr double kMisfit = 2, kMaxWider = 4;  // times as far off as distances of the subject that taught are
 
 std::pair<double, double> extent_of(std::vector<double> heights) {
   std::sort(heights.begin(), heights.end());
@@ -41,17 +41,17 @@ class Labelling {
 
   Labelled run() {
     name_all();
-    if (learned_.moves && misfit().ratio > kMisfit) {  // it is somebody else's: what distances may be off is measured
-      const double wider = std::min(misfit().ratio, kMostWider);
+    if (learned_.moves && misfit().ratio > kMisfit) {  // it is another person's: what distances may be off is measured
+      const double wider = std::min(misfit().ratio, kMaxWider);
       distances_.shift *= wider;
-      distances_.share *= wider;
+      distances_.fraction *= wider;
       for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) chains_.set_name(chain, kNoIndex);
       name_all();
     }
     const std::vector<int> undecided = check();
-    judge();
+    assess();
     drop(undecided);
-    Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, doubts_, scale_);
+    Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, review_items_, scale_);
     for (const int other : undecided) labelled.undecided.push_back(other == kNoIndex ? 0 : 1);
     const Misfit misfit_now = misfit();
     labelled.misfit = misfit_now.ratio;
@@ -61,16 +61,16 @@ class Labelling {
 
  private:
   void name_all() {
-    boot();
+    initialise();
     for (int round = 0; round < options_.rounds; ++round) {
       hooks_.advance({.step = "naming", .done = round + 1, .total = options_.rounds + 1});
       chains_.gather();
       if (round > 0) {
-        cut_strangers();  // before they spoil what is learned
+        cut_untrusted();  // before they spoil what is learned
         chains_.gather();
       }
       if (round > 0 || !learned_.moves) refine();  // who stood still told nothing of what is rigid: the first names do
-      share_out();
+      distribute();
     }
     chains_.gather();
     refine();
@@ -80,16 +80,17 @@ class Labelling {
   Misfit misfit() const { return misfit_of(chains_.named_distances(), DistanceModel(learned_, scale_, options_.distances)); }
   std::vector<int> check();
   void drop(const std::vector<int>& undecided);
-  void boot();
-  [[noreturn]] void fail_to_boot(std::ptrdiff_t booted, std::size_t crowd) const;
+  void initialise();
+  [[noreturn]] void fail_to_initialise(std::ptrdiff_t booted, std::size_t crowd) const;
   void refine();
-  void share_out();
-  void cut_strangers();
-  void judge();
-  std::vector<std::size_t> boot_instants() const;
+  void distribute();
+  void cut_untrusted();
+  void assess();
+  std::vector<std::size_t> initialise_instants() const;
   std::vector<double> scales(std::size_t instant) const;
-  BootAnswer boot_again(const BootScene& scene, const BootAnswer& first, DistanceModel model, const Matrix<3>& turn) const;
-  std::optional<Matrix<3>> turn_to_learned(const BootScene& scene, const BootAnswer& answer) const;
+  LabelHypothesis initialise_again(const InitialiseScene& scene, const LabelHypothesis& first, DistanceModel model,
+                                   const Matrix<3>& turn) const;
+  std::optional<Matrix<3>> turn_to_learned(const InitialiseScene& scene, const LabelHypothesis& answer) const;
   void settle(const std::vector<std::vector<int>>& votes);
   double margin(int chain, int name, const std::vector<NamedChains::Fits>& fits, int& next) const;
 
@@ -101,27 +102,27 @@ class Labelling {
   NamedChains chains_;
   std::unique_ptr<DistanceModel> model_;
   double scale_ = 1;
-  std::map<int, Doubt> doubts_;            // by chain without a name
-  std::vector<std::vector<int>> bearers_;  // by name, of the last round
+  std::map<int, ReviewItem> review_items_;  // by chain without a name
+  std::vector<std::vector<int>> bearers_;   // by name, of the last round
 };
 
 /// Instants at which long chains are many, spread over the recording.
-std::vector<std::size_t> Labelling::boot_instants() const {
-  const auto worth = [&](std::size_t instant) {
+std::vector<std::size_t> Labelling::initialise_instants() const {
+  const auto merit = [&](std::size_t instant) {
     double sum = 0;
     for (const auto& point : chains_.at(instant))
       sum += std::min(chains_.chains()[static_cast<std::size_t>(point.chain)].points, 200);
     return sum;
   };
   std::vector<std::size_t> best;
-  const auto parts = static_cast<std::size_t>(options_.boots);
+  const auto parts = static_cast<std::size_t>(options_.initialises);
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t begin = part * chains_.instants() / parts, end = (part + 1) * chains_.instants() / parts;
     std::size_t its = begin;
-    double most = -1;
+    double maximum = -1;
     const std::size_t step = std::max<std::size_t>(1, (end - begin) / 50);
     for (std::size_t i = begin; i < end; i += step) {
-      if (const double value = worth(i); value > most) most = value, its = i;
+      if (const double value = merit(i); value > maximum) maximum = value, its = i;
     }
     if (begin < end) best.push_back(its);
   }
@@ -132,8 +133,8 @@ std::vector<std::size_t> Labelling::boot_instants() const {
 std::vector<double> Labelling::scales(std::size_t instant) const {
   if (!learned_.scaled) return {1};
   std::vector<double> here, there;
-  for (const auto& point : chains_.at(instant)) here.push_back(point.place.z());
-  for (const Vector<3>& place : learned_.places) there.push_back(place.z());
+  for (const auto& point : chains_.at(instant)) here.push_back(point.location.z());
+  for (const Vector<3>& location : learned_.locations) there.push_back(location.z());
   if (here.size() < 4) return {1};
   const auto [low, high] = extent_of(here);
   const auto [learned_low, learned_high] = extent_of(there);
@@ -143,72 +144,74 @@ std::vector<double> Labelling::scales(std::size_t instant) const {
 
 /// Where what was learned stems from others, their posture tells left from right: how that lies to the subject as it was named
 /// first. (One's own posture, standing still, tells less than one's own distances.)
-std::optional<Matrix<3>> Labelling::turn_to_learned(const BootScene& scene, const BootAnswer& answer) const {
+std::optional<Matrix<3>> Labelling::turn_to_learned(const InitialiseScene& scene, const LabelHypothesis& answer) const {
   if (!learned_.scaled) return std::nullopt;
   std::vector<Vector<3>> from, to;
   for (std::size_t name = 0; name < learned_.size(); ++name) {
-    if (answer.point_of[name] == kNoIndex || learned_.places[name].isZero(0)) continue;
-    from.push_back(scene.places[static_cast<std::size_t>(answer.point_of[name])]);
-    to.push_back(learned_.places[name]);
+    if (answer.point_of[name] == kNoIndex || learned_.locations[name].isZero(0)) continue;
+    from.push_back(scene.locations[static_cast<std::size_t>(answer.point_of[name])]);
+    to.push_back(learned_.locations[name]);
   }
   if (from.size() < 4) return std::nullopt;
   return geometry::rigid_fit(from, to).rotation;
 }
 
 /// Once more, with what the first answer says of directions and, where that was not learned, of what is rigid.
-BootAnswer Labelling::boot_again(const BootScene& scene, const BootAnswer& first, DistanceModel model,
-                                 const Matrix<3>& turn) const {
+LabelHypothesis Labelling::initialise_again(const InitialiseScene& scene, const LabelHypothesis& first, DistanceModel model,
+                                            const Matrix<3>& turn) const {
   for (std::size_t a = 1; a < learned_.size() && !learned_.moves; ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       if (first.point_of[a] == kNoIndex || first.point_of[b] == kNoIndex) continue;
-      const auto& seen = scene.between(static_cast<std::size_t>(first.point_of[a]), static_cast<std::size_t>(first.point_of[b]));
-      model.set_rank(a, b, std::sqrt(seen.variance) + 0.002);
+      const auto& detected =
+          scene.between(static_cast<std::size_t>(first.point_of[a]), static_cast<std::size_t>(first.point_of[b]));
+      model.set_rank(a, b, std::sqrt(detected.variance) + 0.002);
     }
   }
   model.rank();
-  return boot_labels(scene, learned_, model, options_.boot, turn);
+  return initialise_labels(scene, learned_, model, options_.initialise, turn);
 }
 
-void Labelling::fail_to_boot(std::ptrdiff_t booted, std::size_t crowd) const {
+void Labelling::fail_to_initialise(std::ptrdiff_t booted, std::size_t crowd) const {
   const std::vector<std::string> near = too_near_for_markers(learned_);
   if (!near.empty())
     throw Error(
-        "{}: of the {} points of the set {} can be told by their distances: {} of them, as {} and {}, lie within 10 mm of another, "
+        "{}: of the {} points of the set {} can be reported by their distances: {} of them, as {} and {}, lie within 10 mm of "
+        "another, "
         "as points do that a program computed (joints' centres); learn the set again and name the markers alone: "
         "\"marey label learn --markers ...\"",
         recording_.header.name, learned_.size(), booted, near.size(), near.front(), near.back());
   if (crowd > 0)
     throw Error(
-        "{}: {} points stand in a frame, and names are looked for among {} at most; where a program computed most of them "
+        "{}: {} points stand in a frame, and names are searched for among {} at most; where a program computed most of them "
         "(joints' centres), leave those out first",
-        recording_.header.name, crowd, kMostPointsToBoot);
-  throw Error("{}: of the {} markers of the set {} can be told by their distances; is it this subject's, and in metres?",
+        recording_.header.name, crowd, kMaxPointsToInitialise);
+  throw Error("{}: of the {} markers of the set {} can be reported by their distances; is it this subject's, and in metres?",
               recording_.header.name, learned_.size(), booted);
 }
 
-void Labelling::boot() {
-  const auto shortest = static_cast<std::int32_t>(std::max(4.0, kBootS * recording_.header.rate_hz));
+void Labelling::initialise() {
+  const auto shortest = static_cast<std::int32_t>(std::max(4.0, kInitialiseS * recording_.header.rate_hz));
   double best_score = 0;
   std::vector<int> best_chains;
-  BootAnswer best;
-  std::size_t crowd = 0;  // points of the fullest instant that was passed over for them
-  for (const std::size_t instant : boot_instants()) {
+  LabelHypothesis best;
+  std::size_t crowd = 0;  // points of the fullest instant that was skipped for them
+  for (const std::size_t instant : initialise_instants()) {
     hooks_.advance({.step = "naming", .done = 0, .total = options_.rounds + 1});
-    BootScene scene;
+    InitialiseScene scene;
     std::vector<int> chains;
-    scene.seen = chains_.distances_at(instant, shortest, chains, scene.places);
-    if (chains.size() > kMostPointsToBoot) crowd = std::max(crowd, chains.size());
-    if (chains.size() < 4 || chains.size() > kMostPointsToBoot) continue;
+    scene.detected = chains_.distances_at(instant, shortest, chains, scene.locations);
+    if (chains.size() > kMaxPointsToInitialise) crowd = std::max(crowd, chains.size());
+    if (chains.size() < 4 || chains.size() > kMaxPointsToInitialise) continue;
     for (const double scale : best_score > 0 && learned_.scaled ? std::vector{scale_} : scales(instant)) {
       const DistanceModel model(learned_, scale, distances_);
-      BootAnswer answer = boot_labels(scene, learned_, model, options_.boot);
-      if (const auto turn = turn_to_learned(scene, answer)) answer = boot_again(scene, answer, model, *turn);
+      LabelHypothesis answer = initialise_labels(scene, learned_, model, options_.initialise);
+      if (const auto turn = turn_to_learned(scene, answer)) answer = initialise_again(scene, answer, model, *turn);
       if (answer.score <= best_score) continue;
       best_score = answer.score, best = std::move(answer), best_chains = chains, scale_ = scale;
     }
   }
   const auto booted = std::count_if(best.point_of.begin(), best.point_of.end(), [](int point) { return point != kNoIndex; });
-  if (static_cast<double>(booted) < kFewestBooted * static_cast<double>(learned_.size())) fail_to_boot(booted, crowd);
+  if (static_cast<double>(booted) < kMinInitialised * static_cast<double>(learned_.size())) fail_to_initialise(booted, crowd);
   model_ = std::make_unique<DistanceModel>(learned_, scale_, distances_);
   for (std::size_t name = 0; name < learned_.size(); ++name) {
     if (best.point_of[name] != kNoIndex)
@@ -217,14 +220,14 @@ void Labelling::boot() {
 }
 
 void Labelling::refine() {
-  const std::vector<DistanceSeen> seen = chains_.named_distances();
+  const std::vector<DistanceObserved> detected = chains_.named_distances();
   for (std::size_t a = 1; a < learned_.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) model_->adopt(a, b, seen[LearnedMarkers::index_of(a, b)]);
+    for (std::size_t b = 0; b < a; ++b) model_->adopt(a, b, detected[LearnedMarkers::index_of(a, b)]);
   }
   model_->rank();
 }
 
-void Labelling::share_out() {
+void Labelling::distribute() {
   const auto& all = chains_.chains();
   std::vector<NamedChains::Fits> fits;
   for (int chain = 0; chain < std::ssize(all); ++chain) fits.push_back(chains_.fits_of_chain(chain, *model_, options_.neighbours));
@@ -238,7 +241,7 @@ void Labelling::share_out() {
     for (int p = 0; p < std::ssize(points); ++p) {
       const auto& its = fits[static_cast<std::size_t>(points[static_cast<std::size_t>(p)].chain)];
       for (int name = 0; name < std::ssize(its); ++name) {
-        if (its[static_cast<std::size_t>(name)] > options_.least_fit / 2)
+        if (its[static_cast<std::size_t>(name)] > options_.min_fit / 2)
           pairs.push_back({p, name, its[static_cast<std::size_t>(name)]});
       }
     }
@@ -250,8 +253,8 @@ void Labelling::share_out() {
   if (step > 1) {  // chains between the instants that vote
     for (std::size_t chain = 0; chain < all.size(); ++chain) {
       const auto best = std::max_element(fits[chain].begin(), fits[chain].end());
-      const bool asked = std::any_of(votes[chain].begin(), votes[chain].end(), [](int count) { return count > 0; });
-      if (!asked && all[chain].points < static_cast<std::int32_t>(step) && *best > options_.least_fit)
+      const bool requested = std::any_of(votes[chain].begin(), votes[chain].end(), [](int count) { return count > 0; });
+      if (!requested && all[chain].points < static_cast<std::int32_t>(step) && *best > options_.min_fit)
         votes[chain][static_cast<std::size_t>(best - fits[chain].begin())] = 1;
     }
   }
@@ -284,15 +287,15 @@ void Labelling::settle(const std::vector<std::vector<int>>& votes) {
 }
 
 /// Tracklets that fit another name much better than their chain's.
-void Labelling::cut_strangers() {
+void Labelling::cut_untrusted() {
   for (int chain = 0, count = static_cast<int>(chains_.chains().size()); chain < count; ++chain) {
     const auto its = chains_.chains()[static_cast<std::size_t>(chain)];
     if (its.tracklets.size() < 2 || its.name == kNoIndex) continue;
     for (const int tracklet : its.tracklets) {
       const auto fits = chains_.fits_of_tracklet(tracklet, *model_, options_.neighbours);
       const double best = *std::max_element(fits.begin(), fits.end());
-      if (best > fits[static_cast<std::size_t>(its.name)] + options_.least_margin ||
-          fits[static_cast<std::size_t>(its.name)] < options_.least_fit)
+      if (best > fits[static_cast<std::size_t>(its.name)] + options_.min_margin ||
+          fits[static_cast<std::size_t>(its.name)] < options_.min_fit)
         chains_.cut_off(tracklet);
     }
   }
@@ -301,7 +304,7 @@ void Labelling::cut_strangers() {
 /// By how much a chain's name is better than any other it could bear: one that is free in its time, or one that it could exchange.
 double Labelling::margin(int chain, int name, const std::vector<NamedChains::Fits>& fits, int& next) const {
   const auto& own = fits[static_cast<std::size_t>(chain)];
-  double least = own[static_cast<std::size_t>(name)];
+  double minimum = own[static_cast<std::size_t>(name)];
   next = kNoIndex;
   for (int other = 0; other < std::ssize(own); ++other) {
     if (other == name) continue;
@@ -312,16 +315,17 @@ double Labelling::margin(int chain, int name, const std::vector<NamedChains::Fit
       // The holder would go without a name, or take this one's.
       loss += its[static_cast<std::size_t>(other)] - std::max(its[static_cast<std::size_t>(name)], 0.0);
     }
-    if (loss < least) least = loss, next = other;
+    if (loss < minimum) minimum = loss, next = other;
   }
-  return least;
+  return minimum;
 }
 
 /// Holds the names against what was taught alone, and puts right what is better otherwise. Returns which of them could as well be
 /// another, by name.
 std::vector<int> Labelling::check() {
   const DistanceModel taught(learned_, scale_, distances_);
-  const CheckedNames checked = check_names(chains_, learned_, taught, options_.boot, options_.neighbours, options_.least_margin);
+  const CheckedNames checked =
+      check_names(chains_, learned_, taught, options_.initialise, options_.neighbours, options_.min_margin);
   std::vector<int> name_of(learned_.size(), kNoIndex);
   bool changed = false;
   for (std::size_t name = 0; name < learned_.size(); ++name) {
@@ -348,13 +352,13 @@ void Labelling::drop(const std::vector<int>& undecided) {
   for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) {
     const int name = chains_.chains()[static_cast<std::size_t>(chain)].name;
     if (name == kNoIndex || undecided[static_cast<std::size_t>(name)] == kNoIndex) continue;
-    doubts_[chain] = {.best = name, .next = undecided[static_cast<std::size_t>(name)], .fit = options_.least_fit, .margin = 0};
+    review_items_[chain] = {.best = name, .next = undecided[static_cast<std::size_t>(name)], .fit = options_.min_fit, .margin = 0};
     chains_.set_name(chain, kNoIndex);
   }
   chains_.gather();
 }
 
-void Labelling::judge() {
+void Labelling::assess() {
   std::vector<NamedChains::Fits> fits;
   for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain)
     fits.push_back(chains_.fits_of_chain(chain, *model_, options_.neighbours));
@@ -362,22 +366,22 @@ void Labelling::judge() {
   for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) {
     const auto& its = fits[static_cast<std::size_t>(chain)];
     const int name = chains_.chains()[static_cast<std::size_t>(chain)].name;
-    Doubt doubt;
+    ReviewItem review_item;
     if (name == kNoIndex) {
       const auto best = std::max_element(its.begin(), its.end());
       if (*best > 0) {
-        doubt.best = static_cast<int>(best - its.begin());
-        doubt.fit = *best;
-        doubt.margin = margin(chain, doubt.best, fits, doubt.next);
+        review_item.best = static_cast<int>(best - its.begin());
+        review_item.fit = *best;
+        review_item.margin = margin(chain, review_item.best, fits, review_item.next);
       }
-      doubts_[chain] = doubt;
+      review_items_[chain] = review_item;
       continue;
     }
-    doubt.best = name;
-    doubt.fit = its[static_cast<std::size_t>(name)];
-    doubt.margin = margin(chain, name, fits, doubt.next);
-    if (doubt.fit >= options_.least_fit && doubt.margin >= options_.least_margin) continue;
-    doubts_[chain] = doubt;
+    review_item.best = name;
+    review_item.fit = its[static_cast<std::size_t>(name)];
+    review_item.margin = margin(chain, name, fits, review_item.next);
+    if (review_item.fit >= options_.min_fit && review_item.margin >= options_.min_margin) continue;
+    review_items_[chain] = review_item;
     dropped.push_back(chain);
   }
   for (const int chain : dropped) chains_.set_name(chain, kNoIndex);

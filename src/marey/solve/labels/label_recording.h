@@ -1,13 +1,13 @@
 // Names for the markers of a whole recording, whatever its tracks are called: only where points are counts.
 //
 // 1. Tracks are cut into tracklets where they have gaps or jump, and tied to chains where motion leaves no doubt (tracklets.h).
-// 2. At some instants with many markers, spread over the recording, names are found from distances alone (boot_labels.h); the
+// 2. At some instants with many markers, spread over the recording, names are found from distances alone (initialise_labels.h); the
 //    answer that fits best is the seed.
 // 3. Every chain is asked how well each name fits it over its whole life: by its distances to the markers that are named already,
 //    of which the tightest count. At each instant names are then shared out so that each is given once; instants vote, and a chain
-//    bears the name that most gave it, as long as nobody who is there at the same time bears it. What was found refines what
+//    bears the name that most gave it, as long as no person who is there at the same time bears it. What was found refines what
 //    distances are expected, and the round begins again. A tracklet that fits another name much better than its chain's is cut off.
-// 4. What fits badly, or hardly better than another name that was free, stays without a name, and its two best names are told.
+// 4. What fits badly, or barely better than another name that was free, stays without a name, and its two best names are reported.
 // Cost: points × names × neighbours a round.
 #pragma once
 
@@ -19,8 +19,8 @@
 #include "marey/core/hooks.h"
 #include "marey/core/learned_markers.h"
 #include "marey/core/recording.h"
-#include "marey/solve/labels/boot_labels.h"
 #include "marey/solve/labels/distance_model.h"
+#include "marey/solve/labels/initialise_labels.h"
 #include "marey/solve/labels/tracklets.h"
 
 namespace marey::solve::labels {
@@ -28,18 +28,18 @@ namespace marey::solve::labels {
 struct LabelOptions {
   TrackletOptions tracklets;
   DistanceOptions distances;
-  BootOptions boot;
-  int boots = 6;  ///< instants at which names are looked for from nothing
+  LabelInitOptions initialise;
+  int initialises = 6;  ///< instants at which names are searched for from nothing
   int rounds = 4;
   std::size_t neighbours = 8;  ///< that say how well a name fits
-  double least_fit = 4;        ///< log-likelihood ratio, mean over a tracklet's life, below which nobody gets the name
-  double least_margin = 3;     ///< that the name must be better than the next one
+  double min_fit = 4;          ///< log-likelihood ratio, mean over a tracklet's life, below which no person gets the name
+  double min_margin = 3;       ///< that the name must be better than the next one
 };
 
 /// How one marker of the set came off.
 struct MarkerHealth {
   std::string label;
-  std::int64_t seen = 0;      ///< instants with the name
+  std::int64_t detected = 0;  ///< instants with the name
   std::int64_t gaps = 0;      ///< within
   std::int64_t renamed = 0;   ///< instants at which the track had another name of the set
   std::int64_t outliers = 0;  ///< instants at which its distances to its steadiest neighbours are off by more than four deviations
@@ -49,7 +49,7 @@ struct MarkerHealth {
 struct Unnamed {
   TrackId track{};                   ///< in the recording that comes out
   std::int32_t first = 0, last = 0;  ///< instants
-  std::string best, next;            ///< names it could have; empty where none fits at all
+  std::string best, next;            ///< names it could have; empty if none fits at all
   double fit = 0, margin = 0;
 };
 
@@ -65,7 +65,7 @@ struct Labelled {
   double misfit_m = 0;  ///< the same as a median, m
 };
 
-/// Throws Error where the recording is not one of space, or too few of the set's markers can be told to begin with.
+/// Throws Error if the recording is not one of space, or too few of the set's markers can be reported to begin with.
 Labelled label_recording(const Recording& recording, const LearnedMarkers& learned, const LabelOptions& options = {},
                          const Hooks& hooks = {});
 

@@ -28,21 +28,21 @@ class Figure {
     for (int marker = 0; marker < 20; ++marker) {
       const double half = marker < 5 ? 0.18 : 0.1;
       for (;;) {
-        const Vector<3> place(between(random, -half, half), between(random, -half, half), between(random, -half, half));
+        const Vector<3> location(between(random, -half, half), between(random, -half, half), between(random, -half, half));
         bool apart = true;
-        for (int other = marker / 5 * 5; other < marker; ++other) apart &= (places_[other] - place).norm() > 0.05;
-        places_[marker] = place;
+        for (int other = marker / 5 * 5; other < marker; ++other) apart &= (locations_[other] - location).norm() > 0.05;
+        locations_[marker] = location;
         if (apart) break;
       }
     }
   }
   /// The last segment becomes a forearm whose two wrist markers have like distances to the rest of it: only their side tells them.
   void make_forearm() {
-    places_[15] = {0.035, 0, -0.05};
-    places_[16] = {-0.035, 0, -0.05};
-    places_[17] = {0, 0.03, -0.12};
-    places_[18] = {0, 0, 0.18};
-    places_[19] = {0, -0.02, 0.1};
+    locations_[15] = {0.035, 0, -0.05};
+    locations_[16] = {-0.035, 0, -0.05};
+    locations_[17] = {0, 0.03, -0.12};
+    locations_[18] = {0, 0, 0.18};
+    locations_[19] = {0, -0.02, 0.1};
   }
   /// The last segment's turn about its length, rad.
   void turn_forearm(double angle) { forearm_ = angle; }
@@ -50,16 +50,16 @@ class Figure {
   Vector<3> at(int marker, double time, double swing = 1) const {
     const int segment = marker / 5;
     const Rigid3 trunk{geometry::rotation_from({0, 0, 0.5 * time}), {0.5 * std::cos(time), 0.5 * std::sin(time), 1}};
-    if (segment == 0) return trunk * places_[marker];
+    if (segment == 0) return trunk * locations_[marker];
     const double angle = swing * 0.6 * std::sin(5 * time + segment);
     const Rigid3 limb{geometry::rotation_from({angle, 0.3 * angle, 0}), {0.3 * (segment - 2), 0.1 * segment, -0.4}};
-    const Rigid3 turned{geometry::rotation_from({0, 0, segment == 3 ? forearm_ : 0}), Vector<3>::Zero()};
-    return trunk * (limb * (turned * places_[marker] - Vector<3>(0, 0, 0.3)));
+    const Rigid3 rotated{geometry::rotation_from({0, 0, segment == 3 ? forearm_ : 0}), Vector<3>::Zero()};
+    return trunk * (limb * (rotated * locations_[marker] - Vector<3>(0, 0, 0.3)));
   }
 
  private:
   double forearm_ = 0;
-  Vector<3> places_[20];
+  Vector<3> locations_[20];
 };
 
 std::string label_of(int marker) {
@@ -96,7 +96,7 @@ Stripped strip(const Recording& recording, std::uint64_t seed) {
   filter::RandomStream random(seed);
   Stripped stripped;
   stripped.recording = Recording(recording.header);
-  for (const auto& moment : recording.instants()) stripped.recording.add_moment(moment);
+  for (const auto& time_step : recording.instants()) stripped.recording.add_time_step(time_step);
   int id = 1;
   for (const TrackColumns& track : recording.tracks()) {
     TrackColumns piece({.id = TrackId{id}, .label = {}, .team = {}}, 3);
@@ -104,7 +104,7 @@ Stripped strip(const Recording& recording, std::uint64_t seed) {
     for (std::size_t row = 0; row < track.size(); ++row) {
       if (hidden == 0 && random.uniform() < 0.005) hidden = static_cast<int>(between(random, 1, 20));
       if (hidden > 0) {
-        --hidden;
+        --max - occlusion;
         if (!piece.empty())
           stripped.recording.put(std::exchange(piece, TrackColumns({.id = TrackId{++id}, .label = {}, .team = {}}, 3)));
         continue;
@@ -119,12 +119,12 @@ Stripped strip(const Recording& recording, std::uint64_t seed) {
   }
   for (int ghost = 0; ghost < 60; ++ghost, ++id) {
     TrackColumns track({.id = TrackId{id}, .label = {}, .team = {}}, 3);
-    const Vector<3> place(between(random, -1, 1), between(random, -1, 1), between(random, 0, 2));
+    const Vector<3> location(between(random, -1, 1), between(random, -1, 1), between(random, 0, 2));
     const auto first = static_cast<std::int32_t>(between(random, 0, static_cast<double>(recording.instants().size()) - 8));
     for (std::int32_t i = 0; i < 5; ++i) {
       Sample sample;
       sample.track = TrackId{id};
-      sample.position = place;
+      sample.position = location;
       track.add(first + i, sample);
     }
     stripped.recording.put(std::move(track));
@@ -170,9 +170,9 @@ TEST(LabelRecording, NamesWhatALabelledTakeOfTheSubjectTaught) {
 TEST(LabelRecording, PutsExchangedNamesRight) {
   const Figure figure(1);
   const std::vector<Recording> taught{labelled_recording(figure, 20, 300)};
-  Recording exchanged = labelled_recording(figure, 5, 300);
-  Recording wrong(exchanged.header);
-  InstantsOf instants(exchanged);
+  Recording swapped = labelled_recording(figure, 5, 300);
+  Recording wrong(swapped.header);
+  InstantsOf instants(swapped);
   for (auto instant = instants.next(); instant; instant = instants.next()) {
     if (instant->index >= 120) {  // from here on 3 and 11 bear each other's names
       for (Sample& sample : instant->samples) {
@@ -202,30 +202,30 @@ TEST(LabelRecording, PutsExchangedNamesRight) {
   EXPECT_EQ(labelled.renamed, 2);
 }
 
-TEST(LabelRecording, WhoStoodStillTeachesEnough) {
+TEST(LabelRecording, LearnsFromStandingPerson) {
   const Figure figure(3);
   const std::vector<Recording> taught{labelled_recording(figure, 20, 300)};
   Recording still = labelled_recording(figure, 1, 100, 0);
   const std::vector<Recording> stood{still};
-  EXPECT_FALSE(learn_markers(stood, {}).moves) << "one who stands still does not tell what is rigid";
+  EXPECT_FALSE(learn_markers(stood, {}).moves) << "one who stands still does not specify what is rigid";
   const Stripped stripped = strip(labelled_recording(figure, 3, 250), 4);
   const Score score = score_of(label_recording(stripped.recording, learn_markers(stood, {})), stripped);
   EXPECT_GT(score.right, 0.98 * static_cast<double>(stripped.truth.size()));
 }
 
 TEST(LabelRecording, MarkersOfOneWristAreToldByTheirSideWhateverThePosture) {
-  for (const double turned : {0.0, 1.2, 2.4}) {
+  for (const double rotated : {0.0, 1.2, 2.4}) {
     Figure figure(3);
     figure.make_forearm();
     const std::vector<Recording> stood{labelled_recording(figure, 1, 100, 0)};
-    figure.turn_forearm(turned);
+    figure.turn_forearm(rotated);
     const Stripped stripped = strip(labelled_recording(figure, 3, 250), 4);
     const Score score = score_of(label_recording(stripped.recording, learn_markers(stood, {})), stripped);
-    EXPECT_GT(score.right, 0.98 * static_cast<double>(stripped.truth.size())) << "turned by " << turned;
+    EXPECT_GT(score.right, 0.98 * static_cast<double>(stripped.truth.size())) << "turned by " << rotated;
   }
 }
 
-TEST(LabelRecording, OneRecordingWithExchangedNamesDoesNotDecideOnSides) {
+TEST(LabelRecording, SwappedRecordingDoesNotDecideSides) {
   std::vector<Recording> taught;
   for (const double from : {20, 21, 22}) {
     Figure figure(3);

@@ -14,9 +14,9 @@ namespace {
 using assign::kNoIndex;
 
 constexpr double kOutlier = 4;               // deviations
-constexpr double kLeastOutlier = 0.012;      // m
+constexpr double kMinOutlier = 0.012;        // m
 constexpr std::size_t kOutlierPartners = 5;  // that are asked
-constexpr std::size_t kFewestPartners = 3;
+constexpr std::size_t kMinPartners = 3;
 
 class Result {
  public:
@@ -34,19 +34,19 @@ class Result {
     labelled_.recording = Recording(recording.header);
     labelled_.recording.edits = recording.edits;
     labelled_.recording.head = recording.head;
-    for (const Recording::Moment& moment : recording.instants()) labelled_.recording.add_moment(moment);
+    for (const Recording::TimeStep& time_step : recording.instants()) labelled_.recording.add_time_step(time_step);
   }
 
-  Labelled made(const std::map<int, Doubt>& doubts) && {
+  Labelled made(const std::map<int, ReviewItem>& review_items) && {
     for (std::size_t name = 0; name < learned_.size(); ++name) add_named(name);
-    for (const auto& [track, tracklets] : nameless_) add_nameless(tracklets, doubts);
+    for (const auto& [track, tracklets] : nameless_) add_nameless(tracklets, review_items);
     return std::move(labelled_);
   }
 
  private:
   const Tracklet& tracklet(int index) const { return chains_.tracklets()[static_cast<std::size_t>(index)]; }
 
-  /// The name of the set that a track bore before; a prefix "Subject:" is passed over.
+  /// The name of the set that a track bore before; a prefix "Subject:" is skipped.
   int name_before(TrackId track) const {
     std::string label = recording_.find(track)->name.label;
     if (!index_.contains(label) && label.find(':') != std::string::npos) label = label.substr(label.find(':') + 1);
@@ -59,7 +59,7 @@ class Result {
     health.label = learned_.labels[name];
     for (const int t : of_name_[name]) {
       const Tracklet& its = tracklet(t);
-      health.seen += its.length();
+      health.detected += its.length();
       const int before = name_before(its.track);
       if (before == kNoIndex || before == static_cast<int>(name)) continue;
       health.renamed += its.length();
@@ -77,24 +77,24 @@ class Result {
     std::vector<double> off;
     for (const std::size_t other : model_.partners(name)) {
       if (chains_.holder(instant, other).chain == kNoIndex) continue;
-      const double distance = (chains_.holder(instant, name).place - chains_.holder(instant, other).place).norm();
+      const double distance = (chains_.holder(instant, name).location - chains_.holder(instant, other).location).norm();
       off.push_back(std::abs(distance - model_.mean(name, other)) /
-                    std::max(model_.deviation(name, other), kLeastOutlier / kOutlier));
+                    std::max(model_.deviation(name, other), kMinOutlier / kOutlier));
       if (off.size() == kOutlierPartners) break;
     }
-    if (off.size() < kFewestPartners) return false;
+    if (off.size() < kMinPartners) return false;
     return geometry::median(off) > kOutlier;
   }
 
   /// One track's pieces that stay without a name.
-  void add_nameless(const std::vector<int>& tracklets, const std::map<int, Doubt>& doubts) {
+  void add_nameless(const std::vector<int>& tracklets, const std::map<int, ReviewItem>& review_items) {
     const TrackId id = next_id();
     const auto word = [&](int name) { return name == kNoIndex ? std::string() : learned_.labels[static_cast<std::size_t>(name)]; };
     for (const int t : tracklets) {
-      const auto found = doubts.find(chains_.chain_of(t));
-      const Doubt doubt = found == doubts.end() ? Doubt{} : found->second;
-      labelled_.unnamed.push_back(
-          {id, tracklet(t).first, tracklet(t).last, word(doubt.best), word(doubt.next), doubt.fit, doubt.margin});
+      const auto found = review_items.find(chains_.chain_of(t));
+      const ReviewItem review_item = found == review_items.end() ? ReviewItem{} : found->second;
+      labelled_.unnamed.push_back({id, tracklet(t).first, tracklet(t).last, word(review_item.best), word(review_item.next),
+                                   review_item.fit, review_item.margin});
     }
     labelled_.recording.put(joined({.id = id, .label = {}, .team = {}}, tracklets));
   }
@@ -129,8 +129,8 @@ class Result {
 }  // namespace
 
 Labelled labelled_result(const Recording& recording, const LearnedMarkers& learned, const NamedChains& chains,
-                         const DistanceModel& model, const std::map<int, Doubt>& doubts, double scale) {
-  Labelled labelled = Result(recording, learned, chains, model).made(doubts);
+                         const DistanceModel& model, const std::map<int, ReviewItem>& review_items, double scale) {
+  Labelled labelled = Result(recording, learned, chains, model).made(review_items);
   labelled.scale = scale;
   return labelled;
 }

@@ -15,15 +15,15 @@
 namespace marey::solve::labels {
 namespace {
 
-constexpr std::size_t kMostInstants = 1500;  // of a recording, evenly spread
-constexpr double kStill = 0.010;             // m: distances that vary by less
-constexpr double kStillShare = 0.6;          // of all: with more the subject stood still
-constexpr double kSided = 0.01;              // m: what stands out less of a plane has no side
-constexpr std::size_t kAsked = 6;            // neighbours, the steadiest, of which sides are compared
-constexpr double kUnknownDeviation = 0.25;   // m: of two markers that were never seen together
-constexpr double kNearestMarkersM = 0.010;
-constexpr double kThin = 0.010;           // m: RMS, of a layout that is a line or a plane
-constexpr double kFewestTogether = 0.25;  // of all pairs of markers
+constexpr std::size_t kMaxInstants = 1500;  // of a recording, evenly spread
+constexpr double kStill = 0.010;            // m: distances that vary by less
+constexpr double kStillFraction = 0.6;      // of all: with more the subject stood still
+constexpr double kSided = 0.01;             // m: what stands out less of a plane has no side
+constexpr std::size_t kRequested = 6;       // neighbours, the steadiest, of which sides are compared
+constexpr double kUnknownDeviation = 0.25;  // m: of two markers that were never seen together
+constexpr double kMinMarkersM = 0.010;
+constexpr double kThin = 0.010;        // m: RMS, of a layout that is a line or a plane
+constexpr double kMinTogether = 0.25;  // of all pairs of markers
 
 std::string without_prefix(const std::string& label, const std::string& prefix) {
   return label.starts_with(prefix) ? label.substr(prefix.size()) : label;
@@ -66,25 +66,25 @@ struct DistanceSums {
 using Posture = std::vector<std::optional<Vector<3>>>;
 
 Posture posture_at(const std::vector<const TrackColumns*>& tracks, std::size_t instant) {
-  Posture places(tracks.size());
+  Posture locations(tracks.size());
   for (std::size_t m = 0; m < tracks.size(); ++m) {
     if (tracks[m] == nullptr) continue;
     const auto row = tracks[m]->row_at(static_cast<std::int32_t>(instant));
     if (row && (tracks[m]->provenance()[*row] == Provenance::measured || tracks[m]->provenance()[*row] == Provenance::filled))
-      places[m] = tracks[m]->position(*row);
+      locations[m] = tracks[m]->position(*row);
   }
-  return places;
+  return locations;
 }
 
 DistanceSums sums_of(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
   DistanceSums sums(tracks.size() * (tracks.size() - 1) / 2);
-  const std::size_t step = std::max<std::size_t>(1, instants / kMostInstants);
+  const std::size_t step = std::max<std::size_t>(1, instants / kMaxInstants);
   for (std::size_t i = 0; i < instants; i += step) {
-    const Posture places = posture_at(tracks, i);
-    for (std::size_t a = 1; a < places.size(); ++a) {
+    const Posture locations = posture_at(tracks, i);
+    for (std::size_t a = 1; a < locations.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        if (!places[a] || !places[b]) continue;
-        const double distance = (*places[a] - *places[b]).norm();
+        if (!locations[a] || !locations[b]) continue;
+        const double distance = (*locations[a] - *locations[b]).norm();
         const std::size_t pair = LearnedMarkers::index_of(a, b);
         sums.sum[pair] += distance;
         sums.squares[pair] += distance * distance;
@@ -122,7 +122,7 @@ Sizes sizes_of(const std::vector<DistanceSums>& sums, bool scaled) {
 }
 
 /// The distances' means and deviations over all recordings, brought to the mean size; and whether the subject moved. Throws Error
-/// where hardly any two markers are seen together.
+/// where barely any two markers are seen together.
 void learn_distances(const std::vector<DistanceSums>& sums, const Sizes& sizes, LearnedMarkers& learned) {
   std::size_t still = 0, known = 0;
   for (std::size_t pair = 0; pair < sums[0].sum.size(); ++pair) {
@@ -143,10 +143,10 @@ void learn_distances(const std::vector<DistanceSums>& sums, const Sizes& sizes, 
     ++known;
     still += std::sqrt(within / takes) < kStill;
   }
-  if (static_cast<double>(known) < kFewestTogether * static_cast<double>(learned.distances.size()))
+  if (static_cast<double>(known) < kMinTogether * static_cast<double>(learned.distances.size()))
     throw Error("{} of {} pairs of markers are seen together in any frame; distances between the others are not known", known,
                 learned.distances.size());
-  learned.moves = static_cast<double>(still) < kStillShare * static_cast<double>(known);
+  learned.moves = static_cast<double>(still) < kStillFraction * static_cast<double>(known);
 }
 
 std::vector<std::string> labels_of(std::span<const Recording> recordings, const LearnOptions& options) {
@@ -179,31 +179,32 @@ void require_all(const std::vector<std::vector<const TrackColumns*>>& tracks, co
 /// The instant at which most are seen, as a posture; who is hidden then is where the nearest of its distances put it, no matter.
 std::vector<Vector<3>> fullest_posture(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
   Posture best(tracks.size());
-  std::ptrdiff_t most = -1;
+  std::ptrdiff_t maximum = -1;
   for (std::size_t i = 0; i < instants; ++i) {
-    Posture places = posture_at(tracks, i);
-    const auto seen = std::count_if(places.begin(), places.end(), [](const auto& place) { return place.has_value(); });
-    if (seen > most) most = seen, best = std::move(places);
+    Posture locations = posture_at(tracks, i);
+    const auto detected =
+        std::count_if(locations.begin(), locations.end(), [](const auto& location) { return location.has_value(); });
+    if (detected > maximum) maximum = detected, best = std::move(locations);
   }
-  std::vector<Vector<3>> places;
+  std::vector<Vector<3>> locations;
   Vector<3> mean = Vector<3>::Zero();
-  for (const auto& place : best) {
-    if (place) mean += *place / static_cast<double>(std::max<std::ptrdiff_t>(most, 1));
+  for (const auto& location : best) {
+    if (location) mean += *location / static_cast<double>(std::max<std::ptrdiff_t>(maximum, 1));
   }
-  for (const auto& place : best) places.push_back(place ? Vector<3>(*place - mean) : Vector<3>::Zero());
-  return places;
+  for (const auto& location : best) locations.push_back(location ? Vector<3>(*location - mean) : Vector<3>::Zero());
+  return locations;
 }
 
 /// How far the markers of a posture reach, RMS in m, along its three axes; the least first. Who has no place says nothing.
-Vector<3> extents_of(const std::vector<Vector<3>>& places) {
+Vector<3> extents_of(const std::vector<Vector<3>>& locations) {
   Vector<3> mean = Vector<3>::Zero();
   double count = 0;
-  for (const Vector<3>& place : places) {
-    if (!place.isZero(0)) mean += place, ++count;
+  for (const Vector<3>& location : locations) {
+    if (!location.isZero(0)) mean += location, ++count;
   }
   Matrix<3> squares = Matrix<3>::Zero();
-  for (const Vector<3>& place : places) {
-    if (!place.isZero(0)) squares += (place - mean / count) * (place - mean / count).transpose() / count;
+  for (const Vector<3>& location : locations) {
+    if (!location.isZero(0)) squares += (location - mean / count) * (location - mean / count).transpose() / count;
   }
   return Eigen::SelfAdjointEigenSolver<Matrix<3>>(squares).eigenvalues().cwiseMax(0).cwiseSqrt();
 }
@@ -228,7 +229,7 @@ int agreement(const std::vector<Vector<3>>& one, const std::vector<Vector<3>>& o
 }
 
 /// The posture that agrees best with all others: of one in whose recording two names are exchanged the rest should not suffer.
-std::size_t most_agreed(const std::vector<std::vector<Vector<3>>>& postures, const LearnedMarkers& learned) {
+std::size_t max_agreed(const std::vector<std::vector<Vector<3>>>& postures, const LearnedMarkers& learned) {
   std::vector<std::vector<std::size_t>> near(learned.size());
   for (std::size_t m = 0; m < learned.size(); ++m) {
     for (std::size_t other = 0; other < learned.size(); ++other) {
@@ -237,14 +238,14 @@ std::size_t most_agreed(const std::vector<std::vector<Vector<3>>>& postures, con
     std::stable_sort(near[m].begin(), near[m].end(), [&](std::size_t a, std::size_t b) {
       return learned.between(m, a).deviation < learned.between(m, b).deviation;
     });
-    if (near[m].size() > kAsked) near[m].resize(kAsked);
+    if (near[m].size() > kRequested) near[m].resize(kRequested);
   }
   std::size_t best = 0;
-  int most = std::numeric_limits<int>::min();
+  int maximum = std::numeric_limits<int>::min();
   for (std::size_t r = 0; r < postures.size(); ++r) {
     int sum = 0;
     for (const auto& other : postures) sum += agreement(postures[r], other, near);
-    if (sum > most) most = sum, best = r;
+    if (sum > maximum) maximum = sum, best = r;
   }
   return best;
 }
@@ -272,23 +273,23 @@ LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnO
   std::vector<std::vector<Vector<3>>> postures;
   for (std::size_t r = 0; r < recordings.size(); ++r)
     postures.push_back(fullest_posture(tracks[r], recordings[r].instants().size()));
-  const std::size_t chosen = most_agreed(postures, learned);
-  learned.places = std::move(postures[chosen]);
-  for (Vector<3>& place : learned.places) place *= sizes.mean / sizes.of[chosen];
-  if (extents_of(learned.places)[1] < kThin)
-    throw Error("the {} markers lie in one line, or on one spot: names cannot be told by how they lie", learned.size());
+  const std::size_t chosen = max_agreed(postures, learned);
+  learned.locations = std::move(postures[chosen]);
+  for (Vector<3>& location : learned.locations) location *= sizes.mean / sizes.of[chosen];
+  if (extents_of(learned.locations)[1] < kThin)
+    throw Error("the {} markers lie in one line, or on one spot: names cannot be reported by how they lie", learned.size());
   return learned;
 }
 
 bool is_flat(const LearnedMarkers& learned) {
-  return extents_of(learned.places)[0] < kThin;
+  return extents_of(learned.locations)[0] < kThin;
 }
 
 std::vector<std::string> too_near_for_markers(const LearnedMarkers& learned) {
   std::vector<std::string> near;
   for (std::size_t a = 0; a < learned.size(); ++a) {
     for (std::size_t b = 0; b < learned.size(); ++b) {
-      if (a == b || learned.between(a, b).mean >= kNearestMarkersM) continue;
+      if (a == b || learned.between(a, b).mean >= kMinMarkersM) continue;
       near.push_back(learned.labels[a]);
       break;
     }

@@ -12,12 +12,12 @@ namespace marey::solve::labels {
 
 struct LearnOptions {
   std::vector<std::string> labels;  ///< those that belong to the set; none: all that have names
-  bool as_far_as_there = false;     ///< those of `labels` that no recording has are left out; else they are an error
+  bool as_far_as_there = false;     ///< those of `labels` that no recording has are omitted; else they are an error
   bool scaled = false;              ///< the recordings are of subjects of several sizes: each is brought to their mean size first
 };
 
-/// All recordings count alike, however long. A prefix "SUBJECT:" that all labels of a recording share is left out. Throws Error
-/// where a label is missing in all of them, two tracks of a recording bear one, fewer than four markers are there, or hardly any
+/// All recordings count alike, however long. A prefix "SUBJECT:" that all labels of a recording share is omitted. Throws Error
+/// where a label is missing in all of them, two tracks of a recording bear one, fewer than four markers are there, or barely any
 /// two are seen together, or all lie in one line.
 LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnOptions& options);
 

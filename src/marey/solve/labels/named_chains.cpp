@@ -6,7 +6,7 @@
 namespace marey::solve::labels {
 namespace {
 
-constexpr std::int32_t kMostLooks = 80;  // at a chain's distances, evenly spread over its life
+constexpr std::int32_t kMaxAppearance = 80;  // at a chain's distances, evenly spread over its life
 
 }  // namespace
 
@@ -19,7 +19,7 @@ NamedChains::NamedChains(std::vector<Tracklet> tracklets, const std::vector<int>
     chains_[static_cast<std::size_t>(chain)].tracklets.push_back(t);
     chains_[static_cast<std::size_t>(chain)].points += tracklet.length();
     for (std::int32_t i = 0; i < tracklet.length(); ++i)
-      points_[static_cast<std::size_t>(tracklet.first + i)].push_back({chain, t, tracklet.places[static_cast<std::size_t>(i)]});
+      points_[static_cast<std::size_t>(tracklet.first + i)].push_back({chain, t, tracklet.locations[static_cast<std::size_t>(i)]});
   }
 }
 
@@ -31,7 +31,7 @@ void NamedChains::gather() {
       if (chain.name == assign::kNoIndex) continue;
       Holder& holder = holders_[instant * names_ + static_cast<std::size_t>(chain.name)];
       if (holder.chain != assign::kNoIndex && chains_[static_cast<std::size_t>(holder.chain)].points >= chain.points) continue;
-      holder = {point.chain, point.place};
+      holder = {point.chain, point.location};
     }
   }
 }
@@ -41,17 +41,18 @@ void NamedChains::add_fits(const Tracklet& tracklet, int self, std::int32_t step
   std::vector<double> distance(names_);
   for (std::int32_t i = 0; i < tracklet.length(); i += step) {
     const auto instant = static_cast<std::size_t>(tracklet.first + i);
-    const Vector<3>& place = tracklet.places[static_cast<std::size_t>(i)];
+    const Vector<3>& location = tracklet.locations[static_cast<std::size_t>(i)];
     for (std::size_t name = 0; name < names_; ++name) {
       const Holder& other = holder(instant, name);
-      distance[name] = other.chain == assign::kNoIndex || other.chain == self ? -1 : (other.place - place).norm();  // −1: not there
+      distance[name] =
+          other.chain == assign::kNoIndex || other.chain == self ? -1 : (other.location - location).norm();  // −1: not there
     }
     for (std::size_t name = 0; name < names_; ++name) {
-      std::size_t asked = 0;
+      std::size_t requested = 0;
       for (const std::size_t other : model.partners(name)) {
         if (distance[other] < 0) continue;
         sums[name] += model.ratio(name, other, distance[other]);
-        if (++asked == neighbours) break;
+        if (++requested == neighbours) break;
       }
     }
     ++count;
@@ -62,7 +63,7 @@ NamedChains::Fits NamedChains::fits_of_chain(int chain, const DistanceModel& mod
   const Chain& its = chains_[static_cast<std::size_t>(chain)];
   Fits fits(names_, 0);
   int count = 0;
-  const std::int32_t step = std::max(1, its.points / kMostLooks);
+  const std::int32_t step = std::max(1, its.points / kMaxAppearance);
   for (const int t : its.tracklets) add_fits(tracklets_[static_cast<std::size_t>(t)], chain, step, model, neighbours, fits, count);
   for (double& fit : fits) fit /= std::max(count, 1);
   return fits;
@@ -72,50 +73,50 @@ NamedChains::Fits NamedChains::fits_of_tracklet(int tracklet, const DistanceMode
   const Tracklet& its = tracklets_[static_cast<std::size_t>(tracklet)];
   Fits fits(names_, 0);
   int count = 0;
-  add_fits(its, chain_of_[static_cast<std::size_t>(tracklet)], std::max(1, its.length() / kMostLooks), model, neighbours, fits,
+  add_fits(its, chain_of_[static_cast<std::size_t>(tracklet)], std::max(1, its.length() / kMaxAppearance), model, neighbours, fits,
            count);
   for (double& fit : fits) fit /= std::max(count, 1);
   return fits;
 }
 
-std::vector<DistanceSeen> NamedChains::named_distances() const {
-  std::vector<DistanceSeen> seen(names_ * (names_ - 1) / 2);
+std::vector<DistanceObserved> NamedChains::named_distances() const {
+  std::vector<DistanceObserved> detected(names_ * (names_ - 1) / 2);
   const std::size_t step = std::max<std::size_t>(1, points_.size() / 400);
   for (std::size_t instant = 0; instant < points_.size(); instant += step) {
     for (std::size_t a = 1; a < names_; ++a) {
       if (holder(instant, a).chain == assign::kNoIndex) continue;
       for (std::size_t b = 0; b < a; ++b) {
         if (holder(instant, b).chain == assign::kNoIndex) continue;
-        const double distance = (holder(instant, a).place - holder(instant, b).place).norm();
-        DistanceSeen& pair = seen[LearnedMarkers::index_of(a, b)];
+        const double distance = (holder(instant, a).location - holder(instant, b).location).norm();
+        DistanceObserved& pair = detected[LearnedMarkers::index_of(a, b)];
         pair.mean += distance;
         pair.variance += distance * distance;
         ++pair.count;
       }
     }
   }
-  for (DistanceSeen& pair : seen) {
+  for (DistanceObserved& pair : detected) {
     if (pair.count == 0) continue;
     pair.mean /= pair.count;
     pair.variance = std::max(pair.variance / pair.count - pair.mean * pair.mean, 0.0);
   }
-  return seen;
+  return detected;
 }
 
-std::vector<DistanceSeen> NamedChains::distances_at(std::size_t instant, std::int32_t shortest, std::vector<int>& chains,
-                                                    std::vector<Vector<3>>& places) const {
+std::vector<DistanceObserved> NamedChains::distances_at(std::size_t instant, std::int32_t shortest, std::vector<int>& chains,
+                                                        std::vector<Vector<3>>& locations) const {
   chains.clear();
-  places.clear();
+  locations.clear();
   std::int32_t first = static_cast<std::int32_t>(points_.size()), last = 0;
   for (const Point& point : points_[instant]) {
     const Chain& chain = chains_[static_cast<std::size_t>(point.chain)];
     if (chain.points < shortest) continue;
     chains.push_back(point.chain);
-    places.push_back(point.place);
+    locations.push_back(point.location);
     first = std::min(first, tracklets_[static_cast<std::size_t>(chain.tracklets.front())].first);
     last = std::max(last, tracklets_[static_cast<std::size_t>(chain.tracklets.back())].last);
   }
-  std::vector<DistanceSeen> seen(chains.size() * (chains.size() - 1) / 2);
+  std::vector<DistanceObserved> detected(chains.size() * (chains.size() - 1) / 2);
   std::vector<int> slot(chains_.size(), assign::kNoIndex);
   for (int i = 0; i < std::ssize(chains); ++i) slot[static_cast<std::size_t>(chains[static_cast<std::size_t>(i)])] = i;
   const std::int32_t step = std::max(1, (last - first) / 120);
@@ -127,8 +128,8 @@ std::vector<DistanceSeen> NamedChains::distances_at(std::size_t instant, std::in
       for (std::size_t q = 0; q < p; ++q) {
         const int j = slot[static_cast<std::size_t>(points[q].chain)];
         if (j == assign::kNoIndex || j == i) continue;
-        const double distance = (points[p].place - points[q].place).norm();
-        DistanceSeen& pair = seen[LearnedMarkers::index_of(static_cast<std::size_t>(i), static_cast<std::size_t>(j))];
+        const double distance = (points[p].location - points[q].location).norm();
+        DistanceObserved& pair = detected[LearnedMarkers::index_of(static_cast<std::size_t>(i), static_cast<std::size_t>(j))];
         pair.mean += distance;
         pair.variance += distance * distance;
         ++pair.count;
@@ -137,16 +138,16 @@ std::vector<DistanceSeen> NamedChains::distances_at(std::size_t instant, std::in
   }
   for (std::size_t i = 1; i < chains.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      DistanceSeen& pair = seen[LearnedMarkers::index_of(i, j)];
+      DistanceObserved& pair = detected[LearnedMarkers::index_of(i, j)];
       if (pair.count == 0) {  // together at this instant alone
-        pair = {(places[i] - places[j]).norm(), 0, 1};
+        pair = {(locations[i] - locations[j]).norm(), 0, 1};
         continue;
       }
       pair.mean /= pair.count;
       pair.variance = std::max(pair.variance / pair.count - pair.mean * pair.mean, 0.0);
     }
   }
-  return seen;
+  return detected;
 }
 
 void NamedChains::cut_off(int tracklet) {

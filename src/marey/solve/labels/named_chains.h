@@ -17,7 +17,7 @@ class NamedChains {
   /// One point at an instant.
   struct Point {
     int chain = 0, tracklet = 0;
-    Vector<3> place = Vector<3>::Zero();
+    Vector<3> location = Vector<3>::Zero();
   };
   struct Chain {
     std::vector<int> tracklets;
@@ -41,20 +41,20 @@ class NamedChains {
   /// The chain that bears a name at an instant, and where.
   struct Holder {
     int chain = assign::kNoIndex;
-    Vector<3> place = Vector<3>::Zero();
+    Vector<3> location = Vector<3>::Zero();
   };
   const Holder& holder(std::size_t instant, std::size_t name) const { return holders_[instant * names_ + name]; }
 
-  /// By the chain's, or one tracklet's, points, against those who bear names now; itself left out.
+  /// By the chain's, or one tracklet's, points, against those who bear names now; itself omitted.
   Fits fits_of_chain(int chain, const DistanceModel& model, std::size_t neighbours) const;
   Fits fits_of_tracklet(int tracklet, const DistanceModel& model, std::size_t neighbours) const;
 
   /// Distances between the named ones, by pair of names.
-  std::vector<DistanceSeen> named_distances() const;
+  std::vector<DistanceObserved> named_distances() const;
   /// Distances between the points of one instant, over all instants at which both chains are there. Chains of fewer than `shortest`
-  /// points are left out; `chains` gets those that are in.
-  std::vector<DistanceSeen> distances_at(std::size_t instant, std::int32_t shortest, std::vector<int>& chains,
-                                         std::vector<Vector<3>>& places) const;
+  /// points are omitted; `chains` gets those that are in.
+  std::vector<DistanceObserved> distances_at(std::size_t instant, std::int32_t shortest, std::vector<int>& chains,
+                                             std::vector<Vector<3>>& locations) const;
   /// The tracklet becomes a chain of its own, without a name.
   void cut_off(int tracklet);
   bool overlap(int chain, int other) const;

@@ -12,7 +12,7 @@ namespace marey::solve::labels {
 namespace {
 
 constexpr std::int32_t kFit = 4;          // instants from which a velocity is taken at an end
-constexpr double kTied = 0.012;           // m: what two ends may be off in the middle of their gap, and by so much more
+constexpr double kTied = 0.012;           // m: what two ends may be off in the middle of their gap, and by this much more
 constexpr double kTiedAcceleration = 60;  // m/s² the longer it is
 constexpr double kClearer = 2.5;          // times as far off the next best must be
 
@@ -42,9 +42,9 @@ void cut(const TrackColumns& track, std::size_t begin, std::size_t end, double l
                       .last_row = row,
                       .first = track.at()[first],
                       .last = track.at()[row],
-                      .places = {},
+                      .locations = {},
                       .after_jump = jumped};
-    for (std::size_t i = first; i <= row; ++i) tracklet.places.push_back(track.position(i));
+    for (std::size_t i = first; i <= row; ++i) tracklet.locations.push_back(track.position(i));
     tracklets.push_back(std::move(tracklet));
     first = row + 1;
     jumped = true;
@@ -53,29 +53,29 @@ void cut(const TrackColumns& track, std::size_t begin, std::size_t end, double l
 
 /// Where a tracklet's end, or its beginning, leads: place and velocity an instant.
 struct Lead {
-  Vector<3> place = Vector<3>::Zero(), velocity = Vector<3>::Zero();
+  Vector<3> location = Vector<3>::Zero(), velocity = Vector<3>::Zero();
   bool moving = false;  // its velocity is known
 };
 
 Lead lead_of(const Tracklet& tracklet, bool end) {
-  const auto& places = tracklet.places;
+  const auto& locations = tracklet.locations;
   const std::int32_t span = std::min(kFit, tracklet.length()) - 1;
   Lead lead;
-  lead.place = end ? places.back() : places.front();
+  lead.location = end ? locations.back() : locations.front();
   lead.moving = span > 0;
   if (!lead.moving) return lead;
   const Vector<3>& other =
-      end ? places[places.size() - 1 - static_cast<std::size_t>(span)] : places[static_cast<std::size_t>(span)];
-  lead.velocity = (end ? lead.place - other : other - lead.place) / span;
+      end ? locations[locations.size() - 1 - static_cast<std::size_t>(span)] : locations[static_cast<std::size_t>(span)];
+  lead.velocity = (end ? lead.location - other : other - lead.location) / span;
   return lead;
 }
 
-/// How far two ends are from going on in each other.
+/// How far two ends are from continuing in each other.
 double off_between(const Lead& end, const Lead& begin, double gap) {
   const Vector<3> velocity = end.moving && begin.moving ? Vector<3>((end.velocity + begin.velocity) / 2)
                              : end.moving               ? end.velocity
                                                         : begin.velocity;
-  return (end.place + gap * velocity - begin.place).norm();
+  return (end.location + gap * velocity - begin.location).norm();
 }
 
 }  // namespace

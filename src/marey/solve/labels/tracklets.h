@@ -1,8 +1,8 @@
 // Pieces of tracks that are one marker's for certain, and chains of pieces that are most likely one marker's.
 //
 // A track is cut where it has a gap, and where it jumps: where it is neither where the motion before nor where the motion after
-// says. That is where trackers exchange markers. A piece is then tied to the one that goes on where it is due, if no other end and
-// no other beginning comes into question: so what was exchanged is put right before anybody asks for names.
+// says. That is where trackers exchange markers. A piece is then tied to the one that continues where it is due, if no other end
+// and no other beginning comes into question: so what was exchanged is corrected before any person asks for names.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ struct Tracklet {
   TrackId track{};
   std::size_t first_row = 0, last_row = 0;
   std::int32_t first = 0, last = 0;
-  std::vector<Vector<3>> places;  ///< m, by instant from `first` on
-  bool after_jump = false;        ///< it was cut off from what comes before, because it jumps
+  std::vector<Vector<3>> locations;  ///< m, by instant from `first` on
+  bool after_jump = false;           ///< it was cut off from what comes before, because it jumps
 
   std::int32_t length() const { return last - first + 1; }
 };
 
 struct TrackletOptions {
-  double jump = 0.010;         ///< m: less is no jump
+  double jump = 0.010;         ///< m: less is not a jump
   double acceleration = 200;   ///< m/s²: more is a jump
   double longest_tied = 0.12;  ///< s: gaps that are bridged by motion alone
 };

@@ -13,7 +13,7 @@ Articulation::Articulation(const Skeleton& skeleton)
       dof_of_coordinate_(skeleton.coordinates.size(), -1),
       ball_of_segment_(skeleton.segments.size(), -1),
       world_from_(skeleton.segments.size()) {
-  // A coordinate that moves more than one joint stays one: its joint is no ball.
+  // A coordinate that moves more than one joint stays one: its joint is not a ball.
   for (std::size_t s = 0; s < skeleton.segments.size(); ++s) find_ball(static_cast<int>(s), skeleton.segments[s].joint);
   std::vector<bool> of_ball(skeleton.coordinates.size(), false);
   for (const Ball& ball : balls_) {
@@ -22,7 +22,7 @@ Articulation::Articulation(const Skeleton& skeleton)
   for (std::size_t c = 0; c < skeleton.coordinates.size(); ++c) {
     if (!skeleton.coordinates[c].free() || of_ball[c]) continue;
     dof_of_coordinate_[c] = dofs();
-    dofs_.push_back({static_cast<int>(c), -1, 0, skeleton.coordinates[c].turns});
+    dofs_.push_back({static_cast<int>(c), -1, 0, skeleton.coordinates[c].rotations});
   }
   for (std::size_t b = 0; b < balls_.size(); ++b) {
     balls_[b].first_dof = dofs();
@@ -37,7 +37,8 @@ void Articulation::find_ball(int segment, const Joint& joint) {
   for (int i = 0; i < 3; ++i) {
     const JointAxis& axis = joint.axes[joint.axes.size() - 3 + static_cast<std::size_t>(i)];
     const auto line = axis.amount.line();
-    if (!axis.turns || !axis.coordinate || !line || std::abs(std::abs(line->first) - 1) > 1e-12 || std::abs(line->second) > 1e-12)
+    if (!axis.rotations || !axis.coordinate || !line || std::abs(std::abs(line->first) - 1) > 1e-12 ||
+        std::abs(line->second) > 1e-12)
       return;
     if (!skeleton_->coordinates[static_cast<std::size_t>(*axis.coordinate)].free()) return;
     ball.coordinates[static_cast<std::size_t>(i)] = *axis.coordinate;
@@ -61,13 +62,13 @@ SkeletonState Articulation::state_of(std::vector<double> coordinates) const {
   SkeletonState state{std::move(coordinates), {}};
   skeleton_->couple(state.coordinates);
   for (const Ball& ball : balls_) {
-    Matrix<3> turned = Matrix<3>::Identity();
+    Matrix<3> rotated = Matrix<3>::Identity();
     for (int i = 0; i < 3; ++i) {
       const double angle =
           ball.signs[i] * state.coordinates[static_cast<std::size_t>(ball.coordinates[static_cast<std::size_t>(i)])];
-      turned = turned * Eigen::AngleAxisd(angle, ball.axes.col(i)).toRotationMatrix();
+      rotated = rotated * Eigen::AngleAxisd(angle, ball.axes.col(i)).toRotationMatrix();
     }
-    state.balls.push_back(turned);
+    state.balls.push_back(rotated);
   }
   return state;
 }
@@ -102,7 +103,7 @@ void Articulation::take_angles(SkeletonState& state) const {
     Vector<3> near;
     for (int i = 0; i < 3; ++i)
       near[i] = ball.signs[i] * state.coordinates[static_cast<std::size_t>(ball.coordinates[static_cast<std::size_t>(i)])];
-    const Vector<3> angles = turns_about(state.balls[b], ball.axes, near);
+    const Vector<3> angles = rotations_about(state.balls[b], ball.axes, near);
     for (int i = 0; i < 3; ++i)
       state.coordinates[static_cast<std::size_t>(ball.coordinates[static_cast<std::size_t>(i)])] = ball.signs[i] * angles[i];
   }
@@ -112,7 +113,7 @@ double Articulation::amount(const JointAxis& axis, const SkeletonState& state) c
   return axis.amount.value(axis.coordinate ? state.coordinates[static_cast<std::size_t>(*axis.coordinate)] : 0);
 }
 
-void Articulation::place(const SkeletonState& state) {
+void Articulation::location(const SkeletonState& state) {
   drivers_.clear();
   first_driver_.assign(1, 0);
   for (std::size_t s = 0; s < skeleton_->segments.size(); ++s) {
@@ -131,13 +132,13 @@ void Articulation::place(const SkeletonState& state) {
         double slope = axis.amount.slope(state.coordinates[c]);
         if (coupling) slope *= coupling->function.slope(state.coordinates[from]);
         if (dof_of_coordinate_[from] >= 0 && slope != 0) {
-          const Vector<3> turn = axis.turns ? Vector<3>(slope * along) : Vector<3>(Vector<3>::Zero());
-          drivers_.push_back(
-              {dof_of_coordinate_[from], turn, axis.turns ? Vector<3>(world.translation.cross(turn)) : Vector<3>(slope * along)});
+          const Vector<3> turn = axis.rotations ? Vector<3>(slope * along) : Vector<3>(Vector<3>::Zero());
+          drivers_.push_back({dof_of_coordinate_[from], turn,
+                              axis.rotations ? Vector<3>(world.translation.cross(turn)) : Vector<3>(slope * along)});
         }
       }
       const double by = amount(axis, state);
-      if (axis.turns) {
+      if (axis.rotations) {
         world.rotation = world.rotation * Eigen::AngleAxisd(by, axis.axis).toRotationMatrix();
       } else {
         world.translation += by * along;
@@ -164,7 +165,7 @@ std::optional<SkeletonState> Articulation::with_root_at(const SkeletonState& sta
   for (int i = 0; i < 3; ++i) {
     const JointAxis& axis = joint.axes[static_cast<std::size_t>(i)];
     const auto line = axis.amount.line();
-    if (axis.turns || !axis.coordinate || !line || line->second != 0) return std::nullopt;
+    if (axis.rotations || !axis.coordinate || !line || line->second != 0) return std::nullopt;
     if (!skeleton_->coordinates[static_cast<std::size_t>(*axis.coordinate)].free()) return std::nullopt;
     shifts.col(i) = axis.axis * line->first;
     coordinates[static_cast<std::size_t>(i)] = *axis.coordinate;

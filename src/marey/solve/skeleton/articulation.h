@@ -33,9 +33,9 @@ class Articulation {
   explicit Articulation(const Skeleton& skeleton);
 
   struct Dof {
-    std::optional<int> coordinate;  ///< index; nothing where it is a turn of a ball
+    std::optional<int> coordinate;  ///< index; nothing if it is a turn of a ball
     int ball = -1, part = 0;        ///< index of the ball, and which of its three small turns
-    bool turns = true;
+    bool rotations = true;
   };
   /// A joint that turns freely.
   struct Ball {
@@ -58,7 +58,7 @@ class Articulation {
   /// Writes the balls' rotations into the coordinates, as the angles that are nearest to those there.
   void take_angles(SkeletonState& state) const;
   /// Where all segments are, and how they move.
-  void place(const SkeletonState& state);
+  void location(const SkeletonState& state);
 
   const std::vector<Rigid3>& world_from_segment() const { return world_from_; }
   /// Of a segment's own joint.

@@ -25,7 +25,7 @@ std::string without_side(std::string name) {
 
 class Calibrator {
  public:
-  Calibrator(const Skeleton& skeleton, std::span<const SeenMarkers> frames, const CalibrateOptions& options)
+  Calibrator(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options)
       : base_(skeleton), options_(options) {
     const std::size_t step = std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(std::max(1, options.frames)));
     for (std::size_t f = 0; f < frames.size(); f += step) frames_.push_back(&frames[f]);
@@ -72,17 +72,17 @@ class Calibrator {
     poses_.clear();
     double sum = 0;
     int count = 0;
-    for (const SeenMarkers* frame : frames_) {
+    for (const ObservedMarkers* frame : frames_) {
       const SolvedPose& pose = solver.step(0.1, *frame);
       poses_.push_back(pose.coordinates);
-      sum += pose.rms_m * pose.rms_m * pose.seen;
-      count += pose.seen;
+      sum += pose.rms_m * pose.rms_m * pose.detected;
+      count += pose.detected;
     }
     if (count == 0) throw Error("{}: none of the frames shows one of the skeleton's markers", base_.name);
     rms_ = std::sqrt(sum / count);
   }
 
-  /// The one scale of the whole person, by golden section: poses are solved anew for each.
+  /// The one scale of the whole person, by golden section: poses are solved again for each.
   double find_overall() {
     const auto rms_at = [&](double scale) {
       std::fill(group_scale_.begin(), group_scale_.end(), Vector<3>::Constant(scale));
@@ -180,24 +180,24 @@ class Calibrator {
 
   /// From the segment's frame to the joints of the segments that hang on it, and to its end; none that is shorter than 1 cm.
   std::vector<Vector<3>> bones_of(std::size_t segment) const {
-    constexpr double kShortest = 0.01;
+    constexpr double kMinLength = 0.01;
     std::vector<Vector<3>> bones;
     for (const Segment& other : base_.segments) {
       if (other.parent && static_cast<std::size_t>(*other.parent) == segment)
         bones.push_back(other.joint.parent_from_joint.translation);
     }
     if (base_.segments[segment].end) bones.push_back(*base_.segments[segment].end);
-    std::erase_if(bones, [](const Vector<3>& bone) { return bone.norm() < kShortest; });
+    std::erase_if(bones, [](const Vector<3>& bone) { return bone.norm() < kMinLength; });
     return bones;
   }
 
   /// Adds what a frame says, its pose eliminated: B − E H⁻¹ Eᵀ. A joint that is held at its limit does not give way to a size.
-  void add_frame(PoseSolver& solver, const SeenMarkers& seen, const std::vector<double>& coordinates, Eigen::MatrixXd& information,
-                 Eigen::VectorXd& gradient) const {
+  void add_frame(PoseSolver& solver, const ObservedMarkers& detected, const std::vector<double>& coordinates,
+                 Eigen::MatrixXd& information, Eigen::VectorXd& gradient) const {
     Articulation& articulation = solver.articulation();
     const int n = articulation.dofs();
     const SkeletonState state = articulation.state_of(coordinates);
-    articulation.place(state);
+    articulation.location(state);
     const auto& pose = articulation.world_from_segment();
     const double weight = 1 / (options_.marker_sigma_m * options_.marker_sigma_m);
     Eigen::MatrixXd by_pose = Eigen::MatrixXd::Zero(3, n), by_model(3, gradient.size());
@@ -206,10 +206,10 @@ class Calibrator {
     solver.add_limits(state, own_pose);
     Eigen::MatrixXd& h = own_pose.information;
     Eigen::VectorXd& b = own_pose.gradient;
-    for (std::size_t j = 0; j < seen.size(); ++j) {
-      if (!seen[j]) continue;
+    for (std::size_t j = 0; j < detected.size(); ++j) {
+      if (!detected[j]) continue;
       const auto own = static_cast<std::size_t>(now_.markers[j].segment);
-      const Vector<3> p = pose[own] * now_.markers[j].position, off = *seen[j] - p;
+      const Vector<3> p = pose[own] * now_.markers[j].position, off = *detected[j] - p;
       by_pose.setZero();
       for (std::optional<int> s = static_cast<int>(own); s; s = base_.segments[static_cast<std::size_t>(*s)].parent) {
         for (const Driver& driver : articulation.drivers(static_cast<std::size_t>(*s)))
@@ -230,7 +230,7 @@ class Calibrator {
 
   const Skeleton& base_;
   CalibrateOptions options_;
-  std::vector<const SeenMarkers*> frames_;
+  std::vector<const ObservedMarkers*> frames_;
   std::vector<int> group_of_;
   std::vector<Vector<3>> group_scale_, offsets_;
   Eigen::VectorXd centre_;
@@ -255,7 +255,8 @@ Skeleton scaled(const Skeleton& skeleton, std::span<const Vector<3>> scales) {
     const Vector<3>& parent = scales[static_cast<std::size_t>(*segment.parent)];
     joint.parent_from_joint.translation = parent.cwiseProduct(joint.parent_from_joint.translation);
     for (JointAxis& axis : joint.axes) {
-      if (!axis.turns) axis.amount = axis.amount.times(parent.cwiseProduct(joint.parent_from_joint.rotation * axis.axis).norm());
+      if (!axis.rotations)
+        axis.amount = axis.amount.times(parent.cwiseProduct(joint.parent_from_joint.rotation * axis.axis).norm());
     }
   }
   for (SkeletonMarker& marker : result.markers)
@@ -263,7 +264,7 @@ Skeleton scaled(const Skeleton& skeleton, std::span<const Vector<3>> scales) {
   return result;
 }
 
-Calibration calibrate(const Skeleton& skeleton, std::span<const SeenMarkers> frames, const CalibrateOptions& options) {
+Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options) {
   return Calibrator(skeleton, frames, options).run();
 }
 

@@ -22,11 +22,11 @@ struct CalibrateOptions {
   double scale_sigma = 0.05;     ///< of a segment's scale along one of its axes, against the person's; 0: scales stay
   double offset_sigma_m = 0.01;  ///< of a marker's place on its segment
   bool overall = true;           ///< first finds the person's size as a whole
-  int frames = 60;               ///< so many of those given, evenly
+  int frames = 60;               ///< this many of those given, evenly
   int rounds = 8;
 };
 
-using SeenMarkers = std::vector<std::optional<Vector<3>>>;  ///< one place for each of the skeleton's markers
+using ObservedMarkers = std::vector<std::optional<Vector<3>>>;  ///< one place for each of the skeleton's markers
 
 struct Calibration {
   Skeleton skeleton;
@@ -37,8 +37,8 @@ struct Calibration {
   std::vector<std::string> undetermined;     ///< segments whose scale the frames do not determine: less than the prior said
 };
 
-/// Throws Error where there are no frames, or they do not show the skeleton.
-Calibration calibrate(const Skeleton& skeleton, std::span<const SeenMarkers> frames, const CalibrateOptions& options = {});
+/// Throws Error if there are no frames, or they do not show the skeleton.
+Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options = {});
 
 /// The skeleton with its segments larger along their own axes: joints that hang on them, markers, and shifts of the joints that
 /// hang on them.

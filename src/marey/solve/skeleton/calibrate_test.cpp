@@ -34,27 +34,27 @@ Skeleton person() {
                                                              {"left_hand", {0, 0.18, 0.85}}};
   std::vector<StandingSegment> segments;
   std::vector<StandingMarker> markers;
-  for (const auto& [name, place] : at) {
-    segments.push_back({name, {Matrix<3>::Identity(), place}});
+  for (const auto& [name, location] : at) {
+    segments.push_back({name, {Matrix<3>::Identity(), location}});
     for (int i = 0; i < 5; ++i)
-      markers.push_back({name + std::to_string(i), name, place + Vector<3>(coordinate(), coordinate(), coordinate())});
+      markers.push_back({name + std::to_string(i), name, location + Vector<3>(coordinate(), coordinate(), coordinate())});
   }
   return human_skeleton("person", segments, markers);
 }
 
-std::vector<SeenMarkers> motion(const Skeleton& skeleton, int count) {
-  std::vector<SeenMarkers> frames;
+std::vector<ObservedMarkers> motion(const Skeleton& skeleton, int count) {
+  std::vector<ObservedMarkers> frames;
   for (int f = 0; f < count; ++f) {
     std::vector<double> coordinates = skeleton.rest();
     for (std::size_t c = 0; c < coordinates.size(); ++c) {
-      if (skeleton.coordinates[c].turns)
+      if (skeleton.coordinates[c].rotations)
         coordinates[c] = 0.5 * std::sin(0.15 * f + 1.7 * static_cast<double>(c)) + (skeleton.coordinates[c].lowest ? 0.6 : 0);
     }
     const auto pose = pose_of(skeleton, coordinates);
-    SeenMarkers seen;
+    ObservedMarkers detected;
     for (const SkeletonMarker& marker : skeleton.markers)
-      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
-    frames.push_back(std::move(seen));
+      detected.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
+    frames.push_back(std::move(detected));
   }
   return frames;
 }
@@ -109,13 +109,13 @@ Skeleton leg(double lowest) {
   for (int i = 0; i < 6; ++i) {
     thigh.joint.axes.push_back({i >= 3, Vector<3>::Unit(i % 3), {}, i});
     skeleton.coordinates.push_back(
-        {.name = "root" + std::to_string(i), .turns = i >= 3, .lowest = {}, .highest = {}, .coupling = {}});
+        {.name = "root" + std::to_string(i), .rotations = i >= 3, .lowest = {}, .highest = {}, .coupling = {}});
   }
   skeleton.segments.push_back(thigh);
   Segment shank{.name = "shank", .parent = 0, .joint = {}, .end = {}};
   shank.joint.parent_from_joint.translation = {0, 0, -0.4};
   shank.joint.axes.push_back({true, Vector<3>::UnitY(), {}, 6});
-  skeleton.coordinates.push_back({.name = "knee", .turns = true, .lowest = lowest, .highest = 2.5, .coupling = {}});
+  skeleton.coordinates.push_back({.name = "knee", .rotations = true, .lowest = lowest, .highest = 2.5, .coupling = {}});
   skeleton.segments.push_back(shank);
   for (const double side : {-0.05, 0.05}) {
     skeleton.markers.push_back({"t" + std::to_string(side), 0, {0.03, side, -0.1}, 1});
@@ -127,7 +127,7 @@ Skeleton leg(double lowest) {
 }
 
 /// What a calibration makes least, with the priors of its options, at these sizes of thigh and shank: poses by the solver.
-double cost_of(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames, const std::vector<Vector<3>>& scales,
+double cost_of(const Skeleton& skeleton, const std::vector<ObservedMarkers>& frames, const std::vector<Vector<3>>& scales,
                const std::vector<Vector<3>>& offsets, const CalibrateOptions& options) {
   Skeleton trial = scaled(skeleton, scales);
   double cost = 0;
@@ -137,10 +137,10 @@ double cost_of(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames,
   }
   for (const Vector<3>& scale : scales)
     cost += (scale - Vector<3>::Ones()).squaredNorm() / (options.scale_sigma * options.scale_sigma);
-  for (const SeenMarkers& seen : frames) {
+  for (const ObservedMarkers& detected : frames) {
     PoseSolver solver(trial, {.marker_sigma_m = options.marker_sigma_m, .robust_m = 0.2});
-    const SolvedPose& pose = solver.step(0.1, seen);
-    cost += pose.rms_m * pose.rms_m * pose.seen / (options.marker_sigma_m * options.marker_sigma_m);
+    const SolvedPose& pose = solver.step(0.1, detected);
+    cost += pose.rms_m * pose.rms_m * pose.detected / (options.marker_sigma_m * options.marker_sigma_m);
     const double beyond = std::max(0.0, *trial.coordinates[6].lowest - pose.coordinates[6]);
     cost += beyond * beyond / (0.005 * 0.005);
   }
@@ -149,13 +149,13 @@ double cost_of(const Skeleton& skeleton, const std::vector<SeenMarkers>& frames,
 
 TEST(Calibrate, HonoursLimits) {
   const Skeleton truth = leg(-1), generic = leg(0);
-  std::vector<SeenMarkers> frames;
+  std::vector<ObservedMarkers> frames;
   for (int f = 0; f < 20; ++f) {
     const double bent = f % 2 == 0 ? -0.21 : 0.3 + 0.03 * f;
     const auto pose = pose_of(truth, std::vector<double>{0.01 * f, 0, 1, 0.02 * f, 0, 0, bent});
-    SeenMarkers& seen = frames.emplace_back();
+    ObservedMarkers& detected = frames.emplace_back();
     for (const SkeletonMarker& marker : truth.markers)
-      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
+      detected.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
   }
   const CalibrateOptions options{.overall = false, .rounds = 40};
   const Calibration found = calibrate(generic, frames, options);
@@ -163,17 +163,17 @@ TEST(Calibrate, HonoursLimits) {
   std::vector<Vector<3>> offsets;
   for (std::size_t j = 0; j < sized.markers.size(); ++j)
     offsets.push_back(found.skeleton.markers[j].position - sized.markers[j].position);
-  const double least = cost_of(generic, frames, found.scales, offsets, options);
+  const double minimum = cost_of(generic, frames, found.scales, offsets, options);
   const double generic_cost = cost_of(generic, frames, {Vector<3>::Ones(), Vector<3>::Ones()},
                                       std::vector<Vector<3>>(sized.markers.size(), Vector<3>::Zero()), options);
-  std::printf("cost %.2f, at the generic sizes %.2f\n", least, generic_cost);
-  EXPECT_LT(least, 0.5 * generic_cost);  // sizes that pay for what limits forbid cost more than those of before
-  for (std::size_t s = 0; s < 2; ++s) {  // nowhere near is it much less: the solver's poses are not quite the calibration's own
+  std::printf("cost %.2f, at the generic sizes %.2f\n", minimum, generic_cost);
+  EXPECT_LT(minimum, 0.5 * generic_cost);  // sizes that pay for what limits forbid cost more than those of before
+  for (std::size_t s = 0; s < 2; ++s) {    // nowhere near is it much less: the solver's poses are not quite the calibration's own
     for (int axis = 0; axis < 3; ++axis) {
       for (const double step : {-0.004, 0.004}) {
         std::vector<Vector<3>> scales = found.scales;
         scales[s][axis] += step;
-        EXPECT_GT(cost_of(generic, frames, scales, offsets, options), 0.75 * least)
+        EXPECT_GT(cost_of(generic, frames, scales, offsets, options), 0.75 * minimum)
             << "segment " << s << " axis " << axis << " by " << step;
       }
     }
@@ -183,7 +183,7 @@ TEST(Calibrate, HonoursLimits) {
       for (const double step : {-0.0005, 0.0005}) {
         std::vector<Vector<3>> moved = offsets;
         moved[j][axis] += step;
-        EXPECT_GT(cost_of(generic, frames, found.scales, moved, options), 0.75 * least)
+        EXPECT_GT(cost_of(generic, frames, found.scales, moved, options), 0.75 * minimum)
             << "marker " << j << " axis " << axis << " by " << step;
       }
     }
@@ -196,14 +196,14 @@ std::vector<std::string> undetermined_of(bool bends) {
   skeleton.markers.clear();
   const std::pair<const char*, Vector<3>> hip[] = {
       {"front", {0.05, 0.05, 0}}, {"inside", {0.05, -0.05, 0.01}}, {"back", {-0.05, 0, 0.02}}, {"outside", {-0.04, 0.02, -0.01}}};
-  for (const auto& [label, place] : hip) skeleton.markers.push_back({label, 0, place, 1});
+  for (const auto& [label, location] : hip) skeleton.markers.push_back({label, 0, location, 1});
   skeleton.markers.push_back({"ankle", 1, {0, 0, -0.6}, 1});
-  std::vector<SeenMarkers> frames;
+  std::vector<ObservedMarkers> frames;
   for (int f = 0; f < 40; ++f) {
     const auto pose = pose_of(skeleton, std::vector<double>{0.01 * f, 0, 1, 0.01 * f, 0, 0.02 * f, bends ? 0.04 * f : 0});
-    SeenMarkers& seen = frames.emplace_back();
+    ObservedMarkers& detected = frames.emplace_back();
     for (const SkeletonMarker& marker : skeleton.markers)
-      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
+      detected.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
   }
   return calibrate(skeleton, frames, {.overall = false}).undetermined;
 }

@@ -12,12 +12,12 @@ namespace marey::solve::skeleton {
 namespace {
 
 using geometry::Rigid3;
-constexpr int kLeastInstants = 30, kPieces = 10;
-constexpr double kLeastTurn = 0.02;  // a system of which another direction is no better determined has no answer
+constexpr int kMinInstants = 30, kPieces = 10;
+constexpr double kMinTurn = 0.02;  // a system of which another direction is no better determined has no answer
 // What skin does repeats with the joint's angles, so that 2,000 instants are worth no more than these: with 24 simulated people's
 // skin the mean deviation is then that of the errors, 17 mm (functional_joints_test.cpp).
 constexpr double kIndependent = 2.5;
-constexpr double kHardlyTurned = 0.2;  // rad
+constexpr double kRarelyRotated = 0.2;  // rad
 
 /// The child seen from the parent at the instants that show both.
 std::vector<Rigid3> relative_poses(SegmentPoses parent, SegmentPoses child) {
@@ -54,7 +54,7 @@ void without_piece(const std::vector<Item>& items, int piece, const Take& take) 
   }
 }
 
-/// The jackknife's deviation of solutions, each without one piece; nothing where one has none.
+/// The jackknife's deviation of solutions, each without one piece; nothing if one has none.
 std::optional<double> jackknife(const std::function<std::optional<Vector<3>>(int piece)>& solve) {
   std::vector<Vector<3>> solutions;
   Vector<3> mean = Vector<3>::Zero();
@@ -73,7 +73,7 @@ std::optional<Vector<6>> centres_of(const std::vector<Rigid3>& relative, int pie
   JointSystem system;
   without_piece(relative, piece, [&](const Rigid3& pose) { system.add(pose); });
   const Eigen::SelfAdjointEigenSolver<Matrix<6>> solver(system.square);
-  if (solver.eigenvalues()[0] < kLeastTurn * kLeastTurn * system.count) return std::nullopt;
+  if (solver.eigenvalues()[0] < kMinTurn * kMinTurn * system.count) return std::nullopt;
   return Vector<6>(solver.eigenvectors() * (solver.eigenvectors().transpose() * system.right).cwiseQuotient(solver.eigenvalues()));
 }
 
@@ -85,7 +85,7 @@ std::optional<Hinge> hinge_of(const std::vector<Rigid3>& relative, int piece) {
   JointSystem system;
   without_piece(relative, piece, [&](const Rigid3& pose) { system.add(pose); });
   const Eigen::SelfAdjointEigenSolver<Matrix<6>> solver(system.square);
-  if (solver.eigenvalues()[1] < kLeastTurn * kLeastTurn * system.count) return std::nullopt;
+  if (solver.eigenvalues()[1] < kMinTurn * kMinTurn * system.count) return std::nullopt;
   Vector<6> weighed = solver.eigenvectors().transpose() * system.right;
   weighed = weighed.cwiseQuotient(solver.eigenvalues());
   weighed[0] = 0;
@@ -94,24 +94,24 @@ std::optional<Hinge> hinge_of(const std::vector<Rigid3>& relative, int piece) {
 }
 
 /// From the least to the most turn about the axis.
-double turned_about(const std::vector<Rigid3>& relative, const Hinge& hinge) {
+double rotated_about(const std::vector<Rigid3>& relative, const Hinge& hinge) {
   const Vector<3> across = hinge.direction.unitOrthogonal(), third = hinge.direction.cross(across);
   const Vector<3> in_child = relative.front().rotation.transpose() * across;
-  double least = 0, most = 0;
+  double minimum = 0, maximum = 0;
   for (const Rigid3& pose : relative) {
     const Vector<3> now = pose.rotation * in_child;
     const double angle = std::atan2(third.dot(now), across.dot(now));
-    least = std::min(least, angle);
-    most = std::max(most, angle);
+    minimum = std::min(minimum, angle);
+    maximum = std::max(maximum, angle);
   }
-  return most - least;
+  return maximum - minimum;
 }
 
 }  // namespace
 
 std::optional<FunctionalCentre> functional_centre(SegmentPoses parent, SegmentPoses child) {
   const std::vector<Rigid3> relative = relative_poses(parent, child);
-  if (std::ssize(relative) < kLeastInstants) return std::nullopt;
+  if (std::ssize(relative) < kMinInstants) return std::nullopt;
   const auto both = centres_of(relative, -1);
   const auto deviation = jackknife([&](int piece) -> std::optional<Vector<3>> {
     const auto found = centres_of(relative, piece);
@@ -133,17 +133,17 @@ std::optional<FunctionalCentre> functional_centre(SegmentPoses parent, SegmentPo
 
 std::optional<FunctionalAxis> functional_axis(SegmentPoses parent, SegmentPoses child) {
   const std::vector<Rigid3> relative = relative_poses(parent, child);
-  if (std::ssize(relative) < kLeastInstants) return std::nullopt;
+  if (std::ssize(relative) < kMinInstants) return std::nullopt;
   const auto hinge = hinge_of(relative, -1);
   if (!hinge) return std::nullopt;
-  const double turned = turned_about(relative, *hinge);
+  const double rotated = rotated_about(relative, *hinge);
   const auto deviation = jackknife([&](int piece) -> std::optional<Vector<3>> {
     const auto found = hinge_of(relative, piece);
     if (!found) return std::nullopt;
     return Vector<3>(found->direction.dot(hinge->direction) < 0 ? -found->direction : found->direction);
   });
-  if (!deviation || turned < kHardlyTurned) return std::nullopt;
-  return FunctionalAxis{hinge->point, hinge->direction, std::min(*deviation, std::numbers::pi / 2), turned,
+  if (!deviation || rotated < kRarelyRotated) return std::nullopt;
+  return FunctionalAxis{hinge->point, hinge->direction, std::min(*deviation, std::numbers::pi / 2), rotated,
                         static_cast<int>(relative.size())};
 }
 

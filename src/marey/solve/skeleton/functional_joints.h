@@ -7,7 +7,7 @@
 // segments, and the solution of least length without it a point of the axis.
 //
 // How far off it may be is more than the residuals say, for skin moves slowly and with the joint. The motion is cut in ten pieces
-// in a row, each is left out in turn, and what the ten solutions differ by is one part of the deviation (the delete-a-group
+// in a row, each is omitted in turn, and what the ten solutions differ by is one part of the deviation (the delete-a-group
 // jackknife). The other, of a centre, is what the gap between the segments' centres would do if it repeated with the joint's
 // angles. Cost: a few operations an instant, eleven times.
 #pragma once
@@ -20,7 +20,7 @@
 
 namespace marey::solve::skeleton {
 
-/// world_from_segment by instant; nothing where it was not seen.
+/// world_from_segment by instant; nothing if it was not seen.
 using SegmentPoses = std::span<const std::optional<geometry::Rigid3>>;
 
 struct FunctionalCentre {
@@ -34,13 +34,13 @@ struct FunctionalAxis {
   Vector<3> point = Vector<3>::Zero();       ///< m, in the parent's frame: a point of it
   Vector<3> direction = Vector<3>::UnitY();  ///< in the parent's frame, of length 1, either way
   double deviation_rad = 0;                  ///< one standard deviation of the direction
-  double turned_rad = 0;                     ///< how far the joint turned about it: from the least to the most
+  double rotated_rad = 0;                    ///< how far the joint turned about it: from the least to the most
   int instants = 0;
 };
 
-/// SCoRE. Nothing where fewer than 30 instants show both segments, or the joint turned about one axis at most.
+/// SCoRE. Nothing if fewer than 30 instants show both segments, or the joint turned about one axis at most.
 std::optional<FunctionalCentre> functional_centre(SegmentPoses parent, SegmentPoses child);
-/// SARA. Nothing where fewer than 30 instants show both segments, or the joint hardly turned.
+/// SARA. Nothing if fewer than 30 instants show both segments, or the joint barely turned.
 std::optional<FunctionalAxis> functional_axis(SegmentPoses parent, SegmentPoses child);
 
 }  // namespace marey::solve::skeleton

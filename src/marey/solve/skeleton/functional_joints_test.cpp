@@ -65,22 +65,22 @@ Leg leg_at(double t, double aside) {
 
 /// Markers on a segment, and how skin carries each of them along with the joints.
 struct Cluster {
-  std::vector<Vector<3>> places;
+  std::vector<Vector<3>> locations;
   std::vector<Matrix<3>> carried;  // m at the ends of the range, by what moves
 
-  Cluster(std::vector<Vector<3>> at, double skin_m, Draw& draw) : places(std::move(at)) {
+  Cluster(std::vector<Vector<3>> at, double skin_m, Draw& draw) : locations(std::move(at)) {
     const Matrix<3> together = skin_m * Matrix<3>{{draw(), draw(), draw()}, {draw(), draw(), draw()}, {draw(), draw(), draw()}};
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t i = 0; i < locations.size(); ++i) {
       Matrix<3> own;
       for (int k = 0; k < 3; ++k) own.col(k) = 0.5 * skin_m * draw.vector();
       carried.push_back((0.5 * together + own) / std::sqrt(2.0));
     }
   }
-  std::vector<Vector<3>> seen(const Rigid3& world_from, const Vector<3>& moved, double noise_m, Draw& draw) const {
-    std::vector<Vector<3>> seen;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      seen.push_back(world_from * (places[i] + carried[i] * moved) + noise_m * draw.vector());
-    return seen;
+  std::vector<Vector<3>> detected(const Rigid3& world_from, const Vector<3>& moved, double noise_m, Draw& draw) const {
+    std::vector<Vector<3>> detected;
+    for (std::size_t i = 0; i < locations.size(); ++i)
+      detected.push_back(world_from * (locations[i] + carried[i] * moved) + noise_m * draw.vector());
+    return detected;
   }
 };
 
@@ -94,16 +94,16 @@ Recorded recorded(double skin, double noise_m, double aside, std::uint64_t seed)
   const Cluster thigh({{0.02, 0.08, -0.2}, {0, 0.055, -0.42}, {0.07, 0.02, -0.25}, {0.05, 0.06, -0.12}}, 0.018 * skin, draw);
   const Cluster shank({{0.03, 0.04, -0.15}, {0, 0.04, -0.4}, {0.05, 0, -0.1}, {0.05, -0.01, -0.25}}, 0.017 * skin, draw);
   Recorded all;
-  const auto add = [&](std::vector<std::optional<Rigid3>>& poses, const Cluster& cluster, const std::vector<Vector<3>>& seen) {
-    poses.push_back(geometry::rigid_fit(cluster.places, seen));
+  const auto add = [&](std::vector<std::optional<Rigid3>>& poses, const Cluster& cluster, const std::vector<Vector<3>>& detected) {
+    poses.push_back(geometry::rigid_fit(cluster.locations, detected));
   };
   for (int i = 0; i < 2000; ++i) {
     const Leg leg = leg_at(i / 100.0, aside);
     const Vector<3> hip(leg.flexion / (45 * kDegree), leg.abduction / (20 * kDegree), leg.rotation / (12 * kDegree));
     const Vector<3> knee(leg.knee / (75 * kDegree), 0, 0);
-    add(all.pelvis, pelvis, pelvis.seen(leg.pelvis, hip, noise_m, draw));
-    add(all.thigh, thigh, thigh.seen(leg.thigh, hip, noise_m, draw));
-    add(all.shank, shank, shank.seen(leg.shank, knee, noise_m, draw));
+    add(all.pelvis, pelvis, pelvis.detected(leg.pelvis, hip, noise_m, draw));
+    add(all.thigh, thigh, thigh.detected(leg.thigh, hip, noise_m, draw));
+    add(all.shank, shank, shank.detected(leg.shank, knee, noise_m, draw));
   }
   return all;
 }
@@ -123,7 +123,7 @@ TEST(FunctionalJoints, AreExactWhereNothingMoves) {
   ASSERT_TRUE(knee);
   EXPECT_LT(degrees_off(knee->direction), 1e-5);
   EXPECT_LT((knee->point - kKnee).cross(kKneeAxis).norm(), 1e-9) << "a point of the axis";
-  EXPECT_NEAR(knee->turned_rad / kDegree, 70, 0.5);
+  EXPECT_NEAR(knee->rotated_rad / kDegree, 70, 0.5);
 }
 
 /// The skin of 24 simulated people, with four markers a segment.

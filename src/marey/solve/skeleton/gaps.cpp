@@ -6,7 +6,7 @@ namespace marey::solve::skeleton {
 namespace {
 
 /// Of each marker: whether it is missed in a frame, that is hidden between two frames that are at most `hidden` apart.
-std::vector<std::vector<bool>> missed_markers(std::size_t markers, std::span<const SeenMarkers> frames, std::size_t hidden) {
+std::vector<std::vector<bool>> missed_markers(std::size_t markers, std::span<const ObservedMarkers> frames, std::size_t hidden) {
   std::vector<std::vector<bool>> missed(markers, std::vector<bool>(frames.size(), false));
   for (std::size_t j = 0; j < markers; ++j) {
     std::optional<std::size_t> last;
@@ -23,7 +23,7 @@ std::vector<std::vector<bool>> missed_markers(std::size_t markers, std::span<con
 
 }  // namespace
 
-std::vector<std::vector<WholeFrames>> whole_frames(const Skeleton& skeleton, std::span<const SeenMarkers> frames,
+std::vector<std::vector<WholeFrames>> whole_frames(const Skeleton& skeleton, std::span<const ObservedMarkers> frames,
                                                    std::size_t hidden) {
   const auto missed = missed_markers(skeleton.markers.size(), frames, hidden);
   std::vector<std::vector<WholeFrames>> all(skeleton.segments.size(), std::vector<WholeFrames>(frames.size()));
@@ -53,12 +53,12 @@ std::vector<std::vector<WholeFrames>> whole_frames(const Skeleton& skeleton, std
   return all;
 }
 
-Shares shares_of(const WholeFrames& whole, std::size_t frame, std::size_t hidden) {
+Fractions fractions_of(const WholeFrames& whole, std::size_t frame, std::size_t hidden) {
   if (whole.before == frame) return {};
   double length = static_cast<double>(hidden);
   if (whole.before && whole.after) length = std::min(length, static_cast<double>(*whole.after - *whole.before));
-  const auto share = [&](std::size_t distance) { return std::max(0.0, 1 - static_cast<double>(distance) / length); };
-  return {whole.before ? share(frame - *whole.before) : 0, whole.after ? share(*whole.after - frame) : 0};
+  const auto fraction = [&](std::size_t distance) { return std::max(0.0, 1 - static_cast<double>(distance) / length); };
+  return {whole.before ? fraction(frame - *whole.before) : 0, whole.after ? fraction(*whole.after - frame) : 0};
 }
 
 }  // namespace marey::solve::skeleton

@@ -1,5 +1,5 @@
 // Markers that are hidden for a while: between which frames a segment is seen in part only, and where its other markers sit
-// meanwhile.
+// in the meantime.
 #pragma once
 
 #include <cstddef>
@@ -20,13 +20,13 @@ struct WholeFrames {
 
 /// By segment and frame. A segment's markers are its own, its parent's and its children's; one that is away for longer than
 /// `hidden` frames, or since the beginning, is not missed.
-std::vector<std::vector<WholeFrames>> whole_frames(const Skeleton& skeleton, std::span<const SeenMarkers> frames,
+std::vector<std::vector<WholeFrames>> whole_frames(const Skeleton& skeleton, std::span<const ObservedMarkers> frames,
                                                    std::size_t hidden);
 
 /// How much of what held before and after counts at `frame`: both fade with the distance, within `hidden` frames at the latest.
-struct Shares {
+struct Fractions {
   double before = 0, after = 0;
 };
-Shares shares_of(const WholeFrames& whole, std::size_t frame, std::size_t hidden);
+Fractions fractions_of(const WholeFrames& whole, std::size_t frame, std::size_t hidden);
 
 }  // namespace marey::solve::skeleton

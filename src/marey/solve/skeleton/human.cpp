@@ -20,7 +20,7 @@ struct HumanJoint {
   const char* segment;
   const char* parent;
   const char* joint;
-  std::array<Turn, 3> turns;
+  std::array<Turn, 3> rotations;
   int count;
 };
 
@@ -74,16 +74,16 @@ class HumanBuilder {
     return found == standing_.end() ? nullptr : &*found;
   }
 
-  void add_axis(Joint& joint, bool turns, const Vector<3>& axis, std::string name,
+  void add_axis(Joint& joint, bool rotations, const Vector<3>& axis, std::string name,
                 std::optional<std::pair<double, double>> limits = {}) {
     Coordinate coordinate;
     coordinate.name = std::move(name);
-    coordinate.turns = turns;
+    coordinate.rotations = rotations;
     if (limits) {
       coordinate.lowest = limits->first;
       coordinate.highest = limits->second;
     }
-    joint.axes.push_back({turns, axis, {}, static_cast<int>(skeleton_.coordinates.size())});
+    joint.axes.push_back({rotations, axis, {}, static_cast<int>(skeleton_.coordinates.size())});
     skeleton_.coordinates.push_back(std::move(coordinate));
   }
 
@@ -110,7 +110,7 @@ class HumanBuilder {
     Segment segment{.name = name, .parent = on, .joint = {}, .end = {}};
     segment.joint.parent_from_joint.translation = parent->world_from.inverse() * own->world_from.translation;
     for (int i = 0; i < joint.count; ++i) {
-      const Turn& turn = joint.turns[static_cast<std::size_t>(i)];
+      const Turn& turn = joint.rotations[static_cast<std::size_t>(i)];
       const double mirror = side == "right_" && turn.axis != 'y' ? -1 : 1;
       std::optional<std::pair<double, double>> limits;
       if (turn.lowest < turn.highest)
@@ -125,7 +125,7 @@ class HumanBuilder {
     const auto on = skeleton_.segment(marker.segment);
     const StandingSegment* const segment = standing(marker.segment);
     if (!on || segment == nullptr) return;
-    skeleton_.markers.push_back({marker.label, *on, segment->world_from.inverse() * marker.place, 1});
+    skeleton_.markers.push_back({marker.label, *on, segment->world_from.inverse() * marker.location, 1});
   }
 
   std::span<const StandingSegment> standing_;

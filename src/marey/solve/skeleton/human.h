@@ -23,10 +23,10 @@ struct StandingSegment {
 struct StandingMarker {
   std::string label;
   std::string segment;
-  Vector<3> place = Vector<3>::Zero();  ///< m, in the world
+  Vector<3> location = Vector<3>::Zero();  ///< m, in the world
 };
 
-/// The human skeleton of those segments that are there. A segment whose parent is missing is left out, and its markers. Throws
+/// The human skeleton of those segments that are there. A segment whose parent is missing is omitted, and its markers. Throws
 /// Error without a pelvis. Where there is no clavicle the upper arm hangs on the trunk.
 Skeleton human_skeleton(const std::string& name, std::span<const StandingSegment> segments,
                         std::span<const StandingMarker> markers);

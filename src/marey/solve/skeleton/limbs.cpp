@@ -13,11 +13,11 @@ namespace marey::solve::skeleton {
 namespace {
 
 constexpr double kAtLimitRad = 0.035;  // 2°
-constexpr double kOneWay = 0.2;        // of a range: how lopsided a hinge's is that bends one way
+constexpr double kOneDirection = 0.2;  // of a range: how lopsided a hinge's is that bends one way
 constexpr double kBentRad = 0.7;       // 40°: the way a hinge may bend
-constexpr double kTurnedRad = 0.4;     // assumed: one σ of an arm's or thigh's turn about itself
+constexpr double kRotatedRad = 0.4;    // assumed: one σ of an arm's or thigh's turn about itself
 constexpr double kBackRad = 0.1;       // assumed: one σ of what an elbow or knee bends backwards
-constexpr double kBetter = 1;          // σ² of a marker: less is no reason to turn a limb about
+constexpr double kBetter = 1;          // σ² of a marker: less is not a reason to turn a limb about
 
 }  // namespace
 
@@ -30,18 +30,18 @@ void PoseSolver::find_limbs() {
     for (const Segment& segment : skeleton.segments) {
       if (segment.parent != upper || segment.joint.axes.empty() || segment.joint.axes.size() > 2) continue;
       const JointAxis& hinge = segment.joint.axes.front();
-      if (!hinge.turns || !hinge.coordinate) continue;
+      if (!hinge.rotations || !hinge.coordinate) continue;
       const Coordinate& bends = skeleton.coordinates[static_cast<std::size_t>(*hinge.coordinate)];
       if (!bends.free() || !bends.lowest || !bends.highest) continue;
-      // What goes as far either way, as a shoulder's girdle, is no elbow that could be bent backwards.
-      if (std::abs(*bends.lowest + *bends.highest) < kOneWay * (*bends.highest - *bends.lowest)) continue;
+      // What goes as far either way, as a shoulder's girdle, is not an elbow that could be bent backwards.
+      if (std::abs(*bends.lowest + *bends.highest) < kOneDirection * (*bends.highest - *bends.lowest)) continue;
       const Vector<3> along = above.joint.joint_from_segment * segment.joint.parent_from_joint.translation;
       if (along.norm() < 1e-3) continue;
       Limb limb{
-          .ball = b, .hinge = *hinge.coordinate, .beside = {}, .along = along.normalized(), .rest = rest.balls[b], .near = {}};
+          .ball = b, .hinge = *hinge.coordinate, .next_to = {}, .along = along.normalized(), .rest = rest.balls[b], .near = {}};
       for (const JointAxis& axis : std::span(segment.joint.axes).subspan(1)) {
-        if (axis.turns && axis.coordinate && skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].free())
-          limb.beside.push_back(*axis.coordinate);
+        if (axis.rotations && axis.coordinate && skeleton.coordinates[static_cast<std::size_t>(*axis.coordinate)].free())
+          limb.next_to.push_back(*axis.coordinate);
       }
       const auto hinge_at = &segment - skeleton.segments.data();
       for (std::size_t s = 0; s < skeleton.segments.size(); ++s) {
@@ -60,24 +60,24 @@ bool PoseSolver::at_limit(int coordinate) const {
   return x < *hinge.lowest + kAtLimitRad || x > *hinge.highest - kAtLimitRad;
 }
 
-/// How unlike a person's a limb is: turned about itself away from rest, and bent the way that it hardly bends.
+/// How unlike a person's a limb is: turned about itself away from rest, and bent the way that it barely bends.
 double PoseSolver::oddness(const Limb& limb) const {
   const Coordinate& hinge = articulation_.skeleton().coordinates[static_cast<std::size_t>(limb.hinge)];
-  const Eigen::Quaterniond turned(Matrix<3>(limb.rest.transpose() * state_.balls[limb.ball]));
-  const double about = std::remainder(2 * std::atan2(turned.vec().dot(limb.along), turned.w()), 2 * std::numbers::pi);
+  const Eigen::Quaterniond rotated(Matrix<3>(limb.rest.transpose() * state_.balls[limb.ball]));
+  const double about = std::remainder(2 * std::atan2(rotated.vec().dot(limb.along), rotated.w()), 2 * std::numbers::pi);
   const double x = state_.coordinates[static_cast<std::size_t>(limb.hinge)];
   const double back = *hinge.lowest + *hinge.highest >= 0 ? std::max(0.0, -x) : std::max(0.0, x);
-  return about * about / (kTurnedRad * kTurnedRad) + back * back / (kBackRad * kBackRad);
+  return about * about / (kRotatedRad * kRotatedRad) + back * back / (kBackRad * kBackRad);
 }
 
 /// Of markers and limits, as they now weigh, and of how odd the limb is.
-double PoseSolver::cost_of_pose(const Limb& limb, Seen seen) {
-  articulation_.place(state_);
-  return gather_markers(seen) + limit_cost(state_) + oddness(limb);
+double PoseSolver::cost_of_pose(const Limb& limb, Detected detected) {
+  articulation_.location(state_);
+  return gather_markers(detected) + limit_cost(state_) + oddness(limb);
 }
 
 /// The state with a limb's upper segment turned about its length and its hinge bent the way that it may.
-std::vector<SkeletonState> PoseSolver::turned_about(const Limb& limb) const {
+std::vector<SkeletonState> PoseSolver::rotated_about(const Limb& limb) const {
   const Coordinate& hinge = articulation_.skeleton().coordinates[static_cast<std::size_t>(limb.hinge)];
   const bool positive = *hinge.lowest + *hinge.highest >= 0;
   const double bent = std::clamp(positive ? kBentRad : -kBentRad, *hinge.lowest, *hinge.highest);
@@ -87,63 +87,63 @@ std::vector<SkeletonState> PoseSolver::turned_about(const Limb& limb) const {
     from.balls[limb.ball] = from.balls[limb.ball] * Eigen::AngleAxisd(turn, limb.along).toRotationMatrix();
     from.coordinates[static_cast<std::size_t>(limb.hinge)] = bent;
     all.push_back(from);
-    if (limb.beside.empty()) continue;
-    for (const int c : limb.beside) from.coordinates[static_cast<std::size_t>(c)] = 0;
+    if (limb.next_to.empty()) continue;
+    for (const int c : limb.next_to) from.coordinates[static_cast<std::size_t>(c)] = 0;
     all.push_back(std::move(from));
   }
   for (SkeletonState& state : all) articulation_.skeleton().couple(state.coordinates);
   return all;
 }
 
-/// A limb may be turned about itself, its hinge bent backwards as far as the limit lets it: markers on its length hardly tell.
+/// A limb may be turned about itself, its hinge bent backwards as far as the limit lets it: markers on its length barely tell.
 /// Tries the other poses of the limbs that are asked, and takes what fits better. Says whether it did.
-bool PoseSolver::turn_limbs(Seen seen) {
-  bool turned = false;
+bool PoseSolver::turn_limbs(Detected detected) {
+  bool rotated = false;
   for (const Limb& limb : limbs_) {
-    if (!limb.asked) continue;
+    if (!limb.requested) continue;
     SkeletonState best = state_;
-    double least = cost_of_pose(limb, seen) - kBetter;
+    double minimum = cost_of_pose(limb, detected) - kBetter;
     bool better = false;
-    for (const SkeletonState& from : turned_about(limb)) {
+    for (const SkeletonState& from : rotated_about(limb)) {
       state_ = predicted_ = from;
-      minimise(seen, 2 * options_.max_iterations);
-      if (const double cost = cost_of_pose(limb, seen); cost < least) {
-        least = cost;
+      minimise(detected, 2 * options_.max_iterations);
+      if (const double cost = cost_of_pose(limb, detected); cost < minimum) {
+        minimum = cost;
         best = state_;
         better = true;
       }
     }
     state_ = best;
-    turned = turned || better;
+    rotated = rotated || better;
   }
-  return turned;
+  return rotated;
 }
 
 /// What stays at a limit for a while may have come there by a wrong turn.
-void PoseSolver::mind_limits(double seconds, Seen seen) {
-  bool wanted = false;
+void PoseSolver::mind_limits(double seconds, Detected detected) {
+  bool required = false;
   for (Limb& limb : limbs_) {
     limb.at_limit_s = at_limit(limb.hinge) ? limb.at_limit_s + seconds : 0;
-    limb.asked = limb.at_limit_s >= options_.at_limit_s;
-    wanted = wanted || limb.asked;
+    limb.requested = limb.at_limit_s >= options_.at_limit_s;
+    required = required || limb.requested;
   }
-  if (!wanted) return;
+  if (!required) return;
   set_weak_prior();
-  if (turn_limbs(seen)) pose_.started = true;
+  if (turn_limbs(detected)) pose_.started = true;
   for (Limb& limb : limbs_) {
-    if (limb.asked) limb.at_limit_s = 0;
+    if (limb.requested) limb.at_limit_s = 0;
   }
 }
 
 std::vector<SkeletonState> PoseSolver::other_poses(std::size_t limb, const SkeletonState& state) {
   state_ = state;
-  return turned_about(limbs_[limb]);
+  return rotated_about(limbs_[limb]);
 }
 
-double PoseSolver::cost_of(const SkeletonState& state, Seen seen) {
+double PoseSolver::cost_of(const SkeletonState& state, Detected detected) {
   state_ = state;
-  articulation_.place(state_);
-  return gather_markers(seen) + limit_cost(state_) + oddness_of_limbs();
+  articulation_.location(state_);
+  return gather_markers(detected) + limit_cost(state_) + oddness_of_limbs();
 }
 
 double PoseSolver::oddness_of_limbs() const {
@@ -154,7 +154,7 @@ double PoseSolver::oddness_of_limbs() const {
 
 /// While markers were hidden a joint may have come where they pull it into another fold than the one it was in. With the joints
 /// near them as they were when all was seen, is it no worse?
-void PoseSolver::try_as_it_was(const std::vector<bool>& returned, Seen seen) {
+void PoseSolver::try_as_it_was(const std::vector<bool>& returned, Detected detected) {
   const auto& segments = articulation_.skeleton().segments;
   const auto near = [&](std::size_t s) {
     for (std::optional<int> at = static_cast<int>(s); at; at = segments[static_cast<std::size_t>(*at)].parent) {
@@ -166,7 +166,7 @@ void PoseSolver::try_as_it_was(const std::vector<bool>& returned, Seen seen) {
     return false;
   };
   const SkeletonState found = state_;
-  const double most = cost_of(found, seen) + kBetter;
+  const double maximum = cost_of(found, detected) + kBetter;
   for (std::size_t s = 1; s < segments.size(); ++s) {
     if (!near(s)) continue;
     for (const JointAxis& axis : segments[s].joint.axes) {
@@ -180,58 +180,58 @@ void PoseSolver::try_as_it_was(const std::vector<bool>& returned, Seen seen) {
   }
   articulation_.skeleton().couple(state_.coordinates);
   predicted_ = state_;
-  minimise(seen, 2 * options_.max_iterations);
-  if (!(cost_of(SkeletonState(state_), seen) <= most)) state_ = found;
+  minimise(detected, 2 * options_.max_iterations);
+  if (!(cost_of(SkeletonState(state_), detected) <= maximum)) state_ = found;
 }
 
-/// Where markers return, the limbs near them are looked at again: from how they were before, and turned about.
-void PoseSolver::mind_returns(Seen seen) {
+/// Where markers return, the limbs near them are inspected again: from how they were before, and turned about.
+void PoseSolver::mind_returns(Detected detected) {
   std::vector<bool> returned(articulation_.skeleton().segments.size(), false);
   returned_ = false;
-  for (std::size_t j = 0; j < seen.size(); ++j) {
-    if (!seen[j] || away_s_[j] < options_.away_s || away_s_[j] >= options_.hidden_s) continue;
+  for (std::size_t j = 0; j < detected.size(); ++j) {
+    if (!detected[j] || away_s_[j] < options_.away_s || away_s_[j] >= options_.hidden_s) continue;
     returned[static_cast<std::size_t>(articulation_.skeleton().markers[j].segment)] = true;
     returned_ = true;
   }
   if (!returned_) return;
   set_weak_prior();
   const SkeletonState found = state_;
-  const double least = cost_of(found, seen) - kBetter;
-  least_squares_start(seen);
-  if (!(cost_of(SkeletonState(state_), seen) < least)) state_ = found;
-  if (!whole_.coordinates.empty()) try_as_it_was(returned, seen);
+  const double minimum = cost_of(found, detected) - kBetter;
+  least_squares_start(detected);
+  if (!(cost_of(SkeletonState(state_), detected) < minimum)) state_ = found;
+  if (!whole_.coordinates.empty()) try_as_it_was(returned, detected);
   for (Limb& limb : limbs_) {
-    limb.asked = false;
-    for (std::size_t s = 0; s < returned.size(); ++s) limb.asked = limb.asked || (returned[s] && limb.near[s]);
+    limb.requested = false;
+    for (std::size_t s = 0; s < returned.size(); ++s) limb.requested = limb.requested || (returned[s] && limb.near[s]);
   }
-  turn_limbs(seen);
+  turn_limbs(detected);
 }
 
-void PoseSolver::remember(double seconds, Seen seen) {
+void PoseSolver::remember(double seconds, Detected detected) {
   bool missed = false;
-  for (std::size_t j = 0; j < seen.size(); ++j) {
-    away_s_[j] = seen[j] ? 0 : std::min(options_.hidden_s, away_s_[j] + seconds);
+  for (std::size_t j = 0; j < detected.size(); ++j) {
+    away_s_[j] = detected[j] ? 0 : std::min(options_.hidden_s, away_s_[j] + seconds);
     missed = missed || (away_s_[j] > 0 && away_s_[j] < options_.hidden_s);
   }
   if (!missed) whole_ = state_;
   const auto& markers = articulation_.skeleton().markers;
-  for (std::size_t j = 0; j < seen.size(); ++j) {
+  for (std::size_t j = 0; j < detected.size(); ++j) {
     const auto s = static_cast<std::size_t>(markers[j].segment);
-    if (!seen[j] || missed_s_[s] > 0) continue;
-    found_[j] = articulation_.world_from_segment()[s].inverse() * *seen[j] - markers[j].position;
+    if (!detected[j] || missed_s_[s] > 0) continue;
+    found_[j] = articulation_.world_from_segment()[s].inverse() * *detected[j] - markers[j].position;
     if (found_[j].norm() > robust_m_) found_[j].setZero();  // another's label
   }
 }
 
 /// Beside hidden markers the others sit where they were found before.
-void PoseSolver::shift_markers(double seconds, Seen seen) {
+void PoseSolver::shift_markers(double seconds, Detected detected) {
   const auto& markers = articulation_.skeleton().markers;
-  beside_.assign(missed_s_.size(), false);
-  for (std::size_t j = 0; j < seen.size(); ++j) {
-    if (seen[j] || away_s_[j] >= options_.hidden_s) continue;
-    for (const std::size_t s : near_[static_cast<std::size_t>(markers[j].segment)]) beside_[s] = true;
+  next_to_.assign(missed_s_.size(), false);
+  for (std::size_t j = 0; j < detected.size(); ++j) {
+    if (detected[j] || away_s_[j] >= options_.hidden_s) continue;
+    for (const std::size_t s : near_[static_cast<std::size_t>(markers[j].segment)]) next_to_[s] = true;
   }
-  for (std::size_t s = 0; s < missed_s_.size(); ++s) missed_s_[s] = beside_[s] ? missed_s_[s] + seconds : 0;
+  for (std::size_t s = 0; s < missed_s_.size(); ++s) missed_s_[s] = next_to_[s] ? missed_s_[s] + seconds : 0;
   for (std::size_t j = 0; j < shifts_.size(); ++j) {
     const double missed = missed_s_[static_cast<std::size_t>(markers[j].segment)];
     shifts_[j] =

@@ -14,10 +14,10 @@
 namespace marey::solve::skeleton {
 namespace {
 
-constexpr double kSmallestStep = 1e-6;      // rad, m
+constexpr double kMinStepSize = 1e-6;       // rad, m
 constexpr double kWeakPrior = 1;            // 1/rad²
 constexpr double kWeakPriorOfShift = 1e-4;  // 1/m²
-constexpr double kShortestS = 1e-6;
+constexpr double kMinS = 1e-6;
 constexpr double kPlainM = 1e6;  // a robust scale beyond which none is
 
 double geman_mcclure(double squared, double scale) {
@@ -31,7 +31,7 @@ PoseSolver::PoseSolver(const Skeleton& skeleton, const PoseOptions& options)
       options_(options),
       sigma_m_(options.marker_sigma_m),
       robust_m_(options.robust_m),
-      moments_(skeleton.segments.size()) {
+      time_steps_(skeleton.segments.size()) {
   if (skeleton.markers.empty()) throw Error("{}: the skeleton has no markers; without them nothing shows its pose", skeleton.name);
   const int n = articulation_.dofs();
   if (n == 0) throw Error("{}: no joint of the skeleton moves", skeleton.name);
@@ -70,16 +70,16 @@ void PoseSolver::start_from(std::vector<double> coordinates) {
 }
 
 double PoseSolver::scale_of(int dof) const {
-  return articulation_.dof()[static_cast<std::size_t>(dof)].turns ? options_.not_observed_rad : options_.not_observed_m;
+  return articulation_.dof()[static_cast<std::size_t>(dof)].rotations ? options_.not_observed_rad : options_.not_observed_m;
 }
 
 /// In `covariance_` (1 + H)⁻² of a pose: what the markers that are seen leave open of it, all of them counted, for what is far from
 /// the prediction is no less seen.
-void PoseSolver::find_open(const SkeletonState& state, Seen seen) {
+void PoseSolver::find_open(const SkeletonState& state, Detected detected) {
   const int n = articulation_.dofs();
-  articulation_.place(state);
+  articulation_.location(state);
   const double robust = std::exchange(robust_m_, kPlainM);
-  gather_markers(seen);
+  gather_markers(detected);
   robust_m_ = robust;
   gather(equations_);
   for (int d = 0; d < n; ++d) {
@@ -92,61 +92,61 @@ void PoseSolver::find_open(const SkeletonState& state, Seen seen) {
 }
 
 /// Holds what is open at `predicted_`, so strongly.
-void PoseSolver::set_prior(Seen seen, double strength) {
-  find_open(predicted_, seen);
+void PoseSolver::set_prior(Detected detected, double strength) {
+  find_open(predicted_, detected);
   for (int d = 0; d < articulation_.dofs(); ++d) {
     for (int e = 0; e < articulation_.dofs(); ++e)
       prior_information_(d, e) = strength * covariance_(d, e) / (scale_of(d) * scale_of(e));
-    prior_information_(d, d) += articulation_.dof()[static_cast<std::size_t>(d)].turns ? kWeakPrior : kWeakPriorOfShift;
+    prior_information_(d, d) += articulation_.dof()[static_cast<std::size_t>(d)].rotations ? kWeakPrior : kWeakPriorOfShift;
   }
 }
 
-const Eigen::MatrixXd& PoseSolver::openness(const SkeletonState& state, Seen seen) {
-  find_open(state, seen);
+const Eigen::MatrixXd& PoseSolver::openness(const SkeletonState& state, Detected detected) {
+  find_open(state, detected);
   return covariance_;
 }
 
-SkeletonState PoseSolver::solve_near(const SkeletonState& start, Seen seen) {
+SkeletonState PoseSolver::solve_near(const SkeletonState& start, Detected detected) {
   state_ = predicted_ = start;
-  set_prior(seen, 1);
-  minimise(seen, options_.max_iterations);
+  set_prior(detected, 1);
+  minimise(detected, options_.max_iterations);
   articulation_.take_angles(state_);
   return state_;
 }
 
 /// Where the pose is heading.
-void PoseSolver::predict(double seconds, Seen seen) {
+void PoseSolver::predict(double seconds, Detected detected) {
   const double slower = std::exp(-seconds / options_.decay_s);
   for (int d = 0; d < articulation_.dofs(); ++d) {
     if (!dof_observed_[static_cast<std::size_t>(d)]) velocity_[d] *= slower;
     step_[d] = velocity_[d] * seconds;
   }
   articulation_.move(state_, step_, predicted_);
-  shift_markers(seconds, seen);
-  set_prior(seen, options_.memory_s / seconds);
+  shift_markers(seconds, detected);
+  set_prior(detected, options_.memory_s / seconds);
 }
 
 /// So little that a pose comes from its markers alone.
 void PoseSolver::set_weak_prior() {
   prior_information_.setZero();
   for (int d = 0; d < articulation_.dofs(); ++d)
-    prior_information_(d, d) = articulation_.dof()[static_cast<std::size_t>(d)].turns ? kWeakPrior : kWeakPriorOfShift;
+    prior_information_(d, d) = articulation_.dof()[static_cast<std::size_t>(d)].rotations ? kWeakPrior : kWeakPriorOfShift;
 }
 
-double PoseSolver::gather_markers(Seen seen) {
-  for (Moments& m : moments_) m = {};
+double PoseSolver::gather_markers(Detected detected) {
+  for (TimeSteps& m : time_steps_) m = {};
   double cost = 0;
   const double information = 1 / (sigma_m_ * sigma_m_);
   const auto& world_from = articulation_.world_from_segment();
   const auto& markers = articulation_.skeleton().markers;
   for (std::size_t j = 0; j < markers.size(); ++j) {
-    if (!seen[j]) continue;
+    if (!detected[j]) continue;
     const auto s = static_cast<std::size_t>(markers[j].segment);
-    const Vector<3> p = world_from[s] * (markers[j].position + shifts_[j]), off = *seen[j] - p;
-    const double squared = off.squaredNorm(), share = robust_m_ * robust_m_ / (robust_m_ * robust_m_ + squared);
+    const Vector<3> p = world_from[s] * (markers[j].position + shifts_[j]), off = *detected[j] - p;
+    const double squared = off.squaredNorm(), fraction = robust_m_ * robust_m_ / (robust_m_ * robust_m_ + squared);
     cost += markers[j].weight * information * geman_mcclure(squared, robust_m_);
-    const double weight = markers[j].weight * information * share * share;
-    Moments& m = moments_[s];
+    const double weight = markers[j].weight * information * fraction * fraction;
+    TimeSteps& m = time_steps_[s];
     m.weight += weight;
     m.sum += weight * p;
     m.second += weight * p * p.transpose();
@@ -161,7 +161,7 @@ void PoseSolver::gather(PoseEquations& equations) {
   equations.information.setZero();
   equations.gradient.setZero();
   for (std::size_t s = skeleton.segments.size(); s-- > 0;) {
-    const Moments& m = moments_[s];
+    const TimeSteps& m = time_steps_[s];
     for (const Driver& own : articulation_.drivers(s)) {
       equations.gradient[own.dof] += own.turn.dot(m.torque) + own.shift.dot(m.pull);
       // What the markers' weight resists with, where this driver moves them all.
@@ -178,7 +178,7 @@ void PoseSolver::gather(PoseEquations& equations) {
       }
     }
     if (const auto parent = skeleton.segments[s].parent) {
-      Moments& up = moments_[static_cast<std::size_t>(*parent)];
+      TimeSteps& up = time_steps_[static_cast<std::size_t>(*parent)];
       up.weight += m.weight;
       up.sum += m.sum;
       up.second += m.second;
@@ -188,12 +188,12 @@ void PoseSolver::gather(PoseEquations& equations) {
   }
 }
 
-void PoseSolver::linearise(const SkeletonState& state, Seen seen, PoseEquations& equations) {
+void PoseSolver::linearise(const SkeletonState& state, Detected detected, PoseEquations& equations) {
   const int n = articulation_.dofs();
   equations.information.resize(n, n);
   equations.gradient.resize(n);
-  articulation_.place(state);
-  equations.cost = gather_markers(seen);
+  articulation_.location(state);
+  equations.cost = gather_markers(detected);
   gather(equations);
 }
 
@@ -235,15 +235,15 @@ void PoseSolver::add_limits(const SkeletonState& state, PoseEquations& equations
   }
 }
 
-double PoseSolver::evaluate(const SkeletonState& state, Seen seen) {
-  articulation_.place(state);
-  return gather_markers(seen) + prior_cost(state) + limit_cost(state);
+double PoseSolver::evaluate(const SkeletonState& state, Detected detected) {
+  articulation_.location(state);
+  return gather_markers(detected) + prior_cost(state) + limit_cost(state);
 }
 
 /// Levenberg–Marquardt from `state_`, with the gain ratio (Madsen, Nielsen, Tingleff 2004, algorithm 3.16). Returns the cost.
-double PoseSolver::minimise(Seen seen, int most) {
-  double cost = evaluate(state_, seen), damping = 1e-6, growth = 2;
-  for (int round = 0; round < most; ++round, ++iterations_) {
+double PoseSolver::minimise(Detected detected, int maximum) {
+  double cost = evaluate(state_, detected), damping = 1e-6, growth = 2;
+  for (int round = 0; round < maximum; ++round, ++iterations_) {
     stop_point();
     gather(equations_);
     add_prior(state_);
@@ -257,17 +257,17 @@ double PoseSolver::minimise(Seen seen, int most) {
       if (!(size < 1e6)) return cost;
       articulation_.move(state_, step_, trial_);
       const double expected = step_.dot(equations_.gradient) + damping * step_.cwiseAbs2().dot(equations_.information.diagonal());
-      const double next = evaluate(trial_, seen), gain = (cost - next) / std::max(1e-300, expected);
+      const double next = evaluate(trial_, detected), gain = (cost - next) / std::max(1e-300, expected);
       if (next <= cost) {
         std::swap(state_, trial_);
         cost = next;
         damping = std::max(1e-12, damping * std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3)));
         growth = 2;
         accepted = true;
-        if (size < kSmallestStep) return cost;
+        if (size < kMinStepSize) return cost;
       } else {
-        if (size < kSmallestStep || damping > 1e12) {
-          evaluate(state_, seen);
+        if (size < kMinStepSize || damping > 1e12) {
+          evaluate(state_, detected);
           return cost;
         }
         damping *= growth;
@@ -279,63 +279,63 @@ double PoseSolver::minimise(Seen seen, int most) {
 }
 
 /// From the prediction to the least sum of squares, and on from there.
-double PoseSolver::least_squares_start(Seen seen) {
+double PoseSolver::least_squares_start(Detected detected) {
   const double robust = std::exchange(robust_m_, kPlainM);
   state_ = predicted_;
-  minimise(seen, options_.max_iterations);
+  minimise(detected, options_.max_iterations);
   robust_m_ = robust;
-  return minimise(seen, options_.max_iterations);
+  return minimise(detected, options_.max_iterations);
 }
 
-/// From the prediction. Where markers are left so far off that they hardly count, a whole segment may have been given up: then the
+/// From the prediction. Where markers are left so far off that they barely count, a whole segment may have been given up: then the
 /// least sum of squares is another start. Returns the cost.
-double PoseSolver::solve_frame(Seen seen) {
-  const double cost = minimise(seen, options_.max_iterations);
-  rms_of(seen);
+double PoseSolver::solve_frame(Detected detected) {
+  const double cost = minimise(detected, options_.max_iterations);
+  rms_of(detected);
   if (std::none_of(pose_.residuals.begin(), pose_.residuals.end(), [&](const auto& off) { return off && *off > robust_m_; }))
     return cost;
   const SkeletonState found = state_;
-  const double other = least_squares_start(seen);
+  const double other = least_squares_start(detected);
   if (other < cost) return other;
   state_ = found;
   return cost;
 }
 
-const SolvedPose& PoseSolver::step(double seconds, Seen seen) {
+const SolvedPose& PoseSolver::step(double seconds, Detected detected) {
   iterations_ = 0;
-  const bool any = std::any_of(seen.begin(), seen.end(), [](const auto& place) { return place.has_value(); });
+  const bool any = std::any_of(detected.begin(), detected.end(), [](const auto& location) { return location.has_value(); });
   pose_.started = !known_ && any;
   since_start_s_ += seconds;
   if (!known_ && !any) {
     state_ = predicted_ = articulation_.state_of(articulation_.skeleton().rest());
   } else if (!known_) {
-    cold_start(seen);
-    rms_of(seen);
-    learn_noise(seen, seconds);
-    minimise(seen, options_.max_iterations);
+    cold_start(detected);
+    rms_of(detected);
+    learn_noise(detected, seconds);
+    minimise(detected, options_.max_iterations);
   } else {
     last_ = state_;
-    predict(std::max(kShortestS, seconds), seen);
+    predict(std::max(kMinS, seconds), detected);
     state_ = predicted_;
-    if (any) solve_frame(seen);
-    rms_of(seen);
-    if (lost() && since_start_s_ >= options_.sought_anew_s) {
+    if (any) solve_frame(detected);
+    rms_of(detected);
+    if (lost() && since_start_s_ >= options_.reacquire_s) {
       pose_.started = true;
       since_start_s_ = 0;
       const SkeletonState before = state_;
       const double rms = pose_.rms_m;
-      cold_start(seen);
-      if (rms_of(seen) > 0.7 * rms) state_ = before;
+      cold_start(detected);
+      if (rms_of(detected) > 0.7 * rms) state_ = before;
     }
-    if (any) mind_limits(seconds, seen);
-    if (any) mind_returns(seen);
+    if (any) mind_limits(seconds, detected);
+    if (any) mind_returns(detected);
   }
   articulation_.take_angles(state_);
-  rms_of(seen);
-  learn_noise(seen, seconds);
-  judge(seen);
+  rms_of(detected);
+  learn_noise(detected, seconds);
+  assess(detected);
   learn_velocity(seconds);
-  remember(seconds, seen);
+  remember(seconds, detected);
   known_ = known_ || any;
   pose_.coordinates = state_.coordinates;
   pose_.world_from_segment = articulation_.world_from_segment();

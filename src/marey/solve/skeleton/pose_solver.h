@@ -33,29 +33,29 @@ namespace marey::solve::skeleton {
 struct PoseOptions {
   double marker_sigma_m = 0.005;          ///< of a marker, at first; then as the residuals are
   double robust_m = 0.05;                 ///< residuals beyond count less and less; at least 10 σ
-  double memory_s = 0.02;                 ///< what is hardly observed follows its markers within it
+  double memory_s = 0.02;                 ///< what is barely observed follows its markers within it
   double velocity_s = 0.01;               ///< over which speeds are averaged
   double noise_s = 0.1;                   ///< over which the markers' σ is
-  double away_s = 0.05, hidden_s = 2;     ///< a marker that returns after so long, and not later, has the poses looked at again
+  double away_s = 0.05, hidden_s = 2;     ///< a marker that returns after this long, and not later, has the poses inspected again
   double shift_s = 1;                     ///< within which markers beside hidden ones go back to where the skeleton has them
   double decay_s = 0.1;                   ///< within which an angle that no marker shows comes to rest
   double limit_rad = 0.005;               ///< how far a limit gives way to one σ of a marker
   double not_observed_rad = 0.174532925;  ///< 10°
   double not_observed_m = 0.1;
   int max_iterations = 30;
-  double lost_m = 0.12;      ///< where most markers are farther away, it starts anew
-  double sought_anew_s = 0;  ///< and that no sooner than this after the last time
-  double at_limit_s = 0.25;  ///< a hinge that stays at its limit for so long is asked whether the limb above it is turned about
+  double lost_m = 0.12;      ///< where most markers are farther away, it starts again
+  double reacquire_s = 0;    ///< and that no sooner than this after the last time
+  double at_limit_s = 0.25;  ///< a hinge that stays at its limit for this long is asked whether the limb above it is turned about
 };
 
 /// A skeleton at one instant.
 struct SolvedPose {
-  std::vector<double> coordinates;  ///< rad, m; angles go on over ±π
+  std::vector<double> coordinates;  ///< rad, m; angles continue over ±π
   std::vector<double> deviations;   ///< of each coordinate; 0 where it is locked
   std::vector<bool> observed;       ///< of each coordinate
   std::vector<Rigid3> world_from_segment;
   std::vector<std::optional<double>> residuals;  ///< m, of each of the skeleton's markers that was seen
-  int seen = 0;
+  int detected = 0;
   double rms_m = 0;  ///< of the residuals
   int iterations = 0;
   bool started = false;  ///< without a prediction: the first, or it was lost before
@@ -70,47 +70,47 @@ struct PoseEquations {
 
 class PoseSolver {
  public:
-  /// The skeleton must outlive it. Throws Error where it has no markers or nothing that moves.
+  /// The skeleton must outlive it. Throws Error if it has no markers or nothing that moves.
   explicit PoseSolver(const Skeleton& skeleton, const PoseOptions& options = {});
 
   /// One instant later by `seconds`; `seen` has a place for each of the skeleton's markers that was seen, m in the world. Valid
   /// until the next call. Nothing is allocated after the first.
-  const SolvedPose& step(double seconds, std::span<const std::optional<Vector<3>>> seen);
+  const SolvedPose& step(double seconds, std::span<const std::optional<Vector<3>>> detected);
   /// The next step starts without a prediction.
   void forget() { known_ = false; }
   /// The next step starts from here.
   void start_from(std::vector<double> coordinates);
-  /// The pose with these coordinates as this frame's markers see it: nothing is solved, and the next step goes on from where the
+  /// The pose with these coordinates as this frame's markers see it: nothing is solved, and the next step continues from where the
   /// last one was.
-  const SolvedPose& look_at(std::vector<double> coordinates, std::span<const std::optional<Vector<3>>> seen);
+  const SolvedPose& inspect_at(std::vector<double> coordinates, std::span<const std::optional<Vector<3>>> detected);
   const SolvedPose& pose() const { return pose_; }
   double marker_sigma_m() const { return sigma_m_; }
 
   Articulation& articulation() { return articulation_; }
   const SkeletonState& state() const { return state_; }
   /// Linearises the markers at a state.
-  void linearise(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen, PoseEquations& equations);
+  void linearise(const SkeletonState& state, std::span<const std::optional<Vector<3>>> detected, PoseEquations& equations);
   /// How many limbs may lie nearly the same in two poses; and the others of one of them, to start from.
   std::size_t limbs() const { return limbs_.size(); }
   std::vector<SkeletonState> other_poses(std::size_t limb, const SkeletonState& state);
   /// Of markers, limits and how unlike a person's the limbs are folded, in σ² of a marker.
-  double cost_of(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen);
+  double cost_of(const SkeletonState& state, std::span<const std::optional<Vector<3>>> detected);
   /// Of each marker: how far it sits from where the skeleton has it, m, on its segment; until frames are solved in turn.
   std::span<Vector<3>> shifts() { return shifts_; }
   /// σ of a marker's coordinate, as all frames of a solved recording together have it; until frames are solved in turn.
   void learn_noise_of(std::span<const std::vector<double>> rows, std::span<const std::vector<std::optional<Vector<3>>>> frames);
   /// Of a pose, in units of what just counts as not observed: the identity in directions that no marker shows, near 0 in others:
   /// (1 + H)⁻². Valid until the next call.
-  const Eigen::MatrixXd& openness(const SkeletonState& state, std::span<const std::optional<Vector<3>>> seen);
+  const Eigen::MatrixXd& openness(const SkeletonState& state, std::span<const std::optional<Vector<3>>> detected);
   /// From a pose to where the markers are; what they leave open stays. Forgets the motion.
-  SkeletonState solve_near(const SkeletonState& start, std::span<const std::optional<Vector<3>>> seen);
+  SkeletonState solve_near(const SkeletonState& start, std::span<const std::optional<Vector<3>>> detected);
   /// Adds what pulls coordinates back that are beyond their limits.
   void add_limits(const SkeletonState& state, PoseEquations& equations) const;
 
  private:
-  using Seen = std::span<const std::optional<Vector<3>>>;
+  using Detected = std::span<const std::optional<Vector<3>>>;
   /// Of a segment and all that hang on it: what its markers weigh.
-  struct Moments {
+  struct TimeSteps {
     double weight = 0;
     Vector<3> sum = Vector<3>::Zero();
     Matrix<3> second = Matrix<3>::Zero();
@@ -121,49 +121,49 @@ class PoseSolver {
   /// other way, it lies nearly as before.
   struct Limb {
     std::size_t ball = 0;
-    int hinge = 0;            ///< coordinate
-    std::vector<int> beside;  ///< coordinates of the hinge's joint besides
-    Vector<3> along;          ///< in the ball's frame
-    Matrix<3> rest;           ///< of the ball
+    int hinge = 0;             ///< coordinate
+    std::vector<int> next_to;  ///< coordinates of the hinge's joint besides
+    Vector<3> along;           ///< in the ball's frame
+    Matrix<3> rest;            ///< of the ball
     double at_limit_s = 0;
     std::vector<bool> near;  ///< of each segment: its markers say something of this limb
-    bool asked = false;
+    bool requested = false;
   };
 
-  void predict(double seconds, Seen seen);
-  void find_open(const SkeletonState& state, Seen seen);
-  void set_prior(Seen seen, double strength);
+  void predict(double seconds, Detected detected);
+  void find_open(const SkeletonState& state, Detected detected);
+  void set_prior(Detected detected, double strength);
   void set_weak_prior();
   double scale_of(int dof) const;
-  double solve_frame(Seen seen);
-  double least_squares_start(Seen seen);
-  double evaluate(const SkeletonState& state, Seen seen);
-  double gather_markers(Seen seen);
+  double solve_frame(Detected detected);
+  double least_squares_start(Detected detected);
+  double evaluate(const SkeletonState& state, Detected detected);
+  double gather_markers(Detected detected);
   void gather(PoseEquations& equations);
   double prior_cost(const SkeletonState& state);
   void add_prior(const SkeletonState& state);
   double limit_cost(const SkeletonState& state) const;
-  double minimise(Seen seen, int most);
-  void cold_start(Seen seen);
+  double minimise(Detected detected, int maximum);
+  void cold_start(Detected detected);
   void find_limbs();
   bool at_limit(int coordinate) const;
   double oddness(const Limb& limb) const;
-  double cost_of_pose(const Limb& limb, Seen seen);
-  std::vector<SkeletonState> turned_about(const Limb& limb) const;
-  bool turn_limbs(Seen seen);
-  void mind_limits(double seconds, Seen seen);
-  void mind_returns(Seen seen);
-  void try_as_it_was(const std::vector<bool>& returned, Seen seen);
+  double cost_of_pose(const Limb& limb, Detected detected);
+  std::vector<SkeletonState> rotated_about(const Limb& limb) const;
+  bool turn_limbs(Detected detected);
+  void mind_limits(double seconds, Detected detected);
+  void mind_returns(Detected detected);
+  void try_as_it_was(const std::vector<bool>& returned, Detected detected);
   double oddness_of_limbs() const;
-  void remember(double seconds, Seen seen);
-  void shift_markers(double seconds, Seen seen);
-  std::vector<SkeletonState> starts(Seen seen);
-  std::optional<Rigid3> root_from(Seen seen, bool root_alone, const SkeletonState& rest);
-  double rms_of(Seen seen);
+  void remember(double seconds, Detected detected);
+  void shift_markers(double seconds, Detected detected);
+  std::vector<SkeletonState> starts(Detected detected);
+  std::optional<Rigid3> root_from(Detected detected, bool root_alone, const SkeletonState& rest);
+  double rms_of(Detected detected);
   bool lost() const;
-  void learn_noise(Seen seen, double seconds);
-  void judge(Seen seen);
-  void judge_balls();
+  void learn_noise(Detected detected, double seconds);
+  void assess(Detected detected);
+  void evaluate_balls();
   void learn_velocity(double seconds);
 
   Articulation articulation_;
@@ -176,13 +176,13 @@ class PoseSolver {
   Eigen::MatrixXd prior_information_;
   std::vector<bool> dof_observed_;
   Eigen::VectorXd dof_deviation_;
-  std::vector<Moments> moments_;
+  std::vector<TimeSteps> time_steps_;
   std::vector<Limb> limbs_;
   std::vector<double> away_s_;  // of each marker: since when it is not seen
   SkeletonState whole_;         // the last pose in which none was missed
   bool returned_ = false;
   std::vector<std::vector<std::size_t>> near_;  // of each segment: itself, its parent and its children
-  std::vector<bool> beside_;
+  std::vector<bool> next_to_;
   std::vector<double> missed_s_;           // of each segment: since when one of the markers near it is hidden
   std::vector<Vector<3>> found_, shifts_;  // of each marker: where it sat, from where the skeleton has it, and is taken to sit
   PoseEquations equations_;

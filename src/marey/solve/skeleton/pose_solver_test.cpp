@@ -29,8 +29,8 @@ std::string numbered(std::string stem, std::size_t number) {
   return stem.append(std::to_string(number));
 }
 
-/// A joint of so many turns about axes that are perpendicular, or of one that a spline turns and shifts.
-void add_segment(Skeleton& skeleton, std::optional<int> parent, int turns, bool free, std::mt19937& random) {
+/// A joint of this many turns about axes that are perpendicular, or of one that a spline turns and shifts.
+void add_segment(Skeleton& skeleton, std::optional<int> parent, int rotations, bool free, std::mt19937& random) {
   Segment segment{.name = numbered("s", skeleton.segments.size()), .parent = parent, .joint = {}, .end = {}};
   segment.joint.parent_from_joint = {geometry::rotation_from(anywhere(random, 1)), anywhere(random, 0.3)};
   segment.joint.joint_from_segment = {geometry::rotation_from(anywhere(random, 1)), anywhere(random, 0.1)};
@@ -40,13 +40,13 @@ void add_segment(Skeleton& skeleton, std::optional<int> parent, int turns, bool 
   };
   for (int i = 0; free && i < 3; ++i) segment.joint.axes.push_back({false, Vector<3>::Unit(i), {}, coordinate(false)});
   const Matrix<3> axes = geometry::rotation_from(anywhere(random, 2));
-  if (turns == 1) {  // a knee: it shifts as it turns
+  if (rotations == 1) {  // a knee: it shifts as it turns
     const int knee = coordinate(true);
     segment.joint.axes.push_back(
         {false, Vector<3>::UnitX(), CoordinateFunction::spline({-2, -1, 0, 1, 2}, {0.03, 0.01, 0, 0.02, 0.05}), knee});
     segment.joint.axes.push_back({true, axes.col(0), {}, knee});
   } else {
-    for (int i = 0; i < turns; ++i) segment.joint.axes.push_back({true, axes.col(i), {}, coordinate(true)});
+    for (int i = 0; i < rotations; ++i) segment.joint.axes.push_back({true, axes.col(i), {}, coordinate(true)});
   }
   const int index = static_cast<int>(skeleton.segments.size());
   skeleton.segments.push_back(std::move(segment));
@@ -79,10 +79,10 @@ std::vector<double> pose_near_rest(const Skeleton& skeleton, std::mt19937& rando
 
 std::vector<std::optional<Vector<3>>> markers_at(const Skeleton& skeleton, const std::vector<double>& coordinates) {
   const auto pose = pose_of(skeleton, coordinates);
-  std::vector<std::optional<Vector<3>>> places;
+  std::vector<std::optional<Vector<3>>> locations;
   for (const SkeletonMarker& marker : skeleton.markers)
-    places.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
-  return places;
+    locations.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
+  return locations;
 }
 
 /// The slow twin: markers moved by small steps, J'J and J'r by hand.
@@ -94,23 +94,23 @@ TEST(PoseSolver, ItsEquationsAreThoseOfSmallSteps) {
     const Skeleton skeleton = body(random);
     PoseSolver solver(skeleton, {.marker_sigma_m = 1, .robust_m = 1e6});
     const SkeletonState state = solver.articulation().state_of(pose_near_rest(skeleton, random, 1));
-    auto seen = markers_at(skeleton, pose_near_rest(skeleton, random, 1));
-    seen[2].reset();
+    auto detected = markers_at(skeleton, pose_near_rest(skeleton, random, 1));
+    detected[2].reset();
     PoseEquations equations;
-    solver.linearise(state, seen, equations);
+    solver.linearise(state, detected, equations);
     const int n = solver.articulation().dofs();
     const auto residuals = [&](const SkeletonState& at) {
-      solver.articulation().place(at);
-      Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * std::ssize(seen));
-      for (std::size_t j = 0; j < seen.size(); ++j) {
-        if (seen[j])
+      solver.articulation().location(at);
+      Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * std::ssize(detected));
+      for (std::size_t j = 0; j < detected.size(); ++j) {
+        if (detected[j])
           r.segment<3>(3 * static_cast<Eigen::Index>(j)) =
-              *seen[j] - solver.articulation().world_from_segment()[static_cast<std::size_t>(skeleton.markers[j].segment)] *
-                             skeleton.markers[j].position;
+              *detected[j] - solver.articulation().world_from_segment()[static_cast<std::size_t>(skeleton.markers[j].segment)] *
+                                 skeleton.markers[j].position;
       }
       return r;
     };
-    Eigen::MatrixXd jacobian(3 * std::ssize(seen), n);
+    Eigen::MatrixXd jacobian(3 * std::ssize(detected), n);
     for (int d = 0; d < n; ++d) {
       Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
       SkeletonState ahead, back;
@@ -146,23 +146,24 @@ TEST(PoseSolver, FindsAMotionFromNothing) {
 }
 
 /// The plain least-squares pose of one frame, from a pose near it.
-double least_squares_rms(const Skeleton& skeleton, std::vector<double> near, std::span<const std::optional<Vector<3>>> seen) {
+double least_squares_rms(const Skeleton& skeleton, std::vector<double> near, std::span<const std::optional<Vector<3>>> detected) {
   PoseSolver solver(skeleton, {.marker_sigma_m = 1, .robust_m = 1e6});
   SkeletonState state = solver.articulation().state_of(std::move(near)), moved;
   PoseEquations equations;
   for (int round = 0; round < 30; ++round) {
-    solver.linearise(state, seen, equations);
+    solver.linearise(state, detected, equations);
     equations.information.diagonal().array() += 1e-9;
     solver.articulation().move(state, equations.information.ldlt().solve(equations.gradient), moved);
     std::swap(state, moved);
   }
-  solver.linearise(state, seen, equations);
-  return std::sqrt(equations.cost / static_cast<double>(std::count_if(seen.begin(), seen.end(), [](const auto& m) { return m; })));
+  solver.linearise(state, detected, equations);
+  return std::sqrt(equations.cost /
+                   static_cast<double>(std::count_if(detected.begin(), detected.end(), [](const auto& m) { return m; })));
 }
 
 /// At several rates a body whose markers sit up to 20 mm from where the skeleton has them: as near as the least squares of each
 /// frame, and in the end in one pose. All joints at once turn by up to 0.6 rad × `speed`.
-void follow_at_rates(double speed, std::span<const double> rates) {
+void track_at_rates(double speed, std::span<const double> rates) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -173,7 +174,7 @@ void follow_at_rates(double speed, std::span<const double> rates) {
   const auto truth_at = [&](double time) {
     std::vector<double> truth = centre;
     for (std::size_t c = 0; c < truth.size(); ++c)
-      truth[c] += (skeleton.coordinates[c].turns ? 0.6 : 0.1) * std::sin(speed * time + static_cast<double>(c));
+      truth[c] += (skeleton.coordinates[c].rotations ? 0.6 : 0.1) * std::sin(speed * time + static_cast<double>(c));
     truth[0] += 9 * time;
     skeleton.couple(truth);
     return truth;
@@ -182,18 +183,18 @@ void follow_at_rates(double speed, std::span<const double> rates) {
   for (const double rate : rates) {
     PoseSolver solver(skeleton);
     solver.start_from(truth_at(0));
-    double found = 0, least = 0;
+    double found = 0, minimum = 0;
     const int frames = static_cast<int>(0.4 * rate);
     for (int frame = 0; frame <= frames; ++frame) {
       const std::vector<double> truth = truth_at(frame / rate);
-      const auto seen = markers_at(person, truth);
-      found += std::pow(solver.step(1 / rate, seen).rms_m, 2);
-      least += std::pow(least_squares_rms(skeleton, truth, seen), 2);
+      const auto detected = markers_at(person, truth);
+      found += std::pow(solver.step(1 / rate, detected).rms_m, 2);
+      minimum += std::pow(least_squares_rms(skeleton, truth, detected), 2);
     }
-    EXPECT_LT(std::sqrt(found), 1.1 * std::sqrt(least)) << rate << " Hz";
+    EXPECT_LT(std::sqrt(found), 1.1 * std::sqrt(minimum)) << rate << " Hz";
     if (at_the_end.empty()) at_the_end = solver.pose().coordinates;
     for (std::size_t c = 0; c < at_the_end.size(); ++c) {
-      if (!skeleton.coordinates[c].turns) continue;
+      if (!skeleton.coordinates[c].rotations) continue;
       EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - at_the_end[c], 2 * std::numbers::pi)),
                 0.02 + solver.pose().deviations[c])
           << rate << " Hz";
@@ -203,8 +204,8 @@ void follow_at_rates(double speed, std::span<const double> rates) {
 
 /// A prediction that counted for more the shorter the frames are would win over the markers here.
 TEST(PoseSolver, FollowsFastMotionAtAnyRate) {
-  follow_at_rates(40, std::array{200.0, 500.0, 1000.0});
-  follow_at_rates(8, std::array{25.0, 50.0, 100.0, 250.0});
+  track_at_rates(40, std::array{200.0, 500.0, 1000.0});
+  track_at_rates(8, std::array{25.0, 50.0, 100.0, 250.0});
 }
 
 TEST(PoseSolver, HoldsWhatNoMarkerShowsAndSaysSo) {
@@ -218,11 +219,11 @@ TEST(PoseSolver, HoldsWhatNoMarkerShowsAndSaysSo) {
   const int hidden_joint = skeleton.segments[3].joint.axes[0].coordinate.value();  // of the first limb's last segment
   const double before = solver.pose().coordinates[static_cast<std::size_t>(hidden_joint)];
   EXPECT_TRUE(solver.pose().observed[static_cast<std::size_t>(hidden_joint)]);
-  auto seen = markers_at(skeleton, truth);
-  for (std::size_t j = 0; j < seen.size(); ++j) {
-    if (skeleton.markers[j].segment == 3) seen[j].reset();
+  auto detected = markers_at(skeleton, truth);
+  for (std::size_t j = 0; j < detected.size(); ++j) {
+    if (skeleton.markers[j].segment == 3) detected[j].reset();
   }
-  for (int i = 0; i < 50; ++i) solver.step(0.01, seen);
+  for (int i = 0; i < 50; ++i) solver.step(0.01, detected);
   EXPECT_FALSE(solver.pose().observed[static_cast<std::size_t>(hidden_joint)]);
   EXPECT_NEAR(solver.pose().coordinates[static_cast<std::size_t>(hidden_joint)], before, 0.02);
 }
@@ -233,11 +234,11 @@ TEST(PoseSolver, IsNotDraggedAlongByAWrongLabel) {
   const std::vector<double> truth = pose_near_rest(skeleton, random, 0.3);
   PoseSolver solver(skeleton);
   for (int i = 0; i < 5; ++i) solver.step(0.01, markers_at(skeleton, truth));
-  auto seen = markers_at(skeleton, truth);
-  *seen[5] += Vector<3>(0.5, 0, 0.3);
-  solver.step(0.01, seen);
+  auto detected = markers_at(skeleton, truth);
+  *detected[5] += Vector<3>(0.5, 0, 0.3);
+  solver.step(0.01, detected);
   for (std::size_t c = 0; c < truth.size(); ++c) {
-    if (skeleton.coordinates[c].turns) {
+    if (skeleton.coordinates[c].rotations) {
       EXPECT_LT(std::abs(std::remainder(solver.pose().coordinates[c] - truth[c], 2 * std::numbers::pi)), 0.05);
     }
   }
@@ -247,8 +248,8 @@ TEST(PoseSolver, IsNotDraggedAlongByAWrongLabel) {
 Skeleton arm() {
   Skeleton skeleton;
   skeleton.name = "arm";
-  const auto coordinate = [&](bool turns, std::optional<double> lowest, std::optional<double> highest) {
-    skeleton.coordinates.push_back({numbered("c", skeleton.coordinates.size()), turns, 0, lowest, highest, false, {}});
+  const auto coordinate = [&](bool rotations, std::optional<double> lowest, std::optional<double> highest) {
+    skeleton.coordinates.push_back({numbered("c", skeleton.coordinates.size()), rotations, 0, lowest, highest, false, {}});
     return static_cast<int>(skeleton.coordinates.size()) - 1;
   };
   Segment trunk{.name = "trunk", .parent = {}, .joint = {}, .end = {}};
@@ -261,10 +262,11 @@ Skeleton arm() {
   fore.joint.axes.push_back({true, -Vector<3>::UnitY(), {}, coordinate(true, -0.26, 2.88)});
   fore.joint.axes.push_back({true, -Vector<3>::UnitZ(), {}, coordinate(true, -3.14, 3.14)});
   skeleton.segments = {trunk, upper, fore};
-  for (const Vector<3>& place : {Vector<3>(0.1, 0, 0), Vector<3>(-0.1, 0, 0.1), Vector<3>(0, 0.15, 0.4), Vector<3>(0, -0.15, 0.4)})
-    skeleton.markers.push_back({"t" + std::to_string(skeleton.markers.size()), 0, place, 1});
-  for (const Vector<3>& place : {Vector<3>(0, 0.03, -0.15), Vector<3>(0, 0.03, -0.3)})
-    skeleton.markers.push_back({"u" + std::to_string(skeleton.markers.size()), 1, place, 1});
+  for (const Vector<3>& location :
+       {Vector<3>(0.1, 0, 0), Vector<3>(-0.1, 0, 0.1), Vector<3>(0, 0.15, 0.4), Vector<3>(0, -0.15, 0.4)})
+    skeleton.markers.push_back({"t" + std::to_string(skeleton.markers.size()), 0, location, 1});
+  for (const Vector<3>& location : {Vector<3>(0, 0.03, -0.15), Vector<3>(0, 0.03, -0.3)})
+    skeleton.markers.push_back({"u" + std::to_string(skeleton.markers.size()), 1, location, 1});
   for (const double side : {0.03, -0.03})
     skeleton.markers.push_back({"f" + std::to_string(skeleton.markers.size()), 2, Vector<3>(0, side, -0.25), 1});
   return skeleton;
@@ -279,11 +281,11 @@ TEST(PoseSolver, TurnsAnArmThatIsBentBackwards) {
   wrong[8] = std::numbers::pi;
   wrong[9] = -0.26;
   wrong[10] = 3.1;
-  const auto seen = markers_at(skeleton, truth);
+  const auto detected = markers_at(skeleton, truth);
   const auto elbow = [&](double at_limit_s) {
     PoseSolver solver(skeleton, {.at_limit_s = at_limit_s});
     solver.start_from(wrong);
-    for (int i = 0; i < 100; ++i) solver.step(0.01, seen);
+    for (int i = 0; i < 100; ++i) solver.step(0.01, detected);
     return solver.pose().coordinates[9];
   };
   EXPECT_LT(elbow(1e9), 0) << "no trap: the test shows nothing";

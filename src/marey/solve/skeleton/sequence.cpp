@@ -5,12 +5,12 @@
 
 namespace marey::solve::skeleton {
 
-SolvedSequence solve_sequence(const Skeleton& skeleton, std::span<const SeenMarkers> frames, double rate_hz,
+SolvedSequence solve_sequence(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, double rate_hz,
                               const SequenceOptions& options) {
   SolvedSequence solved;
   PoseSolver solver(skeleton, options.pose);
-  for (const SeenMarkers& seen : frames) {
-    const SolvedPose& pose = solver.step(1 / rate_hz, seen);
+  for (const ObservedMarkers& detected : frames) {
+    const SolvedPose& pose = solver.step(1 / rate_hz, detected);
     solved.rows.push_back(pose.coordinates);
     solved.observed.push_back(pose.observed);
     solved.rms_m.push_back(pose.rms_m);
@@ -20,7 +20,7 @@ SolvedSequence solve_sequence(const Skeleton& skeleton, std::span<const SeenMark
   if (options.smooth) solved.rows = smooth(skeleton, solved.rows, frames, rate_hz);
   solver.learn_noise_of(solved.rows, frames);
   for (std::size_t f = 0; f < frames.size(); ++f) {
-    const SolvedPose& pose = solver.look_at(solved.rows[f], frames[f]);
+    const SolvedPose& pose = solver.inspect_at(solved.rows[f], frames[f]);
     solved.observed[f] = pose.observed;
     solved.rms_m[f] = pose.rms_m;
   }

@@ -23,7 +23,7 @@ struct SolvedSequence {
 };
 
 /// Frames at an even rate.
-SolvedSequence solve_sequence(const Skeleton& skeleton, std::span<const SeenMarkers> frames, double rate_hz,
+SolvedSequence solve_sequence(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, double rate_hz,
                               const SequenceOptions& options = {});
 
 }  // namespace marey::solve::skeleton

@@ -26,11 +26,11 @@ Skeleton walker() {
                                          {"STRN", "trunk", {0.1, 0, 1.3}}};
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "left_" : "right_", letter = side > 0 ? "L" : "R";
-    const auto add = [&](const std::string& segment, const Vector<3>& place) {
-      segments.push_back({name + segment, {Matrix<3>::Identity(), {place.x(), side * place.y(), place.z()}}, {}});
+    const auto add = [&](const std::string& segment, const Vector<3>& location) {
+      segments.push_back({name + segment, {Matrix<3>::Identity(), {location.x(), side * location.y(), location.z()}}, {}});
     };
-    const auto mark = [&](const std::string& label, const std::string& segment, const Vector<3>& place) {
-      markers.push_back({letter + label, name + segment, {place.x(), side * place.y(), place.z()}});
+    const auto mark = [&](const std::string& label, const std::string& segment, const Vector<3>& location) {
+      markers.push_back({letter + label, name + segment, {location.x(), side * location.y(), location.z()}});
     };
     add("thigh", {0, 0.09, 0.94});
     add("shank", {0, 0.09, 0.5});
@@ -70,32 +70,32 @@ double walk(const std::string& name, double time) {
 }
 
 /// 120 Hz; each marker slides by 6 mm beside a misfit of as much.
-std::vector<SeenMarkers> walking(const Skeleton& skeleton, int frames, std::mt19937& random) {
+std::vector<ObservedMarkers> walking(const Skeleton& skeleton, int frames, std::mt19937& random) {
   const auto noise = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
   std::vector<Vector<3>> slide, misfit;
   for (std::size_t j = 0; j < skeleton.markers.size(); ++j) {
     slide.emplace_back(noise(0.006), noise(0.006), noise(0.006));
     misfit.emplace_back(noise(0.006), noise(0.006), noise(0.006));
   }
-  std::vector<SeenMarkers> all;
+  std::vector<ObservedMarkers> all;
   for (int f = 0; f < frames; ++f) {
     std::vector<double> coordinates = skeleton.rest();
     for (std::size_t c = 0; c < coordinates.size(); ++c) coordinates[c] += walk(skeleton.coordinates[c].name, f / 120.0);
     const auto pose = pose_of(skeleton, coordinates);
-    SeenMarkers& seen = all.emplace_back();
+    ObservedMarkers& detected = all.emplace_back();
     for (std::size_t j = 0; j < skeleton.markers.size(); ++j) {
       const SkeletonMarker& marker = skeleton.markers[j];
       const Vector<3> on =
           marker.position + misfit[j] + std::sin(2 * std::numbers::pi * 0.9 * f / 120.0 + static_cast<double>(j)) * slide[j];
-      seen.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * on +
-                        Vector<3>(noise(0.0005), noise(0.0005), noise(0.0005)));
+      detected.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * on +
+                            Vector<3>(noise(0.0005), noise(0.0005), noise(0.0005)));
     }
   }
   return all;
 }
 
 /// Three in ten markers hidden for half a second, once a second.
-std::vector<std::size_t> hide(std::vector<SeenMarkers>& frames, std::mt19937& random) {
+std::vector<std::size_t> hide(std::vector<ObservedMarkers>& frames, std::mt19937& random) {
   std::vector<std::size_t> begins;
   for (std::size_t begin = 36; begin + 100 < frames.size(); begin += 120) {
     begins.push_back(begin);
@@ -115,16 +115,16 @@ TEST(Sequence, BearsThreeInTenMarkersHidden) {
   for (unsigned seed = 1; seed <= 2; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const std::vector<SeenMarkers> frames = walking(skeleton, 270, random);
-    std::vector<SeenMarkers> seen = frames;
-    const std::vector<std::size_t> begins = hide(seen, random);
+    const std::vector<ObservedMarkers> frames = walking(skeleton, 270, random);
+    std::vector<ObservedMarkers> detected = frames;
+    const std::vector<std::size_t> begins = hide(detected, random);
     for (const bool smooth : {false, true}) {
       SCOPED_TRACE(smooth ? "smooth" : "in turn");
       const SequenceOptions options{.pose = {}, .whole = smooth, .smooth = smooth};
       const SolvedSequence all = solve_sequence(skeleton, frames, 120, options),
-                           hidden = solve_sequence(skeleton, seen, 120, options);
+                           hidden = solve_sequence(skeleton, detected, 120, options);
       for (std::size_t c = 0; c < skeleton.coordinates.size(); ++c) {
-        if (!skeleton.coordinates[c].turns) continue;
+        if (!skeleton.coordinates[c].rotations) continue;
         double step = 0, off = 0;
         for (const std::size_t begin : begins) {
           for (std::size_t f = begin; f < begin + 100; ++f) {
@@ -148,7 +148,7 @@ TEST(Sequence, BearsThreeInTenMarkersHidden) {
 TEST(Sequence, SmoothingDoesNotBiasWhatIsSeen) {
   const Skeleton skeleton = walker();
   std::mt19937 random(5);
-  const std::vector<SeenMarkers> frames = walking(skeleton, 100, random);
+  const std::vector<ObservedMarkers> frames = walking(skeleton, 100, random);
   for (const double rate : {25.0, 120.0, 1000.0}) {  // the same frames: a walk 5 times slower to 8 times faster
     const SolvedSequence in_turn = solve_sequence(skeleton, frames, rate),
                          smooth = solve_sequence(skeleton, frames, rate, {.pose = {}, .whole = true, .smooth = true});

@@ -72,8 +72,8 @@ class BandedSystem {
 
 class Smoother {
  public:
-  Smoother(const Skeleton& skeleton, std::span<const std::vector<double>> rows, std::span<const SeenMarkers> frames, double rate_hz,
-           const SmoothOptions& options)
+  Smoother(const Skeleton& skeleton, std::span<const std::vector<double>> rows, std::span<const ObservedMarkers> frames,
+           double rate_hz, const SmoothOptions& options)
       : skeleton_(skeleton),
         solver_(skeleton),
         frames_(frames),
@@ -82,8 +82,8 @@ class Smoother {
         whole_(whole_frames(skeleton, frames, hidden_)),
         weight_(solver_.articulation().dofs()) {
     for (int d = 0; d < solver_.articulation().dofs(); ++d) {
-      const bool turns = solver_.articulation().dof()[static_cast<std::size_t>(d)].turns;
-      weight_[d] = rate_hz * rate_hz / (turns ? options.acceleration_rad_s2 : options.acceleration_m_s2);
+      const bool rotations = solver_.articulation().dof()[static_cast<std::size_t>(d)].rotations;
+      weight_[d] = rate_hz * rate_hz / (rotations ? options.acceleration_rad_s2 : options.acceleration_m_s2);
     }
     for (const std::vector<double>& row : rows) states_.push_back(solver_.articulation().state_of(row));
     solver_.learn_noise_of(rows, frames);
@@ -109,7 +109,7 @@ class Smoother {
   void find_offsets() {
     offsets_.assign(frames_.size(), std::vector<Vector<3>>(skeleton_.markers.size(), Vector<3>::Zero()));
     for (std::size_t f = 0; f < frames_.size(); ++f) {
-      solver_.articulation().place(states_[f]);
+      solver_.articulation().location(states_[f]);
       for (std::size_t j = 0; j < skeleton_.markers.size(); ++j) {
         if (!frames_[f][j]) continue;
         const Rigid3& world_from =
@@ -126,11 +126,11 @@ class Smoother {
   void adapt(std::size_t f) {
     for (std::size_t j = 0; j < skeleton_.markers.size(); ++j) {
       const WholeFrames& ends = whole(static_cast<std::size_t>(skeleton_.markers[j].segment), f);
-      const Shares shares = shares_of(ends, f, hidden_);
+      const Fractions fractions = fractions_of(ends, f, hidden_);
       Vector<3>& shift = solver_.shifts()[j];
       shift.setZero();
-      if (shares.before > 0) shift += shares.before * offsets_[*ends.before][j];
-      if (shares.after > 0) shift += shares.after * offsets_[*ends.after][j];
+      if (fractions.before > 0) shift += fractions.before * offsets_[*ends.before][j];
+      if (fractions.after > 0) shift += fractions.after * offsets_[*ends.after][j];
     }
   }
 
@@ -146,10 +146,10 @@ class Smoother {
         const WholeFrames& ends = whole(s, f);
         if (ends.before == f || !skeleton_.segments[s].parent || !(ends.before && ends.after)) continue;
         any = true;
-        const double share = static_cast<double>(f - *ends.before) / static_cast<double>(*ends.after - *ends.before);
+        const double fraction = static_cast<double>(f - *ends.before) / static_cast<double>(*ends.after - *ends.before);
         articulation.difference(found[*ends.before], found[*ends.after], step);
         SkeletonState between;
-        articulation.move(found[*ends.before], share * step, between);
+        articulation.move(found[*ends.before], fraction * step, between);
         take_joint(s, between, start);
       }
       if (!any) continue;
@@ -203,7 +203,7 @@ class Smoother {
 
   const Skeleton& skeleton_;
   PoseSolver solver_;
-  std::span<const SeenMarkers> frames_;
+  std::span<const ObservedMarkers> frames_;
   SmoothOptions options_;
   std::size_t hidden_;
   std::vector<std::vector<WholeFrames>> whole_;
@@ -215,7 +215,7 @@ class Smoother {
 }  // namespace
 
 std::vector<std::vector<double>> smooth(const Skeleton& skeleton, std::span<const std::vector<double>> rows,
-                                        std::span<const SeenMarkers> frames, double rate_hz, const SmoothOptions& options) {
+                                        std::span<const ObservedMarkers> frames, double rate_hz, const SmoothOptions& options) {
   return Smoother(skeleton, rows, frames, rate_hz, options).run();
 }
 

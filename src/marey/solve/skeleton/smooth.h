@@ -1,5 +1,5 @@
 // A second pass over a skeleton's whole motion, all frames at once: what was hidden for a while is bent to both ends, instead of
-// going on as it went; what markers show stays where they have it.
+// continuing as it went; what markers show stays where they have it.
 //
 // Where markers are hidden, those left say something else than all did together, for none fits exactly (skin, the model): the pose
 // would step when they go and when they return. So each marker near a hidden one is taken to sit where it was found at both ends,
@@ -22,13 +22,13 @@ namespace marey::solve::skeleton {
 struct SmoothOptions {
   double acceleration_rad_s2 = 50;  ///< a joint's, one standard deviation
   double acceleration_m_s2 = 7.5;   ///< a shift's
-  double hidden_s = 2;              ///< a marker that is away for longer is gone: it is no gap
+  double hidden_s = 2;              ///< a marker that is away for longer is gone: it is not a gap
   int rounds = 4;
   int window = 800, overlap = 150;  ///< frames
 };
 
 /// `rows` are the coordinates of the first pass, one for each of `frames`, at an even rate.
 std::vector<std::vector<double>> smooth(const Skeleton& skeleton, std::span<const std::vector<double>> rows,
-                                        std::span<const SeenMarkers> frames, double rate_hz, const SmoothOptions& options = {});
+                                        std::span<const ObservedMarkers> frames, double rate_hz, const SmoothOptions& options = {});
 
 }  // namespace marey::solve::skeleton

@@ -15,13 +15,13 @@ namespace {
 constexpr double kSameRad = 0.035;  // 2°: two poses are one
 constexpr double kOtherRad = 0.35;  // 20°: they are two
 constexpr double kHiddenS = 2;      // markers that are away for longer are gone
-constexpr double kLookS = 0.1;      // between frames in which limbs are turned about
-constexpr std::size_t kMostLooks = 150;
-constexpr int kMostTurns = 4;  // a limb
-constexpr double kClear = 10;  // σ² of a marker, in sum: less decides nothing
+constexpr double kInspectS = 0.1;   // between frames in which limbs are turned about
+constexpr std::size_t kMaxAppearance = 150;
+constexpr int kMaxRotations = 4;  // a limb
+constexpr double kClear = 10;     // σ² of a marker, in sum: less decides nothing
 
 /// The motion from one frame to another.
-struct Stretch {
+struct TimeChunk {
   std::size_t begin = 0, end = 0;
   std::vector<std::vector<double>> rows;
   double gain = 0;
@@ -29,8 +29,8 @@ struct Stretch {
 
 class FoldSettler {
  public:
-  FoldSettler(const Skeleton& skeleton, std::span<std::vector<double>> rows, std::span<const SeenMarkers> frames, double rate_hz,
-              const PoseOptions& options)
+  FoldSettler(const Skeleton& skeleton, std::span<std::vector<double>> rows, std::span<const ObservedMarkers> frames,
+              double rate_hz, const PoseOptions& options)
       : skeleton_(skeleton),
         solver_(skeleton, options),
         tracker_(skeleton, options),
@@ -39,20 +39,20 @@ class FoldSettler {
         rate_hz_(rate_hz),
         changed_(rows.size(), false) {
     solver_.learn_noise_of(rows, frames);  // one for all frames, so that their costs can be added
-    for (std::size_t f = 0; f < rows.size(); ++f) observed_.push_back(solver_.look_at(rows[f], frames[f]).observed);
+    for (std::size_t f = 0; f < rows.size(); ++f) observed_.push_back(solver_.inspect_at(rows[f], frames[f]).observed);
     find_gaps();
     for (std::size_t f = 0; f < rows.size(); ++f) costs_.push_back(cost(rows[f], f));
   }
 
   std::vector<bool> run() {
     try_backwards();
-    for (std::size_t limb = 0; limb < solver_.limbs(); ++limb) try_turned(limb);
+    for (std::size_t limb = 0; limb < solver_.limbs(); ++limb) try_rotated(limb);
     return std::move(changed_);
   }
 
  private:
   bool empty(std::size_t f) const {
-    return std::none_of(frames_[f].begin(), frames_[f].end(), [](const auto& place) { return place.has_value(); });
+    return std::none_of(frames_[f].begin(), frames_[f].end(), [](const auto& location) { return location.has_value(); });
   }
 
   /// Where markers are hidden a first pass has the others elsewhere than the skeleton: there it is first put where they are.
@@ -73,18 +73,18 @@ class FoldSettler {
 
   /// How far two rows are apart, rad, in angles that the frame's markers show.
   double apart(const std::vector<double>& row, std::size_t f) const {
-    double most = 0;
+    double maximum = 0;
     for (std::size_t c = 0; c < row.size(); ++c) {
-      if (skeleton_.coordinates[c].turns && observed_[f][c])
-        most = std::max(most, std::abs(std::remainder(row[c] - rows_[f][c], 2 * std::numbers::pi)));
+      if (skeleton_.coordinates[c].rotations && observed_[f][c])
+        maximum = std::max(maximum, std::abs(std::remainder(row[c] - rows_[f][c], 2 * std::numbers::pi)));
     }
-    return most;
+    return maximum;
   }
 
   /// From a pose at frame `from` on, one way, until it meets what was found: appends rows and what they cost less.
-  void follow(std::vector<double> pose, std::size_t from, int way, std::vector<std::vector<double>>& rows, double& gain) {
+  void run_tracker(std::vector<double> pose, std::size_t from, int method, std::vector<std::vector<double>>& rows, double& gain) {
     tracker_.start_from(std::move(pose));
-    for (auto f = static_cast<std::ptrdiff_t>(from) + way; f >= 0 && f < std::ssize(rows_); f += way) {
+    for (auto f = static_cast<std::ptrdiff_t>(from) + method; f >= 0 && f < std::ssize(rows_); f += method) {
       const auto at = static_cast<std::size_t>(f);
       const std::vector<double>& row = tracker_.step(1 / rate_hz_, frames_[at]).coordinates;
       if (apart(row, at) < kSameRad) return;
@@ -93,9 +93,9 @@ class FoldSettler {
     }
   }
 
-  void take(const Stretch& stretch) {
-    for (std::size_t f = stretch.begin; f < stretch.end; ++f) {
-      rows_[f] = stretch.rows[f - stretch.begin];
+  void take(const TimeChunk& segment) {
+    for (std::size_t f = segment.begin; f < segment.end; ++f) {
+      rows_[f] = segment.rows[f - segment.begin];
       costs_[f] = cost(rows_[f], f);
       changed_[f] = true;
     }
@@ -113,20 +113,20 @@ class FoldSettler {
         ++f;
         continue;
       }
-      Stretch other{.begin = f, .end = f, .rows = {}, .gain = 0};
-      double most = 0;
+      TimeChunk other{.begin = f, .end = f, .rows = {}, .gain = 0};
+      double maximum = 0;
       for (; f < rows_.size() && apart(back[f], f) >= kSameRad; ++f) {
-        most = std::max(most, apart(back[f], f));
+        maximum = std::max(maximum, apart(back[f], f));
         other.gain += costs_[f] - cost(back[f], f);
         other.rows.push_back(back[f]);
       }
       other.end = f;
-      if (most > kOtherRad && other.gain > kClear) take(other);
+      if (maximum > kOtherRad && other.gain > kClear) take(other);
     }
   }
 
   /// The better of a limb's other poses in a frame, with what it costs less.
-  std::pair<SkeletonState, double> turned(std::size_t limb, std::size_t f) {
+  std::pair<SkeletonState, double> rotated(std::size_t limb, std::size_t f) {
     std::pair<SkeletonState, double> best;
     for (const SkeletonState& from : solver_.other_poses(limb, solver_.articulation().state_of(rows_[f]))) {
       SkeletonState there = solver_.solve_near(from, frames_[f]);
@@ -136,41 +136,42 @@ class FoldSettler {
     return best;
   }
 
-  void try_turned(std::size_t limb) {
-    const std::size_t step = std::max(static_cast<std::size_t>(std::max(1.0, kLookS * rate_hz_)), rows_.size() / kMostLooks + 1);
-    std::vector<std::pair<double, std::size_t>> looks;
+  void try_rotated(std::size_t limb) {
+    const std::size_t step =
+        std::max(static_cast<std::size_t>(std::max(1.0, kInspectS * rate_hz_)), rows_.size() / kMaxAppearance + 1);
+    std::vector<std::pair<double, std::size_t>> appearances;
     for (std::size_t f = step / 2; f < rows_.size(); f += step) {
-      if (const double gain = turned(limb, f).second; gain > 0) looks.emplace_back(gain, f);
+      if (const double gain = rotated(limb, f).second; gain > 0) appearances.emplace_back(gain, f);
     }
-    std::sort(looks.rbegin(), looks.rend());
+    std::sort(appearances.rbegin(), appearances.rend());
     std::vector<bool> tried(rows_.size(), false);
-    int turns = 0;
-    for (const auto& [gain, f] : looks) {
-      if (tried[f] || turns++ >= kMostTurns) continue;
-      const Stretch other = from_turned(limb, f);
+    int rotations = 0;
+    for (const auto& [gain, f] : appearances) {
+      if (tried[f] || rotations++ >= kMaxRotations) continue;
+      const TimeChunk other = from_rotated(limb, f);
       std::fill(tried.begin() + static_cast<std::ptrdiff_t>(other.begin), tried.begin() + static_cast<std::ptrdiff_t>(other.end),
                 true);
       if (other.gain > kClear) take(other);
     }
   }
 
-  Stretch from_turned(std::size_t limb, std::size_t f) {
-    const auto [state, gain] = turned(limb, f);
-    Stretch stretch{.begin = f, .end = f + 1, .rows = {}, .gain = gain};
-    follow(state.coordinates, f, -1, stretch.rows, stretch.gain);
-    stretch.begin -= stretch.rows.size();
-    std::reverse(stretch.rows.begin(), stretch.rows.end());
-    stretch.rows.push_back(state.coordinates);
-    const std::size_t before = stretch.rows.size();
-    follow(state.coordinates, f, 1, stretch.rows, stretch.gain);
-    stretch.end += stretch.rows.size() - before;
-    return stretch;
+  TimeChunk from_rotated(std::size_t limb, std::size_t f) {
+    const auto [state, gain] = rotated(limb, f);
+    TimeChunk segment{.begin = f, .end = f + 1, .rows = {}, .gain = gain};
+    run_tracker(state.coordinates, f, -1, segment.rows, segment.gain);
+    segment.begin -= segment.rows.size();
+    std::reverse(segment.rows.begin(), segment.rows.end());
+    segment.rows.push_back(state.coordinates);
+    const std::size_t before = segment.rows.size();
+    run_tracker(state.coordinates, f, 1, segment.rows, segment.gain);
+    segment.end += segment.rows.size() - before;
+    return segment;
   }
 
   const Skeleton& skeleton_;
   PoseSolver solver_, tracker_;
   std::span<std::vector<double>> rows_;
-  std::span<const SeenMarkers> frames_;
+  std::span<const ObservedMarkers> frames_;
   double rate_hz_;
   std::vector<bool> changed_, gap_;
   std::vector<std::vector<bool>> observed_;
@@ -179,8 +180,8 @@ class FoldSettler {
 
 }  // namespace
 
-std::vector<bool> settle_folds(const Skeleton& skeleton, std::span<std::vector<double>> rows, std::span<const SeenMarkers> frames,
-                               double rate_hz, const PoseOptions& options) {
+std::vector<bool> settle_folds(const Skeleton& skeleton, std::span<std::vector<double>> rows,
+                               std::span<const ObservedMarkers> frames, double rate_hz, const PoseOptions& options) {
   return FoldSettler(skeleton, rows, frames, rate_hz, options).run();
 }
 

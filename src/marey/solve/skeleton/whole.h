@@ -1,5 +1,5 @@
 // A recording as a whole decides how its limbs are bent. Frame by frame a limb may come into another fold than the one it is in (an
-// elbow bent backwards with the upper arm turned about itself), and stay there, for few markers hardly tell the two apart in one
+// elbow bent backwards with the upper arm turned about itself), and stay there, for few markers barely tell the two apart in one
 // frame; over a recording they do.
 //
 // Two sources of other motions: the recording solved from its end to its beginning, and limbs turned about where that fits better,
@@ -18,7 +18,7 @@ namespace marey::solve::skeleton {
 
 /// `rows` are the coordinates of a first pass, one for each of `frames`, at an even rate: where others fit better they are
 /// replaced. Says for each frame whether it was.
-std::vector<bool> settle_folds(const Skeleton& skeleton, std::span<std::vector<double>> rows, std::span<const SeenMarkers> frames,
-                               double rate_hz, const PoseOptions& options = {});
+std::vector<bool> settle_folds(const Skeleton& skeleton, std::span<std::vector<double>> rows,
+                               std::span<const ObservedMarkers> frames, double rate_hz, const PoseOptions& options = {});
 
 }  // namespace marey::solve::skeleton

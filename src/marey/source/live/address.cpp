@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "marey/core/error.h"
-#include "marey/core/source_name.h"
+#include "marey/files/source_name.h"
 
 namespace marey::source::live {
 namespace {
@@ -39,17 +39,17 @@ std::vector<std::string> pieces(const std::string& text, char between) {
 }  // namespace
 
 Address parse_address(const std::string& text) {
-  Address address{.text = text, .scheme = std::string(scheme_of(text)), .place = {}, .options = {}};
+  Address address{.text = text, .scheme = std::string(scheme_of(text)), .location = {}, .options = {}};
   if (address.scheme.empty())
     throw Error("\"{}\" names no live source; write v4l2:, gige:, rtsp://, http://, play: or sim://", text);
   std::string rest = text.substr(address.scheme.size() + 1);
   if (rest.starts_with("//")) rest = rest.substr(2);
   if (address.scheme.starts_with("rtsp") || address.scheme.starts_with("http")) {
-    address.place = rest;  // what stands behind "?" is the camera's own
+    address.location = rest;  // what stands behind "?" is the camera's own
     return address;
   }
   const auto query = rest.find('?');
-  address.place = rest.substr(0, query);
+  address.location = rest.substr(0, query);
   if (query == std::string::npos) return address;
   for (const std::string& pair : pieces(rest.substr(query + 1), '&')) {
     if (pair.empty()) continue;
@@ -67,23 +67,24 @@ const std::string* AddressOptions::find(const char* name) {
   return found == address_.options.end() ? nullptr : &found->second;
 }
 
-void AddressOptions::refuse(const char* name, const std::string& wanted) const {
-  throw Error("{}: {}={} is not possible; it must be {}", address_.text, name, address_.options.at(name), wanted);
+void AddressOptions::refuse(const char* name, const std::string& required) const {
+  throw Error("{}: {}={} is not possible; it must be {}", address_.text, name, address_.options.at(name), required);
 }
 
-void AddressOptions::whole(const char* name, int& value, int least, int most) {
+void AddressOptions::whole(const char* name, int& value, int minimum, int maximum) {
   const std::string* given = find(name);
   if (given == nullptr) return;
   const auto number = parsed<int>(*given);
-  if (!number || *number < least || *number > most) refuse(name, fmt::format("a whole number from {} to {}", least, most));
+  if (!number || *number < minimum || *number > maximum)
+    refuse(name, fmt::format("a whole number from {} to {}", minimum, maximum));
   value = *number;
 }
 
-void AddressOptions::number(const char* name, double& value, double least, double most) {
+void AddressOptions::number(const char* name, double& value, double minimum, double maximum) {
   const std::string* given = find(name);
   if (given == nullptr) return;
   const auto number = finite(*given);
-  if (!number || *number < least || *number > most) refuse(name, fmt::format("a number from {} to {}", least, most));
+  if (!number || *number < minimum || *number > maximum) refuse(name, fmt::format("a number from {} to {}", minimum, maximum));
   value = *number;
 }
 
@@ -103,9 +104,10 @@ void AddressOptions::size(const char* name, int& width, int& height) {
   if (given == nullptr) return;
   const auto sides = pieces(*given, 'x');
   const auto side = [&](std::size_t i) { return i < sides.size() ? parsed<int>(sides[i]) : std::nullopt; };
-  constexpr int kMost = 16384;
+  constexpr int kMaxCount = 16384;
   const auto w = side(0), h = side(1);
-  if (sides.size() != 2 || !w || !h || *w < 1 || *h < 1 || *w > kMost || *h > kMost) refuse(name, "WIDTHxHEIGHT in px, as 640x480");
+  if (sides.size() != 2 || !w || !h || *w < 1 || *h < 1 || *w > kMaxCount || *h > kMaxCount)
+    refuse(name, "WIDTHxHEIGHT in px, as 640x480");
   width = *w;
   height = *h;
 }

@@ -13,11 +13,11 @@ namespace marey::source::live {
 struct Address {
   std::string text;  ///< as it was given
   std::string scheme;
-  std::string place;
+  std::string location;
   std::map<std::string, std::string> options;  ///< one without a value is "yes"
 };
 
-/// Throws Error where `text` begins with no known scheme, or gives an option twice.
+/// Throws Error if `text` begins with no known scheme, or gives an option twice.
 Address parse_address(const std::string& text);
 
 /// Reads the options of an address. Each function leaves `value` as it is where the option is not given, and throws Error for what
@@ -26,8 +26,8 @@ class AddressOptions {
  public:
   explicit AddressOptions(const Address& address) : address_(address) {}
 
-  void whole(const char* name, int& value, int least, int most);
-  void number(const char* name, double& value, double least, double most);
+  void whole(const char* name, int& value, int minimum, int maximum);
+  void number(const char* name, double& value, double minimum, double maximum);
   void flag(const char* name, bool& value);
   void text(const char* name, std::string& value);
   /// Width x height, as in "640x480".
@@ -35,12 +35,12 @@ class AddressOptions {
   /// "yes" and "no" beside numbers with commas between, as many as wanted.
   void numbers(const char* name, std::vector<double>& values, std::size_t count);
 
-  /// Throws Error for an option that nobody asked for.
+  /// Throws Error for an option that no person asked for.
   void done() const;
 
  private:
   const std::string* find(const char* name);
-  [[noreturn]] void refuse(const char* name, const std::string& wanted) const;
+  [[noreturn]] void refuse(const char* name, const std::string& required) const;
 
   const Address& address_;
   std::set<std::string> known_;

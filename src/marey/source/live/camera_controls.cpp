@@ -23,7 +23,7 @@ void Connection::set(Control control, double /*value*/) {
   throw Error("{}: its {} cannot be set from here", info().name, to_string(control));
 }
 
-void CameraControls::ask(Control control, double value) {
+void CameraControls::request(Control control, double value) {
   const std::lock_guard lock(mutex_);
   fresh_[control] = value;
   refused_.clear();
@@ -71,12 +71,12 @@ CameraControls::Values CameraControls::set(Connection& camera, const Values& val
 }
 
 void CameraControls::begin(Connection& camera) {
-  Values wanted;
+  Values required;
   {
     const std::lock_guard lock(mutex_);
-    wanted = wanted_;
+    required = required_;
   }
-  set(camera, wanted);
+  set(camera, required);
 }
 
 void CameraControls::apply(Connection& camera) {
@@ -90,7 +90,7 @@ void CameraControls::apply(Connection& camera) {
   const Values taken = set(camera, fresh);
   const std::lock_guard lock(mutex_);
   setting_ = false;
-  for (const auto& [control, value] : taken) wanted_[control] = taken_[control] = value;
+  for (const auto& [control, value] : taken) required_[control] = taken_[control] = value;
 }
 
 }  // namespace marey::source::live

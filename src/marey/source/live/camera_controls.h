@@ -1,4 +1,4 @@
-// Exposure and gain of a camera while it gives pictures: between whoever asks for them and the thread that reads the camera.
+// Exposure and gain of a camera while it gives images: between the one who asks for them and the thread that reads the camera.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ std::string_view to_string(Control control);
 /// What a camera has, and between what it can be set.
 struct ControlRange {
   Control control = Control::exposure;
-  double least = 0, most = 0, now = 0;
+  double minimum = 0, maximum = 0, now = 0;
 };
 
 class Connection;
@@ -28,17 +28,17 @@ class CameraControls {
   using Values = std::map<Control, double>;
 
   /// What is set as soon as the camera is there, and again whenever it comes back.
-  explicit CameraControls(Values wanted = {}) : wanted_(std::move(wanted)) {}
+  explicit CameraControls(Values required = {}) : required_(std::move(required)) {}
 
   // From any thread.
-  void ask(Control control, double value);
+  void request(Control control, double value);
   /// Whether what was asked for is not set yet.
   bool waits() const;
   /// None where the camera has none, or was not there yet.
   std::vector<ControlRange> has() const;
   /// What was asked for and taken.
   Values taken() const;
-  /// Why the last that was asked for was not taken, without the camera's name; empty where it was.
+  /// Why the last that was asked for was not taken, without the camera's name; empty if it was.
   std::string refused() const;
 
   // From the thread that reads the camera.
@@ -51,7 +51,7 @@ class CameraControls {
   Values set(Connection& camera, const Values& values);
 
   mutable std::mutex mutex_;
-  Values wanted_, fresh_, taken_;
+  Values required_, fresh_, taken_;
   std::vector<ControlRange> has_;
   std::string refused_;
   bool setting_ = false;  // what was fresh a moment ago

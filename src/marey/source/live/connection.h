@@ -16,19 +16,19 @@
 
 namespace marey::source::live {
 
-/// A frame as its camera gave it. When it was taken is told by `taken`, else by `device_time`, else it is when it came.
+/// A frame as its camera gave it. When it was taken is reported by `taken`, else by `device_time`, else it is when it came.
 struct Shot {
-  CameraFrame given;                          ///< its picture or its detections; index and time are not looked at
+  CameraFrame given;                          ///< its image or its detections; index and time are not inspected
   std::optional<Timestamp> taken = {};        ///< by the run's clock
   std::optional<Duration> device_time = {};   ///< by the camera's own clock, from any origin
-  std::optional<std::int64_t> sequence = {};  ///< by the camera's own count: what it leaves out was lost on the way
+  std::optional<std::int64_t> sequence = {};  ///< by the camera's own count: what it omits was lost on the way
 };
 
 enum class Came {
   frame,    ///< the shot is filled
   nothing,  ///< yet
   damaged,  ///< a frame that came in part, or could not be decoded
-  end,      ///< of all frames, for good: of a film that is played
+  end,      ///< of all frames, permanently: of a video that is played
 };
 
 /// A camera while it is connected.
@@ -36,18 +36,18 @@ class Connection {
  public:
   virtual ~Connection() = default;
 
-  /// Valid until the next call of `next`; an empty size where only pictures will tell it.
+  /// Valid until the next call of `next`; an empty size where only images will tell it.
   virtual const SourceInfo& info() const = 0;
-  /// Waits for the next frame, a tenth of a second at most (kStopSlice). Throws Error where the camera is gone.
+  /// Waits for the next frame, a tenth of a second at most (kStopSlice). Throws Error if the camera is gone.
   virtual Came next(Shot& shot) = 0;
 
-  /// What of it can be set while it gives pictures, and how it is now.
+  /// What of it can be set while it gives images, and how it is now.
   virtual std::vector<ControlRange> controls() { return {}; }
-  /// Called between two calls of `next`. Throws Error where the camera refuses.
+  /// Called between two calls of `next`. Throws Error if the camera refuses.
   virtual void set(Control control, double value);
 };
 
-/// Connects the camera, or throws Error where it is not there. It may take a few seconds, and ends early where `stop` says so.
+/// Connects the camera, or throws Error if it is not there. It may take a few seconds, and ends early where `stop` says so.
 using Connect = std::function<std::unique_ptr<Connection>(LiveTime& time, const std::stop_token& stop)>;
 
 }  // namespace marey::source::live

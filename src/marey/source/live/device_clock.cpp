@@ -65,7 +65,7 @@ void DeviceClock::fit() {
     std::size_t edge = 0;
     while (edge + 2 < hull.size() && hull[edge + 1].device < mean) ++edge;
     const double slope = (hull[edge + 1].ahead - hull[edge].ahead) / (hull[edge + 1].device - hull[edge].device);
-    slope_ = std::clamp(slope, -options_.most_drift, options_.most_drift);
+    slope_ = std::clamp(slope, -options_.max_drift, options_.max_drift);
   }
   offset_ = below_all(slope_);
 }

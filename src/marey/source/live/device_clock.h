@@ -19,11 +19,11 @@
 namespace marey::source::live {
 
 struct DeviceClockOptions {
-  double window_s = 30;      ///< that the line is fitted over
-  double bucket_s = 0.5;     ///< of which one frame is kept
-  double settle_s = 4;       ///< before so much has been seen no drift is taken from it: noise of 0.1 ms would be 25 ppm
-  double most_drift = 5e-4;  ///< no quartz is worse
-  double step_s = 0.05;      ///< a device's clock that is so far ahead of the fit was set
+  double window_s = 30;     ///< that the line is fitted over
+  double bucket_s = 0.5;    ///< of which one frame is kept
+  double settle_s = 4;      ///< before this much has been seen no drift is taken from it: noise of 0.1 ms would be 25 ppm
+  double max_drift = 5e-4;  ///< no quartz is worse
+  double step_s = 0.05;     ///< a device's clock that is so far ahead of the fit was set
 };
 
 class DeviceClock {

@@ -33,9 +33,9 @@ std::vector<Arrived> camera(double drift, double duration, unsigned seed) {
 double worst_error(const std::vector<Arrived>& frames, double after, DeviceClock& clock) {
   double worst = 0;
   for (const Arrived& frame : frames) {
-    const double told = seconds(clock.time_of(frame.device, timestamp_from_seconds(frame.arrival)));
-    EXPECT_LE(told, frame.arrival + 1e-9);
-    if (frame.taken - 5 > after) worst = std::max(worst, std::abs(told - frame.taken - 0.001));
+    const double reported = seconds(clock.time_of(frame.device, timestamp_from_seconds(frame.arrival)));
+    EXPECT_LE(reported, frame.arrival + 1e-9);
+    if (frame.taken - 5 > after) worst = std::max(worst, std::abs(reported - frame.taken - 0.001));
   }
   return worst;
 }
@@ -55,10 +55,10 @@ TEST(DeviceClock, FollowsADriftingClockThroughDelays) {
 /// The slow twin: of all lines through two points that no point lies below, the one with the least sum of distances.
 TEST(DeviceClock, IsTheLeastSumOfDistancesOfAllLinesBelow) {
   const std::vector<Arrived> frames = camera(120e-6, 20, 9);
-  DeviceClock clock({.window_s = 1e6, .bucket_s = 0.01, .settle_s = 4, .most_drift = 1});
-  double told = 0;
-  for (const Arrived& frame : frames) told = seconds(clock.time_of(frame.device, timestamp_from_seconds(frame.arrival)));
-  double least = 1e9, best = 0;
+  DeviceClock clock({.window_s = 1e6, .bucket_s = 0.01, .settle_s = 4, .max_drift = 1});
+  double reported = 0;
+  for (const Arrived& frame : frames) reported = seconds(clock.time_of(frame.device, timestamp_from_seconds(frame.arrival)));
+  double minimum = 1e9, best = 0;
   const std::size_t n = frames.size();
   const auto x = [&](std::size_t i) { return seconds(frames[i].device) - 77; };
   const auto y = [&](std::size_t i) { return frames[i].arrival - seconds(frames[i].device); };
@@ -66,14 +66,14 @@ TEST(DeviceClock, IsTheLeastSumOfDistancesOfAllLinesBelow) {
     for (std::size_t k = i + 1; k < n; k += 1) {
       const double slope = (y(k) - y(i)) / (x(k) - x(i)), offset = y(i) - slope * x(i);
       double sum = 0;
-      for (std::size_t j = 0; j < n && sum < least; ++j) {
+      for (std::size_t j = 0; j < n && sum < minimum; ++j) {
         const double above = y(j) - offset - slope * x(j);
         sum = above < -1e-9 ? 1e9 : sum + above;
       }
-      if (sum < least) least = sum, best = offset + slope * x(n - 1);
+      if (sum < minimum) minimum = sum, best = offset + slope * x(n - 1);
     }
   }
-  EXPECT_NEAR(told - seconds(frames.back().device), best, 1e-6);
+  EXPECT_NEAR(reported - seconds(frames.back().device), best, 1e-6);
 }
 
 TEST(DeviceClock, AClockThatIsSetBeginsAnewFit) {
@@ -87,7 +87,7 @@ TEST(DeviceClock, AClockThatIsSetBeginsAnewFit) {
   EXPECT_NEAR(at(1.01, 15.01), 15.01, 1e-6);
   EXPECT_NEAR(at(100, 15.02), 15.02, 1e-6) << "ahead by a minute and a half";
   EXPECT_EQ(clock.steps(), 2);
-  EXPECT_NEAR(at(100.01, 15.2), 15.03, 1e-6) << "a late frame is no step";
+  EXPECT_NEAR(at(100.01, 15.2), 15.03, 1e-6) << "a late frame is not a step";
   EXPECT_EQ(clock.steps(), 2);
 }
 

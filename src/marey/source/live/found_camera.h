@@ -14,11 +14,11 @@ struct FoundCamera {
   struct Mode {
     std::string format;            ///< "GREY", "YUYV", "MJPG", "Mono8", …
     cv::Size size;                 ///< px
-    std::vector<double> rates_hz;  ///< the fastest first; empty where it does not say
+    std::vector<double> rates_hz;  ///< the fastest first; empty if it does not specify
   };
   struct Control {
     std::string name;
-    double least = 0, most = 0, now = 0;
+    double minimum = 0, maximum = 0, now = 0;
   };
   std::string source;  ///< as a rig names it
   std::string name;    ///< as its maker does

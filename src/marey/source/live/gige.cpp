@@ -12,7 +12,7 @@
 
 #include "marey/core/error.h"
 #include "marey/core/stop.h"
-#include "marey/source/live/packed_picture.h"
+#include "marey/source/live/pixel_format.h"
 
 namespace marey::source::live {
 namespace {
@@ -40,13 +40,13 @@ class Failure {
   GError* error_ = nullptr;
 };
 
-/// Looking for devices is not safe from several threads.
-std::mutex& looking() {
+/// Searching for devices is not safe from several threads.
+std::mutex& facing() {
   static std::mutex mutex;
   return mutex;
 }
 
-std::string said(const char* text) {
+std::string stated(const char* text) {
   return text != nullptr ? text : "";
 }
 
@@ -55,17 +55,17 @@ struct GigeDevice {
 };
 
 std::vector<GigeDevice> devices_there() {
-  const std::lock_guard lock(looking());
+  const std::lock_guard lock(facing());
   arv_update_device_list();
   std::vector<GigeDevice> all;
   for (unsigned i = 0; i < arv_get_n_devices(); ++i)
-    all.push_back({said(arv_get_device_id(i)), said(arv_get_device_serial_nbr(i)), said(arv_get_device_address(i)),
-                   said(arv_get_device_vendor(i)), said(arv_get_device_model(i))});
+    all.push_back({stated(arv_get_device_id(i)), stated(arv_get_device_serial_nbr(i)), stated(arv_get_device_address(i)),
+                   stated(arv_get_device_vendor(i)), stated(arv_get_device_model(i))});
   return all;
 }
 
 struct GigeOptions {
-  std::string wanted;  ///< serial number, address or Aravis's name
+  std::string required;  ///< serial number, address or Aravis's name
   std::optional<double> rate_hz, exposure_ms, gain;
   int width = 0, height = 0;
   double packet_delay_us = 0;
@@ -74,56 +74,56 @@ struct GigeOptions {
 };
 
 GigeOptions gige_options(const Address& address, const Opening& opening) {
-  GigeOptions wanted{.wanted = address.place, .rate_hz = opening.rate_hz, .exposure_ms = {}, .gain = {}, .trigger = {}};
+  GigeOptions required{.required = address.location, .rate_hz = opening.rate_hz, .exposure_ms = {}, .gain = {}, .trigger = {}};
   AddressOptions options(address);
   double rate = opening.rate_hz.value_or(0), exposure = 0, gain = -1;
-  options.size("size", wanted.width, wanted.height);
+  options.size("size", required.width, required.height);
   options.number("rate", rate, 0.1, 10000);
   options.number("exposure", exposure, 0.001, 10000);
   options.number("gain", gain, 0, 1000);
-  options.number("packet_delay", wanted.packet_delay_us, 0, 1e6);
-  options.text("trigger", wanted.trigger);
-  options.flag("ptp", wanted.ptp);
+  options.number("packet_delay", required.packet_delay_us, 0, 1e6);
+  options.text("trigger", required.trigger);
+  options.flag("ptp", required.ptp);
   options.done();
-  if (rate > 0) wanted.rate_hz = rate;
-  if (exposure > 0) wanted.exposure_ms = exposure;
-  if (gain >= 0) wanted.gain = gain;
-  if (wanted.wanted.empty()) throw Error("{}: names no camera; write gige:SERIAL (marey cameras lists them)", address.text);
-  return wanted;
+  if (rate > 0) required.rate_hz = rate;
+  if (exposure > 0) required.exposure_ms = exposure;
+  if (gain >= 0) required.gain = gain;
+  if (required.required.empty()) throw Error("{}: names no camera; write gige:SERIAL (marey cameras lists them)", address.text);
+  return required;
 }
 
-std::string id_of(const std::string& wanted) {
+std::string id_of(const std::string& required) {
   std::vector<std::string> found;
   std::string others;
   for (const GigeDevice& device : devices_there()) {
-    if (device.id == wanted || device.serial == wanted || device.address == wanted) found.push_back(device.id);
+    if (device.id == required || device.serial == required || device.address == required) found.push_back(device.id);
     others += fmt::format("{}{}", others.empty() ? "" : ", ", device.serial);
   }
-  if (found.size() > 1) throw Error("gige:{}: {} cameras have this serial number; name them by address", wanted, found.size());
+  if (found.size() > 1) throw Error("gige:{}: {} cameras have this serial number; name them by address", required, found.size());
   if (found.empty())
-    throw Error("gige:{}: there is no such camera now; {}", wanted, others.empty() ? "none answers" : "there are: " + others);
+    throw Error("gige:{}: there is no such camera now; {}", required, others.empty() ? "none answers" : "there are: " + others);
   return found.front();
 }
 
 std::vector<ControlRange> controls_of(ArvCamera& camera) {
   std::vector<ControlRange> has;
   Failure failure;
-  double least = 0, most = 0;
-  arv_camera_get_exposure_time_bounds(&camera, &least, &most, failure.out());
+  double minimum = 0, maximum = 0;
+  arv_camera_get_exposure_time_bounds(&camera, &minimum, &maximum, failure.out());
   if (!failure.failed())
-    has.push_back({Control::exposure, least / 1000, most / 1000, arv_camera_get_exposure_time(&camera, nullptr) / 1000});
-  arv_camera_get_gain_bounds(&camera, &least, &most, failure.out());
-  if (!failure.failed()) has.push_back({Control::gain, least, most, arv_camera_get_gain(&camera, nullptr)});
+    has.push_back({Control::exposure, minimum / 1000, maximum / 1000, arv_camera_get_exposure_time(&camera, nullptr) / 1000});
+  arv_camera_get_gain_bounds(&camera, &minimum, &maximum, failure.out());
+  if (!failure.failed()) has.push_back({Control::gain, minimum, maximum, arv_camera_get_gain(&camera, nullptr)});
   return has;
 }
 
 class GigeCamera final : public Connection {
  public:
-  explicit GigeCamera(const GigeOptions& options) : name_("gige:" + options.wanted) {
+  explicit GigeCamera(const GigeOptions& options) : name_("gige:" + options.required) {
     Failure failure;
     {
-      const std::string id = id_of(options.wanted);
-      const std::lock_guard lock(looking());
+      const std::string id = id_of(options.required);
+      const std::lock_guard lock(facing());
       camera_.reset(arv_camera_new(id.c_str(), failure.out()));
     }
     if (camera_ == nullptr) throw Error("{}: cannot be opened ({}); another program may have it", name_, failure.why());
@@ -162,7 +162,7 @@ class GigeCamera final : public Connection {
  private:
   static void on_lost(ArvDevice*, std::atomic<bool>* lost) { *lost = true; }
 
-  /// Throws Error where the camera refuses what was asked for.
+  /// Throws Error if the camera refuses what was asked for.
   template <typename Set>
   void demand(const char* what, const Set& set) {
     Failure failure;
@@ -172,7 +172,7 @@ class GigeCamera final : public Connection {
 
   void configure(const GigeOptions& options) {
     ArvCamera* camera = camera_.get();
-    demand("Mono8 pictures", [&](GError** e) { arv_camera_set_pixel_format(camera, ARV_PIXEL_FORMAT_MONO_8, e); });
+    demand("Mono8 images", [&](GError** e) { arv_camera_set_pixel_format(camera, ARV_PIXEL_FORMAT_MONO_8, e); });
     if (options.width > 0)
       demand("that size", [&](GError** e) { arv_camera_set_region(camera, 0, 0, options.width, options.height, e); });
     if (options.rate_hz) demand("that rate", [&](GError** e) { arv_camera_set_frame_rate(camera, *options.rate_hz, e); });
@@ -182,7 +182,7 @@ class GigeCamera final : public Connection {
       demand("that trigger", [&](GError** e) { arv_camera_set_trigger(camera, options.trigger.c_str(), e); });
     if (options.ptp) enable_ptp();
     if (arv_camera_is_gv_device(camera)) {
-      arv_camera_gv_auto_packet_size(camera, nullptr);  // where the network does not tell, the camera's own stays
+      arv_camera_gv_auto_packet_size(camera, nullptr);  // where the network does not specify, the camera's own stays
       if (options.packet_delay_us > 0)
         demand("that packet delay",
                [&](GError** e) { arv_camera_gv_set_packet_delay(camera, static_cast<gint64>(1000 * options.packet_delay_us), e); });
@@ -202,7 +202,7 @@ class GigeCamera final : public Connection {
     Failure failure;
     arv_device_set_boolean_feature_value(device, "PtpEnable", TRUE, failure.out());
     if (failure.failed()) arv_device_set_boolean_feature_value(device, "GevIEEE1588", TRUE, failure.out());
-    if (failure.failed()) throw Error("{}: has no PTP ({}); leave out ptp", name_, failure.why());
+    if (failure.failed()) throw Error("{}: has no PTP ({}); omit ptp", name_, failure.why());
   }
 
   void begin() {
@@ -210,12 +210,12 @@ class GigeCamera final : public Connection {
     stream_.reset(arv_camera_create_stream(camera_.get(), nullptr, nullptr, failure.out()));
     if (stream_ == nullptr) throw Error("{}: cannot be streamed from ({})", name_, failure.why());
     if (ARV_IS_GV_STREAM(stream_.get())) {
-      // A frame with a lost packet waits so long for it: about a period, not the tenth of a second that is usual.
+      // A frame with a lost packet waits this long for it: about a period, not the tenth of a second that is typical.
       const double period_us = std::clamp(1e6 / info_.rate_hz.value_or(25), 5000.0, 100000.0);
       g_object_set(stream_.get(), "frame-retention", static_cast<guint>(period_us), nullptr);
     }
     const auto payload = arv_camera_get_payload(camera_.get(), failure.out());
-    if (failure.failed()) throw Error("{}: does not say how large its frames are ({})", name_, failure.why());
+    if (failure.failed()) throw Error("{}: does not specify how large its frames are ({})", name_, failure.why());
     for (int i = 0; i < kBuffers; ++i) arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));
     arv_camera_start_acquisition(camera_.get(), failure.out());
     if (failure.failed()) throw Error("{}: does not begin ({})", name_, failure.why());
@@ -227,9 +227,9 @@ class GigeCamera final : public Connection {
     arv_buffer_get_image_region(&buffer, &x, &y, &width, &height);
     const auto* bytes = static_cast<const std::uint8_t*>(arv_buffer_get_data(&buffer, &length));
     if (bytes == nullptr || arv_buffer_get_image_pixel_format(&buffer) != ARV_PIXEL_FORMAT_MONO_8) return false;
-    auto picture = unpack(Packing::grey, {bytes, length}, {width, height}, static_cast<std::size_t>(width));
-    if (!picture) return false;
-    shot.given.frame.picture = std::move(*picture);
+    auto image = unpack(Packing::grey, {bytes, length}, {width, height}, static_cast<std::size_t>(width));
+    if (!image) return false;
+    shot.given.frame.image = std::move(*image);
     shot.sequence = counted(arv_buffer_get_frame_id(&buffer));
     if (const guint64 stamp = arv_buffer_get_timestamp(&buffer); stamp > 0)
       shot.device_time = Duration(static_cast<std::int64_t>(stamp));
@@ -255,7 +255,7 @@ class GigeCamera final : public Connection {
 };
 
 void describe(const std::string& id, FoundCamera& found) {
-  const std::lock_guard lock(looking());
+  const std::lock_guard lock(facing());
   const Owned<ArvCamera> camera(arv_camera_new(id.c_str(), nullptr));
   if (camera == nullptr) return;  // another program has it
   int x = 0, y = 0, width = 0, height = 0;
@@ -263,14 +263,14 @@ void describe(const std::string& id, FoundCamera& found) {
   arv_camera_get_region(camera.get(), &x, &y, &width, &height, failure.out());
   if (!failure.failed()) {
     FoundCamera::Mode& mode = found.modes.emplace_back();
-    mode.format = said(arv_camera_get_pixel_format_as_string(camera.get(), nullptr));
+    mode.format = stated(arv_camera_get_pixel_format_as_string(camera.get(), nullptr));
     mode.size = {width, height};
     const double rate = arv_camera_get_frame_rate(camera.get(), failure.out());
     if (!failure.failed() && rate > 0) mode.rates_hz.push_back(rate);
   }
   for (const ControlRange& control : controls_of(*camera)) {
     const char* name = control.control == Control::exposure ? "exposure (ms)" : "gain";
-    found.controls.push_back({name, control.least, control.most, control.now});
+    found.controls.push_back({name, control.minimum, control.maximum, control.now});
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace marey::source::live {
 
-/// The row of the register; nothing where this build has no Aravis.
+/// The row of the register; nothing if this build has no Aravis.
 std::optional<Kind> gige_kind();
 
 /// Those that answer now; none where this build has no Aravis.

@@ -4,18 +4,18 @@
 #include <memory>
 #include <span>
 
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 
 namespace marey::source::live {
 
-/// Pictures of a camera that sends each as a JPEG.
+/// Images of a camera that sends each as a JPEG.
 class JpegDecoder {
  public:
   JpegDecoder();
   ~JpegDecoder();
 
-  /// Empty where it cannot be decoded.
-  Picture decode(std::span<const std::uint8_t> bytes);
+  /// Empty if it cannot be decoded.
+  Image decode(std::span<const std::uint8_t> bytes);
 
  private:
   struct Parts;

@@ -14,7 +14,7 @@
 namespace marey::source::live {
 namespace {
 
-constexpr int kMostDevices = 64;
+constexpr int kMaxDevices = 64;
 
 class SystemKernel final : public Kernel {
  public:
@@ -49,7 +49,7 @@ class SystemKernel final : public Kernel {
   std::vector<std::string> devices() override {
     std::vector<std::string> all;
     std::error_code ignored;
-    for (int i = 0; i < kMostDevices; ++i) {
+    for (int i = 0; i < kMaxDevices; ++i) {
       const std::string path = fmt::format("/dev/video{}", i);
       if (std::filesystem::exists(path, ignored)) all.push_back(path);
     }

@@ -20,7 +20,7 @@ class Kernel {
   /// Null where it fails.
   virtual void* map(int file, std::size_t length, std::int64_t offset) = 0;
   virtual void unmap(void* memory, std::size_t length) = 0;
-  /// 1 where a frame can be taken, 0 where none came for so long.
+  /// 1 where a frame can be taken, 0 where none came for this long.
   virtual int wait(int file, int milliseconds) = 0;
   /// By the clock that frames are stamped with (CLOCK_MONOTONIC).
   virtual Duration now() = 0;

@@ -23,14 +23,14 @@ Connect open_played(const Address& address, const Opening& opening) {
   options.number("rate", rate, 0.1, 10000);
   options.done();
   const std::optional<double> rate_hz = rate > 0 ? std::optional(rate) : std::nullopt;
-  open_source(address.place, rate_hz);  // a file that is not there now will not come
-  return play([path = address.place, rate_hz] { return open_source(path, rate_hz); }, how);
+  open_source(address.location, rate_hz);  // a file that is not there now will not come
+  return play([path = address.location, rate_hz] { return open_source(path, rate_hz); }, how);
 }
 
 Connect open_network(const Address& address, const Opening& /*opening*/) {
   constexpr std::string_view kByUdp = "#udp";
   const bool udp = address.text.ends_with(kByUdp);
-  if (address.place.empty()) throw Error("{}: names no host; write {}://HOST/PATH", address.text, address.scheme);
+  if (address.location.empty()) throw Error("{}: names no host; write {}://HOST/PATH", address.text, address.scheme);
   return connect_network({.url = udp ? address.text.substr(0, address.text.size() - kByUdp.size()) : address.text, .udp = udp});
 }
 
@@ -54,11 +54,11 @@ std::vector<Kind> camera_kinds() {
        .open = open_v4l2},
       {.schemes = {"rtsp", "rtsps", "http", "https"},
        .form = "rtsp://HOST/PATH, http://HOST/PATH",
-       .meaning = "a camera on a network that sends a film",
+       .meaning = "a camera on a network that sends a video",
        .open = open_network},
       {.schemes = {"play"},
        .form = "play:FILE?loop",
-       .meaning = "a film, or a folder of pictures, in real time",
+       .meaning = "a video, or a folder of images, in real time",
        .open = open_played},
   };
   if (auto gige = gige_kind()) kinds.push_back(std::move(*gige));

@@ -19,7 +19,7 @@ namespace marey::source::live {
 /// What every source of a run is opened with.
 struct Opening {
   std::shared_ptr<LiveTime> time;
-  std::function<Timestamp()> begin;  ///< when films and simulations begin: the same for all of them
+  std::function<Timestamp()> begin;  ///< when videos and simulations begin: the same for all of them
   std::optional<double> rate_hz;     ///< what the rig says
 };
 
@@ -29,7 +29,7 @@ struct Kind {
   std::string_view meaning;
   /// How a camera of this name is connected; it need not be there yet. Throws Error for a name that cannot be meant.
   std::function<Connect(const Address&, const Opening&)> open;
-  /// The cameras that one name stands for, each with a source of its own; empty where it always stands for one.
+  /// The cameras that one name stands for, each with a source of its own; empty if it always stands for one.
   std::function<Rig(const Address&)> cameras = {};
 };
 

@@ -100,7 +100,7 @@ class LiveCamera final : public LiveSource {
 
   void read(Connection& connection, const std::stop_token& stop) {
     Timestamp last = time_->now();
-    const double patience = std::max(options_.silent_s, 3 / std::max(1e-3, connection.info().rate_hz.value_or(kUsualRate)));
+    const double patience = std::max(options_.silent_s, 3 / std::max(1e-3, connection.info().rate_hz.value_or(kDefaultRate)));
     while (!stop.stop_requested()) {
       if (options_.controls != nullptr) options_.controls->apply(connection);
       Shot shot;
@@ -133,11 +133,11 @@ class LiveCamera final : public LiveSource {
       if (sequence_ && *shot.sequence > *sequence_ + 1) health_.lost += *shot.sequence - *sequence_ - 1;
       sequence_ = shot.sequence;
     }
-    const cv::Size size = shot.given.frame.picture.size();
+    const cv::Size size = shot.given.frame.image.size();
     if (info_.size.empty()) info_.size = size;
-    if (!shot.given.frame.picture.empty() && size != info_.size) {
+    if (!shot.given.frame.image.empty() && size != info_.size) {
       ++health_.damaged;
-      health_.trouble = fmt::format("{}: its pictures have {} × {} px now, not {} × {}; set it back, or begin anew", info_.name,
+      health_.trouble = fmt::format("{}: its images have {} × {} px now, not {} × {}; set it back, or begin again", info_.name,
                                     size.width, size.height, info_.size.width, info_.size.height);
       return;
     }

@@ -44,7 +44,7 @@ class Scripted final : public Connection {
 
 Shot shot(std::int64_t sequence, cv::Size size = {8, 6}) {
   Shot made;
-  made.given.frame.picture = Picture(cv::Mat(size, CV_8UC1, cv::Scalar(0)));
+  made.given.frame.image = Image(cv::Mat(size, CV_8UC1, cv::Scalar(0)));
   made.sequence = sequence;
   return made;
 }
@@ -106,11 +106,11 @@ TEST(LiveCamera, ComesBackAfterItWasUnplugged) {
   ASSERT_TRUE(soon([&] { return camera->health().connections >= 3; }));
   const CameraHealth health = camera->health();
   EXPECT_EQ(health.trouble, "unplugged");
-  EXPECT_EQ(health.lost, 0) << "its numbers begin anew";
+  EXPECT_EQ(health.lost, 0) << "its numbers begin again";
   EXPECT_FALSE(camera->ended());
 }
 
-TEST(LiveCamera, OneThatFallsSilentIsOpenedAgain) {
+TEST(LiveCamera, ReopensSilentCamera) {
   const auto camera = keep_connected("cam", always({{Came::frame, shot(0)}}, Came::nothing), steady_time(),
                                      {.keep = 4, .first_retry_s = 0.01, .longest_retry_s = 0.02, .silent_s = 0.1});
   EXPECT_TRUE(soon([&] { return camera->health().connections >= 2; }));
@@ -119,7 +119,7 @@ TEST(LiveCamera, OneThatFallsSilentIsOpenedAgain) {
 TEST(Address, SaysWhatItIsAndRefusesTheRest) {
   const Address address = parse_address("sim://room?cameras=8&drawn&motion=walk");
   EXPECT_EQ(address.scheme, "sim");
-  EXPECT_EQ(address.place, "room");
+  EXPECT_EQ(address.location, "room");
   int cameras = 1;
   bool drawn = false;
   std::string motion;
@@ -136,7 +136,7 @@ TEST(Address, SaysWhatItIsAndRefusesTheRest) {
                Error);
   EXPECT_THROW(parse_address("walk.avi"), Error);
   EXPECT_THROW(parse_address("sim://room?a=1&a=2"), Error);
-  EXPECT_EQ(parse_address("v4l2:/dev/video0").place, "/dev/video0");
+  EXPECT_EQ(parse_address("v4l2:/dev/video0").location, "/dev/video0");
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include <memory>
 #include <utility>
 
-#include "marey/core/c_deleter.h"
 #include "marey/core/error.h"
-#include "marey/core/limits.h"
-#include "marey/core/source_name.h"
 #include "marey/core/stop.h"
-#include "marey/source/decoded_picture.h"
+#include "marey/files/c_deleter.h"
+#include "marey/files/limits.h"
+#include "marey/files/source_name.h"
+#include "marey/source/decoded_image.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -31,7 +31,7 @@ std::string why(int code) {
   return text;
 }
 
-/// FFmpeg asks it all the time whether to go on: not after the deadline, not when the camera is let go.
+/// FFmpeg asks it all the time whether to continue: not after the deadline, not when the camera is dropped.
 struct Patience {
   explicit Patience(std::stop_token token) : stop(std::move(token)) {}
 
@@ -93,7 +93,7 @@ class NetworkStream final : public Connection {
     if (code < 0) throw Error("{}: cannot be reached ({}); is it on, and is its address right?", shown_, why(code));
     format_.reset(opened);
     patience_.wait_for(options_.open_s);
-    if (avformat_find_stream_info(format_.get(), nullptr) < 0) throw Error("{}: sends nothing that can be read as a film", shown_);
+    if (avformat_find_stream_info(format_.get(), nullptr) < 0) throw Error("{}: sends nothing that can be read as a video", shown_);
   }
 
   void open_decoder() {
@@ -105,14 +105,14 @@ class NetworkStream final : public Connection {
     avcodec_parameters_to_context(codec_.get(), stream_->codecpar);
     codec_->thread_count = 1;
     codec_->flags |= AV_CODEC_FLAG_LOW_DELAY;
-    codec_->max_pixels = static_cast<std::int64_t>(Limits::in_force().picture_px);
+    codec_->max_pixels = static_cast<std::int64_t>(Limits::in_force().image_px);
     codec_->log_level_offset = AV_LOG_TRACE;
     if (const int code = avcodec_open2(codec_.get(), codec, nullptr); code < 0)
       throw Error("{}: its video ({}) cannot be decoded ({})", shown_, codec->long_name, why(code));
-    if (codec_->width <= 0 || codec_->height <= 0) throw Error("{}: does not say how large its pictures are", shown_);
+    if (codec_->width <= 0 || codec_->height <= 0) throw Error("{}: does not specify how large its images are", shown_);
   }
 
-  /// One packet to the decoder; false where it had to be left out. Throws Error where the stream has ended.
+  /// One packet to the decoder; false where it had to be omitted. Throws Error if the stream has ended.
   bool feed() {
     av_packet_unref(packet_.get());
     patience_.wait_for(options_.silent_s);
@@ -136,20 +136,20 @@ class NetworkStream final : public Connection {
     std::size_t size = 0;
     const std::uint8_t* data = av_packet_get_side_data(packet_.get(), AV_PKT_DATA_PRFT, &size);
     if (data == nullptr || size < sizeof(AVProducerReferenceTime)) return;
-    const auto* told = reinterpret_cast<const AVProducerReferenceTime*>(data);
-    wallclock_ = Duration(told->wallclock * 1000);
+    const auto* reported = reinterpret_cast<const AVProducerReferenceTime*>(data);
+    wallclock_ = Duration(reported->wallclock * 1000);
     wallclock_pts_ = packet_->pts;
   }
 
   Came take(Shot& shot) {
     const bool whole = frame_->decode_error_flags == 0 && (frame_->flags & AV_FRAME_FLAG_CORRUPT) == 0;
-    shot.given.frame.picture = whole ? maker_(*frame_, {frame_->width, frame_->height}) : Picture();
+    shot.given.frame.image = whole ? maker_(*frame_, {frame_->width, frame_->height}) : Image();
     if (wallclock_ && wallclock_pts_ != AV_NOPTS_VALUE && frame_->pts != AV_NOPTS_VALUE) {
       const std::int64_t back = av_rescale_q(wallclock_pts_ - frame_->pts, stream_->time_base, AVRational{1, 1'000'000'000});
       shot.device_time = *wallclock_ - Duration(back);
     }
     av_frame_unref(frame_.get());
-    return shot.given.frame.picture.empty() ? Came::damaged : Came::frame;
+    return shot.given.frame.image.empty() ? Came::damaged : Came::frame;
   }
 
   NetworkOptions options_;
@@ -160,7 +160,7 @@ class NetworkStream final : public Connection {
   AVStream* stream_ = nullptr;
   NetworkPacket packet_{allocated(av_packet_alloc())};
   NetworkFrame frame_{allocated(av_frame_alloc())};
-  PictureMaker maker_;
+  ImageConverter maker_;
   SourceInfo info_;
   bool wait_for_key_ = true;
   std::optional<Duration> wallclock_;

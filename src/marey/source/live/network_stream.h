@@ -10,9 +10,9 @@ namespace marey::source::live {
 
 struct NetworkOptions {
   std::string url;
-  double open_s = 5;    ///< a host that does not answer for so long is tried again
-  double silent_s = 3;  ///< a stream that brings nothing for so long is opened anew
-  bool udp = false;     ///< RTSP's pictures by UDP: later frames do not wait for a lost one, which is damaged instead. Else by TCP.
+  double open_s = 5;    ///< a host that does not answer for this long is tried again
+  double silent_s = 3;  ///< a stream that brings nothing for this long is opened again
+  bool udp = false;     ///< RTSP's images by UDP: later frames do not wait for a lost one, which is damaged instead. Else by TCP.
 };
 
 /// FFmpeg at its least delay: nothing is kept back, one thread decodes, and what cannot be decoded without what was lost is left

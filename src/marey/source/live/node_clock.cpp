@@ -10,20 +10,20 @@ constexpr double kDrift = 50e-6;  // s/s that two hosts' clocks go apart
 
 }  // namespace
 
-void NodeClock::learn(Timestamp asked, Timestamp told, Timestamp came) {
-  const Duration half = (came - asked) / 2;
-  last_.push_back({came, asked + half - told, seconds(half)});
+void NodeClock::learn(Timestamp requested, Timestamp reported, Timestamp came) {
+  const Duration half = (came - requested) / 2;
+  last_.push_back({came, requested + half - reported, seconds(half)});
   if (last_.size() > kRoundTrips) last_.pop_front();
   best_ = best(came);
 }
 
 std::optional<NodeClock::RoundTrip> NodeClock::best(Timestamp now) const {
   std::optional<RoundTrip> best;
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (const RoundTrip& each : last_) {
     const double off = each.half_s + kDrift * seconds(now - each.came);
-    if (off > least) continue;
-    least = off;
+    if (off > minimum) continue;
+    minimum = off;
     best = each;
   }
   return best;

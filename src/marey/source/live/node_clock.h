@@ -1,6 +1,6 @@
 // Another host's clock by round trips. An answer was given between question and arrival, so that half the round trip is what it can
-// be off; clocks of two hosts drift apart meanwhile. Of the last few round trips the one with the least of both tells the time
-// (F. Cristian, "Probabilistic clock synchronization", Distributed Computing 3, 1989).
+// be off; clocks of two hosts drift apart in the meantime. Of the last few round trips the one with the least of both tells the
+// time (F. Cristian, "Probabilistic clock synchronization", Distributed Computing 3, 1989).
 #pragma once
 
 #include <deque>
@@ -13,7 +13,7 @@ namespace marey::source::live {
 class NodeClock {
  public:
   /// It was asked at `asked` and its answer came at `came`, both by the clock here; it said `told` by its own.
-  void learn(Timestamp asked, Timestamp told, Timestamp came);
+  void learn(Timestamp requested, Timestamp reported, Timestamp came);
 
   /// A time of that clock by the clock here; nothing before the first answer.
   std::optional<Timestamp> here(Timestamp there) const;

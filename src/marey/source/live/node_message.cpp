@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/limits.h"
 #include "marey/core/rig.h"
-#include "marey/core/text_safety.h"
+#include "marey/files/limits.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::source::live {
 namespace {
@@ -21,11 +21,11 @@ static_assert(std::endian::native == std::endian::little, "messages of nodes are
 
 constexpr std::string_view kFrameMark = "MRYF", kAnswerMark = "MRYA", kControlsMark = "MRYC";
 constexpr std::array kNodeControls{Control::exposure, Control::gain, Control::threshold};
-constexpr std::size_t kLongestRefusal = 1000;  // bytes
+constexpr std::size_t kMaxRefusal = 1000;  // bytes
 constexpr std::size_t kNumbersOfDetection = 11;
-constexpr std::size_t kMostNames = 1000;
-constexpr int kMostNodeSide = 1 << 20;                                                                  // px
-constexpr double kMostNumber = 1e9;                                                                     // of px, px², Hz
+constexpr std::size_t kMaxNames = 1000;
+constexpr int kMaxNodeSide = 1 << 20;                                                                   // px
+constexpr double kMaxNumber = 1e9;                                                                      // of px, px², Hz
 constexpr std::int64_t kMostNodeFrames = std::int64_t{1} << 40, kMostNodeTime = std::int64_t{1} << 60;  // ns: 36 years
 
 enum class NodeKind : std::uint8_t { jpeg, detections };
@@ -41,7 +41,7 @@ class NodeReader {
   NodeReader(std::string_view rest, const std::string& name) : rest_(rest), name_(name) {}
 
   void mark(std::string_view mark) {
-    if (!rest_.starts_with(mark)) refuse("it is no node of Marey, or one of another version");
+    if (!rest_.starts_with(mark)) refuse("it is not a node of Marey, or one of another version");
     rest_.remove_prefix(mark.size());
   }
 
@@ -56,7 +56,7 @@ class NodeReader {
 
   double number() {
     const auto value = next<double>();
-    if (!(std::abs(value) <= kMostNumber)) refuse("a number is none, or out of all bounds");
+    if (!(std::abs(value) <= kMaxNumber)) refuse("a number is not one, or out of all bounds");
     return value;
   }
 
@@ -68,7 +68,7 @@ class NodeReader {
 
   cv::Size size() {
     const auto width = next<std::uint32_t>(), height = next<std::uint32_t>();
-    if (width > kMostNodeSide || height > kMostNodeSide) refuse("its pictures are too large");
+    if (width > kMaxNodeSide || height > kMaxNodeSide) refuse("its images are too large");
     return {static_cast<int>(width), static_cast<int>(height)};
   }
 
@@ -95,7 +95,7 @@ Detection next_detection(NodeReader& message) {
   covariance(0, 0) = message.number();
   covariance(0, 1) = covariance(1, 0) = message.number();
   covariance(1, 1) = message.number();
-  if (!(covariance(0, 0) >= 0 && covariance.determinant() >= 0)) message.refuse("a covariance is none");
+  if (!(covariance(0, 0) >= 0 && covariance.determinant() >= 0)) message.refuse("a covariance is not one");
   if (covariance.trace() > 0) found.covariance = covariance;
   found.area = message.number();
   for (double* side : {&found.box.left, &found.box.top, &found.box.width, &found.box.height}) *side = message.number();
@@ -153,7 +153,7 @@ NodeFrame read_node_frame(std::string_view message, const std::string& name) {
     frame.jpeg = {reinterpret_cast<const std::uint8_t*>(reader.rest().data()), reader.rest().size()};
     return frame;
   }
-  if (kind != NodeKind::detections) reader.refuse("a frame is neither a picture nor detections");
+  if (kind != NodeKind::detections) reader.refuse("a frame is neither an image nor detections");
   const std::size_t count = reader.next<std::uint32_t>();
   if (count > Limits::in_force().observations) reader.refuse("too many detections in a frame (the limit observations)");
   if (reader.rest().size() != count * kNumbersOfDetection * sizeof(double)) reader.refuse("the message breaks off");
@@ -175,9 +175,9 @@ NodeAnswer read_node_answer(std::string_view message, const std::string& name) {
   for (std::string_view rest = reader.rest(); !rest.empty();) {
     const std::size_t end = rest.find('\n');
     const std::string_view camera = rest.substr(0, end);
-    if (end == std::string_view::npos || answer.cameras.size() == kMostNames || camera.size() > Limits::in_force().label_bytes ||
+    if (end == std::string_view::npos || answer.cameras.size() == kMaxNames || camera.size() > Limits::in_force().label_bytes ||
         std::any_of(camera.begin(), camera.end(), unfit_for_camera_name))
-      reader.refuse("its list of cameras is none");
+      reader.refuse("its list of cameras is not one");
     answer.cameras.emplace_back(camera);
     rest.remove_prefix(end + 1);
   }
@@ -192,9 +192,9 @@ std::string message_of(const NodeControls& controls) {
   put(message, static_cast<std::uint8_t>(controls.has.size()));
   for (const ControlRange& range : controls.has) {
     put(message, static_cast<std::uint8_t>(range.control));
-    for (const double value : {range.least, range.most, range.now}) put(message, value);
+    for (const double value : {range.minimum, range.maximum, range.now}) put(message, value);
   }
-  return message + controls.refused.substr(0, kLongestRefusal);
+  return message + controls.refused.substr(0, kMaxRefusal);
 }
 
 std::optional<NodeControls> read_node_controls(std::string_view message, const std::string& name) {
@@ -209,37 +209,37 @@ std::optional<NodeControls> read_node_controls(std::string_view message, const s
   if (count > kNodeControls.size()) reader.refuse("a camera has more controls than there are");
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t which = reader.next<std::uint8_t>();
-    if (which >= kNodeControls.size()) reader.refuse("a control is none that is known");
+    if (which >= kNodeControls.size()) reader.refuse("a control is not one that is known");
     ControlRange& range = controls.has.emplace_back();
     range.control = kNodeControls[which];
-    for (double* value : {&range.least, &range.most, &range.now}) *value = reader.number();
-    if (range.least > range.most) reader.refuse("a control's bounds are none");
+    for (double* value : {&range.minimum, &range.maximum, &range.now}) *value = reader.number();
+    if (range.minimum > range.maximum) reader.refuse("a control's bounds are not any");
   }
-  if (reader.rest().size() > kLongestRefusal) reader.refuse("a sentence is too long");
+  if (reader.rest().size() > kMaxRefusal) reader.refuse("a sentence is too long");
   controls.refused = plain_text(reader.rest());
   return controls;
 }
 
 std::string text_of(const NodeQuestion& question) {
-  if (!question.wish) return question.camera + "=";
-  return fmt::format("{}={} {}", question.camera, to_string(question.wish->control), question.wish->value);
+  if (!question.request) return question.camera + "=";
+  return fmt::format("{}={} {}", question.camera, to_string(question.request->control), question.request->value);
 }
 
 std::optional<NodeQuestion> read_node_question(std::string_view text) {
   const std::size_t sign = text.find('=');
   if (sign == std::string_view::npos || sign == 0) return std::nullopt;
-  NodeQuestion question{.camera = std::string(text.substr(0, sign)), .wish = {}};
-  const std::string_view wish = text.substr(sign + 1);
-  if (wish.empty()) return question;
-  const std::size_t blank = std::min(wish.find(' '), wish.size());
+  NodeQuestion question{.camera = std::string(text.substr(0, sign)), .request = {}};
+  const std::string_view request = text.substr(sign + 1);
+  if (request.empty()) return question;
+  const std::size_t blank = std::min(request.find(' '), request.size());
   const auto control = std::find_if(kNodeControls.begin(), kNodeControls.end(),
-                                    [&](Control each) { return to_string(each) == wish.substr(0, blank); });
-  const std::string_view digits = wish.substr(std::min(blank + 1, wish.size()));
+                                    [&](Control each) { return to_string(each) == request.substr(0, blank); });
+  const std::string_view digits = request.substr(std::min(blank + 1, request.size()));
   double value = 0;
   const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (control == kNodeControls.end() || failed != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-  if (!(value >= 0 && value <= kMostNumber)) return std::nullopt;
-  question.wish = {*control, value};
+  if (!(value >= 0 && value <= kMaxNumber)) return std::nullopt;
+  question.request = {*control, value};
   return question;
 }
 

@@ -1,7 +1,7 @@
 // What a camera node and the host that solves say to each other (docs/live.md). Little endian, doubles as IEEE 754.
 //
 //   a frame    "MRYF" session:u64 sequence:i64 taken_ns:i64 width:u32 height:u32 kind:u8, then
-//              kind 0: the picture, JPEG, to the end
+//              kind 0: the image, JPEG, to the end
 //              kind 1: count:u32, and for each detection centre, covariance xx xy yy, area, box left top width height, score: f64
 //              each
 //   an answer  "MRYA" session:u64 now_ns:i64 known:u8 width:u32 height:u32 rate_hz:f64 (0: not known), then the names of all
@@ -29,12 +29,12 @@
 
 namespace marey::source::live {
 
-/// One camera's frame on its way: its picture or what was found in it.
+/// One camera's frame on its way: its image or what was found in it.
 struct NodeFrame {
-  std::uint64_t session = 0;                              ///< of the node's start: another one counts and times anew
+  std::uint64_t session = 0;                              ///< of the node's start: another one counts and times again
   std::int64_t sequence = 0;                              ///< of this camera's frames; what a host does not get is missing
   Timestamp taken{};                                      ///< by the node's clock
-  cv::Size size;                                          ///< of the picture, px; empty where it is not known
+  cv::Size size;                                          ///< of the image, px; empty if it is not known
   std::optional<std::vector<Detection>> detections = {};  ///< without outlines and groups
   std::span<const std::uint8_t> jpeg = {};                ///< of the message that it was read from; where there are no detections
 };
@@ -44,7 +44,7 @@ struct NodeAnswer {
   std::uint64_t session = 0;
   Timestamp now{};                   ///< by the node's clock, while it answered
   bool known = false;                ///< whether it has such a camera
-  cv::Size size;                     ///< px; empty until its first picture came
+  cv::Size size;                     ///< px; empty until its first image came
   std::optional<double> rate_hz;     ///< where it is known
   std::vector<std::string> cameras;  ///< the names of all that it has
 };
@@ -55,21 +55,21 @@ struct NodeControls {
   bool allowed = false;           ///< whether hosts may set it
   bool waits = false;             ///< what was asked for is not set yet
   std::vector<ControlRange> has;  ///< threshold: where the node finds the markers
-  std::string refused;            ///< why the last that was asked for was not taken; empty where it was
+  std::string refused;            ///< why the last that was asked for was not taken; empty if it was
 };
 
 /// About the controls of a node's camera.
 struct NodeQuestion {
-  struct Wish {
+  struct ControlRequest {
     Control control{};
     double value = 0;
   };
   std::string camera;
-  std::optional<Wish> wish;
+  std::optional<ControlRequest> request;
 };
 
 std::string text_of(const NodeQuestion& question);
-/// Nothing where it asks for something else, or for a value that is none.
+/// Nothing if it asks for something else, or for a value that is not one.
 std::optional<NodeQuestion> read_node_question(std::string_view text);
 
 /// What subscribes to a camera's frames, with its name behind it.
@@ -84,7 +84,7 @@ std::string message_of(const NodeControls& controls);
 /// Throw Error, with `name` of the node, for what is no such message.
 NodeFrame read_node_frame(std::string_view message, const std::string& name);
 NodeAnswer read_node_answer(std::string_view message, const std::string& name);
-/// Nothing where it is an answer: the node knows nothing of controls.
+/// Nothing if it is an answer: the node knows nothing of controls.
 std::optional<NodeControls> read_node_controls(std::string_view message, const std::string& name);
 
 }  // namespace marey::source::live

@@ -28,7 +28,7 @@ NodeFrame two_blobs() {
   return frame;
 }
 
-TEST(NodeMessage, WhatIsWrittenIsRead) {
+TEST(NodeMessage, RoundTripsMessage) {
   const NodeFrame frame = two_blobs();
   const std::string message = message_of(frame);
   const NodeFrame read = read_node_frame(message, "node");
@@ -47,20 +47,20 @@ TEST(NodeMessage, WhatIsWrittenIsRead) {
   EXPECT_EQ(found.score, 0.75);
 
   const std::vector<std::uint8_t> jpeg{1, 2, 3};
-  const std::string picture = message_of(NodeFrame{.session = 7, .sequence = 1, .taken = at(0), .size = {4, 4}, .jpeg = jpeg});
-  const NodeFrame with_picture = read_node_frame(picture, "node");
+  const std::string image = message_of(NodeFrame{.session = 7, .sequence = 1, .taken = at(0), .size = {4, 4}, .jpeg = jpeg});
+  const NodeFrame with_picture = read_node_frame(image, "node");
   EXPECT_FALSE(with_picture.detections);
   EXPECT_EQ(std::vector(with_picture.jpeg.begin(), with_picture.jpeg.end()), jpeg);
 
   const NodeAnswer answer{.session = 7, .now = at(3), .known = true, .size = {8, 6}, .rate_hz = 60, .cameras = {"left", "right"}};
-  const NodeAnswer heard = read_node_answer(message_of(answer), "node");
-  EXPECT_EQ(heard.now, at(3));
-  EXPECT_TRUE(heard.known);
-  EXPECT_EQ(heard.rate_hz, 60);
-  EXPECT_EQ(heard.cameras, answer.cameras);
+  const NodeAnswer received = read_node_answer(message_of(answer), "node");
+  EXPECT_EQ(received.now, at(3));
+  EXPECT_TRUE(received.known);
+  EXPECT_EQ(received.rate_hz, 60);
+  EXPECT_EQ(received.cameras, answer.cameras);
 }
 
-TEST(NodeMessage, WhatIsNoneIsRefused) {
+TEST(NodeMessage, RejectsMalformedInput) {
   std::string message = message_of(two_blobs());
   for (std::size_t length = 0; length < message.size(); ++length)
     EXPECT_THROW(read_node_frame(std::string_view(message).substr(0, length), "node"), Error) << length;
@@ -84,22 +84,22 @@ TEST(NodeMessage, WhatIsNoneIsRefused) {
 }
 
 TEST(NodeMessage, ControlsComeAsTheyAreSaid) {
-  const NodeControls said{.session = 7,
-                          .allowed = true,
-                          .waits = true,
-                          .has = {{Control::exposure, 0.02, 50, 2.5}, {Control::threshold, 0, 65535, 0}},
-                          .refused = "too long"};
-  const std::string message = message_of(said);
-  const auto heard = read_node_controls(message, "node");
-  ASSERT_TRUE(heard);
-  EXPECT_EQ(heard->session, 7u);
-  EXPECT_TRUE(heard->allowed && heard->waits);
-  ASSERT_EQ(heard->has.size(), 2u);
-  EXPECT_EQ(heard->has[0].now, 2.5);
-  EXPECT_EQ(heard->has[1].control, Control::threshold);
-  EXPECT_EQ(heard->refused, "too long");
+  const NodeControls stated{.session = 7,
+                            .allowed = true,
+                            .waits = true,
+                            .has = {{Control::exposure, 0.02, 50, 2.5}, {Control::threshold, 0, 65535, 0}},
+                            .refused = "too long"};
+  const std::string message = message_of(stated);
+  const auto received = read_node_controls(message, "node");
+  ASSERT_TRUE(received);
+  EXPECT_EQ(received->session, 7u);
+  EXPECT_TRUE(received->allowed && received->waits);
+  ASSERT_EQ(received->has.size(), 2u);
+  EXPECT_EQ(received->has[0].now, 2.5);
+  EXPECT_EQ(received->has[1].control, Control::threshold);
+  EXPECT_EQ(received->refused, "too long");
   EXPECT_FALSE(read_node_controls(message_of(NodeAnswer{}), "node")) << "of a node that knows nothing of them";
-  for (std::size_t length = 0; length < message.size() - said.refused.size(); ++length)
+  for (std::size_t length = 0; length < message.size() - stated.refused.size(); ++length)
     EXPECT_THROW(read_node_controls(std::string_view(message).substr(0, length), "node"), Error) << length;
   EXPECT_THROW(read_node_controls(message + std::string(1000, 'x'), "node"), Error);
   std::mt19937 random(5);
@@ -108,7 +108,7 @@ TEST(NodeMessage, ControlsComeAsTheyAreSaid) {
     for (int k = 0; k < 3; ++k) mutated[4 + random() % (mutated.size() - 4)] = static_cast<char>(random());
     try {
       const auto read = read_node_controls(mutated, "node");
-      for (const ControlRange& range : read->has) EXPECT_TRUE(range.least <= range.most && std::isfinite(range.now));
+      for (const ControlRange& range : read->has) EXPECT_TRUE(range.minimum <= range.maximum && std::isfinite(range.now));
     } catch (const Error& error) {
       EXPECT_TRUE(std::string(error.what()).starts_with("node: ")) << error.what();
     }
@@ -116,30 +116,30 @@ TEST(NodeMessage, ControlsComeAsTheyAreSaid) {
 }
 
 TEST(NodeMessage, QuestionsAboutControlsAreReadAsTheyAreWritten) {
-  const NodeQuestion wish{.camera = "left one", .wish = NodeQuestion::Wish{Control::exposure, 2.5}};
-  EXPECT_EQ(text_of(wish), "left one=exposure 2.5");
-  const auto heard = read_node_question(text_of(wish));
-  ASSERT_TRUE(heard && heard->wish);
-  EXPECT_EQ(heard->camera, "left one");
-  EXPECT_EQ(heard->wish->control, Control::exposure);
-  EXPECT_EQ(heard->wish->value, 2.5);
+  const NodeQuestion request{.camera = "left one", .request = NodeQuestion::ControlRequest{Control::exposure, 2.5}};
+  EXPECT_EQ(text_of(request), "left one=exposure 2.5");
+  const auto received = read_node_question(text_of(request));
+  ASSERT_TRUE(received && received->request);
+  EXPECT_EQ(received->camera, "left one");
+  EXPECT_EQ(received->request->control, Control::exposure);
+  EXPECT_EQ(received->request->value, 2.5);
   const auto state = read_node_question("left=");
   ASSERT_TRUE(state);
-  EXPECT_FALSE(state->wish);
+  EXPECT_FALSE(state->request);
   for (const char* none : {"", "left", "=", "=exposure 1", "left=focus 1", "left=exposure", "left=exposure ", "left=exposure -1",
                            "left=exposure nan", "left=exposure inf", "left=exposure 1e99", "left=exposure 1x", "left= "})
     EXPECT_FALSE(read_node_question(none)) << none;
 }
 
-TEST(NodePlace, IsReadFromAnAddress) {
-  const auto place = [](const std::string& text) { return node_place(parse_address(text)); };
-  EXPECT_EQ(place("node:lab2:7000/left").node(), "node:lab2:7000");
-  EXPECT_EQ(place("node:lab2:7000/left").camera, "left");
-  EXPECT_EQ(place("node://lab2").node(), fmt::format("node:lab2:{}", kNodePort));
-  EXPECT_EQ(place("node:[::1]/left").host, "[::1]");
-  EXPECT_EQ(place("node:[::1]:7000/left").port, 7000);
+TEST(NodeAddress, IsReadFromAnAddress) {
+  const auto location = [](const std::string& text) { return node_address(parse_address(text)); };
+  EXPECT_EQ(location("node:lab2:7000/left").node(), "node:lab2:7000");
+  EXPECT_EQ(location("node:lab2:7000/left").camera, "left");
+  EXPECT_EQ(location("node://lab2").node(), fmt::format("node:lab2:{}", kNodePort));
+  EXPECT_EQ(location("node:[::1]/left").host, "[::1]");
+  EXPECT_EQ(location("node:[::1]:7000/left").port, 7000);
   for (const char* wrong : {"node:", "node:lab2:0", "node:lab2:65536", "node:lab2:7x", "node:/left", "node:lab2?fast"})
-    EXPECT_THROW(place(wrong), Error) << wrong;
+    EXPECT_THROW(location(wrong), Error) << wrong;
 }
 
 /// Round trips with delays either way, a slow one now and then, and a drift of 30 ppm: the clock is known to what it says.

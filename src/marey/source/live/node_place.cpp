@@ -7,27 +7,27 @@
 
 namespace marey::source::live {
 
-std::string NodePlace::node() const {
+std::string NodeAddress::node() const {
   return fmt::format("node:{}:{}", host, port);
 }
 
-NodePlace node_place(const Address& address) {
+NodeAddress node_address(const Address& address) {
   AddressOptions(address).done();
-  NodePlace place;
-  const std::size_t slash = address.place.find('/');
-  place.host = address.place.substr(0, slash);
-  if (slash != std::string::npos) place.camera = address.place.substr(slash + 1);
-  const std::size_t colon = place.host.rfind(':');
-  const bool has_port = colon != std::string::npos && place.host.find(']', colon) == std::string::npos;
+  NodeAddress location;
+  const std::size_t slash = address.location.find('/');
+  location.host = address.location.substr(0, slash);
+  if (slash != std::string::npos) location.camera = address.location.substr(slash + 1);
+  const std::size_t colon = location.host.rfind(':');
+  const bool has_port = colon != std::string::npos && location.host.find(']', colon) == std::string::npos;
   if (has_port) {
-    const char *begin = place.host.data() + colon + 1, *end = place.host.data() + place.host.size();
-    const auto [stop, error] = std::from_chars(begin, end, place.port);
-    if (error != std::errc{} || stop != end || place.port < 1 || place.port > 65535)
-      throw Error("{}: the port is none; it is a whole number from 1 to 65535", address.text);
-    place.host.resize(colon);
+    const char *begin = location.host.data() + colon + 1, *end = location.host.data() + location.host.size();
+    const auto [stop, error] = std::from_chars(begin, end, location.port);
+    if (error != std::errc{} || stop != end || location.port < 1 || location.port > 65535)
+      throw Error("{}: the port is not one; it is a whole number from 1 to 65535", address.text);
+    location.host.resize(colon);
   }
-  if (place.host.empty()) throw Error("{}: names no host; write node:HOST:{}/CAMERA", address.text, kNodePort);
-  return place;
+  if (location.host.empty()) throw Error("{}: names no host; write node:HOST:{}/CAMERA", address.text, kNodePort);
+  return location;
 }
 
 }  // namespace marey::source::live

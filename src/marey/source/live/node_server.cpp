@@ -61,7 +61,7 @@ net::Descriptor listen_for_hosts(const std::string& address, int port) {
   int got = port;
   std::optional<net::Descriptor> made = net::listen_at_digits(brackets ? address.substr(1, address.size() - 2) : address, got);
   if (!made || (!*made && errno == EADDRNOTAVAIL))
-    throw Error("{}: is no address of this computer; write one as a number, 127.0.0.1, or 0.0.0.0 for all of them", address);
+    throw Error("{}: is not an address of this computer; write one as a number, 127.0.0.1, or 0.0.0.0 for all of them", address);
   if (!*made)
     throw Error("{}: port {} cannot be had ({}); name another with --port", address, port, std::generic_category().message(errno));
   return std::move(*made);

@@ -42,7 +42,7 @@ class Node {
     }
   }
 
-  NodePlace place(const std::string& camera) const { return {.host = "127.0.0.1", .port = port_, .camera = camera}; }
+  NodeAddress location(const std::string& camera) const { return {.host = "127.0.0.1", .port = port_, .camera = camera}; }
   int port() const { return port_; }
 
   void send(std::int64_t sequence) {
@@ -66,7 +66,7 @@ class Node {
 TEST(Node, FramesArriveWithTimesByTheHostsClock) {
   Node node(1);
   const auto time = steady_time();
-  const auto camera = keep_connected("left", connect_node(node.place("left")), time, {.keep = 1000});
+  const auto camera = keep_connected("left", connect_node(node.location("left")), time, {.keep = 1000});
   ASSERT_TRUE(becomes_true([&] { return camera->connected(); }));
   std::int64_t sequence = 0;
   std::vector<CameraFrame> came;
@@ -82,12 +82,12 @@ TEST(Node, FramesArriveWithTimesByTheHostsClock) {
   EXPECT_GT(came.back().detections->front().centre.x(), 0);
   const double old = seconds(time->now() - came.back().frame.time);
   EXPECT_TRUE(old >= 0 && old < 1) << old << " s: the node's clock is 900 s ahead";
-  EXPECT_EQ(ask_rig_of_node(node.place("")), "the rig");
+  EXPECT_EQ(query_rig_of_node(node.location("")), "the rig");
 }
 
-TEST(Node, WhatIsMissingIsCounted) {
+TEST(Node, CountsMissingFrames) {
   Node node(1);
-  const auto camera = keep_connected("left", connect_node(node.place("left")), steady_time(), {.keep = 1000});
+  const auto camera = keep_connected("left", connect_node(node.location("left")), steady_time(), {.keep = 1000});
   std::int64_t sequence = 0;
   ASSERT_TRUE(becomes_true([&] {
     node.send(sequence++);
@@ -97,10 +97,10 @@ TEST(Node, WhatIsMissingIsCounted) {
   ASSERT_TRUE(becomes_true([&] { return camera->health().lost == 5; })) << camera->health().lost;
 }
 
-TEST(Node, OneThatIsStartedAnewIsFoundAgain) {
+TEST(Node, ReconnectsToRestartedNode) {
   auto node = std::make_unique<Node>(1);
   const int port = node->port();
-  const auto camera = keep_connected("left", connect_node(node->place("left")), steady_time(), {.silent_s = 0.5});
+  const auto camera = keep_connected("left", connect_node(node->location("left")), steady_time(), {.silent_s = 0.5});
   std::int64_t sequence = 0;
   const auto gives = [&] {
     const std::int64_t before = camera->health().frames;
@@ -121,17 +121,17 @@ TEST(Node, OneThatIsStartedAnewIsFoundAgain) {
 /// How the only camera of a node is set, which takes exposures up to 10 ms, after it was asked three times.
 class Settings {
  public:
-  std::optional<NodeControls> hear(const NodeQuestion& question) {
+  std::optional<NodeControls> listen(const NodeQuestion& question) {
     const std::lock_guard lock(mutex_);
     if (question.camera != "left") return std::nullopt;
-    if (question.wish) {
-      wished_ = question.wish;
-      asked_ = 0;
+    if (question.request) {
+      control_requests_ = question.request;
+      requested_ = 0;
     }
-    const bool waits = wished_ && ++asked_ < 3;
+    const bool waits = control_requests_ && ++requested_ < 3;
     std::string refused;
-    if (wished_ && !waits && wished_->value > 10) refused = "too long";
-    if (wished_ && !waits && wished_->value <= 10) now_ = wished_->value;
+    if (control_requests_ && !waits && control_requests_->value > 10) refused = "too long";
+    if (control_requests_ && !waits && control_requests_->value <= 10) now_ = control_requests_->value;
     return NodeControls{
         .session = 1, .allowed = allowed, .waits = waits, .has = {{Control::exposure, 0.1, 10, now_}}, .refused = refused};
   }
@@ -140,19 +140,19 @@ class Settings {
 
  private:
   std::mutex mutex_;
-  std::optional<NodeQuestion::Wish> wished_;
-  int asked_ = 0;
+  std::optional<NodeQuestion::ControlRequest> control_requests_;
+  int requested_ = 0;
   double now_ = 5;
 };
 
 TEST(Node, ItsCamerasAreSetFromTheHost) {
   Settings settings;
-  Node node(1, 0, [&](const NodeQuestion& question) { return settings.hear(question); });
+  Node node(1, 0, [&](const NodeQuestion& question) { return settings.listen(question); });
   const auto time = steady_time();
-  const std::unique_ptr<Connection> camera = connect_node(node.place("left"))(*time, {});
+  const std::unique_ptr<Connection> camera = connect_node(node.location("left"))(*time, {});
   ASSERT_EQ(camera->controls().size(), 1u);
   EXPECT_EQ(camera->controls()[0].now, 5);
-  EXPECT_EQ(camera->controls()[0].most, 10);
+  EXPECT_EQ(camera->controls()[0].maximum, 10);
   camera->set(Control::exposure, 2.5);
   EXPECT_EQ(camera->controls()[0].now, 2.5) << "when the call is over it is set";
   EXPECT_THROW(camera->set(Control::exposure, 20), Error);
@@ -172,10 +172,10 @@ TEST(Node, ItsCamerasAreSetFromTheHost) {
   })) << "frames come as before";
 }
 
-TEST(Node, OneOfAnOlderVersionIsNotSetAndThatIsSaid) {
+TEST(Node, ReportsOlderNodeAndLeavesItUnset) {
   Node node(1);  // which knows nothing of controls
   const auto time = steady_time();
-  const std::unique_ptr<Connection> camera = connect_node(node.place("left"))(*time, {});
+  const std::unique_ptr<Connection> camera = connect_node(node.location("left"))(*time, {});
   EXPECT_TRUE(camera->controls().empty());
   try {
     camera->set(Control::gain, 2);
@@ -187,19 +187,20 @@ TEST(Node, OneOfAnOlderVersionIsNotSetAndThatIsSaid) {
   }
 }
 
-TEST(Node, WhatIsNotThereIsSaid) {
+TEST(Node, ReportsMissingNode) {
   Node node(1);
-  const auto nobody = keep_connected("nobody", connect_node(node.place("nobody")), steady_time());
-  ASSERT_TRUE(becomes_true([&] { return !nobody->health().trouble.empty(); }));
-  EXPECT_NE(nobody->health().trouble.find("has no camera \"nobody\"; it has left"), std::string::npos) << nobody->health().trouble;
+  const auto no_person = keep_connected("nobody", connect_node(node.location("nobody")), steady_time());
+  ASSERT_TRUE(becomes_true([&] { return !no_person->health().trouble.empty(); }));
+  EXPECT_NE(no_person->health().trouble.find("has no camera \"nobody\"; it has left"), std::string::npos)
+      << no_person->health().trouble;
   EXPECT_THROW(Node(2, node.port()), Error) << "the ports are taken";
-  NodePlace elsewhere = node.place("");
+  NodeAddress elsewhere = node.location("");
   elsewhere.port = 1;
-  EXPECT_THROW(ask_rig_of_node(elsewhere), Error);
+  EXPECT_THROW(query_rig_of_node(elsewhere), Error);
   std::stop_source stop;
   stop.request_stop();
   const StopScope scope(stop.get_token());
-  EXPECT_THROW(ask_rig_of_node(elsewhere), Stopped);
+  EXPECT_THROW(query_rig_of_node(elsewhere), Stopped);
 }
 
 }  // namespace

@@ -30,14 +30,14 @@ class Played final : public Connection {
       if (!options_.loop || count_ == 0 || stop_.stop_requested()) return stop_.stop_requested() ? Came::nothing : Came::end;
       again();
     }
-    const double period = 1 / info_.rate_hz.value_or(kUsualRate);
+    const double period = 1 / info_.rate_hz.value_or(kDefaultRate);
     const Timestamp due = begin_ + pending_->time.time_since_epoch();
     if (!wait_until_due(due, time_, stop_)) return Came::nothing;
     last_ = pending_->time;
     shot.sequence = count_++;
     shot.taken = due;
     shot.given.frame = std::move(*std::exchange(pending_, std::nullopt));
-    const bool too_late = seconds(time_.now() - due) > kMostBehind * period;
+    const bool too_late = seconds(time_.now() - due) > kMaxBehind * period;
     if (too_late && given_ > 0) return Came::nothing;  // its number is missing in those that follow
     ++given_;
     return Came::frame;
@@ -45,7 +45,7 @@ class Played final : public Connection {
 
  private:
   void again() {
-    begin_ += last_.time_since_epoch() + duration_from_seconds(1 / info_.rate_hz.value_or(kUsualRate));
+    begin_ += last_.time_since_epoch() + duration_from_seconds(1 / info_.rate_hz.value_or(kDefaultRate));
     source_ = read_ahead(open_(), kAhead);
   }
 

@@ -14,7 +14,7 @@
 #include "marey/core/error.h"
 #include "marey/core/stop.h"
 #include "marey/source/live/jpeg_decoder.h"
-#include "marey/source/live/packed_picture.h"
+#include "marey/source/live/pixel_format.h"
 
 namespace marey::source::live {
 namespace {
@@ -44,9 +44,9 @@ T blank() {
   return value;
 }
 
-std::string text_of(const unsigned char* bytes, std::size_t most) {
+std::string text_of(const unsigned char* bytes, std::size_t maximum) {
   const auto* text = reinterpret_cast<const char*>(bytes);
-  return {text, strnlen(text, most)};
+  return {text, strnlen(text, maximum)};
 }
 
 /// An open device; closed when it is gone.
@@ -63,9 +63,9 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   int file() const { return file_; }
-  int ask(unsigned long request, void* argument) const { return kernel_.control(file_, request, argument); }
+  int call_device(unsigned long request, void* argument) const { return kernel_.control(file_, request, argument); }
   void demand(unsigned long request, void* argument, const char* what) const {
-    const int answer = ask(request, argument);
+    const int answer = call_device(request, argument);
     if (answer == -EBUSY) throw Error("{}: another program uses it; end that", path_);
     if (answer < 0) throw Error("{}: {} ({})", path_, what, std::strerror(-answer));
   }
@@ -76,7 +76,7 @@ class Device {
   int file_;
 };
 
-bool gives_pictures(const v4l2_capability& can) {
+bool gives_images(const v4l2_capability& can) {
   const std::uint32_t caps = (can.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? can.device_caps : can.capabilities;
   return (caps & V4L2_CAP_VIDEO_CAPTURE) != 0 && (caps & V4L2_CAP_STREAMING) != 0;
 }
@@ -87,7 +87,7 @@ std::vector<std::uint32_t> formats_of(const Device& device) {
     auto description = blank<v4l2_fmtdesc>();
     description.index = i;
     description.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    if (device.ask(VIDIOC_ENUM_FMT, &description) < 0) break;
+    if (device.call_device(VIDIOC_ENUM_FMT, &description) < 0) break;
     formats.push_back(description.pixelformat);
   }
   return formats;
@@ -110,8 +110,8 @@ class V4l2Camera final : public Connection {
   V4l2Camera(V4l2Options options, std::shared_ptr<Kernel> kernel, LiveTime& time)
       : options_(std::move(options)), kernel_(std::move(kernel)), time_(time), device_(*kernel_, options_.device) {
     auto can = blank<v4l2_capability>();
-    device_.demand(VIDIOC_QUERYCAP, &can, "is no camera");
-    if (!gives_pictures(can)) throw Error("{}: gives no pictures; cameras have several names, try the next one", options_.device);
+    device_.demand(VIDIOC_QUERYCAP, &can, "is not a camera");
+    if (!gives_images(can)) throw Error("{}: gives no images; cameras have several names, try the next one", options_.device);
     info_.name = options_.device;
     set_format();
     set_rate();
@@ -133,9 +133,9 @@ class V4l2Camera final : public Connection {
     for (const auto& [control, id, unit] : kControls) {
       auto query = blank<v4l2_queryctrl>();
       query.id = id;
-      if (device_.ask(VIDIOC_QUERYCTRL, &query) < 0 || (query.flags & V4L2_CTRL_FLAG_DISABLED) != 0) continue;
+      if (device_.call_device(VIDIOC_QUERYCTRL, &query) < 0 || (query.flags & V4L2_CTRL_FLAG_DISABLED) != 0) continue;
       v4l2_control now{.id = id, .value = query.default_value};
-      device_.ask(VIDIOC_G_CTRL, &now);
+      device_.call_device(VIDIOC_G_CTRL, &now);
       has.push_back({control, unit * query.minimum, unit * query.maximum, unit * now.value});
     }
     return has;
@@ -154,9 +154,9 @@ class V4l2Camera final : public Connection {
     auto buffer = blank<v4l2_buffer>();
     buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     buffer.memory = V4L2_MEMORY_MMAP;
-    const int got = ready < 0 ? ready : device_.ask(VIDIOC_DQBUF, &buffer);
+    const int got = ready < 0 ? ready : device_.call_device(VIDIOC_DQBUF, &buffer);
     if (got == -EAGAIN) return Came::nothing;
-    if (got == -EIO) return Came::damaged;  // the driver has lost a frame, and goes on
+    if (got == -EIO) return Came::damaged;  // the driver has lost a frame, and continues
     if (got < 0) throw Error("{}: is gone ({})", options_.device, std::strerror(-got));
     if (buffer.index >= buffers_.size()) throw Error("{}: the driver names a buffer that is not there", options_.device);
     const bool whole = (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 && read(buffer, shot);
@@ -173,7 +173,7 @@ class V4l2Camera final : public Connection {
   void set_format() {
     auto format = blank<v4l2_format>();
     format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    device_.demand(VIDIOC_G_FMT, &format, "does not say what it gives");
+    device_.demand(VIDIOC_G_FMT, &format, "does not specify what it gives");
     format.fmt.pix.pixelformat = choose_format(device_, options_);
     format.fmt.pix.field = V4L2_FIELD_ANY;
     format.fmt.pix.bytesperline = 0;
@@ -181,16 +181,17 @@ class V4l2Camera final : public Connection {
       format.fmt.pix.width = static_cast<std::uint32_t>(options_.width);
       format.fmt.pix.height = static_cast<std::uint32_t>(options_.height);
     }
-    const std::uint32_t wanted = format.fmt.pix.pixelformat;
+    const std::uint32_t required = format.fmt.pix.pixelformat;
     device_.demand(VIDIOC_S_FMT, &format, "does not take that format");
     const v4l2_pix_format& pix = format.fmt.pix;
-    if (pix.pixelformat != wanted) throw Error("{}: gives {}, not {}", options_.device, letters(pix.pixelformat), letters(wanted));
+    if (pix.pixelformat != required)
+      throw Error("{}: gives {}, not {}", options_.device, letters(pix.pixelformat), letters(required));
     info_.size = {static_cast<int>(pix.width), static_cast<int>(pix.height)};
     if (options_.width > 0 && info_.size != cv::Size(options_.width, options_.height))
       throw Error("{}: has no size {}x{}; the nearest is {}x{} (marey cameras lists them)", options_.device, options_.width,
                   options_.height, info_.size.width, info_.size.height);
-    format_ = wanted;
-    stride_ = pix.bytesperline > 0 ? pix.bytesperline : pix.width * (wanted == V4L2_PIX_FMT_YUYV ? 2 : 1);
+    format_ = required;
+    stride_ = pix.bytesperline > 0 ? pix.bytesperline : pix.width * (required == V4L2_PIX_FMT_YUYV ? 2 : 1);
   }
 
   void set_rate() {
@@ -200,8 +201,8 @@ class V4l2Camera final : public Connection {
     if (options_.rate_hz) {
       period.numerator = 1000;
       period.denominator = static_cast<std::uint32_t>(std::lround(*options_.rate_hz * 1000));
-      device_.ask(VIDIOC_S_PARM, &parameters);
-    } else if (device_.ask(VIDIOC_G_PARM, &parameters) < 0) {
+      device_.call_device(VIDIOC_S_PARM, &parameters);
+    } else if (device_.call_device(VIDIOC_G_PARM, &parameters) < 0) {
       return;
     }
     if (period.numerator > 0 && period.denominator > 0) info_.rate_hz = static_cast<double>(period.denominator) / period.numerator;
@@ -223,33 +224,32 @@ class V4l2Camera final : public Connection {
       buffer.index = i;
       buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
       buffer.memory = V4L2_MEMORY_MMAP;
-      device_.demand(VIDIOC_QUERYBUF, &buffer, "does not say where its frames lie");
+      device_.demand(VIDIOC_QUERYBUF, &buffer, "does not specify where its frames lie");
       void* memory = kernel_->map(device_.file(), buffer.length, buffer.m.offset);
       if (memory == nullptr) throw Error("{}: its frames cannot be mapped into memory", options_.device);
       buffers_.push_back({memory, buffer.length});
       device_.demand(VIDIOC_QBUF, &buffer, "takes no buffer");
     }
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    device_.demand(VIDIOC_STREAMON, &type, "does not begin; a hub carries only so many cameras: try a smaller size or MJPG");
+    device_.demand(VIDIOC_STREAMON, &type, "does not begin; a hub carries only this many cameras: try a smaller size or MJPG");
   }
 
   void release() {
     int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    device_.ask(VIDIOC_STREAMOFF, &type);
+    device_.call_device(VIDIOC_STREAMOFF, &type);
     for (const Buffer& buffer : buffers_) kernel_->unmap(buffer.memory, buffer.length);
     buffers_.clear();
   }
 
-  /// False where the picture is not whole.
+  /// False where the image is not whole.
   bool read(const v4l2_buffer& buffer, Shot& shot) {
     const Buffer& own = buffers_[buffer.index];
     const std::span bytes(static_cast<const std::uint8_t*>(own.memory), std::min<std::size_t>(own.length, buffer.bytesused));
-    Picture& picture = shot.given.frame.picture;
+    Image& image = shot.given.frame.image;
     if (format_ == V4L2_PIX_FMT_MJPEG) {
-      picture = jpeg_.decode(bytes);
+      image = jpeg_.decode(bytes);
     } else {
-      picture =
-          unpack(format_ == V4L2_PIX_FMT_GREY ? Packing::grey : Packing::yuyv, bytes, info_.size, stride_).value_or(Picture());
+      image = unpack(format_ == V4L2_PIX_FMT_GREY ? Packing::grey : Packing::yuyv, bytes, info_.size, stride_).value_or(Image());
     }
     // Numbers have 32 bits; they may begin anywhere.
     const auto step = static_cast<std::int32_t>(buffer.sequence - static_cast<std::uint32_t>(sequence_));
@@ -259,7 +259,7 @@ class V4l2Camera final : public Connection {
       const Duration stamp = std::chrono::seconds(buffer.timestamp.tv_sec) + std::chrono::microseconds(buffer.timestamp.tv_usec);
       shot.taken = time_.now() - (kernel_->now() - stamp);
     }
-    return !picture.empty();
+    return !image.empty();
   }
 
   V4l2Options options_;
@@ -282,7 +282,7 @@ std::vector<double> rates_of(const Device& device, std::uint32_t format, cv::Siz
     interval.pixel_format = format;
     interval.width = static_cast<std::uint32_t>(size.width);
     interval.height = static_cast<std::uint32_t>(size.height);
-    if (device.ask(VIDIOC_ENUM_FRAMEINTERVALS, &interval) < 0) break;
+    if (device.call_device(VIDIOC_ENUM_FRAMEINTERVALS, &interval) < 0) break;
     const v4l2_fract& period = interval.type == V4L2_FRMIVAL_TYPE_DISCRETE ? interval.discrete : interval.stepwise.min;
     if (period.numerator > 0) rates.push_back(static_cast<double>(period.denominator) / period.numerator);
     if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE) break;
@@ -297,7 +297,7 @@ void add_modes(const Device& device, FoundCamera& camera) {
       auto each = blank<v4l2_frmsizeenum>();
       each.index = i;
       each.pixel_format = format;
-      if (device.ask(VIDIOC_ENUM_FRAMESIZES, &each) < 0) break;
+      if (device.call_device(VIDIOC_ENUM_FRAMESIZES, &each) < 0) break;
       const bool discrete = each.type == V4L2_FRMSIZE_TYPE_DISCRETE;
       const cv::Size size(static_cast<int>(discrete ? each.discrete.width : each.stepwise.max_width),
                           static_cast<int>(discrete ? each.discrete.height : each.stepwise.max_height));
@@ -311,9 +311,9 @@ void add_controls(const Device& device, FoundCamera& camera) {
   for (const std::uint32_t id : {V4L2_CID_BRIGHTNESS, V4L2_CID_GAIN, V4L2_CID_EXPOSURE_AUTO, V4L2_CID_EXPOSURE_ABSOLUTE}) {
     auto query = blank<v4l2_queryctrl>();
     query.id = id;
-    if (device.ask(VIDIOC_QUERYCTRL, &query) < 0 || (query.flags & V4L2_CTRL_FLAG_DISABLED) != 0) continue;
+    if (device.call_device(VIDIOC_QUERYCTRL, &query) < 0 || (query.flags & V4L2_CTRL_FLAG_DISABLED) != 0) continue;
     v4l2_control now{.id = id, .value = query.default_value};
-    device.ask(VIDIOC_G_CTRL, &now);
+    device.call_device(VIDIOC_G_CTRL, &now);
     camera.controls.push_back({text_of(query.name, sizeof query.name), static_cast<double>(query.minimum),
                                static_cast<double>(query.maximum), static_cast<double>(now.value)});
   }
@@ -322,23 +322,23 @@ void add_controls(const Device& device, FoundCamera& camera) {
 }  // namespace
 
 V4l2Options v4l2_options(const Address& address, std::optional<double> rate_hz) {
-  V4l2Options wanted{.device = address.place, .rate_hz = rate_hz, .format = {}, .exposure_ms = {}, .gain = {}};
+  V4l2Options required{.device = address.location, .rate_hz = rate_hz, .format = {}, .exposure_ms = {}, .gain = {}};
   AddressOptions options(address);
   double rate = rate_hz.value_or(0), exposure = 0, gain = -1;
-  options.size("size", wanted.width, wanted.height);
+  options.size("size", required.width, required.height);
   options.number("rate", rate, 0.1, 10000);
-  options.text("format", wanted.format);
+  options.text("format", required.format);
   options.number("exposure", exposure, 0.01, 10000);
   options.number("gain", gain, 0, 1e6);
   options.done();
-  if (rate > 0) wanted.rate_hz = rate;
-  if (exposure > 0) wanted.exposure_ms = exposure;
-  if (gain >= 0) wanted.gain = gain;
-  if (wanted.device.empty()) throw Error("{}: names no device; write v4l2:/dev/video0", address.text);
-  const auto known = [&](const auto& each) { return wanted.format == each.first; };
-  if (!wanted.format.empty() && std::none_of(kFormats.begin(), kFormats.end(), known))
-    throw Error("{}: the format {} is not read; GREY, YUYV and MJPG are", address.text, wanted.format);
-  return wanted;
+  if (rate > 0) required.rate_hz = rate;
+  if (exposure > 0) required.exposure_ms = exposure;
+  if (gain >= 0) required.gain = gain;
+  if (required.device.empty()) throw Error("{}: names no device; write v4l2:/dev/video0", address.text);
+  const auto known = [&](const auto& each) { return required.format == each.first; };
+  if (!required.format.empty() && std::none_of(kFormats.begin(), kFormats.end(), known))
+    throw Error("{}: the format {} is not read; GREY, YUYV and MJPG are", address.text, required.format);
+  return required;
 }
 
 Connect connect_v4l2(const V4l2Options& options, std::shared_ptr<Kernel> kernel) {
@@ -353,7 +353,7 @@ std::vector<FoundCamera> find_v4l2(Kernel& kernel) {
     try {
       const Device device(kernel, path);
       auto can = blank<v4l2_capability>();
-      if (device.ask(VIDIOC_QUERYCAP, &can) < 0 || !gives_pictures(can)) continue;
+      if (device.call_device(VIDIOC_QUERYCAP, &can) < 0 || !gives_images(can)) continue;
       FoundCamera camera{.source = "v4l2:" + path,
                          .name = text_of(can.card, sizeof can.card),
                          .where = text_of(can.bus_info, sizeof can.bus_info),

@@ -29,7 +29,7 @@ V4l2Options v4l2_options(const Address& address, std::optional<double> rate_hz);
 /// the host's clock (as uvcvideo does, with the start of exposure), gaps in its numbers are frames lost.
 Connect connect_v4l2(const V4l2Options& options, std::shared_ptr<Kernel> kernel = system_kernel());
 
-/// Those that are plugged in and give pictures.
+/// Those that are plugged in and give images.
 std::vector<FoundCamera> find_v4l2(Kernel& kernel);
 
 }  // namespace marey::source::live

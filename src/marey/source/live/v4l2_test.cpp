@@ -165,7 +165,7 @@ TEST_F(V4l2Test, GreyWithRowsThatAreLongerThanThePicture) {
   kernel_->coming.push_back({.sequence = 8, .bytes = grey(11)});
   Shot shot;
   ASSERT_EQ(camera->next(shot), Came::frame);
-  const cv::Mat& luma = shot.given.frame.picture.luma();
+  const cv::Mat& luma = shot.given.frame.image.luma();
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 6; ++x) EXPECT_EQ(luma.at<std::uint8_t>(y, x), 10 * y + x);
   }
@@ -183,7 +183,7 @@ TEST_F(V4l2Test, YuyvKeepsItsColours) {
   kernel_->coming.push_back({.sequence = 0, .bytes = bytes});
   Shot shot;
   ASSERT_EQ(camera->next(shot), Came::frame);
-  const auto colour = shot.given.frame.picture.bgr().at<cv::Vec3b>(2, 3);
+  const auto colour = shot.given.frame.image.bgr().at<cv::Vec3b>(2, 3);
   EXPECT_LT(colour[0], 8);
   EXPECT_LT(colour[1], 8);
   EXPECT_GT(colour[2], 247);
@@ -214,10 +214,10 @@ TEST_F(V4l2Test, ShortAndBrokenFramesAreDamagedAndGapsAreSeen) {
   EXPECT_EQ(camera->next(shot), Came::damaged);
   EXPECT_EQ(camera->next(shot), Came::nothing);
   EXPECT_EQ(camera->next(shot), Came::frame);
-  EXPECT_EQ(*shot.sequence - first, 5) << "numbers of 32 bits that began anew";
+  EXPECT_EQ(*shot.sequence - first, 5) << "numbers of 32 bits that began again";
 }
 
-TEST_F(V4l2Test, OneThatIsPulledOutIsAnErrorAndLeavesNothingOpen) {
+TEST_F(V4l2Test, UnpluggedCameraIsErrorAndClosed) {
   auto camera = connect("v4l2:/dev/video7?exposure=5&gain=20");
   EXPECT_EQ(kernel_->controls,
             (std::vector<std::pair<std::uint32_t, int>>{
@@ -236,8 +236,8 @@ TEST_F(V4l2Test, ItsExposureIsSetWhileItGivesPictures) {
   const auto has = camera->controls();
   ASSERT_EQ(has.size(), 1u) << "it has no gain";
   EXPECT_EQ(has[0].control, Control::exposure);
-  EXPECT_NEAR(has[0].least, 0.1, 1e-12);
-  EXPECT_NEAR(has[0].most, 30, 1e-12);
+  EXPECT_NEAR(has[0].minimum, 0.1, 1e-12);
+  EXPECT_NEAR(has[0].maximum, 30, 1e-12);
   EXPECT_NEAR(has[0].now, 5, 1e-12);
   camera->set(Control::exposure, 2.5);
   EXPECT_EQ(kernel_->controls, (std::vector<std::pair<std::uint32_t, int>>{{V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL},
@@ -247,7 +247,7 @@ TEST_F(V4l2Test, ItsExposureIsSetWhileItGivesPictures) {
   EXPECT_THROW(camera->set(Control::exposure, 1e300), Error);
 }
 
-TEST_F(V4l2Test, WhatCannotBeIsASentence) {
+TEST_F(V4l2Test, RejectsImpossibleSettings) {
   EXPECT_THROW(connect("v4l2:/dev/video3"), Error);
   EXPECT_THROW(connect("v4l2:/dev/video7?format=MJPG"), Error) << "it has none";
   EXPECT_THROW(connect("v4l2:/dev/video7?format=H264"), Error);

@@ -12,9 +12,9 @@ namespace marey::track::ball {
 double false_density(const BallSighting& sighting, const BallView& view, const GroundView& ground,
                      const BallSearchOptions& options);
 
-/// Adds to `out` what begins at a moment: a ball on the ground or in the air where one camera sees something away from people, or
+/// Adds to `out` what begins at an instant: a ball on the ground or in the air where one camera sees something away from people, or
 /// where the rays of two meet.
-void be_born(const std::shared_ptr<BallNode>& before, const BallMoment& moment, const GroundViews& views,
-             const BallSearchOptions& options, std::vector<BallNode>& out);
+void initiate(const std::shared_ptr<BallNode>& before, const BallObservations& time_step, const GroundViews& views,
+              const BallSearchOptions& options, std::vector<BallNode>& out);
 
 }  // namespace marey::track::ball

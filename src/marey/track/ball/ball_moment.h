@@ -1,4 +1,4 @@
-// What is known of one moment before the ball is followed: what each camera saw that might be it, and where people are.
+// What is known of one instant before the ball is followed: what each camera saw that might be it, and where people are.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +12,35 @@
 
 namespace marey::track::ball {
 
-/// Something small and bright in one camera's picture.
+/// Something small and bright in one camera's image.
 struct BallSighting {
   Vector<2> pixel = Vector<2>::Zero();
-  double sigma = 0.6;  ///< px, of each coordinate
-  double score = 0;    ///< logarithm of how much likelier a ball looks so than anything else that is found
-  double company = 0;  ///< 0 … 1: of what is round it, the share that is not the empty scene
-  /// By weigh_sightings(); nothing: as many false things as the view has, all over its picture.
-  std::optional<double> false_density;  ///< 1/px²: how densely things are seen here that are no ball
+  double sigma = 0.6;        ///< px, of each coordinate
+  double score = 0;          ///< logarithm of how much likelier a ball looks so than anything else that is found
+  double local_clutter = 0;  ///< 0 … 1: of what is round it, the share that is not the empty scene
+  /// By weigh_sightings(); nothing: as many false things as the view has, all over its image.
+  std::optional<double> false_density;  ///< 1/px²: how densely things are seen here that are not ball
   bool on_person = false;               ///< where a person's limbs are, which move as predictably as a ball
 };
 
-/// What one camera saw at a moment.
+/// What one camera saw at an instant.
 struct BallView {
   CameraId camera{};
   Timestamp time{};  ///< of its frame, by the rig's clock
-  std::vector<BallSighting> seen;
+  std::vector<BallSighting> detected;
   std::vector<Box> people;  ///< px; behind or before which the ball is hidden more often than not
 };
 
 /// Where on the ground, m, world. An empty function holds everywhere.
-using GroundRegion = std::function<bool(const Vector<2>& place)>;
+using GroundRegion = std::function<bool(const Vector<2>& location)>;
 
 struct BallPerson {
   TrackId id{};
-  Vector<2> place = Vector<2>::Zero();     ///< m, world
+  Vector<2> location = Vector<2>::Zero();  ///< m, world
   Vector<2> velocity = Vector<2>::Zero();  ///< m/s
 };
 
-struct BallMoment {
+struct BallObservations {
   std::int64_t index = 0;
   Timestamp time{};
   std::vector<BallView> views;

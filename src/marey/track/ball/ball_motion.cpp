@@ -1,5 +1,5 @@
-// An extended Kalman filter of six dimensions. Gravity makes the depth of an arc observable to one camera: how fast a picture's arc
-// bends is how near it is. Each bounce is reflected at the ground, with the height at that moment as a measurement.
+// An extended Kalman filter of six dimensions. Gravity makes the depth of an arc observable to one camera: how fast an image's arc
+// bends is how near it is. Each bounce is reflected at the ground, with the height at that instant as a measurement.
 #include "marey/track/ball/ball_motion.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace marey::track::ball {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s²
-constexpr double kSteady = 0.2;    // what curl does upwards, of what it does sideways: depth is read off the fall
+constexpr double kGravity = 9.81;    // m/s²
+constexpr double kStationary = 0.2;  // what curl does upwards, of what it does sideways: depth is read off the fall
 
 /// Constant acceleration's noise over a step.
 void add_wander(Matrix<6>& covariance, double accel, double step, int first, int last) {
@@ -81,7 +81,7 @@ void fly(BallPrediction& to, double step, const BallMotionOptions& options) {
   x.tail<3>() += step * pull;
   move(to, F);
   add_wander(to.belief.covariance, options.flight_accel, step, 0, 1);
-  add_wander(to.belief.covariance, kSteady * options.flight_accel, step, 2, 2);
+  add_wander(to.belief.covariance, kStationary * options.flight_accel, step, 2, 2);
 }
 
 /// Height and velocity are reflected at the ground, and the velocity loses its share.
@@ -147,35 +147,35 @@ double settle(BallBelief& belief, BallMode mode, BallEvent event, double step, c
     squared += measure(belief, 2, kBallRadius, 0.04);
     squared += measure(belief, 5, 0, 0.5);
   } else if (mode == BallMode::held) {
-    squared += measure(belief, 0, holder->place.x(), options.hold_radius);
-    squared += measure(belief, 1, holder->place.y(), options.hold_radius);
+    squared += measure(belief, 0, holder->location.x(), options.hold_radius);
+    squared += measure(belief, 1, holder->location.y(), options.hold_radius);
     squared += measure(belief, 2, kBallRadius, 0.15);
   }
   return -0.5 * squared;
 }
 
 std::optional<BallProjection> project(const BallBelief& belief, const GroundView& view, const std::optional<Vector<3>>& around) {
-  const Vector<3> here = around.value_or(belief.place());
+  const Vector<3> here = around.value_or(belief.location());
   Vector<3> at = here;
   at.z() += view.surface().height(at.head<2>());
-  const auto seen = view.camera()->project_with_jacobian(at);
-  if (!seen) return std::nullopt;
+  const auto detected = view.camera()->project_with_jacobian(at);
+  if (!detected) return std::nullopt;
   BallProjection projection;
-  projection.pixel = seen->pixel + seen->by_world * (belief.place() - here);
-  projection.radius = kBallRadius * std::pow((seen->by_world * seen->by_world.transpose()).determinant(), 0.25);
+  projection.pixel = detected->pixel + detected->by_world * (belief.location() - here);
+  projection.radius = kBallRadius * std::pow((detected->by_world * detected->by_world.transpose()).determinant(), 0.25);
   projection.by_state.setZero();
-  projection.by_state.leftCols<3>() = seen->by_world;
+  projection.by_state.leftCols<3>() = detected->by_world;
   projection.spread = projection.by_state * belief.covariance * projection.by_state.transpose();
   return projection;
 }
 
-double correct(BallBelief& belief, const BallProjection& seen_at, const BallSighting& sighting) {
-  const Matrix<2> spread = seen_at.spread + sighting.sigma * sighting.sigma * Matrix<2>::Identity();
-  const Vector<2> off = sighting.pixel - seen_at.pixel;
+double correct(BallBelief& belief, const BallProjection& observed_at, const BallSighting& sighting) {
+  const Matrix<2> spread = observed_at.spread + sighting.sigma * sighting.sigma * Matrix<2>::Identity();
+  const Vector<2> off = sighting.pixel - observed_at.pixel;
   const Matrix<2> inverse = spread.inverse();
-  const Eigen::Matrix<double, 6, 2> gain = belief.covariance * seen_at.by_state.transpose() * inverse;
+  const Eigen::Matrix<double, 6, 2> gain = belief.covariance * observed_at.by_state.transpose() * inverse;
   belief.mean += gain * off;
-  belief.covariance -= gain * seen_at.by_state * belief.covariance;
+  belief.covariance -= gain * observed_at.by_state * belief.covariance;
   belief.covariance = 0.5 * (belief.covariance + belief.covariance.transpose().eval());
   return -0.5 * off.dot(inverse * off) - std::log(2 * 3.14159265358979 * std::sqrt(spread.determinant()));
 }

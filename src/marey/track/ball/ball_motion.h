@@ -1,5 +1,5 @@
-// How a ball moves, as Gaussian beliefs of place and velocity: it rolls over the ground, flies, or is at somebody's feet. Heights
-// count from the ground below. What is known besides (a ball that rolls is 0.11 m up, one at somebody's feet is near that person)
+// How a ball moves, as Gaussian beliefs of place and velocity: it rolls over the ground, flies, or is at a person's feet. Heights
+// count from the ground below. What is known besides (a ball that rolls is 0.11 m up, one at a person's feet is near that person)
 // is a measurement like those of cameras, so that a second pass carries it back: where an arc ends tells how far away it was.
 #pragma once
 
@@ -16,13 +16,13 @@ inline constexpr double kBallRadius = 0.11;  ///< m
 
 enum class BallMode : std::uint8_t { rolling, flying, held, lost };
 
-/// What happens between two moments.
+/// What happens between two instants.
 enum class BallEvent : std::uint8_t {
   none,
-  kick,    ///< the velocity is another one: at somebody's feet, or off a post
+  kick,    ///< the velocity is another one: at a person's feet, or off a post
   bounce,  ///< on the ground
   land,    ///< it rolls from here on
-  take,    ///< it is at somebody's feet from here on
+  take,    ///< it is at a person's feet from here on
 };
 
 /// From the physics of a football; what has none is a first guess, of which no sweep was made yet (bench/ball.py is for that).
@@ -43,7 +43,7 @@ struct BallBelief {
   Vector<6> mean = Vector<6>::Zero();
   Matrix<6> covariance = Matrix<6>::Identity();
 
-  Vector<3> place() const { return mean.head<3>(); }
+  Vector<3> location() const { return mean.head<3>(); }
   Vector<3> velocity() const { return mean.tail<3>(); }
 };
 
@@ -71,12 +71,12 @@ struct BallProjection {
   double radius = 0;                     ///< px, of the ball there
 };
 
-/// Nothing where it is not before the camera. The projection is straightened out at `around` (a place, m), by default the
+/// Nothing if it is not before the camera. The projection is straightened out at `around` (a place, m), by default the
 /// belief's own.
 std::optional<BallProjection> project(const BallBelief& belief, const GroundView& view,
                                       const std::optional<Vector<3>>& around = std::nullopt);
 
 /// Corrects the belief by a pixel, and returns the logarithm of the pixel's density, 1/px².
-double correct(BallBelief& belief, const BallProjection& seen_at, const BallSighting& sighting);
+double correct(BallBelief& belief, const BallProjection& observed_at, const BallSighting& sighting);
 
 }  // namespace marey::track::ball

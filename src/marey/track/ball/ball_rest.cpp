@@ -7,119 +7,122 @@
 namespace marey::track::ball {
 namespace {
 
-using Way = std::vector<std::optional<BallState>>;
+using Trajectory = std::vector<std::optional<BallState>>;
 
-/// A moment seen from the end of a way: forwards in time or backwards.
+/// An instant seen from the end of a way: forwards in time or backwards.
 struct Walk {
   std::ptrdiff_t from, step, count;  // the first moment, ±1, and how many there are
 
   std::size_t at(std::ptrdiff_t i) const { return static_cast<std::size_t>(from + i * step); }
 };
 
-enum class Company { any, alone };
+enum class LocalClutter { any, alone };
 
-/// Who sees something where the ball would lie; `alone`: that is no part of somebody.
-CameraMask seen_at(const Vector<3>& place, const BallMoment& moment, const GroundViews& views, const BallRestOptions& options,
-                   Company company = Company::any) {
+/// Who sees something where the ball would lie; `alone`: that is not a part of a person.
+CameraMask observed_at(const Vector<3>& location, const BallObservations& time_step, const GroundViews& views,
+                       const BallRestOptions& options, LocalClutter local_clutter = LocalClutter::any) {
   CameraMask cameras = 0;
-  for (const BallView& view : moment.views) {
+  for (const BallView& view : time_step.views) {
     BallBelief belief;
-    belief.mean.head<3>() = place;
+    belief.mean.head<3>() = location;
     const auto at = project(belief, views.view_at(view.camera, view.time));
     if (!at) continue;
     const auto is = [&](const BallSighting& one) {
-      return (one.pixel - at->pixel).norm() < options.within && (company == Company::any || !one.on_person);
+      return (one.pixel - at->pixel).norm() < options.within && (local_clutter == LocalClutter::any || !one.on_person);
     };
-    if (std::any_of(view.seen.begin(), view.seen.end(), is)) cameras |= mask_of(view.camera);
+    if (std::any_of(view.detected.begin(), view.detected.end(), is)) cameras |= mask_of(view.camera);
   }
   return cameras;
 }
 
-/// Of the moments within `look` s from a walk's beginning, those in which something is seen; nothing where they are few.
-std::optional<double> share_seen(const Vector<3>& place, const Walk& walk, double look, Company company,
-                                 std::span<const BallMoment> moments, const GroundViews& views, const BallRestOptions& options) {
-  std::ptrdiff_t looked = 0, seen = 0;
+/// Of the instants within `look` s from a walk's beginning, those in which something is seen; nothing if they are few.
+std::optional<double> fraction_observed(const Vector<3>& location, const Walk& walk, double inspect, LocalClutter local_clutter,
+                                        std::span<const BallObservations> time_steps, const GroundViews& views,
+                                        const BallRestOptions& options) {
+  std::ptrdiff_t inspected = 0, detected = 0;
   for (std::ptrdiff_t i = 0; i < walk.count; ++i) {
-    if (std::abs(seconds(moments[walk.at(i)].time - moments[walk.at(0)].time)) > look) break;
-    ++looked;
-    seen += seen_at(place, moments[walk.at(i)], views, options, company) != 0 ? 1 : 0;
+    if (std::abs(seconds(time_steps[walk.at(i)].time - time_steps[walk.at(0)].time)) > inspect) break;
+    ++inspected;
+    detected += observed_at(location, time_steps[walk.at(i)], views, options, local_clutter) != 0 ? 1 : 0;
   }
-  constexpr std::ptrdiff_t kLeast = 5;  // moments
-  if (looked < kLeast) return std::nullopt;
-  return static_cast<double>(seen) / static_cast<double>(looked);
+  constexpr std::ptrdiff_t kMinValue = 5;  // instants
+  if (inspected < kMinValue) return std::nullopt;
+  return static_cast<double>(detected) / static_cast<double>(inspected);
 }
 
-/// Places on the ground near `end` where something is seen in the moments of a walk.
-std::vector<Vector<3>> places_near(const Vector<3>& end, const Walk& walk, std::span<const BallMoment> moments,
-                                   const GroundViews& views, const BallRestOptions& options) {
+/// Places on the ground near `end` where something is seen in the instants of a walk.
+std::vector<Vector<3>> positions_near(const Vector<3>& end, const Walk& walk, std::span<const BallObservations> time_steps,
+                                      const GroundViews& views, const BallRestOptions& options) {
   constexpr double kApart = 0.1;  // m
-  std::vector<Vector<3>> places;
+  std::vector<Vector<3>> locations;
   for (std::ptrdiff_t i = 0; i < walk.count; i += 3) {
-    if (std::abs(seconds(moments[walk.at(i)].time - moments[walk.at(0)].time)) > options.look) break;
-    for (const BallView& view : moments[walk.at(i)].views) {
+    if (std::abs(seconds(time_steps[walk.at(i)].time - time_steps[walk.at(0)].time)) > options.inspect) break;
+    for (const BallView& view : time_steps[walk.at(i)].views) {
       const GroundView& ground = views.view_at(view.camera, view.time);
-      for (const BallSighting& one : view.seen) {
-        const auto met = ground.place(one.pixel);
+      for (const BallSighting& one : view.detected) {
+        const auto met = ground.location(one.pixel);
         if (!met || ground.camera()->centre().z() <= kBallRadius) continue;
         const Vector<3> centre = ground.camera()->centre(), foot(met->ground.x(), met->ground.y(), 0);
-        const Vector<3> place = foot + kBallRadius / centre.z() * (centre - foot);
-        const auto known = [&](const Vector<3>& other) { return (other - place).norm() < kApart; };
-        if ((place - end).norm() > options.reach || std::any_of(places.begin(), places.end(), known)) continue;
-        places.push_back(place);
+        const Vector<3> location = foot + kBallRadius / centre.z() * (centre - foot);
+        const auto known = [&](const Vector<3>& other) { return (other - location).norm() < kApart; };
+        if ((location - end).norm() > options.reach || std::any_of(locations.begin(), locations.end(), known)) continue;
+        locations.push_back(location);
       }
     }
   }
-  return places;
+  return locations;
 }
 
-/// Where it lay in the moments of `rest`, if it did, and was gone in those of `play`.
-std::optional<Vector<3>> lay_at(const Vector<3>& end, const Walk& rest, const Walk& play, std::span<const BallMoment> moments,
-                                const GroundViews& views, const BallRestOptions& options) {
+/// Where it lay in the instants of `rest`, if it did, and was gone in those of `play`.
+std::optional<Vector<3>> lay_at(const Vector<3>& end, const Walk& rest, const Walk& play,
+                                std::span<const BallObservations> time_steps, const GroundViews& views,
+                                const BallRestOptions& options) {
   std::optional<Vector<3>> best;
-  double most = 0;
-  for (const Vector<3>& place : places_near(end, rest, moments, views, options)) {
-    const auto share = [&](const Walk& walk, double look, Company company) {
-      return share_seen(place, walk, look, company, moments, views, options);
+  double maximum = 0;
+  for (const Vector<3>& location : positions_near(end, rest, time_steps, views, options)) {
+    const auto fraction = [&](const Walk& walk, double inspect, LocalClutter local_clutter) {
+      return fraction_observed(location, walk, inspect, local_clutter, time_steps, views, options);
     };
-    const auto seen = share(rest, options.look, Company::any);
-    if (!seen || *seen < options.seen) continue;
-    constexpr double kLong = 4, kAlone = 0.25;  // s, and of them: who stands there is a part of somebody all the while
-    if (share(rest, kLong, Company::alone).value_or(0) < kAlone) continue;
-    const auto later = share(play, options.look, Company::any);
-    if (!later || *later > options.gone || *seen - *later <= most) continue;
-    most = *seen - *later;
-    best = place;
+    const auto detected = fraction(rest, options.inspect, LocalClutter::any);
+    if (!detected || *detected < options.detected) continue;
+    constexpr double kLong = 4, kAlone = 0.25;  // s, and of them: who stands there is a part of a person all the while
+    if (fraction(rest, kLong, LocalClutter::alone).value_or(0) < kAlone) continue;
+    const auto later = fraction(play, options.inspect, LocalClutter::any);
+    if (!later || *later > options.gone || *detected - *later <= maximum) continue;
+    maximum = *detected - *later;
+    best = location;
   }
   return best;
 }
 
 /// The first moment, from `end` of a way into it, at which the ball was away from there.
-std::ptrdiff_t gone_from(const Way& told, std::ptrdiff_t end, std::ptrdiff_t step) {
-  constexpr std::ptrdiff_t kHiddenSteps = 12;  // moments at the way's end that may belong to either
+std::ptrdiff_t gone_from(const Trajectory& reported, std::ptrdiff_t end, std::ptrdiff_t step) {
+  constexpr std::ptrdiff_t kHiddenSteps = 12;  // instants at the way's end that may belong to either
   constexpr double kAway = 1.5;                // m
-  const Vector<3> place = told[static_cast<std::size_t>(end)]->belief.place();
+  const Vector<3> location = reported[static_cast<std::size_t>(end)]->belief.location();
   std::ptrdiff_t at = end;
-  while (at >= 0 && at < std::ssize(told) && told[static_cast<std::size_t>(at)] &&
-         (told[static_cast<std::size_t>(at)]->belief.place() - place).norm() < kAway)
+  while (at >= 0 && at < std::ssize(reported) && reported[static_cast<std::size_t>(at)] &&
+         (reported[static_cast<std::size_t>(at)]->belief.location() - location).norm() < kAway)
     at += step;
   return step > 0 ? std::max(at, end + kHiddenSteps) : std::min(at, end - kHiddenSteps);
 }
 
-void add_rest(const Vector<3>& place, const Walk& rest, std::span<const BallMoment> moments, const GroundViews& views,
-              const BallRestOptions& options, Way& way) {
+void add_rest(const Vector<3>& location, const Walk& rest, std::span<const BallObservations> time_steps, const GroundViews& views,
+              const BallRestOptions& options, Trajectory& method) {
   std::ptrdiff_t last = -1;
-  for (std::ptrdiff_t i = 0; i < rest.count && !way[rest.at(i)]; ++i) {
-    const CameraMask cameras = seen_at(place, moments[rest.at(i)], views, options);
-    const double unseen = std::abs(seconds(moments[rest.at(i)].time - moments[rest.at(std::max<std::ptrdiff_t>(last, 0))].time));
-    if (unseen > options.unseen) return;
+  for (std::ptrdiff_t i = 0; i < rest.count && !method[rest.at(i)]; ++i) {
+    const CameraMask cameras = observed_at(location, time_steps[rest.at(i)], views, options);
+    const double unobserved =
+        std::abs(seconds(time_steps[rest.at(i)].time - time_steps[rest.at(std::max<std::ptrdiff_t>(last, 0))].time));
+    if (unobserved > options.unobserved) return;
     if (cameras == 0) continue;
     for (std::ptrdiff_t k = last + 1; k <= i; ++k) {
       BallState state;
       state.mode = BallMode::rolling;
-      state.belief.mean.head<3>() = place;
+      state.belief.mean.head<3>() = location;
       state.belief.covariance = Matrix<6>::Identity() * 0.01;
       state.cameras = k == i ? cameras : 0;
-      way[rest.at(k)] = state;
+      method[rest.at(k)] = state;
     }
     last = i;
   }
@@ -127,22 +130,23 @@ void add_rest(const Vector<3>& place, const Walk& rest, std::span<const BallMome
 
 }  // namespace
 
-void add_rests(std::span<const BallMoment> moments, const GroundViews& views, const BallRestOptions& options, Way& way) {
+void add_rests(std::span<const BallObservations> time_steps, const GroundViews& views, const BallRestOptions& options,
+               Trajectory& method) {
   constexpr double kHigh = 1;  // m
-  const Way told = way;
-  const std::ptrdiff_t count = std::ssize(told);
+  const Trajectory reported = method;
+  const std::ptrdiff_t count = std::ssize(reported);
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const auto& here = told[static_cast<std::size_t>(i)];
-    if (!here || here->belief.place().z() > kHigh) continue;  // it flew from elsewhere, as far as anybody knows
+    const auto& here = reported[static_cast<std::size_t>(i)];
+    if (!here || here->belief.location().z() > kHigh) continue;  // it flew from elsewhere, as far as any person knows
     for (const std::ptrdiff_t step : {-1, 1}) {
       const std::ptrdiff_t next = i + step;
-      if (next < 0 || next >= count || told[static_cast<std::size_t>(next)]) continue;
+      if (next < 0 || next >= count || reported[static_cast<std::size_t>(next)]) continue;
       const Walk rest{next, step, step < 0 ? i : count - next};
-      const std::ptrdiff_t played = gone_from(told, i, -step);
+      const std::ptrdiff_t played = gone_from(reported, i, -step);
       if (played < 0 || played >= count) continue;
       const Walk play{played, -step, step < 0 ? count - played : played + 1};
-      if (const auto place = lay_at(here->belief.place(), rest, play, moments, views, options))
-        add_rest(*place, rest, moments, views, options, way);
+      if (const auto location = lay_at(here->belief.location(), rest, play, time_steps, views, options))
+        add_rest(*location, rest, time_steps, views, options, method);
     }
   }
 }

@@ -1,5 +1,5 @@
 // A ball that lies still looks like a bit of paint, until it is played or after it has come to rest: where a sure way begins, what
-// lay there before and is gone afterwards was the ball; and where one ends, the other way round.
+// lay there before and is gone afterwards was the ball; and where one ends, vice versa.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,16 @@
 namespace marey::track::ball {
 
 struct BallRestOptions {
-  double reach = 2.5;   ///< m, between a way's end and where the ball lay: its first steps are often hidden
-  double within = 2;    ///< px, of where it lies, that it is seen
-  double look = 1.5;    ///< s before and after, in which it must have been seen,
-  double seen = 0.6;    ///< in this share of moments on the one side,
-  double gone = 0.15;   ///< and no more than this on the other
-  double unseen = 1.5;  ///< s without its being seen, after which nobody knows
+  double reach = 2.5;       ///< m, between a way's end and where the ball lay: its first steps are often hidden
+  double within = 2;        ///< px, of where it lies, that it is seen
+  double inspect = 1.5;     ///< s before and after, in which it must have been seen,
+  double detected = 0.6;    ///< in this share of instants on the one side,
+  double gone = 0.15;       ///< and no more than this on the other
+  double unobserved = 1.5;  ///< s without its being seen, after which no person knows
 };
 
-/// Adds to `way`, where it begins and ends, the moments at which the ball lay still. `way` has one entry a moment.
-void add_rests(std::span<const BallMoment> moments, const GroundViews& views, const BallRestOptions& options,
-               std::vector<std::optional<BallState>>& way);
+/// Adds to `way`, where it begins and ends, the instants at which the ball lay still. `way` has one entry an instant.
+void add_rests(std::span<const BallObservations> time_steps, const GroundViews& views, const BallRestOptions& options,
+               std::vector<std::optional<BallState>>& method);
 
 }  // namespace marey::track::ball

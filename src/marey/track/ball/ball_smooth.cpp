@@ -8,24 +8,24 @@ namespace marey::track::ball {
 namespace {
 
 struct Pass {
-  BallPrediction predicted;  // from the moment before
+  BallPrediction predicted;  // from the instant before
   BallBelief filtered;
 };
 
-const BallPerson* holder_of(const BallStep& step, const BallMoment& moment) {
+const BallPerson* holder_of(const BallStep& step, const BallObservations& time_step) {
   const auto is = [&](const BallPerson& person) { return step.holder == person.id; };
-  const auto found = std::find_if(moment.people.begin(), moment.people.end(), is);
-  return found == moment.people.end() ? nullptr : &*found;
+  const auto found = std::find_if(time_step.people.begin(), time_step.people.end(), is);
+  return found == time_step.people.end() ? nullptr : &*found;
 }
 
 /// What the cameras saw of it corrects it, by how they see what is `around`.
-BallBelief seen(BallBelief belief, const BallStep& step, const BallMoment& moment, const GroundViews& views,
-                const std::optional<Vector<3>>& around) {
+BallBelief detected(BallBelief belief, const BallStep& step, const BallObservations& time_step, const GroundViews& views,
+                    const std::optional<Vector<3>>& around) {
   for (std::size_t v = 0; v < step.used.size(); ++v) {
     if (step.used[v] < 0) continue;
-    const BallView& view = moment.views[v];
+    const BallView& view = time_step.views[v];
     const auto at = project(belief, views.view_at(view.camera, view.time), around);
-    if (at) correct(belief, *at, view.seen[static_cast<std::size_t>(step.used[v])]);
+    if (at) correct(belief, *at, view.detected[static_cast<std::size_t>(step.used[v])]);
   }
   return belief;
 }
@@ -49,12 +49,12 @@ void smooth_back(std::span<const Pass> passes, std::span<BallState> states) {
 /// A stretch without a gap, from what was known at its first moment. Where a belief was wide, cameras do not see it in proportion
 /// to its place: each further pass takes what they see of the places that the pass before came to (an iterated smoother: Bell
 /// 1994, "The iterated Kalman smoother as a Gauss-Newton method").
-void smooth_stretch(std::span<const BallMoment> moments, std::span<const BallStep> steps, const GroundViews& views,
+void smooth_segment(std::span<const BallObservations> time_steps, std::span<const BallStep> steps, const GroundViews& views,
                     const BallMotionOptions& options, std::span<BallState> states) {
   constexpr int kPasses = 4;
   for (int pass = 0; pass < kPasses; ++pass) {
     const auto around = [&](std::size_t i) {
-      return pass == 0 ? std::nullopt : std::optional<Vector<3>>(states[i].belief.place());
+      return pass == 0 ? std::nullopt : std::optional<Vector<3>>(states[i].belief.location());
     };
     std::vector<Pass> passes;
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -64,12 +64,12 @@ void smooth_stretch(std::span<const BallMoment> moments, std::span<const BallSte
         one.filtered = steps[0].belief;
         continue;
       }
-      const BallPerson* holder = holder_of(steps[i], moments[i]);
-      const double later = seconds(moments[i].time - moments[i - 1].time);
+      const BallPerson* holder = holder_of(steps[i], time_steps[i]);
+      const double later = seconds(time_steps[i].time - time_steps[i - 1].time);
       one.predicted = predict(passes[i - 1].filtered, steps[i].mode, steps[i].event, later, holder, options);
       one.filtered = one.predicted.belief;
       settle(one.filtered, steps[i].mode, steps[i].event, later, holder, options);
-      one.filtered = seen(one.filtered, steps[i], moments[i], views, around(i));
+      one.filtered = detected(one.filtered, steps[i], time_steps[i], views, around(i));
     }
     smooth_back(passes, states);
   }
@@ -77,23 +77,23 @@ void smooth_stretch(std::span<const BallMoment> moments, std::span<const BallSte
 
 }  // namespace
 
-std::vector<BallState> smooth_ball(std::span<const BallMoment> moments, std::span<const BallStep> steps, const GroundViews& views,
-                                   const BallMotionOptions& options) {
+std::vector<BallState> smooth_ball(std::span<const BallObservations> time_steps, std::span<const BallStep> steps,
+                                   const GroundViews& views, const BallMotionOptions& options) {
   std::vector<BallState> states(steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
     states[i].mode = steps[i].mode;
     states[i].event = steps[i].event;
     states[i].holder = steps[i].holder;
     for (std::size_t v = 0; v < steps[i].used.size(); ++v) {
-      if (steps[i].used[v] >= 0) states[i].cameras |= mask_of(moments[i].views[v].camera);
+      if (steps[i].used[v] >= 0) states[i].cameras |= mask_of(time_steps[i].views[v].camera);
     }
   }
   const auto lost = [&](std::size_t i) { return steps[i].mode == BallMode::lost; };
   for (std::size_t first = 0, end = 0; first < steps.size(); first = end) {
     end = first + 1;
     if (lost(first)) continue;
-    while (end < steps.size() && !lost(end) && !steps[end].born) ++end;
-    smooth_stretch(moments.subspan(first, end - first), steps.subspan(first, end - first), views, options,
+    while (end < steps.size() && !lost(end) && !steps[end].initiated) ++end;
+    smooth_segment(time_steps.subspan(first, end - first), steps.subspan(first, end - first), views, options,
                    std::span(states).subspan(first, end - first));
   }
   return states;

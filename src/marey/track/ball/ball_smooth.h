@@ -1,5 +1,5 @@
-// The second pass over the ball's way: what was decided (modes, events, what each camera saw) is filtered once more, and smoothed
-// backwards (Rauch, Tung, Striebel), so that a whole arc tells each of its places.
+// The second pass over the ball's trajectory: what was decided (modes, events, what each camera saw) is filtered once more, and
+// smoothed backwards (Rauch, Tung, Striebel), so that a whole arc tells each of its places.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace marey::track::ball {
 
-/// Where the ball was at one moment.
+/// Where the ball was at one instant.
 struct BallState {
   BallMode mode = BallMode::lost;
   BallEvent event = BallEvent::none;
@@ -21,8 +21,8 @@ struct BallState {
   CameraMask cameras = 0;         ///< who saw it
 };
 
-/// One for each moment; `steps` are those of a search over the same moments.
-std::vector<BallState> smooth_ball(std::span<const BallMoment> moments, std::span<const BallStep> steps, const GroundViews& views,
-                                   const BallMotionOptions& options);
+/// One for each instant; `steps` are those of a search over the same instants.
+std::vector<BallState> smooth_ball(std::span<const BallObservations> time_steps, std::span<const BallStep> steps,
+                                   const GroundViews& views, const BallMotionOptions& options);
 
 }  // namespace marey::track::ball

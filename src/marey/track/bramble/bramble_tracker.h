@@ -1,5 +1,5 @@
 // BraMBLe: no detections, no association. Every particle says how many people there are and where; what it is
-// worth is how much better it explains the pictures than an empty scene does.
+// worth is how much better it explains the images than an empty scene does.
 //
 // Source: Isard, MacCormick, "BraMBLe: A Bayesian Multiple-Blob Tracker", ICCV 2001. Neither that paper nor a copy was at hand:
 // what follows is from memory and from what Queiroz et al. (OpenMoCap, section II) say of it. Remembered:
@@ -14,7 +14,7 @@
 // Isard, "Partitioned sampling", ECCV 2000), without which the particles needed grow exponentially with people; arrivals proposed
 // where evidence is left unexplained (blob_search.h), departures more often than they happen, both weighed accordingly; a share of
 // the sum
-// (`independence`) and a limit on each point, because neighbouring points and wrong models are no independent witnesses.
+// (`independence`) and a limit on each point, because neighbouring points and wrong models are not independent witnesses.
 // Cost an instant: particles × people × cameras × the rows of the grid that a person spans.
 #pragma once
 

@@ -33,7 +33,7 @@ BlobEvidence random_evidence(filter::RandomStream& random) {
   return evidence;
 }
 
-/// The slow twin: asks every point of the grid whether anybody's polygon holds it.
+/// The slow twin: asks every point of the grid whether any person's polygon holds it.
 double point_by_point(const BlobEvidence& evidence, const std::vector<CylinderOutline>& outlines) {
   std::vector<std::vector<cv::Point2f>> polygons;
   for (const CylinderOutline& outline : outlines) {
@@ -66,7 +66,7 @@ TEST(EvidenceSums, OfAUnionAreThoseOfItsPointsOneByOne) {
     std::vector<CylinderOutline> outlines;
     std::vector<GridShape> shapes;
     for (int person = 0; person < 1 + round % 6; ++person) {
-      // Some stand outside the picture, in part or wholly; many hide each other.
+      // Some stand outside the image, in part or wholly; many hide each other.
       const PersonCylinder one{.foot = {10 * random.uniform() - 5, 10 * random.uniform() - 6, 0},
                                .stature = 1.5 + 0.5 * random.uniform(),
                                .girth = 0.7 + 0.8 * random.uniform()};
@@ -107,8 +107,8 @@ TEST(PersonCylinder, CountsWhatLiesOutsideTheGrid) {
   GridShape inside, outside;
   cover(cylinder_outline(camera, {.foot = {0, 0, 0}}), evidence, inside);
   cover(cylinder_outline(camera, {.foot = {0, -8.2, 0}}), evidence, outside);
-  EXPECT_EQ(inside.share_in_grid(), 1);
-  EXPECT_LT(outside.share_in_grid(), 0.7);
+  EXPECT_EQ(inside.fraction_in_grid(), 1);
+  EXPECT_LT(outside.fraction_in_grid(), 0.7);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace marey::track::bramble {
 namespace {
 
-constexpr double kFewEffective = 0.5;  // of the particles: below that they are drawn anew
+constexpr double kFewEffective = 0.5;  // of the particles: below that they are drawn again
 
 std::uint64_t mixed(std::uint64_t seed, std::uint64_t call, std::uint64_t index) {
   return filter::RandomStream(filter::RandomStream(seed ^ call * 0x9e3779b97f4a7c15ULL).bits() ^ index).bits();
@@ -33,11 +33,11 @@ void ParticleSet::each(const std::function<void(int, Particle&, filter::RandomSt
 }
 
 void ParticleSet::resample(bool always) {
-  double most = particles_.front().log_weight;
-  for (const Particle& one : particles_) most = std::max(most, one.log_weight);
+  double maximum = particles_.front().log_weight;
+  for (const Particle& one : particles_) maximum = std::max(maximum, one.log_weight);
   double sum = 0, squares = 0;
   for (const Particle& one : particles_) {
-    const double weight = std::exp(one.log_weight - most);
+    const double weight = std::exp(one.log_weight - maximum);
     sum += weight, squares += weight * weight;
   }
   const auto count = static_cast<double>(particles_.size());
@@ -48,7 +48,7 @@ void ParticleSet::resample(bool always) {
   drawn_.resize(particles_.size());
   std::size_t drawn = 0;
   for (const Particle& one : particles_) {
-    passed += std::exp(one.log_weight - most);
+    passed += std::exp(one.log_weight - maximum);
     for (; drawn < drawn_.size() && next < passed; next += step) {
       drawn_[drawn].people = one.people;
       drawn_[drawn++].log_weight = 0;
@@ -78,14 +78,14 @@ ParticleSet::Estimate ParticleSet::estimate(int id) const {
     }
   };
   with_it([&](const Blob& blob) {
-    mean.place += blob.place, mean.velocity += blob.velocity, mean.stature += blob.stature, mean.girth += blob.girth;
+    mean.location += blob.location, mean.velocity += blob.velocity, mean.stature += blob.stature, mean.girth += blob.girth;
     ++count;
   });
-  result.share = count / static_cast<double>(particles_.size());
+  result.fraction = count / static_cast<double>(particles_.size());
   if (count == 0) return result;
-  mean.place /= count, mean.velocity /= count, mean.stature /= count, mean.girth /= count;
+  mean.location /= count, mean.velocity /= count, mean.stature /= count, mean.girth /= count;
   with_it([&](const Blob& blob) {
-    const Vector<2> off = blob.place - mean.place;
+    const Vector<2> off = blob.location - mean.location;
     result.covariance += off * off.transpose() / count;
   });
   return result;

@@ -13,10 +13,10 @@ namespace marey::track::bramble {
 /// One person in one particle.
 struct Blob {
   int id = 0;
-  Vector<2> place = Vector<2>::Zero(), velocity = Vector<2>::Zero();  ///< m, m/s
-  double stature = 1.75;                                              ///< m
-  double girth = 1;                                                   ///< factor
-  int slot = -1;  ///< where this instant's shapes of it are; −1: not yet looked at
+  Vector<2> location = Vector<2>::Zero(), velocity = Vector<2>::Zero();  ///< m, m/s
+  double stature = 1.75;                                                 ///< m
+  double girth = 1;                                                      ///< factor
+  int slot = -1;  ///< where this instant's shapes of it are; −1: not yet inspected
 };
 
 struct Particle {
@@ -33,10 +33,10 @@ class ParticleSet {
 
   int size() const { return static_cast<int>(particles_.size()); }
   const std::vector<Particle>& all() const { return particles_; }
-  /// A stream of random numbers of its own for each particle and call, whoever of several threads asks: `change` may be called from
-  /// several at once.
+  /// A stream of random numbers of its own for each particle and call, the one who of several threads asks: `change` may be called
+  /// from several at once.
   void each(const std::function<void(int index, Particle&, filter::RandomStream&)>& change);
-  /// Draws as many particles anew by their weights, in even steps, where few of them carry most of the weight, or `always`; they
+  /// Draws as many particles again by their weights, in even steps, where few of them carry most of the weight, or `always`; they
   /// then weigh the same.
   void resample(bool always);
   /// Ids in any of the particles, ascending.
@@ -44,7 +44,7 @@ class ParticleSet {
 
   /// What the particles together say of a person, all weighing the same.
   struct Estimate {
-    double share = 0;  ///< of the particles, that hold it
+    double fraction = 0;  ///< of the particles, that hold it
     Blob mean;
     Matrix<2> covariance = Matrix<2>::Zero();  ///< of the place
   };

@@ -50,7 +50,7 @@ void cover(const CylinderOutline& outline, const BlobEvidence& grid, GridShape& 
     const double y = (corner.y() - grid.origin.y()) / grid.step;
     highest = std::min(highest, y), lowest = std::max(lowest, y);
   }
-  constexpr double kFar = 30000;  // rows: nobody is seen so large
+  constexpr double kFar = 30000;  // rows: no person is seen so large
   if (!(highest > -kFar) || !(lowest < kFar)) return;
   const int first = static_cast<int>(std::ceil(highest)), last = static_cast<int>(std::floor(lowest));
   shape.all_rows = std::max(0, last - first + 1);

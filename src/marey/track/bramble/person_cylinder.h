@@ -1,4 +1,4 @@
-// A person as a generalised cylinder that stands on the ground, and which points of a picture's grid it covers.
+// A person as a generalised cylinder that stands on the ground, and which points of an image's grid it covers.
 //
 // Source: Isard, MacCormick, "BraMBLe: A Bayesian Multiple-Blob Tracker", ICCV 2001, from memory. Remembered: circles of given
 // radii one above the other (feet, waist, shoulders, head), projected by a calibrated camera. Ours: the radii, which are those of a
@@ -20,7 +20,7 @@ struct PersonCylinder {
   double girth = 1;                    ///< factor on all radii
 };
 
-/// A closed polygon, px; empty where a part of the person lies behind the camera.
+/// A closed polygon, px; empty if a part of the person lies behind the camera.
 using CylinderOutline = std::vector<Vector<2>>;
 CylinderOutline cylinder_outline(const Camera& camera, const PersonCylinder& person);
 
@@ -29,7 +29,7 @@ struct RowSpan {
   std::int16_t begin = 0, end = 0;
 };
 
-/// The points of a grid within an outline, row by row from `top` on. What lies outside the grid is left out and counted in `cut`.
+/// The points of a grid within an outline, row by row from `top` on. What lies outside the grid is omitted and counted in `cut`.
 struct GridShape {
   int top = 0;
   std::vector<RowSpan> rows;
@@ -39,7 +39,7 @@ struct GridShape {
 
   int bottom() const { return top + static_cast<int>(rows.size()); }
   /// Of the outline's rows, those of which points lie within the grid.
-  double share_in_grid() const { return all_rows > 0 ? static_cast<double>(rows.size()) / all_rows : 0; }
+  double fraction_in_grid() const { return all_rows > 0 ? static_cast<double>(rows.size()) / all_rows : 0; }
 };
 
 /// Each row's points from the outline's leftmost to its rightmost edge there. Into `shape`, whose memory is used again. `grid`: its

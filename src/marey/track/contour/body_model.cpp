@@ -14,11 +14,11 @@ constexpr double kHalfAcross = 0.48, kHalfDown = 0.72;  // heights that the cove
 constexpr double kFloor = 2e-8;                         // per level³: any colour may come
 
 /// Where a value lies among bins: the first of two neighbours, and the second one's share.
-struct BinPlace {
+struct BinPosition {
   int first = 0;
   float part = 0;
 };
-BinPlace bin_place(double at, int count) {
+BinPosition bin_position(double at, int count) {
   const double clamped = std::clamp(at, 0.0, count - 1.0);
   const int first = std::min(static_cast<int>(clamped), count - 2);
   return {first, static_cast<float>(clamped - first)};
@@ -26,9 +26,9 @@ BinPlace bin_place(double at, int count) {
 
 template <int Luma, int Chroma, typename Visit>
 void for_bins(const cv::Vec3f& colour, const Visit& visit) {
-  const BinPlace y = bin_place(colour[0] / kLumaBin - 0.5, Luma);
-  const BinPlace cb = bin_place((colour[1] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
-  const BinPlace cr = bin_place((colour[2] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
+  const BinPosition y = bin_position(colour[0] / kLumaBin - 0.5, Luma);
+  const BinPosition cb = bin_position((colour[1] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
+  const BinPosition cr = bin_position((colour[2] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
   for (int i = 0; i < 8; ++i) {
     const int a = i & 1, b = (i >> 1) & 1, c = i >> 2;
     const float weight = (a != 0 ? y.part : 1 - y.part) * (b != 0 ? cb.part : 1 - cb.part) * (c != 0 ? cr.part : 1 - cr.part);
@@ -42,9 +42,9 @@ int band_of(double down, int bands) {
 }
 
 /// A person who stands: head, trunk, legs.
-double standing(const Vector<2>& place) {
+double standing(const Vector<2>& location) {
   const auto within = [&](double x, double y, double half_width, double half_height) {
-    return std::pow((place.x() - x) / half_width, 2) + std::pow((place.y() - y) / half_height, 2) < 1;
+    return std::pow((location.x() - x) / half_width, 2) + std::pow((location.y() - y) / half_height, 2) < 1;
   };
   const bool body = within(0, -0.38, 0.07, 0.09) || within(0, -0.12, 0.14, 0.22) || within(0, 0.25, 0.13, 0.27);
   return body ? 0.8 : 0.06;
@@ -55,20 +55,21 @@ double standing(const Vector<2>& place) {
 BodyModel::BodyModel() {
   for (int row = 0; row < kDown; ++row) {
     for (int column = 0; column < kAcross; ++column) {
-      const Vector<2> place(kHalfAcross * (2 * (column + 0.5) / kAcross - 1), kHalfDown * (2 * (row + 0.5) / kDown - 1));
-      coverage_[row * kAcross + column] = static_cast<float>(standing(place));
+      const Vector<2> location(kHalfAcross * (2 * (column + 0.5) / kAcross - 1), kHalfDown * (2 * (row + 0.5) / kDown - 1));
+      coverage_[row * kAcross + column] = static_cast<float>(standing(location));
     }
   }
 }
 
-void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& share, const Vector<2>& centre, double height, double rate) {
+void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& fraction, const Vector<2>& centre, double height,
+                              double rate) {
   std::vector<Histogram> now(kBands);
   std::array<double, kBands> weight{};
   for (Histogram& one : now) one.fill(0);
-  for (int y = 0; y < share.rows; ++y) {
+  for (int y = 0; y < fraction.rows; ++y) {
     const int band = band_of((patch.pixel({0, y}).y() - centre.y()) / height, kBands);
-    for (int x = 0; x < share.cols; ++x) {
-      const float covered = share.at<float>(y, x);
+    for (int x = 0; x < fraction.cols; ++x) {
+      const float covered = fraction.at<float>(y, x);
       if (covered < 0.7F) continue;
       for_bins<kLuma, kChroma>(patch.colour.at<cv::Vec3f>(y, x), [&](int bin, float part) { now[band][bin] += part; });
       weight[band] += 1;
@@ -87,16 +88,16 @@ void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& share, co
   known_ = true;
 }
 
-void BodyModel::learn_coverage(const ColourPatch& patch, const cv::Mat& share, const Vector<2>& centre, double height,
+void BodyModel::learn_coverage(const ColourPatch& patch, const cv::Mat& fraction, const Vector<2>& centre, double height,
                                double rate) {
   for (int row = 0; row < kDown; ++row) {
     for (int column = 0; column < kAcross; ++column) {
-      const Vector<2> place(kHalfAcross * (2 * (column + 0.5) / kAcross - 1), kHalfDown * (2 * (row + 0.5) / kDown - 1));
-      const Vector<2> cell = patch.cell(centre + height * place);
+      const Vector<2> location(kHalfAcross * (2 * (column + 0.5) / kAcross - 1), kHalfDown * (2 * (row + 0.5) / kDown - 1));
+      const Vector<2> cell = patch.cell(centre + height * location);
       const int x = static_cast<int>(std::lround(cell.x())), y = static_cast<int>(std::lround(cell.y()));
-      if (x < 0 || y < 0 || x >= share.cols || y >= share.rows) continue;
+      if (x < 0 || y < 0 || x >= fraction.cols || y >= fraction.rows) continue;
       float& known = coverage_[row * kAcross + column];
-      known += static_cast<float>(rate) * (share.at<float>(y, x) - known);
+      known += static_cast<float>(rate) * (fraction.at<float>(y, x) - known);
     }
   }
 }
@@ -117,10 +118,10 @@ double BodyModel::density(double down, const cv::Vec3f& colour) const {
   return sum / (kLumaBin * kChromaBin * kChromaBin) + kFloor;
 }
 
-double BodyModel::coverage(const Vector<2>& place) const {
-  const double x = ((place.x() / kHalfAcross + 1) / 2) * kAcross - 0.5, y = ((place.y() / kHalfDown + 1) / 2) * kDown - 0.5;
+double BodyModel::coverage(const Vector<2>& location) const {
+  const double x = ((location.x() / kHalfAcross + 1) / 2) * kAcross - 0.5, y = ((location.y() / kHalfDown + 1) / 2) * kDown - 0.5;
   if (x < -1 || y < -1 || x > kAcross || y > kDown) return 0.01;
-  const BinPlace across = bin_place(x, kAcross), down = bin_place(y, kDown);
+  const BinPosition across = bin_position(x, kAcross), down = bin_position(y, kDown);
   const float* at = &coverage_[down.first * kAcross + across.first];
   const float above = at[0] + across.part * (at[1] - at[0]);
   const float below = at[kAcross] + across.part * (at[kAcross + 1] - at[kAcross]);

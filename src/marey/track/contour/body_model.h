@@ -10,21 +10,21 @@
 
 namespace marey::track::contour {
 
-/// How a target looks, learned while nobody hides it: the colours of its body from head to foot, and what places about its centre
-/// it covers how often. Places are in heights of the target from its centre of area.
+/// How a target looks, learned while no person hides it: the colours of its body from head to foot, and what places about its
+/// centre it covers how often. Places are in heights of the target from its centre of area.
 class BodyModel {
  public:
   BodyModel();
 
   /// `share` of each cell of the patch shows the target (CV_32FC1); `rate` in (0, 1] is what this counts against what was known.
-  void learn_colours(const ColourPatch& patch, const cv::Mat& share, const Vector<2>& centre, double height, double rate);
-  void learn_coverage(const ColourPatch& patch, const cv::Mat& share, const Vector<2>& centre, double height, double rate);
+  void learn_colours(const ColourPatch& patch, const cv::Mat& fraction, const Vector<2>& centre, double height, double rate);
+  void learn_coverage(const ColourPatch& patch, const cv::Mat& fraction, const Vector<2>& centre, double height, double rate);
 
   bool knows_colours() const { return known_; }
   /// Probability density of a colour at a place `down` heights below the centre, per level³.
   double density(double down, const cv::Vec3f& colour) const;
   /// How often the place is covered, 0 … 1; before anything is learned, by a person who stands.
-  double coverage(const Vector<2>& place) const;
+  double coverage(const Vector<2>& location) const;
 
  private:
   static constexpr int kBands = 6, kLuma = 12, kChroma = 12;

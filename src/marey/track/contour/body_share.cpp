@@ -16,16 +16,16 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kGroundReach = 0.15;                       // heights: the neighbourhood that the ground is read from
-constexpr double kAway = 0.025;                             // heights: the ground is read this far from everything
-constexpr double kRim = 0.07, kRimLeast = 5, kRimMost = 8;  // heights; px: how deep a silhouette's rim may be ground
-constexpr float kLeastContrast = 16;                        // levels between body and ground, from which on colour tells
-constexpr float kClearContrast = 32;                        // from which on it tells how much too wide a silhouette is
-constexpr double kSpread = 0.5;                             // cells by which that varies along the edge
-constexpr float kPlainGround = 12;                          // levels from the ground below which a cell deep inside is ground
-constexpr float kHalo = 0.25F;                              // square of a halo's strength, of the step from ground to body
-constexpr float kLightChange = 40;                          // levels; a cell farther from the scene is shadow or a target
-constexpr double kSmooth = 0.6;                             // cells
+constexpr double kGroundReach = 0.15;                    // heights: the neighbourhood that the ground is read from
+constexpr double kAway = 0.025;                          // heights: the ground is read this far from everything
+constexpr double kRim = 0.07, kMinRim = 5, kMaxRim = 8;  // heights; px: how deep a silhouette's rim may be ground
+constexpr float kMinContrast = 16;                       // levels between body and ground, from which on colour tells
+constexpr float kClearContrast = 32;                     // from which on it tells how much too wide a silhouette is
+constexpr double kSpread = 0.5;                          // cells by which that varies along the edge
+constexpr float kPlainGround = 12;                       // levels from the ground below which a cell deep inside is ground
+constexpr float kHalo = 0.25F;                           // square of a halo's strength, of the step from ground to body
+constexpr float kLightChange = 40;                       // levels; a cell farther from the scene is shadow or a target
+constexpr double kSmooth = 0.6;                          // cells
 
 int odd_kernel(double radius) {
   return 2 * std::max(1, static_cast<int>(std::lround(radius))) + 1;
@@ -88,15 +88,15 @@ void use_scene(const ColourPatch& patch, const cv::Mat& free, cv::Mat& ground) {
 
 }  // namespace
 
-cv::Mat ground_beside(const ColourPatch& patch, const cv::Mat& taken, double height) {
+cv::Mat ground_next_to(const ColourPatch& patch, const cv::Mat& taken, double height) {
   const cv::Mat away = dilated(taken, std::max(2.0, kAway * height) / patch.step);
   cv::Mat free = 1 - away;
   cv::Mat somewhere;
   free.convertTo(somewhere, CV_8U, 255);
   const cv::Scalar everywhere = cv::mean(patch.colour, cv::countNonZero(somewhere) > 0 ? somewhere : cv::Mat());
-  cv::Mat beside = weighted_mean(patch.colour, free, odd_kernel(kGroundReach * height / patch.step), everywhere);
-  if (!patch.scene.empty()) use_scene(patch, free, beside);
-  return beside;
+  cv::Mat next_to = weighted_mean(patch.colour, free, odd_kernel(kGroundReach * height / patch.step), everywhere);
+  if (!patch.scene.empty()) use_scene(patch, free, next_to);
+  return next_to;
 }
 
 namespace {
@@ -109,11 +109,11 @@ class BodyColours {
 
   cv::Vec3f at(cv::Point cell) const {
     const cv::Point middle = deepest_from(cell);
-    const float least = 0.8F * depth_.at<float>(middle);
+    const float minimum = 0.8F * depth_.at<float>(middle);
     cv::Vec3f sum(0, 0, 0);
     float count = 0;
     for_neighbours(middle, [&](const cv::Point& one) {
-      if (depth_.at<float>(one) < least) return;
+      if (depth_.at<float>(one) < minimum) return;
       sum += patch_.colour.at<cv::Vec3f>(one);
       count += 1;
     });
@@ -170,61 +170,61 @@ class Overwidth {
 };
 
 /// What the colours tell of the cells near a body.
-struct ColourShares {
-  cv::Mat covered;  ///< CV_32FC1: share of body; −1 where colour does not tell
+struct ColourFractions {
+  cv::Mat covered;  ///< CV_32FC1: share of body; −1 where colour does not specify
   cv::Mat away;     ///< CV_32FC1: square of the difference from the ground, levels²
   double too_wide;  ///< cells
 };
 
-ColourShares shares_by_colour(const ColourPatch& patch, const cv::Mat& ground, const cv::Mat& near, const cv::Mat& depth,
-                              float rim) {
+ColourFractions fractions_by_colour(const ColourPatch& patch, const cv::Mat& ground, const cv::Mat& near, const cv::Mat& depth,
+                                    float rim) {
   const BodyColours body(patch, depth, rim);
   Overwidth overwidth(rim);
-  ColourShares shares{cv::Mat(patch.size(), CV_32FC1, cv::Scalar(-1)), cv::Mat(patch.size(), CV_32FC1), 0};
+  ColourFractions fractions{cv::Mat(patch.size(), CV_32FC1, cv::Scalar(-1)), cv::Mat(patch.size(), CV_32FC1), 0};
   for (int y = 0; y < near.rows; ++y) {
     for (int x = 0; x < near.cols; ++x) {
       const cv::Vec3f away = patch.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
       const float square = away.dot(away), below = depth.at<float>(y, x);
-      shares.away.at<float>(y, x) = square;
+      fractions.away.at<float>(y, x) = square;
       if (near.at<float>(y, x) == 0) continue;
       if (below > rim) {
-        if (square < kPlainGround * kPlainGround) shares.covered.at<float>(y, x) = 0;
+        if (square < kPlainGround * kPlainGround) fractions.covered.at<float>(y, x) = 0;
         continue;
       }
-      const cv::Vec3f way = body.at({x, y}) - ground.at<cv::Vec3f>(y, x);
-      const float contrast = way.dot(way);
-      if (contrast < kLeastContrast * kLeastContrast) continue;
-      const float covered = std::clamp(away.dot(way) / contrast, 0.0F, 1.0F);
+      const cv::Vec3f method = body.at({x, y}) - ground.at<cv::Vec3f>(y, x);
+      const float contrast = method.dot(method);
+      if (contrast < kMinContrast * kMinContrast) continue;
+      const float covered = std::clamp(away.dot(method) / contrast, 0.0F, 1.0F);
       // What is unlike both (dark hair over a white shirt) is body too; a halo is not as far from the ground as that.
       const bool unlike = covered < 0.5F && square > kHalo * contrast;
       if (below > 0 && contrast >= kClearContrast * kClearContrast) overwidth.add(below, covered < 0.5F && !unlike);
-      if (!unlike) shares.covered.at<float>(y, x) = covered;
+      if (!unlike) fractions.covered.at<float>(y, x) = covered;
     }
   }
-  shares.too_wide = overwidth.cells();
-  return shares;
+  fractions.too_wide = overwidth.cells();
+  return fractions;
 }
 
 }  // namespace
 
-cv::Mat body_share(const ColourPatch& patch, const cv::Mat& own, double height) {
+cv::Mat body_fraction(const ColourPatch& patch, const cv::Mat& own, double height) {
   cv::Mat taken, inside, depth;
   cv::max(own, patch.mask, taken);
   own.convertTo(inside, CV_8U, 255);
   cv::distanceTransform(inside, depth, cv::DIST_L2, 3);
-  const auto rim = static_cast<float>(std::clamp(kRim * height, kRimLeast, kRimMost) / patch.step);
-  const ColourShares colour = shares_by_colour(patch, ground_beside(patch, taken, height), dilated(own, 1), depth, rim);
-  cv::Mat share = own.clone();
-  for (int y = 0; y < share.rows; ++y) {
-    for (int x = 0; x < share.cols; ++x) {
+  const auto rim = static_cast<float>(std::clamp(kRim * height, kMinRim, kMaxRim) / patch.step);
+  const ColourFractions colour = fractions_by_colour(patch, ground_next_to(patch, taken, height), dilated(own, 1), depth, rim);
+  cv::Mat fraction = own.clone();
+  for (int y = 0; y < fraction.rows; ++y) {
+    for (int x = 0; x < fraction.cols; ++x) {
       const float covered = colour.covered.at<float>(y, x);
       const bool deep = depth.at<float>(y, x) > colour.too_wide + kSpread;
       if (covered < 0 || (deep && colour.away.at<float>(y, x) >= kPlainGround * kPlainGround)) continue;
-      share.at<float>(y, x) = covered;
+      fraction.at<float>(y, x) = covered;
     }
   }
-  cv::GaussianBlur(share, share, {}, kSmooth);
-  return share;
+  cv::GaussianBlur(fraction, fraction, {}, kSmooth);
+  return fraction;
 }
 
 }  // namespace marey::track::contour

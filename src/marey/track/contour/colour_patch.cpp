@@ -53,8 +53,8 @@ constexpr std::array<std::array<Piece, 2>, 16> kPieces{{
 /// The pieces of the curve as links from edge to edge; edge 2i runs right from sample i, edge 2i + 1 down.
 class LevelCurves {
  public:
-  explicit LevelCurves(const cv::Mat& share) {
-    cv::copyMakeBorder(share, values_, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
+  explicit LevelCurves(const cv::Mat& fraction) {
+    cv::copyMakeBorder(fraction, values_, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
     next_.assign(2 * values_.total(), -1);
     for (int y = 0; y + 1 < values_.rows; ++y) {
       const float* upper = values_.ptr<float>(y);
@@ -78,7 +78,7 @@ class LevelCurves {
       curve.clear();
       int at = static_cast<int>(begin);
       while (at >= 0 && next_[at] >= 0) {
-        curve.push_back(place(at));
+        curve.push_back(location(at));
         const int after = next_[at];
         next_[at] = -1;
         at = after;
@@ -93,7 +93,7 @@ class LevelCurves {
     if (which == right) ++x;
     return 2 * (static_cast<std::size_t>(y) * values_.cols + x) + (which == left || which == right ? 1 : 0);
   }
-  Vector<2> place(int edge) const {
+  Vector<2> location(int edge) const {
     const int sample = edge / 2, x = sample % values_.cols, y = sample / values_.cols;
     const bool down = edge % 2 != 0;
     const float here = values_.at<float>(y, x), there = down ? values_.at<float>(y + 1, x) : values_.at<float>(y, x + 1);
@@ -107,27 +107,27 @@ class LevelCurves {
 
 }  // namespace
 
-ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene) {
+ColourPatch cut_patch(const Image& image, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene) {
   const int unit = std::max(2, step);
   const auto down = [&](double value) { return static_cast<int>(std::floor(value / unit)) * unit; };
-  const cv::Rect all({0, 0}, cv::Size(picture.size().width / unit * unit, picture.size().height / unit * unit));
+  const cv::Rect all({0, 0}, cv::Size(image.size().width / unit * unit, image.size().height / unit * unit));
   const cv::Point from(down(box.left), down(box.top));
   const cv::Point to(down(box.right()) + unit, down(box.bottom()) + unit);
   const cv::Rect area = cv::Rect(from, to) & all;
   ColourPatch patch;
   patch.step = step;
   patch.corner = area.tl();
-  if (area.empty() || picture.luma().type() != CV_8UC1) return patch;
+  if (area.empty() || image.luma().type() != CV_8UC1) return patch;
   const cv::Size cells(area.width / step, area.height / step);
-  std::array<cv::Mat, 3> planes{in_cells(picture.luma()(area), cells), {}, {}};
+  std::array<cv::Mat, 3> planes{in_cells(image.luma()(area), cells), {}, {}};
   const cv::Rect half(area.x / 2, area.y / 2, area.width / 2, area.height / 2);
   for (int i = 1; i < 3; ++i) {
-    planes[i] = picture.is_colour() ? in_cells((i == 1 ? picture.cb() : picture.cr())(half), cells)
-                                    : cv::Mat(cells, CV_32FC1, cv::Scalar(128));
+    planes[i] =
+        image.is_colour() ? in_cells((i == 1 ? image.cb() : image.cr())(half), cells) : cv::Mat(cells, CV_32FC1, cv::Scalar(128));
   }
   cv::merge(planes.data(), planes.size(), patch.colour);
   patch.mask = in_cells(mask(area), cells) / 255;
-  if (scene != nullptr && scene->has(picture.size())) {
+  if (scene != nullptr && scene->has(image.size())) {
     std::array<cv::Mat, 3> empty{in_cells(scene->luma(area), cells), {}, {}};
     for (int i = 1; i < 3; ++i) empty[i] = in_cells(scene->chroma(i - 1, half), cells);
     cv::merge(empty.data(), empty.size(), patch.scene);
@@ -151,14 +151,14 @@ cv::Mat cells_within(std::span<const Vector<2>> polygon, const ColourPatch& patc
   return result;
 }
 
-std::vector<Vector<2>> half_level_curve(const cv::Mat& share, const ColourPatch& patch) {
+std::vector<Vector<2>> half_level_curve(const cv::Mat& fraction, const ColourPatch& patch) {
   std::vector<Vector<2>> largest;
-  double most = 0;
-  LevelCurves curves(share);
+  double maximum = 0;
+  LevelCurves curves(fraction);
   curves.for_each([&](const std::vector<Vector<2>>& curve) {
     const double area = geometry::polygon_area(curve);
-    if (area <= most) return;
-    most = area;
+    if (area <= maximum) return;
+    maximum = area;
     largest = curve;
   });
   for (Vector<2>& point : largest) point = patch.pixel(point);

@@ -6,22 +6,22 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/geometry.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/track/contour/scene_image.h"
 
 namespace marey::track::contour {
 
-/// A piece of a picture in cells of `step` × `step` px, ready for sums: what outlines are found in.
+/// A piece of an image in cells of `step` × `step` px, ready for sums: what outlines are found in.
 struct ColourPatch {
   cv::Point corner;  ///< px of the first cell's top left pixel; even
   int step = 1;      ///< 1, 2 or 4 px
-  cv::Mat colour;    ///< CV_32FC3: luma, Cb, Cr in levels; Cb = Cr = 128 where the picture is grey
+  cv::Mat colour;    ///< CV_32FC3: luma, Cb, Cr in levels; Cb = Cr = 128 where the image is grey
   cv::Mat mask;      ///< CV_32FC1: share of the cell that is foreground, 0 … 1
   cv::Mat scene;     ///< CV_32FC3: the scene without targets, in the same levels; empty if it is not known
   cv::Mat known;     ///< CV_32FC1: share of the cell in which it is, 0 … 1; empty likewise
 
   cv::Size size() const { return colour.size(); }
-  /// px of a place in cells, and the other way round; (0, 0) is the first cell's centre.
+  /// px of a place in cells, and vice versa; (0, 0) is the first cell's centre.
   Vector<2> pixel(const Vector<2>& cell) const {
     return Vector<2>(corner.x, corner.y) + step * cell + Vector<2>::Constant((step - 1) / 2.0);
   }
@@ -35,15 +35,15 @@ inline Box grown(const Box& box, double by) {
   return {box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
 }
 
-/// The part of the picture (8 bits) within `box`, px; empty where they do not meet. `mask` is CV_8UC1, of the picture's size.
+/// The part of the image (8 bits) within `box`, px; empty if they do not meet. `mask` is CV_8UC1, of the image's size.
 /// `scene`, if given and of that size too, is cut along.
-ColourPatch cut_patch(const Picture& picture, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene = nullptr);
+ColourPatch cut_patch(const Image& image, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene = nullptr);
 
 /// The cells whose centre lies within a polygon (px, even-odd): CV_32FC1, 1 or 0, of the patch's size.
 cv::Mat cells_within(std::span<const Vector<2>> polygon, const ColourPatch& patch);
 
 /// The closed curve (px, clockwise on the screen) along which `share` (CV_32FC1, of the patch's size) passes one half: the one that
-/// holds the largest area. Beyond the patch nothing is covered. Empty where there is none.
-std::vector<Vector<2>> half_level_curve(const cv::Mat& share, const ColourPatch& patch);
+/// holds the largest area. Beyond the patch nothing is covered. Empty if there is none.
+std::vector<Vector<2>> half_level_curve(const cv::Mat& fraction, const ColourPatch& patch);
 
 }  // namespace marey::track::contour

@@ -41,16 +41,17 @@ cv::Mat colours_inside(const ColourPatch& patch, const cv::Mat& core, double rad
 
 }  // namespace
 
-cv::Mat matted_edge(const ColourPatch& patch, const cv::Mat& share, const cv::Mat& blocked, const cv::Mat& ground, double height) {
-  const cv::Mat inside = share > 0.5F;
+cv::Mat matted_edge(const ColourPatch& patch, const cv::Mat& fraction, const cv::Mat& blocked, const cv::Mat& ground,
+                    double height) {
+  const cv::Mat inside = fraction > 0.5F;
   cv::Mat depth, distance;
   cv::distanceTransform(inside, depth, cv::DIST_L2, 3);
   cv::distanceTransform(inside == 0, distance, cv::DIST_L2, 3);
   const double radius = std::max(2.0, kBodyReach * height / patch.step);
   const cv::Mat deep = colours_inside(patch, depth > 1.5F, radius), any = colours_inside(patch, inside, radius);
-  cv::Mat result = share.clone();
-  for (int y = 0; y < share.rows; ++y) {
-    for (int x = 0; x < share.cols; ++x) {
+  cv::Mat result = fraction.clone();
+  for (int y = 0; y < fraction.rows; ++y) {
+    for (int x = 0; x < fraction.cols; ++x) {
       const float from_edge = std::max(depth.at<float>(y, x), distance.at<float>(y, x)) - 0.5F;
       if (from_edge > kBorder) {
         result.at<float>(y, x) = inside.at<std::uint8_t>(y, x) != 0 ? 1.0F : 0.0F;

@@ -16,7 +16,7 @@ namespace {
 constexpr int kSize = 80;
 
 /// A disc before a lawn, each pixel mixed by how much of it the disc covers.
-Picture image_of_disc(const Vector<2>& centre, double radius, bool degraded, int luma) {
+Image image_of_disc(const Vector<2>& centre, double radius, bool degraded, int luma) {
   cv::Mat covered = cv::Mat::zeros(8 * kSize, 8 * kSize, CV_8UC1);
   for (int y = 0; y < covered.rows; ++y) {
     for (int x = 0; x < covered.cols; ++x) {
@@ -25,9 +25,9 @@ Picture image_of_disc(const Vector<2>& centre, double radius, bool degraded, int
     }
   }
   const auto plane = [&](cv::Size size, double inside, double outside) {
-    cv::Mat share, levels;
-    cv::resize(covered, share, size, 0, 0, cv::INTER_AREA);
-    share.convertTo(levels, CV_8UC1, (inside - outside) / 255, outside);
+    cv::Mat fraction, levels;
+    cv::resize(covered, fraction, size, 0, 0, cv::INTER_AREA);
+    fraction.convertTo(levels, CV_8UC1, (inside - outside) / 255, outside);
     return levels;
   };
   cv::Mat y = plane({kSize, kSize}, luma, 90), cb = plane({kSize / 2, kSize / 2}, 120, 105),
@@ -39,32 +39,32 @@ Picture image_of_disc(const Vector<2>& centre, double radius, bool degraded, int
     cv::addWeighted(y, 1.45, wide, -0.45, 0, y);
     for (cv::Mat* chroma : {&cb, &cr}) cv::GaussianBlur(*chroma, *chroma, {}, 1.2);
   }
-  return {y, cb, cr, Picture::Range::limited};
+  return {y, cb, cr, Image::Range::limited};
 }
 
 /// px by which the curve of the matted edge is wider than the disc, given a share that is `wider` px too wide.
 double bias_of(const Vector<2>& centre, double radius, bool degraded, int luma, double wider) {
-  const Picture image = image_of_disc(centre, radius, degraded, luma);
+  const Image image = image_of_disc(centre, radius, degraded, luma);
   const cv::Mat mask = cv::Mat::zeros(kSize, kSize, CV_8UC1);
   const ColourPatch patch = cut_patch(image, mask, {0, 0, kSize, kSize}, 1);
-  cv::Mat share = cv::Mat::zeros(patch.size(), CV_32FC1);
-  for (int y = 0; y < share.rows; ++y) {
-    for (int x = 0; x < share.cols; ++x)
-      share.at<float>(y, x) = (patch.pixel(Vector<2>(x, y)) - centre).norm() < radius + wider ? 1.0F : 0.0F;
+  cv::Mat fraction = cv::Mat::zeros(patch.size(), CV_32FC1);
+  for (int y = 0; y < fraction.rows; ++y) {
+    for (int x = 0; x < fraction.cols; ++x)
+      fraction.at<float>(y, x) = (patch.pixel(Vector<2>(x, y)) - centre).norm() < radius + wider ? 1.0F : 0.0F;
   }
   const cv::Mat ground(patch.size(), CV_32FC3, cv::Scalar(90, 105, 118));
-  const auto curve = half_level_curve(matted_edge(patch, share, {}, ground, 60), patch);
+  const auto curve = half_level_curve(matted_edge(patch, fraction, {}, ground, 60), patch);
   if (curve.empty()) return 1e9;
   return std::sqrt(geometry::polygon_area(curve) / 3.14159265358979) - radius;
 }
 
 TEST(EdgeMatting, FindsTheEdgeOfADiscThatASilhouetteMisses) {
   std::mt19937_64 random(7);
-  std::uniform_real_distribution<> place(-0.5, 0.5);
+  std::uniform_real_distribution<> location(-0.5, 0.5);
   for (const int luma : {30, 190}) {
     for (const double radius : {8.0, 14.0, 25.0}) {
       for (const double wider : {-1.0, 0.0, 1.0}) {
-        const Vector<2> centre(kSize / 2 + place(random), kSize / 2 + place(random));
+        const Vector<2> centre(kSize / 2 + location(random), kSize / 2 + location(random));
         const double sharp = bias_of(centre, radius, false, luma, wider);
         EXPECT_NEAR(sharp, 0, 0.1) << luma << ' ' << radius << ' ' << wider;
         const double degraded = bias_of(centre, radius, true, luma, wider);
@@ -75,24 +75,24 @@ TEST(EdgeMatting, FindsTheEdgeOfADiscThatASilhouetteMisses) {
 }
 
 TEST(EdgeMatting, KeepsTheShareWhereAnotherBodyIs) {
-  const Picture image = image_of_disc({40, 40}, 15, false, 190);
+  const Image image = image_of_disc({40, 40}, 15, false, 190);
   const ColourPatch patch = cut_patch(image, cv::Mat::zeros(kSize, kSize, CV_8UC1), {0, 0, kSize, kSize}, 1);
   const cv::Mat ground(patch.size(), CV_32FC3, cv::Scalar(90, 105, 118));
-  cv::Mat share = cv::Mat::zeros(patch.size(), CV_32FC1);
-  cv::circle(share, {40, 40}, 16, cv::Scalar(0.8), cv::FILLED);
+  cv::Mat fraction = cv::Mat::zeros(patch.size(), CV_32FC1);
+  cv::circle(fraction, {40, 40}, 16, cv::Scalar(0.8), cv::FILLED);
   const cv::Mat blocked = cv::Mat::ones(patch.size(), CV_32FC1);
-  const cv::Mat result = matted_edge(patch, share, blocked, ground, 60);
+  const cv::Mat result = matted_edge(patch, fraction, blocked, ground, 60);
   EXPECT_FLOAT_EQ(result.at<float>(40, 56), 0.8F);  // along the edge
   EXPECT_FLOAT_EQ(result.at<float>(40, 40), 1);     // inside
   EXPECT_FLOAT_EQ(result.at<float>(40, 70), 0);     // outside
 }
 
 TEST(EdgeMatting, KeepsTheShareWithoutContrast) {
-  const Picture image = image_of_disc({40, 40}, 15, false, 92);
+  const Image image = image_of_disc({40, 40}, 15, false, 92);
   ColourPatch patch = cut_patch(image, cv::Mat::zeros(kSize, kSize, CV_8UC1), {0, 0, kSize, kSize}, 1);
-  cv::Mat share = cv::Mat::zeros(patch.size(), CV_32FC1);
-  cv::circle(share, {40, 40}, 16, cv::Scalar(0.8), cv::FILLED);
-  const cv::Mat result = matted_edge(patch, share, {}, patch.colour, 60);
+  cv::Mat fraction = cv::Mat::zeros(patch.size(), CV_32FC1);
+  cv::circle(fraction, {40, 40}, 16, cv::Scalar(0.8), cv::FILLED);
+  const cv::Mat result = matted_edge(patch, fraction, {}, patch.colour, 60);
   EXPECT_FLOAT_EQ(result.at<float>(40, 56), 0.8F);
 }
 
@@ -117,7 +117,7 @@ TEST(SceneImage, IsWhatNobodyCovers) {
       luma(body).setTo(250);
       mask(body).setTo(255);
     }
-    learned.observe(Picture(luma, cb, cr, Picture::Range::limited), mask);
+    learned.observe(Image(luma, cb, cr, Image::Range::limited), mask);
   }
   ASSERT_TRUE(learned.has({64, 48}));
   const cv::Rect all(0, 0, 64, 48);

@@ -22,13 +22,13 @@ inline constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from 
 inline constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
                         kHiddenCentre = 4;  // how the centre swings with the steps; the last: factor where a part is hidden
 
-inline constexpr double kShareMemory = 0.05;  // what a frame counts in what is usual of a target
+inline constexpr double kFractionMemory = 0.05;  // what a frame counts in what is typical of a target
 
-// Doubts of a target that begins, or begins anew.
-inline constexpr double kBend = 0.12;        // heights each √second, of a control point against all others
-inline constexpr double kGrowthDoubt = 0.5;  // 1/s
-inline constexpr double kGrowthNoise = 2;    // 1/s, of the growth read off two outlines
-inline constexpr int kHeldTooLong = 5;       // frames after which a shape that was held says little
+// Doubts of a target that begins, or begins again.
+inline constexpr double kBend = 0.12;            // heights each √second, of a control point against all others
+inline constexpr double kGrowthAmbiguity = 0.5;  // 1/s
+inline constexpr double kGrowthNoise = 2;        // 1/s, of the growth read off two outlines
+inline constexpr int kHeldTooLong = 5;           // frames after which a shape that was held says little
 
 /// px, standard deviation axis by axis.
 struct MeasuredCentre {
@@ -36,22 +36,22 @@ struct MeasuredCentre {
 };
 
 /// One target whose outline is followed.
-struct FollowedTarget {
+struct ContourTarget {
   TrackId id;
   ShapeFilter shape;
   MotionFilter motion;
   double height;                     ///< px
-  double usual_area;                 ///< px²
-  double tracked_height;             ///< px; of the tracker's box while `usual_area` was seen
+  double default_area;               ///< px²
+  double tracked_height;             ///< px; of the tracker's box while `default_area` was seen
   geometry::ClosedSpline predicted;  ///< of this frame, before anything was seen of it
   BodyModel body = {};               ///
   int learned = 0;                   ///< frames that `body` was learned from
   int held = 0;                      ///< frames since it was seen, or a part of it
   Vector<2> centre_in_box = {0, 0};  ///< heights, from the middle of the tracker's box to the outline's centre
-  double usual_share = 1;            ///< of the pixels within the outline that are foreground
-  double share = 1;
+  double default_fraction = 1;       ///< of the pixels within the outline that are foreground
+  double fraction = 1;
   Box box = {};
-  Outline::State state = Outline::State::seen;
+  Outline::State state = Outline::State::detected;
   Footprint footprint = {};
   std::vector<MeasurementLine> lines = {};
   std::array<std::shared_ptr<Outline>, 3> slots = {};  ///< a reader may still hold one

@@ -19,7 +19,7 @@ constexpr double kStep = 0.5;       // px between readings
 constexpr int kReadings = 5;        // to either side
 constexpr double kNearness = 1;     // px, standard deviation of a silhouette's edge
 constexpr double kTrust = 0.6;      // of light over the silhouette: each is off by a part of a pixel
-constexpr double kLeastSlope = 3;   // grey levels a px, weighed
+constexpr double kMinSlope = 3;     // grey levels a px, weighed
 constexpr int kNeighbours = 2;      // to either side whose median is taken
 constexpr double kTangentSpan = 2;  // px to either side from which a normal is read
 
@@ -52,13 +52,13 @@ std::optional<double> edge_along(const cv::Mat& luma, const Vector<2>& foot, con
   for (int i = 0; i < static_cast<int>(value.size()); ++i) value[i] = brightness(luma, foot + kStep * (i - kReadings - 1) * normal);
   std::array<double, 2 * kReadings + 1> slope;
   std::optional<int> strongest;
-  double most = kLeastSlope;
+  double maximum = kMinSlope;
   for (int i = 0; i <= 2 * kReadings; ++i) slope[i] = std::abs(value[i + 2] - value[i]) / (2 * kStep);
   for (int i = 1; i < 2 * kReadings; ++i) {
     if (slope[i] < slope[i - 1] || slope[i] < slope[i + 1]) continue;
     const double offset = kStep * (i - kReadings);
-    const double worth = slope[i] * std::exp(-0.5 * offset * offset / (kNearness * kNearness));
-    if (worth > most) strongest = i, most = worth;
+    const double merit = slope[i] * std::exp(-0.5 * offset * offset / (kNearness * kNearness));
+    if (merit > maximum) strongest = i, maximum = merit;
   }
   if (!strongest) return std::nullopt;
   const int best = *strongest;

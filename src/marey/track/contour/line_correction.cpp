@@ -21,16 +21,16 @@ using Finding = MeasurementLine::Finding;
 // Noise, in heights of the target (px where it says so); each √second where it is a motion.
 constexpr double kTogether = 0.3, kStiff = 0.1;  // the last: of bend and together, while a part may be hidden
 constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
-constexpr double kGate = 3.5;                                  // standard deviations
-constexpr double kLeastReachPx = 4, kMostReachHeights = 0.25;  // of a line: px; heights
-constexpr double kSeen = 0.6, kPartly = 0.25;                  // shares of the lines found
-constexpr double kHiddenShare = 0.75;  // of the foreground usual within the outline: below, the scene hides some of it
+constexpr double kGate = 3.5;                               // standard deviations
+constexpr double kMinReachPx = 4, kMaxReachHeights = 0.25;  // of a line: px; heights
+constexpr double kObserved = 0.6, kPartly = 0.25;           // shares of the lines found
+constexpr double kHiddenFraction = 0.75;  // of the foreground typical within the outline: below, the scene hides some of it
 
 }  // namespace
 
-void LineCorrection::predict(FollowedTarget& target, double dt) {
+void LineCorrection::predict(ContourTarget& target, double dt) {
   const bool held = target.state == Outline::State::held;
-  const double stiff = target.state == Outline::State::seen && !target.crowded ? 1 : kStiff;
+  const double stiff = target.state == Outline::State::detected && !target.crowded ? 1 : kStiff;
   const double step = std::sqrt(dt) * target.height;
   const double growth = held ? 0 : std::clamp(dt * target.motion.growth(), -0.2, 0.2);
   const ShapeNoise noise{.bend = held ? 0 : kBend * stiff * step,
@@ -47,17 +47,17 @@ void LineCorrection::predict(FollowedTarget& target, double dt) {
   target.footprint.fill(polygon_);
 }
 
-void LineCorrection::correct(FollowedTarget& target, std::span<const FollowedTarget> all, const cv::Mat& mask, double dt) {
+void LineCorrection::correct(ContourTarget& target, std::span<const ContourTarget> all, const cv::Mat& mask, double dt) {
   others_.clear();
   target.crowded = false;
-  const Box wide = grown(target.box, 2 + kMostReachHeights * target.height);
-  for (const FollowedTarget& other : all) {
+  const Box wide = grown(target.box, 2 + kMaxReachHeights * target.height);
+  for (const ContourTarget& other : all) {
     if (&other == &target || geometry::intersection(other.box, wide).area() <= 0) continue;
     others_.push_back(&other.footprint);
     target.crowded = target.crowded || geometry::intersection(other.box, target.box).area() > 0;
   }
-  target.share = foreground_share(target, mask);
-  place_lines(target);
+  target.fraction = foreground_fraction(target, mask);
+  position_lines(target);
   const LineScene scene{mask, others_};
   int found = 0, askable = 0;
   for (std::size_t i = 0; i < target.lines.size(); ++i) {
@@ -70,7 +70,7 @@ void LineCorrection::correct(FollowedTarget& target, std::span<const FollowedTar
 }
 
 /// Of the pixels that the target covers and no other does.
-double LineCorrection::foreground_share(const FollowedTarget& target, const cv::Mat& mask) const {
+double LineCorrection::foreground_fraction(const ContourTarget& target, const cv::Mat& mask) const {
   const Footprint& own = target.footprint;
   const int left = std::max(0, own.left()), right = std::min(mask.cols, own.left() + own.width());
   int covered = 0, filled = 0;
@@ -86,14 +86,14 @@ double LineCorrection::foreground_share(const FollowedTarget& target, const cv::
   return covered > 0 ? static_cast<double>(filled) / covered : 0;
 }
 
-void LineCorrection::place_lines(FollowedTarget& target) {
+void LineCorrection::position_lines(ContourTarget& target) {
   const geometry::ClosedSpline& spline = target.shape.spline();
-  spline.evenly_spaced(places_);
+  spline.evenly_spaced(locations_);
   target.lines.clear();
   weights_.clear();
   deviations_.clear();
-  for (const double place : places_) {
-    const geometry::SplineWeights weights = geometry::spline_weights(spline.order(), spline.count(), place);
+  for (const double location : locations_) {
+    const geometry::SplineWeights weights = geometry::spline_weights(spline.order(), spline.count(), location);
     Vector<2> at = Vector<2>::Zero(), slope = Vector<2>::Zero();
     for (int j = 0; j < spline.order(); ++j) {
       const Vector<2>& point = spline.control_points()[(weights.first + j) % spline.count()];
@@ -104,24 +104,24 @@ void LineCorrection::place_lines(FollowedTarget& target) {
     if (!(length > 1e-6)) continue;
     const Vector<2> normal(slope.y() / length, -slope.x() / length);
     const double deviation = std::sqrt(std::max(0.0, target.shape.variance(weights, normal)));
-    const double most = std::max(kLeastReachPx, kMostReachHeights * target.height);
-    target.lines.push_back({.foot = at, .normal = normal, .reach = std::clamp(3 * deviation, kLeastReachPx, most)});
+    const double maximum = std::max(kMinReachPx, kMaxReachHeights * target.height);
+    target.lines.push_back({.foot = at, .normal = normal, .reach = std::clamp(3 * deviation, kMinReachPx, maximum)});
     weights_.push_back(weights);
     deviations_.push_back(deviation);
   }
 }
 
-/// How many lines the shape filter believed. Where they tie a loop they are believed as to where the target is, not as to its
+/// How many lines the shape filter trusted. Where they tie a loop they are trusted as to where the target is, not as to its
 /// shape.
-int LineCorrection::believe_lines(FollowedTarget& target) {
+int LineCorrection::trust_lines(ContourTarget& target) {
   const ShapeFilter predicted = target.shape;
-  int believed = 0;
+  int trusted = 0;
   for (std::size_t i = 0; i < target.lines.size(); ++i) {
     MeasurementLine& line = target.lines[i];
     if (line.finding != Finding::found) continue;
     const double position = line.normal.dot(line.foot) + line.offset;
     if (target.shape.correct(weights_[i], line.normal, position, line.variance, kGate)) {
-      ++believed;
+      ++trusted;
     } else {
       line.finding = Finding::outlier;
     }
@@ -132,23 +132,23 @@ int LineCorrection::believe_lines(FollowedTarget& target) {
     target.shape = predicted;
     target.shape.predict(shift, 0, target.shape.spline().centroid(), {});
   }
-  return believed;
+  return trusted;
 }
 
-void LineCorrection::correct_shape(FollowedTarget& target, int found, int askable, double dt) {
-  const bool hidden = target.share < kHiddenShare * target.usual_share;
+void LineCorrection::correct_shape(ContourTarget& target, int found, int askable, double dt) {
+  const bool hidden = target.fraction < kHiddenFraction * target.default_fraction;
   const double part = askable > 0 ? static_cast<double>(found) / askable : 0;
-  if (part < kPartly || target.share < 0.4 * target.usual_share) {
+  if (part < kPartly || target.fraction < 0.4 * target.default_fraction) {
     target.state = Outline::State::held;
     return;
   }
   const double predicted_area = target.shape.spline().area();
-  const int believed = believe_lines(target);
-  target.state = believed >= kSeen * askable && !hidden && !target.knotted ? Outline::State::seen
-                 : believed >= kPartly * askable                           ? Outline::State::partly
-                                                                           : Outline::State::held;
+  const int trusted = trust_lines(target);
+  target.state = trusted >= kObserved * askable && !hidden && !target.knotted ? Outline::State::detected
+                 : trusted >= kPartly * askable                               ? Outline::State::partly
+                                                                              : Outline::State::held;
   if (target.state == Outline::State::held) return;
-  const bool clear = target.state == Outline::State::seen;
+  const bool clear = target.state == Outline::State::detected;
   const Matrix<2> P = target.shape.centroid_covariance();
   const Vector<2> gait = (clear ? 1 : kHiddenCentre) * target.height * Vector<2>(kGaitAcross, kGaitDown);
   const Vector<2> deviation = (P.diagonal() + gait.cwiseAbs2()).cwiseSqrt();
@@ -158,8 +158,8 @@ void LineCorrection::correct_shape(FollowedTarget& target, int found, int askabl
   if (clear && dt > 0 && area > 0 && predicted_area > 0) {
     const double measured = target.motion.growth() + (std::sqrt(area / predicted_area) - 1) / dt;
     target.motion.correct_growth(measured, kGrowthNoise);
-    target.usual_share += kShareMemory * (target.share - target.usual_share);
-    target.height += kShareMemory * (target.shape.spline().box().height - target.height);
+    target.default_fraction += kFractionMemory * (target.fraction - target.default_fraction);
+    target.height += kFractionMemory * (target.shape.spline().box().height - target.height);
   }
 }
 

@@ -16,24 +16,24 @@ namespace marey::track::contour {
 class LineCorrection {
  public:
   /// `lines` measurement lines an outline.
-  explicit LineCorrection(int lines) : places_(static_cast<std::size_t>(lines)) {}
+  explicit LineCorrection(int lines) : locations_(static_cast<std::size_t>(lines)) {}
 
   /// To a frame `dt` seconds later.
-  void predict(FollowedTarget& target, double dt);
+  void predict(ContourTarget& target, double dt);
 
   /// Searches the lines in `mask` (CV_8UC1, 255 foreground) and corrects the target by them; `all` are the targets that may own
   /// pixels, `target` among them. Says how much of it was seen (`state`).
-  void correct(FollowedTarget& target, std::span<const FollowedTarget> all, const cv::Mat& mask, double dt);
+  void correct(ContourTarget& target, std::span<const ContourTarget> all, const cv::Mat& mask, double dt);
 
  private:
-  double foreground_share(const FollowedTarget& target, const cv::Mat& mask) const;
-  void place_lines(FollowedTarget& target);
-  void correct_shape(FollowedTarget& target, int found, int askable, double dt);
-  int believe_lines(FollowedTarget& target);
+  double foreground_fraction(const ContourTarget& target, const cv::Mat& mask) const;
+  void position_lines(ContourTarget& target);
+  void correct_shape(ContourTarget& target, int found, int askable, double dt);
+  int trust_lines(ContourTarget& target);
 
   // What a frame needs, kept so that it is allocated once.
   std::vector<const Footprint*> others_;
-  std::vector<double> places_, deviations_;
+  std::vector<double> locations_, deviations_;
   std::vector<geometry::SplineWeights> weights_;
   std::vector<Vector<2>> polygon_;
 };

@@ -2,7 +2,7 @@
 // place where it falls from inside to outside is a candidate, with the sub-pixel place at which it passes one half. The best has
 // foreground on all of its inner side and none on its outer side, near to where the outline was predicted.
 // A pixel that a neighbour covers says nothing of this target (MacCormick & Blake's exclusion principle, IJCV 39(1), 2000): it is
-// left out on both sides, and a line that has none left at its middle is hidden.
+// omitted on both sides, and a line that has none left at its middle is hidden.
 // Cost: 4 reads a pixel of the line.
 #include "marey/track/contour/line_search.h"
 
@@ -14,17 +14,17 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr int kMostReachPx = 48;     // px
+constexpr int kMaxReachPx = 48;      // px
 constexpr int kSide = 3;             // px on either side of a candidate that must agree with it
 constexpr double kAgreement = 3;     // what full agreement is worth, in log-likelihood
-constexpr double kLeastStep = 0.5;   // of the foreground's mean from the inner to the outer side
+constexpr double kMinStep = 0.5;     // of the foreground's mean from the inner to the outer side
 constexpr double kPixelNoise = 0.4;  // px, standard deviation of a clean edge of the mask
 constexpr double kFrayed = 1.5;      // px, added for an edge of no agreement
 
 struct Profile {
-  int reach = 0;                                  ///< samples at −reach … reach
-  std::array<float, 2 * kMostReachPx + 1> value;  ///< share of foreground, in [0, 1]
-  std::array<bool, 2 * kMostReachPx + 1> known;
+  int reach = 0;                                 ///< samples at −reach … reach
+  std::array<float, 2 * kMaxReachPx + 1> value;  ///< share of foreground, in [0, 1]
+  std::array<bool, 2 * kMaxReachPx + 1> known;
 };
 
 float interpolated(const cv::Mat& mask, double x, double y) {
@@ -38,7 +38,7 @@ float interpolated(const cv::Mat& mask, double x, double y) {
 }
 
 void read_profile(const MeasurementLine& line, const LineScene& scene, Profile& profile) {
-  const int reach = std::clamp(static_cast<int>(std::ceil(line.reach)), 1, kMostReachPx);
+  const int reach = std::clamp(static_cast<int>(std::ceil(line.reach)), 1, kMaxReachPx);
   profile.reach = reach;
   for (int i = 0; i <= 2 * reach; ++i) {
     const Vector<2> at = line.foot + (i - reach) * line.normal;
@@ -82,11 +82,11 @@ void search_line(MeasurementLine& line, const LineScene& scene, double deviation
     const double inner = profile.value[i], outer = profile.value[i + 1];
     if (!(inner >= 0.5 && outer < 0.5)) continue;
     const double step = side(profile, i, -1) - side(profile, i + 1, 1);
-    if (step < kLeastStep) continue;
+    if (step < kMinStep) continue;
     const double offset = i - middle + (inner - 0.5) / (inner - outer);
-    const double worth = kAgreement * step - 0.5 * offset * offset / (deviation * deviation + 1);
-    if (worth <= best) continue;
-    best = worth;
+    const double merit = kAgreement * step - 0.5 * offset * offset / (deviation * deviation + 1);
+    if (merit <= best) continue;
+    best = merit;
     line.finding = MeasurementLine::Finding::found;
     line.offset = offset;
     const double sigma = kPixelNoise + kFrayed * (1 - std::min(1.0, step));
@@ -101,17 +101,17 @@ void search_line(MeasurementLine& line, const LineScene& scene, double deviation
 void Footprint::fill(std::span<const Vector<2>> polygon) {
   width_ = height_ = 0;
   if (polygon.size() < 3) return;
-  Vector<2> least = polygon[0], most = polygon[0];
+  Vector<2> minimum = polygon[0], maximum = polygon[0];
   for (const Vector<2>& corner : polygon) {
-    least = least.cwiseMin(corner);
-    most = most.cwiseMax(corner);
+    minimum = minimum.cwiseMin(corner);
+    maximum = maximum.cwiseMax(corner);
   }
   constexpr double kFar = 1e5;
-  if (!(least.minCoeff() > -kFar && most.maxCoeff() < kFar)) return;
-  left_ = static_cast<int>(std::ceil(least.x()));
-  top_ = static_cast<int>(std::ceil(least.y()));
-  width_ = std::max(0, static_cast<int>(std::floor(most.x())) + 1 - left_);
-  height_ = std::max(0, static_cast<int>(std::floor(most.y())) + 1 - top_);
+  if (!(minimum.minCoeff() > -kFar && maximum.maxCoeff() < kFar)) return;
+  left_ = static_cast<int>(std::ceil(minimum.x()));
+  top_ = static_cast<int>(std::ceil(minimum.y()));
+  width_ = std::max(0, static_cast<int>(std::floor(maximum.x())) + 1 - left_);
+  height_ = std::max(0, static_cast<int>(std::floor(maximum.y())) + 1 - top_);
   pixels_.assign(static_cast<std::size_t>(width_) * height_, 0);
   if (pixels_.empty()) return;
   // Every edge flips the first pixel at its right, row by row; what is flipped an odd number of times up to a pixel is inside.

@@ -1,6 +1,6 @@
-// A silhouette runs on the halo of sharpening and on smeared colour: its edge is put where its body ends (body_share.h), and where
-// colour cannot tell, at the edge of intensity. A target's motion begins anew where its silhouette lies far from where it was
-// predicted.
+// A silhouette runs on the halo of sharpening and on smeared colour: its edge is put where its body ends (body_fraction.h), and
+// where colour cannot tell, at the edge of intensity. A target's motion begins again where its silhouette lies far from where it
+// was predicted.
 #include "marey/track/contour/lone_silhouette.h"
 
 #include <algorithm>
@@ -15,87 +15,88 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kMostUnlike = 1.35;        // factor of a silhouette's size over the usual, from which on it is not believed
-constexpr double kLeft = 0.5;               // heights from where the centre is predicted: the motion begins anew
-constexpr int kRounds = 3;                  // of the fit, in every frame
-constexpr double kBeside = 0.2;             // heights about a silhouette that are looked at
-constexpr double kLeastOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot tell
-constexpr double kLearn = 0.1;              // what a frame alone counts in how a target looks
-constexpr int kLearnEvery = 3;              // frames: its colours change little
+constexpr double kMaxUnlike = 1.35;       // factor of a silhouette's size over the typical, from which on it is not trusted
+constexpr double kLeft = 0.5;             // heights from where the centre is predicted: the motion begins again
+constexpr int kRounds = 3;                // of the fit, in every frame
+constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
+constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot tell
+constexpr double kLearn = 0.1;            // what a frame alone counts in how a target looks
+constexpr int kLearnEvery = 3;            // frames: its colours change little
 
 Box bounds(std::span<const Vector<2>> polygon) {
-  Vector<2> least = polygon[0], most = polygon[0];
+  Vector<2> minimum = polygon[0], maximum = polygon[0];
   for (const Vector<2>& corner : polygon) {
-    least = least.cwiseMin(corner);
-    most = most.cwiseMax(corner);
+    minimum = minimum.cwiseMin(corner);
+    maximum = maximum.cwiseMax(corner);
   }
-  return {least.x(), least.y(), most.x() - least.x(), most.y() - least.y()};
+  return {minimum.x(), minimum.y(), maximum.x() - minimum.x(), maximum.y() - minimum.y()};
 }
 
 }  // namespace
 
-void LoneSilhouettes::look_at(const Picture& picture, const cv::Mat& mask, const SceneImage* scene) {
-  picture_ = picture;
+void LoneSilhouettes::inspect_at(const Image& image, const cv::Mat& mask, const SceneImage* scene) {
+  image_ = image;
   scene_ = scene;
   mask_ = mask;
 }
 
 bool LoneSilhouettes::has_colours() const {
-  return picture_.luma().type() == CV_8UC1 && picture_.size() == mask_.size() && !mask_.empty();
+  return image_.luma().type() == CV_8UC1 && image_.size() == mask_.size() && !mask_.empty();
 }
 
-std::optional<geometry::ClosedSpline> LoneSilhouettes::fitted(const Detection& seen, const geometry::SplineFitOptions& options) {
-  share_.release();
-  if (!has_colours() || seen.outline.size() < 4) return fit_silhouette(seen, picture_.luma(), options);
-  const double height = seen.box.height;
-  patch_ = cut_patch(picture_, mask_, grown(bounds(seen.outline), 2 + kBeside * height), cell_step(height), scene_);
-  if (patch_.colour.empty()) return fit_silhouette(seen, picture_.luma(), options);
-  share_ = body_share(patch_, cells_within(seen.outline, patch_), height);
-  const std::vector<Vector<2>> edge = half_level_curve(share_, patch_);
-  if (geometry::polygon_area(edge) < kLeastOfSilhouette * geometry::polygon_area(seen.outline)) {
-    share_.release();
-    return fit_silhouette(seen, picture_.luma(), options);
+std::optional<geometry::ClosedSpline> LoneSilhouettes::fitted(const Detection& detected,
+                                                              const geometry::SplineFitOptions& options) {
+  fraction_.release();
+  if (!has_colours() || detected.outline.size() < 4) return fit_silhouette(detected, image_.luma(), options);
+  const double height = detected.box.height;
+  patch_ = cut_patch(image_, mask_, grown(bounds(detected.outline), 2 + kNextTo * height), cell_step(height), scene_);
+  if (patch_.colour.empty()) return fit_silhouette(detected, image_.luma(), options);
+  fraction_ = body_fraction(patch_, cells_within(detected.outline, patch_), height);
+  const std::vector<Vector<2>> edge = half_level_curve(fraction_, patch_);
+  if (geometry::polygon_area(edge) < kMinOfSilhouette * geometry::polygon_area(detected.outline)) {
+    fraction_.release();
+    return fit_silhouette(detected, image_.luma(), options);
   }
   auto spline = fit_curve(edge, options);
-  if (!spline || geometry::intersection(spline->box(), seen.box).area() < 0.5 * seen.box.area()) return std::nullopt;
+  if (!spline || geometry::intersection(spline->box(), detected.box).area() < 0.5 * detected.box.area()) return std::nullopt;
   return spline;
 }
 
-bool LoneSilhouettes::take(FollowedTarget& target, const Detection& seen, const Track<2>& track) {
+bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, const Track<2>& track) {
   const int count = target.shape.spline().count();
-  geometry::SplineFitOptions options = fit_;  // never fewer than it had: a shape that is seen anew keeps its detail
-  options.least = count;
-  options.most = std::max(count, options.most);
+  geometry::SplineFitOptions options = fit_;  // never fewer than it had: a shape that is seen again keeps its detail
+  options.minimum = count;
+  options.maximum = std::max(count, options.maximum);
   options.rounds = kRounds;
-  const auto spline = fitted(seen, options);
+  const auto spline = fitted(detected, options);
   if (!spline || spline->count() < count) return false;
-  const double growth = std::sqrt(spline->area() / target.usual_area);
-  const bool known = target.state == Outline::State::seen || target.learned > 0;
-  if (known && target.held < kHeldTooLong && (growth < 1 / kMostUnlike || growth > kMostUnlike)) return false;
+  const double growth = std::sqrt(spline->area() / target.default_area);
+  const bool known = target.state == Outline::State::detected || target.learned > 0;
+  if (known && target.held < kHeldTooLong && (growth < 1 / kMaxUnlike || growth > kMaxUnlike)) return false;
   const Vector<2> centre = spline->centroid();
   if ((centre - target.motion.centre()).norm() > kLeft * target.height) {
-    target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthDoubt);
+    target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthAmbiguity);
   }
   target.shape = ShapeFilter(*spline, kSilhouetteNoise);
-  target.state = Outline::State::seen;
+  target.state = Outline::State::detected;
   target.knotted = false;
   target.measured = {centre, Vector<2>::Constant(kSilhouetteNoise) + target.height * Vector<2>(kGaitAcross, kGaitDown)};
-  target.usual_area += kShareMemory * (spline->area() - target.usual_area);
-  if (track.box) target.tracked_height += kShareMemory * (track.box->height - target.tracked_height);
+  target.default_area += kFractionMemory * (spline->area() - target.default_area);
+  if (track.box) target.tracked_height += kFractionMemory * (track.box->height - target.tracked_height);
   learn(target, centre, track);
   return true;
 }
 
 /// How the target looks, from what was just seen of it alone.
-void LoneSilhouettes::learn(FollowedTarget& target, const Vector<2>& centre, const Track<2>& track) {
+void LoneSilhouettes::learn(ContourTarget& target, const Vector<2>& centre, const Track<2>& track) {
   if (track.box) {
     const Vector<2> off = (centre - track.box->centre()) / target.height;
     target.centre_in_box += (target.learned == 0 ? 1 : kLearn) * (off - target.centre_in_box);
   }
-  if (share_.empty()) return;
+  if (fraction_.empty()) return;
   const double rate = std::max(kLearn, 1.0 / (target.learned + 1));
-  if (target.learned % kLearnEvery == 0) target.body.learn_colours(patch_, share_, centre, target.height, rate);
-  target.body.learn_coverage(patch_, share_, centre, target.height, rate);
+  if (target.learned % kLearnEvery == 0) target.body.learn_colours(patch_, fraction_, centre, target.height, rate);
+  target.body.learn_coverage(patch_, fraction_, centre, target.height, rate);
   ++target.learned;
 }
 

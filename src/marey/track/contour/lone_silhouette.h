@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/detection.h"
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/core/track.h"
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/colour_patch.h"
@@ -13,7 +13,7 @@
 
 namespace marey::track::contour {
 
-/// Takes outlines from silhouettes that nobody shares, and learns from them how their targets look.
+/// Takes outlines from silhouettes that no person shares, and learns from them how their targets look.
 class LoneSilhouettes {
  public:
   /// `fit` says how the first silhouette of a target is fitted; later ones get as many control points or more.
@@ -21,25 +21,25 @@ class LoneSilhouettes {
 
   /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
   /// `scene` stays with its owner; it may be null.
-  void look_at(const Picture& picture, const cv::Mat& mask, const SceneImage* scene = nullptr);
-  bool has_colours() const;  ///< whether the frame's picture can tell where a body ends
+  void inspect_at(const Image& image, const cv::Mat& mask, const SceneImage* scene = nullptr);
+  bool has_colours() const;  ///< whether the frame's image can tell where a body ends
 
   /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
-  std::optional<geometry::ClosedSpline> fitted(const Detection& seen, const geometry::SplineFitOptions& options);
+  std::optional<geometry::ClosedSpline> fitted(const Detection& detected, const geometry::SplineFitOptions& options);
 
   /// The tracker says that `seen` is this target: its whole edge tells more than the lines, which a leg that swings leaves behind.
   /// False, and nothing is changed, where the silhouette is unlike the target (cut, or grown by something else).
-  bool take(FollowedTarget& target, const Detection& seen, const Track<2>& track);
+  bool take(ContourTarget& target, const Detection& detected, const Track<2>& track);
 
  private:
-  void learn(FollowedTarget& target, const Vector<2>& centre, const Track<2>& track);
+  void learn(ContourTarget& target, const Vector<2>& centre, const Track<2>& track);
 
   geometry::SplineFitOptions fit_;
-  Picture picture_;
+  Image image_;
   cv::Mat mask_;
   const SceneImage* scene_ = nullptr;
-  ColourPatch patch_;  // of the silhouette last fitted, and what of it is body; empty where colours were not used
-  cv::Mat share_;
+  ColourPatch patch_;  // of the silhouette last fitted, and what of it is body; empty if colours were not used
+  cv::Mat fraction_;
 };
 
 }  // namespace marey::track::contour

@@ -22,14 +22,14 @@ namespace marey::track::contour {
 namespace {
 
 constexpr int kSamples = 4;  // a pixel and axis
-const cv::Scalar kLawn(90, 105, 115), kWhite(215, 128, 128), kBlue(60, 160, 110), kSkin(100, 116, 138), kBoot(35, 128, 128);
+const cv::Scalar kLawn(90, 105, 115), kWhite(215, 128, 128), kBlue(60, 160, 110), kSkin(100, 116, 138), kInitialise(35, 128, 128);
 
 /// A walker as large as asked, seen from the side, painted limb by limb.
 class Walker {
  public:
-  Walker(cv::Size picture, double height) : size_(picture), height_(height) {}
+  Walker(cv::Size image, double height) : size_(image), height_(height) {}
 
-  /// The picture, and where the walker is, at a phase of the step (radians).
+  /// The image, and where the walker is, at a phase of the step (radians).
   void paint(const Vector<2>& hip, double phase) {
     colours_ = cv::Mat(size_ * kSamples, CV_32FC3, kLawn);
     covered_ = cv::Mat::zeros(size_ * kSamples, CV_32FC1);
@@ -37,30 +37,30 @@ class Walker {
     for (const double side : {-1.0, 1.0}) leg(0.55 * side * std::sin(phase), 0.45 * (1 + side * std::cos(phase)));
     limb({0, -0.02}, {0, 0.06}, 0.07, kBlue);
     limb({0, -0.34}, {0, -0.3}, 0.035, kSkin);
-    limb({0, -0.42}, {0, -0.4}, 0.055, kBoot);
+    limb({0, -0.42}, {0, -0.4}, 0.055, kInitialise);
     limb({0, -0.25}, {0, -0.08}, 0.085, kWhite);
     for (const double side : {-1.0, 1.0}) {
       const double swing = -0.5 * side * std::sin(phase);
       limb({0.03 * side, -0.27}, {0.03 * side + 0.32 * std::sin(swing), -0.27 + 0.32 * std::cos(swing)}, 0.03, kSkin);
     }
     cv::resize(colours_, colour_, size_, 0, 0, cv::INTER_AREA);
-    cv::resize(covered_, share_, size_, 0, 0, cv::INTER_AREA);
+    cv::resize(covered_, fraction_, size_, 0, 0, cv::INTER_AREA);
   }
 
-  Picture picture(std::mt19937& dice) const {
+  Image image(std::mt19937& dice) const {
     std::array<cv::Mat, 3> planes;
     cv::split(colour_, planes);
     std::normal_distribution<float> noise(0, 2);
     for (auto level = planes[0].begin<float>(); level != planes[0].end<float>(); ++level) *level += noise(dice);
     for (int i = 1; i < 3; ++i) cv::resize(planes[i], planes[i], size_ / 2, 0, 0, cv::INTER_AREA);
     for (cv::Mat& plane : planes) plane.convertTo(plane, CV_8U);
-    return {planes[0], planes[1], planes[2], Picture::Range::limited};
+    return {planes[0], planes[1], planes[2], Image::Range::limited};
   }
 
   /// CV_8UC1: what a background model makes of it, too wide by a pixel on some sides, and some of the shadow.
   cv::Mat ragged_mask(std::mt19937& dice) const {
-    cv::Mat mask = share_ > 0.3F;
-    const auto drawn = [&](int most) { return static_cast<int>(dice() % static_cast<unsigned>(most + 1)); };
+    cv::Mat mask = fraction_ > 0.3F;
+    const auto drawn = [&](int maximum) { return static_cast<int>(dice() % static_cast<unsigned>(maximum + 1)); };
     const cv::Mat kernel = cv::Mat::ones(1 + drawn(1), 1 + drawn(1), CV_8UC1);
     cv::dilate(mask, mask, kernel, {drawn(kernel.cols - 1), drawn(kernel.rows - 1)});
     const int foot = static_cast<int>(hip_.y() + 0.47 * height_);
@@ -68,10 +68,10 @@ class Walker {
     return mask;
   }
 
-  const cv::Mat& share() const { return share_; }
+  const cv::Mat& fraction() const { return fraction_; }
   Vector<2> centre() const {
-    const cv::Moments moments = cv::moments(share_);
-    return {moments.m10 / moments.m00, moments.m01 / moments.m00};
+    const cv::Moments time_steps = cv::moments(fraction_);
+    return {time_steps.m10 / time_steps.m00, time_steps.m01 / time_steps.m00};
   }
 
  private:
@@ -81,7 +81,7 @@ class Walker {
     limb({0, 0.04}, knee, 0.04, kSkin);
     limb(knee, knee + 0.06 * shin, 0.036, kSkin);
     limb(knee + 0.08 * shin, knee + 0.2 * shin, 0.036, kWhite);
-    limb(knee + 0.2 * shin, knee + 0.2 * shin + 0.06 * Vector<2>(shin.y(), -shin.x()), 0.025, kBoot);
+    limb(knee + 0.2 * shin, knee + 0.2 * shin + 0.06 * Vector<2>(shin.y(), -shin.x()), 0.025, kInitialise);
     limb({0, 0.04}, Vector<2>(0, 0.04) + 0.4 * (knee - Vector<2>(0, 0.04)), 0.06, kBlue);
   }
 
@@ -106,7 +106,7 @@ class Walker {
   double height_;
   Vector<2> hip_ = Vector<2>::Zero();
   cv::Mat colours_, covered_;  // at samples
-  cv::Mat colour_, share_;     // at pixels
+  cv::Mat colour_, fraction_;  // at pixels
 };
 
 /// RMS of the second difference.
@@ -117,18 +117,18 @@ double unsteadiness(const std::vector<Vector<2>>& path) {
 }
 
 struct Walk {
-  double iou = 0;         ///< mean
-  double legs = 0;        ///< mean share of what is below the hip that lies within the outline
-  double least_legs = 1;  ///< of one frame
+  double iou = 0;       ///< mean
+  double legs = 0;      ///< mean share of what is below the hip that lies within the outline
+  double min_legs = 1;  ///< of one frame
   int frames = 0, crossed = 0;
   std::vector<Vector<2>> outlines, silhouettes;  ///< centres
 };
 
-void judge_outline(const Outline& outline, const Walker& walker, int hip, Walk& walk) {
+void evaluate_outline(const Outline& outline, const Walker& walker, int hip, Walk& walk) {
   const geometry::ClosedSpline spline(outline.order, outline.control_points);
   ColourPatch patch;
-  patch.colour = cv::Mat(walker.share().size(), CV_32FC3);
-  const cv::Mat inside = cells_within(spline.polygon(), patch), &truth = walker.share();
+  patch.colour = cv::Mat(walker.fraction().size(), CV_32FC3);
+  const cv::Mat inside = cells_within(spline.polygon(), patch), &truth = walker.fraction();
   cv::Mat both, either;
   cv::min(inside, truth, both);
   cv::max(inside, truth, either);
@@ -136,7 +136,7 @@ void judge_outline(const Outline& outline, const Walker& walker, int hip, Walk& 
   const double legs = cv::sum(both.rowRange(below))[0] / cv::sum(truth.rowRange(below))[0];
   walk.iou += cv::sum(both)[0] / cv::sum(either)[0];
   walk.legs += legs;
-  walk.least_legs = std::min(walk.least_legs, legs);
+  walk.min_legs = std::min(walk.min_legs, legs);
   walk.crossed += is_simple(spline) ? 0 : 1;
   walk.outlines.push_back(outline.centre);
   ++walk.frames;
@@ -145,7 +145,7 @@ void judge_outline(const Outline& outline, const Walker& walker, int hip, Walk& 
 Walk walk_of(double height, int frames) {
   const cv::Size size(2 * static_cast<int>(height), static_cast<int>(0.75 * height) * 2);
   Walker walker(size, height);
-  OutlineFollower follower;
+  ContourTracker tracker;
   std::mt19937 dice(3);
   Walk walk;
   for (int k = 0; k < frames; ++k) {
@@ -154,27 +154,27 @@ Walk walk_of(double height, int frames) {
     Frame frame;
     frame.index = k;
     frame.time = timestamp_from_seconds(k / 25.0);
-    frame.picture = walker.picture(dice);
+    frame.image = walker.image(dice);
     const cv::Mat mask = walker.ragged_mask(dice);
     ColourPatch patch;
-    cv::Mat share;
-    mask.convertTo(share, CV_32F, 1 / 255.0);
-    Detection seen;
-    seen.outline = half_level_curve(share, patch);
-    seen.centre = geometry::polygon_centroid(seen.outline).value_or(hip);
+    cv::Mat fraction;
+    mask.convertTo(fraction, CV_32F, 1 / 255.0);
+    Detection detected;
+    detected.outline = half_level_curve(fraction, patch);
+    detected.centre = geometry::polygon_centroid(detected.outline).value_or(hip);
     const cv::Rect box = cv::boundingRect(mask);
-    seen.box = Box(box.x, box.y, box.width, box.height);
-    follower.observe(frame, Foreground{mask, {}}, std::span(&seen, 1));
+    detected.box = Box(box.x, box.y, box.width, box.height);
+    tracker.observe(frame, Foreground{mask, {}}, std::span(&detected, 1));
     Track<2> track;
     track.id = TrackId{1};
-    track.position = seen.box.centre();
-    track.box = seen.box;
+    track.position = detected.box.centre();
+    track.box = detected.box;
     track.observation = 0;
-    const auto tracks = follower.attach(std::span(&track, 1), std::span(&seen, 1));
+    const auto tracks = tracker.attach(std::span(&track, 1), std::span(&detected, 1));
     if (k < 5) continue;
     if (!tracks[0].outline) continue;
-    walk.silhouettes.push_back(seen.centre);
-    judge_outline(*tracks[0].outline, walker, static_cast<int>(hip.y()), walk);
+    walk.silhouettes.push_back(detected.centre);
+    evaluate_outline(*tracks[0].outline, walker, static_cast<int>(hip.y()), walk);
   }
   walk.iou /= walk.frames;
   walk.legs /= walk.frames;
@@ -188,7 +188,7 @@ TEST(LoneSilhouettes, AWalkerKeepsBareLimbsAndIsSteady) {
     EXPECT_EQ(walk.crossed, 0) << height;
     EXPECT_GT(walk.iou, 0.84) << height;
     EXPECT_GT(walk.legs, 0.88) << height;
-    EXPECT_GT(walk.least_legs, 0.7) << height;
+    EXPECT_GT(walk.min_legs, 0.7) << height;
     EXPECT_LT(unsteadiness(walk.outlines), 0.7 * unsteadiness(walk.silhouettes)) << height;
   }
 }
@@ -218,7 +218,7 @@ TEST(SilhouetteSpline, AFittedCurveNeverCrossesItself) {
     }
     edge.emplace_back(-3, 6);
     for (const int count : {12, 24, 40}) {
-      const auto spline = fit_curve(edge, {.order = 4, .least = count, .most = count, .rounds = 3});
+      const auto spline = fit_curve(edge, {.order = 4, .minimum = count, .maximum = count, .rounds = 3});
       EXPECT_TRUE(!spline || is_simple(*spline)) << seed << " " << count;
       EXPECT_TRUE(count < 40 || spline.has_value()) << seed;
     }

@@ -1,5 +1,5 @@
 // The system of Arnaut & Costa with what it lacked. Each target is predicted and corrected by measurement lines
-// (line_correction.h); then the tracker says who was seen where: a silhouette that nobody shares is taken whole
+// (line_correction.h); then the tracker says who was seen where: a silhouette that no person shares is taken whole
 // (lone_silhouette.h), a region that several share is divided among them (shared_outlines.h), and an outline that left its target
 // is brought back (outline_report.h). Nothing is allocated once every target has been seen, divided regions apart. Reference:
 // Arnaut & Costa, TECCEN 2(1), 2009.
@@ -29,7 +29,7 @@ constexpr double kMeets = 0.03;     // share of its box from which on another's 
 
 }  // namespace
 
-class OutlineFollower::Implementation {
+class ContourTracker::Implementation {
  public:
   explicit Implementation(const OutlineOptions& options) : options_(options), lines_(options.lines), lone_(fit_options(options)) {
     check(options);
@@ -38,12 +38,12 @@ class OutlineFollower::Implementation {
   std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections) {
     const double dt = now_ ? std::max(0.0, seconds(frame.time - *now_)) : 0.0;
     now_ = frame.time;
-    picture_ = frame.picture;
+    image_ = frame.image;
     mask_ = foreground.mask;
-    scene_.observe(picture_, mask_);
-    lone_.look_at(picture_, mask_, &scene_);
+    scene_.observe(image_, mask_);
+    lone_.inspect_at(image_, mask_, &scene_);
     hints_.clear();
-    for (FollowedTarget& target : targets_) {
+    for (ContourTarget& target : targets_) {
       lines_.predict(target, dt);
       target.measured.reset();
     }
@@ -51,31 +51,31 @@ class OutlineFollower::Implementation {
     if (mask.empty()) return hints_;
     order_by_nearness();
     for (const int index : nearest_first_) lines_.correct(targets_[index], targets_, mask, dt);
-    for (FollowedTarget& target : targets_) hint(target, detections);
+    for (ContourTarget& target : targets_) hint(target, detections);
     return hints_;
   }
 
   std::span<const Track<2>> attach(std::span<const Track<2>> tracks, std::span<const Detection> detections) {
-    std::erase_if(targets_, [&](const FollowedTarget& target) {
+    std::erase_if(targets_, [&](const ContourTarget& target) {
       return std::none_of(tracks.begin(), tracks.end(), [&](const Track<2>& track) { return track.id == target.id; });
     });
-    std::erase_if(first_seen_, [&](const auto& one) { return one.second.time != before_; });
+    std::erase_if(first_observed_, [&](const auto& one) { return one.second.time != before_; });
     tracks_.assign(tracks.begin(), tracks.end());
     shared_.clear();
     for (const Track<2>& track : tracks_) {
       const Detection* raw = detection_of(track, detections);
-      const Detection* seen = raw != nullptr && !raw->group && raw->box.height >= options_.least_height ? raw : nullptr;
-      FollowedTarget* target = target_of(track.id);
-      if (target == nullptr && seen != nullptr) begin(track.id, *seen);
+      const Detection* detected = raw != nullptr && !raw->group && raw->box.height >= options_.min_height ? raw : nullptr;
+      ContourTarget* target = target_of(track.id);
+      if (target == nullptr && detected != nullptr) begin(track.id, *detected);
       // Where another's box meets its own, a silhouette may hold pixels of both.
       const bool alone =
           target == nullptr || target->learned == 0 || !track.box || !lone_.has_colours() || !meets_another(track.id, *track.box);
-      if (target != nullptr && seen != nullptr && alone && lone_.take(*target, *seen, track)) continue;
+      if (target != nullptr && detected != nullptr && alone && lone_.take(*target, *detected, track)) continue;
       if (track.box && lone_.has_colours()) shared_.push_back({track.id, *track.box, raw != nullptr, raw != nullptr && raw->group});
     }
     divide_shared();
     for (Track<2>& track : tracks_) {
-      FollowedTarget* target = target_of(track.id);
+      ContourTarget* target = target_of(track.id);
       if (target == nullptr) continue;
       const Detection* raw = detection_of(track, detections);
       if (track.box) bring_back(*target, track);
@@ -111,12 +111,12 @@ class OutlineFollower::Implementation {
     });
   }
 
-  FollowedTarget* target_of(TrackId id) {
-    const auto target = std::find_if(targets_.begin(), targets_.end(), [&](const FollowedTarget& one) { return one.id == id; });
+  ContourTarget* target_of(TrackId id) {
+    const auto target = std::find_if(targets_.begin(), targets_.end(), [&](const ContourTarget& one) { return one.id == id; });
     return target != targets_.end() ? &*target : nullptr;
   }
 
-  /// A person whose feet are lower in the picture stands nearer to the camera.
+  /// A person whose feet are lower in the image stands nearer to the camera.
   void order_by_nearness() {
     nearest_first_.resize(targets_.size());
     for (std::size_t i = 0; i < targets_.size(); ++i) nearest_first_[i] = static_cast<int>(i);
@@ -124,8 +124,8 @@ class OutlineFollower::Implementation {
                      [&](int a, int b) { return targets_[a].box.bottom() > targets_[b].box.bottom(); });
   }
 
-  void hint(FollowedTarget& target, std::span<const Detection> detections) {
-    if (target.state != Outline::State::seen) return;
+  void hint(ContourTarget& target, std::span<const Detection> detections) {
+    if (target.state != Outline::State::detected) return;
     const Box box = target.shape.spline().box();
     target.box = box;
     for (const Detection& detection : detections) {
@@ -139,10 +139,10 @@ class OutlineFollower::Implementation {
                       .box = box});
   }
 
-  /// Targets that nobody saw alone, region by region: those whose boxes meet, and those that the detector says share theirs.
+  /// Targets that no person saw alone, region by region: those whose boxes meet, and those that the detector says share theirs.
   void divide_shared() {
     for (const Shared& one : shared_) {
-      if (target_of(one.id) != nullptr || one.box.height < options_.least_height) continue;
+      if (target_of(one.id) != nullptr || one.box.height < options_.min_height) continue;
       if (one.in_group || (one.observed && meets_another(one.id, one.box))) begin_shared(one);
     }
     std::erase_if(shared_, [&](const Shared& one) { return target_of(one.id) == nullptr; });
@@ -162,40 +162,41 @@ class OutlineFollower::Implementation {
       std::sort(members.begin(), members.end());
       std::vector<SharedTarget> targets;
       for (const std::size_t k : members) targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed});
-      outline_shared_region(picture_, mask_, &scene_, targets);
+      outline_shared_region(image_, mask_, &scene_, targets);
     }
   }
 
   /// From two consecutive silhouettes: v is the centre's shift, s the change of the mean distance from the centre to the control
   /// points (the paper takes one of them; MotionFilter's doubt covers what the legs add).
-  void begin(TrackId id, const Detection& seen) {
-    auto spline = lone_.fitted(seen, fit_options(options_));
+  void begin(TrackId id, const Detection& detected) {
+    auto spline = lone_.fitted(detected, fit_options(options_));
     if (!spline) return;
-    const auto first = first_seen_.find(id);
-    if (first == first_seen_.end()) {
-      first_seen_.emplace(id, Silhouette{std::move(*spline), *now_});
+    const auto first = first_observed_.find(id);
+    if (first == first_observed_.end()) {
+      first_observed_.emplace(id, Silhouette{std::move(*spline), *now_});
       return;
     }
     const double dt = seconds(*now_ - first->second.time);
     const geometry::ClosedSpline& before = first->second.spline;
     const Vector<2> centre = spline->centroid(), velocity = (centre - before.centroid()) / dt;
     const double growth = (std::sqrt(spline->area() / before.area()) - 1) / dt;
-    const double height = seen.box.height;
+    const double height = detected.box.height;
     const double noise = std::sqrt(2) * (kSilhouetteNoise + kGaitAcross * height) / dt;
-    MotionFilter motion(centre, velocity, 0, kSilhouetteNoise, noise, kGrowthDoubt);
+    MotionFilter motion(centre, velocity, 0, kSilhouetteNoise, noise, kGrowthAmbiguity);
     motion.correct_growth(growth, kGrowthNoise);
     add(id, std::move(*spline), motion, height);
-    first_seen_.erase(first);
+    first_observed_.erase(first);
   }
 
   /// Of one that was never seen alone: a body that stands, as large as the tracker's box, shaped by the region's colours at once.
   void begin_shared(const Shared& shared) {
     geometry::SplineFitOptions options = fit_options(options_);
-    if (!options_.control_points) options.least = options.most;  // its shape is not known yet
+    if (!options_.control_points) options.minimum = options.maximum;  // its shape is not known yet
     const auto spline = standing_body(shared.box, options);
     if (!spline) return;
     const double height = shared.box.height;
-    add(shared.id, *spline, MotionFilter(spline->centroid(), Vector<2>::Zero(), 0, kBend * height, height, kGrowthDoubt), height);
+    add(shared.id, *spline, MotionFilter(spline->centroid(), Vector<2>::Zero(), 0, kBend * height, height, kGrowthAmbiguity),
+        height);
     targets_.back().held = kHeldTooLong;
     targets_.back().state = Outline::State::held;
     targets_.back().centre_in_box = (spline->centroid() - shared.box.centre()) / height;
@@ -208,42 +209,42 @@ class OutlineFollower::Implementation {
                         .shape = ShapeFilter(std::move(spline), kSilhouetteNoise),
                         .motion = motion,
                         .height = height,
-                        .usual_area = area,
+                        .default_area = area,
                         .tracked_height = height,
                         .predicted = std::move(predicted)});
-    FollowedTarget& target = targets_.back();
+    ContourTarget& target = targets_.back();
     target.box = target.shape.spline().box();
     target.footprint.fill(target.shape.spline().polygon(4));
   }
 
   OutlineOptions options_;
   std::optional<Timestamp> now_;
-  Picture picture_;  // of the frame last observed
-  cv::Mat mask_;     // its foreground
+  Image image_;   // of the frame last observed
+  cv::Mat mask_;  // its foreground
   std::vector<Shared> shared_;
   LineCorrection lines_;
   LoneSilhouettes lone_;
   SceneImage scene_;
   Timestamp before_{};  // of the last frame attached
-  std::vector<FollowedTarget> targets_;
-  std::map<TrackId, Silhouette> first_seen_;  // targets seen once, in the last frame
+  std::vector<ContourTarget> targets_;
+  std::map<TrackId, Silhouette> first_observed_;  // targets seen once, in the last frame
   std::vector<Observation<2>> hints_;
   std::vector<Track<2>> tracks_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> nearest_first_;
 };
 
-OutlineFollower::OutlineFollower(const OutlineOptions& options) : self_(std::make_unique<Implementation>(options)) {}
-OutlineFollower::~OutlineFollower() = default;
-OutlineFollower::OutlineFollower(OutlineFollower&&) noexcept = default;
-OutlineFollower& OutlineFollower::operator=(OutlineFollower&&) noexcept = default;
+ContourTracker::ContourTracker(const OutlineOptions& options) : self_(std::make_unique<Implementation>(options)) {}
+ContourTracker::~ContourTracker() = default;
+ContourTracker::ContourTracker(ContourTracker&&) noexcept = default;
+ContourTracker& ContourTracker::operator=(ContourTracker&&) noexcept = default;
 
-std::span<const Observation<2>> OutlineFollower::observe(const Frame& frame, const Foreground& foreground,
-                                                         std::span<const Detection> detections) {
+std::span<const Observation<2>> ContourTracker::observe(const Frame& frame, const Foreground& foreground,
+                                                        std::span<const Detection> detections) {
   return self_->observe(frame, foreground, detections);
 }
 
-std::span<const Track<2>> OutlineFollower::attach(std::span<const Track<2>> tracks, std::span<const Detection> detections) {
+std::span<const Track<2>> ContourTracker::attach(std::span<const Track<2>> tracks, std::span<const Detection> detections) {
   return self_->attach(tracks, detections);
 }
 

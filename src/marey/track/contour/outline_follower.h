@@ -17,10 +17,10 @@ namespace marey::track::contour {
 /// Lengths in px; noises in heights of the target, so that the same hold near the camera and far from it.
 struct OutlineOptions {
   int order = 4;                      ///< degree + 1, 2 … 8
-  std::optional<int> control_points;  ///< exactly so many; left out: by tolerance, at most 40
+  std::optional<int> control_points;  ///< exactly this many; omitted: by tolerance, at most 40
   double tolerance = 0.3;             ///< px, RMS, between a silhouette's edge and the spline
   int lines = 24;                     ///< measurement lines
-  double least_height = 8;            ///< px; smaller targets get no outline
+  double min_height = 8;              ///< px; smaller targets get no outline
 };
 
 /// Follows the outlines of the targets of another tracker: who is who stays that tracker's affair. A frame takes two calls:
@@ -31,16 +31,16 @@ struct OutlineOptions {
 ///   const auto tracks = outlines.attach(tracker.step(frame.time, observations), seen.detections);
 ///
 /// `observe` says what the outlines alone can say: an observation, too weak to begin a track, for each target that it found in the
-/// picture and that no detection explains (partly hidden, or its silhouette was rejected). `attach` takes the tracker's word for
+/// image and that no detection explains (partly hidden, or its silhouette was rejected). `attach` takes the tracker's word for
 /// who was seen and where: it begins outlines from two consecutive silhouettes, ends those of lost tracks, puts right an
 /// outline that left its target, and returns the tracks with their outlines and, where the outline was seen, its box.
-class OutlineFollower {
+class ContourTracker {
  public:
-  /// Throws Error where an option is out of its domain.
-  explicit OutlineFollower(const OutlineOptions& options = {});
-  ~OutlineFollower();
-  OutlineFollower(OutlineFollower&&) noexcept;
-  OutlineFollower& operator=(OutlineFollower&&) noexcept;
+  /// Throws Error if an option is out of its domain.
+  explicit ContourTracker(const OutlineOptions& options = {});
+  ~ContourTracker();
+  ContourTracker(ContourTracker&&) noexcept;
+  ContourTracker& operator=(ContourTracker&&) noexcept;
 
   /// Valid until the next call. Frames come in order; `foreground` may be empty (then light alone is searched).
   std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections);

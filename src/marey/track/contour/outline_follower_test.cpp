@@ -18,7 +18,7 @@ namespace marey::track::contour {
 namespace {
 
 constexpr double kRate = 25;  // Hz
-const cv::Size kPicture(160, 120);
+const cv::Size kImage(160, 120);
 
 /// A body that breathes and leans while it moves: a closed polygon.
 std::vector<Vector<2>> body(const Vector<2>& centre, double height, double phase) {
@@ -33,7 +33,7 @@ std::vector<Vector<2>> body(const Vector<2>& centre, double height, double phase
 }
 
 cv::Mat drawn(std::span<const std::vector<Vector<2>>> bodies) {
-  cv::Mat mask = cv::Mat::zeros(kPicture, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
   for (const auto& one : bodies) {
     Footprint footprint;
     footprint.fill(one);
@@ -64,12 +64,12 @@ Detection detection_of(const std::vector<Vector<2>>& polygon) {
   Detection detection;
   detection.outline = polygon;
   detection.centre = geometry::polygon_centroid(polygon).value_or(Vector<2>::Zero());
-  Vector<2> least = polygon[0], most = polygon[0];
+  Vector<2> minimum = polygon[0], maximum = polygon[0];
   for (const Vector<2>& corner : polygon) {
-    least = least.cwiseMin(corner);
-    most = most.cwiseMax(corner);
+    minimum = minimum.cwiseMin(corner);
+    maximum = maximum.cwiseMax(corner);
   }
-  detection.box = {least.x(), least.y(), most.x() - least.x(), most.y() - least.y()};
+  detection.box = {minimum.x(), minimum.y(), maximum.x() - minimum.x(), maximum.y() - minimum.y()};
   return detection;
 }
 
@@ -93,15 +93,15 @@ std::vector<Vector<2>> polygon_of(const Outline& outline) {
   return geometry::ClosedSpline(outline.order, outline.control_points).polygon();
 }
 
-TEST(OutlineFollower, OneWhoIsSeenIsFollowedFromItsSecondSilhouetteOn) {
-  OutlineFollower follower;
+TEST(ContourTracker, TracksFromSecondSilhouette) {
+  ContourTracker tracker;
   for (int k = 0; k < 40; ++k) {
     const auto polygon = body({30 + 1.5 * k, 60}, 50, 0.2 * k);
-    const Detection seen = detection_of(polygon);
-    const auto hints = follower.observe(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, std::span(&seen, 1));
+    const Detection detected = detection_of(polygon);
+    const auto hints = tracker.observe(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, std::span(&detected, 1));
     EXPECT_TRUE(hints.empty()) << "the detection says it all";
-    const Track<2> track = track_of(7, seen, 0);
-    const auto tracks = follower.attach(std::span(&track, 1), std::span(&seen, 1));
+    const Track<2> track = track_of(7, detected, 0);
+    const auto tracks = tracker.attach(std::span(&track, 1), std::span(&detected, 1));
     ASSERT_EQ(tracks.size(), 1u);
     EXPECT_EQ(tracks[0].outline != nullptr, k > 0) << k;
     if (k < 5) continue;
@@ -110,40 +110,40 @@ TEST(OutlineFollower, OneWhoIsSeenIsFollowedFromItsSecondSilhouetteOn) {
     EXPECT_LT((outline.centre - *geometry::polygon_centroid(polygon)).norm(), 0.7) << k;
     EXPECT_NEAR(outline.velocity.x(), 1.5 * kRate, 12) << k;
     EXPECT_EQ(outline.lines.size(), 24u);
-    EXPECT_EQ(outline.state, Outline::State::seen);
+    EXPECT_EQ(outline.state, Outline::State::detected);
   }
 }
 
-TEST(OutlineFollower, LinesAloneFollowWhomTheDetectorMissesAndSaySo) {
-  OutlineFollower follower;
+TEST(ContourTracker, LinesAloneFollowWhomTheDetectorMissesAndSaySo) {
+  ContourTracker tracker;
   for (int k = 0; k < 40; ++k) {
     const auto polygon = body({30 + 1.5 * k, 60}, 50, 0.1 * k);
-    const Detection seen = detection_of(polygon);
+    const Detection detected = detection_of(polygon);
     const bool missed = k > 10;
-    const std::span<const Detection> detections(&seen, missed ? 0 : 1);
-    const auto hints = follower.observe(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, detections);
+    const std::span<const Detection> detections(&detected, missed ? 0 : 1);
+    const auto hints = tracker.observe(frame_at(k), Foreground{drawn(std::span(&polygon, 1)), {}}, detections);
     ASSERT_EQ(hints.size(), missed ? 1u : 0u) << k;
     if (missed) {
-      EXPECT_GT(geometry::iou(*hints[0].box, seen.box), 0.8) << k;
+      EXPECT_GT(geometry::iou(*hints[0].box, detected.box), 0.8) << k;
     }
-    const Track<2> track = track_of(1, seen, 0);
-    const auto tracks = follower.attach(std::span(&track, 1), detections);
+    const Track<2> track = track_of(1, detected, 0);
+    const auto tracks = tracker.attach(std::span(&track, 1), detections);
     if (k == 0) continue;
     EXPECT_GT(overlap(polygon_of(*tracks[0].outline), polygon), 0.85) << k;
   }
 }
 
-TEST(OutlineFollower, OneWhoVanishesKeepsItsShapeAndCoasts) {
-  OutlineFollower follower;
+TEST(ContourTracker, CoastsWithLastShape) {
+  ContourTracker tracker;
   double area = 0;
   for (int k = 0; k < 35; ++k) {
     const auto polygon = body({30 + 2.0 * k, 60}, 50, 0);
-    const Detection seen = detection_of(polygon);
+    const Detection detected = detection_of(polygon);
     const bool hidden = k >= 15;
-    const std::span<const Detection> detections(&seen, hidden ? 0 : 1);
-    follower.observe(frame_at(k), Foreground{drawn(std::span(&polygon, hidden ? 0 : 1)), {}}, detections);
-    const Track<2> track = track_of(1, seen, hidden ? std::nullopt : std::optional<int>(0));
-    const auto tracks = follower.attach(std::span(&track, 1), detections);
+    const std::span<const Detection> detections(&detected, hidden ? 0 : 1);
+    tracker.observe(frame_at(k), Foreground{drawn(std::span(&polygon, hidden ? 0 : 1)), {}}, detections);
+    const Track<2> track = track_of(1, detected, hidden ? std::nullopt : std::optional<int>(0));
+    const auto tracks = tracker.attach(std::span(&track, 1), detections);
     if (k == 0) continue;
     const Outline& outline = *tracks[0].outline;
     const double now = geometry::ClosedSpline(outline.order, outline.control_points).area();
@@ -155,16 +155,16 @@ TEST(OutlineFollower, OneWhoVanishesKeepsItsShapeAndCoasts) {
   }
 }
 
-TEST(OutlineFollower, LinesOnANeighbourAreNotBelieved) {
-  OutlineFollower follower;
+TEST(ContourTracker, LinesOnANeighbourAreNotBelieved) {
+  ContourTracker tracker;
   for (int k = 0; k < 30; ++k) {
     const std::vector<std::vector<Vector<2>>> bodies = {body({70, 50}, 50, 0), body({30 + 1.2 * k, 58}, 50, 0)};
-    std::vector<Detection> seen = {detection_of(bodies[0]), detection_of(bodies[1])};
-    const bool meet = geometry::intersection(seen[0].box, seen[1].box).area() > 0;
-    for (Detection& one : seen) one.group = meet ? std::optional<int>(0) : std::nullopt;
-    follower.observe(frame_at(k), Foreground{drawn(bodies), {}}, seen);
-    const std::vector<Track<2>> given = {track_of(1, seen[0], 0), track_of(2, seen[1], 1)};
-    const auto tracks = follower.attach(given, seen);
+    std::vector<Detection> detected = {detection_of(bodies[0]), detection_of(bodies[1])};
+    const bool meet = geometry::intersection(detected[0].box, detected[1].box).area() > 0;
+    for (Detection& one : detected) one.group = meet ? std::optional<int>(0) : std::nullopt;
+    tracker.observe(frame_at(k), Foreground{drawn(bodies), {}}, detected);
+    const std::vector<Track<2>> given = {track_of(1, detected[0], 0), track_of(2, detected[1], 1)};
+    const auto tracks = tracker.attach(given, detected);
     if (k == 0) continue;
     for (int i = 0; i < 2; ++i) EXPECT_GT(overlap(polygon_of(*tracks[i].outline), bodies[i]), 0.75) << k << " " << i;
   }
@@ -174,10 +174,10 @@ template <typename Change>
 void expect_refused(const Change& change) {
   OutlineOptions options;
   change(options);
-  EXPECT_THROW(OutlineFollower{options}, Error);
+  EXPECT_THROW(ContourTracker{options}, Error);
 }
 
-TEST(OutlineFollower, OptionsThatCannotBeAreRefused) {
+TEST(ContourTracker, OptionsThatCannotBeAreRefused) {
   expect_refused([](OutlineOptions& o) { o.order = 1; });
   expect_refused([](OutlineOptions& o) { o.order = 9; });
   expect_refused([](OutlineOptions& o) { o.control_points = 3; });
@@ -185,11 +185,11 @@ TEST(OutlineFollower, OptionsThatCannotBeAreRefused) {
   expect_refused([](OutlineOptions& o) { o.lines = 0; });
   expect_refused([](OutlineOptions& o) { o.tolerance = 0; });
   expect_refused([](OutlineOptions& o) { o.tolerance = std::nan(""); });
-  expect_refused([](OutlineOptions& o) { o.least_height = 0; });
+  expect_refused([](OutlineOptions& o) { o.min_height = 0; });
 }
 
-/// Crossed, one pixel, half outside, hardly there: an outline of finite numbers, or none.
-TEST(OutlineFollower, NoShapeGivesWhatIsNotFinite) {
+/// Crossed, one pixel, half outside, barely there: an outline of finite numbers, or none.
+TEST(ContourTracker, NoShapeGivesWhatIsNotFinite) {
   for (unsigned seed = 0; seed < 150; ++seed) {
     std::mt19937_64 engine(seed);
     const auto uniform = [&](double low, double high) {
@@ -197,20 +197,20 @@ TEST(OutlineFollower, NoShapeGivesWhatIsNotFinite) {
     };
     OutlineOptions options;
     options.order = 2 + static_cast<int>(seed % 7);
-    options.least_height = 1;
-    OutlineFollower follower(options);
+    options.min_height = 1;
+    ContourTracker tracker(options);
     for (int k = 0; k < 8; ++k) {
       std::vector<Vector<2>> polygon;
       const int corners = static_cast<int>(uniform(1, 12));
-      const Vector<2> place(uniform(-20, 180), uniform(-20, 140));
-      for (int i = 0; i < corners; ++i) polygon.emplace_back(place + Vector<2>(uniform(-30, 30), uniform(-30, 30)));
-      if (seed % 4 == 0) polygon = {place, place + Vector<2>(1, 0), place + Vector<2>(1, 1), place + Vector<2>(0, 1)};
-      const Detection seen = detection_of(polygon);
-      const cv::Mat mask = seed % 3 == 0 ? cv::Mat::zeros(kPicture, CV_8UC1) : drawn(std::span(&polygon, 1));
-      const auto hints = follower.observe(frame_at(k), Foreground{mask, {}}, std::span(&seen, k % 3 == 2 ? 0 : 1));
+      const Vector<2> location(uniform(-20, 180), uniform(-20, 140));
+      for (int i = 0; i < corners; ++i) polygon.emplace_back(location + Vector<2>(uniform(-30, 30), uniform(-30, 30)));
+      if (seed % 4 == 0) polygon = {location, location + Vector<2>(1, 0), location + Vector<2>(1, 1), location + Vector<2>(0, 1)};
+      const Detection detected = detection_of(polygon);
+      const cv::Mat mask = seed % 3 == 0 ? cv::Mat::zeros(kImage, CV_8UC1) : drawn(std::span(&polygon, 1));
+      const auto hints = tracker.observe(frame_at(k), Foreground{mask, {}}, std::span(&detected, k % 3 == 2 ? 0 : 1));
       for (const Observation<2>& hint : hints) EXPECT_TRUE(hint.value.allFinite()) << "seed " << seed;
-      const Track<2> track = track_of(1, seen, k % 3 == 2 ? std::nullopt : std::optional<int>(0));
-      const auto tracks = follower.attach(std::span(&track, 1), std::span(&seen, 1));
+      const Track<2> track = track_of(1, detected, k % 3 == 2 ? std::nullopt : std::optional<int>(0));
+      const auto tracks = tracker.attach(std::span(&track, 1), std::span(&detected, 1));
       if (!tracks[0].outline) continue;
       const Outline& outline = *tracks[0].outline;
       for (const Vector<2>& point : outline.control_points) EXPECT_TRUE(point.allFinite()) << "seed " << seed;
@@ -244,16 +244,16 @@ TEST(ShapeFilter, LinesAreTakenInAsTheTextbooksUpdateDoes) {
   }
   P += 0.02 * 0.02 * arm * arm.transpose();
   for (const double u : {0.3, 2.9, 5.5}) {
-    const geometry::SplineWeights place = geometry::spline_weights(4, 8, u);
+    const geometry::SplineWeights location = geometry::spline_weights(4, 8, u);
     const Vector<2> normal = *filter.spline().normal(u);
     Eigen::RowVectorXd h = Eigen::RowVectorXd::Zero(16);
     for (int j = 0; j < 4; ++j) {
-      h[(place.first + j) % 8] = place.value[j] * normal.x();
-      h[8 + (place.first + j) % 8] = place.value[j] * normal.y();
+      h[(location.first + j) % 8] = location.value[j] * normal.x();
+      h[8 + (location.first + j) % 8] = location.value[j] * normal.y();
     }
     const double z = h.dot(x) + 1.3, S = h * P * h.transpose() + 0.4;
-    EXPECT_NEAR(filter.variance(place, normal), S - 0.4, 1e-9);
-    ASSERT_TRUE(filter.correct(place, normal, z, 0.4, 100));
+    EXPECT_NEAR(filter.variance(location, normal), S - 0.4, 1e-9);
+    ASSERT_TRUE(filter.correct(location, normal, z, 0.4, 100));
     const Eigen::VectorXd K = P * h.transpose() / S;
     x += 1.3 * K;
     P -= K * h * P;

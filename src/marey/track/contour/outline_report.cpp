@@ -18,7 +18,7 @@ geometry::ClosedSpline moved_to(const geometry::ClosedSpline& spline, const Vect
   return {spline.order(), std::move(points)};
 }
 
-std::shared_ptr<Outline>& free_slot(FollowedTarget& target) {
+std::shared_ptr<Outline>& free_slot(ContourTarget& target) {
   auto slot = std::find_if(target.slots.begin(), target.slots.end(),
                            [](const std::shared_ptr<Outline>& one) { return one && one.use_count() == 1; });
   if (slot == target.slots.end()) {
@@ -31,20 +31,20 @@ std::shared_ptr<Outline>& free_slot(FollowedTarget& target) {
 
 }  // namespace
 
-void bring_back(FollowedTarget& target, const Track<2>& track) {
+void bring_back(ContourTarget& target, const Track<2>& track) {
   const Vector<2> centre = target.motion.centre();
   const Box& box = *track.box;
   if (centre.x() >= box.left && centre.x() < box.right() && centre.y() >= box.top && centre.y() < box.bottom()) return;
   target.shape = ShapeFilter(moved_to(target.shape.spline(), box.centre()), kBend * target.height);
-  target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthDoubt);
+  target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthAmbiguity);
   target.state = Outline::State::held;
   target.measured.reset();
   target.lines.clear();
 }
 
-std::shared_ptr<const Outline> report(FollowedTarget& target, const Detection* seen, const Track<2>& track,
-                                      const cv::Size& picture) {
-  const cv::Size* const within = picture.empty() ? nullptr : &picture;
+std::shared_ptr<const Outline> report(ContourTarget& target, const Detection* detected, const Track<2>& track,
+                                      const cv::Size& image) {
+  const cv::Size* const within = image.empty() ? nullptr : &image;
   const Box own = track.box.value_or(target.box);
   if (!is_outline_of(target.shape.spline(), own, within)) {
     target.shape = ShapeFilter(moved_to(target.predicted, target.motion.centre()), kBend * target.height);
@@ -65,7 +65,7 @@ std::shared_ptr<const Outline> report(FollowedTarget& target, const Detection* s
   outline.centre_deviation = target.motion.centre_deviation();
   outline.velocity_deviation = target.motion.velocity_deviation();
   outline.scale_rate_deviation = target.motion.growth_deviation();
-  outline.silhouette = seen != nullptr ? std::optional(seen->centre) : std::nullopt;
+  outline.silhouette = detected != nullptr ? std::optional(detected->centre) : std::nullopt;
   outline.lines = target.lines;
   outline.state = target.state;
   outline.behind = target.behind;

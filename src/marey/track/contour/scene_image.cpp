@@ -9,7 +9,7 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr int kInterleave = 4;  // rows: one of so many is learned per frame
+constexpr int kInterleave = 4;  // rows: one of this many is learned per frame
 constexpr int kMemory = 16;     // frames of a pixel, on average; unswept
 constexpr int kFixed = 128;     // units per level
 
@@ -19,8 +19,8 @@ constexpr std::array<int, kMemory + 1> kRates = [] {
   return rates;
 }();
 
-void learn(std::uint16_t& mean, int level, int seen) {
-  const int rate = kRates[static_cast<std::size_t>(std::min(seen, kMemory))];
+void learn(std::uint16_t& mean, int level, int detected) {
+  const int rate = kRates[static_cast<std::size_t>(std::min(detected, kMemory))];
   mean = static_cast<std::uint16_t>(mean + (static_cast<std::int64_t>(kFixed * level - mean) * rate) / 65536);
 }
 
@@ -32,7 +32,7 @@ cv::Mat levels(const cv::Mat& plane, const cv::Rect& area) {
 
 }  // namespace
 
-void SceneImage::observe(const Picture& image, const cv::Mat& foreground) {
+void SceneImage::observe(const Image& image, const cv::Mat& foreground) {
   if (foreground.empty() || foreground.size() != image.size() || image.luma().type() != CV_8UC1) return;
   if (!has(image.size())) {
     const cv::Size size = image.size(), half((size.width + 1) / 2, (size.height + 1) / 2);
@@ -46,7 +46,7 @@ void SceneImage::observe(const Picture& image, const cv::Mat& foreground) {
   next_ = (next_ + 1) % kInterleave;
 }
 
-void SceneImage::learn_row(const Picture& image, const cv::Mat& foreground, int row) {
+void SceneImage::learn_row(const Image& image, const cv::Mat& foreground, int row) {
   const std::uint8_t* taken = foreground.ptr<std::uint8_t>(row);
   const std::uint8_t* level = image.luma().ptr<std::uint8_t>(row);
   std::uint8_t* frames = frames_.ptr<std::uint8_t>(row);
@@ -56,13 +56,13 @@ void SceneImage::learn_row(const Picture& image, const cv::Mat& foreground, int 
   const int half = row / 2;
   for (int x = 0; x < frames_.cols; ++x) {
     if (taken[x] != 0) continue;
-    const int seen = frames[x];
-    learn(mean[x], level[x], seen);
+    const int detected = frames[x];
+    learn(mean[x], level[x], detected);
     if (colour && x % 2 == 0) {
-      learn(cb_.ptr<std::uint16_t>(half)[x / 2], image.cb().ptr<std::uint8_t>(half)[x / 2], seen);
-      learn(cr_.ptr<std::uint16_t>(half)[x / 2], image.cr().ptr<std::uint8_t>(half)[x / 2], seen);
+      learn(cb_.ptr<std::uint16_t>(half)[x / 2], image.cb().ptr<std::uint8_t>(half)[x / 2], detected);
+      learn(cr_.ptr<std::uint16_t>(half)[x / 2], image.cr().ptr<std::uint8_t>(half)[x / 2], detected);
     }
-    if (seen < 255) ++frames[x];
+    if (detected < 255) ++frames[x];
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 
 namespace marey::track::contour {
 
@@ -12,7 +12,7 @@ class SceneImage {
  public:
   /// A frame and its foreground (CV_8UC1, of the image's size; other sizes are ignored). Every fourth row is learned per frame, all
   /// of them in the first. Cost: a pass over a quarter of the pixels.
-  void observe(const Picture& image, const cv::Mat& foreground);
+  void observe(const Image& image, const cv::Mat& foreground);
 
   /// Whether the scene has this size and has been learned from at least one frame.
   bool has(const cv::Size& size) const { return !frames_.empty() && frames_.size() == size; }
@@ -24,7 +24,7 @@ class SceneImage {
   cv::Mat known(const cv::Rect& area) const;
 
  private:
-  void learn_row(const Picture& image, const cv::Mat& foreground, int row);
+  void learn_row(const Image& image, const cv::Mat& foreground, int row);
 
   int next_ = -1;           // rows of this remainder are learned next; −1: all
   cv::Mat frames_;          // CV_8UC1: frames that a pixel was learned from, at most 255

@@ -48,35 +48,35 @@ void ShapeFilter::predict(const Vector<2>& shift, double growth, const Vector<2>
   P_.noalias() += noise.growth * noise.growth * out_ * out_.transpose();
 }
 
-double ShapeFilter::project(const geometry::SplineWeights& place, const Vector<2>& normal) const {
+double ShapeFilter::project(const geometry::SplineWeights& location, const Vector<2>& normal) const {
   const int count = spline_.count();
   gain_.setZero();
   for (int j = 0; j < spline_.order(); ++j) {
-    const int i = place.first + j < count ? place.first + j : place.first + j - count;
-    gain_.noalias() += place.value[j] * normal.x() * P_.col(i);
-    gain_.noalias() += place.value[j] * normal.y() * P_.col(count + i);
+    const int i = location.first + j < count ? location.first + j : location.first + j - count;
+    gain_.noalias() += location.value[j] * normal.x() * P_.col(i);
+    gain_.noalias() += location.value[j] * normal.y() * P_.col(count + i);
   }
   double variance = 0;
   for (int j = 0; j < spline_.order(); ++j) {
-    const int i = place.first + j < count ? place.first + j : place.first + j - count;
-    variance += place.value[j] * (normal.x() * gain_[i] + normal.y() * gain_[count + i]);
+    const int i = location.first + j < count ? location.first + j : location.first + j - count;
+    variance += location.value[j] * (normal.x() * gain_[i] + normal.y() * gain_[count + i]);
   }
   return variance;
 }
 
-double ShapeFilter::variance(const geometry::SplineWeights& place, const Vector<2>& normal) const {
-  return project(place, normal);
+double ShapeFilter::variance(const geometry::SplineWeights& location, const Vector<2>& normal) const {
+  return project(location, normal);
 }
 
-bool ShapeFilter::correct(const geometry::SplineWeights& place, const Vector<2>& normal, double position, double noise,
+bool ShapeFilter::correct(const geometry::SplineWeights& location, const Vector<2>& normal, double position, double noise,
                           double gate) {
   const int count = spline_.count();
   double predicted = 0;
   for (int j = 0; j < spline_.order(); ++j) {
-    const int i = place.first + j < count ? place.first + j : place.first + j - count;
-    predicted += place.value[j] * normal.dot(std::as_const(spline_).control_points()[i]);
+    const int i = location.first + j < count ? location.first + j : location.first + j - count;
+    predicted += location.value[j] * normal.dot(std::as_const(spline_).control_points()[i]);
   }
-  const double S = project(place, normal) + noise;
+  const double S = project(location, normal) + noise;
   const double innovation = position - predicted;
   if (innovation * innovation > gate * gate * S) return false;
   for (int i = 0; i < count; ++i) {

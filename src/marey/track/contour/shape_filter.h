@@ -27,11 +27,11 @@ class ShapeFilter {
   void predict(const Vector<2>& shift, double growth, const Vector<2>& centre, const ShapeNoise& noise);
 
   /// Variance of the curve's position at `place` along the unit vector `normal`, px².
-  double variance(const geometry::SplineWeights& place, const Vector<2>& normal) const;
+  double variance(const geometry::SplineWeights& location, const Vector<2>& normal) const;
 
   /// The curve was found at `position` (px along `normal`: a point's dot product with it), with variance `noise` px² > 0.
-  /// Nothing is done where the innovation lies beyond `gate` standard deviations; returns whether it was believed.
-  bool correct(const geometry::SplineWeights& place, const Vector<2>& normal, double position, double noise, double gate);
+  /// Nothing is done where the innovation lies beyond `gate` standard deviations; returns whether it was trusted.
+  bool correct(const geometry::SplineWeights& location, const Vector<2>& normal, double position, double noise, double gate);
 
   const geometry::ClosedSpline& spline() const { return spline_; }
   Vector<2> deviation(int control_point) const;  ///< px
@@ -39,7 +39,7 @@ class ShapeFilter {
 
  private:
   /// Fills `gain_` with P h of the line; returns hᵀ P h.
-  double project(const geometry::SplineWeights& place, const Vector<2>& normal) const;
+  double project(const geometry::SplineWeights& location, const Vector<2>& normal) const;
 
   geometry::ClosedSpline spline_;
   Eigen::MatrixXd P_;                   // of x₀ x₁ … y₀ y₁ …, px²

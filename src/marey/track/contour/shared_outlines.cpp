@@ -1,5 +1,5 @@
 // The targets of one region are divided (shared_region.h); then each takes the outline of what is its own and of what is hidden of
-// it, fitted anew. What is hidden keeps the predicted shape, moved to where the seen part says that the body is.
+// it, fitted again. What is hidden keeps the predicted shape, moved to where the seen part says that the body is.
 #include "marey/track/contour/shared_outlines.h"
 
 #include <algorithm>
@@ -16,30 +16,30 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kMargin = 0.15;                         // heights about all members
-constexpr double kLeastVisible = 0.18;                   // share of a body, below which its shape is held
-constexpr double kWhollyVisible = 0.92;                  // from which on it is seen as if alone
-constexpr double kLeastOfUsual = 0.4, kMostOfUsual = 2;  // area of an outline, of the usual, that is believed
-constexpr double kFar = 0.5;                       // heights between tracker and motion filter, from which on the tracker is right
-constexpr double kUsual = 0.35, kUsualHeld = 0.6;  // weight of the usual coverage: as a rule; where the shape is old or unknown
-constexpr float kUnlikeGround = 22;                // levels from the ground, of a body whose colours are not known yet
-constexpr double kLearnInRegion = 0.15;            // what a frame counts in a body that was never seen alone
-constexpr double kFine = 80;                       // px of height, up to which cells are pixels
-constexpr int kLongHeld = 5;                       // frames
-constexpr int kFewFrames = 6;                      // alone, up to which the silhouettes may have held pixels of others
+constexpr double kMargin = 0.15;                          // heights about all members
+constexpr double kMinVisible = 0.18;                      // share of a body, below which its shape is held
+constexpr double kWhollyVisible = 0.92;                   // from which on it is seen as if alone
+constexpr double kMinOfTypical = 0.4, kMaxOfTypical = 2;  // area of an outline, of the typical, that is trusted
+constexpr double kFar = 0.5;  // heights between tracker and motion filter, from which on the tracker is right
+constexpr double kDefault = 0.35,
+                 kDefaultHeld = 0.6;     // weight of the typical coverage: as a rule; where the shape is old or unknown
+constexpr float kUnlikeGround = 22;      // levels from the ground, of a body whose colours are not known yet
+constexpr double kLearnInRegion = 0.15;  // what a frame counts in a body that was never seen alone
+constexpr double kFine = 80;             // px of height, up to which cells are pixels
+constexpr int kLongHeld = 5;             // frames
+constexpr int kFewFrames = 6;            // alone, up to which the silhouettes may have held pixels of others
 
-bool hardly_known(const FollowedTarget& target) {
+bool rarely_known(const ContourTarget& target) {
   return target.learned < kFewFrames;
 }
 
-/// Its usual area, as large as the tracker has it now.
-double expected_area(const FollowedTarget& target, const Box& box) {
+/// Its typical area, as large as the tracker has it now.
+double expected_area(const ContourTarget& target, const Box& box) {
   const double growth = target.tracked_height > 0 ? box.height / target.tracked_height : 1;
-  return target.usual_area * growth * growth;
+  return target.default_area * growth * growth;
 }
 
-ColourPatch patch_about(const Picture& picture, const cv::Mat& mask, const SceneImage* scene,
-                        std::span<const SharedTarget> targets) {
+ColourPatch patch_about(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<const SharedTarget> targets) {
   Box all;
   double height = 0;
   for (const SharedTarget& one : targets) {
@@ -48,11 +48,11 @@ ColourPatch patch_about(const Picture& picture, const cv::Mat& mask, const Scene
     height = std::max(height, one.target->height);
   }
   const int step = height <= kFine ? 1 : cell_step(std::max(height, 120.0));
-  return cut_patch(picture, mask, grown(all, kMargin * height), step, scene);
+  return cut_patch(image, mask, grown(all, kMargin * height), step, scene);
 }
 
 RegionMember member_of(const SharedTarget& shared) {
-  const FollowedTarget& target = *shared.target;
+  const ContourTarget& target = *shared.target;
   RegionMember member;
   member.body = &target.body;
   member.polygon = target.predicted.polygon(4);
@@ -69,7 +69,7 @@ RegionMember member_of(const SharedTarget& shared) {
   } else {
     member.shifts = {none, tracked};
   }
-  member.usual = old || hardly_known(target) ? kUsualHeld : kUsual;
+  member.typical = old || rarely_known(target) ? kDefaultHeld : kDefault;
   return member;
 }
 
@@ -79,7 +79,7 @@ void guess_colours(const ColourPatch& patch, std::span<const RegionMember> membe
   for (std::size_t k = 0; k < members.size(); ++k) {
     if (k != own) alone = alone.mul(1 - cells_within(members[k].polygon, patch));
   }
-  const cv::Mat ground = ground_beside(patch, patch.mask, members[own].height);
+  const cv::Mat ground = ground_next_to(patch, patch.mask, members[own].height);
   for (int y = 0; y < alone.rows; ++y) {
     for (int x = 0; x < alone.cols; ++x) {
       const cv::Vec3f away = patch.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
@@ -90,7 +90,7 @@ void guess_colours(const ColourPatch& patch, std::span<const RegionMember> membe
   body.learn_colours(patch, alone, members[own].centre + members[own].shifts.front(), members[own].height, 1);
 }
 
-void hold(FollowedTarget& target, const Vector<2>& shift) {
+void hold(ContourTarget& target, const Vector<2>& shift) {
   std::vector<Vector<2>> points(std::as_const(target.predicted).control_points());
   for (Vector<2>& point : points) point += shift;
   target.shape = ShapeFilter(geometry::ClosedSpline(target.predicted.order(), std::move(points)), 0.05 * target.height);
@@ -99,7 +99,7 @@ void hold(FollowedTarget& target, const Vector<2>& shift) {
 
 void note_hidden(const ColourPatch& patch, std::span<const RegionMember> members, const RegionMember& own,
                  std::span<const SharedTarget> targets) {
-  FollowedTarget& target = *targets[static_cast<std::size_t>(&own - members.data())].target;
+  ContourTarget& target = *targets[static_cast<std::size_t>(&own - members.data())].target;
   for (const int j : own.behind) target.behind.push_back(targets[static_cast<std::size_t>(j)].target->id);
   std::sort(target.behind.begin(), target.behind.end());
   const auto points = target.shape.spline().control_points();
@@ -108,39 +108,39 @@ void note_hidden(const ColourPatch& patch, std::span<const RegionMember> members
     const int x = static_cast<int>(std::lround(cell.x())), y = static_cast<int>(std::lround(cell.y()));
     if (x < 0 || y < 0 || x >= patch.size().width || y >= patch.size().height) continue;
     const bool hidden = std::any_of(own.behind.begin(), own.behind.end(),
-                                    [&](int j) { return members[static_cast<std::size_t>(j)].seen.at<float>(y, x) > 0.5F; });
+                                    [&](int j) { return members[static_cast<std::size_t>(j)].detected.at<float>(y, x) > 0.5F; });
     if (hidden) target.hidden.push_back(i);
   }
 }
 
-void take_part(FollowedTarget& target, const Box& box, const RegionMember& member, const ColourPatch& patch) {
-  const Vector<2> doubt = target.height * Vector<2>(kGaitAcross, kGaitDown);
+void take_part(ContourTarget& target, const Box& box, const RegionMember& member, const ColourPatch& patch) {
+  const Vector<2> review_item = target.height * Vector<2>(kGaitAcross, kGaitDown);
   hold(target, member.shift);
   target.measured.reset();
-  if (member.visible < kLeastVisible) return;
+  if (member.visible < kMinVisible) return;
   const int count = target.predicted.count();
   const auto curve = half_level_curve(member.whole, patch);
-  const auto spline = fit_curve(curve, {.order = target.predicted.order(), .least = count, .most = count});
+  const auto spline = fit_curve(curve, {.order = target.predicted.order(), .minimum = count, .maximum = count});
   const double part = spline ? spline->area() / expected_area(target, box) : 0;
-  const double doubt_of_area = hardly_known(target) ? 0.6 : 1;  // its usual area is a guess then
+  const double doubt_of_area = rarely_known(target) ? 0.6 : 1;  // its typical area is a guess then
   const double hidden_factor = 1 + (kHiddenCentre - 1) * std::min(1.0, 2 * (1 - member.visible));
-  if (!spline || spline->count() != count || part < kLeastOfUsual * doubt_of_area || part > kMostOfUsual / doubt_of_area) {
-    // No outline comes of it, but a place does.
-    target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * doubt + Vector<2>::Constant(1)};
+  if (!spline || spline->count() != count || part < kMinOfTypical * doubt_of_area || part > kMaxOfTypical / doubt_of_area) {
+    // No outline results from it, but a place does.
+    target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * review_item + Vector<2>::Constant(1)};
     return;
   }
   target.shape = ShapeFilter(*spline, kSilhouetteNoise);
-  target.state = member.visible > kWhollyVisible ? Outline::State::seen : Outline::State::partly;
-  target.measured = {spline->centroid(), hidden_factor * doubt + Vector<2>::Constant(kSilhouetteNoise)};
+  target.state = member.visible > kWhollyVisible ? Outline::State::detected : Outline::State::partly;
+  target.measured = {spline->centroid(), hidden_factor * review_item + Vector<2>::Constant(kSilhouetteNoise)};
   target.knotted = false;
 }
 
 /// Where a member borders on ground, its edge is where its colours end.
 void refine_edges(const ColourPatch& patch, const cv::Mat& ground, std::span<RegionMember> members) {
   for (RegionMember& member : members) {
-    cv::Mat blocked = member.whole - member.seen;
+    cv::Mat blocked = member.whole - member.detected;
     for (const RegionMember& other : members) {
-      if (&other != &member) cv::max(blocked, other.seen, blocked);
+      if (&other != &member) cv::max(blocked, other.detected, blocked);
     }
     cv::dilate(blocked, blocked, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
     member.whole = matted_edge(patch, member.whole, blocked, ground, member.height);
@@ -153,8 +153,8 @@ int cell_step(double height) {
   return height <= 100 ? 1 : height <= 220 ? 2 : 4;
 }
 
-void outline_shared_region(const Picture& picture, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets) {
-  const ColourPatch patch = patch_about(picture, mask, scene, targets);
+void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets) {
+  const ColourPatch patch = patch_about(image, mask, scene, targets);
   if (patch.colour.empty()) return;
   std::vector<RegionMember> members;
   for (const SharedTarget& one : targets) members.push_back(member_of(one));
@@ -164,13 +164,13 @@ void outline_shared_region(const Picture& picture, const cv::Mat& mask, const Sc
   const cv::Mat ground = divide_region(patch, members);
   refine_edges(patch, ground, members);
   for (std::size_t k = 0; k < members.size(); ++k) {
-    FollowedTarget& target = *targets[k].target;
+    ContourTarget& target = *targets[k].target;
     target.lines.clear();
     take_part(target, targets[k].box, members[k], patch);
-    if (hardly_known(target) && target.state != Outline::State::held && members[k].visible > 0.5) {
+    if (rarely_known(target) && target.state != Outline::State::held && members[k].visible > 0.5) {
       const Vector<2> centre = members[k].centre + members[k].shift;
-      target.body.learn_colours(patch, members[k].seen, centre, target.height, kLearnInRegion);
-      target.usual_area += kLearnInRegion * (target.shape.spline().area() - target.usual_area);
+      target.body.learn_colours(patch, members[k].detected, centre, target.height, kLearnInRegion);
+      target.default_area += kLearnInRegion * (target.shape.spline().area() - target.default_area);
       target.tracked_height += kLearnInRegion * (targets[k].box.height - target.tracked_height);
     }
     note_hidden(patch, members, members[k], targets);

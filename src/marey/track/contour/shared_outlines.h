@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "marey/core/picture.h"
+#include "marey/core/image.h"
 #include "marey/track/contour/followed_target.h"
 #include "marey/track/contour/scene_image.h"
 
@@ -10,7 +10,7 @@ namespace marey::track::contour {
 
 /// A target that shares its pixels with others, and where the tracker has it.
 struct SharedTarget {
-  FollowedTarget* target = nullptr;
+  ContourTarget* target = nullptr;
   Box box;                ///< px
   bool observed = false;  ///< the tracker saw something of it in this frame
 };
@@ -18,7 +18,7 @@ struct SharedTarget {
 /// Divides the region that `targets` share among them by their colours and predicted shapes, and gives each the outline of its own
 /// part, the rest of it shaped as it was; of one of whom too little is seen the whole shape is held. `mask` is CV_8UC1.
 /// `scene` may be null.
-void outline_shared_region(const Picture& picture, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets);
+void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets);
 
 /// The size of a patch's cells for a target, px.
 int cell_step(double height);

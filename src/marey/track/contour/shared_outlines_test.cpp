@@ -29,17 +29,17 @@ std::vector<Vector<2>> body_about(const Vector<2>& centre, double factor) {
 
 /// One who is bright on a grey lawn, and what is known of it from before.
 struct Scene {
-  Picture picture;
+  Image image;
   cv::Mat mask = cv::Mat::zeros(100, 120, CV_8UC1);
-  FollowedTarget target;
+  ContourTarget target;
 
-  static FollowedTarget known(const std::vector<Vector<2>>& polygon) {
-    const geometry::ClosedSpline spline = *geometry::fit_spline(polygon, {.order = 4, .least = 16, .most = 16});
+  static ContourTarget known(const std::vector<Vector<2>>& polygon) {
+    const geometry::ClosedSpline spline = *geometry::fit_spline(polygon, {.order = 4, .minimum = 16, .maximum = 16});
     return {.id = TrackId{1},
             .shape = ShapeFilter(spline, 0.5),
             .motion = MotionFilter(kStanding, Vector<2>::Zero(), 0, 1, 1, 1),
             .height = kStature,
-            .usual_area = spline.area(),
+            .default_area = spline.area(),
             .tracked_height = kStature,
             .predicted = spline};
   }
@@ -50,23 +50,23 @@ struct Scene {
     for (const Vector<2>& p : body_about(kStanding, 1)) corners.emplace_back(cvRound(p.x()), cvRound(p.y()));
     cv::fillPoly(luma, std::vector{corners}, cv::Scalar(220));
     cv::fillPoly(mask, std::vector{corners}, cv::Scalar(255));
-    picture = Picture(luma);
-    const ColourPatch patch = cut_patch(picture, mask, {10, 0, 100, 100}, 1);
-    const cv::Mat share = cells_within(body_about(kStanding, 1), patch);
-    target.body.learn_colours(patch, share, kStanding, kStature, 1);
-    target.body.learn_coverage(patch, share, kStanding, kStature, 1);
+    image = Image(luma);
+    const ColourPatch patch = cut_patch(image, mask, {10, 0, 100, 100}, 1);
+    const cv::Mat fraction = cells_within(body_about(kStanding, 1), patch);
+    target.body.learn_colours(patch, fraction, kStanding, kStature, 1);
+    target.body.learn_coverage(patch, fraction, kStanding, kStature, 1);
     target.learned = 50;
   }
 
   void divide() {
     std::vector<SharedTarget> targets{{&target, {48, 20, 24, kStature}, true}};
-    outline_shared_region(picture, mask, nullptr, targets);
+    outline_shared_region(image, mask, nullptr, targets);
   }
 };
 
-TEST(OutlineSharedRegion, OneWhoWalkedAwayIsAsLargeAsTheTrackerHasItNow) {
+TEST(OutlineSharedRegion, UsesCurrentTrackerSize) {
   Scene scene;
-  scene.target.usual_area *= 3;  // of when it was nearer
+  scene.target.default_area *= 3;  // of when it was nearer
   scene.target.tracked_height *= std::sqrt(3.0);
   scene.divide();
   EXPECT_NE(scene.target.state, Outline::State::held);
@@ -75,7 +75,7 @@ TEST(OutlineSharedRegion, OneWhoWalkedAwayIsAsLargeAsTheTrackerHasItNow) {
 
 TEST(OutlineSharedRegion, ABodyOfAnotherSizeIsNotBelieved) {
   Scene scene;
-  scene.target.usual_area *= 3;
+  scene.target.default_area *= 3;
   scene.divide();
   EXPECT_EQ(scene.target.state, Outline::State::held);
   ASSERT_TRUE(scene.target.measured.has_value()) << "but its place is";

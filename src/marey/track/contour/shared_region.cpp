@@ -20,7 +20,7 @@ namespace marey::track::contour {
 namespace {
 
 constexpr double kEdgeSoftness = 0.03;                      // heights, of a predicted outline
-constexpr float kLeastChance = 0.004F;                      // that a member covers a pixel, or does not
+constexpr float kMinChance = 0.004F;                        // that a member covers a pixel, or does not
 constexpr double kGroundLuma = 11, kGroundChroma = 4;       // levels, standard deviation of the ground beside people
 constexpr double kGroundFloor = 2e-7;                       // per level³
 constexpr float kMaskOnGround = 0.2F, kMaskOnBody = 0.92F;  // chance of foreground
@@ -29,8 +29,8 @@ constexpr float kVote = 5;                                  // of all neighbours
 constexpr int kVotingRounds = 5;
 constexpr double kLargeStep = 0.1, kMiddleStep = 0.05, kSmallStep = 0.02;  // heights, of the search for a place
 constexpr int kSteps = 3;                                                  // of each size, at most
-constexpr double kShiftDoubt = 0.12;                                       // heights, standard deviation of a predicted place
-constexpr double kFootDoubt = 0.03;                                        // heights by which feet are misjudged
+constexpr double kShiftAmbiguity = 0.12;                                   // heights, standard deviation of a predicted place
+constexpr double kFootAmbiguity = 0.03;                                    // heights by which feet are misjudged
 constexpr double kUndecided = 0.1;                                         // heights between feet, below which colours have a say
 
 class RegionDivision {
@@ -46,7 +46,7 @@ class RegionDivision {
     order_by_feet();
   }
 
-  void find_places() {
+  void find_positions() {
     for (const double step : {kLargeStep, kMiddleStep, kSmallStep}) {
       for (int round = 0; round < kSteps; ++round) {
         bool moved = false;
@@ -60,7 +60,7 @@ class RegionDivision {
 
   void divide() {
     const auto labels = members_.size() + 1;
-    std::vector<cv::Mat> odds(labels), votes(labels), shares(labels);
+    std::vector<cv::Mat> odds(labels), votes(labels), fractions(labels);
     for (cv::Mat& one : odds) one.create(patch_.size(), CV_32FC1);
     for (int y = 0; y < patch_.size().height; ++y) {
       for (int x = 0; x < patch_.size().width; ++x) {
@@ -74,22 +74,22 @@ class RegionDivision {
       }
     }
     for (int round = 0; round <= kVotingRounds; ++round) {
-      cv::Mat sum = cv::Mat::zeros(patch_.size(), CV_32FC1), most = odds[0].clone();
+      cv::Mat sum = cv::Mat::zeros(patch_.size(), CV_32FC1), maximum = odds[0].clone();
       for (std::size_t l = 0; l < labels; ++l) {
-        shares[l] = round == 0 ? odds[l].clone() : cv::Mat(odds[l] + kVote * votes[l]);
-        cv::max(most, shares[l], most);
+        fractions[l] = round == 0 ? odds[l].clone() : cv::Mat(odds[l] + kVote * votes[l]);
+        cv::max(maximum, fractions[l], maximum);
       }
-      for (cv::Mat& share : shares) {
-        share -= most;
-        cv::exp(share, share);
-        sum += share;
+      for (cv::Mat& fraction : fractions) {
+        fraction -= maximum;
+        cv::exp(fraction, fraction);
+        sum += fraction;
       }
       for (std::size_t l = 0; l < labels; ++l) {
-        shares[l] /= sum;
-        if (round < kVotingRounds) cv::blur(shares[l], votes[l], {3, 3});
+        fractions[l] /= sum;
+        if (round < kVotingRounds) cv::blur(fractions[l], votes[l], {3, 3});
       }
     }
-    hand_out(shares);
+    hand_out(fractions);
   }
 
   const cv::Mat& ground_colours() const { return ground_colours_; }
@@ -104,7 +104,7 @@ class RegionDivision {
       cv::max(taken, cells_within(member.polygon, patch_), taken);
       height = std::max(height, member.height);
     }
-    const cv::Mat ground = ground_colours_ = ground_beside(patch_, taken, height);
+    const cv::Mat ground = ground_colours_ = ground_next_to(patch_, taken, height);
     ground_.create(patch_.size(), CV_32FC1);
     const double scale = std::pow(2 * std::numbers::pi, -1.5) / (kGroundLuma * kGroundChroma * kGroundChroma);
     for (int y = 0; y < ground.rows; ++y) {
@@ -138,14 +138,14 @@ class RegionDivision {
     likelihood.create(patch_.size(), CV_32FC1);
     for (int y = 0; y < chance.rows; ++y) {
       for (int x = 0; x < chance.cols; ++x) {
-        const Vector<2> place = (patch_.pixel(Vector<2>(x, y)) - centre) / member.height;
+        const Vector<2> location = (patch_.pixel(Vector<2>(x, y)) - centre) / member.height;
         const double signed_depth = depth.at<float>(y, x) - distance.at<float>(y, x);
         const double shape = 1 / (1 + std::exp(static_cast<float>(-signed_depth / softness)));
-        const double usual = member.body->coverage(place);
+        const double typical = member.body->coverage(location);
         chance.at<float>(y, x) =
-            std::clamp(static_cast<float>((1 - member.usual) * shape + member.usual * usual), kLeastChance, 1 - kLeastChance);
+            std::clamp(static_cast<float>((1 - member.typical) * shape + member.typical * typical), kMinChance, 1 - kMinChance);
         const float mask = patch_.mask.at<float>(y, x);
-        likelihood.at<float>(y, x) = static_cast<float>(member.body->density(place.y(), patch_.colour.at<cv::Vec3f>(y, x))) *
+        likelihood.at<float>(y, x) = static_cast<float>(member.body->density(location.y(), patch_.colour.at<cv::Vec3f>(y, x))) *
                                      (mask * kMaskOnBody + (1 - mask) * (1 - kMaskOnBody));
       }
     }
@@ -172,11 +172,11 @@ class RegionDivision {
         sum += std::log(all + left * ground[x]);
       }
     }
-    double doubt = 0;
+    double review_item = 0;
     for (const RegionMember& member : members_) {
-      doubt += (member.shift - member.shifts.front()).squaredNorm() / std::pow(kShiftDoubt * member.height, 2);
+      review_item += (member.shift - member.shifts.front()).squaredNorm() / std::pow(kShiftAmbiguity * member.height, 2);
     }
-    return kTempered * sum - 0.5 * doubt;
+    return kTempered * sum - 0.5 * review_item;
   }
 
   /// One member at four places about where it is, and where else it may be; whether another place is better. Its colours are taken
@@ -186,8 +186,8 @@ class RegionDivision {
     const Vector<2> from = member.shift;
     const double whole_cells = std::max(1.0, std::round(step * member.height / patch_.step)) * patch_.step;
     std::vector<Vector<2>> shifts;
-    for (const Vector<2>& way : {Vector<2>(1, 0), Vector<2>(-1, 0), Vector<2>(0, 1), Vector<2>(0, -1)}) {
-      shifts.push_back(from + whole_cells * way);
+    for (const Vector<2>& method : {Vector<2>(1, 0), Vector<2>(-1, 0), Vector<2>(0, 1), Vector<2>(0, -1)}) {
+      shifts.push_back(from + whole_cells * method);
     }
     if (elsewhere) shifts.insert(shifts.end(), member.shifts.begin() + 1, member.shifts.end());
     const cv::Mat chance = chances_[k];
@@ -196,7 +196,7 @@ class RegionDivision {
     Vector<2> kept = from;
     for (const Vector<2>& shift : shifts) {
       member.shift = shift;
-      chances_[k] = moved(chance, (shift - from) / patch_.step, kLeastChance);
+      chances_[k] = moved(chance, (shift - from) / patch_.step, kMinChance);
       const double value = log_likelihood();
       if (value <= best) continue;
       best = value;
@@ -217,43 +217,43 @@ class RegionDivision {
     return result;
   }
 
-  /// Two whose feet are about equally low are tried the other way round.
+  /// Two whose feet are about equally low are tried vice versa.
   void decide_order() {
     for (std::size_t i = 0; i + 1 < order_.size(); ++i) {
       const RegionMember& front = members_[order_[i]];
       const RegionMember& back = members_[order_[i + 1]];
       const double apart = (front.foot - back.foot) / (0.5 * (front.height + back.height));
       if (apart > kUndecided) continue;
-      const double as_it_is = log_likelihood() + apart / kFootDoubt;
+      const double as_it_is = log_likelihood() + apart / kFootAmbiguity;
       std::swap(order_[i], order_[i + 1]);
       if (log_likelihood() <= as_it_is) std::swap(order_[i], order_[i + 1]);
     }
   }
 
-  void hand_out(const std::vector<cv::Mat>& shares) {
+  void hand_out(const std::vector<cv::Mat>& fractions) {
     cv::Mat nearer = cv::Mat::zeros(patch_.size(), CV_32FC1);
     std::vector<int> before;
     for (const int k : order_) {
       RegionMember& member = members_[k];
-      member.seen = shares[k];
-      member.whole = shares[k].clone();
-      double hidden = 0, seen = 0;
+      member.detected = fractions[k];
+      member.whole = fractions[k].clone();
+      double hidden = 0, detected = 0;
       for (int y = 0; y < nearer.rows; ++y) {
         for (int x = 0; x < nearer.cols; ++x) {
           const float part = chances_[k].at<float>(y, x) > 0.5F ? nearer.at<float>(y, x) : 0;
           member.whole.at<float>(y, x) = std::min(1.0F, member.whole.at<float>(y, x) + part);
           hidden += part;
-          seen += shares[k].at<float>(y, x);
+          detected += fractions[k].at<float>(y, x);
         }
       }
-      member.visible = seen + hidden > 0 ? seen / (seen + hidden) : 0;
+      member.visible = detected + hidden > 0 ? detected / (detected + hidden) : 0;
       member.behind.clear();
       for (const int j : before) {
-        const cv::Mat both = members_[j].seen.mul(chances_[k]);
-        if (cv::sum(both)[0] > 0.02 * (seen + hidden)) member.behind.push_back(j);
+        const cv::Mat both = members_[j].detected.mul(chances_[k]);
+        if (cv::sum(both)[0] > 0.02 * (detected + hidden)) member.behind.push_back(j);
       }
       before.push_back(k);
-      nearer += shares[k];
+      nearer += fractions[k];
     }
   }
 
@@ -271,7 +271,7 @@ class RegionDivision {
 cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members) {
   if (members.empty() || patch.colour.empty()) return {};
   RegionDivision division(patch, members);
-  division.find_places();
+  division.find_positions();
   division.divide();
   return division.ground_colours();
 }

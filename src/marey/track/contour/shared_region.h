@@ -19,10 +19,10 @@ struct RegionMember {
   double height = 0;               ///< px
   double foot = 0;                 ///< px; the row of its feet, by which who stands nearer is known
   std::vector<Vector<2>> shifts;   ///< px; where it may be, against the polygon; at least one
-  double usual = 0.4;              ///< share of its usual coverage in its prior, the rest being the polygon's
+  double typical = 0.4;            ///< share of its typical coverage in its prior, the rest being the polygon's
 
   Vector<2> shift = Vector<2>::Zero();  ///< px; where it is
-  cv::Mat seen;                         ///< CV_32FC1: probability that a cell shows it
+  cv::Mat detected;                     ///< CV_32FC1: probability that a cell shows it
   cv::Mat whole;                        ///< the same with what others hide
   double visible = 0;                   ///< share of `whole` that is seen
   std::vector<int> behind;              ///< indices of members that hide a part of it

@@ -46,13 +46,13 @@ double iou(const cv::Mat& a, const cv::Mat& b) {
 
 TEST(HalfLevelCurve, RunsWhereADiscEnds) {
   const ColourPatch patch = lawn();
-  cv::Mat share(patch.size(), CV_32FC1);
-  for (int y = 0; y < share.rows; ++y) {
-    for (int x = 0; x < share.cols; ++x) {
-      share.at<float>(y, x) = static_cast<float>(std::clamp(20.3 - std::hypot(x - 50.2, y - 44.7) + 0.5, 0.0, 1.0));
+  cv::Mat fraction(patch.size(), CV_32FC1);
+  for (int y = 0; y < fraction.rows; ++y) {
+    for (int x = 0; x < fraction.cols; ++x) {
+      fraction.at<float>(y, x) = static_cast<float>(std::clamp(20.3 - std::hypot(x - 50.2, y - 44.7) + 0.5, 0.0, 1.0));
     }
   }
-  const auto curve = half_level_curve(share, patch);
+  const auto curve = half_level_curve(fraction, patch);
   EXPECT_NEAR(geometry::polygon_area(curve), std::numbers::pi * 20.3 * 20.3, 3) << "clockwise, so positive";
   for (const Vector<2>& point : curve) EXPECT_NEAR((point - Vector<2>(50.2, 44.7)).norm(), 20.3, 0.1);
   EXPECT_TRUE(half_level_curve(cv::Mat::zeros(patch.size(), CV_32FC1), patch).empty());
@@ -60,10 +60,10 @@ TEST(HalfLevelCurve, RunsWhereADiscEnds) {
 
 TEST(HalfLevelCurve, ClosesAtThePatchsBorderAndTakesTheLargest) {
   const ColourPatch patch = lawn();
-  cv::Mat share = cv::Mat::zeros(patch.size(), CV_32FC1);
-  share(cv::Rect(0, 0, 30, 30)) = 1;
-  share(cv::Rect(60, 60, 8, 8)) = 1;
-  EXPECT_NEAR(geometry::polygon_area(half_level_curve(share, patch)), 900, 2);
+  cv::Mat fraction = cv::Mat::zeros(patch.size(), CV_32FC1);
+  fraction(cv::Rect(0, 0, 30, 30)) = 1;
+  fraction(cv::Rect(60, 60, 8, 8)) = 1;
+  EXPECT_NEAR(geometry::polygon_area(half_level_curve(fraction, patch)), 900, 2);
 }
 
 TEST(BodyShare, ABareLimbBetweenWhiteClothesIsBody) {
@@ -76,9 +76,10 @@ TEST(BodyShare, ABareLimbBetweenWhiteClothesIsBody) {
     body(part) = 1;
   }
   patch.mask = body.clone();
-  const cv::Mat share = body_share(patch, body, 60);
-  EXPECT_GT(cv::mean(share(knee))[0], 0.8);
-  EXPECT_NEAR(geometry::polygon_area(half_level_curve(share, patch)), cv::sum(body)[0], 0.1 * cv::sum(body)[0]) << "in one piece";
+  const cv::Mat fraction = body_fraction(patch, body, 60);
+  EXPECT_GT(cv::mean(fraction(knee))[0], 0.8);
+  EXPECT_NEAR(geometry::polygon_area(half_level_curve(fraction, patch)), cv::sum(body)[0], 0.1 * cv::sum(body)[0])
+      << "in one piece";
 }
 
 TEST(BodyShare, ASilhouetteThatRunsOnTheHaloIsCutBackToTheBody) {
@@ -88,9 +89,9 @@ TEST(BodyShare, ASilhouetteThatRunsOnTheHaloIsCutBackToTheBody) {
   paint(patch, halo, cv::Scalar(72, 110, 115));  // darker beside what is bright
   paint(patch, body, cv::Scalar(200, 128, 128));
   cv::GaussianBlur(patch.colour, patch.colour, {}, 0.8);
-  const cv::Mat share = body_share(patch, cells_within(halo, patch), 60);
+  const cv::Mat fraction = body_fraction(patch, cells_within(halo, patch), 60);
   cv::Mat covered;
-  cv::Mat(share >= 0.5F).convertTo(covered, CV_32F, 1 / 255.0);
+  cv::Mat(fraction >= 0.5F).convertTo(covered, CV_32F, 1 / 255.0);
   EXPECT_GT(iou(covered, cells_within(body, patch)), 0.93);
   EXPECT_LT(iou(cells_within(halo, patch), cells_within(body, patch)), 0.7) << "what the silhouette alone says";
 }
@@ -141,8 +142,8 @@ TEST(DivideRegion, EachGetsItsOwnPartAndTheHiddenPartKeepsItsShape) {
     auto members = pair.members({off, -off / 2});
     divide_region(pair.patch, members);
     const cv::Mat front = cells_within(pair.front, pair.patch), back = cells_within(pair.back, pair.patch);
-    EXPECT_GT(iou(members[1].seen, front), 0.9) << off;
-    EXPECT_GT(iou(members[0].seen, back.mul(1 - front)), 0.85) << off;
+    EXPECT_GT(iou(members[1].detected, front), 0.9) << off;
+    EXPECT_GT(iou(members[0].detected, back.mul(1 - front)), 0.85) << off;
     EXPECT_GT(iou(members[0].whole, back), 0.85) << off;
     EXPECT_EQ(members[0].behind, std::vector<int>{1});
     EXPECT_TRUE(members[1].behind.empty());
@@ -155,7 +156,7 @@ TEST(DivideRegion, SameShirtsAreDividedByTheirShapes) {
   auto members = pair.members({1, 0});
   divide_region(pair.patch, members);
   const cv::Mat front = cells_within(pair.front, pair.patch), back = cells_within(pair.back, pair.patch);
-  EXPECT_GT(iou(members[1].seen, front), 0.8);
+  EXPECT_GT(iou(members[1].detected, front), 0.8);
   EXPECT_GT(iou(members[0].whole, back), 0.75);
 }
 
@@ -168,9 +169,9 @@ TEST(IsOutlineOf, NeitherLoopsNorGiants) {
   const geometry::ClosedSpline eight(
       4, {{0, 0}, {10, 0}, {10, 10}, {-10, 20}, {-10, 30}, {0, 30}, {10, 30}, {10, 20}, {-10, 10}, {-10, 0}});
   EXPECT_FALSE(is_simple(eight));
-  const cv::Size picture(55, 100);
-  EXPECT_FALSE(is_outline_of(plain, {40, 18, 7, 64}, &picture));
-  EXPECT_TRUE(is_outline_of(plain, {40, 18, 15, 64}, &picture)) << "what lies outside does not count";
+  const cv::Size image(55, 100);
+  EXPECT_FALSE(is_outline_of(plain, {40, 18, 7, 64}, &image));
+  EXPECT_TRUE(is_outline_of(plain, {40, 18, 15, 64}, &image)) << "what lies outside does not count";
 }
 
 }  // namespace

@@ -15,31 +15,31 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr int kMostControlPoints = 64, kMostLines = 512;
+constexpr int kMaxControlPoints = 64, kMaxLines = 512;
 // Where the tolerance chooses. Both arms and both legs of one who runs need more than 32; 48 come no nearer than 40 (bench/outlines
 // of 25 to 120 px).
-constexpr int kFewestControlPoints = 8, kChosenAtMost = 40;
-constexpr double kLeastArea = 0.5;  // px²
-constexpr double kSameBox = 0.5;    // IoU of an outline's box and the detection's from which on they are the same thing
+constexpr int kMinControlPoints = 8, kMaxChosen = 40;
+constexpr double kMinArea = 0.5;  // px²
+constexpr double kSameBox = 0.5;  // IoU of an outline's box and the detection's from which on they are the same thing
 
 /// `count` places at equal distances along a closed polygon.
 std::vector<Vector<2>> evenly_along(std::span<const Vector<2>> corners, int count) {
   double length = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) length += (corners[(i + 1) % corners.size()] - corners[i]).norm();
-  std::vector<Vector<2>> places;
+  std::vector<Vector<2>> locations;
   double walked = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vector<2> along = corners[(i + 1) % corners.size()] - corners[i];
     const double edge = along.norm();
-    while (std::ssize(places) < count) {
-      const double goal = length * static_cast<double>(places.size()) / count;
+    while (std::ssize(locations) < count) {
+      const double goal = length * static_cast<double>(locations.size()) / count;
       if (goal > walked + edge) break;
-      places.emplace_back(corners[i] + (edge > 0 ? (goal - walked) / edge : 0) * along);
+      locations.emplace_back(corners[i] + (edge > 0 ? (goal - walked) / edge : 0) * along);
     }
     walked += edge;
   }
-  while (std::ssize(places) < count) places.push_back(corners.front());
-  return places;
+  while (std::ssize(locations) < count) locations.push_back(corners.front());
+  return locations;
 }
 
 }  // namespace
@@ -50,35 +50,34 @@ void check(const OutlineOptions& options) {
                 +geometry::SplineWeights::max_order);
   }
   const int needed = std::max(options.order, 3);
-  if (options.control_points && (*options.control_points < needed || *options.control_points > kMostControlPoints)) {
+  if (options.control_points && (*options.control_points < needed || *options.control_points > kMaxControlPoints)) {
     throw Error("{} control points for an outline of order {}; give from {} to {}", *options.control_points, options.order, needed,
-                kMostControlPoints);
+                kMaxControlPoints);
   }
-  if (options.lines < 1 || options.lines > kMostLines) {
-    throw Error("{} measurement lines an outline; give from 1 to {}", options.lines, kMostLines);
+  if (options.lines < 1 || options.lines > kMaxLines) {
+    throw Error("{} measurement lines an outline; give from 1 to {}", options.lines, kMaxLines);
   }
   if (!(options.tolerance > 0)) throw Error("the tolerance of an outline is {} px; it must be positive", options.tolerance);
-  if (!(options.least_height >= 1))
-    throw Error("the least height of an outline is {} px; it must be 1 or more", options.least_height);
+  if (!(options.min_height >= 1)) throw Error("the least height of an outline is {} px; it must be 1 or more", options.min_height);
 }
 
 geometry::SplineFitOptions fit_options(const OutlineOptions& options) {
   const int needed = std::max(options.order, 3);
   if (options.control_points) return {options.order, *options.control_points, *options.control_points, options.tolerance};
-  return {options.order, std::max(needed, kFewestControlPoints), std::max(needed, kChosenAtMost), options.tolerance};
+  return {options.order, std::max(needed, kMinControlPoints), std::max(needed, kMaxChosen), options.tolerance};
 }
 
 bool is_knotted(const geometry::ClosedSpline& spline) {
-  constexpr int kPlaces = 4;  // a span
-  const int count = kPlaces * spline.count();
-  double turned = 0;
-  Vector<2> before = spline.derivative(-1.0 / kPlaces);
+  constexpr int kPositions = 4;  // a span
+  const int count = kPositions * spline.count();
+  double rotated = 0;
+  Vector<2> before = spline.derivative(-1.0 / kPositions);
   for (int i = 0; i < count; ++i) {
-    const Vector<2> now = spline.derivative(static_cast<double>(i) / kPlaces);
-    turned += std::atan2(before.x() * now.y() - before.y() * now.x(), before.dot(now));
+    const Vector<2> now = spline.derivative(static_cast<double>(i) / kPositions);
+    rotated += std::atan2(before.x() * now.y() - before.y() * now.x(), before.dot(now));
     before = now;
   }
-  return std::abs(turned - 2 * std::numbers::pi) > 1;
+  return std::abs(rotated - 2 * std::numbers::pi) > 1;
 }
 
 bool is_simple(const geometry::ClosedSpline& spline) {
@@ -110,12 +109,12 @@ bool is_simple(const geometry::ClosedSpline& spline) {
   return true;
 }
 
-bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* picture) {
+bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* image) {
   constexpr double kMostWide = 2, kMostHigh = 1.6;
   Box own = spline.box();
-  if (picture != nullptr) {
-    const Box seen{0, 0, static_cast<double>(picture->width), static_cast<double>(picture->height)};
-    own = geometry::intersection(own, seen);
+  if (image != nullptr) {
+    const Box detected{0, 0, static_cast<double>(image->width), static_cast<double>(image->height)};
+    own = geometry::intersection(own, detected);
   }
   return own.width <= kMostWide * box.width && own.height <= kMostHigh * box.height && is_simple(spline);
 }
@@ -136,7 +135,7 @@ std::optional<geometry::ClosedSpline> drawn_to(std::span<const Vector<2>> edge, 
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_above), corners.end());
   const std::vector<Vector<2>> goals = evenly_along(corners, count);
   geometry::ClosedSpline spline(order, goals);
-  if (is_knotted(spline) || !is_simple(spline) || !(spline.area() > kLeastArea)) return std::nullopt;
+  if (is_knotted(spline) || !is_simple(spline) || !(spline.area() > kMinArea)) return std::nullopt;
   for (int step = 0; step < kDrawingSteps; ++step) {
     std::vector<Vector<2>> points = std::as_const(spline).control_points();
     for (int i = 0; i < count; ++i) points[i] += goals[i] - spline.at(i);
@@ -154,7 +153,7 @@ std::optional<geometry::ClosedSpline> fit_curve(std::span<const Vector<2>> edge,
   for (const int rounds : {options.rounds, 0}) {
     options.rounds = rounds;
     spline = geometry::fit_spline(edge, options);
-    if (!spline || !(spline->area() > kLeastArea)) return std::nullopt;
+    if (!spline || !(spline->area() > kMinArea)) return std::nullopt;
     if (!is_knotted(*spline) && is_simple(*spline)) return spline;
   }
   return drawn_to(edge, options.order, spline->count());
@@ -173,10 +172,10 @@ std::optional<geometry::ClosedSpline> standing_body(const Box& box, const geomet
   return fit_curve(polygon, options);
 }
 
-std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma,
+std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& detected, const cv::Mat& luma,
                                                      geometry::SplineFitOptions options) {
-  auto spline = fit_curve(moved_to_intensity_edges(seen.outline, luma), options);
-  if (!spline || geometry::iou(spline->box(), seen.box) < kSameBox) return std::nullopt;
+  auto spline = fit_curve(moved_to_intensity_edges(detected.outline, luma), options);
+  if (!spline || geometry::iou(spline->box(), detected.box) < kSameBox) return std::nullopt;
   return spline;
 }
 

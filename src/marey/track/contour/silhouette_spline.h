@@ -11,7 +11,7 @@
 
 namespace marey::track::contour {
 
-/// Throws Error where an option is out of its domain.
+/// Throws Error if an option is out of its domain.
 void check(const OutlineOptions& options);
 
 /// How the options want a target's first silhouette fitted.
@@ -20,9 +20,9 @@ geometry::SplineFitOptions fit_options(const OutlineOptions& options);
 /// Whether the curve has a loop: then it turns by more, or less, than once on its way round.
 bool is_knotted(const geometry::ClosedSpline& spline);
 
-/// The outline of a silhouette, its edge made exact by `luma` (light_edge.h; may be empty); nothing where it is no simple curve, or
+/// The outline of a silhouette, its edge made exact by `luma` (light_edge.h; may be empty); nothing if it is not a simple curve, or
 /// not about as large as the detection.
-std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& seen, const cv::Mat& luma,
+std::optional<geometry::ClosedSpline> fit_silhouette(const Detection& detected, const cv::Mat& luma,
                                                      geometry::SplineFitOptions options);
 
 /// The spline of a closed curve (px, clockwise), where it is a simple curve and has an area.
@@ -35,7 +35,7 @@ std::optional<geometry::ClosedSpline> standing_body(const Box& box, const geomet
 bool is_simple(const geometry::ClosedSpline& spline);
 
 /// Whether what is written of a target in `box` (px) may be this curve: simple, and at most twice as wide and 1.6 times as high.
-/// With `picture`, what lies outside a picture of that size does not count.
-bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* picture = nullptr);
+/// With `picture`, what lies outside an image of that size does not count.
+bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* image = nullptr);
 
 }  // namespace marey::track::contour

@@ -15,40 +15,40 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr std::size_t kMostInstants = 400;  // that are looked at, evenly over those that were kept
-constexpr std::size_t kFewestPairs = 300;
-constexpr double kClearly = 1.6;                     // times the nearest's distance: so much farther the second nearest must be
+constexpr std::size_t kMaxInstants = 400;  // that are inspected, evenly over those that were kept
+constexpr std::size_t kMinPairCount = 300;
+constexpr double kDistinctly = 1.6;                  // times the nearest's distance: this much farther the second nearest must be
 constexpr double kFirstGate = 2.2;                   // m
 constexpr double kLastGate = 1.0;                    // m, of fields; what lasts is measured within the first
 constexpr double kCell = 1;                          // m
 constexpr std::array<double, 3> kFinest{5, 10, 18};  // fields vary over such a part of what is seen, but
-constexpr double kNarrowest = 2.5;                   // m at least
+constexpr double kMinWidth = 2.5;                    // m at least
 constexpr double kPriorPairs = 12;                   // with which a field holds to 0
 constexpr int kRounds = 12;
-constexpr double kWorthIt = 0.97;         // of the distances of pairs held out, that must be left by fields that are kept
+constexpr double kMinGain = 0.97;         // of the distances of pairs held out, that must be left by fields that are kept
 constexpr double kLag = 0.1;              // s, after which an error that is still there lasts
 constexpr double kLatest = 0.6;           // s, likewise, at low rates
-constexpr double kStill = 1, kSpeed = 6;  // m and m/s: how far who is seen goes meanwhile, with errors
-constexpr double kMostByChance = 0.2;     // of links
+constexpr double kStill = 1, kSpeed = 6;  // m and m/s: how far who is seen goes in the meantime, with errors
+constexpr double kMaxByChance = 0.2;      // of links
 constexpr double kFew = 0.01;             // of the places lie beyond the grid on each side: some are near the horizon
 
 constexpr double kChiSquareMedian = 1.386;  // of two degrees
-constexpr std::size_t kFewestRatios = 30;
-constexpr double kLeastNoise = 0.5, kMostNoise = 3;
+constexpr std::size_t kMinRatios = 30;
+constexpr double kMinNoise = 0.5, kMaxNoise = 3;
 constexpr double kOwnErrors = 0.42;  // of a deviation, that is taken to last where it cannot be measured: gait, height, clothes
 
-struct Seen {
-  Vector<2> place;  // m, as the camera has it
+struct Detected {
+  Vector<2> location;  // m, as the camera has it
   Matrix<2> covariance;
 };
 
 /// One instant: what each camera saw.
-using Shot = std::vector<std::vector<Seen>>;
+using Shot = std::vector<std::vector<Detected>>;
 
 struct Pair {
   int a = 0, b = 0;  // cameras
-  const Seen* of_a = nullptr;
-  const Seen* of_b = nullptr;
+  const Detected* of_a = nullptr;
+  const Detected* of_b = nullptr;
 };
 
 /// One pair, and the same people's a little later.
@@ -59,7 +59,7 @@ struct Link {
 Shot shot_of(const GroundInstant& instant, int cameras) {
   Shot shot(static_cast<std::size_t>(cameras));
   for (const CameraObservations& view : instant.cameras) {
-    for (const Observation<2>& one : view.seen) {
+    for (const Observation<2>& one : view.detected) {
       if (!one.shared) shot[static_cast<std::size_t>(number(view.camera))].push_back({one.value, *one.covariance});
     }
   }
@@ -74,7 +74,7 @@ struct Shots {
 
 Shots shots_of(std::span<const GroundInstant> instants, int cameras) {
   Shots shots;
-  const std::size_t step = std::max<std::size_t>(1, instants.size() / kMostInstants);
+  const std::size_t step = std::max<std::size_t>(1, instants.size() / kMaxInstants);
   for (std::size_t k = 0; k < instants.size(); k += step) {
     shots.first.push_back(shot_of(instants[k], cameras));
     std::size_t next = k + 1;
@@ -92,14 +92,14 @@ class Agreeing {
   Agreeing(const Shots& shots, int cameras) : shots_(shots.first), all_(shots), cameras_(static_cast<std::size_t>(cameras)) {
     std::array<std::vector<double>, 2> all;
     for (const Shot& shot : shots_) {
-      for (const std::vector<Seen>& camera : shot) {
-        for (const Seen& one : camera) all[0].push_back(one.place.x()), all[1].push_back(one.place.y());
+      for (const std::vector<Detected>& camera : shot) {
+        for (const Detected& one : camera) all[0].push_back(one.location.x()), all[1].push_back(one.location.y());
       }
     }
-    const Vector<2> least(geometry::quantile(all[0], kFew), geometry::quantile(all[1], kFew)),
-        most(geometry::quantile(all[0], 1 - kFew), geometry::quantile(all[1], 1 - kFew));
-    grid_ = GroundGrid::over(least, most, kCell);
-    extent_ = std::max(1.0, (most - least).maxCoeff());
+    const Vector<2> minimum(geometry::quantile(all[0], kFew), geometry::quantile(all[1], kFew)),
+        maximum(geometry::quantile(all[0], 1 - kFew), geometry::quantile(all[1], 1 - kFew));
+    grid_ = GroundGrid::over(minimum, maximum, kCell);
+    extent_ = std::max(1.0, (maximum - minimum).maxCoeff());
     bias_.assign(cameras_, GroundField(grid_));
   }
 
@@ -107,9 +107,9 @@ class Agreeing {
   std::vector<GroundField> fields(std::optional<bool> odd, double finest_part) {
     bias_.assign(cameras_, GroundField(grid_));
     for (int round = 0; round < kRounds; ++round) {
-      const double share = std::min(1.0, 1.5 * round / (kRounds - 1));
-      const double finest = std::max(kNarrowest, extent_ / finest_part);
-      improve(pairs(odd, kFirstGate + share * (kLastGate - kFirstGate)), extent_ * std::pow(finest / extent_, share));
+      const double fraction = std::min(1.0, 1.5 * round / (kRounds - 1));
+      const double finest = std::max(kMinWidth, extent_ / finest_part);
+      improve(pairs(odd, kFirstGate + fraction * (kLastGate - kFirstGate)), extent_ * std::pow(finest / extent_, fraction));
     }
     return bias_;
   }
@@ -124,7 +124,7 @@ class Agreeing {
     return found;
   }
 
-  /// Pairs of one instant that are plainly the same people's a little later; or half of the recording later, where nobody's are.
+  /// Pairs of one instant that are plainly the same people's a little later; or half of the recording later, where no person's are.
   std::vector<Link> links(double gate, bool by_chance) const {
     std::vector<Link> found;
     for (std::size_t k = 0; k < shots_.size(); ++k) {
@@ -137,7 +137,7 @@ class Agreeing {
     return found;
   }
 
-  Vector<2> difference(const Pair& pair) const { return placed(pair.b, *pair.of_b) - placed(pair.a, *pair.of_a); }
+  Vector<2> difference(const Pair& pair) const { return located(pair.b, *pair.of_b) - located(pair.a, *pair.of_a); }
 
   void set(std::vector<GroundField> fields) { bias_ = std::move(fields); }
   const std::vector<GroundField>& fields() const { return bias_; }
@@ -146,14 +146,16 @@ class Agreeing {
  private:
   static constexpr std::size_t kBlocks = 10;  // of time, by turns learned from and held out
 
-  Vector<2> placed(int camera, const Seen& one) const { return one.place - bias_[static_cast<std::size_t>(camera)].at(one.place); }
+  Vector<2> located(int camera, const Detected& one) const {
+    return one.location - bias_[static_cast<std::size_t>(camera)].at(one.location);
+  }
 
   std::vector<std::vector<Vector<2>>> corrected(const Shot& shot) const {
-    std::vector<std::vector<Vector<2>>> places(cameras_);
+    std::vector<std::vector<Vector<2>>> locations(cameras_);
     for (std::size_t c = 0; c < cameras_; ++c) {
-      for (const Seen& one : shot[c]) places[c].push_back(placed(static_cast<int>(c), one));
+      for (const Detected& one : shot[c]) locations[c].push_back(located(static_cast<int>(c), one));
     }
-    return places;
+    return locations;
   }
 
   struct Nearest {
@@ -161,15 +163,15 @@ class Agreeing {
     double first = std::numeric_limits<double>::infinity(), second = first;  // m²
 
     /// Within the gate, and no other nearly as near.
-    bool is_plain(double gate) const { return first <= gate * gate && second >= kClearly * kClearly * first; }
+    bool is_plain(double gate) const { return first <= gate * gate && second >= kDistinctly * kDistinctly * first; }
   };
 
-  /// Who is farther than `kClearly` times the gate changes nothing.
-  static Nearest nearest(const Vector<2>& place, const std::vector<Vector<2>>& among, double gate) {
+  /// Who is farther than `kDistinctly` times the gate changes nothing.
+  static Nearest nearest(const Vector<2>& location, const std::vector<Vector<2>>& among, double gate) {
     Nearest found;
     for (std::size_t i = 0; i < among.size(); ++i) {
-      const Vector<2> apart = among[i] - place;
-      if (std::abs(apart.x()) > kClearly * gate) continue;
+      const Vector<2> apart = among[i] - location;
+      if (std::abs(apart.x()) > kDistinctly * gate) continue;
       const double square = apart.squaredNorm();
       if (square < found.first) {
         found.second = found.first;
@@ -183,14 +185,14 @@ class Agreeing {
   }
 
   void pair_up(const Shot& shot, double gate, std::vector<Pair>& found) const {
-    const std::vector<std::vector<Vector<2>>> places = corrected(shot);
+    const std::vector<std::vector<Vector<2>>> locations = corrected(shot);
     for (std::size_t a = 0; a < cameras_; ++a) {
-      for (std::size_t b = a + 1; b < cameras_; ++b) pair_up(shot, places, a, b, gate, found);
+      for (std::size_t b = a + 1; b < cameras_; ++b) pair_up(shot, locations, a, b, gate, found);
     }
   }
 
   /// Where the two cameras of a pair together have it.
-  Vector<2> middle(const Pair& pair) const { return (placed(pair.a, *pair.of_a) + placed(pair.b, *pair.of_b)) / 2; }
+  Vector<2> middle(const Pair& pair) const { return (located(pair.a, *pair.of_a) + located(pair.b, *pair.of_b)) / 2; }
 
   /// Pairs of the same cameras that are each other's nearest, and plainly so. Pairs come by cameras.
   void link_up(const std::vector<Pair>& now, const std::vector<Pair>& later, double reach, std::vector<Link>& found) const {
@@ -220,12 +222,12 @@ class Agreeing {
     }
   }
 
-  void pair_up(const Shot& shot, const std::vector<std::vector<Vector<2>>>& places, std::size_t a, std::size_t b, double gate,
+  void pair_up(const Shot& shot, const std::vector<std::vector<Vector<2>>>& locations, std::size_t a, std::size_t b, double gate,
                std::vector<Pair>& found) const {
-    for (std::size_t i = 0; i < places[a].size(); ++i) {
-      const Nearest there = nearest(places[a][i], places[b], gate);
+    for (std::size_t i = 0; i < locations[a].size(); ++i) {
+      const Nearest there = nearest(locations[a][i], locations[b], gate);
       if (!there.is_plain(gate)) continue;
-      const Nearest back = nearest(places[b][there.index], places[a], gate);
+      const Nearest back = nearest(locations[b][there.index], locations[a], gate);
       if (back.index != i || !back.is_plain(gate)) continue;
       found.push_back({static_cast<int>(a), static_cast<int>(b), &shot[a][i], &shot[b][there.index]});
     }
@@ -239,15 +241,15 @@ class Agreeing {
       const Vector<2> half = difference(pair) / 2;
       const double spread = pair.of_a->covariance.trace() + pair.of_b->covariance.trace();
       const double weight = 0.1 / (0.1 + spread);
-      const auto add = [&](int camera, const Vector<2>& place, const Vector<2>& error) {
+      const auto add = [&](int camera, const Vector<2>& location, const Vector<2>& error) {
         auto& of = sums[static_cast<std::size_t>(camera)];
-        const std::size_t cell = grid_.index(place);
+        const std::size_t cell = grid_.index(location);
         of[0][cell] += weight * error.x();
         of[1][cell] += weight * error.y();
         of[2][cell] += weight;
       };
-      add(pair.a, pair.of_a->place, -half);
-      add(pair.b, pair.of_b->place, half);
+      add(pair.a, pair.of_a->location, -half);
+      add(pair.b, pair.of_b->location, half);
     }
     for (std::size_t c = 0; c < cameras_; ++c) {
       for (auto& sum : sums[c]) sum = spread_over(grid_, sum, sigma);
@@ -270,10 +272,10 @@ double median_distance(const Agreeing& agreeing, bool odd) {
   return distances.empty() ? 0 : geometry::quantile(distances, 0.5);
 }
 
-/// How finely fields vary that best bring pairs together which they were not learned from; nothing where none is worth it.
+/// How finely fields vary that best bring pairs together which they were not learned from; nothing if none is worth it.
 std::optional<double> best_part(Agreeing& agreeing) {
   agreeing.forget();
-  double least = kWorthIt * (median_distance(agreeing, false) + median_distance(agreeing, true));
+  double minimum = kMinGain * (median_distance(agreeing, false) + median_distance(agreeing, true));
   std::optional<double> best;
   for (const double part : kFinest) {
     double left = 0;
@@ -281,8 +283,8 @@ std::optional<double> best_part(Agreeing& agreeing) {
       agreeing.set(agreeing.fields(odd, part));
       left += median_distance(agreeing, !odd);
     }
-    if (left >= least) continue;
-    least = left;
+    if (left >= minimum) continue;
+    minimum = left;
     best = part;
   }
   return best;
@@ -302,8 +304,8 @@ LastingDisagreement of_single_instants(const Agreeing& agreeing, int cameras) {
   }
   LastingDisagreement found;
   for (std::vector<double>& of : ratios) {
-    const bool enough = of.size() >= kFewestRatios;
-    found.noise.push_back(enough ? std::clamp(std::sqrt(geometry::quantile(of, 0.5) / kChiSquareMedian), kLeastNoise, kMostNoise)
+    const bool enough = of.size() >= kMinRatios;
+    found.noise.push_back(enough ? std::clamp(std::sqrt(geometry::quantile(of, 0.5) / kChiSquareMedian), kMinNoise, kMaxNoise)
                                  : 1.0);
   }
   found.deviation = kOwnErrors * std::sqrt(geometry::quantile(squares, 0.5) / kChiSquareMedian / 2);  // of two cameras
@@ -321,7 +323,7 @@ LastingDisagreement lasting_of(const Agreeing& agreeing, int cameras) {
   }
   const LastingDisagreement lasting = lasting_disagreement(differences, cameras);
   const auto by_chance = static_cast<double>(agreeing.links(kFirstGate, true).size());
-  const bool linked = lasting.deviation && by_chance <= kMostByChance * static_cast<double>(links.size());
+  const bool linked = lasting.deviation && by_chance <= kMaxByChance * static_cast<double>(links.size());
   return linked ? lasting : of_single_instants(agreeing, cameras);
 }
 
@@ -332,7 +334,7 @@ GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, 
   if (cameras < 2 || instants.empty()) return agreement;
   const Shots shots = shots_of(instants, cameras);
   Agreeing agreeing(shots, cameras);
-  if (agreeing.pairs({}, kFirstGate).size() < kFewestPairs) return agreement;
+  if (agreeing.pairs({}, kFirstGate).size() < kMinPairCount) return agreement;
   if (const std::optional<double> part = best_part(agreeing)) {
     agreement.bias_ = agreeing.fields({}, *part);
   } else {
@@ -344,11 +346,11 @@ GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, 
   return agreement;
 }
 
-Observation<2> GroundAgreement::corrected(Observation<2> seen) const {
-  const auto camera = static_cast<std::size_t>(number(seen.camera));
-  if (!bias_.empty()) seen.value -= bias_[camera].at(seen.value);
-  if (!noise_.empty()) *seen.covariance *= noise_[camera] * noise_[camera];
-  return seen;
+Observation<2> GroundAgreement::corrected(Observation<2> detected) const {
+  const auto camera = static_cast<std::size_t>(number(detected.camera));
+  if (!bias_.empty()) detected.value -= bias_[camera].at(detected.value);
+  if (!noise_.empty()) *detected.covariance *= noise_[camera] * noise_[camera];
+  return detected;
 }
 
 }  // namespace marey::track::ground

@@ -1,9 +1,9 @@
 // Whether cameras that look at the same ground see the same people there.
 //
-// A camera whose ground is mirrored, or off by metres, places its people where others look and see nobody. Where two cameras both
-// saw people at one time or another, whoever the one sees should be within a metre of somebody whom the other sees in the same
-// instant; how often that happens by chance is told by the other's people of another time. Cameras that nobody crosses from one to
-// the other cannot be compared. Cost: for each pair of cameras the people of some hundred instants, twice.
+// A camera whose ground is mirrored, or off by metres, places its people where others look and see no person. Where two cameras
+// both saw people at one time or another, the one who the one sees should be within a metre of a person whom the other sees in the
+// same instant; how often that happens by chance is reported by the other's people of another time. Cameras that no person crosses
+// from one to the other cannot be compared. Cost: for each pair of cameras the people of some hundred instants, twice.
 #pragma once
 
 #include <span>

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double farthest = 2.0;     // m; what lies farther apart is never one person
 constexpr double gate = 9.2;         // chi-square of two degrees, 99 %
-constexpr double long_enough = 0.5;  // s together without being told apart
+constexpr double long_enough = 0.5;  // s together without being distinguished
 
 }  // namespace
 

@@ -32,7 +32,7 @@ class GroundDuplicates {
   struct Pair {
     Timestamp since{};  // they have been together, and no camera saw both
     Timestamp latest{};
-    CameraMask first = 0, second = 0;  // those that saw them meanwhile
+    CameraMask first = 0, second = 0;  // those that saw them in the meantime
   };
   bool together(const Member& a, const Member& b, double disagreement) const;
 

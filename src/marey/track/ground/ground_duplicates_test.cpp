@@ -40,12 +40,12 @@ TEST(GroundDuplicates, TwoThatAreFartherApartThanCamerasDisagreeAreTwo) {
   EXPECT_TRUE(merged(0.6, by_left, by_right, 0.05).empty());
 }
 
-TEST(GroundDuplicates, WhoIsNotSeenIsNotMerged) {
+TEST(GroundDuplicates, UnobservedTracksAreNotMerged) {
   EXPECT_TRUE(merged(0.1, 0, by_right).empty());
 }
 
 /// How often two targets half a metre apart are merged that cameras see by turns: at each instant the next of `masks`.
-std::size_t merged_by_turns(const std::vector<std::pair<CameraMask, CameraMask>>& masks) {
+std::size_t merged_by_alternation(const std::vector<std::pair<CameraMask, CameraMask>>& masks) {
   GroundDuplicates duplicates;
   std::size_t merges = 0;
   for (std::size_t i = 0; i < 50 && merges == 0; ++i) {
@@ -57,12 +57,12 @@ std::size_t merged_by_turns(const std::vector<std::pair<CameraMask, CameraMask>>
 }
 
 TEST(GroundDuplicates, TwoThatCamerasFeedByTurnsAreOne) {
-  EXPECT_EQ(merged_by_turns({{by_left, by_right}, {by_right, by_left}, {by_left | by_right, 0}}), 1U);
-  EXPECT_EQ(merged_by_turns({{by_left | by_right, 0}, {0, by_left | by_right}}), 1U);
+  EXPECT_EQ(merged_by_alternation({{by_left, by_right}, {by_right, by_left}, {by_left | by_right, 0}}), 1U);
+  EXPECT_EQ(merged_by_alternation({{by_left | by_right, 0}, {0, by_left | by_right}}), 1U);
 }
 
 TEST(GroundDuplicates, TwoWhoHideOneAnotherByTurnsInOneCameraAreTwo) {
-  EXPECT_EQ(merged_by_turns({{by_left, 0}, {0, by_left}}), 0U);
+  EXPECT_EQ(merged_by_alternation({{by_left, 0}, {0, by_left}}), 0U);
 }
 
 TEST(GroundDuplicates, OfThreeEachGoesOnce) {

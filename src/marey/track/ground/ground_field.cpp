@@ -6,7 +6,7 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr int kMostCells = 300;  // a side
+constexpr int kMaxCells = 300;  // a side
 
 /// Spread along the rows' order: each row becomes the weighted sum of those within reach, whole rows at a time.
 std::vector<double> spread_rows(const std::vector<double>& values, int rows, int columns, const std::vector<double>& weights) {
@@ -24,29 +24,29 @@ std::vector<double> spread_rows(const std::vector<double>& values, int rows, int
 }
 
 std::vector<double> transposed(const std::vector<double>& values, int rows, int columns) {
-  std::vector<double> turned(values.size());
+  std::vector<double> rotated(values.size());
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column)
-      turned[static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row)] =
+      rotated[static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row)] =
           values[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
   }
-  return turned;
+  return rotated;
 }
 
 }  // namespace
 
-GroundGrid GroundGrid::over(const Vector<2>& least, const Vector<2>& most, double cell) {
+GroundGrid GroundGrid::over(const Vector<2>& minimum, const Vector<2>& maximum, double cell) {
   GroundGrid grid;
-  const Vector<2> size = (most - least).cwiseMax(0.0);
-  grid.corner = least;
-  grid.cell = std::max(cell, size.maxCoeff() / kMostCells);
+  const Vector<2> size = (maximum - minimum).cwiseMax(0.0);
+  grid.corner = minimum;
+  grid.cell = std::max(cell, size.maxCoeff() / kMaxCells);
   grid.columns = static_cast<int>(size.x() / grid.cell) + 1;
   grid.rows = static_cast<int>(size.y() / grid.cell) + 1;
   return grid;
 }
 
-std::size_t GroundGrid::index(const Vector<2>& place) const {
-  const Vector<2> at = (place - corner) / cell;
+std::size_t GroundGrid::index(const Vector<2>& location) const {
+  const Vector<2> at = (location - corner) / cell;
   const auto column = static_cast<std::size_t>(std::clamp(at.x(), 0.0, columns - 1.0));
   const auto row = static_cast<std::size_t>(std::clamp(at.y(), 0.0, rows - 1.0));
   return row * static_cast<std::size_t>(columns) + column;
@@ -59,8 +59,8 @@ std::vector<double> spread_over(const GroundGrid& grid, const std::vector<double
   return spread_rows(transposed(across, grid.columns, grid.rows), grid.rows, grid.columns, weights);
 }
 
-Vector<2> GroundField::at(const Vector<2>& place) const {
-  const Vector<2> at = (place - grid_.corner) / grid_.cell - Vector<2>(0.5, 0.5);
+Vector<2> GroundField::at(const Vector<2>& location) const {
+  const Vector<2> at = (location - grid_.corner) / grid_.cell - Vector<2>(0.5, 0.5);
   const double x = std::clamp(at.x(), 0.0, grid_.columns - 1.0), y = std::clamp(at.y(), 0.0, grid_.rows - 1.0);
   const int left = static_cast<int>(x), low = static_cast<int>(y);
   const auto value = [&](int column, int row) {

@@ -13,10 +13,10 @@ struct GroundGrid {
   int columns = 1, rows = 1;
 
   /// Over a rectangle, cells of at least `cell` m, at most 300 a side.
-  static GroundGrid over(const Vector<2>& least, const Vector<2>& most, double cell);
+  static GroundGrid over(const Vector<2>& minimum, const Vector<2>& maximum, double cell);
 
   /// Of the cell that holds a place, or of the nearest.
-  std::size_t index(const Vector<2>& place) const;
+  std::size_t index(const Vector<2>& location) const;
   std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
 };
 
@@ -29,7 +29,7 @@ class GroundField {
   explicit GroundField(const GroundGrid& grid) : grid_(grid), x_(grid.size(), 0), y_(grid.size(), 0) {}
 
   /// m; between the middles of cells it is linear, beyond the grid as at its edge.
-  Vector<2> at(const Vector<2>& place) const;
+  Vector<2> at(const Vector<2>& location) const;
   void add(std::size_t cell, const Vector<2>& displacement) { x_[cell] += displacement.x(), y_[cell] += displacement.y(); }
   const GroundGrid& grid() const { return grid_; }
 

@@ -7,10 +7,10 @@
 
 namespace marey::track::ground {
 
-GroundFollower::GroundFollower(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views)
+GroundTrackerBase::GroundTrackerBase(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views)
     : rules_(options, views->cameras()), visibility_(std::move(views)) {}
 
-std::span<const Track<2>> GroundFollower::step(Timestamp now, std::span<const CameraObservations> views) {
+std::span<const Track<2>> GroundTrackerBase::step(Timestamp now, std::span<const CameraObservations> views) {
   check_time(now, now_);
   for (const CameraObservations& view : views) visibility_.check(view);
   predict_to(now);
@@ -21,7 +21,7 @@ std::span<const Track<2>> GroundFollower::step(Timestamp now, std::span<const Ca
   return report();
 }
 
-std::span<const Track<2>> GroundFollower::expected(Timestamp now) {
+std::span<const Track<2>> GroundTrackerBase::expected(Timestamp now) {
   const double dt = std::max(0.0, seconds_to(now));
   tracks_.clear();
   for (const GroundTarget& target : targets_) {
@@ -33,36 +33,36 @@ std::span<const Track<2>> GroundFollower::expected(Timestamp now) {
   return tracks_;
 }
 
-double GroundFollower::gain_of(std::span<const GroundTarget> targets, const GroundPair& pair) const {
+double GroundTrackerBase::gain_of(std::span<const GroundTarget> targets, const GroundPair& pair) const {
   const double visible = targets[pair.target].presence.visible();
   return pair.log_ratio + std::log(visible) - std::log1p(-visible * rules_.options().detected);
 }
 
-void GroundFollower::predict_to(Timestamp now) {
+void GroundTrackerBase::predict_to(Timestamp now) {
   const double dt = seconds_to(now);
   now_ = now;
   for (GroundTarget& target : targets_) rules_.predict(target, dt);
 }
 
-void GroundFollower::take_in(int index, const CameraObservations& view) {
+void GroundTrackerBase::take_in(int index, const CameraObservations& view) {
   const double late = seconds(view.time - *now_);
   visibility_.set_view(view, rules_.options().evidence.confident);
-  target_of_.assign(view.seen.size(), std::nullopt);
-  explained_.assign(view.seen.size(), 0);
-  find_pairs(view.seen, late);
-  associate(targets_, view.seen, late, pairs_);
+  target_of_.assign(view.detected.size(), std::nullopt);
+  explained_.assign(view.detected.size(), 0);
+  find_pairs(view.detected, late);
+  associate(targets_, view.detected, late, pairs_);
   note_missed();
-  for (int i = 0; i < std::ssize(view.seen); ++i) {
+  for (int i = 0; i < std::ssize(view.detected); ++i) {
     if (target_of_[i]) matches_.push_back({targets_[*target_of_[i]].id, index, i});
   }
   start_unmatched(index, view);
 }
 
-void GroundFollower::find_pairs(std::span<const Observation<2>> seen, double late) {
+void GroundTrackerBase::find_pairs(std::span<const Observation<2>> detected, double late) {
   pairs_.clear();
   points_.clear();
   double widest = 0;
-  for (const Observation<2>& one : seen) {
+  for (const Observation<2>& one : detected) {
     points_.push_back(one.value);
     widest = std::max(widest, one.covariance->trace());
   }
@@ -72,8 +72,8 @@ void GroundFollower::find_pairs(std::span<const Observation<2>> seen, double lat
     const double radius = rules_.search_radius(target, widest) + std::abs(late) * rules_.options().max_speed;
     const std::size_t first = pairs_.size();
     grid_.for_each_near(target.filter.position(), radius, [&](int o) {
-      if (seen[o].score < rules_.options().evidence.least_score) return;
-      const auto ratio = rules_.log_ratio(target, seen[o], rules_.at_instant(target, seen[o], late), *now_);
+      if (detected[o].score < rules_.options().evidence.min_score) return;
+      const auto ratio = rules_.log_ratio(target, detected[o], rules_.at_instant(target, detected[o], late), *now_);
       if (ratio) pairs_.push_back({i, o, *ratio});
     });
     std::sort(pairs_.begin() + static_cast<std::ptrdiff_t>(first), pairs_.end(),
@@ -81,20 +81,21 @@ void GroundFollower::find_pairs(std::span<const Observation<2>> seen, double lat
   }
 }
 
-void GroundFollower::note_missed() {
-  seen_now_.assign(targets_.size(), 0);
+void GroundTrackerBase::note_missed() {
+  observed_now_.assign(targets_.size(), 0);
   for (const std::optional<int>& target : target_of_) {
-    if (target) seen_now_[*target] = 1;
+    if (target) observed_now_[*target] = 1;
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (!seen_now_[i]) rules_.miss(targets_[i], visibility_.visible(targets_[i].filter.position()));
+    if (!observed_now_[i]) rules_.miss(targets_[i], visibility_.visible(targets_[i].filter.position()));
   }
 }
 
-void GroundFollower::start_unmatched(int index, const CameraObservations& view) {
-  for (int i = 0; i < std::ssize(view.seen); ++i) {
-    const Observation<2>& one = view.seen[i];
-    if (target_of_[i] || explained_[i] || one.score < rules_.options().evidence.confident || is_duplicate(i, view.seen)) continue;
+void GroundTrackerBase::start_unmatched(int index, const CameraObservations& view) {
+  for (int i = 0; i < std::ssize(view.detected); ++i) {
+    const Observation<2>& one = view.detected[i];
+    if (target_of_[i] || explained_[i] || one.score < rules_.options().evidence.confident || is_duplicate(i, view.detected))
+      continue;
     target_of_[i] = static_cast<int>(targets_.size());
     targets_.push_back(rules_.start(TrackId{next_id_++}, *now_, one));
     matches_.push_back({targets_.back().id, index, i});
@@ -102,16 +103,17 @@ void GroundFollower::start_unmatched(int index, const CameraObservations& view) 
 }
 
 /// A detector's second box around what a target is matched with already.
-bool GroundFollower::is_duplicate(int index, std::span<const Observation<2>> seen) const {
-  if (!seen[index].box) return false;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (target_of_[i] && seen[i].box && geometry::iou(*seen[i].box, *seen[index].box) > rules_.options().evidence.duplicate_iou)
+bool GroundTrackerBase::is_duplicate(int index, std::span<const Observation<2>> detected) const {
+  if (!detected[index].box) return false;
+  for (std::size_t i = 0; i < detected.size(); ++i) {
+    if (target_of_[i] && detected[i].box &&
+        geometry::iou(*detected[i].box, *detected[index].box) > rules_.options().evidence.duplicate_iou)
       return true;
   }
   return false;
 }
 
-void GroundFollower::merge_duplicates() {
+void GroundTrackerBase::merge_duplicates() {
   members_.clear();
   for (const GroundTarget& target : targets_)
     members_.push_back({target.id, target.filter.position(), target.filter.covariance(), target.cameras});
@@ -127,12 +129,12 @@ void GroundFollower::merge_duplicates() {
   }
 }
 
-std::vector<GroundTarget>::iterator GroundFollower::at(TrackId id) {
+std::vector<GroundTarget>::iterator GroundTrackerBase::at(TrackId id) {
   return std::lower_bound(targets_.begin(), targets_.end(), id,
-                          [](const GroundTarget& t, TrackId wanted) { return t.id < wanted; });
+                          [](const GroundTarget& t, TrackId required) { return t.id < required; });
 }
 
-std::span<const Track<2>> GroundFollower::report() {
+std::span<const Track<2>> GroundTrackerBase::report() {
   tracks_.clear();
   for (const GroundTarget& target : targets_) tracks_.push_back(rules_.report(target));
   return tracks_;

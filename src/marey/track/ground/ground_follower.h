@@ -22,9 +22,9 @@ struct GroundPair {
   double log_ratio = 0;  ///< GroundRules::log_ratio
 };
 
-class GroundFollower : public ImmediateTracker<2> {
+class GroundTrackerBase : public ImmediateTracker<2> {
  public:
-  GroundFollower(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views);
+  GroundTrackerBase(const GroundTrackerOptions& options, std::shared_ptr<const GroundViews> views);
 
   using ImmediateTracker<2>::step;
   std::span<const Track<2>> step(Timestamp now, std::span<const CameraObservations> views) final;
@@ -33,7 +33,7 @@ class GroundFollower : public ImmediateTracker<2> {
  protected:
   /// Corrects targets by what they are given of `seen`, which is brought to the instant nowhere yet (GroundRules::at_instant), and
   /// says by `match` which target each observation is of. `pairs` are by target, then by observation.
-  virtual void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> seen, double late,
+  virtual void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> detected, double late,
                          std::span<const GroundPair> pairs) = 0;
 
   /// What a pair is worth against clutter and a miss together: a target that is given nothing was missed.
@@ -51,10 +51,10 @@ class GroundFollower : public ImmediateTracker<2> {
  private:
   void predict_to(Timestamp now);
   void take_in(int index, const CameraObservations& view);
-  void find_pairs(std::span<const Observation<2>> seen, double late);
+  void find_pairs(std::span<const Observation<2>> detected, double late);
   void note_missed();
   void start_unmatched(int index, const CameraObservations& view);
-  bool is_duplicate(int index, std::span<const Observation<2>> seen) const;
+  bool is_duplicate(int index, std::span<const Observation<2>> detected) const;
   void merge_duplicates();
   std::vector<GroundTarget>::iterator at(TrackId id);
   std::span<const Track<2>> report();
@@ -66,7 +66,7 @@ class GroundFollower : public ImmediateTracker<2> {
   std::vector<GroundTarget> targets_;  // in the order of their ids
   // What a view needs, kept so that it is allocated once.
   std::vector<std::optional<int>> target_of_;  // of each observation
-  std::vector<char> explained_, seen_now_;
+  std::vector<char> explained_, observed_now_;
   std::vector<Vector<2>> points_;
   std::vector<GroundPair> pairs_;
   std::vector<GroundDuplicates::Member> members_;

@@ -6,19 +6,19 @@
 namespace marey::track::ground {
 namespace {
 
-class GroundGnn final : public GroundFollower {
+class GroundGnn final : public GroundTrackerBase {
  public:
-  using GroundFollower::GroundFollower;
+  using GroundTrackerBase::GroundTrackerBase;
 
  private:
-  void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> seen, double late,
+  void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> detected, double late,
                  std::span<const GroundPair> pairs) override {
     gains_.clear();
     for (const GroundPair& pair : pairs) gains_.push_back({pair.target, pair.observation, gain_of(targets, pair)});
-    const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), gains_);
+    const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(detected.size()), gains_);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
       if (given[i] == assign::kNoIndex) continue;
-      const Observation<2>& one = seen[given[i]];
+      const Observation<2>& one = detected[given[i]];
       rules().correct(targets[i], one, rules().at_instant(targets[i], one, late), now());
       match(i, given[i]);
     }

@@ -18,72 +18,72 @@
 namespace marey::track::ground {
 namespace {
 
-class GroundJpda final : public GroundFollower {
+class GroundJpda final : public GroundTrackerBase {
  public:
-  using GroundFollower::GroundFollower;
+  using GroundTrackerBase::GroundTrackerBase;
 
  private:
-  void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> seen, double late,
+  void associate(std::span<GroundTarget> targets, std::span<const Observation<2>> detected, double late,
                  std::span<const GroundPair> pairs) override {
     gains_.clear();
     for (const GroundPair& pair : pairs) gains_.push_back({pair.target, pair.observation, gain_of(targets, pair)});
-    const int rows = static_cast<int>(targets.size()), columns = static_cast<int>(seen.size());
+    const int rows = static_cast<int>(targets.size()), columns = static_cast<int>(detected.size());
     const auto probable = marginals_.find(rows, columns, gains_);
     for (std::size_t from = 0; from < gains_.size();) {
       std::size_t to = from;
       while (to < gains_.size() && gains_[to].row == gains_[from].row) ++to;
       GroundTarget& target = targets[gains_[from].row];
-      correct(target, seen, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
+      correct(target, detected, late, std::span(gains_).subspan(from, to - from), probable.subspan(from, to - from));
       from = to;
     }
-    match_probable(targets, seen, probable);
+    match_probable(targets, detected, probable);
   }
 
-  void correct(GroundTarget& target, std::span<const Observation<2>> seen, double late, std::span<const assign::GatedPair> pairs,
-               std::span<const double> probable) {
+  void correct(GroundTarget& target, std::span<const Observation<2>> detected, double late,
+               std::span<const assign::GatedPair> pairs, std::span<const double> probable) {
     double any = 0;
     Vector<2> mean = Vector<2>::Zero();
-    places_.clear();
+    locations_.clear();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      places_.push_back(rules().at_instant(target, seen[pairs[i].column], late));
+      locations_.push_back(rules().at_instant(target, detected[pairs[i].column], late));
       any += probable[i];
-      mean += probable[i] * places_.back().value;
+      mean += probable[i] * locations_.back().value;
     }
-    if (any < kLeast) return;
+    if (any < kMinValue) return;
     mean /= any;
     Matrix<2> R = Matrix<2>::Zero();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Vector<2> off = places_[i].value - mean;
-      R += probable[i] / any * (places_[i].covariance + off * off.transpose());
+      const Vector<2> off = locations_[i].value - mean;
+      R += probable[i] / any * (locations_[i].covariance + off * off.transpose());
     }
-    const double share = std::min(any, 1.0);  // rounding
+    const double fraction = std::min(any, 1.0);  // rounding
     const Matrix<2> S = target.filter.innovation_covariance(R);
-    target.filter.correct(mean, R + (1 / share - 1) * S);
+    target.filter.correct(mean, R + (1 / fraction - 1) * S);
   }
 
-  void match_probable(std::span<GroundTarget> targets, std::span<const Observation<2>> seen, std::span<const double> probable) {
-    explained_.assign(seen.size(), 0);
+  void match_probable(std::span<GroundTarget> targets, std::span<const Observation<2>> detected, std::span<const double> probable) {
+    explained_.assign(detected.size(), 0);
     for (std::size_t i = 0; i < gains_.size(); ++i) {
       explained_[gains_[i].column] += probable[i];
-      gains_[i].gain = probable[i] >= kLeastMatch ? probable[i] : 0;
+      gains_[i].gain = probable[i] >= kMinMatch ? probable[i] : 0;
     }
-    const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(seen.size()), gains_);
+    const auto given = assigner_.assign(static_cast<int>(targets.size()), static_cast<int>(detected.size()), gains_);
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
       if (given[i] == assign::kNoIndex) continue;
-      rules().take(targets[i], seen[given[i]], now());
+      rules().take(targets[i], detected[given[i]], now());
       match(i, given[i]);
     }
     // What belongs to known targets, though it is open to which, is no newcomer.
-    for (int o = 0; o < static_cast<int>(seen.size()); ++o) {
+    for (int o = 0; o < static_cast<int>(detected.size()); ++o) {
       if (explained_[o] > 0.5) explain(o);
     }
   }
 
-  static constexpr double kLeast = 1e-6;      // less probable observations change nothing
-  static constexpr double kLeastMatch = 0.2;  // of the targets it may be of, the most probable must be this much
+  static constexpr double kMinValue = 1e-6;  // less probable observations change nothing
+  static constexpr double kMinMatch = 0.2;   // of the targets it may be of, the most probable must be this much
 
   std::vector<assign::GatedPair> gains_;
-  std::vector<GroundPlace> places_;
+  std::vector<GroundPosition> locations_;
   std::vector<double> explained_;  // of each observation: the probability that it is a known target's
   assign::AssociationMarginals marginals_;
   assign::GatedAssigner assigner_;

@@ -13,8 +13,8 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr std::size_t kFewestLinks = 100, kFewestChanges = 30;
-constexpr double kLeastLasting = 0.05, kMostLasting = 0.6;  // m
+constexpr std::size_t kMinLinks = 100, kMinChanges = 30;
+constexpr double kMinLasting = 0.05, kMaxLasting = 0.6;  // m
 constexpr double kNoisiest = 3;
 constexpr double kTwoSquaresMedian = 1.386;  // of two degrees
 constexpr double kOneSquareMedian = 0.4549;  // of one
@@ -51,7 +51,7 @@ double lasting_variance(std::map<std::pair<int, int>, AxisSquares>& by_cameras) 
     sum += links * (of[0].covariance() + of[1].covariance()) / 4, count += links;  // of two axes, of two cameras
   };
   for (auto& [cameras, of] : by_cameras) {
-    if (of[0].sums.size() >= kFewestLinks) {
+    if (of[0].sums.size() >= kMinLinks) {
       take(of);
       continue;
     }
@@ -78,11 +78,10 @@ LastingDisagreement lasting_disagreement(std::span<const LinkedDifferences> link
   }
   LastingDisagreement lasting;
   for (std::vector<double>& of : ratios) {
-    const bool enough = of.size() >= kFewestChanges;
+    const bool enough = of.size() >= kMinChanges;
     lasting.noise.push_back(enough ? std::clamp(std::sqrt(geometry::median(of) / kTwoSquaresMedian), 1.0, kNoisiest) : 1.0);
   }
-  if (links.size() >= kFewestLinks)
-    lasting.deviation = std::clamp(std::sqrt(lasting_variance(by_cameras)), kLeastLasting, kMostLasting);
+  if (links.size() >= kMinLinks) lasting.deviation = std::clamp(std::sqrt(lasting_variance(by_cameras)), kMinLasting, kMaxLasting);
   return lasting;
 }
 

@@ -17,7 +17,7 @@ struct LinkedDifferences {
 
 /// How errors divide into what lasts from the one instant to the other and what does not.
 struct LastingDisagreement {
-  std::optional<double> deviation;  ///< m per axis and camera, of what lasts; nothing where links are too few
+  std::optional<double> deviation;  ///< m per axis and camera, of what lasts; nothing if links are too few
   std::vector<double> noise;  ///< by camera, 1 or more: what stated deviations are to be multiplied by, for what does not last
 };
 

@@ -26,7 +26,7 @@ class GroundPresence {
   /// That there is a person who can be seen.
   double visible() const { return visible_; }
 
-  void see() {
+  void observe_frame() {
     visible_ = 1;
     hidden_ = 0;
   }

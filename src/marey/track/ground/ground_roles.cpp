@@ -9,23 +9,23 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr double kIndependent = 15;  // s, after which a place tells something new
-constexpr double kUsualSpread = 9;   // m per axis, of one person's places
-constexpr double kSpreadKnown = 4;   // moments that this is worth
-constexpr double kMeanKnown = 0.1;   // likewise of the middle: a person may be anywhere on a pitch
-constexpr double kOtherTeam = 0.1;   // of moments at which a person is taken for one of the other team
-constexpr double kMostTeam = 8;      // moments of a team's colour that count at most: a track's team was found for all of it
+constexpr double kIndependent = 15;   // s, after which a place tells something new
+constexpr double kDefaultSpread = 9;  // m per axis, of one person's places
+constexpr double kSpreadKnown = 4;    // instants that this is worth
+constexpr double kMeanKnown = 0.1;    // likewise of the middle: a person may be anywhere on a pitch
+constexpr double kOtherTeam = 0.1;    // of instants at which a person is taken for one of the other team
+constexpr double kMaxTeam = 8;        // instants of a team's colour that count at most: a track's team was found for all of it
 
 /// Logarithm of the multivariate gamma function in two dimensions, but for a constant.
 double log_gamma_2(double x) {
   return std::lgamma(x) + std::lgamma(x - 0.5);
 }
 
-double log_evidence_of_places(const RoleSum& role) {
+double log_evidence_of_positions(const RoleSum& role) {
   if (role.count <= 0) return 0;
   const double n = role.count, kappa = kMeanKnown + n, nu = kSpreadKnown + n;
   const Vector<2> mean = role.sum / n;
-  const Matrix<2> prior = kSpreadKnown * kUsualSpread * kUsualSpread * Matrix<2>::Identity();
+  const Matrix<2> prior = kSpreadKnown * kDefaultSpread * kDefaultSpread * Matrix<2>::Identity();
   const Matrix<2> scatter = role.squares - n * mean * mean.transpose();
   const Matrix<2> posterior = prior + scatter + (kMeanKnown * n / kappa) * mean * mean.transpose();
   return -n * std::log(std::numbers::pi) + log_gamma_2(nu / 2) - log_gamma_2(kSpreadKnown / 2) +
@@ -34,8 +34,8 @@ double log_evidence_of_places(const RoleSum& role) {
 }
 
 double log_evidence_of_teams(const RoleSum& role) {
-  const double most = std::max(role.teams[0], role.teams[1]);
-  const double scale = most > kMostTeam ? kMostTeam / most : 1;
+  const double maximum = std::max(role.teams[0], role.teams[1]);
+  const double scale = maximum > kMaxTeam ? kMaxTeam / maximum : 1;
   const auto as = [&](int team) {
     return scale * (role.teams[team] * std::log(1 - kOtherTeam) + role.teams[1 - team] * std::log(kOtherTeam));
   };
@@ -62,15 +62,15 @@ RoleSum& RoleSum::operator-=(const RoleSum& other) {
 }
 
 void RoleSum::add(const Vector<2>& relative, double seconds, int team) {
-  const double moments = seconds / kIndependent;
-  count += moments;
-  sum += moments * relative;
-  squares += moments * relative * relative.transpose();
-  if (team >= 0) teams[static_cast<std::size_t>(team)] += moments;
+  const double time_steps = seconds / kIndependent;
+  count += time_steps;
+  sum += time_steps * relative;
+  squares += time_steps * relative * relative.transpose();
+  if (team >= 0) teams[static_cast<std::size_t>(team)] += time_steps;
 }
 
 double log_evidence(const RoleSum& role) {
-  return log_evidence_of_places(role) + log_evidence_of_teams(role);
+  return log_evidence_of_positions(role) + log_evidence_of_teams(role);
 }
 
 }  // namespace marey::track::ground

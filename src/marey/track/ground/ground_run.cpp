@@ -18,19 +18,19 @@ constexpr double kOfTwo = std::numbers::sqrt2;  // a target that one camera has 
 constexpr double kAgreeing = 0.15;              // m, of disagreement that is left: what gnn takes
 constexpr double kOften = 0.2;                  // s between instants, likewise
 constexpr double kCalm = 0.25;                  // of the tracker's accelerations: walkers, of whom more is learned than it knows
-constexpr double kHaste = 1.5;                  // of people's speed: of those of whom nothing is known yet
+constexpr double kPace = 1.5;                   // of people's speed: of those of whom nothing is known yet
 
-/// A quick one, for what is learned from and expected meanwhile.
+/// A quick one, for what is learned from and expected in the meantime.
 GroundTrackerOptions ahead(GroundTrackerOptions options) {
   options.associate = GroundAssociation::gnn;
   return options;
 }
 
-/// What the two teams wear, by what was seen of people who share their region with nobody.
+/// What the two teams wear, by what was seen of people who share their region with no person.
 std::optional<GroundTeams> teams_in(const std::deque<GroundInstant>& instants) {
   std::vector<Appearance> colours;
   for (const GroundInstant& instant : instants) {
-    for (const std::vector<Observation<2>>& of : instant.seen) {
+    for (const std::vector<Observation<2>>& of : instant.detected) {
       for (const Observation<2>& one : of) {
         if (one.appearance && !one.shared) colours.push_back(*one.appearance);
       }
@@ -53,12 +53,12 @@ void GroundRun::step(std::int32_t frame, Timestamp now, std::span<const CameraOb
   GroundInstant& instant = kept_.emplace_back(frame, now, views);
   if (!learning()) {
     correct(instant);
-    follow(instant);
+    run_tracker(instant);
     return;
   }
   tracker_->step(now, instant.cameras);
   kept_observations_ += instant.observations();
-  if (kept_observations_ >= learn_.most_observations) learn();
+  if (kept_observations_ >= learn_.max_observations) learn();
 }
 
 offline::GroundRecorder::Joined GroundRun::finish(const offline::InSight& in_sight) {
@@ -86,10 +86,10 @@ void GroundRun::learn() {
   if (learn_.association && is_plain()) options_.associate = GroundAssociation::gnn;
   learned_ = true;
   tracker_ = make_ground_tracker(options_, views_);
-  std::deque<GroundInstant> seen = std::exchange(kept_, {});
-  for (GroundInstant& instant : seen) {
+  std::deque<GroundInstant> detected = std::exchange(kept_, {});
+  for (GroundInstant& instant : detected) {
     kept_.push_back(std::move(instant));
-    follow(kept_.back());
+    run_tracker(kept_.back());
   }
 }
 
@@ -114,13 +114,13 @@ void GroundRun::learn_motion() {
   if (!walk || (kalman != nullptr && walk->acceleration > kCalm * kalman->acceleration_noise)) return;
   if (kalman != nullptr) {
     kalman->acceleration_noise = walk->acceleration;
-    kalman->initial_speed = kHaste * walk->speed;
+    kalman->initial_speed = kPace * walk->speed;
   }
   join_.motion.acceleration = kCalmer * walk->acceleration;
   join_.motion.settling = std::clamp(2 * std::pow(walk->speed / join_.motion.acceleration, 2), kSlowest, kFastest);
 }
 
-void GroundRun::follow(const GroundInstant& instant) {
+void GroundRun::run_tracker(const GroundInstant& instant) {
   tracker_->step(instant.time, instant.cameras);
   record(tracker_->decided());
 }
@@ -136,7 +136,7 @@ void GroundRun::record(std::span<const GroundDecision> decisions) {
 
 void GroundRun::correct(GroundInstant& instant) const {
   if (!agreement_.learned()) return;
-  for (std::vector<Observation<2>>& of : instant.seen) {
+  for (std::vector<Observation<2>>& of : instant.detected) {
     for (Observation<2>& one : of) one = agreement_.corrected(one);
   }
 }

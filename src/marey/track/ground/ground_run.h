@@ -26,10 +26,10 @@ struct GroundLearnOptions {
   bool agreement = true;  ///< of cameras
   bool walk = true;       ///< how people move: else the tracker's filter and the join's motion stay as they are
   bool teams = true;      ///< what two teams wear, where people wear two shirts
-  /// Whether people are told apart by gnn where that is enough: cameras agree, and instants follow each other closely. Else the
+  /// Whether people are distinguished by gnn where that is enough: cameras agree, and instants follow each other closely. Else the
   /// association that was asked for is taken.
   bool association = false;
-  std::size_t most_observations = 400'000;  ///< that are kept to learn from
+  std::size_t max_observations = 400'000;  ///< that are kept to learn from
 };
 
 class GroundRun {
@@ -44,7 +44,7 @@ class GroundRun {
   std::span<const Track<2>> expected(Timestamp now) { return tracker_->expected(now); }
   /// The next instant; frames grow.
   void step(std::int32_t frame, Timestamp now, std::span<const CameraObservations> views);
-  /// Everybody, once all was seen. Nothing may follow.
+  /// Every person, once all was seen. Nothing may follow.
   offline::GroundRecorder::Joined finish(const offline::InSight& in_sight);
   /// Cameras that could be compared, once there was enough to learn from them; none where agreement is not learned.
   const std::vector<ComparedCameras>& compared() const { return compared_; }
@@ -54,7 +54,7 @@ class GroundRun {
   void learn();
   void learn_motion();
   bool is_plain() const;
-  void follow(const GroundInstant& instant);
+  void run_tracker(const GroundInstant& instant);
   void record(std::span<const GroundDecision> decisions);
   void correct(GroundInstant& instant) const;
 

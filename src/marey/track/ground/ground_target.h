@@ -1,10 +1,10 @@
-// What all ways of following people on the ground share: one target, what an observation is worth to it, how it begins, goes on
+// What all ways of following people on the ground share: one target, what an observation is worth to it, how it begins, continues
 // and ends. Which observation a target is given is the business of gnn, jpda and mht.
 //
 // A pair of target and observation is gated by chi-square distance and by speed, and worth the logarithm of its likelihood against
-// that of clutter: place, appearance, score. Cameras disagree about places, for good, by what their calibrations are wrong; that is
-// no noise that a filter may average away, so it widens gates (`disagreement`) and is not learned from.
-// An observation of another time is brought to the instant at the target's own velocity.
+// that of clutter: place, appearance, score. Cameras disagree about places, permanently, by what their calibrations are wrong; that
+// is no noise that a filter may average away, so it widens gates (`disagreement`) and is not learned from. An observation of
+// another time is brought to the instant at the target's own velocity.
 #pragma once
 
 #include <optional>
@@ -24,8 +24,8 @@ namespace marey::track::ground {
 struct GroundTarget {
   TrackId id{};
   filter::AnyFilter<2> filter;
-  Timestamp born{};
-  Timestamp last_seen{};  ///< by any camera
+  Timestamp initiated{};
+  Timestamp last_observed{};  ///< by any camera
   Evidence evidence;
   GroundPresence presence = {1, 1};               ///< whether it is there, and can be seen
   double out_of_view = 0;                         ///< s for which no camera could have seen it, since it was last seen
@@ -41,7 +41,7 @@ struct GroundTarget {
 };
 
 /// An observation brought to the instant, m.
-struct GroundPlace {
+struct GroundPosition {
   Vector<2> value = Vector<2>::Zero();
   Matrix<2> covariance = Matrix<2>::Identity();
 };
@@ -54,26 +54,27 @@ class GroundRules {
 
   const GroundTrackerOptions& options() const { return options_; }
 
-  Target start(TrackId id, Timestamp time, const Observation<2>& seen) const;
+  Target start(TrackId id, Timestamp time, const Observation<2>& detected) const;
 
   /// To the instant `dt` > 0 seconds after the one before.
   void predict(Target& target, double dt) const;
 
   /// Where an observation made `late` seconds after the instant that the target was predicted to would have been then.
-  GroundPlace at_instant(const Target& target, const Observation<2>& seen, double late) const;
+  GroundPosition at_instant(const Target& target, const Observation<2>& detected, double late) const;
 
   /// The logarithm of how much likelier the observation, at that place, is this target's than clutter; nothing outside the
   /// gate. A miss of this target is worth log(1 − detected · visible) in the same scale.
-  std::optional<double> log_ratio(const Target& target, const Observation<2>& seen, const GroundPlace& place, Timestamp now) const;
+  std::optional<double> log_ratio(const Target& target, const Observation<2>& detected, const GroundPosition& location,
+                                  Timestamp now) const;
 
   /// Nothing farther than this from the target can pass its gate, where no observation's covariance exceeds `widest`, m².
   double search_radius(const Target& target, double widest) const;
 
   /// Takes in an observation, at that place, that is this target's.
-  void correct(Target& target, const Observation<2>& seen, const GroundPlace& place, Timestamp now) const;
+  void correct(Target& target, const Observation<2>& detected, const GroundPosition& location, Timestamp now) const;
 
   /// All that `correct` does but for the filter.
-  void take(Target& target, const Observation<2>& seen, Timestamp now) const;
+  void take(Target& target, const Observation<2>& detected, Timestamp now) const;
 
   /// A view brought nothing of this target, which was `visible` with that probability (ground_visibility.h).
   void miss(Target& target, double visible) const;

@@ -10,17 +10,17 @@
 namespace marey::track::ground {
 namespace {
 
-// All of these are unswept: looked at on one film of a match and on simulated shirts.
-constexpr std::size_t kFewestColours = 300;
-constexpr std::size_t kMostColours = 20000;
+// All of these are unswept: inspected on one video of a match and on simulated shirts.
+constexpr std::size_t kMinColours = 300;
+constexpr std::size_t kMaxColours = 20000;
 constexpr int kTeamRounds = 20;
-constexpr double kUnlikeBoth = 9;      // squared deviations: a keeper, a referee
-constexpr double kLeastApart = 4.5;    // deviations; two halves of one round cloud are 2.7 apart, of an even one 3.5
-constexpr double kLeastTeam = 0.2;     // of what is seen
-constexpr double kLeastOfBoth = 0.75;  // likewise, both together
-constexpr double kLeastSpread = 4;     // squared L*a*b*: what compression leaves uncertain
-constexpr double kAnybody = 0.02;      // likelihood of a colour that is neither's, of that of a shirt in the middle of its own,
-constexpr double kAnybodyForLong =
+constexpr double kUnlikeBoth = 9;    // squared deviations: a keeper, a referee
+constexpr double kMinApart = 4.5;    // deviations; two halves of one round cloud are 2.7 apart, of an even one 3.5
+constexpr double kMinTeam = 0.2;     // of what is seen
+constexpr double kMinOfBoth = 0.75;  // likewise, both together
+constexpr double kMinSpread = 4;     // squared L*a*b*: what compression leaves uncertain
+constexpr double kAnyPerson = 0.02;  // likelihood of a colour that is neither's, of that of a shirt in the middle of its own,
+constexpr double kAnyPersonForLong =
     0.001;  // and of one that was seen for a while; with this at every sight blue ones were lost in groups
 
 Vector<3> point_in_lab(const Appearance& colour) {
@@ -43,13 +43,13 @@ class TwoShirts {
     const Eigen::SelfAdjointEigenSolver<Matrix<3>> axes(covariance);
     const Vector<3> longest = std::sqrt(std::max(axes.eigenvalues()[2], 1e-6)) * axes.eigenvectors().col(2);
     means = {mean - longest, mean + longest};
-    precision = (covariance + kLeastSpread * Matrix<3>::Identity()).inverse();
+    precision = (covariance + kMinSpread * Matrix<3>::Identity()).inverse();
     for (int round = 0; round < kTeamRounds; ++round) turn(round == 0);
   }
 
   std::array<Vector<3>, 2> means;
   Matrix<3> precision = Matrix<3>::Identity();
-  std::array<double, 2> share{};  ///< of all points: who wears each
+  std::array<double, 2> fraction{};  ///< of all points: who wears each
 
  private:
   void turn(bool all) {
@@ -69,9 +69,9 @@ class TwoShirts {
     for (std::size_t team = 0; team < 2; ++team) {
       means[team] = sums[team] / counts[team];
       within += products[team] - counts[team] * means[team] * means[team].transpose();
-      share[team] = counts[team] / static_cast<double>(points_.size());
+      fraction[team] = counts[team] / static_cast<double>(points_.size());
     }
-    precision = (within / (counts[0] + counts[1]) + kLeastSpread * Matrix<3>::Identity()).inverse();
+    precision = (within / (counts[0] + counts[1]) + kMinSpread * Matrix<3>::Identity()).inverse();
   }
 
   std::vector<Vector<3>> points_;
@@ -79,18 +79,18 @@ class TwoShirts {
 
 }  // namespace
 
-std::optional<GroundTeams> GroundTeams::learn(std::span<const Appearance> seen) {
-  if (seen.size() < kFewestColours) return std::nullopt;
+std::optional<GroundTeams> GroundTeams::learn(std::span<const Appearance> detected) {
+  if (detected.size() < kMinColours) return std::nullopt;
   std::vector<Vector<3>> points;
-  const std::size_t step = 1 + seen.size() / kMostColours;
-  for (std::size_t i = 0; i < seen.size(); i += step) points.push_back(point_in_lab(seen[i]));
+  const std::size_t step = 1 + detected.size() / kMaxColours;
+  for (std::size_t i = 0; i < detected.size(); i += step) points.push_back(point_in_lab(detected[i]));
   const TwoShirts shirts(std::move(points));
   GroundTeams teams;
   teams.means_ = shirts.means;
   teams.precision_ = shirts.precision;
   teams.apart_ = std::sqrt(squared_distance(shirts.means[1] - shirts.means[0], shirts.precision));
-  if (teams.apart_ < kLeastApart || std::min(shirts.share[0], shirts.share[1]) < kLeastTeam ||
-      shirts.share[0] + shirts.share[1] < kLeastOfBoth)
+  if (teams.apart_ < kMinApart || std::min(shirts.fraction[0], shirts.fraction[1]) < kMinTeam ||
+      shirts.fraction[0] + shirts.fraction[1] < kMinOfBoth)
     return std::nullopt;
   return teams;
 }
@@ -102,7 +102,7 @@ double GroundTeams::likelihood(const Vector<3>& colour, double variance, int tea
 }
 
 double GroundTeams::log_odds(const Appearance& colour) const {
-  return log_odds(colour, kAnybody);
+  return log_odds(colour, kAnyPerson);
 }
 
 double GroundTeams::log_odds(const Appearance& colour, double anybody) const {
@@ -112,19 +112,19 @@ double GroundTeams::log_odds(const Appearance& colour, double anybody) const {
 }
 
 /// The probability that both are of one team.
-double GroundTeams::agreement(const Appearance& known, const Appearance& seen, double anybody) const {
-  const double known_odds = std::exp(log_odds(known, anybody)), seen_odds = std::exp(log_odds(seen, anybody));
+double GroundTeams::agreement(const Appearance& known, const Appearance& detected, double anybody) const {
+  const double known_odds = std::exp(log_odds(known, anybody)), seen_odds = std::exp(log_odds(detected, anybody));
   const double second = known_odds / (1 + known_odds);  // the probability that it is of the second team
   const double given = seen_odds / (1 + seen_odds);
   return second * given + (1 - second) * (1 - given);
 }
 
-double GroundTeams::same(const Appearance& known, const Appearance& seen) const {
-  return std::log(2 * agreement(known, seen, kAnybody));
+double GroundTeams::same(const Appearance& known, const Appearance& detected) const {
+  return std::log(2 * agreement(known, detected, kAnyPerson));
 }
 
-double GroundTeams::same_for_long(const Appearance& known, const Appearance& seen) const {
-  return std::log(2 * agreement(known, seen, kAnybodyForLong));
+double GroundTeams::same_for_long(const Appearance& known, const Appearance& detected) const {
+  return std::log(2 * agreement(known, detected, kAnyPersonForLong));
 }
 
 }  // namespace marey::track::ground

@@ -30,11 +30,11 @@ TEST_P(EveryAssociation, GivesOneIdentityAcrossCameras) {
   std::set<int> ids;
   run(
       *tracker, 2, 500,
-      [&](int frame, Looks& seen) {
-        const Vector<2> place(5 + 0.18 * frame, 30);
+      [&](int frame, Appearances& detected) {
+        const Vector<2> location(5 + 0.18 * frame, 30);
         for (int c = 0; c < 2; ++c) {
-          const bool sees = c == 0 ? place.x() < 60 : place.x() > 40;
-          if (sees && !random.chance(0.1)) seen[c].push_back(seen_at(views[c], c, place + random.gaussian(0.15)));
+          const bool observes = c == 0 ? location.x() < 60 : location.x() > 40;
+          if (observes && !random.chance(0.1)) detected[c].push_back(observed_at(views[c], c, location + random.gaussian(0.15)));
         }
       },
       [&](int frame, std::span<const Track<2>> tracks) {
@@ -52,29 +52,29 @@ Vector<2> in_lane(int person, int frame) {
   return {30 + 20 * std::sin(phase), 5 + 2.0 * person};
 }
 
-/// Identities of `people` in lanes, seen by cameras that miss one in ten and see somebody who is not there now and then.
+/// Identities of `people` in lanes, seen by cameras that miss one in ten and see a person who is not there now and then.
 std::vector<std::set<int>> identities_in_lanes(GroundTracker& tracker, const std::vector<GroundView>& views, int people,
-                                               std::vector<double>* places = nullptr) {
+                                               std::vector<double>* locations = nullptr) {
   Random random(7);
   std::vector<std::set<int>> ids(static_cast<std::size_t>(people));
   run(
       tracker, static_cast<int>(views.size()), 600,
-      [&](int frame, Looks& seen) {
+      [&](int frame, Appearances& detected) {
         for (int c = 0; c < static_cast<int>(views.size()); ++c) {
           for (int i = 0; i < people; ++i) {
-            if (!random.chance(0.1)) seen[c].push_back(seen_at(views[c], c, in_lane(i, frame) + random.gaussian(0.15)));
+            if (!random.chance(0.1)) detected[c].push_back(observed_at(views[c], c, in_lane(i, frame) + random.gaussian(0.15)));
           }
-          if (random.chance(0.3)) seen[c].push_back(seen_at(views[c], c, {random.uniform(0, 60), random.uniform(0, 60)}));
+          if (random.chance(0.3)) detected[c].push_back(observed_at(views[c], c, {random.uniform(0, 60), random.uniform(0, 60)}));
         }
       },
       [&](int frame, std::span<const Track<2>> tracks) {
         if (frame < 15) return;
         for (int i = 0; i < people; ++i) ids[i].insert(id_at(tracks, in_lane(i, frame)));
-        if (places == nullptr) {
+        if (locations == nullptr) {
           EXPECT_EQ(confirmed(tracks), people) << "frame " << frame;
           return;
         }
-        for (const Track<2>& track : tracks) places->insert(places->end(), {track.position.x(), track.position.y()});
+        for (const Track<2>& track : tracks) locations->insert(locations->end(), {track.position.x(), track.position.y()});
       });
   return ids;
 }
@@ -99,18 +99,18 @@ TEST_P(EveryAssociation, SaysTheSameBitForBit) {
   EXPECT_EQ(first, second);
 }
 
-TEST_P(EveryAssociation, WhoIsHiddenFromOneCameraIsFollowedByTheOther) {
+TEST_P(EveryAssociation, OtherCameraTracksOccludedPerson) {
   const std::vector<GroundView> views = {view_of(0, 60, 0, 60), view_of(0, 60, 0, 60)};
   const auto tracker = make(views);
   Random random(2);
   std::set<int> ids;
   run(
       *tracker, 2, 300,
-      [&](int frame, Looks& seen) {
-        const Vector<2> place(10 + 0.1 * frame, 30);
+      [&](int frame, Appearances& detected) {
+        const Vector<2> location(10 + 0.1 * frame, 30);
         for (int c = 0; c < 2; ++c) {
           const bool hidden = (frame / 50) % 2 == c;
-          if (!hidden) seen[c].push_back(seen_at(views[c], c, place + random.gaussian(0.15)));
+          if (!hidden) detected[c].push_back(observed_at(views[c], c, location + random.gaussian(0.15)));
         }
       },
       [&](int frame, std::span<const Track<2>> tracks) {
@@ -133,11 +133,11 @@ TEST_P(EveryAssociation, CamerasThatDisagreeSeeOnePerson) {
   Random random(3);
   run(
       *tracker, 2, 400,
-      [&](int frame, Looks& seen) {
-        const Vector<2> place(10 + 0.1 * frame, 30);
+      [&](int frame, Appearances& detected) {
+        const Vector<2> location(10 + 0.1 * frame, 30);
         for (int c = 0; c < 2; ++c) {
           const Vector<2> wrong(0, c == 0 ? 0.35 : -0.35);
-          if (!random.chance(0.1)) seen[c].push_back(seen_at(views[c], c, place + wrong + random.gaussian(0.1), 0.1));
+          if (!random.chance(0.1)) detected[c].push_back(observed_at(views[c], c, location + wrong + random.gaussian(0.1), 0.1));
         }
       },
       [&](int frame, std::span<const Track<2>> tracks) {
@@ -150,32 +150,32 @@ TEST_P(EveryAssociation, CamerasThatDisagreeSeeOnePerson) {
 TEST_P(EveryAssociation, LooksOfOtherTimesAreBroughtToTheInstant) {
   const std::vector<GroundView> views = {view_of(0, 60, 0, 60), view_of(0, 60, 0, 60)};
   const auto tracker = make(views);
-  const auto place_at = [](double time) { return Vector<2>(5 + 7 * time, 30); };
+  const auto position_at = [](double time) { return Vector<2>(5 + 7 * time, 30); };
   double worst = 0;
   for (int frame = 0; frame < 125; ++frame) {
     const double time = frame / rate;
-    std::vector<std::vector<Observation<2>>> seen(2);
-    std::vector<CameraObservations> looks;
+    std::vector<std::vector<Observation<2>>> detected(2);
+    std::vector<CameraObservations> appearances;
     for (int c = 0; c < 2; ++c) {
       const double taken = time + (c == 0 ? 0 : 0.019);
-      seen[c].push_back(seen_at(views[c], c, place_at(taken)));
-      looks.push_back({CameraId{c}, timestamp_from_seconds(taken), seen[c]});
+      detected[c].push_back(observed_at(views[c], c, position_at(taken)));
+      appearances.push_back({CameraId{c}, timestamp_from_seconds(taken), detected[c]});
     }
-    const auto tracks = tracker->step(timestamp_from_seconds(time), looks);
-    if (frame > 50) worst = std::max(worst, (tracks.front().position - place_at(time)).norm());
+    const auto tracks = tracker->step(timestamp_from_seconds(time), appearances);
+    if (frame > 50) worst = std::max(worst, (tracks.front().position - position_at(time)).norm());
   }
   EXPECT_LT(worst, 0.02) << "7 m/s for 19 ms are 0.13 m";
 }
 
-TEST_P(EveryAssociation, WhoCannotBeSeenIsGivenUpAfterAWhileOnly) {
-  // Seen for a second, then nobody says anything: patience lasts 3 s, and the covariance grows meanwhile.
+TEST_P(EveryAssociation, DropsUnobservedPersonAfterDelay) {
+  // Seen for a second, then no person says anything: patience lasts 3 s, and the covariance grows in the meantime.
   const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
   const auto tracker = make(views);
   double before = 0;
   run(
       *tracker, 1, 150,
-      [&](int frame, Looks& seen) {
-        if (frame < 50) seen[0].push_back(seen_at(views[0], 0, {30, 30}));
+      [&](int frame, Appearances& detected) {
+        if (frame < 50) detected[0].push_back(observed_at(views[0], 0, {30, 30}));
       },
       [&](int frame, std::span<const Track<2>> tracks) {
         if (frame >= 50 && frame < 80) {
@@ -190,17 +190,18 @@ TEST_P(EveryAssociation, WhoCannotBeSeenIsGivenUpAfterAWhileOnly) {
       });
 }
 
-TEST_P(EveryAssociation, NobodyJumps) {
+TEST_P(EveryAssociation, PeopleDoNotJump) {
   const std::vector<GroundView> views = {view_of(0, 60, 0, 60)};
   const auto tracker = make(views);
   std::set<int> ids;
   run(
-      *tracker, 1, 100, [&](int frame, Looks& seen) { seen[0].push_back(seen_at(views[0], 0, {frame < 50 ? 10.0 : 40.0, 30})); },
+      *tracker, 1, 100,
+      [&](int frame, Appearances& detected) { detected[0].push_back(observed_at(views[0], 0, {frame < 50 ? 10.0 : 40.0, 30})); },
       [&](int frame, std::span<const Track<2>> tracks) {
         if (frame == 40) ids.insert(id_at(tracks, {10, 30}));
         if (frame == 90) ids.insert(id_at(tracks, {40, 30}));
       });
-  EXPECT_EQ(ids.size(), 2U) << "30 m in a frame is somebody else";
+  EXPECT_EQ(ids.size(), 2U) << "30 m in a frame is another person";
   EXPECT_FALSE(ids.contains(0));
 }
 
@@ -211,17 +212,17 @@ TEST_P(EveryAssociation, RefusesWhatCannotBe) {
   EXPECT_THROW(tracker->step(timestamp_from_seconds(0), {&stranger, 1}), Error);
   tracker->step(timestamp_from_seconds(1), std::span<const CameraObservations>{});
   EXPECT_THROW(tracker->step(timestamp_from_seconds(1), std::span<const CameraObservations>{}), Error);
-  Observation<2> broken = seen_at(views[0], 0, {30, 30});
+  Observation<2> broken = observed_at(views[0], 0, {30, 30});
   broken.value.x() = std::nan("");
-  const CameraObservations look{CameraId{0}, timestamp_from_seconds(2), {&broken, 1}};
-  EXPECT_THROW(tracker->step(timestamp_from_seconds(2), {&look, 1}), Error);
+  const CameraObservations inspect{CameraId{0}, timestamp_from_seconds(2), {&broken, 1}};
+  EXPECT_THROW(tracker->step(timestamp_from_seconds(2), {&inspect, 1}), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryAssociation,
                          testing::Values(GroundAssociation::gnn, GroundAssociation::jpda, GroundAssociation::mht));
 
 /// One who is hidden, and whose track runs on over another who is seen all the time: in how many cases an observation of that other
-/// is given to another track. Shirts of one colour; the one hidden stopped where nobody saw it. Of several cameras each sees the
+/// is given to another track. Shirts of one colour; the one hidden stopped where no person saw it. Of several cameras each sees the
 /// other's place a little off, up to `apart` m. What is decided counts.
 int people_taken_by_hidden_tracks(const GroundTrackerOptions& options, int cases, std::uint64_t first_seed, int cameras,
                                   double apart) {
@@ -253,13 +254,13 @@ int people_taken_by_hidden_tracks(const GroundTrackerOptions& options, int cases
     };
     run(
         *tracker, cameras, kFrames,
-        [&](int frame, Looks& seen) {
+        [&](int frame, Appearances& detected) {
           for (int c = 0; c < cameras; ++c) {
             auto& lasts = lasting[static_cast<std::size_t>(c)];
             lasts = 0.8 * lasts + random.gaussian(0.6 * noise);
-            const auto show = [&](const Vector<2>& place) {
-              seen[static_cast<std::size_t>(c)].push_back(seen_at(views[static_cast<std::size_t>(c)], c, place, noise));
-              seen[static_cast<std::size_t>(c)].back().box.reset();
+            const auto show = [&](const Vector<2>& location) {
+              detected[static_cast<std::size_t>(c)].push_back(observed_at(views[static_cast<std::size_t>(c)], c, location, noise));
+              detected[static_cast<std::size_t>(c)].back().box.reset();
             };
             show(other(frame) + c * off + lasts);
             if (frame < hidden_from || frame >= hidden_until) show(hidden(frame) + c * off + random.gaussian(noise));

@@ -7,10 +7,10 @@
 namespace marey::track::ground {
 namespace {
 
-using ground_scene::seen_at;
+using ground_scene::observed_at;
 using ground_scene::view_of;
 
-TEST(GroundVisibility, NobodyIsMissedOutsideThePicture) {
+TEST(GroundVisibility, OutsideImageIsNotMissed) {
   GroundVisibility visibility(ground_views({view_of(0, 60, 0, 60)}));
   visibility.set_view({.camera = CameraId{0}}, 0.5);
   EXPECT_EQ(visibility.visible({30, 30}), 1);
@@ -19,16 +19,16 @@ TEST(GroundVisibility, NobodyIsMissedOutsideThePicture) {
   EXPECT_EQ(visibility.visible({0.3, 30}), 0.5) << "at the border half of the people are missed";
 }
 
-TEST(GroundVisibility, WhoStandsBehindAnotherIsHardlySeen) {
+TEST(GroundVisibility, OccludedPersonIsRarelyVisible) {
   const GroundView view = view_of(0, 60, 0, 60);
   GroundVisibility visibility(ground_views({view}));
-  const Observation<2> before = seen_at(view, 0, {30, 30});
-  visibility.set_view({.camera = CameraId{0}, .seen = {&before, 1}}, 0.5);
+  const Observation<2> before = observed_at(view, 0, {30, 30});
+  visibility.set_view({.camera = CameraId{0}, .detected = {&before, 1}}, 0.5);
   EXPECT_LT(visibility.visible({30, 30.5}), 0.2);
   EXPECT_EQ(visibility.visible({30, 29.5}), 1) << "he stands before the other";
   EXPECT_EQ(visibility.visible({31, 30.5}), 1) << "he stands beside the other";
-  visibility.set_view({.camera = CameraId{0}, .seen = {&before, 1}}, 0.95);
-  EXPECT_EQ(visibility.visible({30, 30.5}), 1) << "a box that is hardly believed hides nobody";
+  visibility.set_view({.camera = CameraId{0}, .detected = {&before, 1}}, 0.95);
+  EXPECT_EQ(visibility.visible({30, 30.5}), 1) << "a box that is barely trusted hides no person";
 }
 
 TEST(GroundVisibility, ACameraThatTurnsIsAskedWithTheTimeOfItsFrame) {
@@ -44,12 +44,12 @@ TEST(GroundVisibility, ACameraThatTurnsIsAskedWithTheTimeOfItsFrame) {
   }
 }
 
-TEST(GroundVisibility, NobodyIsSeenBehindTheCamera) {
+TEST(GroundVisibility, RejectsPositionsBehindCamera) {
   Matrix<3> ground_from_image;
   ground_from_image << 1, 0, -50, 0, 1, -300, 0, 0.02, -1;  // the horizon at row 50
   GroundVisibility visibility(ground_views({GroundView(ground_from_image, cv::Size(100, 200))}));
   visibility.set_view({.camera = CameraId{0}}, 0.5);
-  const auto in_view = GroundView(ground_from_image, cv::Size(100, 200)).place({50, 150});
+  const auto in_view = GroundView(ground_from_image, cv::Size(100, 200)).location({50, 150});
   ASSERT_TRUE(in_view);
   EXPECT_EQ(visibility.visible(in_view->ground), 1);
 }

@@ -12,15 +12,15 @@ namespace marey::track::ground {
 namespace {
 
 constexpr double kSpacing = 0.2;  // s: nearer samples err alike, and tell little of the motion
-constexpr std::size_t kMostSamples = 20'000, kFewestSamples = 200;
-constexpr std::size_t kShortest = 5;  // samples of a path
-constexpr double kTails = 4;          // degrees of freedom of Student's distribution
+constexpr std::size_t kMaxSamples = 20'000, kMinSamples = 200;
+constexpr std::size_t kMinLength = 5;  // samples of a path
+constexpr double kTails = 4;           // degrees of freedom of Student's distribution
 constexpr std::array<double, 11> kAccelerations{0.2, 0.3, 0.4, 0.55, 0.75, 1.0, 1.4, 1.9, 2.6, 3.5, 4.8};
 constexpr std::array<double, 6> kNoises{0.5, 0.7, 1, 1.4, 2, 2.8};
 
 struct PathStep {
   double dt = 0;  // s since the one before; 0 begins a path
-  Vector<2> place = Vector<2>::Zero();
+  Vector<2> location = Vector<2>::Zero();
   Matrix<2> covariance = Matrix<2>::Identity();
 };
 
@@ -35,8 +35,8 @@ std::vector<PathStep> path_steps(std::span<const offline::GroundTracklet> trackl
       steps.push_back({last ? seconds(now - *last) : 0, sample.at(), sample.spread()});
       last = now;
     }
-    if (steps.size() - begin < kShortest) steps.resize(begin);
-    if (steps.size() > kMostSamples) break;
+    if (steps.size() - begin < kMinLength) steps.resize(begin);
+    if (steps.size() > kMaxSamples) break;
   }
   return steps;
 }
@@ -48,7 +48,7 @@ double speed_of(std::span<const PathStep> steps) {
     if (steps[i].dt == 0 || steps[i - 1].dt == 0) continue;
     const double dt = steps[i].dt + steps[i - 1].dt;
     const double errors = (steps[i].covariance + steps[i - 2].covariance).trace();
-    sum += (steps[i].place - steps[i - 2].place).squaredNorm() - errors;
+    sum += (steps[i].location - steps[i - 2].location).squaredNorm() - errors;
     weight += 2 * dt * dt;
   }
   return weight > 0 ? std::sqrt(std::max(0.0, sum / weight)) : 0;
@@ -61,16 +61,16 @@ double log_likelihood(std::span<const PathStep> steps, const filter::KalmanOptio
   for (const PathStep& step : steps) {
     const Matrix<2> R = noise * noise * step.covariance;
     if (step.dt == 0) {
-      filter.emplace(motion, step.place, R);
+      filter.emplace(motion, step.location, R);
       known = 0;
       continue;
     }
     filter->predict(step.dt);
     const Matrix<2> S = filter->innovation_covariance(R);
-    const Vector<2> residual = step.place - filter->position();
+    const Vector<2> residual = step.location - filter->position();
     if (++known > 1)
       sum -= 0.5 * std::log(S.determinant()) + (kTails + 2) / 2 * std::log1p(residual.dot(S.inverse() * residual) / kTails);
-    filter->correct(step.place, R);
+    filter->correct(step.location, R);
   }
   return sum;
 }
@@ -79,7 +79,7 @@ double log_likelihood(std::span<const PathStep> steps, const filter::KalmanOptio
 
 std::optional<GroundWalk> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times) {
   const std::vector<PathStep> steps = path_steps(tracklets, times);
-  if (steps.size() < kFewestSamples) return std::nullopt;
+  if (steps.size() < kMinSamples) return std::nullopt;
   GroundWalk walk;
   walk.speed = std::max(0.3, speed_of(steps));
   double best = -std::numeric_limits<double>::infinity();

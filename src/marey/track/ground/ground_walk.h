@@ -18,7 +18,7 @@ struct GroundWalk {
   double speed = 3;         ///< root mean square of each component of the velocity, m/s
 };
 
-/// Nothing where the tracks are too few or too short. `times` by instant.
+/// Nothing if the tracks are too few or too short. `times` by instant.
 std::optional<GroundWalk> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times);
 
 }  // namespace marey::track::ground

@@ -18,14 +18,14 @@ std::vector<offline::GroundTracklet> walks(double acceleration, double rate, dou
     offline::GroundTracklet& one = tracklets.emplace_back();
     one.runs = {{TrackId{i + 1}, 0}};
     one.confirmed = true;
-    Vector<2> place = random.gaussian(10), velocity = random.gaussian(1);
+    Vector<2> location = random.gaussian(10), velocity = random.gaussian(1);
     for (int k = 0; k < instants; ++k) {
       velocity += random.gaussian(acceleration / std::sqrt(rate));
-      place += velocity / rate;
-      const Vector<2> seen = place + random.gaussian(noise);
+      location += velocity / rate;
+      const Vector<2> detected = location + random.gaussian(noise);
       offline::GroundSample& sample = one.samples.emplace_back();
       sample.instant = k;
-      sample.place = {static_cast<float>(seen.x()), static_cast<float>(seen.y())};
+      sample.location = {static_cast<float>(detected.x()), static_cast<float>(detected.y())};
       sample.covariance = {0.01F, 0, 0.01F};
     }
   }

@@ -9,21 +9,21 @@ namespace {
 // docs/tuning.md has the sweep of those that follow.
 constexpr double kNearSpan = 0.2, kFarSpan = 0.48;  // s
 constexpr double kFirstCount = 300;                 // differences that the first levels count for
-constexpr double kMostCounted = 4000;               // differences that are remembered
+constexpr double kMaxCounted = 4000;                // differences that are remembered
 constexpr double kMinSquare = 1e-8;                 // of a difference
 constexpr double kOutlier = 9;                      // times the mean
-// Levels beyond these are no people's.
-constexpr double kLeastPlace = 0.003, kMostPlace = 0.15;
-constexpr double kLeastAcceleration = 0.1, kMostAcceleration = 3;
-constexpr double kLeastSize = 0.01, kMostSize = 0.3;
-constexpr double kLeastDrift = 0.05, kMostDrift = 1;
+// Levels beyond these are not people's.
+constexpr double kMinPosition = 0.003, kMaxPosition = 0.15;
+constexpr double kMinAcceleration = 0.1, kMaxAcceleration = 3;
+constexpr double kMinSize = 0.01, kMaxSize = 0.3;
+constexpr double kMinDrift = 0.05, kMaxDrift = 1;
 
 double cube(double h) {
   return h * h * h;
 }
 
-double place_difference(const BoxNoiseLevels& levels, double span) {
-  return 6 * levels.place * levels.place + 2.0 / 3 * levels.acceleration * levels.acceleration * cube(span);
+double position_difference(const BoxNoiseLevels& levels, double span) {
+  return 6 * levels.location * levels.location + 2.0 / 3 * levels.acceleration * levels.acceleration * cube(span);
 }
 
 double size_difference(const BoxNoiseLevels& levels, double span) {
@@ -31,9 +31,9 @@ double size_difference(const BoxNoiseLevels& levels, double span) {
 }
 
 /// That many seconds in frames, of which a trail holds `most` at least twice over.
-std::size_t frames_in(double span, double dt, std::size_t least) {
+std::size_t frames_in(double span, double dt, std::size_t minimum) {
   const double frames = std::min(span / dt, static_cast<double>(BoxTrail::kLength));
-  return std::clamp(static_cast<std::size_t>(std::lround(frames)), least, (BoxTrail::kLength - 1) / 2);
+  return std::clamp(static_cast<std::size_t>(std::lround(frames)), minimum, (BoxTrail::kLength - 1) / 2);
 }
 
 std::size_t near_frames(double dt) {
@@ -44,16 +44,16 @@ std::size_t far_frames(double dt) {
   return frames_in(kFarSpan, dt, near_frames(dt) + 1);
 }
 
-double root_within(double variance, double least, double most) {
-  return std::clamp(std::sqrt(std::max(0.0, variance)), least, most);
+double root_within(double variance, double minimum, double maximum) {
+  return std::clamp(std::sqrt(std::max(0.0, variance)), minimum, maximum);
 }
 
 }  // namespace
 
 void BoxTrail::add(const Box& box) {
   Entry& entry = entries_[next_++ % kLength];
-  entry.seen = !box.empty();
-  if (!entry.seen) return;
+  entry.detected = !box.empty();
+  if (!entry.detected) return;
   entry.centre = box.centre();
   entry.log_size = {std::log(box.width), std::log(box.height)};
 }
@@ -61,12 +61,12 @@ void BoxTrail::add(const Box& box) {
 const BoxTrail::Entry* BoxTrail::back(std::size_t frames) const {
   if (frames >= kLength || frames >= next_) return nullptr;
   const Entry& entry = entries_[(next_ - 1 - frames) % kLength];
-  return entry.seen ? &entry : nullptr;
+  return entry.detected ? &entry : nullptr;
 }
 
 void BoxNoise::Differences::MeanSquare::add(double square, double first) {
   square = std::min(square, kOutlier * with(first));
-  count = std::min(count + 1, kMostCounted);
+  count = std::min(count + 1, kMaxCounted);
   value += (square - value) / count;
 }
 
@@ -77,7 +77,7 @@ double BoxNoise::Differences::MeanSquare::with(double first) const {
 
 /// 1 where the memory is full of the recording itself.
 double BoxNoise::Differences::MeanSquare::recording_weight() const {
-  return count / (count + kFirstCount * (1 - count / kMostCounted));
+  return count / (count + kFirstCount * (1 - count / kMaxCounted));
 }
 
 /// The geometric mean of both.
@@ -93,12 +93,12 @@ void BoxNoise::Differences::add(const BoxTrail& trail, std::size_t frames, doubl
   size_.add((now->log_size - middle->log_size).squaredNorm() / 2, size_difference(first, span));
   if (before == nullptr) return;
   const Vector<2> bend = (now->centre - 2 * middle->centre + before->centre) / std::exp(now->log_size.y());
-  place_.add(bend.squaredNorm() / 2, place_difference(first, span));
+  location_.add(bend.squaredNorm() / 2, position_difference(first, span));
 }
 
-double BoxNoise::Differences::place(const BoxNoiseLevels& first, double span, Trust trust) const {
-  const double before = place_difference(first, span);
-  return trust == Trust::soon ? place_.soon_with(before) : place_.with(before);
+double BoxNoise::Differences::location(const BoxNoiseLevels& first, double span, Trust trust) const {
+  const double before = position_difference(first, span);
+  return trust == Trust::soon ? location_.soon_with(before) : location_.with(before);
 }
 
 double BoxNoise::Differences::size(const BoxNoiseLevels& first, double span, Trust trust) const {
@@ -106,7 +106,7 @@ double BoxNoise::Differences::size(const BoxNoiseLevels& first, double span, Tru
   return trust == Trust::soon ? size_.soon_with(before) : size_.with(before);
 }
 
-void BoxNoise::see(const BoxTrail& trail, double dt) {
+void BoxNoise::observe_frame(const BoxTrail& trail, double dt) {
   if (dt <= 0) return;
   dt_ = dt;
   frame_.add(trail, 1, dt, first_);
@@ -117,14 +117,14 @@ void BoxNoise::see(const BoxTrail& trail, double dt) {
 
 /// Two distances, two unknowns, for places and for sizes.
 BoxNoiseLevels BoxNoise::solved(const Differences& shorter, double near, const Differences& longer, double far, Trust trust) const {
-  const double place_near = shorter.place(first_, near, trust), place_far = longer.place(first_, far, trust);
+  const double place_near = shorter.location(first_, near, trust), place_far = longer.location(first_, far, trust);
   const double q = std::max(0.0, (place_far - place_near) * 1.5 / (cube(far) - cube(near)));
   const double size_near = shorter.size(first_, near, trust), size_far = longer.size(first_, far, trust);
   const double d = std::max(0.0, (size_far - size_near) / (far - near));
-  return {.place = root_within((place_near - 2.0 / 3 * q * cube(near)) / 6, kLeastPlace, kMostPlace),
-          .acceleration = root_within(q, kLeastAcceleration, kMostAcceleration),
-          .size = root_within((size_near - d * near) / 2, kLeastSize, kMostSize),
-          .drift = root_within(d, kLeastDrift, kMostDrift)};
+  return {.location = root_within((place_near - 2.0 / 3 * q * cube(near)) / 6, kMinPosition, kMaxPosition),
+          .acceleration = root_within(q, kMinAcceleration, kMaxAcceleration),
+          .size = root_within((size_near - d * near) / 2, kMinSize, kMaxSize),
+          .drift = root_within(d, kMinDrift, kMaxDrift)};
 }
 
 BoxNoiseLevels BoxNoise::levels(Trust trust) const {
@@ -137,23 +137,23 @@ BoxNoiseLevels BoxNoise::levels_of_a_frame(Trust trust) const {
   if (dt_ <= 0 || near_frames(dt_) == 1) return levels(trust);
   BoxNoiseLevels levels = solved(frame_, dt_, near_, static_cast<double>(near_frames(dt_)) * dt_, trust);
   const BoxNoiseLevels shortest = solved(frame_, dt_, two_frames_, 2 * dt_, trust);  // over which poses change smoothly
-  levels.place = std::min(levels.place, shortest.place);
+  levels.location = std::min(levels.location, shortest.location);
   levels.size = std::min(levels.size, shortest.size);
   return levels;
 }
 
-LastingShares lasting_shares(const BoxNoise& noise) {
+LastingFractions lasting_fractions(const BoxNoise& noise) {
   const BoxNoiseLevels frame = noise.levels_of_a_frame(BoxNoise::Trust::soon), all = noise.levels(BoxNoise::Trust::soon);
-  const auto share = [](double of_a_frame, double in_all) {
+  const auto fraction = [](double of_a_frame, double in_all) {
     return std::max(0.0, 1 - of_a_frame * of_a_frame / (in_all * in_all));
   };
-  return {share(frame.place, all.place), share(frame.size, all.size)};
+  return {fraction(frame.location, all.location), fraction(frame.size, all.size)};
 }
 
-Box written_box(const Box& filtered, const Box& seen, const LastingShares& shares) {
-  const Vector<2> centre = filtered.centre() + shares.place * (seen.centre() - filtered.centre());
-  const auto side = [&](double before, double as_seen) { return before * std::pow(as_seen / before, shares.size); };
-  return Box::from_centre(centre, side(filtered.width, seen.width), side(filtered.height, seen.height));
+Box written_box(const Box& filtered, const Box& detected, const LastingFractions& fractions) {
+  const Vector<2> centre = filtered.centre() + fractions.location * (detected.centre() - filtered.centre());
+  const auto side = [&](double before, double as_seen) { return before * std::pow(as_seen / before, fractions.size); };
+  return Box::from_centre(centre, side(filtered.width, detected.width), side(filtered.height, detected.height));
 }
 
 }  // namespace marey::track::image

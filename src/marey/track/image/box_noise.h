@@ -5,9 +5,9 @@
 // Wiener process of density q; the first difference of a side's logarithm has 2 R + d h, where that drifts as a random walk. Taken
 // over two distances, both unknowns follow. A detector's errors last for some frames, and so do poses: over 0.2 and 0.5 s both
 // count as errors of the box, which is what following needs; over one frame only what is new in each box does, which says how much
-// of a box is to be believed when it is written.
-// Differences do not know which filter followed the target; one that went over to somebody else shows in few of them, and each
-// counts at most as `kOutlier` usual ones. Cost: a few operations a target and frame.
+// of a box is to be trusted when it is written.
+// Differences do not know which filter followed the target; one that went over to another person shows in few of them, and each
+// counts at most as `kOutlier` typical ones. Cost: a few operations a target and frame.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace marey::track::image {
 
 /// Lengths in heights of the box.
 struct BoxNoiseLevels {
-  double place = 0.05;         ///< standard deviation of a box's centre, each axis
+  double location = 0.05;      ///< standard deviation of a box's centre, each axis
   double acceleration = 0.15;  ///< square root of the density of white acceleration, heights/s^1.5
   double size = 0.2;           ///< standard deviation of the logarithm of a box's width and height
   double drift = 0.15;         ///< what that logarithm changes by in a second
@@ -34,11 +34,11 @@ class BoxTrail {
   void add(const Box& box);
 
   struct Entry {
-    bool seen = false;
+    bool detected = false;
     Vector<2> centre = Vector<2>::Zero();    ///< px
     Vector<2> log_size = Vector<2>::Zero();  ///< of width and height, px
   };
-  /// The frame so many before the last one added; null where the target was not seen in it or that is too long ago.
+  /// The frame this many before the last one added; null where the target was not seen in it or that is too long ago.
   const Entry* back(std::size_t frames) const;
 
  private:
@@ -46,7 +46,7 @@ class BoxTrail {
   std::size_t next_ = 0;
 };
 
-struct LastingShares;
+struct LastingFractions;
 
 class BoxNoise {
  public:
@@ -54,7 +54,7 @@ class BoxNoise {
   explicit BoxNoise(const BoxNoiseLevels& first = {}) : first_(first) {}
 
   /// Takes in a target that was seen in the last frame of its trail; frames are `dt` s apart.
-  void see(const BoxTrail& trail, double dt);
+  void observe_frame(const BoxTrail& trail, double dt);
 
   /// What a box errs by beside the body, a detector's lasting errors and poses included.
   BoxNoiseLevels levels() const { return levels(Trust::slow); }
@@ -64,7 +64,7 @@ class BoxNoise {
   double frame_time() const { return dt_; }
 
  private:
-  friend LastingShares lasting_shares(const BoxNoise& noise);
+  friend LastingFractions lasting_fractions(const BoxNoise& noise);
 
   /// How soon the recording's own differences outweigh the first levels: slowly for tracking, where too little noise loses people;
   /// soon and in proportion for written boxes, whose noise may be a hundredth of the first level.
@@ -74,7 +74,7 @@ class BoxNoise {
   class Differences {
    public:
     void add(const BoxTrail& trail, std::size_t frames, double dt, const BoxNoiseLevels& first);
-    double place(const BoxNoiseLevels& first, double span, Trust trust) const;
+    double location(const BoxNoiseLevels& first, double span, Trust trust) const;
     double size(const BoxNoiseLevels& first, double span, Trust trust) const;
 
    private:
@@ -85,7 +85,7 @@ class BoxNoise {
       double recording_weight() const;
       double soon_with(double first) const;
     };
-    MeanSquare place_, size_;
+    MeanSquare location_, size_;
   };
   BoxNoiseLevels solved(const Differences& shorter, double near, const Differences& longer, double far, Trust trust) const;
   BoxNoiseLevels levels(Trust trust) const;
@@ -97,13 +97,13 @@ class BoxNoise {
 };
 
 /// How much of a box's errors is there in the next frame too: the person's pose, or a habit of the detector. In [0, 1].
-struct LastingShares {
-  double place = 0, size = 0;
+struct LastingFractions {
+  double location = 0, size = 0;
 };
-LastingShares lasting_shares(const BoxNoise& noise);
+LastingFractions lasting_fractions(const BoxNoise& noise);
 
 /// The box to write of a target that filters have at `filtered` and that was `seen`: as much nearer to what was seen as errors
 /// last.
-Box written_box(const Box& filtered, const Box& seen, const LastingShares& shares);
+Box written_box(const Box& filtered, const Box& detected, const LastingFractions& fractions);
 
 }  // namespace marey::track::image

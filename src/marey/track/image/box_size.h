@@ -1,8 +1,8 @@
 // The size of a target's box over time, kept apart from its motion. A person's height and width change slowly; a box that
-// suddenly grows has swallowed a neighbour, one that suddenly shrinks is partly hidden. Such a box is not believed: the target
+// suddenly grows has swallowed a neighbour, one that suddenly shrinks is partly hidden. Such a box is not trusted: the target
 // keeps its size, and its place is read from the box's edges that still fit (after Xu, Orwell, Lowey, Thirde, "Architecture and
 // algorithms for tracking football players with multiple cameras", IEE Proc. Vis. Image Signal Process. 152(2), 2005). Only a box
-// that keeps its new size for a while, alone, is believed after all.
+// that keeps its new size for a while, alone, is trusted after all.
 //
 // Each axis is a scalar Kalman filter of the logarithm (a size is positive, and errs by a share of itself) that drifts as a
 // random walk.
@@ -18,8 +18,8 @@ namespace marey::track::image {
 struct BoxSizeOptions {
   double noise = 0.08;          ///< of the logarithm of one measured side, standard deviation
   double drift = 0.15;          ///< of the logarithm in a second, standard deviation
-  double jump_sigmas = 3;       ///< a side that differs by more is not believed
-  double change_of_mind = 0.7;  ///< s that a contradicting side must persist to be believed after all
+  double jump_sigmas = 3;       ///< a side that differs by more is not trusted
+  double change_of_mind = 0.7;  ///< s that a contradicting side must persist to be trusted after all
 };
 
 class BoxSide {
@@ -39,14 +39,14 @@ class BoxSide {
     return residual * residual / (variance_ + options.noise * options.noise);
   }
 
-  bool believes(double side, const BoxSizeOptions& options) const {
+  bool trusts(double side, const BoxSizeOptions& options) const {
     return distance(side, options) <= options.jump_sigmas * options.jump_sigmas;
   }
 
-  /// Takes in a measured side, and says whether it was believed.
+  /// Takes in a measured side, and says whether it was trusted.
   bool correct(double side, const BoxSizeOptions& options) {
     constexpr double just_now = 1e-9;
-    if (!believes(side, options)) {
+    if (!trusts(side, options)) {
       contradicted_ = std::max(contradicted_, just_now);
       if (contradicted_ < options.change_of_mind) return false;
       variance_ = 1;
@@ -61,7 +61,7 @@ class BoxSide {
  private:
   double log_;
   double variance_;
-  double contradicted_ = 0;  // s since a side was first not believed; 0 for none
+  double contradicted_ = 0;  // s since a side was first not trusted; 0 for none
 };
 
 class BoxSize {
@@ -77,8 +77,8 @@ class BoxSize {
   double height() const { return height_.side(); }
   Box around(const Vector<2>& centre) const { return Box::from_centre(centre, width(), height()); }
 
-  bool believes(const Box& box, const BoxSizeOptions& options) const {
-    return width_.believes(box.width, options) && height_.believes(box.height, options);
+  bool trusts(const Box& box, const BoxSizeOptions& options) const {
+    return width_.trusts(box.width, options) && height_.trusts(box.height, options);
   }
 
   /// Squared distance of a box's size, two degrees of freedom.
@@ -97,12 +97,12 @@ class BoxSize {
     return expected.cwiseMax(region.centre() - slack).cwiseMin(region.centre() + slack);
   }
 
-  /// Where `seen` puts the centre of a target of this size that is expected at `expected`: the middle where a side is believed,
+  /// Where `seen` puts the centre of a target of this size that is expected at `expected`: the middle where a side is trusted,
   /// else the edge that moved less.
-  Vector<2> centre_in(const Box& seen, const Vector<2>& expected, const BoxSizeOptions& options) const {
-    const Vector<2> middle = seen.centre();
-    return {width_.believes(seen.width, options) ? middle.x() : anchored(middle.x(), seen.width, expected.x(), width()),
-            height_.believes(seen.height, options) ? middle.y() : anchored(middle.y(), seen.height, expected.y(), height())};
+  Vector<2> centre_in(const Box& detected, const Vector<2>& expected, const BoxSizeOptions& options) const {
+    const Vector<2> middle = detected.centre();
+    return {width_.trusts(detected.width, options) ? middle.x() : anchored(middle.x(), detected.width, expected.x(), width()),
+            height_.trusts(detected.height, options) ? middle.y() : anchored(middle.y(), detected.height, expected.y(), height())};
   }
 
  private:

@@ -1,10 +1,10 @@
-// How the camera's pan, tilt, zoom and roll move the picture, read off the people in it.
+// How the camera's pan, tilt, zoom and roll move the image, read off the people in it.
 //
-// What people have in common moved the camera, or moves as if: the picture's increment since the frame before is a similarity.
+// What people have in common moved the camera, or moves as if: the image's increment since the frame before is a similarity.
 // Every pair of an expected and a seen person of one size proposes a shift. The likeliest one, by all people and by what the camera
 // did before, says who is who; a weighted least-squares fit with robust weights gives shift, zoom and roll. How fast the camera
-// moves, and how unsteadily, is learned as it goes: a camera that stands still learns that it does, and is left there, while one
-// that pans is expected to go on. Between a camera that stands and one that moves there is no threshold.
+// moves, and how unsteadily, is learned as it goes: a static camera still learns that it does, and is left there, while one
+// that pans is expected to continue. Between a static camera and one that moves there is no threshold.
 // Cost a frame: pairs × people, bounded by taking the largest people only.
 #pragma once
 
@@ -16,25 +16,25 @@
 
 namespace marey::track::image {
 
-/// Where one target is expected in the picture, or one thing was seen, with its height: px.
+/// Where one target is expected in the image, or one thing was seen, with its height: px.
 struct Sighting {
-  Vector<2> place = Vector<2>::Zero();
+  Vector<2> location = Vector<2>::Zero();
   double size = 1;
   double variance = 1;  ///< of an expected place beside where it is seen, for each axis, px²
 };
 
 class CameraMotion {
  public:
-  /// Goes on for `dt` s as the camera did; then `view_from_scene` says where the scene is expected.
+  /// Continues for `dt` s as the camera did; then `view_from_scene` says where the scene is expected.
   void predict(double dt);
 
-  /// Puts right what was predicted, by where people were expected under it and what was seen, px of the picture. Fewer than three
+  /// Puts right what was predicted, by where people were expected under it and what was seen, px of the image. Fewer than three
   /// people change nothing.
-  void correct(std::span<const Sighting> expected, std::span<const Sighting> seen);
+  void correct(std::span<const Sighting> expected, std::span<const Sighting> detected);
 
-  /// From the picture of the first frame, continued to all sides, to that of now.
+  /// From the image of the first frame, continued to all sides, to that of now.
   const geometry::Similarity2& view_from_scene() const { return view_from_scene_; }
-  /// The same `dt` s later, if the camera goes on as it did.
+  /// The same `dt` s later, if the camera continues as it did.
   geometry::Similarity2 view_from_scene(double dt) const;
 
  private:
@@ -50,8 +50,9 @@ class CameraMotion {
     double shift_variance = 0, turn_variance = 0;
   };
 
-  std::vector<Pair> pairs_under(const Vector<2>& shift, std::span<const Sighting> expected, std::span<const Sighting> seen) const;
-  Vector<2> likeliest_shift(std::span<const Sighting> expected, std::span<const Sighting> seen) const;
+  std::vector<Pair> pairs_under(const Vector<2>& shift, std::span<const Sighting> expected,
+                                std::span<const Sighting> detected) const;
+  Vector<2> likeliest_shift(std::span<const Sighting> expected, std::span<const Sighting> detected) const;
   Fit fitted(std::span<const Pair> pairs, const Vector<2>& middle, const Vector<2>& shift) const;
   void learn(const Fit& fit);
 

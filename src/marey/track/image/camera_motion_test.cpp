@@ -18,28 +18,28 @@ class Stand {
     for (int i = 0; i < people; ++i) people_.push_back({{x(random_), y(random_)}, size(random_)});
   }
 
-  void show(CameraMotion& camera, const geometry::Similarity2& view_from_scene, int strangers = 0) {
+  void show(CameraMotion& camera, const geometry::Similarity2& view_from_scene, int untrusted = 0) {
     camera.predict(kStep);
-    std::vector<Sighting> expected, seen;
+    std::vector<Sighting> expected, detected;
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> x(0, 1280), y(0, 720);
     for (const Sighting& person : people_) {
       const double noise = kNoise * person.size;
       expected.push_back(
-          {camera.view_from_scene() * person.place, camera.view_from_scene().scale() * person.size, 2 * noise * noise});
+          {camera.view_from_scene() * person.location, camera.view_from_scene().scale() * person.size, 2 * noise * noise});
       const Vector<2> off(noise * normal(random_), noise * normal(random_));
-      seen.push_back({view_from_scene * person.place + off, view_from_scene.scale() * person.size});
+      detected.push_back({view_from_scene * person.location + off, view_from_scene.scale() * person.size});
     }
-    for (int i = 0; i < strangers; ++i) seen.push_back({{x(random_), y(random_)}, 90});
-    camera.correct(expected, seen);
+    for (int i = 0; i < untrusted; ++i) detected.push_back({{x(random_), y(random_)}, 90});
+    camera.correct(expected, detected);
   }
 
   /// How far the camera is off for the worst of them, px.
   double error(const CameraMotion& camera, const geometry::Similarity2& view_from_scene) const {
-    double most = 0;
+    double maximum = 0;
     for (const Sighting& person : people_)
-      most = std::max(most, (camera.view_from_scene() * person.place - view_from_scene * person.place).norm());
-    return most;
+      maximum = std::max(maximum, (camera.view_from_scene() * person.location - view_from_scene * person.location).norm());
+    return maximum;
   }
 
  private:
@@ -75,7 +75,7 @@ TEST(CameraMotion, ExpectsAPanToGoOn) {
   EXPECT_NEAR(ahead.y(), 0, 6);
 }
 
-/// A few people who run apart look like a zoom: it is believed with caution, and what is left the people's own filters follow.
+/// A few people who run apart look like a zoom: it is trusted with caution, and the rest the people's own filters follow.
 TEST(CameraMotion, BelievesZoomWithCaution) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Stand zoomed(12, seed), still(12, seed);
@@ -117,9 +117,9 @@ TEST(CameraMotion, LeavesACameraWhereItStands) {
 TEST(CameraMotion, NeedsThreePeople) {
   CameraMotion camera;
   const std::vector<Sighting> expected = {{{100, 100}, 80, 4}, {{300, 100}, 80, 4}};
-  const std::vector<Sighting> seen = {{{120, 100}, 80}, {{320, 100}, 80}};
+  const std::vector<Sighting> detected = {{{120, 100}, 80}, {{320, 100}, 80}};
   camera.predict(kStep);
-  camera.correct(expected, seen);
+  camera.correct(expected, detected);
   EXPECT_EQ(camera.view_from_scene().shift, Vector<2>(0, 0));
   camera.correct({}, {});
   EXPECT_EQ(camera.view_from_scene().turn, (Matrix<2>::Identity()));

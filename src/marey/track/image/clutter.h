@@ -1,4 +1,4 @@
-// How likely it is that a box near where somebody is expected is somebody else's: people in the room that they have.
+// How likely it is that a box near where a person is expected is another person's: people in the room that they have.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace marey::track::image {
 /// Learns from every frame's boxes how many there are in an area of one person's height squared.
 class Clutter {
  public:
-  void see(std::span<const Sighting> boxes) {
+  void observe_frame(std::span<const Sighting> boxes) {
     ++frames_;
     for (const Sighting& box : boxes) {
       covered_ += box.size * box.size;
-      low_ = low_.cwiseMin(box.place);
-      high_ = high_.cwiseMax(box.place);
+      low_ = low_.cwiseMin(box.location);
+      high_ = high_.cwiseMax(box.location);
     }
   }
 
@@ -26,12 +26,12 @@ class Clutter {
   double room() const {
     if (covered_ <= 0) return 0;
     const double area = std::max(1.0, (high_ - low_).prod());
-    return kShare * 2 * std::log(std::max(1.0, kCrowded / (covered_ / static_cast<double>(frames_) / area)));
+    return kFraction * 2 * std::log(std::max(1.0, kCrowded / (covered_ / static_cast<double>(frames_) / area)));
   }
 
  private:
   static constexpr double kCrowded = 0.67;  // boxes in a height squared: a street that people fill (TUD)
-  static constexpr double kShare = 0.3;     // of the log-likelihood ratio: who is near is seldom just anybody (docs/tuning.md)
+  static constexpr double kFraction = 0.3;  // of the log-likelihood ratio: who is near is rarely just any person (docs/tuning.md)
 
   std::int64_t frames_ = 0;
   double covered_ = 0;                                                           // px²: heights squared, of all boxes

@@ -19,15 +19,16 @@ class Crowd {
   /// the other functions see the targets where they are now.
   void mark_crowded(std::span<Target> targets);
 
-  /// What becomes of a target that is held in a region together with others: moved at once, so that the next region finds it there.
+  /// What happens to a target that is held in a region together with others: moved at once, so that the next region finds it there.
   using Hold = std::function<void(Target& target, const Observation<2>& region)>;
 
   /// A region over several targets is those targets, merged, whether one of them is matched with it or none. Marks it in `merged`,
   /// one entry an observation, and calls `hold` for each confirmed target that is not matched and lies within it.
-  void find_merged(std::span<Target> targets, std::span<const Observation<2>> seen, std::vector<char>& merged, const Hold& hold);
+  void find_merged(std::span<Target> targets, std::span<const Observation<2>> detected, std::vector<char>& merged,
+                   const Hold& hold);
 
   /// A target that is not seen is hidden where another target, or the region that one was seen in, covers it.
-  void mark_hidden(std::span<Target> targets, std::span<const Observation<2>> seen) const;
+  void mark_hidden(std::span<Target> targets, std::span<const Observation<2>> detected) const;
 
   /// The largest unit of a target with a size; 0 where there is none.
   double widest() const { return widest_; }

@@ -35,38 +35,38 @@ class FilterTracker final : public ImmediateTracker<2> {
   std::optional<BoxNoise> learned_noise() const override;
 
  private:
-  using Seen = std::span<const Observation<2>>;
+  using Detected = std::span<const Observation<2>>;
 
-  static constexpr double kUnbelieved = 2.5;  // a box that is not believed places its target this much less surely
-  static constexpr double kNextFrame = 1.5;   // steps: a target may be missing from one frame
+  static constexpr double kUntrusted = 2.5;  // a box that is not trusted places its target this much less surely
+  static constexpr double kNextFrame = 1.5;  // steps: a target may be missing from one frame
 
   void predict_to(Timestamp now);
-  Seen in_scene(Seen seen);
-  void learn_noise(Seen seen);
-  Vector<2> place_of(const Observation<2>& observation, const Target& target) const;
+  Detected in_scene(Detected detected);
+  void learn_noise(Detected detected);
+  Vector<2> position_of(const Observation<2>& observation, const Target& target) const;
   Matrix<2> noise_of(const Observation<2>& observation, const Target& target) const;
   double reach(const Target& target) const;
   double search_radius(const Target& target) const;
   Matrix<2> innovation_of(const Target& target, const Matrix<2>& R) const;
-  bool was_seen_recently(const Target& target) const;
+  bool was_observed_recently(const Target& target) const;
   double missed_for(const Target& target) const;
   double gain(const Target& target, const Observation<2>& observation) const;
 
-  void match_gated(Seen seen, double least_score, double below_score);
-  void match_overlapping(Seen seen);
-  void list_overlaps(Seen seen);
-  void match_reappeared(Seen seen);
-  void mark_taken(Seen seen);
-  void keep_merged(Seen seen);
+  void match_gated(Detected detected, double min_score, double below_score);
+  void match_overlapping(Detected detected);
+  void list_overlaps(Detected detected);
+  void match_reappeared(Detected detected);
+  void mark_taken(Detected detected);
+  void keep_merged(Detected detected);
   void stay_within(Target& target, const Observation<2>& region) const;
 
-  void correct(Seen seen);
+  void correct(Detected detected);
   void correct(Target& target, const Observation<2>& observation, bool merged) const;
   void count_misses();
   void retire_lost();
-  void start_unmatched(Seen seen);
+  void start_unmatched(Detected detected);
   void start(const Observation<2>& observation, int index);
-  bool is_duplicate(int index, Seen seen) const;
+  bool is_duplicate(int index, Detected detected) const;
 
   static Track<2> track_of(const Target& target, const geometry::Similarity2& view_from_scene);
   std::span<const Track<2>> report();
@@ -80,7 +80,7 @@ class FilterTracker final : public ImmediateTracker<2> {
   BoxNoiseLevels first_;
   BoxNoise noise_;
   double noise_scale_ = 1;  // of the acceleration, beside the options
-  LastingShares lasting_;
+  LastingFractions lasting_;
   double unlearned_ = 0;  // s since noise was last learned
   int next_id_ = 1;
   std::vector<Target> targets_;  // in the order of their ids

@@ -17,8 +17,8 @@ constexpr double kEvenOdds = 0.5;   // from which on it is likelier that there i
 constexpr double kOffBy = 1.0 / 3;  // of a side; a box that is off by more overlaps the true one by less than half
 
 /// That a Gaussian of this variance lies within ± `most`.
-double within(double most, double variance) {
-  return variance > 0 ? std::erf(most / std::sqrt(2 * variance)) : 1.0;
+double within(double maximum, double variance) {
+  return variance > 0 ? std::erf(maximum / std::sqrt(2 * variance)) : 1.0;
 }
 
 /// That the predicted box lies on the target.
@@ -27,13 +27,13 @@ double overlaps(const Track<2>& track) {
   return within(kOffBy * track.box->width, track.covariance(0, 0)) * within(kOffBy * track.box->height, track.covariance(1, 1));
 }
 
-double between_values(double a, double b, double share) {
-  return a + share * (b - a);
+double between_values(double a, double b, double fraction) {
+  return a + fraction * (b - a);
 }
 
-Box between_boxes(const Box& a, const Box& b, double share) {
-  return {between_values(a.left, b.left, share), between_values(a.top, b.top, share), between_values(a.width, b.width, share),
-          between_values(a.height, b.height, share)};
+Box between_boxes(const Box& a, const Box& b, double fraction) {
+  return {between_values(a.left, b.left, fraction), between_values(a.top, b.top, fraction),
+          between_values(a.width, b.width, fraction), between_values(a.height, b.height, fraction)};
 }
 
 const Track<2>* find_track(std::span<const Track<2>> tracks, TrackId id) {
@@ -49,9 +49,9 @@ void GapSurvival::found_again(double gap) {
   found_[std::min(bin, found_.size() - 1)] += 1;
 }
 
-double GapSurvival::still_there(double unseen) const {
-  const auto bin = std::min(static_cast<std::size_t>(unseen / kBin), found_.size() - 1);
-  double longer = kPriorFound * std::exp(-unseen / kPriorGap) + found_[bin] / 2;
+double GapSurvival::still_there(double unobserved) const {
+  const auto bin = std::min(static_cast<std::size_t>(unobserved / kBin), found_.size() - 1);
+  double longer = kPriorFound * std::exp(-unobserved / kPriorGap) + found_[bin] / 2;
   for (std::size_t i = bin + 1; i < found_.size(); ++i) longer += found_[i];
   return longer / (longer + kPriorLost + lost_);
 }
@@ -60,79 +60,82 @@ void LiveTracks::add(std::int64_t index, Timestamp time, std::span<const Track<2
   const std::optional<Timestamp> before = std::exchange(searched_, time);
   now_ = time;
   for (const Track<2>& track : tracks) {
-    Seen& seen = seen_[track.id];
-    seen.confirmed = seen.confirmed || track.confirmed;
+    Detected& detected = detected_[track.id];
+    detected.confirmed = detected.confirmed || track.confirmed;
     if (!track.measured()) continue;
-    if (track.confirmed && seen.time && before && *seen.time < *before) survival_.found_again(seconds(time - *seen.time));
-    seen.time = time;
+    if (track.confirmed && detected.time && before && *detected.time < *before)
+      survival_.found_again(seconds(time - *detected.time));
+    detected.time = time;
   }
-  moments_.push_back({index, time, {tracks.begin(), tracks.end()}, std::move(frames)});
+  time_steps_.push_back({index, time, {tracks.begin(), tracks.end()}, std::move(frames)});
 }
 
 void LiveTracks::add_unsearched(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames) {
   now_ = time;
-  moments_.push_back({index, time, {}, std::move(frames), false});
+  time_steps_.push_back({index, time, {}, std::move(frames), false});
   for (const Track<2>& track : tracks) {
-    if (seen_.contains(track.id)) moments_.back().tracks.push_back(track);
+    if (detected_.contains(track.id)) time_steps_.back().tracks.push_back(track);
   }
 }
 
 std::optional<Instant> LiveTracks::next(bool all) {
-  if (moments_.empty()) return std::nullopt;
-  if (!all && seconds(*now_ - moments_.front().time) < delay_ - 1e-9) return std::nullopt;
-  const Moment moment = std::move(moments_.front());
-  moments_.pop_front();
+  if (time_steps_.empty()) return std::nullopt;
+  if (!all && seconds(*now_ - time_steps_.front().time) < delay_ - 1e-9) return std::nullopt;
+  const TimeStep time_step = std::move(time_steps_.front());
+  time_steps_.pop_front();
   Instant instant;
-  instant.index = moment.index;
-  instant.time = moment.time;
-  instant.frames = moment.frames;
-  for (const Track<2>& track : moment.tracks) {
-    if (auto sample = told(moment, track)) instant.samples.push_back(std::move(*sample));
+  instant.index = time_step.index;
+  instant.time = time_step.time;
+  instant.frames = time_step.frames;
+  for (const Track<2>& track : time_step.tracks) {
+    if (auto sample = reported(time_step, track)) instant.samples.push_back(std::move(*sample));
   }
-  forget_lost(moment);
+  forget_lost(time_step);
   return instant;
 }
 
 /// A target is given up when it is in no later instant; as long as none of these was searched, that says nothing.
-void LiveTracks::forget_lost(const Moment& told) {
-  const auto follows = [](const Moment& moment, TrackId id) { return find_track(moment.tracks, id) != nullptr; };
-  const bool searched_later = std::any_of(moments_.begin(), moments_.end(), [](const Moment& later) { return later.searched; });
-  std::erase_if(seen_, [&](const auto& entry) {
+void LiveTracks::forget_lost(const TimeStep& reported) {
+  const auto tracks = [](const TimeStep& time_step, TrackId id) { return find_track(time_step.tracks, id) != nullptr; };
+  const bool searched_later =
+      std::any_of(time_steps_.begin(), time_steps_.end(), [](const TimeStep& later) { return later.searched; });
+  std::erase_if(detected_, [&](const auto& entry) {
     const TrackId id = entry.first;
-    if (!searched_later && (!told.searched || follows(told, id))) return false;
-    if (std::any_of(moments_.begin(), moments_.end(), [&](const Moment& later) { return follows(later, id); })) return false;
+    if (!searched_later && (!reported.searched || tracks(reported, id))) return false;
+    if (std::any_of(time_steps_.begin(), time_steps_.end(), [&](const TimeStep& later) { return tracks(later, id); })) return false;
     if (entry.second.confirmed) survival_.lost();
     return true;
   });
 }
 
-std::optional<Sample> LiveTracks::told(const Moment& moment, const Track<2>& track) {
-  Seen& seen = seen_.at(track.id);
-  if (!seen.confirmed) return std::nullopt;
+std::optional<Sample> LiveTracks::reported(const TimeStep& time_step, const Track<2>& track) {
+  Detected& detected = detected_.at(track.id);
+  if (!detected.confirmed) return std::nullopt;
   if (track.measured()) {
-    seen.told = sample_of(track);
-    seen.told_time = moment.time;
-    return seen.told;
+    detected.reported = sample_of(track);
+    detected.reported_time = time_step.time;
+    return detected.reported;
   }
-  if (auto sample = filled(moment, track)) return sample;
+  if (auto sample = filled(time_step, track)) return sample;
   // As of the last search it has not been seen since.
-  const double unseen = seen.time && searched_ ? std::max(0.0, seconds(*searched_ - *seen.time)) : 0;
-  if (survival_.still_there(unseen) * overlaps(track) < kEvenOdds) return std::nullopt;
+  const double unobserved = detected.time && searched_ ? std::max(0.0, seconds(*searched_ - *detected.time)) : 0;
+  if (survival_.still_there(unobserved) * overlaps(track) < kEvenOdds) return std::nullopt;
   return sample_of(track);
 }
 
 /// Between the observations before and after, where the later one has come already.
-std::optional<Sample> LiveTracks::filled(const Moment& moment, const Track<2>& track) const {
-  const Seen& seen = seen_.at(track.id);
-  if (!seen.told || !seen.time || *seen.time <= moment.time) return std::nullopt;
-  for (const Moment& later : moments_) {
+std::optional<Sample> LiveTracks::filled(const TimeStep& time_step, const Track<2>& track) const {
+  const Detected& detected = detected_.at(track.id);
+  if (!detected.reported || !detected.time || *detected.time <= time_step.time) return std::nullopt;
+  for (const TimeStep& later : time_steps_) {
     const Track<2>* again = find_track(later.tracks, track.id);
     if (again == nullptr || !again->measured()) continue;
-    const double share = seconds(moment.time - seen.told_time) / seconds(later.time - seen.told_time);
+    const double fraction = seconds(time_step.time - detected.reported_time) / seconds(later.time - detected.reported_time);
     Sample sample = sample_of(track);
     sample.provenance = Provenance::filled;
-    sample.position.head<2>() = seen.told->position.head<2>() + share * (again->position - seen.told->position.head<2>());
-    if (seen.told->box && again->box) sample.box = between_boxes(*seen.told->box, *again->box, share);
+    sample.position.head<2>() =
+        detected.reported->position.head<2>() + fraction * (again->position - detected.reported->position.head<2>());
+    if (detected.reported->box && again->box) sample.box = between_boxes(*detected.reported->box, *again->box, fraction);
     return sample;
   }
   return std::nullopt;

@@ -22,7 +22,7 @@ void add(LiveTracks& live, int frame, const std::vector<Track<2>>& tracks) {
   live.add(frame, timestamp_from_seconds(frame / kLiveRate), tracks);
 }
 
-TEST(LiveTracks, WhoIsNotConfirmedIsHeldBack) {
+TEST(LiveTracks, HoldsBackUnconfirmedTrack) {
   LiveTracks live(0);
   add(live, 0, {at(1, 0, true, false)});
   EXPECT_TRUE(live.next()->samples.empty());
@@ -31,7 +31,7 @@ TEST(LiveTracks, WhoIsNotConfirmedIsHeldBack) {
   EXPECT_FALSE(live.next());
 }
 
-TEST(LiveTracks, WhoIsConfirmedWithinTheDelayIsToldFromTheBeginning) {
+TEST(LiveTracks, ReportsConfirmedTrackFromItsBeginning) {
   LiveTracks live(0.2);
   add(live, 0, {at(1, 0, true, false), at(2, 300, true, false)});
   EXPECT_FALSE(live.next());
@@ -62,7 +62,7 @@ TEST(LiveTracks, AGapThatClosesWithinTheDelayIsFilledFromBothSides) {
   EXPECT_NEAR(filled->samples.front().box->centre().x(), 10, 1e-9);
 }
 
-TEST(LiveTracks, WhoIsNotSeenIsToldWhileTheOddsAreThatItIsThere) {
+TEST(LiveTracks, ReportsUnobservedTrackWhileProbable) {
   LiveTracks live(0);
   int frame = 0;
   // One who is missed every other frame for a while teaches that gaps close.
@@ -70,13 +70,13 @@ TEST(LiveTracks, WhoIsNotSeenIsToldWhileTheOddsAreThatItIsThere) {
     add(live, frame, {at(1, 0, frame % 2 == 0)});
     live.next();
   }
-  std::vector<std::size_t> told;
+  std::vector<std::size_t> reported;
   for (int k = 0; k < 10; ++k, ++frame) {
     add(live, frame, {at(1, 0, false)});
-    told.push_back(live.next()->samples.size());
+    reported.push_back(live.next()->samples.size());
   }
-  EXPECT_EQ(told.front(), 1u);  // as often before
-  EXPECT_EQ(told.back(), 0u);   // never before for so long
+  EXPECT_EQ(reported.front(), 1u);  // as often before
+  EXPECT_EQ(reported.back(), 0u);   // never before for this long
 }
 
 TEST(LiveTracks, APredictionThatMayBeAnywhereIsNotTold) {

@@ -10,20 +10,20 @@
 
 namespace marey::track::image {
 
-/// Re-identification before a camera that stands still, where no target vanishes but behind something: an observation of its size
+/// Re-identification before a static camera still, where no target vanishes but behind something: an observation of its size
 /// that appears where it may have gone by now, and that matches no other target, is it. So is one that was seen a moment ago, and
 /// turned so sharply that it left its gate.
 class Reidentification {
  public:
   /// What decides whether an observation may be a target that was lost.
   struct Limits {
-    double least_score = 0;  ///< of an observation
+    double min_score = 0;  ///< of an observation
     BoxSizeOptions sizes;
     double gate = 0;  ///< squared deviations by which sizes may differ, at most
   };
 
   /// Matches such observations with confirmed targets that have none and are not hidden by another.
-  void match(std::span<Target> targets, std::span<const Observation<2>> seen, Timestamp now, const Limits& limits);
+  void match(std::span<Target> targets, std::span<const Observation<2>> detected, Timestamp now, const Limits& limits);
 
  private:
   std::vector<char> taken_;
@@ -31,7 +31,7 @@ class Reidentification {
   assign::GatedAssigner assigner_;
 };
 
-/// Where a box puts the centre of a target: if need be corrected for a size that is not believed.
-Vector<2> place_in(const Box& box, const Target& target, const BoxSizeOptions& sizes);
+/// Where a box puts the centre of a target: if need be corrected for a size that is not trusted.
+Vector<2> position_in(const Box& box, const Target& target, const BoxSizeOptions& sizes);
 
 }  // namespace marey::track::image

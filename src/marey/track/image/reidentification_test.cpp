@@ -15,14 +15,14 @@ bool keeps_its_id(const TrackerOptions& options, int hidden, double aside, doubl
   const auto tracker = make_tracker(options);
   std::optional<TrackId> before, after;
   for (int i = 0; i < 100 + hidden; ++i) {
-    std::vector<Observation<2>> seen;
+    std::vector<Observation<2>> detected;
     if (i < 50 || i >= 50 + hidden) {
       const bool came_out = i >= 50;
       const double scale = came_out ? size_after : 1;
       const Box box = Box::from_centre({100 + 2.0 * i + (came_out ? aside : 0), 200}, 24 * scale, 60 * scale);
-      seen.push_back({.value = box.centre(), .box = box});
+      detected.push_back({.value = box.centre(), .box = box});
     }
-    for (const Track<2>& track : tracker->step(timestamp_from_seconds(i / kReidentificationRate), seen)) {
+    for (const Track<2>& track : tracker->step(timestamp_from_seconds(i / kReidentificationRate), detected)) {
       if (!track.confirmed || !track.measured()) continue;
       (i < 50 ? before : after) = track.id;
     }
@@ -33,7 +33,7 @@ bool keeps_its_id(const TrackerOptions& options, int hidden, double aside, doubl
 
 TrackerOptions reidentifying() {
   TrackerOptions options;
-  options.steady_camera = true;
+  options.stabilised_camera = true;
   options.reidentify = true;
   return options;
 }

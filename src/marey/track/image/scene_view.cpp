@@ -2,24 +2,24 @@
 
 namespace marey::track::image {
 
-void SceneView::follow_camera(double dt, std::span<const Sighting> expected, std::span<const Observation<2>> seen,
-                              double least_score) {
+void SceneView::track_camera(double dt, std::span<const Sighting> expected, std::span<const Observation<2>> detected,
+                             double min_score) {
   camera_.predict(dt);
   const geometry::Similarity2& view_from_scene = camera_.view_from_scene();
   const double scale = view_from_scene.scale();
   expected_.clear();
   for (const Sighting& person : expected)
-    expected_.push_back({view_from_scene * person.place, scale * person.size, scale * scale * person.variance});
+    expected_.push_back({view_from_scene * person.location, scale * person.size, scale * scale * person.variance});
   sightings_.clear();
-  for (const Observation<2>& one : seen) {
-    if (one.box && !one.box->empty() && one.score >= least_score) sightings_.push_back({one.box->centre(), one.box->height});
+  for (const Observation<2>& one : detected) {
+    if (one.box && !one.box->empty() && one.score >= min_score) sightings_.push_back({one.box->centre(), one.box->height});
   }
   camera_.correct(expected_, sightings_);
 }
 
-std::span<const Observation<2>> SceneView::in_scene(std::span<const Observation<2>> seen) {
+std::span<const Observation<2>> SceneView::in_scene(std::span<const Observation<2>> detected) {
   const geometry::Similarity2 scene_from_view = camera_.view_from_scene().inverse();
-  in_scene_.assign(seen.begin(), seen.end());
+  in_scene_.assign(detected.begin(), detected.end());
   for (Observation<2>& one : in_scene_) {
     one.value = scene_from_view * one.value;
     if (one.covariance) one.covariance = scene_from_view.turn * *one.covariance * scene_from_view.turn.transpose();

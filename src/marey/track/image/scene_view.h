@@ -9,17 +9,17 @@
 
 namespace marey::track::image {
 
-/// Follows the camera by the people in the picture, and puts what is seen into coordinates that stand still.
+/// Follows the camera by the people in the image, and puts what is seen into coordinates that stand still.
 class SceneView {
  public:
-  /// Goes on by `dt` s. `expected`: people as they are expected in the scene; of those seen, in the picture, the ones with a box
-  /// and a score of at least `least_score` count.
-  void follow_camera(double dt, std::span<const Sighting> expected, std::span<const Observation<2>> seen, double least_score);
+  /// Continues by `dt` s. `expected`: people as they are expected in the scene; of those seen, in the image, the ones with a box
+  /// and a score of at least `min_score` count.
+  void track_camera(double dt, std::span<const Sighting> expected, std::span<const Observation<2>> detected, double min_score);
 
-  /// What is seen in the picture, in coordinates of the scene. Valid until the next call.
-  std::span<const Observation<2>> in_scene(std::span<const Observation<2>> seen);
+  /// What is seen in the image, in coordinates of the scene. Valid until the next call.
+  std::span<const Observation<2>> in_scene(std::span<const Observation<2>> detected);
 
-  /// Those seen who counted, px of the picture. Valid until the next call of follow_camera.
+  /// Those seen who counted, px of the image. Valid until the next call of track_camera.
   std::span<const Sighting> sightings() const { return sightings_; }
 
   const geometry::Similarity2& view_from_scene() const { return camera_.view_from_scene(); }
@@ -28,7 +28,7 @@ class SceneView {
 
  private:
   CameraMotion camera_;
-  std::vector<Sighting> expected_, sightings_;  // px of the picture
+  std::vector<Sighting> expected_, sightings_;  // px of the image
   std::vector<Observation<2>> in_scene_;
 };
 

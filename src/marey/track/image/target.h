@@ -28,8 +28,8 @@ struct Target {
   filter::AnyFilter<2> filter;
   std::optional<BoxSize> size;
   double unit = 1;  ///< length of one size in the observations' unit: its height in the image, or 1
-  Timestamp born;
-  Timestamp last_seen;
+  Timestamp initiated;
+  Timestamp last_observed;
   Evidence evidence;
   double score = 1;                     ///< of the last observation
   std::optional<int> observation = {};  ///< index of this frame's

@@ -12,7 +12,7 @@ void ViewLog::add_box(std::int32_t instant, TrackId track, const Box& box) {
 
 std::optional<std::int32_t> ViewLog::frame_at(std::int64_t instant) const {
   const auto at = std::lower_bound(frames_.begin(), frames_.end(), instant,
-                                   [](const FramePair& frame, std::int64_t wanted) { return frame.instant < wanted; });
+                                   [](const FramePair& frame, std::int64_t required) { return frame.instant < required; });
   if (at == frames_.end() || at->instant != instant) return std::nullopt;
   return at->own;
 }
@@ -30,7 +30,7 @@ void ViewLog::name(const std::function<std::optional<TrackId>(TrackId, std::int3
 std::optional<Box> ViewLog::box(std::int64_t instant, TrackId track) const {
   const auto at = std::lower_bound(
       rows_.begin(), rows_.end(), std::pair(instant, number(track)),
-      [](const Row& row, const auto& wanted) { return std::pair<std::int64_t, int>(row.instant, row.track) < wanted; });
+      [](const Row& row, const auto& required) { return std::pair<std::int64_t, int>(row.instant, row.track) < required; });
   if (at == rows_.end() || at->instant != instant || at->track != number(track)) return std::nullopt;
   return Box{at->left, at->top, at->width, at->height};
 }

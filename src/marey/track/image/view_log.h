@@ -11,7 +11,7 @@
 
 namespace marey::track::image {
 
-/// Whose box was where in one camera's pictures; 24 bytes a person and frame.
+/// Whose box was where in one camera's images; 24 bytes a person and frame.
 class ViewLog {
  public:
   /// The camera gave its frame `own` to the instant `instant`. Instants grow from call to call.

@@ -16,9 +16,9 @@ constexpr std::array<std::optional<Appearance> Clothes::*, 3> kPartsOfClothes{&C
 constexpr std::array<double, 3> kWithinFirst{36, 6, 6}, kAllFirst{350, 50, 50};  // variances before anything is learned,
 constexpr double kFirstWeight = 6;                                               // and how many tracklets they count for
 constexpr double kWidened = 1.7;                       // variances: parts and components are not independent
-constexpr double kUnseenKinds = 1;                     // people who wear what nobody wore yet, beside those who were seen
+constexpr double kUnobservedKinds = 1;                 // people who wear what no person wore yet, beside those who were seen
 constexpr double kFirstAlike = 0.25, kFirstPairs = 5;  // pairs of people in equal clothes, of all, before any are seen
-constexpr int kTurnsOfAlike = 10;
+constexpr int kRotationsOfAlike = 10;
 constexpr double kSurestSame = 6, kSurestOther = -12;
 
 std::array<double, 3> values_of(const Appearance& colour) {
@@ -108,23 +108,23 @@ void Wardrobe::learn_alike() {
       const Worn& other = worn_[static_cast<std::size_t>(order[k])];
       const Clothes parts = parts_of_both(one.whole, other.whole);
       if (count_of(parts) < 2) continue;
-      likelier.push_back(log_density(one.whole, other.whole, parts) - log_density_of_anybody(other.whole, parts));
+      likelier.push_back(log_density(one.whole, other.whole, parts) - log_density_of_any_person(other.whole, parts));
     }
   }
   alike_ = kFirstAlike / kFirstPairs;
-  for (int turn = 0; turn < kTurnsOfAlike; ++turn) {
+  for (int turn = 0; turn < kRotationsOfAlike; ++turn) {
     double sum = kFirstAlike;
     for (const double one : likelier) sum += 1 / (1 + (1 - alike_) / alike_ * std::exp(-std::clamp(one, -100.0, 100.0)));
     alike_ = std::min(0.99, sum / (kFirstPairs + static_cast<double>(likelier.size())));
   }
 }
 
-double Wardrobe::log_density(const Clothes& known, const Clothes& seen, const Clothes& parts) const {
+double Wardrobe::log_density(const Clothes& known, const Clothes& detected, const Clothes& parts) const {
   double sum = 0;
   for (std::size_t p = 0; p < kPartsOfClothes.size(); ++p) {
-    const auto &was = known.*kPartsOfClothes[p], &is = seen.*kPartsOfClothes[p];
+    const auto &was = known.*kPartsOfClothes[p], &is = detected.*kPartsOfClothes[p];
     if (!(parts.*kPartsOfClothes[p])) continue;
-    if (!was) return log_density_of_anybody(seen, parts);
+    if (!was) return log_density_of_any_person(detected, parts);
     const double measured = was->deviation * was->deviation + is->deviation * is->deviation;
     for (std::size_t c = 0; c < kComponents; ++c)
       sum += log_normal_density(values_of(*is)[c] - values_of(*was)[c], kWidened * (within_[p][c] + measured));
@@ -132,11 +132,11 @@ double Wardrobe::log_density(const Clothes& known, const Clothes& seen, const Cl
   return sum;
 }
 
-double Wardrobe::log_density_of_anybody(const Clothes& seen, const Clothes& parts) const {
+double Wardrobe::log_density_of_any_person(const Clothes& detected, const Clothes& parts) const {
   double sum = 0;
   for (std::size_t p = 0; p < kPartsOfClothes.size(); ++p) {
     if (!(parts.*kPartsOfClothes[p])) continue;
-    const auto& is = seen.*kPartsOfClothes[p];
+    const auto& is = detected.*kPartsOfClothes[p];
     for (std::size_t c = 0; c < kComponents; ++c)
       sum += log_normal_density(values_of(*is)[c] - middle_[p][c], all_[p][c] + kWidened * within_[p][c]);
   }
@@ -147,20 +147,20 @@ double Wardrobe::log_density_of_anybody(const Clothes& seen, const Clothes& part
 /// seen yet, or, by the fraction of pairs in equal clothes, in the same.
 double Wardrobe::log_density_of_others(int earlier, int later, const Clothes& parts, double same) const {
   const Worn &before = worn_[static_cast<std::size_t>(earlier)], &after = worn_[static_cast<std::size_t>(later)];
-  std::vector<std::pair<double, double>> densities{{kUnseenKinds * (1 - alike_), log_density_of_anybody(after.first, parts)},
-                                                   {kUnseenKinds * alike_, same}};
+  std::vector<std::pair<double, double>> densities{{kUnobservedKinds * (1 - alike_), log_density_of_any_person(after.first, parts)},
+                                                   {kUnobservedKinds * alike_, same}};
   for (std::size_t k = 0; k < worn_.size(); ++k) {
     if (static_cast<int>(k) == earlier || static_cast<int>(k) == later) continue;
-    const double beside = std::max(fraction_together(worn_[k], before), fraction_together(worn_[k], after));
-    if (beside > 0) densities.emplace_back(beside, log_density(worn_[k].whole, after.first, parts));
+    const double next_to = std::max(fraction_together(worn_[k], before), fraction_together(worn_[k], after));
+    if (next_to > 0) densities.emplace_back(next_to, log_density(worn_[k].whole, after.first, parts));
   }
-  double most = densities.front().second, weights = 0, sum = 0;
-  for (const auto& [weight, density] : densities) most = std::max(most, density);
+  double maximum = densities.front().second, weights = 0, sum = 0;
+  for (const auto& [weight, density] : densities) maximum = std::max(maximum, density);
   for (const auto& [weight, density] : densities) {
     weights += weight;
-    sum += weight * std::exp(density - most);
+    sum += weight * std::exp(density - maximum);
   }
-  return most + std::log(sum / weights);
+  return maximum + std::log(sum / weights);
 }
 
 std::optional<double> Wardrobe::log_ratio(int earlier, int later) const {

@@ -1,11 +1,11 @@
-// How clothes of a recording tell people apart, as densities: how one person's are seen again, and how other people's are.
+// How clothes of a recording distinguish people, as densities: how one person's are seen again, and how other people's are.
 //
-// Shirt, thighs and shanks, each in L*a*b*. How far one person's colours lie apart from moment to moment is learned from early and
-// late parts of tracklets; what others wear, from those who are seen at the same time and therefore are somebody else, and, as far
-// as somebody wears what nobody wore yet, from the spread of all. How often two people wear the same is learned from those who are
-// seen together, for a person who was not. Errors of parts and components are not independent: variances are widened by as much
-// as the logarithms of likelihoods are to count less.
-// Cost: the tracklets that coexist in pairs, and the pairs asked for, times the tracklets.
+// Shirt, thighs and shanks, each in L*a*b*. How far one person's colours lie apart from instant to instant is learned from early
+// and late parts of tracklets; what others wear, from those who are seen at the same time and therefore are another person, and, as
+// far as a person wears what no person wore yet, from the spread of all. How often two people wear the same is learned from those
+// who are seen together, for a person who was not. Errors of parts and components are not independent: variances are widened by as
+// much as the logarithms of likelihoods are to count less. Cost: the tracklets that coexist in pairs, and the pairs asked for,
+// times the tracklets.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "marey/track/image/clothes.h"
+#include "marey/track/image/clothing.h"
 
 namespace marey::track::image {
 
@@ -30,15 +30,15 @@ class Wardrobe {
   explicit Wardrobe(std::span<const Worn> worn);
 
   /// Logarithm of how much likelier the clothes of `later`, a tracklet's index, are seen first if that is who wore those of
-  /// `earlier` last than if it is somebody else of these people; nothing where less than two parts of both were seen.
+  /// `earlier` last than if it is another person of these people; nothing if less than two parts of both were seen.
   std::optional<double> log_ratio(int earlier, int later) const;
 
  private:
   static constexpr int kParts = 3, kComponents = 3;
   using Variances = std::array<std::array<double, kComponents>, kParts>;
 
-  double log_density(const Clothes& known, const Clothes& seen, const Clothes& parts) const;
-  double log_density_of_anybody(const Clothes& seen, const Clothes& parts) const;
+  double log_density(const Clothes& known, const Clothes& detected, const Clothes& parts) const;
+  double log_density_of_any_person(const Clothes& detected, const Clothes& parts) const;
   double log_density_of_others(int earlier, int later, const Clothes& parts, double same) const;
   void learn_within();
   void learn_all();

@@ -11,22 +11,22 @@ namespace {
 
 using Tracklet = TrackletLog::Tracklet;
 
-float on_line(float a, float b, double share) {
-  return static_cast<float>(a + share * (static_cast<double>(b) - a));
+float on_line(float a, float b, double fraction) {
+  return static_cast<float>(a + fraction * (static_cast<double>(b) - a));
 }
 
-TrackRow straight_row(const TrackRow& a, const TrackRow& b, std::int32_t frame, double share) {
+TrackRow straight_row(const TrackRow& a, const TrackRow& b, std::int32_t frame, double fraction) {
   TrackRow row = a;
   row.frame = frame;
-  row.x = on_line(a.x, b.x, share);
-  row.y = on_line(a.y, b.y, share);
-  row.vx = on_line(a.vx, b.vx, share);
-  row.vy = on_line(a.vy, b.vy, share);
-  row.left = on_line(a.left, b.left, share);
-  row.top = on_line(a.top, b.top, share);
-  row.width = on_line(a.width, b.width, share);
-  row.height = on_line(a.height, b.height, share);
-  row.score = on_line(a.score, b.score, share);
+  row.x = on_line(a.x, b.x, fraction);
+  row.y = on_line(a.y, b.y, fraction);
+  row.vx = on_line(a.vx, b.vx, fraction);
+  row.vy = on_line(a.vy, b.vy, fraction);
+  row.left = on_line(a.left, b.left, fraction);
+  row.top = on_line(a.top, b.top, fraction);
+  row.width = on_line(a.width, b.width, fraction);
+  row.height = on_line(a.height, b.height, fraction);
+  row.score = on_line(a.score, b.score, fraction);
   row.provenance = Provenance::filled;
   row.has_centre = false;
   return row;
@@ -36,8 +36,8 @@ TrackRow straight_row(const TrackRow& a, const TrackRow& b, std::int32_t frame, 
 /// means over the gap where they would throw the curve wide: a target that turned unseen has left with another velocity.
 float on_cubic(float a, float va, float b, float vb, double span, double u) {
   const double rise = b - a;
-  const double most = 3 * std::abs(rise);  // Fritsch & Carlson 1980: no overshoot
-  const double ta = std::clamp(va * span, -most, most), tb = std::clamp(vb * span, -most, most);
+  const double maximum = 3 * std::abs(rise);  // Fritsch & Carlson 1980: no overshoot
+  const double ta = std::clamp(va * span, -maximum, maximum), tb = std::clamp(vb * span, -maximum, maximum);
   const double u2 = u * u, u3 = u2 * u;
   return static_cast<float>((2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * ta + (-2 * u3 + 3 * u2) * b + (u3 - u2) * tb);
 }
@@ -60,33 +60,34 @@ void sort_by_frame(std::vector<TrackRow>& rows) {
 }
 
 /// The rows of the frames between the first and the last of `rows`, which are observed; what lies between them was guessed.
-void append_between(std::span<const TrackRow> rows, const TrackletLog& log, double longest, GapWay way, Tracklet& filled) {
+void append_between(std::span<const TrackRow> rows, const TrackletLog& log, double longest, GapInterpolation method,
+                    Tracklet& filled) {
   const TrackRow &from = rows.front(), &to = rows.back();
   const Timestamp begin = log.time_of(from.frame);
   const double span = seconds(log.time_of(to.frame) - begin);
   if (span > longest) return;
   auto guess = rows.begin();
   for (std::int32_t frame = from.frame + 1; frame < to.frame; ++frame) {
-    const double share = seconds(log.time_of(frame) - begin) / span;
-    const TrackRow straight = straight_row(from, to, frame, share);
-    if (way == GapWay::straight) {
+    const double fraction = seconds(log.time_of(frame) - begin) / span;
+    const TrackRow straight = straight_row(from, to, frame, fraction);
+    if (method == GapInterpolation::straight) {
       filled.push_back(straight);
       continue;
     }
     while (guess->frame < frame) ++guess;
-    filled.push_back(cubic_row(from, to, guess->frame == frame ? *guess : straight, span, share));
+    filled.push_back(cubic_row(from, to, guess->frame == frame ? *guess : straight, span, fraction));
   }
 }
 
 }  // namespace
 
-void fill_gaps(Tracklet& rows, const TrackletLog& log, double longest, GapWay way) {
+void fill_gaps(Tracklet& rows, const TrackletLog& log, double longest, GapInterpolation method) {
   Tracklet filled;
   filled.reserve(rows.empty() ? 0 : static_cast<std::size_t>(rows.back().frame - rows.front().frame + 1));
   const TrackRow* last = nullptr;
   for (const TrackRow& row : rows) {
     if (!row.observed()) continue;
-    if (last != nullptr) append_between(std::span(last, &row + 1), log, longest, way, filled);
+    if (last != nullptr) append_between(std::span(last, &row + 1), log, longest, method, filled);
     filled.push_back(row);
     last = &row;
   }
@@ -118,12 +119,12 @@ std::vector<TrackRow> fill_between_searches(std::span<const TrackRow> rows, std:
   return filled;
 }
 
-std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest, double longest) {
+std::vector<TrackRow> rows_of_points(TrackletLog& log, int lowest_count, double longest) {
   std::vector<TrackRow> rows;
   for (TrackletLog::Tracklet& tracklet : log.take_tracklets()) {
-    const auto seen = [](const TrackRow& row) { return row.observed(); };
-    if (std::count_if(tracklet.begin(), tracklet.end(), seen) < fewest) continue;
-    fill_gaps(tracklet, log, longest, GapWay::cubic);
+    const auto detected = [](const TrackRow& row) { return row.observed(); };
+    if (std::count_if(tracklet.begin(), tracklet.end(), detected) < lowest_count) continue;
+    fill_gaps(tracklet, log, longest, GapInterpolation::cubic);
     rows.insert(rows.end(), tracklet.begin(), tracklet.end());
   }
   sort_by_frame(rows);

@@ -13,16 +13,16 @@ namespace marey::track::offline {
 /// Rows between two measured ones, whose provenance is `filled`.
 ///   straight  every value on the straight way between both ends: people
 ///   cubic     places on the cubic through the places and velocities of both ends, the rest as it was guessed: points
-enum class GapWay { straight, cubic };
+enum class GapInterpolation { straight, cubic };
 
 /// Rows between two observed ones are put between them where that lasts at most `longest` seconds; where it lasts longer, before
 /// the first and after the last observation there are none. `rows` are one target's, in the order of frames; frames may be missing.
-void fill_gaps(TrackletLog::Tracklet& rows, const TrackletLog& log, double longest, GapWay way);
+void fill_gaps(TrackletLog::Tracklet& rows, const TrackletLog& log, double longest, GapInterpolation method);
 
-/// What a second look can say of points that were followed by themselves: the tracklets without gaps of up to `longest` seconds.
+/// What a second pass can say of points that were followed by themselves: the tracklets without gaps of up to `longest` seconds.
 /// Tracklets seen in less than `fewest` frames are dropped. Rows in the order of frames, then ids. The recording's tracklets are
 /// used up.
-std::vector<TrackRow> rows_of_points(TrackletLog& log, int fewest = 3, double longest = 1);
+std::vector<TrackRow> rows_of_points(TrackletLog& log, int lowest_count = 3, double longest = 1);
 
 /// Rows of a recording of which only some frames were searched, from rows that count those: `searched[row.frame]` is the frame's
 /// index among all, whose times are `times`. Rows on the straight line are put between the rows of a target in two

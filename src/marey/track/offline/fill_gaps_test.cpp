@@ -12,8 +12,8 @@ Timestamp frame_time(int frame) {
 }
 
 /// A target on a parabola, seen where `seen(frame)`.
-template <typename Seen>
-TrackletLog record_of(int frames, Seen&& seen) {
+template <typename Detected>
+TrackletLog record_of(int frames, Detected&& detected) {
   TrackletLog log;
   for (int i = 0; i < frames; ++i) {
     const double t = i / 30.0;
@@ -22,7 +22,7 @@ TrackletLog record_of(int frames, Seen&& seen) {
     track.position = {100 + 60 * t, 50 + 90 * t * t};
     track.velocity = {60, 180 * t};
     track.box = Box::from_centre(track.position, 9, 9);
-    if (!seen(i)) {
+    if (!detected(i)) {
       track.position.setZero();  // a bad guess
       track.provenance = Provenance::predicted;
     }
@@ -63,7 +63,7 @@ TEST(FillGaps, TheStraightWayPutsARowInEveryFrameAlsoWhereNothingWasGuessed) {
   TrackletLog log = record_of(30, [](int i) { return i < 10 || i >= 20; });
   auto rows = log.take_tracklets().front();
   std::erase_if(rows, [](const TrackRow& row) { return row.frame == 14; });
-  fill_gaps(rows, log, 1, GapWay::straight);
+  fill_gaps(rows, log, 1, GapInterpolation::straight);
   ASSERT_EQ(rows.size(), 30u);
   const TrackRow &from = rows[9], &to = rows[20];
   for (int frame = 10; frame < 20; ++frame) {
@@ -72,7 +72,7 @@ TEST(FillGaps, TheStraightWayPutsARowInEveryFrameAlsoWhereNothingWasGuessed) {
     EXPECT_FALSE(row.observed());
     EXPECT_NEAR(row.y, from.y + (to.y - from.y) * (frame - 9) / 11, 1e-3);
   }
-  fill_gaps(rows, log, 0.3, GapWay::straight);
+  fill_gaps(rows, log, 0.3, GapInterpolation::straight);
   EXPECT_EQ(rows.size(), 20u) << "a longer gap stays open";
 }
 

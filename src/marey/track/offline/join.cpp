@@ -1,9 +1,9 @@
 // The second pass. Tracklets that end and begin at short notice are joined first. What that gives is cut wherever identity is in
-// doubt (identity_doubt.h), and all pieces of the recording are linked anew in one assignment, by motion, size and clothes
+// doubt (ambiguous_intervals.h), and all pieces of the recording are linked again in one assignment, by motion, size and clothes
 // together (tracklet_linker.h). Where no clothes were seen, motion alone decides no better than the tracker did: nothing is cut.
-// What is left is judged as a whole: false alarms go, gaps are filled, paths smoothed; at last, who left the picture and came back
+// What is left is evaluated as a whole: false alarms go, gaps are filled, paths smoothed; at last, who left the image and came back
 // gets the number from before (returns.h). Cost: near linear in tracklets, by the
-// number that begin while a gap may last; the rows are passed over a few times.
+// number that begin while a gap may last; the rows are skipped a few times.
 #include "marey/track/offline/join.h"
 
 #include <algorithm>
@@ -20,15 +20,15 @@ namespace {
 
 using Tracklet = TrackletLog::Tracklet;
 
-constexpr double weak_lasting = 1.5;  // s that weak observations must last to be believed
-constexpr double weak_share = 0.6;    // and of the frames, the share they must be in
+constexpr double weak_lasting = 1.5;   // s that weak observations must last to be trusted
+constexpr double weak_fraction = 0.6;  // and of the frames, the share they must be in
 
 constexpr double kShortNotice = 1;  // s
 
 // Of recordings whose boxes' noise was learned; docs/tuning.md has the sweep.
-constexpr double kPlaceKernel = 0.5;  // beside the time over which an optimal smoother of places averages
-constexpr double kSizeKernel = 0.7;   // the same for sizes
-constexpr double kStraying = 1;       // speed_noise for each unit of acceleration noise
+constexpr double kPositionKernel = 0.5;  // beside the time over which an optimal smoother of places averages
+constexpr double kSizeKernel = 0.7;      // the same for sizes
+constexpr double kStraying = 1;          // speed_noise for each unit of acceleration noise
 
 /// Predicted rows at the ends are cut.
 void trim(Tracklet& rows) {
@@ -39,27 +39,27 @@ void trim(Tracklet& rows) {
 
 /// What the observations of one target say of it.
 struct Standing {
-  std::int64_t seen = 0;
-  double lasted = 0;  // s
-  double share = 0;   // of its frames in which it was seen
-  double score = 0;   // mean
+  std::int64_t detected = 0;
+  double lasted = 0;    // s
+  double fraction = 0;  // of its frames in which it was seen
+  double score = 0;     // mean
 };
 
 Standing standing_of(const Tracklet& rows, const TrackletLog& log) {
   Standing standing;
   for (const TrackRow& row : rows) {
     if (!row.observed()) continue;
-    ++standing.seen;
+    ++standing.detected;
     standing.score += row.score;
   }
-  standing.score /= static_cast<double>(std::max<std::int64_t>(1, standing.seen));
+  standing.score /= static_cast<double>(std::max<std::int64_t>(1, standing.detected));
   standing.lasted = seconds(log.time_of(rows.back().frame) - log.time_of(rows.front().frame));
-  standing.share = static_cast<double>(standing.seen) / (rows.back().frame - rows.front().frame + 1);
+  standing.fraction = static_cast<double>(standing.detected) / (rows.back().frame - rows.front().frame + 1);
   return standing;
 }
 
 /// The score that half of the observations reach.
-double usual_score(std::span<const Tracklet> tracklets) {
+double default_score(std::span<const Tracklet> tracklets) {
   std::vector<float> scores;
   for (const Tracklet& tracklet : tracklets) {
     for (const TrackRow& row : tracklet) {
@@ -71,10 +71,11 @@ double usual_score(std::span<const Tracklet> tracklets) {
 }
 
 /// Too short, seen too rarely, or both rather short or rarely seen and unusually weak.
-bool is_false_alarm(const Standing& standing, double usual, const JoinOptions& options) {
-  if (standing.seen < options.fewest || standing.lasted < options.shortest || standing.share < options.rarest) return true;
-  const bool weak = standing.score < usual - options.weaker;
-  return weak && (standing.lasted < weak_lasting || standing.share < weak_share);
+bool is_false_alarm(const Standing& standing, double typical, const JoinOptions& options) {
+  if (standing.detected < options.lowest_count || standing.lasted < options.shortest || standing.fraction < options.rarest)
+    return true;
+  const bool weak = standing.score < typical - options.weaker;
+  return weak && (standing.lasted < weak_lasting || standing.fraction < weak_fraction);
 }
 
 std::vector<TrackRow> by_frame(std::vector<Tracklet>& tracklets) {
@@ -104,9 +105,9 @@ std::vector<TrackRow> by_frame(std::vector<Tracklet>& tracklets) {
 JoinOptions adapted(JoinOptions options, const image::BoxNoise& noise) {
   const image::BoxNoiseLevels frame = noise.levels_of_a_frame(), all = noise.levels();
   const double dt = noise.frame_time();
-  const double place = std::pow(frame.place * frame.place * dt / (frame.acceleration * frame.acceleration), 0.25);
+  const double location = std::pow(frame.location * frame.location * dt / (frame.acceleration * frame.acceleration), 0.25);
   const double size = frame.size * std::sqrt(dt) / frame.drift;
-  options.smoothing.place = std::min(options.smoothing.place, kPlaceKernel * place);
+  options.smoothing.location = std::min(options.smoothing.location, kPositionKernel * location);
   options.smoothing.size = std::min(options.smoothing.size, kSizeKernel * size);
   options.speed_noise = std::max(options.speed_noise, kStraying * all.acceleration);
   return options;
@@ -118,12 +119,12 @@ std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options, JoinRep
   std::erase_if(tracklets, [](const Tracklet& tracklet) { return tracklet.empty(); });
   const TrackletLinker linker(tracklets, log, options);
   tracklets = linker.join(std::move(tracklets), std::min(kShortNotice, options.longest_gap));
-  if (linker.knows_clothes()) tracklets = linker.decide_anew(std::move(tracklets));
+  if (linker.knows_clothes()) tracklets = linker.decide_again(std::move(tracklets));
   tracklets = linker.join(std::move(tracklets), options.longest_gap);
-  const double usual = usual_score(tracklets);
-  std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, log), usual, options); });
+  const double typical = default_score(tracklets);
+  std::erase_if(tracklets, [&](const Tracklet& rows) { return is_false_alarm(standing_of(rows, log), typical, options); });
   for (Tracklet& tracklet : tracklets) {
-    fill_gaps(tracklet, log, options.longest_filled, GapWay::straight);
+    fill_gaps(tracklet, log, options.longest_filled, GapInterpolation::straight);
     smooth(tracklet, log, options.smoothing);
     for (TrackRow& row : tracklet) row = log.in_view(row);
   }

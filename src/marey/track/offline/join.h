@@ -13,32 +13,32 @@ namespace marey::track::offline {
 
 /// Lengths in body heights where targets have boxes, else in px.
 struct JoinOptions {
-  double longest_gap = 4;       ///< s; who reappears later is somebody new
-  double longest_filled = 2.5;  ///< s; a longer gap is joined, but nothing is said of where the target was meanwhile
-  double place_noise = 0.12;    ///< standard deviation of an end of a tracklet
-  double speed_noise = 0.35;    ///< by how much the mean speed in a gap differs from that at its ends, 1/s
-  double size_noise = 0.15;     ///< of the logarithm of the height
-  double shortest = 0.35;       ///< s; what is seen for less is taken for a false alarm
-  int fewest = 3;               ///< observations; likewise
-  double rarest = 0.35;         ///< share of its frames; what is seen in fewer likewise
-  double weaker = 0.15;         ///< what scores this much below the usual must last longer and be seen more often
-  /// The picture, px. Who ends at its border has left, and who begins there has come: they are joined on strong evidence alone.
+  double longest_gap = 4;        ///< s; who reappears later is a person new
+  double longest_filled = 2.5;   ///< s; a longer gap is joined, but nothing is said of where the target was in the meantime
+  double position_noise = 0.12;  ///< standard deviation of an end of a tracklet
+  double speed_noise = 0.35;     ///< by how much the mean speed in a gap differs from that at its ends, 1/s
+  double size_noise = 0.15;      ///< of the logarithm of the height
+  double shortest = 0.35;        ///< s; what is seen for less is taken for a false alarm
+  int lowest_count = 3;          ///< observations; likewise
+  double rarest = 0.35;          ///< share of its frames; what is seen in fewer likewise
+  double weaker = 0.15;          ///< what scores this much below the typical must last longer and be seen more often
+  /// The image, px. Who ends at its border has left, and who begins there has come: they are joined on strong evidence alone.
   std::optional<Box> view = {};
   Smoothing smoothing = {};
-  ReturnOptions returns = {};  ///< who left the picture and came back; asked for only where `view` is known
+  ReturnOptions returns = {};  ///< who left the image and came back; asked for only where `view` is known
 };
 
 /// What the second pass decided that is said of a recording.
 struct JoinReport {
-  std::vector<Returned> returned;  ///< who left the picture and came back; indices of no use any more
+  std::vector<Returned> returned;  ///< who left the image and came back; indices of no use any more
 };
 
 /// The same for boxes whose noise was learned: paths are smoothed as far as their boxes need it, and people who accelerate harder
 /// than walkers may have gone farther while they were not seen.
 JoinOptions adapted(JoinOptions options, const image::BoxNoise& noise);
 
-/// The second pass over a whole recording, which may look ahead. Tracklets that are one target's are joined, gaps filled with
-/// predicted rows, ends without an observation cut, false alarms dropped, paths smoothed, ids given anew from 1 in the order of
+/// The second pass over a whole recording, which may use later frames. Tracklets that are one target's are joined, gaps filled with
+/// predicted rows, ends without an observation cut, false alarms dropped, paths smoothed, ids given again from 1 in the order of
 /// first appearance. Rows in the order of frames, then ids. The recording's tracklets are used up.
 std::vector<TrackRow> join(TrackletLog& log, const JoinOptions& options = {}, JoinReport* report = nullptr);
 

@@ -37,7 +37,7 @@ std::set<int> ids(const std::vector<TrackRow>& rows) {
   return all;
 }
 
-TEST(Join, OneWhoWalksOnBehindAColumnIsOne) {
+TEST(Join, LinksPersonBehindColumn) {
   TrackletLog log = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     if (k < 20) tracks.push_back(walker(3, 100 + 5 * k, 200));
@@ -53,7 +53,7 @@ TEST(Join, OneWhoWalksOnBehindAColumnIsOne) {
   }
 }
 
-TEST(Join, OneWhoComesFromElsewhereIsAnother) {
+TEST(Join, PersonFromElsewhereIsDistinct) {
   TrackletLog log = record_tracks(60, [](int k) {
     std::vector<Track<2>> tracks;
     if (k < 20) tracks.push_back(walker(1, 100 + 5 * k, 200));
@@ -82,7 +82,7 @@ TEST(Join, TwoBehindTheSameColumnAreNotMixedUp) {
   for (const auto& [id, end] : ends) EXPECT_EQ(end.first.x < 230, end.second.x > 230) << "turned round behind the column";
 }
 
-TEST(Join, WhatIsNeverConfirmedOrTooBriefIsLeftOut) {
+TEST(Join, ExcludesUnconfirmedAndBriefTracks) {
   TrackletLog log = record_tracks(30, [](int k) {
     std::vector<Track<2>> tracks{walker(1, 100 + 5 * k, 200)};
     if (k < 20) tracks.push_back(walker(2, 400, 300, Provenance::measured, false));
@@ -116,7 +116,7 @@ TEST(Join, RowsAreSmallEnoughForAWholeMatch) {
 
 TEST(Smooth, AStraightWayStaysStraightAndNoiseShrinks) {
   TrackletLog log = record_tracks(100, [](int k) { return std::vector{walker(1, 100 + 5 * k + (k % 2 == 0 ? 3 : -3), 200)}; });
-  const auto rows = join(log, {.smoothing = {.place = 0.3}});
+  const auto rows = join(log, {.smoothing = {.location = 0.3}});
   for (const TrackRow& row : rows) {
     if (row.frame < 10 || row.frame >= 90) continue;
     EXPECT_NEAR(row.x, 100 + 5 * row.frame, 1);

@@ -23,17 +23,17 @@ class OutlineLog {
   using Frame = std::map<std::int32_t, std::shared_ptr<const Outline>>;
 
   /// Keeps its file in the folder of `beside`, or where that takes none (a device) in the one for temporary files. Measurement
-  /// lines, which double its size, are kept on demand. Throws Error where no file can be made.
-  OutlineLog(const std::string& beside, bool with_lines);
+  /// lines, which double its size, are kept on demand. Throws Error if no file can be made.
+  OutlineLog(const std::string& next_to, bool with_lines);
   ~OutlineLog();
   OutlineLog(const OutlineLog&) = delete;
   OutlineLog& operator=(const OutlineLog&) = delete;
 
-  /// The tracks of one frame; frames grow from call to call. All are added before the first is read. Throws Error where the disk
+  /// The tracks of one frame; frames grow from call to call. All are added before the first is read. Throws Error if the disk
   /// is full.
   void add(std::int64_t frame, std::span<const Track<2>> tracks);
 
-  /// The outlines of `frame`, which grows from call to call, or begins anew at a lower one; valid until the next call.
+  /// The outlines of `frame`, which grows from call to call, or begins again at a lower one; valid until the next call.
   const Frame& at(std::int64_t frame);
 
  private:
@@ -44,12 +44,12 @@ class OutlineLog {
   void take(void* data, std::size_t size);
   void read_frame();
 
-  std::string beside_;
+  std::string next_to_;
   bool with_lines_;
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::vector<float> numbers_;  // of one outline
   bool reading_ = false;
-  std::optional<std::int64_t> last_asked_;
+  std::optional<std::int64_t> last_requested_;
   std::optional<std::int64_t> read_;  // the frame in `frame_`; past the last frame, the greatest number
   Frame frame_;
 };

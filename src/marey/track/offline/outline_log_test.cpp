@@ -108,15 +108,15 @@ TEST(OutlineLog, ADiskThatIsFullIsSaidWhenReadingBegins) {
   getrlimit(RLIMIT_FSIZE, &limit);
   const rlimit none{0, limit.rlim_max};
   setrlimit(RLIMIT_FSIZE, &none);
-  std::string said;
+  std::string stated;
   try {
     recording.at(0);
   } catch (const Error& error) {
-    said = error.what();
+    stated = error.what();
   }
   setrlimit(RLIMIT_FSIZE, &limit);
   std::signal(SIGXFSZ, before);
-  EXPECT_NE(said.find("no room beside it"), std::string::npos) << said;
+  EXPECT_NE(stated.find("no room beside it"), std::string::npos) << stated;
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ std::shared_ptr<const Outline> with_names(const std::shared_ptr<const Outline>& 
   return result;
 }
 
-/// A curve that crosses itself, or has left its target's size, is no outline of it.
+/// A curve that crosses itself, or has left its target's size, is not an outline of it.
 bool may_be_written(const Outline& outline, const TrackRow& row) {
   return contour::is_outline_of({outline.order, outline.control_points}, {row.left, row.top, row.width, row.height});
 }
@@ -70,16 +70,16 @@ void OutlinesOfRows::attach(std::int64_t frame, std::span<const TrackRow> rows, 
   for (const TrackRow& row : rows) id_of.emplace(row.first_id, row.id);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const TrackRow& row = rows[i];
-    const Vector<2> place(row.x, row.y);
+    const Vector<2> location(row.x, row.y);
     const auto found = outlines.find(row.first_id);
     const bool own = found != outlines.end() && (row.observed() || is_where(*found->second, row));
     if (own) {
       tracks[i].outline = with_names(with_centre(found->second, row), id_of);
-      last_[row.id] = {found->second, place, row.height};
+      last_[row.id] = {found->second, location, row.height};
     } else if (const auto known = before_.find(row.id); known != before_.end() && !row.observed()) {
       const Last& last = known->second;
       const double scale = last.height > 0 && row.has_box() ? row.height / last.height : 1;
-      tracks[i].outline = with_centre(carried(*last.outline, last.place, place, scale), row);
+      tracks[i].outline = with_centre(carried(*last.outline, last.location, location, scale), row);
       last_[row.id] = last;
     }
     if (tracks[i].outline && row.has_box() && !may_be_written(*tracks[i].outline, row)) tracks[i].outline.reset();

@@ -25,8 +25,8 @@ class OutlinesOfRows {
  private:
   struct Last {
     std::shared_ptr<const Outline> outline;
-    Vector<2> place;    // of the row it was seen in
-    double height = 0;  // of its box
+    Vector<2> location;  // of the row it was seen in
+    double height = 0;   // of its box
   };
 
   OutlineLog& recording_;

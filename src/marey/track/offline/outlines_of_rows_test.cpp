@@ -32,7 +32,7 @@ TrackRow row_at(int frame, int id, int first_id, double x, double height, Proven
   return row;
 }
 
-constexpr auto kSeen = Provenance::measured, kFilled = Provenance::filled;
+constexpr auto kObserved = Provenance::measured, kFilled = Provenance::filled;
 
 std::shared_ptr<const Outline> attached(OutlinesOfRows& outlines, const TrackRow& row) {
   std::vector<Track<2>> tracks(1);
@@ -46,17 +46,17 @@ TEST(OutlinesOfRows, FollowTheNumbersThatTrackletsHadBeforeTheyWereJoined) {
   recording.add(0, std::vector{track_at(3, 10), track_at(5, 100)});
   recording.add(4, std::vector{track_at(3, 200), track_at(8, 50)});
   OutlinesOfRows outlines(recording);
-  EXPECT_EQ(attached(outlines, row_at(0, 1, 3, 11, 16, kSeen))->centre.x(), 10);
-  EXPECT_EQ(attached(outlines, row_at(4, 1, 8, 51, 16, kSeen))->centre.x(), 50) << "joined from 3 and 8; the new 3 is another";
+  EXPECT_EQ(attached(outlines, row_at(0, 1, 3, 11, 16, kObserved))->centre.x(), 10);
+  EXPECT_EQ(attached(outlines, row_at(4, 1, 8, 51, 16, kObserved))->centre.x(), 50) << "joined from 3 and 8; the new 3 is another";
 }
 
 TEST(OutlinesOfRows, InAGapTheLastOutlineMovesAndGrowsWithItsRow) {
   const test::TemporaryFolder folder;
   OutlineLog recording(folder / "x", true);
   recording.add(0, std::vector{track_at(3, 10)});
-  recording.add(2, std::vector{track_at(3, 500)});  // where the first pass coasted to: not believed
+  recording.add(2, std::vector{track_at(3, 500)});  // where the first pass coasted to: not trusted
   OutlinesOfRows outlines(recording);
-  attached(outlines, row_at(0, 1, 3, 11, 16, kSeen));
+  attached(outlines, row_at(0, 1, 3, 11, 16, kObserved));
   const auto first = attached(outlines, row_at(1, 1, 3, 21, 16, kFilled));
   EXPECT_EQ(first->centre, Vector<2>(20, 8));
   EXPECT_EQ(first->state, Outline::State::held);
@@ -72,7 +72,7 @@ TEST(OutlinesOfRows, ARowWithoutAnOutlineGetsNone) {
   OutlineLog recording(folder / "x", false);
   recording.add(0, std::vector{track_at(3, 10)});
   OutlinesOfRows outlines(recording);
-  EXPECT_EQ(attached(outlines, row_at(0, 1, 4, 11, 16, kSeen)), nullptr);
+  EXPECT_EQ(attached(outlines, row_at(0, 1, 4, 11, 16, kObserved)), nullptr);
   EXPECT_EQ(attached(outlines, row_at(1, 1, 4, 11, 16, kFilled)), nullptr);
 }
 

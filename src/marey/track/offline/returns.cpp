@@ -20,17 +20,17 @@ namespace {
 using Tracklet = TrackletLog::Tracklet;
 
 constexpr double kClothesFor = 5;                      // s of a tracklet that tell what it wears at an end
-constexpr int kFewestMoments = 8;                      // of a tracklet whose clothes are learned from
+constexpr int kMinTimeSteps = 8;                       // of a tracklet whose clothes are learned from
 constexpr double kMotionFor = 0.8;                     // s that tell where an end goes
 constexpr double kNearBorder = 0.2, kSoonThere = 1;    // heights, s: who is that near or there so soon leaves, or has come
-constexpr double kPlaceUnsure = 0.25;                  // heights along the border, however short the time away
+constexpr double kPositionUnsure = 0.25;               // heights along the border, however short the time away
 constexpr double kFastest = 5;                         // heights/s
-constexpr double kMostGrown = 0.5;                     // of the logarithm of the height
+constexpr double kMaxGrown = 0.5;                      // of the logarithm of the height
 constexpr double kBandwidth = 1, kAnywhereCounts = 3;  // heights; as many people as come in anywhere, beside those who were seen to
-constexpr double kKnown = 0.8;       // probability of a pair by clothes alone, from which on rates of return are learned from it
-constexpr double kFading = 0.5;      // of `usually_away`: from then on, so long until e times fewer come back
-constexpr double kFirstShare = 0.3;  // of those who leave, who come back: to begin with,
-constexpr double kFirstCounts = 2;   // and as sure as this number of people
+constexpr double kKnown = 0.8;          // probability of a pair by clothes alone, from which on rates of return are learned from it
+constexpr double kFading = 0.5;         // of `typically_away`: from then on, this long until e times fewer come back
+constexpr double kFirstFraction = 0.3;  // of those who leave, who come back: to begin with,
+constexpr double kFirstCounts = 2;      // and as sure as this number of people
 constexpr std::array<double, 4> kSpreads{0.4, 0.65, 1,
                                          1.6};  // factors on how far from where they went out people come in: all are tried
 constexpr double kSpreadUnsure = 0.7;           // deviation of the logarithm of that, before anything is known
@@ -41,11 +41,11 @@ constexpr double kAtOnce = 1;        // s at both bounds of the recording, where
 
 enum class Side { left, right, top, bottom };
 
-/// Where and when a tracklet crosses the picture's border.
+/// Where and when a tracklet crosses the image's border.
 struct Crossing {
-  double time = 0;   // s
-  double place = 0;  // px along the border, from its top left, clockwise
-  double size = 1;   // px
+  double time = 0;      // s
+  double location = 0;  // px along the border, from its top left, clockwise
+  double size = 1;      // px
   bool of_border = false;
   bool of_recording = false;  // at its bounds
   bool upright = false;       // at the left or right
@@ -56,8 +56,8 @@ double perimeter(const Box& view) {
 }
 
 double distance_along(double a, double b, const Box& view) {
-  const double way = std::abs(a - b);
-  return std::min(way, perimeter(view) - way);
+  const double method = std::abs(a - b);
+  return std::min(method, perimeter(view) - method);
 }
 
 /// Of the height without those that the border cuts.
@@ -91,16 +91,16 @@ class Crossings {
     const double y = std::clamp(double(edge.top) + edge.height - view_.top, 0.0, view_.height);
     switch (side) {
       case Side::top:
-        crossing.place = x;
+        crossing.location = x;
         break;
       case Side::right:
-        crossing.place = view_.width + y;
+        crossing.location = view_.width + y;
         break;
       case Side::bottom:
-        crossing.place = view_.width + view_.height + (view_.width - x);
+        crossing.location = view_.width + view_.height + (view_.width - x);
         break;
       case Side::left:
-        crossing.place = 2 * view_.width + view_.height + (view_.height - y);
+        crossing.location = 2 * view_.width + view_.height + (view_.height - y);
         break;
     }
     return crossing;
@@ -135,7 +135,7 @@ image::Worn worn_of(const Tracklet& rows, const TrackletLog& log) {
   worn.end = seconds(log.time_of(rows.back().frame));
   for (const TrackRow& row : rows) {
     const image::Clothes clothes = row.clothes.unpacked();
-    if (!row.observed() || row.doubtful || !(clothes.upper || clothes.lower || clothes.shanks)) continue;
+    if (!row.observed() || row.ambiguous || !(clothes.upper || clothes.lower || clothes.shanks)) continue;
     const double time = seconds(log.time_of(row.frame));
     all.push_back(clothes);
     if (time - worn.begin <= kClothesFor) first.push_back(clothes);
@@ -144,10 +144,10 @@ image::Worn worn_of(const Tracklet& rows, const TrackletLog& log) {
   worn.first = image::mean_clothes(first);
   worn.last = image::mean_clothes(last);
   worn.whole = image::mean_clothes(all);
-  if (static_cast<int>(all.size()) >= kFewestMoments) {
-    const std::span<const image::Clothes> seen = all;
-    worn.early = image::mean_clothes(seen.first(seen.size() / 3));
-    worn.late = image::mean_clothes(seen.last(seen.size() / 3));
+  if (static_cast<int>(all.size()) >= kMinTimeSteps) {
+    const std::span<const image::Clothes> detected = all;
+    worn.early = image::mean_clothes(detected.first(detected.size() / 3));
+    worn.late = image::mean_clothes(detected.last(detected.size() / 3));
   }
   return worn;
 }
@@ -179,7 +179,7 @@ class Returns {
     const std::vector<int> next = assign::sparse_assignment(count, count, weighed);
     for (std::size_t k = 0; k < weighed.size(); ++k) {
       const assign::GatedPair& pair = weighed[k];
-      if (next[static_cast<std::size_t>(pair.row)] != pair.column || beliefs[k] < options_.least_probability) continue;
+      if (next[static_cast<std::size_t>(pair.row)] != pair.column || beliefs[k] < options_.min_probability) continue;
       if (comings() < kMinComings && clothes_[k] < kClothesAlone) continue;
       found.push_back({pair.row, pair.column, head(pair).time - tail(pair).time, beliefs[k]});
     }
@@ -196,7 +196,7 @@ class Returns {
     const int count = static_cast<int>(heads_.size());
     const double rate = static_cast<double>(comings()) / std::max(1.0, end_ - begin_);
     std::vector<assign::GatedPair> weighed = pairs_;
-    for (assign::GatedPair& pair : weighed) pair.gain += std::log(kFirstShare / rate);
+    for (assign::GatedPair& pair : weighed) pair.gain += std::log(kFirstFraction / rate);
     std::vector<bool> known;
     for (const double belief : assign::association_beliefs(count, count, weighed)) known.push_back(belief >= kKnown);
     return known;
@@ -206,14 +206,14 @@ class Returns {
     const auto came = static_cast<double>(comings()), returned = static_cast<double>(std::count(known.begin(), known.end(), true));
     double could = kFirstCounts;
     for (const Crossing& out : tails_) could += out.of_border && !out.of_recording ? come_back_by_end(out) : 0;
-    share_ = std::clamp((returned + kFirstCounts * kFirstShare) / could, 0.02, 0.95);
+    fraction_ = std::clamp((returned + kFirstCounts * kFirstFraction) / could, 0.02, 0.95);
     newcomers_ = std::max(0.5, came - returned) / std::max(1.0, end_ - begin_);
-    double most = -std::numeric_limits<double>::infinity();
+    double maximum = -std::numeric_limits<double>::infinity();
     for (const double spread : kSpreads) {
       double likelihood = -0.5 * std::pow(std::log(spread) / kSpreadUnsure, 2);
       for (std::size_t k = 0; k < known.size(); ++k)
-        likelihood += known[k] ? log_place(tail(pairs_[k]), head(pairs_[k]), spread) : 0;
-      if (likelihood > most) most = likelihood, spread_ = spread;
+        likelihood += known[k] ? log_position(tail(pairs_[k]), head(pairs_[k]), spread) : 0;
+      if (likelihood > maximum) maximum = likelihood, spread_ = spread;
     }
   }
 
@@ -223,8 +223,8 @@ class Returns {
       const Crossing &out = tails_[static_cast<std::size_t>(row)], &in = heads_[static_cast<std::size_t>(column)];
       const double away = in.time - out.time;
       if (!out.of_border || !in.of_border || out.of_recording || in.of_recording || away < options_.shortest_away) return;
-      const double size = std::sqrt(out.size * in.size), way = distance_along(out.place, in.place, view_);
-      if (way > (1 + kFastest * away) * size || std::abs(std::log(in.size / out.size)) > kMostGrown) return;
+      const double size = std::sqrt(out.size * in.size), method = distance_along(out.location, in.location, view_);
+      if (method > (1 + kFastest * away) * size || std::abs(std::log(in.size / out.size)) > kMaxGrown) return;
       const std::optional<double> clothes = wardrobe.log_ratio(row, column);
       if (!clothes) return;
       pairs_.push_back({row, column, *clothes + log_time(away)});
@@ -232,11 +232,11 @@ class Returns {
     });
   }
 
-  double log_place(const Crossing& out, const Crossing& in, double spread) const {
+  double log_position(const Crossing& out, const Crossing& in, double spread) const {
     const double size = std::sqrt(out.size * in.size) * spread, pace = in.upright ? options_.along : options_.across;
-    const double deviation = size * (kPlaceUnsure + pace * (in.time - out.time));
-    const double way = distance_along(out.place, in.place, view_) / deviation;
-    const double near = std::exp(-0.5 * way * way) / (std::sqrt(2 * std::numbers::pi) * deviation);
+    const double deviation = size * (kPositionUnsure + pace * (in.time - out.time));
+    const double method = distance_along(out.location, in.location, view_) / deviation;
+    const double near = std::exp(-0.5 * method * method) / (std::sqrt(2 * std::numbers::pi) * deviation);
     return std::log((1 - options_.anywhere) * near + options_.anywhere / perimeter(view_)) - std::log(density_of_newcomers(in));
   }
 
@@ -245,30 +245,30 @@ class Returns {
     double sum = kAnywhereCounts / perimeter(view_), count = kAnywhereCounts;
     for (const Crossing& other : heads_) {
       if (&other == &in || !other.of_border || other.of_recording) continue;
-      const double deviation = kBandwidth * in.size, way = distance_along(other.place, in.place, view_) / deviation;
-      sum += std::exp(-0.5 * way * way) / (std::sqrt(2 * std::numbers::pi) * deviation);
+      const double deviation = kBandwidth * in.size, method = distance_along(other.location, in.location, view_) / deviation;
+      sum += std::exp(-0.5 * method * method) / (std::sqrt(2 * std::numbers::pi) * deviation);
       count += 1;
     }
     return sum / count;
   }
 
-  /// 1/s: as likely at any time up to `usually_away`, from then on less and less.
+  /// 1/s: as likely at any time up to `typically_away`, from then on less and less.
   double log_time(double away) const {
-    const double fading = kFading * options_.usually_away;
-    return -std::max(0.0, away - options_.usually_away) / fading - std::log(options_.usually_away + fading);
+    const double fading = kFading * options_.typically_away;
+    return -std::max(0.0, away - options_.typically_away) / fading - std::log(options_.typically_away + fading);
   }
 
   std::vector<assign::GatedPair> weighed_pairs() const {
     std::vector<assign::GatedPair> weighed = pairs_;
     for (assign::GatedPair& pair : weighed)
-      pair.gain += log_place(tail(pair), head(pair), spread_) + std::log(share_ / newcomers_) -
-                   std::log1p(-share_ * come_back_by_end(tail(pair)));
+      pair.gain += log_position(tail(pair), head(pair), spread_) + std::log(fraction_ / newcomers_) -
+                   std::log1p(-fraction_ * come_back_by_end(tail(pair)));
     return weighed;
   }
 
   /// Of those who come back at all, who do before the recording ends.
   double come_back_by_end(const Crossing& out) const {
-    const double usually = options_.usually_away, fading = kFading * usually,
+    const double usually = options_.typically_away, fading = kFading * usually,
                  left = std::min(options_.longest_away, end_ - out.time);
     return (std::min(left, usually) + fading * (1 - std::exp(-std::max(0.0, left - usually) / fading))) / (usually + fading);
   }
@@ -283,7 +283,7 @@ class Returns {
   std::vector<Crossing> heads_, tails_;   // of the tracklets
   std::vector<assign::GatedPair> pairs_;  // tails and heads
   std::vector<double> clothes_;           // of each pair: log-likelihood ratio of the clothes
-  double share_ = kFirstShare;            // of those who leave, who come back
+  double fraction_ = kFirstFraction;      // of those who leave, who come back
   double newcomers_ = 0;                  // 1/s
   double spread_ = 1;
 };

@@ -1,4 +1,4 @@
-// Who left the picture and came back.
+// Who left the image and came back.
 //
 // A tracklet that ends at the border and a later one that begins there may be one person. Evidence: the appearance of the clothes
 // (wardrobe.h), the position along the border, and the time away: people return within seconds, near the point of exit. The
@@ -21,10 +21,10 @@
 namespace marey::track::offline {
 
 struct ReturnOptions {
-  double longest_away = 15;         ///< s
-  double shortest_away = 0.4;       ///< s
-  double usually_away = 5;          ///< s: who comes back does so at any time up to this, more seldom later
-  double least_probability = 0.95;  ///< of a pair, to be joined; above 1: nobody is
+  double longest_away = 15;       ///< s
+  double shortest_away = 0.4;     ///< s
+  double typically_away = 5;      ///< s: who comes back does so at any time up to this, more rarely later
+  double min_probability = 0.95;  ///< of a pair, to be joined; above 1: no person is
   double along = 0.06;    ///< heights along the border for each second away, at its sides; a person walks away from us there
   double across = 0.4;    ///< the same at its top and bottom
   double anywhere = 0.1;  ///< share of those who come back anywhere along the border
@@ -37,7 +37,7 @@ struct Returned {
   double probability = 0;
 };
 
-/// Finds them. `tracklets` in the order of frames each, in px of their frames' pictures, none empty; `view` is the picture. No
+/// Finds them. `tracklets` in the order of frames each, in px of their frames' images, none empty; `view` is the image. No
 /// tracklet is twice a `before`, nor twice an `after`.
 std::vector<Returned> find_returned(std::span<const TrackletLog::Tracklet> tracklets, const TrackletLog& log, const Box& view,
                                     const ReturnOptions& options = {});

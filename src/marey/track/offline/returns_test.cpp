@@ -16,16 +16,16 @@ namespace marey::track::offline {
 namespace {
 
 constexpr double kReturnsRate = 10;  // Hz
-constexpr double kPictureWidth = 800, kPictureHeight = 600, kTallness = 80;
-const Box kPicture{0, 0, kPictureWidth, kPictureHeight};
+constexpr double kImageWidth = 800, kImageHeight = 600, kTallness = 80;
+const Box kImage{0, 0, kImageWidth, kImageHeight};
 
-/// People who walk through the picture at a height of their own, leave it at a side, and come back there after 2 to 10 s; some do
-/// not, and somebody else comes in their stead.
+/// People who walk through the image at a height of their own, leave it at a side, and come back there after 2 to 10 s; some do
+/// not, and another person comes in their stead.
 class ComingAndGoing {
  public:
   ComingAndGoing(unsigned seed, bool own_clothes, bool return_at_all = true, int frames = 600, int people = 12)
       : random_(seed), own_clothes_(own_clothes), return_at_all_(return_at_all) {
-    for (int k = 0; k < people; ++k) people_.push_back(somebody(uniform(50, kPictureWidth - 50)));
+    for (int k = 0; k < people; ++k) people_.push_back(any_person(uniform(50, kImageWidth - 50)));
     for (int frame = 0; frame < frames; ++frame) step(frame);
   }
 
@@ -42,24 +42,24 @@ class ComingAndGoing {
     double x = 0, y = 0, vx = 0;
     int comes_back = 0;  // frame; while it is away
     bool away = false;
-    std::array<Appearance, 3> wears;
+    std::array<Appearance, 3> clothing;
   };
 
   double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
   float noise() { return static_cast<float>(std::normal_distribution<double>(0, 2)(random_)); }
 
-  Person somebody(double x) {
+  Person any_person(double x) {
     Person one;
     one.id = ++last_person_;
     one.track = ++last_track_;
     one.x = x;
-    one.y = uniform(100, kPictureHeight - 60);
+    one.y = uniform(100, kImageHeight - 60);
     one.vx = (uniform(0, 1) < 0.5 ? 1 : -1) * uniform(40, 160);
     const bool red = one.id % 2 == 0;
     for (std::size_t part = 0; part < 3; ++part) {
       const double lightness = own_clothes_ ? uniform(15, 90) : red ? 40 : 70;
       const double a = own_clothes_ ? uniform(-40, 40) : red ? 35 : 0, b = own_clothes_ ? uniform(-40, 40) : red ? 10 : 5;
-      one.wears[part] = {static_cast<float>(lightness), static_cast<float>(a), static_cast<float>(b), 3};
+      one.clothing[part] = {static_cast<float>(lightness), static_cast<float>(a), static_cast<float>(b), 3};
     }
     begin(one);
     return one;
@@ -77,8 +77,8 @@ class ComingAndGoing {
       if (one.away && frame >= one.comes_back) come_back(one);
       if (one.away) continue;
       one.x += one.vx / kReturnsRate;
-      one.y = std::clamp(one.y + uniform(-3, 3), 90.0, kPictureHeight - 50);
-      if (one.x < 0 || one.x > kPictureWidth) {
+      one.y = std::clamp(one.y + uniform(-3, 3), 90.0, kImageHeight - 50);
+      if (one.x < 0 || one.x > kImageWidth) {
         one.away = true;
         one.comes_back = frame + static_cast<int>(kReturnsRate * uniform(2, 10));
         continue;
@@ -86,13 +86,13 @@ class ComingAndGoing {
       Track<2> track;
       track.id = TrackId{one.track};
       track.position = {one.x, one.y};
-      const double left = std::max(0.0, one.x - 16), right = std::min(kPictureWidth, one.x + 16);
+      const double left = std::max(0.0, one.x - 16), right = std::min(kImageWidth, one.x + 16);
       track.box = Box{left, one.y - kTallness / 2, std::max(4.0, right - left), kTallness};
       track.score = 0.9;
       track.observation = static_cast<int>(clothes.size());
-      std::array<Appearance, 3> seen = one.wears;
-      for (Appearance& part : seen) part.lightness += noise(), part.a += noise(), part.b += noise();
-      clothes.push_back({seen[0], seen[1], seen[2]});
+      std::array<Appearance, 3> detected = one.clothing;
+      for (Appearance& part : detected) part.lightness += noise(), part.a += noise(), part.b += noise();
+      clothes.push_back({detected[0], detected[1], detected[2]});
       tracks.push_back(track);
     }
     std::sort(tracks.begin(), tracks.end(), [](const Track<2>& a, const Track<2>& b) { return a.id < b.id; });
@@ -100,17 +100,17 @@ class ComingAndGoing {
   }
 
   void come_back(Person& one) {
-    const double side = one.x < kPictureWidth / 2 ? 1 : kPictureWidth - 1;
+    const double side = one.x < kImageWidth / 2 ? 1 : kImageWidth - 1;
     if (!return_at_all_ || uniform(0, 1) < 1.0 / 6) {
-      one = somebody(uniform(0, 1) < 0.5 ? 1 : kPictureWidth - 1);
-      one.vx = one.x < kPictureWidth / 2 ? std::abs(one.vx) : -std::abs(one.vx);
+      one = any_person(uniform(0, 1) < 0.5 ? 1 : kImageWidth - 1);
+      one.vx = one.x < kImageWidth / 2 ? std::abs(one.vx) : -std::abs(one.vx);
       return;
     }
     one.away = false;
     one.track = ++last_track_;
     one.x = side;
-    one.y = std::clamp(one.y + std::normal_distribution<double>(0, 40)(random_), 100.0, kPictureHeight - 60);
-    one.vx = (side < kPictureWidth / 2 ? 1 : -1) * uniform(40, 160);
+    one.y = std::clamp(one.y + std::normal_distribution<double>(0, 40)(random_), 100.0, kImageHeight - 60);
+    one.vx = (side < kImageWidth / 2 ? 1 : -1) * uniform(40, 160);
     begin(one);
   }
 
@@ -136,7 +136,7 @@ Outcome outcome_of(const Scenes& scenes) {
     ComingAndGoing scene(scenes.first_seed + static_cast<unsigned>(k), scenes.own_clothes, true, scenes.frames, scenes.people);
     std::vector<TrackletLog::Tracklet> tracklets = scene.log.take_tracklets();
     for (const auto& [person, of] : scene.visits) outcome.returns += static_cast<int>(of.size()) - 1;
-    for (const Returned& pair : find_returned(tracklets, scene.log, kPicture)) {
+    for (const Returned& pair : find_returned(tracklets, scene.log, kImage)) {
       const int before = scene.person_of_track[tracklets[static_cast<std::size_t>(pair.before)].front().id];
       const int after = scene.person_of_track[tracklets[static_cast<std::size_t>(pair.after)].front().id];
       ++(before == after ? outcome.right : outcome.joined_wrongly);
@@ -147,7 +147,7 @@ Outcome outcome_of(const Scenes& scenes) {
   return outcome;
 }
 
-TEST(Returns, WhoComesBackInClothesOfTheirOwnIsKnown) {
+TEST(Returns, ReidentifiesDistinctClothing) {
   const Outcome outcome = outcome_of({.own_clothes = true, .first_seed = 500});
   ASSERT_GT(outcome.returns, 100);
   EXPECT_GT(outcome.right, 0.7 * outcome.returns) << "seeds 500 to 509";
@@ -165,32 +165,32 @@ TEST(Returns, TwoTeamsGetNoNumberOfAnother) {
   }
 }
 
-TEST(Returns, WhereNobodyReturnsHardlyAnybodyIsJoined) {
+TEST(Returns, RarelyLinksWithoutReturns) {
   for (const bool own_clothes : {true, false}) {
     int came = 0, joined = 0;
     for (unsigned seed = 700; seed < 710; ++seed) {
       ComingAndGoing scene(seed, own_clothes, false);
       const std::vector<TrackletLog::Tracklet> tracklets = scene.log.take_tracklets();
       came += static_cast<int>(scene.visits.size()) - 12;
-      joined += static_cast<int>(find_returned(tracklets, scene.log, kPicture).size());
+      joined += static_cast<int>(find_returned(tracklets, scene.log, kImage).size());
     }
     ASSERT_GT(came, 100);
     EXPECT_LE(joined, 0.03 * came) << (own_clothes ? "own clothes" : "two teams") << ", seeds 700 to 709";
   }
 }
 
-TEST(Returns, WhoGoesOnInThePictureIsNobodyWhoReturned) {
+TEST(Returns, ContinuingPersonIsNoReturn) {
   ComingAndGoing scene(1, true);
   const std::vector<TrackletLog::Tracklet> tracklets = scene.log.take_tracklets();
-  EXPECT_TRUE(find_returned(tracklets, scene.log, Box{-1000, -1000, 3000, 3000}).empty()) << "nobody is near the border";
-  EXPECT_TRUE(find_returned({}, scene.log, kPicture).empty());
+  EXPECT_TRUE(find_returned(tracklets, scene.log, Box{-1000, -1000, 3000, 3000}).empty()) << "no person is near the border";
+  EXPECT_TRUE(find_returned({}, scene.log, kImage).empty());
 }
 
 TEST(Returns, TheSecondPassGivesOneNumberAndFillsNothingBetween) {
   ComingAndGoing scene(2, true);
   TrackletLog log = scene.log;
   JoinOptions options;
-  options.view = kPicture;
+  options.view = kImage;
   JoinReport report;
   const std::vector<TrackRow> rows = join(log, options, &report);
   ASSERT_FALSE(report.returned.empty());
@@ -206,7 +206,7 @@ TEST(Returns, TheSecondPassGivesOneNumberAndFillsNothingBetween) {
   bool gap = false;
   for (auto& [id, at] : frames) {
     for (std::size_t i = 1; i < at.size(); ++i) {
-      EXPECT_GT(at[i], at[i - 1]) << "nobody is in two places at once";
+      EXPECT_GT(at[i], at[i - 1]) << "no person is in two places at once";
       gap = gap || at[i] - at[i - 1] > 2 * kReturnsRate;
     }
   }

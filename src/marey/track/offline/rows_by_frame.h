@@ -12,7 +12,7 @@
 
 namespace marey::track::offline {
 
-/// Hands out a table of rows, sorted by frame, frame by frame. The table must outlive it.
+/// Distributes a table of rows, sorted by frame, frame by frame. The table must outlive it.
 class RowsByFrame {
  public:
   /// `labels[id]` is the label of track `id`, where there is one. With `outlines`, which must outlive it, tracks have theirs.

@@ -71,7 +71,7 @@ void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) 
   const Tracklet before = rows;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     LocalLine x, y, fast_x, fast_y, centre_x, centre_y, width, height;
-    around(before, times, k, smoothing.place, [&](const TrackRow& row, double t, double weight) {
+    around(before, times, k, smoothing.location, [&](const TrackRow& row, double t, double weight) {
       x.add(t, weight, row.x);
       y.add(t, weight, row.y);
       centre_x.add(t, weight, row.left + row.width / 2);
@@ -86,7 +86,7 @@ void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) 
       height.add(t, weight, row.height);
     });
     TrackRow& row = rows[k];
-    smooth_outline(before, times, k, smoothing.place, row);
+    smooth_outline(before, times, k, smoothing.location, row);
     row.x = static_cast<float>(x.value());
     row.y = static_cast<float>(y.value());
     row.vx = static_cast<float>(fast_x.slope());

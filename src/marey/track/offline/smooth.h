@@ -5,7 +5,7 @@
 namespace marey::track::offline {
 
 struct Smoothing {
-  double place = 0.12;     ///< standard deviation of the kernel over time that smooths places, s
+  double location = 0.12;  ///< standard deviation of the kernel over time that smooths places, s
   double size = 0.4;       ///< the same for sizes
   double velocity = 0.12;  ///< the same for velocities
 };

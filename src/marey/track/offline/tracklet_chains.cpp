@@ -5,13 +5,13 @@
 namespace marey::track::offline {
 
 std::vector<std::vector<int>> chains_of(std::span<const int> next) {
-  std::vector<char> follows(next.size(), 0);
+  std::vector<char> tracks(next.size(), 0);
   for (const int successor : next) {
-    if (successor != assign::kNoIndex) follows[successor] = 1;
+    if (successor != assign::kNoIndex) tracks[successor] = 1;
   }
   std::vector<std::vector<int>> chains;
   for (int first = 0; first < static_cast<int>(next.size()); ++first) {
-    if (follows[first]) continue;
+    if (tracks[first]) continue;
     std::vector<int>& chain = chains.emplace_back();
     for (int piece = first; piece != assign::kNoIndex; piece = next[piece]) chain.push_back(piece);
   }

@@ -1,4 +1,4 @@
-// Which tracklets follow which: what the second pass in a picture and the one on the ground have in common. Each of them says what
+// Which tracklets follow which: what the second pass in an image and the one on the ground have in common. Each of them says what
 // it is worth that the piece which begins is the one which has ended; here are the pairs that come into question by time, and the
 // chains that one assignment of ends to beginnings (assign/sparse_assignment.h) makes of the pieces.
 // Cost: sorting the beginnings, and the pairs within the longest gap.

@@ -16,37 +16,37 @@ using Tracklet = TrackletLog::Tracklet;
 constexpr double fit_span = 0.8;        // s of a tracklet that its end is fitted to
 constexpr double clothes_span = 5;      // s of a tracklet that tell what it wears at its end
 constexpr double prior_speed = 0.6;     // sizes/s; what is known before two observations are
-constexpr double worth_of_joining = 9;  // how many log-likelihoods a newcomer at just this place and time is behind
+constexpr double score_of_joining = 9;  // how many log-likelihoods a newcomer at just this place and time is behind
 constexpr double gate = 16;             // chi-square, place and size: 4 degrees of freedom
 // docs/tuning.md has the sweep of those that follow.
-constexpr double kOutOfMeeting = 0.5;   // gain, at least, of one who went into a meeting and may be the one who comes out
-constexpr double kAsTracked = 1;        // gain of whom the tracker said
+constexpr double kOutOfEncounter = 0.5;  // gain, at least, of one who went into a meeting and may be the one who comes out
+constexpr double kAsTracked = 1;         // gain of whom the tracker said
 constexpr double kStands = 0.1;         // the same at least, where no other piece claims either: the light changes clothes; unswept
-constexpr double kLongestMeeting = 20;  // s
+constexpr double kMaxEncounter = 20;    // s
 constexpr double kStep = 1, kPace = 1;  // heights, heights/s: who comes out no farther from where it went in may be the same
-constexpr double kAtBorder = 0.1;       // heights from the picture's border
+constexpr double kAtBorder = 0.1;       // heights from the image's border
 constexpr double kHasLeft = 3;          // gain that each end at the border costs: who was there has left, or has just come
-constexpr double kUnseenAtBorder = 0.6;  // s from which on that counts
+constexpr double kUnobservedAtBorder = 0.6;  // s from which on that counts
 
 bool is_sure(const TrackRow& row) {
-  return row.observed() && !row.doubtful;
+  return row.observed() && !row.ambiguous;
 }
 
 /// What was seen of each row's clothes while it was sure who it is.
 std::vector<image::Clothes> clothes_of(std::span<const TrackRow> rows) {
-  std::vector<image::Clothes> seen;
+  std::vector<image::Clothes> detected;
   for (const TrackRow& row : rows) {
     const image::Clothes clothes = row.clothes.unpacked();
-    if (is_sure(row) && (clothes.upper || clothes.lower)) seen.push_back(clothes);
+    if (is_sure(row) && (clothes.upper || clothes.lower)) detected.push_back(clothes);
   }
-  return seen;
+  return detected;
 }
 
 image::ClothesLikelihood learned(std::span<Tracklet> tracklets, const TrackletLog& log) {
-  std::vector<std::vector<image::Clothes>> seen;
-  for (const TrackletPart& part : find_parts_between_doubts(tracklets, log))
-    seen.push_back(clothes_of(std::span(tracklets[part.tracklet]).subspan(part.first, part.end - part.first)));
-  return image::ClothesLikelihood(seen);
+  std::vector<std::vector<image::Clothes>> detected;
+  for (const TrackletPart& part : find_parts_between_ambiguities(tracklets, log))
+    detected.push_back(clothes_of(std::span(tracklets[part.tracklet]).subspan(part.first, part.end - part.first)));
+  return image::ClothesLikelihood(detected);
 }
 
 bool touches_border(const TrackRow& row, const Box& view) {
@@ -55,11 +55,11 @@ bool touches_border(const TrackRow& row, const Box& view) {
                            row.top + row.height > view.bottom() - near);
 }
 
-/// Where both have rows of one time, those in doubt go: first the later piece's, then the earlier's.
+/// Where both have rows of one time, those uncertain go: first the later piece's, then the earlier's.
 void append(Tracklet& whole, const Tracklet& next) {
   const auto last_sure = std::find_if(whole.rbegin(), whole.rend(), is_sure);
   auto first = next.begin();
-  while (first != next.end() && first->doubtful && last_sure != whole.rend() && first->frame <= last_sure->frame) ++first;
+  while (first != next.end() && first->ambiguous && last_sure != whole.rend() && first->frame <= last_sure->frame) ++first;
   while (first != next.end() && !whole.empty() && whole.back().frame >= first->frame) whole.pop_back();
   whole.insert(whole.end(), first, next.end());
 }
@@ -75,7 +75,7 @@ struct TrackletLinker::End {
   double size = 1;            // height, or 1
   double log_width = 0;
   image::Clothes clothes;
-  bool at_border = false;  // of the picture
+  bool at_border = false;  // of the image
 };
 
 TrackletLinker::TrackletLinker(std::span<Tracklet> tracklets, const TrackletLog& log, const JoinOptions& options)
@@ -84,14 +84,14 @@ TrackletLinker::TrackletLinker(std::span<Tracklet> tracklets, const TrackletLog&
 std::vector<Tracklet> TrackletLinker::join(std::vector<Tracklet> tracklets, double longest_gap) const {
   std::vector<TrackletPiece> pieces;
   for (Tracklet& tracklet : tracklets) {
-    for (TrackRow& row : tracklet) row.doubtful = false;
+    for (TrackRow& row : tracklet) row.ambiguous = false;
     pieces.push_back({std::move(tracklet), static_cast<int>(pieces.size()), {}, {}});
   }
   return link(std::move(pieces), longest_gap);
 }
 
-std::vector<Tracklet> TrackletLinker::decide_anew(std::vector<Tracklet> tracklets) const {
-  return link(cut_where_in_doubt(std::move(tracklets), log_), options_.longest_gap);
+std::vector<Tracklet> TrackletLinker::decide_again(std::vector<Tracklet> tracklets) const {
+  return link(cut_where_in_ambiguity(std::move(tracklets), log_), options_.longest_gap);
 }
 
 std::vector<Tracklet> TrackletLinker::link(std::vector<TrackletPiece> pieces, double longest_gap) const {
@@ -127,11 +127,11 @@ struct TrackletLinker::Line {
     width += row.has_box() ? std::log(row.width) : 0;
   }
 
-  void fit(double place_noise, End& end) const {
+  void fit(double position_noise, End& end) const {
     end.size = size / n;
     end.log_width = width / n;
     const double spread = t2 - t1 * t1 / n;
-    const double noise = place_noise * place_noise / 2;
+    const double noise = position_noise * position_noise / 2;
     const double regular = noise / (prior_speed * prior_speed);  // as if the target had been at rest, that surely
     end.velocity = (xt - t1 * x1 / n) / (spread + regular);
     end.speed_variance = noise / (spread + regular);
@@ -139,7 +139,7 @@ struct TrackletLinker::Line {
   }
 };
 
-/// Of the observed rows of the last, or first, `fit_span` seconds. Rows in doubt count only where there are no others.
+/// Of the observed rows of the last, or first, `fit_span` seconds. Rows uncertain count only where there are no others.
 TrackletLinker::End TrackletLinker::end_of(const TrackletPiece& piece, bool tail) const {
   const Tracklet& rows = piece.rows;
   const bool any_sure = std::any_of(rows.begin(), rows.end(), is_sure);
@@ -159,7 +159,7 @@ TrackletLinker::End TrackletLinker::end_of(const TrackletPiece& piece, bool tail
   if (!time) line.add(edge, 0);
   End end;
   end.time = time.value_or(time_of(edge));
-  line.fit(options_.place_noise, end);
+  line.fit(options_.position_noise, end);
   end.clothes = image::mean_clothes(clothes);
   end.at_border = options_.view && touches_border(log_.in_view(edge), *options_.view);
   return end;
@@ -173,10 +173,10 @@ std::vector<assign::GatedPair> TrackletLinker::candidates(std::span<const Trackl
   }
   std::vector<assign::GatedPair> pairs;
   const auto consider = [&](int tail, int head, Passage passage) {
-    const double worth = worth_of(tails[tail], heads[head], passage);
-    if (worth > 0) pairs.push_back({tail, head, worth});
+    const double merit = score_of(tails[tail], heads[head], passage);
+    if (merit > 0) pairs.push_back({tail, head, merit});
   };
-  const double longest = std::max(longest_gap, kLongestMeeting);
+  const double longest = std::max(longest_gap, kMaxEncounter);
   const auto gap = [&](int tail, int head) { return heads[head].time - tails[tail].time; };
   for_each_successor(tails, heads, longest, [&](int tail, int head) {
     const Passage passage = passage_of(pieces, tail, head);
@@ -192,24 +192,24 @@ std::vector<assign::GatedPair> TrackletLinker::candidates(std::span<const Trackl
 TrackletLinker::Passage TrackletLinker::passage_of(std::span<const TrackletPiece> pieces, int tail, int head) {
   const TrackletPiece& from = pieces[tail];
   const TrackletPiece& to = pieces[head];
-  if (!from.tail_meeting || from.tail_meeting != to.head_meeting) return Passage::apart;
-  return head == tail + 1 && from.tracklet == to.tracklet ? Passage::as_tracked : Passage::through_meeting;
+  if (!from.tail_encounter || from.tail_encounter != to.head_encounter) return Passage::apart;
+  return head == tail + 1 && from.tracklet == to.tracklet ? Passage::as_tracked : Passage::through_encounter;
 }
 
 /// Place, motion and size, then clothes; 0 or less where it is out of the question.
-double TrackletLinker::worth_of(const End& tail, const End& head, Passage passage) const {
-  double worth = gain(tail, head);
+double TrackletLinker::score_of(const End& tail, const End& head, Passage passage) const {
+  double merit = gain(tail, head);
   const double gap = head.time - tail.time;
   if (passage != Passage::apart) {
-    const double way = (head.position - tail.position).norm() / std::sqrt(tail.size * head.size);
-    if (passage == Passage::as_tracked || way < kStep + kPace * gap) worth = std::max(worth, kOutOfMeeting);
+    const double method = (head.position - tail.position).norm() / std::sqrt(tail.size * head.size);
+    if (passage == Passage::as_tracked || method < kStep + kPace * gap) merit = std::max(merit, kOutOfEncounter);
   }
   if (passage == Passage::as_tracked)
-    worth += kAsTracked;
-  else if (gap > kUnseenAtBorder)
-    worth -= kHasLeft * (static_cast<int>(tail.at_border) + static_cast<int>(head.at_border));
-  if (worth > 0) worth += clothes_.log_ratio(tail.clothes, head.clothes);
-  return passage == Passage::as_tracked ? std::max(worth, kStands) : worth;
+    merit += kAsTracked;
+  else if (gap > kUnobservedAtBorder)
+    merit -= kHasLeft * (static_cast<int>(tail.at_border) + static_cast<int>(head.at_border));
+  if (merit > 0) merit += clothes_.log_ratio(tail.clothes, head.clothes);
+  return passage == Passage::as_tracked ? std::max(merit, kStands) : merit;
 }
 
 /// Logarithm of how much likelier it is that one target made both ends than that one left and another came, by place, motion and
@@ -221,15 +221,15 @@ double TrackletLinker::gain(const End& tail, const End& head) const {
   const Vector<2> velocity = (tail.velocity / tail.speed_variance + head.velocity / head.speed_variance) / weight_sum;
   const Vector<2> residual = (head.position - tail.position - gap * velocity) / size;
   const double strayed = options_.speed_noise * gap;
-  const double variance = options_.place_noise * options_.place_noise + strayed * strayed / 2 + gap * gap / weight_sum;
-  const double turned = (head.velocity - tail.velocity).squaredNorm() / (size * size) /
-                        (tail.speed_variance + head.speed_variance + 2 * options_.speed_noise * options_.speed_noise);
+  const double variance = options_.position_noise * options_.position_noise + strayed * strayed / 2 + gap * gap / weight_sum;
+  const double rotated = (head.velocity - tail.velocity).squaredNorm() / (size * size) /
+                         (tail.speed_variance + head.speed_variance + 2 * options_.speed_noise * options_.speed_noise);
   const double grown = (std::log(head.size / tail.size)) / options_.size_noise;
   const double widened = (head.log_width - tail.log_width) / (2 * options_.size_noise);
   const double distance = residual.squaredNorm() / variance + grown * grown + widened * widened;
   if (distance > gate) return 0;
-  const double scale = options_.place_noise * options_.place_noise;
-  return (worth_of_joining - distance - turned / 2 - std::log(variance / scale) - gap / 2) / 2;
+  const double scale = options_.position_noise * options_.position_noise;
+  return (score_of_joining - distance - rotated / 2 - std::log(variance / scale) - gap / 2) / 2;
 }
 
 }  // namespace marey::track::offline

@@ -16,7 +16,7 @@ constexpr double kFrameRate = 10;  // Hz
 struct Shown {
   int id = 0;
   double x = 0, y = 200;
-  int wears = 0;  // 0 nothing that is seen
+  int clothing = 0;  // 0 nothing that is seen
 };
 
 image::Clothes worn(int which) {
@@ -39,7 +39,7 @@ TrackletLog record(int frames, ShownAt&& shown_at) {
       track.box = Box::from_centre(track.position, 32, 80);
       track.score = 0.9;
       track.observation = static_cast<int>(clothes.size());
-      clothes.push_back(worn(one.wears));
+      clothes.push_back(worn(one.clothing));
       tracks.push_back(track);
     }
     log.add(k, timestamp_from_seconds(k / kFrameRate), tracks, clothes);
@@ -55,23 +55,23 @@ int number_at(const std::vector<TrackRow>& rows, int frame, double x) {
   return 0;
 }
 
-/// Two meet in mid picture, stop, and each goes back to where it came from; the tracker takes them for two who passed.
-std::vector<Shown> turned_back(int k, int left_wears, int right_wears) {
-  const double way = k < 30 ? 5.0 * k : k < 36 ? 150 : 150 - 5.0 * (k - 36);
-  const bool exchanged = k >= 33;
-  const Shown left{exchanged ? 2 : 1, 150 + way, 200, left_wears}, right{exchanged ? 1 : 2, 460 - way, 203, right_wears};
-  return exchanged ? std::vector{right, left} : std::vector{left, right};
+/// Two meet in mid image, stop, and each goes back to where it came from; the tracker takes them for two who passed.
+std::vector<Shown> rotated_back(int k, int left_wears, int right_wears) {
+  const double method = k < 30 ? 5.0 * k : k < 36 ? 150 : 150 - 5.0 * (k - 36);
+  const bool swapped = k >= 33;
+  const Shown left{swapped ? 2 : 1, 150 + method, 200, left_wears}, right{swapped ? 1 : 2, 460 - method, 203, right_wears};
+  return swapped ? std::vector{right, left} : std::vector{left, right};
 }
 
-TEST(Linker, WhoTurnBackWhereTheyMeetAreToldByTheirClothes) {
-  TrackletLog log = record(70, [](int k) { return turned_back(k, 1, 2); });
+TEST(Linker, ClothingDistinguishesPeopleTurningBack) {
+  TrackletLog log = record(70, [](int k) { return rotated_back(k, 1, 2); });
   const auto rows = join(log);
   EXPECT_EQ(number_at(rows, 5, 175), number_at(rows, 65, 155)) << "the left one came back";
   EXPECT_EQ(number_at(rows, 5, 435), number_at(rows, 65, 455)) << "and the right one";
   EXPECT_NE(number_at(rows, 5, 175), number_at(rows, 5, 435));
 }
 
-TEST(Linker, WhoPassEachOtherKeepTheirNumbers) {
+TEST(Linker, CrossingPeopleKeepIds) {
   for (const bool dressed : {false, true}) {
     TrackletLog log = record(70, [&](int k) {
       return std::vector<Shown>{{1, 100 + 5.0 * k, 200, dressed ? 1 : 0}, {2, 460 - 5.0 * k, 203, dressed ? 2 : 0}};
@@ -82,7 +82,7 @@ TEST(Linker, WhoPassEachOtherKeepTheirNumbers) {
   }
 }
 
-/// Somebody walks out of the sun into shade; just there nobody sees them for half a second, or another passes. Others stand far
+/// A person walks out of the sun into shade; just there no person sees them for half a second, or another passes. Others stand far
 /// away, in clothes of many colours.
 int cut_in_two_although_alone(int cases, unsigned first_seed) {
   int cut = 0;
@@ -90,13 +90,13 @@ int cut_in_two_although_alone(int cases, unsigned first_seed) {
     std::mt19937 random(first_seed + static_cast<unsigned>(i));
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     const double speed = uniform(1, 6), darker = uniform(10, 45);
-    const int shade = static_cast<int>(uniform(25, 45)), beside = shade + static_cast<int>(uniform(-3, 3));
-    std::vector<Appearance> wear;
+    const int shade = static_cast<int>(uniform(25, 45)), next_to = shade + static_cast<int>(uniform(-3, 3));
+    std::vector<Appearance> clothe;
     for (int k = 0; k < 7; ++k) {
-      wear.push_back({.lightness = static_cast<float>(uniform(55, 90)),
-                      .a = static_cast<float>(uniform(-30, 30)),
-                      .b = static_cast<float>(uniform(-30, 30)),
-                      .deviation = 2});
+      clothe.push_back({.lightness = static_cast<float>(uniform(55, 90)),
+                        .a = static_cast<float>(uniform(-30, 30)),
+                        .b = static_cast<float>(uniform(-30, 30)),
+                        .deviation = 2});
     }
     TrackletLog log;
     for (int k = 0; k < 80; ++k) {
@@ -113,16 +113,16 @@ int cut_in_two_although_alone(int cases, unsigned first_seed) {
         clothes.push_back({colour, colour});
         tracks.push_back(track);
       };
-      Appearance colour = wear[0];
+      Appearance colour = clothe[0];
       if (k >= shade) colour.lightness -= static_cast<float>(darker), colour.b -= 8;
       show(1, 100 + speed * k, 200, colour);
-      if (i % 2 == 0 && k >= beside && k < beside + 6) {
+      if (i % 2 == 0 && k >= next_to && k < next_to + 6) {
         tracks.back().provenance = Provenance::predicted;
         tracks.back().observation.reset();
         clothes.pop_back();
       }
-      for (int other = 1; other < 6; ++other) show(1 + other, 100 + 150.0 * other, 600, wear[static_cast<std::size_t>(other)]);
-      if (i % 2 == 1) show(7, 100 + speed * beside + 5.0 * (beside - k), 206, wear[6]);
+      for (int other = 1; other < 6; ++other) show(1 + other, 100 + 150.0 * other, 600, clothe[static_cast<std::size_t>(other)]);
+      if (i % 2 == 1) show(7, 100 + speed * next_to + 5.0 * (next_to - k), 206, clothe[6]);
       log.add(k, timestamp_from_seconds(k / kFrameRate), tracks, clothes);
     }
     std::set<int> numbers;
@@ -134,11 +134,11 @@ int cut_in_two_although_alone(int cases, unsigned first_seed) {
   return cut;
 }
 
-TEST(Linker, WhoGoesOnAloneIsOneWhateverTheLightMakesOfTheClothes) {
+TEST(Linker, LinksLonePersonDespiteLightChange) {
   EXPECT_EQ(cut_in_two_although_alone(100, 3300), 0) << "seeds 3300 to 3399";
 }
 
-TEST(Linker, WhoLeavesIsNotWhoComesInThere) {
+TEST(Linker, LeavingPersonIsNotEnteringPerson) {
   TrackletLog log = record(90, [](int k) {
     std::vector<Shown> shown;
     if (k < 30) shown.push_back({1, 460 + 5.0 * k, 200, 0});
@@ -150,24 +150,24 @@ TEST(Linker, WhoLeavesIsNotWhoComesInThere) {
   for (const TrackRow& row : join(log, {.view = Box{0, 0, 625, 480}})) with_view.insert(row.id);
   for (const TrackRow& row : join(again)) without.insert(row.id);
   EXPECT_EQ(with_view.size(), 2U);
-  EXPECT_EQ(without.size(), 1U) << "the scene must tempt: in mid picture it would be one";
+  EXPECT_EQ(without.size(), 1U) << "the scene must tempt: in mid image it would be one";
 }
 
 TEST(IdentityDoubt, CutsWhereBoxesOverlapAndNamesTheMeeting) {
   TrackletLog log = record(
       70, [](int k) { return std::vector<Shown>{{1, 100 + 5.0 * k, 200, 0}, {2, 460 - 5.0 * k, 203, 0}, {3, 300, 500, 0}}; });
-  const auto pieces = cut_where_in_doubt(log.take_tracklets(), log);
+  const auto pieces = cut_where_in_ambiguity(log.take_tracklets(), log);
   ASSERT_EQ(pieces.size(), 5U);
   for (const int first : {0, 2}) {
-    EXPECT_FALSE(pieces[first].head_meeting);
-    ASSERT_TRUE(pieces[first].tail_meeting);
-    EXPECT_EQ(pieces[first].tail_meeting, pieces[first + 1].head_meeting);
-    EXPECT_EQ(pieces[first].tail_meeting, pieces[0].tail_meeting) << "one meeting";
-    EXPECT_TRUE(pieces[first].rows.back().doubtful);
-    EXPECT_FALSE(pieces[first].rows.front().doubtful);
+    EXPECT_FALSE(pieces[first].head_encounter);
+    ASSERT_TRUE(pieces[first].tail_encounter);
+    EXPECT_EQ(pieces[first].tail_encounter, pieces[first + 1].head_encounter);
+    EXPECT_EQ(pieces[first].tail_encounter, pieces[0].tail_encounter) << "one meeting";
+    EXPECT_TRUE(pieces[first].rows.back().ambiguous);
+    EXPECT_FALSE(pieces[first].rows.front().ambiguous);
     EXPECT_EQ(pieces[first].rows.size() + pieces[first + 1].rows.size(), 70U) << "no row is lost";
   }
-  EXPECT_EQ(pieces[4].rows.size(), 70U) << "nobody came near the third";
+  EXPECT_EQ(pieces[4].rows.size(), 70U) << "no person came near the third";
 }
 
 }  // namespace

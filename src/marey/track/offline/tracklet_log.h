@@ -7,7 +7,7 @@
 #include "marey/core/time.h"
 #include "marey/core/track.h"
 #include "marey/geometry/similarity2.h"
-#include "marey/track/image/clothes.h"
+#include "marey/track/image/clothing.h"
 
 namespace marey::track::offline {
 
@@ -15,7 +15,7 @@ namespace marey::track::offline {
 struct TrackRow {
   std::int32_t frame = 0;  ///< 0-based
   std::int32_t id = 0;
-  std::int32_t first_id = 0;                       ///< what the tracker called it; `id` is given anew when tracklets are joined
+  std::int32_t first_id = 0;                       ///< what the tracker called it; `id` is given again when tracklets are joined
   float x = 0, y = 0;                              ///< position
   float vx = 0, vy = 0;                            ///< velocity
   float left = 0, top = 0, width = 0, height = 0;  ///< box; width and height are 0 where the target has no extent
@@ -23,7 +23,7 @@ struct TrackRow {
   float score = 1;
   Provenance provenance = Provenance::measured;
   image::PackedClothes clothes;  ///< of what was seen of it
-  bool doubtful = false;         ///< others were so near that it may be one of them: set by the second pass (identity_doubt.h)
+  bool ambiguous = false;        ///< others were so near that it may be one of them: set by the second pass (ambiguous_intervals.h)
   bool has_centre = false;       ///< an outline was found; after smoothing, also where one was found shortly before and after
 
   bool observed() const { return provenance == Provenance::measured; }
@@ -37,12 +37,12 @@ class TrackletLog {
   using Tracklet = std::vector<TrackRow>;
 
   /// The tracks of one frame, as Tracker<2>::step gave them. Frames come in order, each once. `clothes` are those of the frame's
-  /// observations, by their index; empty where they are not known. Rows are kept in coordinates that stand still where the camera
+  /// observations, by their index; empty if they are not known. Rows are kept in coordinates that stand still where the camera
   /// moves: `view_from_scene` is Tracker::view_from_scene after that step.
   void add(std::int64_t frame, Timestamp time, std::span<const Track<2>> tracks, std::span<const image::Clothes> clothes = {},
            const geometry::Similarity2& view_from_scene = {});
 
-  /// A row of this log, in px of its frame's picture.
+  /// A row of this log, in px of its frame's image.
   TrackRow in_view(const TrackRow& row) const;
 
   /// Time of frames: the one at `frame`, which was added.

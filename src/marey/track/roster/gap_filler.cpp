@@ -22,12 +22,12 @@ void GapFiller::add(Instant frame, std::span<const Track<3>> tracks) {
         close(gap->second, {now, track.position, track.velocity, track.covariance}, track.id);
         gaps_.erase(gap);
       }
-      last_seen_[track.id] = now;
+      last_observed_[track.id] = now;
       continue;
     }
-    const auto seen = last_seen_.find(track.id);
-    if (seen == last_seen_.end()) continue;
-    Gap& gap = gaps_.try_emplace(track.id, Gap{added_ - 1, seen->second, {}}).first->second;
+    const auto detected = last_observed_.find(track.id);
+    if (detected == last_observed_.end()) continue;
+    Gap& gap = gaps_.try_emplace(track.id, Gap{added_ - 1, detected->second, {}}).first->second;
     if (std::ssize(gap.guesses) > longest_) continue;  // nothing will fill it
     gap.guesses.push_back({now, track.position, track.velocity, track.covariance});
     if (std::ssize(gap.guesses) > predicted_) continue;
@@ -44,7 +44,7 @@ void GapFiller::add(Instant frame, std::span<const Track<3>> tracks) {
 void GapFiller::close(Gap& gap, const Guess& end, TrackId track) {
   const auto length = std::ssize(gap.guesses);
   if (length == 0 || length > longest_) return;
-  const double duration = seconds(end.time - gap.seen);
+  const double duration = seconds(end.time - gap.detected);
   const Guess& last = gap.guesses.back();
   const Vector<3> miss = end.position - (last.position + last.velocity * seconds(end.time - last.time));
   const Vector<3> miss_of_velocity = end.velocity - last.velocity;
@@ -52,7 +52,7 @@ void GapFiller::close(Gap& gap, const Guess& end, TrackId track) {
     Instant* frame = frame_at(gap.first + i);
     if (frame == nullptr) continue;
     const Guess& guess = gap.guesses[static_cast<std::size_t>(i)];
-    const double s = seconds(guess.time - gap.seen) / duration;
+    const double s = seconds(guess.time - gap.detected) / duration;
     const Vector<3> position = guess.position + s * s * (3 - 2 * s) * miss + s * s * (s - 1) * duration * miss_of_velocity;
     std::erase_if(frame->samples, [&](const Sample& point) { return point.track == track; });
     Sample point;

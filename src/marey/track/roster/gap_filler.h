@@ -17,13 +17,14 @@ namespace marey::track::roster {
 
 class GapFiller {
  public:
-  /// Gaps of up to `longest` frames are filled; of others the first `predicted` frames are told as they were expected (≤ longest).
+  /// Gaps of up to `longest` frames are filled; of others the first `predicted` frames are reported as they were expected (≤
+  /// longest).
   GapFiller(int longest, int predicted) : longest_(longest), predicted_(predicted) {}
 
   /// The frame with its measured points, and what the tracker says of the markers that it does not have.
   void add(Instant frame, std::span<const Track<3>> expected);
 
-  /// The next frame that nothing more can be added to; nothing where it has to wait.
+  /// The next frame that nothing more can be added to; nothing if it has to wait.
   std::optional<Instant> next();
   /// From here on no frame waits: the recording has ended.
   void finish() { ended_ = true; }
@@ -36,7 +37,7 @@ class GapFiller {
   };
   struct Gap {
     std::int64_t first = 0;  // frames from the beginning: the first without the marker
-    Timestamp seen{};        // when it was seen last
+    Timestamp detected{};    // when it was seen last
     std::vector<Guess> guesses;
   };
 
@@ -48,7 +49,7 @@ class GapFiller {
   std::int64_t added_ = 0;
   std::deque<Instant> waiting_;
   std::map<TrackId, Gap> gaps_;
-  std::map<TrackId, Timestamp> last_seen_;
+  std::map<TrackId, Timestamp> last_observed_;
 };
 
 }  // namespace marey::track::roster

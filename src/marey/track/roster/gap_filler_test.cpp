@@ -9,20 +9,20 @@ TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
   GapFiller filler(10, 2);
   const auto at = [](double t) { return Vector<3>(t * t * t, 1 - t * t, 2 * t); };
   const auto speed = [](double t) { return Vector<3>(3 * t * t, -2 * t, 2); };
-  Vector<3> place, velocity;
+  Vector<3> location, velocity;
   for (int i = 0; i < 20; ++i) {
     const double t = 0.1 * i;
-    const bool seen = i < 5 || i > 9;
-    if (seen) place = at(t), velocity = speed(t);
+    const bool detected = i < 5 || i > 9;
+    if (detected) location = at(t), velocity = speed(t);
     Track<3> track;
     track.id = TrackId{1};
-    track.position = seen ? place : Vector<3>(place + (t - 0.4) * velocity);
+    track.position = detected ? location : Vector<3>(location + (t - 0.4) * velocity);
     track.velocity = velocity;
-    track.provenance = seen ? Provenance::measured : Provenance::predicted;
+    track.provenance = detected ? Provenance::measured : Provenance::predicted;
     Instant frame;
     frame.index = i;
     frame.time = timestamp_from_seconds(t);
-    if (seen) {
+    if (detected) {
       frame.samples.emplace_back();
       frame.samples.back().track = track.id;
       frame.samples.back().position = track.position;
@@ -42,14 +42,14 @@ TEST(GapFiller, FillsWithTheCubicThroughBothEnds) {
 TEST(GapFiller, OfALongGapTheBeginningIsPredicted) {
   GapFiller filler(4, 2);
   for (int i = 0; i < 20; ++i) {
-    const bool seen = i < 5 || i > 14;
+    const bool detected = i < 5 || i > 14;
     Track<3> track;
     track.id = TrackId{1};
-    track.provenance = seen ? Provenance::measured : Provenance::predicted;
+    track.provenance = detected ? Provenance::measured : Provenance::predicted;
     Instant frame;
     frame.index = i;
     frame.time = timestamp_from_seconds(0.1 * i);
-    if (seen) frame.samples.emplace_back().track = track.id;
+    if (detected) frame.samples.emplace_back().track = track.id;
     filler.add(frame, std::span(&track, 1));
   }
   filler.finish();

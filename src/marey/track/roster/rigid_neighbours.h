@@ -1,7 +1,7 @@
 // Where a hidden marker must be, predicted from the markers that move rigidly with it.
 //
 // Markers on one bone keep their distances, whatever the body does. The mean and the spread of the distance of every two markers
-// are learned while both are seen. When a marker vanishes, the places of all others at that moment are kept; while it is hidden,
+// are learned while both are seen. When a marker vanishes, the places of all others at that instant are kept; while it is hidden,
 // the rigid motion that takes those places to where they are now, each weighted by the fourth power of how steady its distance to
 // the hidden one has been, moves the hidden one too. A marker on the same bone thus outweighs the rest of the body, which only
 // settles what its own bone leaves open. Good for as long as the bone stays seen; after seconds of coasting no motion model is.
@@ -20,7 +20,7 @@ namespace marey::track::roster {
 
 class RigidNeighbours {
  public:
-  struct Place {
+  struct Location {
     Vector<3> position;   ///< m
     double variance = 0;  ///< along each axis, m²
   };
@@ -30,27 +30,27 @@ class RigidNeighbours {
 
   /// Marker `number` was seen there in the frame at hand. Between `begin_frame` and `end_frame`, each at most once.
   void begin_frame();
-  void see(int number, const Vector<3>& position);
+  void observe_frame(int number, const Vector<3>& position);
   /// `dt` is what passed since the frame before, s.
   void end_frame(double dt);
 
-  /// Where a marker is that the frame before the last `end_frame` or an earlier one saw last; nothing where too little is known of
+  /// Where a marker is that the frame before the last `end_frame` or an earlier one saw last; nothing if too little is known of
   /// it or of those that move with it.
-  std::optional<Place> place_of(int number) const;
+  std::optional<Location> position_of(int number) const;
 
   /// How badly a place in the frame at hand fits a marker: what the squared change of distance, in variances, of seven in ten of
-  /// its steadiest neighbours that are seen stays below; about 1 for the marker itself. Nothing where too few are seen or known
+  /// its steadiest neighbours that are seen stays below; about 1 for the marker itself. Nothing if too few are seen or known
   /// well enough.
-  std::optional<double> misfit(int number, const Vector<3>& place) const;
+  std::optional<double> misfit(int number, const Vector<3>& location) const;
 
   /// How badly the distances that two numbers keep to others fit to be one marker's: the median over their steadiest common
-  /// neighbours of the squared difference of the mean distances, in variances. Nothing where too little is known of one of them, or
+  /// neighbours of the squared difference of the mean distances, in variances. Nothing if too little is known of one of them, or
   /// where both were seen at once.
   std::optional<double> difference(int a, int b) const;
 
   /// `number` turned out to be `other`: what was learned of it becomes other's, and the number is free for another marker.
   void merge(int number, int other);
-  /// Nobody needs the number any more.
+  /// No person needs the number any more.
   void release(int number);
 
   /// What was thought to be this marker is not: the places kept of it are worth nothing.
@@ -63,10 +63,10 @@ class RigidNeighbours {
   };
   struct Member {
     Vector<3> position = Vector<3>::Zero();
-    bool seen = false, was_seen = false;
-    std::vector<int> steadiest;     // its neighbours, the steadiest distance first
-    std::vector<Vector<3>> places;  // of all when it was last seen
-    std::vector<char> known;        // which of them were seen then
+    bool detected = false, was_observed = false;
+    std::vector<int> steadiest;        // its neighbours, the steadiest distance first
+    std::vector<Vector<3>> locations;  // of all when it was last seen
+    std::vector<char> known;           // which of them were seen then
   };
 
   Distance& between(int a, int b) {
@@ -75,14 +75,14 @@ class RigidNeighbours {
   const Distance& between(int a, int b) const { return const_cast<RigidNeighbours*>(this)->between(a, b); }
   void learn(int row);
   void rank(int number);
-  double seen_together(const Distance& distance) const { return distance.count * sample_s_; }
+  double observed_together(const Distance& distance) const { return distance.count * sample_s_; }
   double unknown(const Distance& distance, double after_a_second) const;
-  void keep_places(Member& member) const;
+  void keep_positions(Member& member) const;
 
   std::vector<Member> members_;
   std::vector<int> free_;
   std::vector<Vector<3>> last_positions_;
-  std::vector<char> last_seen_;
+  std::vector<char> last_observed_;
   std::vector<Distance> distances_;  // of each two, the lower triangle
   std::size_t frames_ = 0;
   double sample_s_ = 0;  // between two samples of a pair

@@ -15,24 +15,25 @@ namespace {
 
 /// Two bones of five markers that swing against each other, and one marker that goes its own way.
 std::vector<Vector<3>> body_at(double t) {
-  std::vector<Vector<3>> places;
+  std::vector<Vector<3>> locations;
   for (int bone = 0; bone < 2; ++bone) {
     const Rigid3 world_from_bone{
         geometry::rotation_from({std::sin(t * (1.3 + bone)), 0.6 * std::cos(2.1 * t), 0.5 * t * (1 - 0.4 * bone)}),
         {std::cos(t), std::sin(0.7 * t) + 0.4 * bone * std::sin(3 * t), 1 + 0.2 * bone}};
-    for (int k = 0; k < 5; ++k) places.push_back(world_from_bone * Vector<3>(0.08 * k, 0.05 * ((k * 7) % 3), 0.06 * ((k * 5) % 4)));
+    for (int k = 0; k < 5; ++k)
+      locations.push_back(world_from_bone * Vector<3>(0.08 * k, 0.05 * ((k * 7) % 3), 0.06 * ((k * 5) % 4)));
   }
-  places.push_back({std::sin(5 * t), std::cos(4 * t), std::sin(3 * t)});
-  return places;
+  locations.push_back({std::sin(5 * t), std::cos(4 * t), std::sin(3 * t)});
+  return locations;
 }
 
-void show(RigidNeighbours& companions, const std::vector<Vector<3>>& places, const std::vector<int>& hidden,
+void show(RigidNeighbours& companions, const std::vector<Vector<3>>& locations, const std::vector<int>& hidden,
           filter::RandomStream& random) {
   companions.begin_frame();
-  for (int i = 0; i < std::ssize(places); ++i) {
+  for (int i = 0; i < std::ssize(locations); ++i) {
     if (std::find(hidden.begin(), hidden.end(), i) != hidden.end()) continue;
     const auto [x, y] = random.normal_pair();
-    companions.see(i, places[i] + 0.0003 * Vector<3>(x, y, random.normal_pair().first));
+    companions.observe_frame(i, locations[i] + 0.0003 * Vector<3>(x, y, random.normal_pair().first));
   }
   companions.end_frame(1.0 / 120);
 }
@@ -49,12 +50,12 @@ TEST(RigidNeighbours, AHiddenMarkerGoesWithItsBone) {
     const auto truth = body_at(frame * dt);
     show(companions, truth, {2, 7, 10}, random);
     for (const int marker : {2, 7}) {
-      const auto place = companions.place_of(marker);
-      ASSERT_TRUE(place);
-      EXPECT_LT((place->position - truth[marker]).norm(), 0.004);
-      EXPECT_LT(std::sqrt(place->variance), 0.01);
+      const auto location = companions.position_of(marker);
+      ASSERT_TRUE(location);
+      EXPECT_LT((location->position - truth[marker]).norm(), 0.004);
+      EXPECT_LT(std::sqrt(location->variance), 0.01);
     }
-    EXPECT_FALSE(companions.place_of(10)) << "nobody goes with this one";
+    EXPECT_FALSE(companions.position_of(10)) << "no person goes with this one";
   }
 }
 
@@ -63,9 +64,9 @@ TEST(RigidNeighbours, SaysNothingBeforeItKnows) {
   RigidNeighbours companions;
   for (std::size_t i = 0; i < body_at(0).size(); ++i) companions.enrol();
   show(companions, body_at(0), {}, random);
-  EXPECT_FALSE(companions.place_of(2));
+  EXPECT_FALSE(companions.position_of(2));
   show(companions, body_at(0.01), {2}, random);
-  EXPECT_FALSE(companions.place_of(2));
+  EXPECT_FALSE(companions.position_of(2));
 }
 
 }  // namespace

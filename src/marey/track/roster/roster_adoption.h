@@ -1,7 +1,7 @@
 // The step that brings back lost markers: targets that are missed and points that match none are brought together within the reach
 // of the greatest speed, at once where false points are rare; else once the point has proved, as a newcomer, that it stays. Of all
-// pairs within reach the assignment with the shortest paths wins. In space, where rigid neighbours tell markers apart, a pair is
-// only believed where no other explains the point, or the target, nearly as well: else the point goes on as a newcomer, until its
+// pairs within reach the assignment with the shortest paths wins. In space, where rigid neighbours distinguish markers, a pair is
+// only trusted where no other explains the point, or the target, nearly as well: else the point continues as a newcomer, until its
 // distances say which of them it is. Cost: lost × unmatched.
 #pragma once
 
@@ -24,24 +24,24 @@ class RosterAdoption {
   explicit RosterAdoption(const RosterTrackerOptions& options) : options_(options) {}
 
   /// Gives targets that are missed the observations that they are thought to be, and marks these in `taken`, one entry a point.
-  void find_lost(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
+  void find_lost(std::span<Target> targets, std::span<const Observation<D>> detected, std::vector<char>& taken,
                  RosterLikelihood<D>& likelihood, RosterRigidNeighbours<D>& neighbours);
 
  private:
   using Neighbours = RosterRigidNeighbours<D>;
 
   void notice_jolt(std::span<const Target> targets);
-  bool turned_to(const Target& target, const Vector<D>& place) const;
-  double path_to(const Target& target, const Vector<D>& place) const;
-  double log_density(const Target& target, const Vector<D>& place) const;
-  std::optional<double> cost(const Target& target, const Vector<D>& place, const Neighbours& neighbours,
+  bool rotated_to(const Target& target, const Vector<D>& location) const;
+  double path_to(const Target& target, const Vector<D>& location) const;
+  double log_density(const Target& target, const Vector<D>& location) const;
+  std::optional<double> cost(const Target& target, const Vector<D>& location, const Neighbours& neighbours,
                              const Target* newcomer) const;
-  void adopt_points(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken,
+  void adopt_points(std::span<Target> targets, std::span<const Observation<D>> detected, std::vector<char>& taken,
                     const RosterLikelihood<D>& likelihood, const Neighbours& neighbours);
-  void begin_anew(Target& target, const Vector<D>& place, const Matrix<D>& R) const;
+  void restart(Target& target, const Vector<D>& location, const Matrix<D>& R) const;
   void adopt_newcomers(std::span<Target> targets, const RosterLikelihood<D>& likelihood, Neighbours& neighbours);
   void assign(int rows, int columns);
-  bool leaves_doubt(int row) const;
+  bool leaves_ambiguity(int row) const;
 
   RosterTrackerOptions options_;
   double dt_ = 0;          // s since the frame before

@@ -17,7 +17,7 @@ void RosterDecisions<D>::rename(std::span<const RenamedTrack> renamed) {
   }
 }
 
-/// The old name's own row goes where it was only expected; where it was seen elsewhere at that moment, it keeps what it has.
+/// The old name's own row goes where it was only expected; where it was seen elsewhere at that instant, it keeps what it has.
 template <int D>
 void RosterDecisions<D>::rename(Held& frame, const RenamedTrack& renamed) {
   auto& tracks = frame.tracks;

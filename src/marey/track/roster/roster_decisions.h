@@ -1,6 +1,6 @@
 // What the roster tracker said of the last seconds, held back until names are sure: a marker that came back under a new name, and
 // whose distances to its neighbours then prove that it is an old one, bears the old name from its return on.
-// Cost: targets × frames held, for each name that is put right.
+// Cost: targets × frames held, for each name that is corrected.
 #pragma once
 
 #include <deque>

@@ -40,7 +40,7 @@ TEST(RosterDecisions, AnOldNameIsGivenBackFromTheReturnOn) {
   }
 }
 
-TEST(RosterDecisions, WhoIsSeenElsewhereKeepsItsPlace) {
+TEST(RosterDecisions, MarkerVisibleElsewhereKeepsPosition) {
   RosterDecisions<3> decisions(1);
   decisions.add(timestamp_from_seconds(0), std::vector{row(1, true, true), row(2, true, true), row(3, true, false)});
   decisions.rename(

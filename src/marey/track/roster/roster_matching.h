@@ -22,7 +22,7 @@ class RosterMatching {
 
   /// Gives the points that are not `taken`, one entry a point, to those of the targets that are `wanted`, one entry a target. `dt`
   /// is what passed since the frame before, s.
-  void match(std::span<Target> targets, std::span<const char> wanted, std::span<const Observation<D>> seen,
+  void match(std::span<Target> targets, std::span<const char> required, std::span<const Observation<D>> detected,
              std::vector<char>& taken, double dt, const RosterLikelihood<D>& likelihood,
              const RosterRigidNeighbours<D>& neighbours);
 
@@ -33,7 +33,7 @@ class RosterMatching {
     double narrowest = 0, widest = 0;  // marker
   };
 
-  Spread spread_of(std::span<const Observation<D>> seen, const RosterLikelihood<D>& likelihood) const;
+  Spread spread_of(std::span<const Observation<D>> detected, const RosterLikelihood<D>& likelihood) const;
   double reach_of(const Target& target, const Spread& spread) const;
   double search_radius(const Target& target) const;
   double gain(const Target& target, const Observation<D>& point, double dt, const RosterLikelihood<D>& likelihood) const;

@@ -20,21 +20,21 @@ class RosterRigidNeighbours {
 
   bool used() const { return used_; }
 
-  /// How badly a place of this frame fits the distances that the target keeps; nothing where they are not known.
-  std::optional<double> misfit(const Target& target, const Vector<D>& place) const {
+  /// How badly a place of this frame fits the distances that the target keeps; nothing if they are not known.
+  std::optional<double> misfit(const Target& target, const Vector<D>& location) const {
     if constexpr (D == 3) {
-      if (target.neighbour) return neighbours_.misfit(*target.neighbour, place);
+      if (target.neighbour) return neighbours_.misfit(*target.neighbour, location);
     }
     return std::nullopt;
   }
 
   /// Shows the targets that are followed without a break to the others of this frame. One that these contradict, frame after frame,
   /// is lost: its observation, marked in `taken`, is free again.
-  void check_followed(std::span<Target> targets, std::span<const Observation<D>> seen, std::vector<char>& taken, Timestamp now);
+  void check_tracked(std::span<Target> targets, std::span<const Observation<D>> detected, std::vector<char>& taken, Timestamp now);
 
   /// Whether its rigid neighbours have nothing against it that a target that was lost is at a place, and no other target that is
   /// lost fits there nearly as well.
-  bool agree(std::span<const Target> targets, int index, const Vector<D>& place, double dt) const;
+  bool agree(std::span<const Target> targets, int index, const Vector<D>& location, double dt) const;
 
   /// Learns from targets that are seen how markers move together, finds out which newcomers are targets that were lost, and
   /// predicts those that are not seen.
@@ -47,7 +47,7 @@ class RosterRigidNeighbours {
   /// The target is given up.
   void forget(const Target& target);
 
-  /// What turned out of names in this frame. Valid until the next check_followed.
+  /// What turned out of names in this frame. Valid until the next check_tracked.
   std::span<const RenamedTrack> renamed(std::span<const Target> targets);
 
  private:
@@ -60,12 +60,12 @@ class RosterRigidNeighbours {
     int observation = 0;
   };
 
-  void predict_unseen(Target& target);
+  void predict_unobserved(Target& target);
   void name_newcomers(std::vector<Target>& targets);
   Target* lost_one_that_is(std::span<Target> targets, const Target& newcomer);
 
   bool used_;
-  std::size_t turn_ = 0;  // whose newcomer's name is looked for
+  std::size_t turn_ = 0;  // whose newcomer's name is searched for
   RigidNeighbours neighbours_;
   std::vector<Freed> freed_;
   std::vector<RenamedTrack> renamed_;

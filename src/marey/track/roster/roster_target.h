@@ -20,19 +20,19 @@ namespace marey::track::roster {
 /// One point that the roster tracker follows.
 template <int D>
 struct RosterTarget {
-  /// A newcomer is not reported; a provisional target, from the first frame, is, but has yet to prove that it is no false point.
+  /// A newcomer is not reported; a provisional target, from the first frame, is, but has yet to prove that it is not a false point.
   enum class Standing { newcomer, provisional, established };
 
   TrackId id;
   std::string label;
   filter::AnyFilter<D> filter;
-  double width;           ///< of its marker
-  double usual_variance;  ///< of its observations
-  Vector<D> last_place;   ///< where it was last seen
-  double unseen = 0;      ///< s, since then
-  double seen = 0;        ///< s, in which it was
-  double speed = 0;       ///< the highest of the last observations, fading, in units per s
-  double travel = 0;      ///< how far it may have moved since it was last seen, at its own speed or that of the others
+  double width;             ///< of its marker
+  double default_variance;  ///< of its observations
+  Vector<D> last_position;  ///< where it was last seen
+  double unobserved = 0;    ///< s, since then
+  double detected = 0;      ///< s, in which it was
+  double speed = 0;         ///< the highest of the last observations, fading, in units per s
+  double travel = 0;        ///< how far it may have moved since it was last seen, at its own speed or that of the others
   std::optional<int> observation = {};  ///< in this frame
   std::optional<int> covered_by = {};   ///< the observation that it is taken to be behind
   std::optional<int> neighbour = {};    ///< its number among the rigid neighbours
@@ -47,37 +47,37 @@ struct RosterTarget {
 
   /// Its last observations, the newest last: from them the filter is begun again without those that show a marker in part.
   struct Measured {
-    Vector<D> place;
+    Vector<D> location;
     Matrix<D> covariance;
     double dt = 0;      ///< s, since the one before
     bool whole = true;  ///< not smaller than the marker
   };
   /// What it was before it took a point that may as well be a false one; given back where the next frame does not bear that out.
-  struct Doubt {
+  struct ReviewItem {
     filter::AnyFilter<D> filter;
-    Vector<D> last_place;
-    double unseen = 0;  ///< s
-    double score = 0;   ///< log-likelihood ratio of its points since, against clutter
+    Vector<D> last_position;
+    double unobserved = 0;  ///< s
+    double score = 0;       ///< log-likelihood ratio of its points since, against clutter
   };
-  std::vector<Doubt> doubt = {};  ///< one or none
+  std::vector<ReviewItem> review_item = {};  ///< one or none
 
-  static constexpr std::size_t kKept = 14, kMostKept = 240;
+  static constexpr std::size_t kKept = 14, kMaxKept = 240;
   std::vector<Measured> measured =
-      {};  ///< at most kMostKept, for a slow marker is long in vanishing; of those whole the last kKept count
+      {};  ///< at most kMaxKept, for a slow marker is long in vanishing; of those whole the last kKept count
 
   bool on_roster() const { return standing != Standing::newcomer; }
   bool missed() const { return !observation && !covered_by; }
   /// Whether it may have moved to a place since it was last seen: the search goes no farther, however wide the filter's gate grows
-  /// meanwhile. `slack` is what its place is uncertain by, beside its motion.
-  bool within_reach(const Vector<D>& place, double slack) const {
+  /// in the meantime. `slack` is what its place is uncertain by, beside its motion.
+  bool within_reach(const Vector<D>& location, double slack) const {
     constexpr double kSpeedUp = 1.5;  // times the speed of before
-    return (place - last_place).norm() <= kSpeedUp * travel + slack;
+    return (location - last_position).norm() <= kSpeedUp * travel + slack;
   }
   /// Whether it may be at a place, as far as is known where it went since it was last seen.
-  bool near(const Vector<D>& place) const {
+  bool near(const Vector<D>& location) const {
     constexpr double kSigmas = 4;
     const double variance = predicted_variance + filter.covariance().trace() / D + width * width / 16;
-    return (place - filter.position()).squaredNorm() < kSigmas * kSigmas * variance;
+    return (location - filter.position()).squaredNorm() < kSigmas * kSigmas * variance;
   }
 };
 
@@ -96,7 +96,7 @@ class RosterLikelihood {
 
   Matrix<D> noise_of(const Observation<D>& observation) const {
     Matrix<D> R = *observation.covariance;
-    R.diagonal().array() += options_.place_noise * options_.place_noise;
+    R.diagonal().array() += options_.position_noise * options_.position_noise;
     return R;
   }
 
@@ -115,59 +115,59 @@ class RosterLikelihood {
   /// Of a point as it is seen.
   static double variance_of(const Observation<D>& observation) { return observation.covariance->trace() / D; }
 
-  /// Whether the point is as large as the target, but for what the pixels' raster makes of it, and told as well as it usually is: a
-  /// disc that something begins to cover is a bad disc before it is a small one.
+  /// Whether the point is as large as the target, but for what the pixels' raster makes of it, and reported as well as it usually
+  /// is: a disc that something begins to cover is a bad disc before it is a small one.
   bool shows_whole(const RosterTarget<D>& target, const Observation<D>& observation) const {
-    if (D == 2 && variance_of(observation) > kPartVariance * target.usual_variance) return false;
+    if (D == 2 && variance_of(observation) > kPartVariance * target.default_variance) return false;
     return target.width - width_of(observation) < kPartWidth * target.width + kPartPixels;
   }
 
   /// Whether the point may be a target that comes back.
   bool alike(const RosterTarget<D>& target, const Observation<D>& observation) const {
     const double ratio = width_of(observation) / target.width;
-    return ratio < kMostGrowth && ratio > 1 / kMostGrowth;
+    return ratio < kMaxGrowth && ratio > 1 / kMaxGrowth;
   }
 
   /// Learns from the number of points in a frame that no target explains.
   void count_unexplained(double points) { unexplained_ += kClutterMemory * (points - unexplained_); }
-  void widen_scene(const Vector<D>& place) { extent_ = std::max(extent_, place.cwiseAbs().maxCoeff()); }
+  void widen_scene(const Vector<D>& location) { extent_ = std::max(extent_, location.cwiseAbs().maxCoeff()); }
 
-  /// Whether so few false points are to be expected in one frame within `radius` of a place that a jump is believed at once.
-  bool believes_jump(double radius) const {
-    const double share = std::pow(radius, D) / std::max(std::pow(radius, D), std::pow(extent_, D));
-    return unexplained_ * share <= kClutterLimit;
+  /// Whether so few false points are to be expected in one frame within `radius` of a place that a jump is trusted at once.
+  bool trusts_jump(double radius) const {
+    const double fraction = std::pow(radius, D) / std::max(std::pow(radius, D), std::pow(extent_, D));
+    return unexplained_ * fraction <= kClutterLimit;
   }
 
   /// How much likelier the point is the target's than a false one, as a logarithm.
-  double log_ratio(const RosterTarget<D>& target, const Vector<D>& place, const Matrix<D>& R) const {
+  double log_ratio(const RosterTarget<D>& target, const Vector<D>& location, const Matrix<D>& R) const {
     const Matrix<D> S = target.filter.innovation_covariance(R);
-    const Vector<D> residual = place - target.filter.position();
-    const double clutter_density = std::max(unexplained_, kLeastClutter) / std::pow(extent_, D);
+    const Vector<D> residual = location - target.filter.position();
+    const double clutter_density = std::max(unexplained_, kMinClutterDensity) / std::pow(extent_, D);
     return -0.5 * (residual.dot(S.inverse() * residual) + std::log(S.determinant()) + D * std::log(2 * std::numbers::pi)) -
            std::log(clutter_density);
   }
 
   /// How much likelier it is that the target comes back at the point than that the point is a false one, as a logarithm.
   double log_return(double log_likelihood) const {
-    return log_likelihood - std::log(std::max(unexplained_, kLeastClutter) / std::pow(extent_, D));
+    return log_likelihood - std::log(std::max(unexplained_, kMinClutterDensity) / std::pow(extent_, D));
   }
 
-  /// Whether there are so many false points that one that stands alone proves little.
+  /// Whether there are this many false points that one that stands alone proves little.
   bool cluttered() const { return D == 2 && unexplained_ > kCluttered; }
 
   static constexpr double kWidthNoise = 0.2;   // of the width: what the pixels' raster makes of it
   static constexpr double kPartWidth = 0.08;   // of the width, and
   static constexpr double kPartPixels = 0.35;  // px less than it: it shows in part
-  static constexpr double kPartVariance = 6;   // times the usual variance: likewise
+  static constexpr double kPartVariance = 6;   // times the typical variance: likewise
   static constexpr double kPartNoise = 3;      // times what it has lost of its width: a marker's place that shows in part
 
  private:
-  static constexpr double kMostGrowth = 2.5;     // a lost marker comes back no larger, no smaller than by this
-  static constexpr double kClutterMemory = 0.1;  // a frame
-  static constexpr double kClutterLimit = 0.02;  // false points to be expected where a jump is still believed at once
-  static constexpr double kAtFirst = 0.5;        // false points a frame, before anything is known
-  static constexpr double kCluttered = 0.05;     // false points a frame, from which a single one is doubted
-  static constexpr double kLeastClutter = 0.01;  // false points a frame that are always thought possible
+  static constexpr double kMaxGrowth = 2.5;           // a lost marker comes back no larger, no smaller than by this
+  static constexpr double kClutterMemory = 0.1;       // a frame
+  static constexpr double kClutterLimit = 0.02;       // false points to be expected where a jump is still trusted at once
+  static constexpr double kAtFirst = 0.5;             // false points a frame, before anything is known
+  static constexpr double kCluttered = 0.05;          // false points a frame, from which a single one is doubted
+  static constexpr double kMinClutterDensity = 0.01;  // false points a frame that are always thought possible
 
   RosterTrackerOptions options_;
   double unexplained_ = D == 2 ? kAtFirst : 0;  // points a frame that no target explains, a running mean

@@ -21,7 +21,7 @@ int GroundHistory::match(int view, int observation, int before) {
   return static_cast<int>(levels_.back().matches.size()) - 1;
 }
 
-GroundHistory::Place GroundHistory::note(const Place& before, const Track<2>& track, int matches) {
+GroundHistory::Location GroundHistory::note(const Location& before, const Track<2>& track, int matches) {
   Level& level = levels_.back();
   level.records.push_back({track, before.record, matches});
   return {first_ + static_cast<std::int64_t>(levels_.size()) - 1, static_cast<int>(level.records.size()) - 1};
@@ -38,21 +38,21 @@ std::optional<std::int64_t> GroundHistory::newest() const {
   return first_ + static_cast<std::int64_t>(levels_.size()) - 1;
 }
 
-int GroundHistory::past(Place place, std::int64_t level) const {
-  if (place.level < level) return assign::kNoIndex;
-  for (; place.level > level && place.record != assign::kNoIndex; --place.level)
-    place.record = at(place.level).records[place.record].before;
-  return place.record;
+int GroundHistory::past(Location location, std::int64_t level) const {
+  if (location.level < level) return assign::kNoIndex;
+  for (; location.level > level && location.record != assign::kNoIndex; --location.level)
+    location.record = at(location.level).records[location.record].before;
+  return location.record;
 }
 
-void GroundHistory::decide(std::int64_t level, std::span<const Place> places) {
+void GroundHistory::decide(std::int64_t level, std::span<const Location> locations) {
   const auto count = static_cast<std::size_t>(level - first_ + 1);
   chosen_.resize(std::max(chosen_.size(), count));
   for (std::size_t i = 0; i < count; ++i) chosen_[i].clear();
-  for (Place place : places) {
-    for (; place.level >= first_ && place.record != assign::kNoIndex; --place.level) {
-      if (place.level <= level) chosen_[static_cast<std::size_t>(place.level - first_)].push_back(place.record);
-      place.record = at(place.level).records[place.record].before;
+  for (Location location : locations) {
+    for (; location.level >= first_ && location.record != assign::kNoIndex; --location.level) {
+      if (location.level <= level) chosen_[static_cast<std::size_t>(location.level - first_)].push_back(location.record);
+      location.record = at(location.level).records[location.record].before;
     }
   }
   for (std::size_t i = 0; i < count; ++i) {

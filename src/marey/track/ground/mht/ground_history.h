@@ -19,7 +19,7 @@ namespace marey::track::ground::mht {
 class GroundHistory {
  public:
   /// A record. Levels count from the first instant on.
-  struct Place {
+  struct Location {
     std::int64_t level = assign::kNoIndex;
     int record = assign::kNoIndex;
   };
@@ -31,7 +31,7 @@ class GroundHistory {
   int match(int view, int observation, int before);
 
   /// What is thought of one target now. `before` is its record a level before; `matches` its last match, or none.
-  Place note(const Place& before, const Track<2>& track, int matches);
+  Location note(const Location& before, const Track<2>& track, int matches);
 
   /// Calls visit(view, observation) for the matches of this instant that end in `matches`.
   template <typename Visit>
@@ -44,27 +44,27 @@ class GroundHistory {
   /// Calls visit(key) for each observation that a target matched before this level and after the levels forgotten: one key for
   /// each.
   template <typename Visit>
-  void for_each_past_match(Place place, Visit&& visit) const {
-    for (; place.level >= first_ && place.record != assign::kNoIndex; --place.level) {
-      const Level& level = at(place.level);
-      const Record& record = level.records[place.record];
+  void for_each_past_match(Location location, Visit&& visit) const {
+    for (; location.level >= first_ && location.record != assign::kNoIndex; --location.level) {
+      const Level& level = at(location.level);
+      const Record& record = level.records[location.record];
       for (int i = record.matches; i != assign::kNoIndex; i = level.matches[i].before) {
-        visit((place.level << 32) + (static_cast<std::int64_t>(level.matches[i].view) << 20) + level.matches[i].observation);
+        visit((location.level << 32) + (static_cast<std::int64_t>(level.matches[i].view) << 20) + level.matches[i].observation);
       }
-      place.record = record.before;
+      location.record = record.before;
     }
   }
 
-  /// The newest level that is not later than `until`; nothing where all such are forgotten.
+  /// The newest level that is not later than `until`; nothing if all such are forgotten.
   std::optional<std::int64_t> newest_until(Timestamp until) const;
   std::optional<std::int64_t> newest() const;
 
   /// The record at `level` of the target that is at `place` later; none where it began after it, or ended before.
-  int past(Place place, std::int64_t level) const;
+  int past(Location location, std::int64_t level) const;
 
   /// Decides the levels up to `level`, as far as they are not forgotten, of the targets that are at `places`, and forgets them.
   /// What is decided is added to that which was since `forget_decided`.
-  void decide(std::int64_t level, std::span<const Place> places);
+  void decide(std::int64_t level, std::span<const Location> locations);
   void forget_decided();
 
   /// Valid until anything is decided.

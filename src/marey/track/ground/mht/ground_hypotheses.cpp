@@ -13,7 +13,7 @@ std::span<const GroundHypotheses::Child> GroundHypotheses::branch(std::span<cons
   child_tree_.clear();
   missed_child_.assign(tree_.size(), assign::kNoIndex);
   pair_child_.assign(pairs.size(), assign::kNoIndex);
-  born_child_.assign(begins.size(), assign::kNoIndex);
+  initiated_child_.assign(begins.size(), assign::kNoIndex);
   next_clusters_.clear();
   for (const Group& group : groups_) {
     Cluster parents = combine(group.clusters);
@@ -76,17 +76,17 @@ GroundHypotheses::Cluster GroundHypotheses::combine(std::span<const int> cluster
 }
 
 GroundHypotheses::Cluster GroundHypotheses::product(const Cluster& a, const Cluster& b) const {
-  const double least = a.front().weight + b.front().weight - limits_.log_ratio;
+  const double minimum = a.front().weight + b.front().weight - limits_.log_ratio;
   std::vector<std::tuple<double, int, int>> sums;
   for (int i = 0; i < static_cast<int>(a.size()); ++i) {
     for (int j = 0; j < static_cast<int>(b.size()); ++j) {
       const double sum = a[i].weight + b[j].weight;
-      if (sum >= least) sums.emplace_back(-sum, i, j);
+      if (sum >= minimum) sums.emplace_back(-sum, i, j);
     }
   }
   std::sort(sums.begin(), sums.end());
-  const int most = kept(a.front().leaves.size() + b.front().leaves.size());
-  if (static_cast<int>(sums.size()) > most) sums.resize(most);
+  const int maximum = kept(a.front().leaves.size() + b.front().leaves.size());
+  if (static_cast<int>(sums.size()) > maximum) sums.resize(maximum);
   Cluster together;
   for (const auto& [negative, i, j] : sums) {
     Hypothesis& one = together.emplace_back(a[i]);
@@ -158,7 +158,7 @@ void GroundHypotheses::spawn(const Cluster& parents, std::span<const int> observ
     bool unexplained = false;
     for (std::size_t a = 0; a < answers.size(); ++a) unexplained = unexplained || !taken_[a * columns + column];
     if (unexplained && begins[observations[column]])
-      child(assign::kNoIndex, observations[column], born_child_[observations[column]]);
+      child(assign::kNoIndex, observations[column], initiated_child_[observations[column]]);
   }
   Cluster cluster;
   bool anybody = false;
@@ -175,8 +175,8 @@ void GroundHypotheses::spawn(const Cluster& parents, std::span<const int> observ
                                                       : child(leaf, observations[column], pair_child_[pair]));
     }
     for (int column = 0; column < columns; ++column) {
-      const int born = born_child_[observations[column]];
-      if (born != assign::kNoIndex && !taken_[a * columns + column]) one.leaves.push_back(born);
+      const int initiated = initiated_child_[observations[column]];
+      if (initiated != assign::kNoIndex && !taken_[a * columns + column]) one.leaves.push_back(initiated);
     }
     anybody = anybody || !one.leaves.empty();
   }
@@ -184,7 +184,7 @@ void GroundHypotheses::spawn(const Cluster& parents, std::span<const int> observ
   if (anybody) next_clusters_.push_back(std::move(cluster));
 }
 
-/// How many hypotheses a cluster may have, where each has about so many leaves.
+/// How many hypotheses a cluster may have, where each has about this many leaves.
 int GroundHypotheses::kept(std::size_t leaves) const {
   const int affordable = limits_.leaves / std::max(1, static_cast<int>(leaves));
   return std::clamp(affordable, 1, limits_.hypotheses);
@@ -197,8 +197,8 @@ void GroundHypotheses::settle(Cluster& cluster) const {
   });
   const double best = cluster.front().weight;
   std::size_t count = 0;
-  const auto most = static_cast<std::size_t>(kept(cluster.front().leaves.size()));
-  while (count < cluster.size() && count < most && cluster[count].weight >= best - limits_.log_ratio) ++count;
+  const auto maximum = static_cast<std::size_t>(kept(cluster.front().leaves.size()));
+  while (count < cluster.size() && count < maximum && cluster[count].weight >= best - limits_.log_ratio) ++count;
   cluster.resize(count);
   for (Hypothesis& hypothesis : cluster) hypothesis.weight -= best;
 }
@@ -255,16 +255,17 @@ void GroundHypotheses::take_apart(const Cluster& cluster, std::span<const int> t
     if (joined.find(root) != root) continue;
     Cluster part;
     for (const Hypothesis& hypothesis : cluster) {
-      Hypothesis share{hypothesis.weight, {}};
+      Hypothesis fraction{hypothesis.weight, {}};
       for (const int leaf : hypothesis.leaves) {
-        const auto place = std::lower_bound(trees.begin(), trees.end(), tree_[leaf]) - trees.begin();
-        if (joined.find(static_cast<int>(place)) == root) share.leaves.push_back(leaf);
+        const auto location = std::lower_bound(trees.begin(), trees.end(), tree_[leaf]) - trees.begin();
+        if (joined.find(static_cast<int>(location)) == root) fraction.leaves.push_back(leaf);
       }
-      const auto same = std::find_if(part.begin(), part.end(), [&](const Hypothesis& one) { return one.leaves == share.leaves; });
+      const auto same =
+          std::find_if(part.begin(), part.end(), [&](const Hypothesis& one) { return one.leaves == fraction.leaves; });
       if (same == part.end()) {
-        part.push_back(std::move(share));
+        part.push_back(std::move(fraction));
       } else {
-        same->weight += std::log1p(std::exp(share.weight - same->weight));
+        same->weight += std::log1p(std::exp(fraction.weight - same->weight));
       }
     }
     settle(part);

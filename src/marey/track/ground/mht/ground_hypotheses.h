@@ -37,8 +37,8 @@ class GroundHypotheses {
   /// The best hypothesis first; never without one.
   using Cluster = std::vector<Hypothesis>;
 
-  /// How a leaf goes on after a view: leaf i of after the view is `leaf` of before it, given `observation`. Where `leaf` is none
-  /// the observation begins a tree; where `observation` is none the leaf was given nothing.
+  /// How a leaf continues after a view: leaf i of after the view is `leaf` of before it, given `observation`. Where `leaf` is not
+  /// one the observation begins a tree; where `observation` is not one the leaf was given nothing.
   struct Child {
     int leaf = assign::kNoIndex;
     int observation = assign::kNoIndex;
@@ -62,7 +62,7 @@ class GroundHypotheses {
   /// Keeps of each cluster the hypotheses whose trees have the same past as the best's: `past` numbers each leaf's.
   void decide(std::span<const int> past);
 
-  /// Takes leaves out of all hypotheses.
+  /// Takes omits of all hypotheses.
   void drop(std::span<const char> gone);
 
   /// Splits clusters. `for_each_key(leaf, visit)` calls visit(key) for each observation, however named, that is in the leaf's
@@ -70,7 +70,7 @@ class GroundHypotheses {
   template <typename ForEachKey>
   void split(ForEachKey&& for_each_key);
 
-  /// Renumbers the leaves, leaving out those that no hypothesis has; the numbers that those which stay had before, in order. Valid
+  /// Renumbers the leaves, omitting those that no hypothesis has; the numbers that those which stay had before, in order. Valid
   /// until the next call.
   std::span<const int> compact();
 
@@ -114,13 +114,13 @@ class GroundHypotheses {
   std::vector<Group> groups_;
   std::vector<Cluster> next_clusters_;
   std::vector<Child> children_;
-  std::vector<int> child_tree_, missed_child_, pair_child_, born_child_, column_of_, row_pairs_;
+  std::vector<int> child_tree_, missed_child_, pair_child_, initiated_child_, column_of_, row_pairs_;
   std::vector<assign::GatedPair> posed_;
   std::vector<std::size_t> posed_at_;
   std::vector<assign::AssignmentProblem> problems_;
   std::vector<char> taken_;
   std::vector<int> order_, number_;
-  std::vector<std::pair<std::int64_t, int>> shares_;
+  std::vector<std::pair<std::int64_t, int>> fractions_;
 };
 
 template <typename Alike>
@@ -159,22 +159,22 @@ void GroundHypotheses::split(ForEachKey&& for_each_key) {
       parts.push_back(std::move(cluster));
       continue;
     }
-    const auto place = [&](int leaf) {
+    const auto location = [&](int leaf) {
       return static_cast<int>(std::lower_bound(trees.begin(), trees.end(), tree_[leaf]) - trees.begin());
     };
     sets_.reset(static_cast<int>(trees.size()));
     if (cluster.size() > 1) {
-      shares_.clear();
+      fractions_.clear();
       order_.clear();
       for (const Hypothesis& hypothesis : cluster) {
         for (const int leaf : hypothesis.leaves) order_.push_back(leaf);
       }
       std::sort(order_.begin(), order_.end());
       order_.erase(std::unique(order_.begin(), order_.end()), order_.end());
-      for (const int leaf : order_) for_each_key(leaf, [&](std::int64_t key) { shares_.emplace_back(key, place(leaf)); });
-      std::sort(shares_.begin(), shares_.end());
-      for (std::size_t i = 1; i < shares_.size(); ++i) {
-        if (shares_[i].first == shares_[i - 1].first) sets_.join(shares_[i].second, shares_[i - 1].second);
+      for (const int leaf : order_) for_each_key(leaf, [&](std::int64_t key) { fractions_.emplace_back(key, location(leaf)); });
+      std::sort(fractions_.begin(), fractions_.end());
+      for (std::size_t i = 1; i < fractions_.size(); ++i) {
+        if (fractions_[i].first == fractions_[i - 1].first) sets_.join(fractions_[i].second, fractions_[i - 1].second);
       }
     }
     take_apart(cluster, trees, sets_, parts);

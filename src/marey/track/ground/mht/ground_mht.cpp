@@ -4,12 +4,12 @@
 //
 // Reid 1979; Cox & Hingorani 1996 (Murty's k best, clusters, N-scan, ratio); Beetz et al. use it for football in ASPOGAMO. Motion,
 // gates, costs, birth and death are those of gnn (ground_target.h). Deviations from Cox & Hingorani:
-//   - false alarm, hidden and gone are no hypotheses of their own but probabilities of each leaf (ground_presence.h), summed
+//   - false alarm, hidden and gone are not hypotheses of their own but probabilities of each leaf (ground_presence.h), summed
 //   exactly;
 //   - hypotheses that have come to the same state of the same trees are made one, their probabilities summed: at 25 frames a
 //     second two that run side by side give two answers a frame, and 50 hypotheses would otherwise all differ in the last
 //     6 frames only, with nothing left of the one doubt that matters, the identities;
-//   - an observation that may be of two that touch is believed less, by all;
+//   - an observation that may be of two that touch is trusted less, by all;
 //   - the views of one instant branch one after the other; the window is counted in time.
 // Cost: as gnn's while none is near another; in a scuffle that times the hypotheses kept (ground_hypotheses.h).
 #include "marey/track/ground/mht/ground_mht.h"
@@ -34,10 +34,10 @@ namespace {
 /// One target with one history: what a number in GroundHypotheses stands for.
 struct Leaf {
   GroundTarget target;
-  GroundHistory::Place place = {};      ///< its record of the last instant
-  int matches = assign::kNoIndex;       ///< at this instant
-  bool over = false;                    ///< given up; it stays until that is decided
-  std::optional<GroundTarget> ahead{};  ///< where it would be a while later, once that was asked
+  GroundHistory::Location location = {};  ///< its record of the last instant
+  int matches = assign::kNoIndex;         ///< at this instant
+  bool over = false;                      ///< given up; it stays until that is decided
+  std::optional<GroundTarget> ahead{};    ///< where it would be a while later, once that was asked
 };
 
 class GroundMht final : public GroundTracker {
@@ -61,7 +61,7 @@ class GroundMht final : public GroundTracker {
     retire_lost();
     note();
     decide();
-    hypotheses_.split([this](int leaf, auto&& visit) { history_.for_each_past_match(leaves_[leaf].place, visit); });
+    hypotheses_.split([this](int leaf, auto&& visit) { history_.for_each_past_match(leaves_[leaf].location, visit); });
     compact();
     return report();
   }
@@ -84,7 +84,7 @@ class GroundMht final : public GroundTracker {
 
   std::span<const GroundDecision> decide_all() override {
     history_.forget_decided();
-    if (const auto newest = history_.newest()) history_.decide(*newest, places_of_best());
+    if (const auto newest = history_.newest()) history_.decide(*newest, positions_of_best());
     return history_.decided();
   }
 
@@ -104,15 +104,15 @@ class GroundMht final : public GroundTracker {
     const double late = seconds(view.time - *now_);
     visibility_.set_view(view, rules_.options().evidence.confident);
     find_missed();
-    find_shared(view.seen);
-    find_pairs(seen_, late);
-    find_beginnings(view.seen);
+    find_shared(view.detected);
+    find_pairs(detected_, late);
+    find_beginnings(view.detected);
     const auto children = hypotheses_.branch(pairs_, missed_, begins_);
     next_.clear();
     for (int i = 0; i < static_cast<int>(children.size()); ++i) {
       const auto& [parent, observation] = children[i];
       if (parent == assign::kNoIndex) {
-        next_.push_back({rules_.start(TrackId{hypotheses_.tree(i)}, *now_, view.seen[observation])});
+        next_.push_back({rules_.start(TrackId{hypotheses_.tree(i)}, *now_, view.detected[observation])});
         next_.back().target.presence = GroundPresence(births(), rules_.options().clutter);
         next_.back().matches = history_.match(index, observation, assign::kNoIndex);
         continue;
@@ -123,8 +123,8 @@ class GroundMht final : public GroundTracker {
       if (observation == assign::kNoIndex) {
         rules_.miss(leaf.target, visible_[parent]);
       } else {
-        const Observation<2>& seen = seen_[observation];
-        rules_.correct(leaf.target, seen, rules_.at_instant(leaf.target, seen, late), *now_);
+        const Observation<2>& detected = detected_[observation];
+        rules_.correct(leaf.target, detected, rules_.at_instant(leaf.target, detected, late), *now_);
         leaf.matches = history_.match(index, observation, leaf.matches);
       }
     }
@@ -145,31 +145,31 @@ class GroundMht final : public GroundTracker {
   }
 
   /// An observation at which two are expected, with no other near it, may be of both: it lies between them, and that is all that
-  /// is believed of it. Where there are boxes, these say which is hidden (ground_visibility.h).
-  void find_shared(std::span<const Observation<2>> seen) {
-    seen_.assign(seen.begin(), seen.end());
-    if (!limits_.doubt) return;
+  /// is trusted of it. Where there are boxes, these say which is hidden (ground_visibility.h).
+  void find_shared(std::span<const Observation<2>> detected) {
+    detected_.assign(detected.begin(), detected.end());
+    if (!limits_.review_item) return;
     known_.clear();
     for (const int leaf : hypotheses_.best()) {
       const GroundTarget& target = leaves_[leaf].target;
       if (!leaves_[leaf].over && target.confirmed()) known_.push_back(target.filter.position());
     }
     const auto touches = [](const Vector<2>& a, const Vector<2>& b) { return (a - b).squaredNorm() < touch * touch; };
-    for (Observation<2>& one : seen_) {
+    for (Observation<2>& one : detected_) {
       if (one.box) continue;
       const auto expected =
-          std::count_if(known_.begin(), known_.end(), [&](const auto& place) { return touches(place, one.value); });
+          std::count_if(known_.begin(), known_.end(), [&](const auto& location) { return touches(location, one.value); });
       if (expected < 2) continue;
       const auto found =
-          std::count_if(seen.begin(), seen.end(), [&](const auto& other) { return touches(other.value, one.value); });
+          std::count_if(detected.begin(), detected.end(), [&](const auto& other) { return touches(other.value, one.value); });
       if (expected > found) one.covariance->diagonal().array() += between * between;
     }
   }
 
-  void find_pairs(std::span<const Observation<2>> seen, double late) {
+  void find_pairs(std::span<const Observation<2>> detected, double late) {
     points_.clear();
     double widest = 0;
-    for (const Observation<2>& one : seen) {
+    for (const Observation<2>& one : detected) {
       points_.push_back(one.value);
       widest = std::max(widest, one.covariance->trace());
     }
@@ -183,8 +183,8 @@ class GroundMht final : public GroundTracker {
       const double radius = rules_.search_radius(leaf.target, widest) + std::abs(late) * rules_.options().max_speed;
       const auto first = static_cast<std::ptrdiff_t>(pairs_.size());
       grid_.for_each_near(leaf.target.filter.position(), radius, [&](int o) {
-        if (seen[o].score < rules_.options().evidence.least_score) return;
-        const auto ratio = rules_.log_ratio(leaf.target, seen[o], rules_.at_instant(leaf.target, seen[o], late), *now_);
+        if (detected[o].score < rules_.options().evidence.min_score) return;
+        const auto ratio = rules_.log_ratio(leaf.target, detected[o], rules_.at_instant(leaf.target, detected[o], late), *now_);
         if (ratio) pairs_.push_back({i, o, *ratio + prior});
       });
       std::sort(pairs_.begin() + first, pairs_.end(),
@@ -193,17 +193,17 @@ class GroundMht final : public GroundTracker {
   }
 
   /// No target begins with a detector's doubt, nor with its second box around one person.
-  void find_beginnings(std::span<const Observation<2>> seen) {
-    explained_.assign(seen.size(), 0);
+  void find_beginnings(std::span<const Observation<2>> detected) {
+    explained_.assign(detected.size(), 0);
     for (const assign::GatedPair& pair : pairs_) explained_[pair.column] = 1;
-    begins_.assign(seen.size(), 0);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+    begins_.assign(detected.size(), 0);
+    for (std::size_t i = 0; i < detected.size(); ++i) {
       bool second = false;
-      for (std::size_t j = 0; j < seen.size() && seen[i].box; ++j) {
-        if (j == i || !seen[j].box || (j > i && !explained_[j])) continue;
-        second = second || geometry::iou(*seen[i].box, *seen[j].box) > rules_.options().evidence.duplicate_iou;
+      for (std::size_t j = 0; j < detected.size() && detected[i].box; ++j) {
+        if (j == i || !detected[j].box || (j > i && !explained_[j])) continue;
+        second = second || geometry::iou(*detected[i].box, *detected[j].box) > rules_.options().evidence.duplicate_iou;
       }
-      begins_[i] = seen[i].score >= rules_.options().evidence.confident && !second;
+      begins_[i] = detected[i].score >= rules_.options().evidence.confident && !second;
     }
   }
 
@@ -265,7 +265,7 @@ class GroundMht final : public GroundTracker {
 
   void note() {
     for (Leaf& leaf : leaves_) {
-      if (!leaf.over) leaf.place = history_.note(leaf.place, rules_.report(leaf.target), leaf.matches);
+      if (!leaf.over) leaf.location = history_.note(leaf.location, rules_.report(leaf.target), leaf.matches);
     }
   }
 
@@ -273,17 +273,17 @@ class GroundMht final : public GroundTracker {
     const auto level = history_.newest_until(*now_ - duration_from_seconds(rules_.options().window));
     if (!level) return;
     past_.clear();
-    for (const Leaf& leaf : leaves_) past_.push_back(history_.past(leaf.place, *level));
+    for (const Leaf& leaf : leaves_) past_.push_back(history_.past(leaf.location, *level));
     hypotheses_.decide(past_);
-    history_.decide(*level, places_of_best());
-    for (std::size_t i = 0; i < leaves_.size(); ++i) gone_[i] = leaves_[i].over && leaves_[i].place.level <= *level;
+    history_.decide(*level, positions_of_best());
+    for (std::size_t i = 0; i < leaves_.size(); ++i) gone_[i] = leaves_[i].over && leaves_[i].location.level <= *level;
     hypotheses_.drop(gone_);
   }
 
-  std::span<const GroundHistory::Place> places_of_best() {
-    places_.clear();
-    for (const int leaf : hypotheses_.best()) places_.push_back(leaves_[leaf].place);
-    return places_;
+  std::span<const GroundHistory::Location> positions_of_best() {
+    locations_.clear();
+    for (const int leaf : hypotheses_.best()) locations_.push_back(leaves_[leaf].location);
+    return locations_;
   }
 
   void compact() {
@@ -324,12 +324,12 @@ class GroundMht final : public GroundTracker {
   std::vector<ObservationMatch> matches_;
   // What an instant needs, kept so that it is allocated once.
   std::vector<double> missed_, visible_;
-  std::vector<Observation<2>> seen_;  // of the view at hand, as far as each is believed
+  std::vector<Observation<2>> detected_;  // of the view at hand, as far as each is trusted
   std::vector<assign::GatedPair> pairs_;
   std::vector<char> begins_, explained_, gone_;
   std::vector<Vector<2>> points_, known_;
   std::vector<int> past_;
-  std::vector<GroundHistory::Place> places_;
+  std::vector<GroundHistory::Location> locations_;
   std::vector<std::pair<int, int>> match_list_;
   std::vector<GroundDuplicates::Member> members_;
   assign::PointGrid<2> grid_;  // of observations

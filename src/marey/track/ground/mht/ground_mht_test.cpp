@@ -16,11 +16,11 @@ namespace marey::track::ground::mht {
 namespace {
 
 using namespace ground_scene;
-using Seen = std::vector<Observation<2>>;
+using Detected = std::vector<Observation<2>>;
 
-Observation<2> at(const Vector<2>& place, double sigma = 0.2) {
+Observation<2> at(const Vector<2>& location, double sigma = 0.2) {
   Observation<2> one;
-  one.value = place;
+  one.value = location;
   one.covariance = sigma * sigma * Matrix<2>::Identity();
   one.score = 0.9;
   return one;
@@ -30,9 +30,9 @@ Timestamp instant(int frame) {
   return timestamp_from_seconds(frame / rate);
 }
 
-std::span<const Track<2>> step(GroundTracker& tracker, int frame, const Seen& seen) {
-  const CameraObservations look{CameraId{0}, instant(frame), seen};
-  return tracker.step(instant(frame), {&look, 1});
+std::span<const Track<2>> step(GroundTracker& tracker, int frame, const Detected& detected) {
+  const CameraObservations inspect{CameraId{0}, instant(frame), detected};
+  return tracker.step(instant(frame), {&inspect, 1});
 }
 
 const GroundView whole = view_of(-500, 500, -500, 500);
@@ -43,7 +43,7 @@ class Enumeration {
  public:
   explicit Enumeration(const GroundTrackerOptions& options) : rules_(options, 1), hypotheses_(1) {}
 
-  void step(int frame, const Seen& seen) {
+  void step(int frame, const Detected& detected) {
     const double dt = frame == 0 ? 1.0 : 1 / rate;
     const double births = rules_.options().births * dt;
     std::vector<Hypothesis> children;
@@ -51,8 +51,8 @@ class Enumeration {
       for (Person& person : parent.people) {
         rules_.predict(person.target, frame == 0 ? 0.0 : dt);
       }
-      std::vector<int> owners(seen.size(), -1);
-      spread(parent, seen, instant(frame), births, 0, owners, children);
+      std::vector<int> owners(detected.size(), -1);
+      spread(parent, detected, instant(frame), births, 0, owners, children);
     }
     for (Hypothesis& one : children) {
       std::erase_if(one.people, [&](const Person& person) { return rules_.lost(person.target, instant(frame)); });
@@ -61,11 +61,11 @@ class Enumeration {
   }
 
   std::vector<Vector<2>> best() const {
-    const auto most = std::max_element(hypotheses_.begin(), hypotheses_.end(),
-                                       [](const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; });
-    std::vector<Vector<2>> places;
-    for (const Person& person : most->people) places.push_back(person.target.filter.position());
-    return places;
+    const auto maximum = std::max_element(hypotheses_.begin(), hypotheses_.end(),
+                                          [](const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; });
+    std::vector<Vector<2>> locations;
+    for (const Person& person : maximum->people) locations.push_back(person.target.filter.position());
+    return locations;
   }
 
   std::size_t size() const { return hypotheses_.size(); }
@@ -79,15 +79,15 @@ class Enumeration {
     std::vector<Person> people;
   };
 
-  /// Gives observation `index` and those after it to nobody known, or to each person who has none yet.
-  void spread(const Hypothesis& parent, const Seen& seen, Timestamp now, double births, std::size_t index, std::vector<int>& owners,
-              std::vector<Hypothesis>& children) {
-    if (index < seen.size()) {
+  /// Gives observation `index` and those after it to no person known, or to each person who has none yet.
+  void spread(const Hypothesis& parent, const Detected& detected, Timestamp now, double births, std::size_t index,
+              std::vector<int>& owners, std::vector<Hypothesis>& children) {
+    if (index < detected.size()) {
       for (int person = -1; person < static_cast<int>(parent.people.size()); ++person) {
         if (person >= 0 && std::find(owners.begin(), owners.end(), person) != owners.end()) continue;
-        if (person >= 0 && !worth(parent.people[person], seen[index], now)) continue;
+        if (person >= 0 && !merit(parent.people[person], detected[index], now)) continue;
         owners[index] = person;
-        spread(parent, seen, now, births, index + 1, owners, children);
+        spread(parent, detected, now, births, index + 1, owners, children);
         owners[index] = -1;
       }
       return;
@@ -100,78 +100,78 @@ class Enumeration {
         child.weight += std::log(1 - person.target.presence.visible() * rules_.options().detected);
         rules_.miss(person.target, 1);
       } else {
-        const Observation<2>& one = seen[found - owners.begin()];
-        child.weight += *worth(parent.people[i], one, now) + std::log(parent.people[i].target.presence.visible());
+        const Observation<2>& one = detected[found - owners.begin()];
+        child.weight += *merit(parent.people[i], one, now) + std::log(parent.people[i].target.presence.visible());
         rules_.correct(person.target, one, rules_.at_instant(person.target, one, 0), now);
       }
     }
-    for (std::size_t o = 0; o < seen.size(); ++o) {
+    for (std::size_t o = 0; o < detected.size(); ++o) {
       if (owners[o] >= 0) continue;
       child.weight += std::log((births + rules_.options().clutter) / rules_.options().clutter);
-      child.people.push_back({rules_.start(TrackId{1}, now, seen[o])});
+      child.people.push_back({rules_.start(TrackId{1}, now, detected[o])});
       child.people.back().target.presence = GroundPresence(births, rules_.options().clutter);
     }
     children.push_back(std::move(child));
   }
 
-  std::optional<double> worth(const Person& person, const Observation<2>& seen, Timestamp now) const {
-    return rules_.log_ratio(person.target, seen, rules_.at_instant(person.target, seen, 0), now);
+  std::optional<double> merit(const Person& person, const Observation<2>& detected, Timestamp now) const {
+    return rules_.log_ratio(person.target, detected, rules_.at_instant(person.target, detected, 0), now);
   }
 
   GroundRules rules_;
   std::vector<Hypothesis> hypotheses_;
 };
 
-std::vector<Vector<2>> sorted(std::vector<Vector<2>> places) {
-  std::sort(places.begin(), places.end(),
+std::vector<Vector<2>> sorted(std::vector<Vector<2>> locations) {
+  std::sort(locations.begin(), locations.end(),
             [](const auto& a, const auto& b) { return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y()); });
-  return places;
+  return locations;
 }
 
 TEST(GroundMht, WithoutPruningTheBestIsThatOfAllHypotheses) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   Random random(seed);
-  std::size_t most = 0;
+  std::size_t maximum = 0;
   for (int round = 0; round < 20; ++round) {
     // Few people near each other, and much clutter, so that there is something to choose.
     GroundTrackerOptions options{
         .associate = GroundAssociation::mht, .clutter = 0.01, .births = 0.05, .hypotheses = 1'000'000, .window = 100};
-    const auto tracker =
-        make_ground_mht(options, ground_views({whole}), {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false, .doubt = false});
+    const auto tracker = make_ground_mht(options, ground_views({whole}),
+                                         {.ratio = 1e-300, .leaves = 1'000'000'000, .fold = false, .review_item = false});
     Enumeration twin(options);
     for (int frame = 0; frame < 4; ++frame) {
-      Seen seen;
+      Detected detected;
       for (int person = 0; person < 2; ++person) {
-        if (!random.chance(0.2)) seen.push_back(at(Vector<2>(0.6 * person, 0) + random.gaussian(0.3), 0.3));
+        if (!random.chance(0.2)) detected.push_back(at(Vector<2>(0.6 * person, 0) + random.gaussian(0.3), 0.3));
       }
-      if (random.chance(0.3)) seen.push_back(at({random.uniform(-2, 2), random.uniform(-2, 2)}));
-      twin.step(frame, seen);
-      std::vector<Vector<2>> places;
-      for (const Track<2>& track : step(*tracker, frame, seen)) places.push_back(track.position);
+      if (random.chance(0.3)) detected.push_back(at({random.uniform(-2, 2), random.uniform(-2, 2)}));
+      twin.step(frame, detected);
+      std::vector<Vector<2>> locations;
+      for (const Track<2>& track : step(*tracker, frame, detected)) locations.push_back(track.position);
       const auto expected = sorted(twin.best());
-      const auto found = sorted(places);
+      const auto found = sorted(locations);
       ASSERT_EQ(found.size(), expected.size()) << "round " << round << ", frame " << frame;
       for (std::size_t i = 0; i < found.size(); ++i) {
         EXPECT_LT((found[i] - expected[i]).norm(), 1e-9) << "round " << round << ", frame " << frame;
       }
     }
-    most = std::max(most, twin.size());
+    maximum = std::max(maximum, twin.size());
   }
-  EXPECT_GT(most, 100U) << "nothing to choose from";
+  EXPECT_GT(maximum, 100U) << "nothing to choose from";
 }
 
 /// Two who run towards each other, at y = 0 and y = `apart`, and are seen as one while they pass.
-Seen passing(Random& random, int frame, double apart) {
+Detected passing(Random& random, int frame, double apart) {
   const double x = 0.12 * (frame - 50);
-  Seen seen;
+  Detected detected;
   if (std::abs(x) < 0.35) {
-    seen.push_back(at(Vector<2>(0, apart / 2) + random.gaussian(0.15)));
+    detected.push_back(at(Vector<2>(0, apart / 2) + random.gaussian(0.15)));
   } else {
-    if (!random.chance(0.1)) seen.push_back(at(Vector<2>(x, 0) + random.gaussian(0.15)));
-    if (!random.chance(0.1)) seen.push_back(at(Vector<2>(-x, apart) + random.gaussian(0.15)));
+    if (!random.chance(0.1)) detected.push_back(at(Vector<2>(x, 0) + random.gaussian(0.15)));
+    if (!random.chance(0.1)) detected.push_back(at(Vector<2>(-x, apart) + random.gaussian(0.15)));
   }
-  return seen;
+  return detected;
 }
 
 TEST(GroundMht, DecidesAfterAMeetingWhoIsWho) {
@@ -202,22 +202,22 @@ TEST(GroundMht, DecidesAfterAMeetingWhoIsWho) {
 TEST(GroundMht, TellsEachInstantOnceInOrderAndNotBeforeItsWindow) {
   const auto tracker = make_ground_mht({.associate = GroundAssociation::mht, .window = 0.5}, ground_views({whole}));
   Random random(3);
-  int told = 0;
+  int reported = 0;
   for (int frame = 0; frame < 100; ++frame) {
     step(*tracker, frame, passing(random, frame, 0.3));
     for (const GroundDecision& one : tracker->decided()) {
-      EXPECT_EQ(one.now, instant(told++));
+      EXPECT_EQ(one.now, instant(reported++));
       EXPECT_LE(one.now, instant(frame) - duration_from_seconds(0.5));
       EXPECT_TRUE(std::is_sorted(one.tracks.begin(), one.tracks.end(), [](const auto& a, const auto& b) { return a.id < b.id; }));
       for (const ObservationMatch& claim : one.matches) {
-        const auto whose = [&](const Track<2>& track) { return track.id == claim.track && track.cameras != 0; };
-        EXPECT_EQ(std::count_if(one.tracks.begin(), one.tracks.end(), whose), 1);
+        const auto owner = [&](const Track<2>& track) { return track.id == claim.track && track.cameras != 0; };
+        EXPECT_EQ(std::count_if(one.tracks.begin(), one.tracks.end(), owner), 1);
       }
     }
   }
-  EXPECT_GE(told, 85);
-  for (const GroundDecision& one : tracker->decide_all()) EXPECT_EQ(one.now, instant(told++));
-  EXPECT_EQ(told, 100);
+  EXPECT_GE(reported, 85);
+  for (const GroundDecision& one : tracker->decide_all()) EXPECT_EQ(one.now, instant(reported++));
+  EXPECT_EQ(reported, 100);
 }
 
 TEST(GroundMht, IsTheSameAgain) {
@@ -256,20 +256,20 @@ TEST(GroundMht, NothingSeenAndNoLooksAreNothing) {
   const auto tracker = make_ground_mht({.associate = GroundAssociation::mht}, ground_views({whole}));
   EXPECT_TRUE(tracker->expected(instant(0)).empty());
   EXPECT_TRUE(tracker->decide_all().empty());
-  EXPECT_TRUE(tracker->step(instant(0), Seen{}).empty());
+  EXPECT_TRUE(tracker->step(instant(0), Detected{}).empty());
   EXPECT_TRUE(step(*tracker, 1, {}).empty());
   EXPECT_EQ(tracker->decide_all().size(), 2U);
 }
 
 /// A scuffle of eight people within a few metres, and clutter among them, that never ends.
-Seen scuffle(Random& random, int frame) {
-  Seen seen;
+Detected scuffle(Random& random, int frame) {
+  Detected detected;
   for (int person = 0; person < 8; ++person) {
     const double angle = 0.02 * frame * (person % 2 == 0 ? 1 : -1) + person;
-    if (!random.chance(0.1)) seen.push_back(at(1.5 * Vector<2>(std::cos(angle), std::sin(angle)) + random.gaussian(0.3), 0.3));
+    if (!random.chance(0.1)) detected.push_back(at(1.5 * Vector<2>(std::cos(angle), std::sin(angle)) + random.gaussian(0.3), 0.3));
   }
-  if (random.chance(0.5)) seen.push_back(at({random.uniform(-5, 5), random.uniform(-5, 5)}));
-  return seen;
+  if (random.chance(0.5)) detected.push_back(at({random.uniform(-5, 5), random.uniform(-5, 5)}));
+  return detected;
 }
 
 TEST(GroundMht, NeedsNoMoreMemoryHoweverLongAScuffleLasts) {
@@ -289,10 +289,10 @@ TEST(GroundMht, ManyFalsePointsDoNotMultiply) {
   Random random(13);
   std::set<int> ids;
   for (int frame = 0; frame < 60; ++frame) {
-    Seen seen;
-    if (!random.chance(0.1)) seen.push_back(at(Vector<2>(-20 + 0.15 * frame, 0) + random.gaussian(0.1), 0.1));
-    for (int i = 0; i < 350; ++i) seen.push_back(at({random.uniform(-52, 52), random.uniform(-34, 34)}, 0.1));
-    step(*tracker, frame, seen);
+    Detected detected;
+    if (!random.chance(0.1)) detected.push_back(at(Vector<2>(-20 + 0.15 * frame, 0) + random.gaussian(0.1), 0.1));
+    for (int i = 0; i < 350; ++i) detected.push_back(at({random.uniform(-52, 52), random.uniform(-34, 34)}, 0.1));
+    step(*tracker, frame, detected);
     for (const GroundDecision& one : tracker->decided()) {
       if (seconds(one.now) > 0.5) ids.insert(id_at(one.tracks, {-20 + 0.15 * rate * seconds(one.now), 0}, 0.6));
     }

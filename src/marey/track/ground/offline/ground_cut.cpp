@@ -78,21 +78,21 @@ class Cutter {
 
   /// The bin that begins the second of two pieces of [from, to).
   std::optional<std::size_t> best_cut(std::size_t from, std::size_t to) const {
-    const auto fewest = static_cast<std::size_t>(std::lround(options_.shortest / bin_seconds));
+    const auto lowest_count = static_cast<std::size_t>(std::lround(options_.shortest / bin_seconds));
     Vector<3> all = Vector<3>::Zero();
     for (std::size_t i = from; i < to; ++i) all += bins_[i].colour;
     Vector<3> before = Vector<3>::Zero();
     std::optional<std::size_t> best;
-    double best_gain = options_.surely * options_.deviation * options_.deviation;
+    double best_gain = options_.certainly * options_.deviation * options_.deviation;
     for (std::size_t i = from; i < to; ++i) {
       const auto n = static_cast<double>(i - from);
       const auto m = static_cast<double>(to - i);
-      // Within a track somebody else may have passed in front; before it begins and after it ends nobody knows of that.
-      const std::size_t before_it = from == 0 ? 1 : fewest, after_it = to == bins_.size() ? 1 : fewest;
+      // Within a track another person may have passed in front; before it begins and after it ends no person knows of that.
+      const std::size_t before_it = from == 0 ? 1 : lowest_count, after_it = to == bins_.size() ? 1 : lowest_count;
       if (i - from >= before_it && to - i >= after_it) {
         const double apart = (before / n - (all - before) / m).norm();
         const double gain = apart * apart * n * m / (n + m);
-        if (apart > options_.least && gain > best_gain) {
+        if (apart > options_.minimum && gain > best_gain) {
           best_gain = gain;
           best = i;
         }
@@ -108,7 +108,7 @@ class Cutter {
     const Vector<3> early = bins_[cut - 1].colour;
     const Vector<3> late = bins_[std::min(cut + 1, bins_.size() - 1)].colour;
     double sum = 0;
-    double least = 0;
+    double minimum = 0;
     std::size_t best = bins_[cut - 1].first + 1;
     for (std::size_t i = best; i < bins_[cut].last; ++i) {
       const GroundSample& sample = samples_[i - 1];
@@ -116,8 +116,8 @@ class Cutter {
         const Vector<3> colour = point_of(sample);
         sum += (colour - early).squaredNorm() - (colour - late).squaredNorm();
       }
-      if (sum > least) continue;
-      least = sum;
+      if (sum > minimum) continue;
+      minimum = sum;
       best = i;
     }
     return best;
@@ -164,7 +164,7 @@ bool may_be_one(std::span<const GroundSample> earlier, std::span<const GroundSam
   return true;
 }
 
-/// From which sample of `tracklet` on `next` shows the same person, who then goes on in it.
+/// From which sample of `tracklet` on `next` shows the same person, who then continues in it.
 std::optional<std::size_t> handed_over(const GroundTracklet& tracklet, const GroundTracklet& next, std::span<const Timestamp> times,
                                        const GroundCutOptions& options) {
   const std::int32_t last = tracklet.samples.back().instant, begin = next.samples.front().instant;
@@ -202,12 +202,12 @@ std::vector<GroundTracklet> cut_at_appearance_changes(std::vector<GroundTracklet
 
 std::vector<GroundTracklet> cut_where_impossible(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times) {
   std::vector<GroundTracklet> pieces;
-  std::vector<filter::TimedPlace> places;
+  std::vector<filter::TimedPosition> locations;
   for (GroundTracklet& tracklet : tracklets) {
-    places.clear();
+    locations.clear();
     for (const GroundSample& sample : tracklet.samples)
-      places.push_back({seconds(times[static_cast<std::size_t>(sample.instant)]), sample.at(), sample.spread()});
-    const std::vector<filter::ImpossiblePiece> wrong = filter::impossible_pieces(places);
+      locations.push_back({seconds(times[static_cast<std::size_t>(sample.instant)]), sample.at(), sample.spread()});
+    const std::vector<filter::ImpossiblePiece> wrong = filter::impossible_pieces(locations);
     std::vector<GroundTracklet> later;  // the last first
     for (auto piece = wrong.rbegin(); piece != wrong.rend(); ++piece) {
       if (piece->first == 0 || piece->last + 1 == tracklet.samples.size()) continue;

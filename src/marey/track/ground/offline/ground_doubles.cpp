@@ -9,18 +9,18 @@
 #include <Eigen/LU>
 
 #include "marey/core/colour.h"
+#include "marey/track/ground/offline/ground_encounters.h"
 #include "marey/track/ground/offline/ground_join.h"
-#include "marey/track/ground/offline/ground_meetings.h"
 
 namespace marey::track::ground::offline {
 namespace {
 
-constexpr double kSamePlace = 9.2;     // chi-square of two degrees, 99 %
-constexpr double kLongestBridged = 1;  // s without a sample across which a place is told from before and after
+constexpr double kSamePosition = 9.2;  // chi-square of two degrees, 99 %
+constexpr double kMaxBridged = 1;      // s without a sample across which a place is distinguished from before and after
 
 /// Where a tracklet was, and how sure that is.
-struct PlaceThen {
-  Vector<2> place = Vector<2>::Zero();
+struct PositionThen {
+  Vector<2> location = Vector<2>::Zero();
   Matrix<2> spread = Matrix<2>::Identity();
 };
 
@@ -40,13 +40,13 @@ class Walker {
     return &samples_[next_++];
   }
   /// Between the samples before and after, unless they are far apart in time.
-  std::optional<PlaceThen> between(std::int32_t instant) const {
+  std::optional<PositionThen> between(std::int32_t instant) const {
     if (next_ == 0 || next_ == samples_.size()) return std::nullopt;
     const GroundSample &a = samples_[next_ - 1], &b = samples_[next_];
     const double whole = seconds(time(b.instant) - time(a.instant)), part = seconds(time(instant) - time(a.instant));
-    if (whole > kLongestBridged) return std::nullopt;
-    const double share = part / whole;
-    return PlaceThen{a.at() + share * (b.at() - a.at()), (1 - share) * a.spread() + share * b.spread()};
+    if (whole > kMaxBridged) return std::nullopt;
+    const double fraction = part / whole;
+    return PositionThen{a.at() + fraction * (b.at() - a.at()), (1 - fraction) * a.spread() + fraction * b.spread()};
   }
 
  private:
@@ -101,12 +101,12 @@ class Doubles {
     if (far_apart(a, b, from) || far_apart(a, b, to)) return false;
     const Overlap found = overlap(a, b, from, to);
     if (found.compared == 0 || found.together < options_.near * found.compared) return false;
-    const int looks = found.alone_a + found.alone_b + found.both;
-    if (found.alone_a + found.alone_b < options_.looks || found.both > options_.both * looks) return false;
+    const int appearances = found.alone_a + found.alone_b + found.both;
+    if (found.alone_a + found.alone_b < options_.appearances || found.both > options_.both * appearances) return false;
     return same_colour(a, b, from, to);
   }
 
-  /// At one end of the overlap: spares the look at all of it.
+  /// At one end of the overlap: spares the inspection at all of it.
   bool far_apart(int a, int b, std::int32_t instant) const {
     const auto nearest = [&](int i) { return samples(i)[std::min(index_from(samples(i), instant), samples(i).size() - 1)].at(); };
     return (nearest(a) - nearest(b)).norm() > 2 * options_.farthest;
@@ -121,38 +121,38 @@ class Doubles {
       const std::int32_t now = std::min(next_a.value_or(to + 1), next_b.value_or(to + 1));
       if (now > to) break;
       const GroundSample *x = one.take(now), *y = other.take(now);
-      count_looks(x, y, found);
-      const auto p = x != nullptr ? std::optional(PlaceThen{x->at(), x->spread()}) : one.between(now);
-      const auto q = y != nullptr ? std::optional(PlaceThen{y->at(), y->spread()}) : other.between(now);
+      count_appearance(x, y, found);
+      const auto p = x != nullptr ? std::optional(PositionThen{x->at(), x->spread()}) : one.between(now);
+      const auto q = y != nullptr ? std::optional(PositionThen{y->at(), y->spread()}) : other.between(now);
       if (!p || !q) continue;
       ++found.compared;
-      found.together += at_one_place(*p, *q) ? 1 : 0;
+      found.together += at_one_position(*p, *q) ? 1 : 0;
     }
     return found;
   }
 
-  static void count_looks(const GroundSample* x, const GroundSample* y, Overlap& found) {
+  static void count_appearance(const GroundSample* x, const GroundSample* y, Overlap& found) {
     const CameraMask a = x != nullptr ? x->cameras : 0, b = y != nullptr ? y->cameras : 0;
     found.both += std::popcount(a & b);
     found.alone_a += std::popcount(a & ~b);
     found.alone_b += std::popcount(b & ~a);
   }
 
-  bool at_one_place(const PlaceThen& p, const PlaceThen& q) const {
-    const Vector<2> apart = p.place - q.place;
+  bool at_one_position(const PositionThen& p, const PositionThen& q) const {
+    const Vector<2> apart = p.location - q.location;
     if (apart.norm() > options_.farthest) return false;
     Matrix<2> S = p.spread + q.spread;
     S.diagonal().array() += 2 * options_.disagreement * options_.disagreement;
-    return apart.dot(S.inverse() * apart) < kSamePlace;
+    return apart.dot(S.inverse() * apart) < kSamePosition;
   }
 
-  std::optional<Appearance> wears(int i, std::int32_t from, std::int32_t to) const {
+  std::optional<Appearance> clothing(int i, std::int32_t from, std::int32_t to) const {
     const std::size_t begin = index_from(samples(i), from), end = index_from(samples(i), to + 1);
     return appearance_of(std::span(samples(i)).subspan(begin, end - begin));
   }
 
   bool same_colour(int a, int b, std::int32_t from, std::int32_t to) const {
-    const auto one = wears(a, from, to), other = wears(b, from, to);
+    const auto one = clothing(a, from, to), other = clothing(b, from, to);
     if (!one || !other) return true;
     return (perceived(*one) - perceived(*other)).norm() < options_.colours;
   }
@@ -189,7 +189,7 @@ class Doubles {
     tracklets_[static_cast<std::size_t>(b)] = {};
   }
 
-  /// What comes before it in the list no longer goes on in it.
+  /// What comes before it in the list no longer continues in it.
   void end_before(int i) {
     if (i > 0) tracklets_[static_cast<std::size_t>(i) - 1].goes_on = false;
   }
@@ -197,9 +197,9 @@ class Doubles {
   static GroundSample fused(const GroundSample& a, const GroundSample& b) {
     const Matrix<2> A = a.spread().inverse(), B = b.spread().inverse();
     const Matrix<2> covariance = (A + B).inverse();
-    const Vector<2> place = covariance * (A * a.at() + B * b.at());
+    const Vector<2> location = covariance * (A * a.at() + B * b.at());
     GroundSample sample = a.colour_deviation <= b.colour_deviation ? a : b;
-    sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+    sample.location = {static_cast<float>(location.x()), static_cast<float>(location.y())};
     sample.covariance = {static_cast<float>(covariance(0, 0)), static_cast<float>(covariance(0, 1)),
                          static_cast<float>(covariance(1, 1))};
     sample.score = std::max(a.score, b.score);

@@ -1,13 +1,13 @@
 // One body, one track: tracklets that show the same person at the same time are made one, over the whole recording.
 //
-// Cameras that disagree about where somebody stands, or a box that comes a metre beside where it was expected, let a second track
+// Cameras that disagree about where a person stands, or a box that comes a metre beside where it was expected, let a second track
 // begin beside the first; from then on each is fed now and then, by one camera or the other. While it happens that looks like two
-// who run close together (ground_duplicates.h merges what can be told at once); from the whole of it it is told apart by what two
-// people cannot do: be beside each other from the first to the last instant that both tracks are there, one of them beginning
-// there and one ending, without any camera ever seeing both in one frame, though it sees the one or the other again and again.
-// Two people who hide each other are seen apart by somebody before or after, or are of other colours.
-// How far two may be apart is told by what was seen, not by what a filter makes of it: errors of one camera persist, and do not
-// average out. Cost: for each pair of tracklets that overlap the samples of the overlap, where they are near at its ends.
+// who run close together (ground_duplicates.h merges what can be reported at once); from the whole of it it is distinguished by
+// what two people cannot do: be beside each other from the first to the last instant that both tracks are there, one of them
+// beginning there and one ending, without any camera ever seeing both in one frame, though it sees the one or the other again and
+// again. Two people who hide each other are seen apart by a person before or after, or are of other colours. How far two may be
+// apart is reported by what was seen, not by what a filter makes of it: errors of one camera persist, and do not average out. Cost:
+// for each pair of tracklets that overlap the samples of the overlap, where they are near at its ends.
 #pragma once
 
 #include <span>
@@ -20,11 +20,11 @@ namespace marey::track::ground::offline {
 
 struct GroundDoubleOptions {
   double farthest = 2;        ///< m; what lies farther apart is never one person
-  double disagreement = 0.5;  ///< m, by which cameras disagree about a place for good: standard deviation per axis
+  double disagreement = 0.5;  ///< m, by which cameras disagree about a place permanently: standard deviation per axis
   double near = 0.6;          ///< share of the overlap in which both may be at one place
   double both = 0.05;         ///< share of the looks at either in which one camera may see both: a body that was split in two
   double shortest = 0.2;      ///< s; a shorter overlap is the end of one track beside the beginning of another (ground_cut.h)
-  int looks = 5;              ///< at either of them, within the overlap, at least
+  int appearances = 5;        ///< at either of them, within the overlap, at least
   double colours = 20;        ///< as perceived, by which the clothes of one person may differ from camera to camera
 };
 

@@ -19,21 +19,21 @@ std::vector<Timestamp> instants(int count) {
 }
 
 /// Which cameras see it at an instant; none: it is not seen.
-using SeenBy = std::function<CameraMask(int)>;
+using ObservedBy = std::function<CameraMask(int)>;
 
-GroundTracklet tracklet(int track, int from, int to, const std::function<Vector<2>(double)>& way, const SeenBy& seen_by,
+GroundTracklet tracklet(int track, int from, int to, const std::function<Vector<2>(double)>& method, const ObservedBy& observed_by,
                         std::uint64_t seed, double sigma = 0.15, std::array<std::int8_t, 3> colour = {90, 0, 0}) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> off;
   GroundTracklet one{.runs = {{TrackId{track}, 0}}, .confirmed = true, .samples = {}};
   for (int k = from; k < to; ++k) {
-    const CameraMask cameras = seen_by(k);
+    const CameraMask cameras = observed_by(k);
     const double dx = sigma * off(engine), dy = sigma * off(engine);
     if (cameras == 0) continue;
-    const Vector<2> place = way(k / kRate) + Vector<2>(dx, dy);
+    const Vector<2> location = method(k / kRate) + Vector<2>(dx, dy);
     GroundSample sample;
     sample.instant = k;
-    sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+    sample.location = {static_cast<float>(location.x()), static_cast<float>(location.y())};
     sample.covariance = {static_cast<float>(sigma * sigma), 0, static_cast<float>(sigma * sigma)};
     sample.cameras = cameras;
     sample.colour = colour;
@@ -52,7 +52,7 @@ Vector<2> a_little_aside(double t) {
 
 TEST(GroundDoubles, TwoTracksThatAreFedByTurnsAreOne) {
   const auto times = instants(250);
-  // The second begins beside the first, takes most of what the cameras see, and goes on when the first ends.
+  // The second begins beside the first, takes most of what the cameras see, and continues when the first ends.
   const auto merged =
       merge_doubles({tracklet(
                          3, 0, 150, strolls, [](int k) { return CameraMask(k < 60 || k % 4 == 0 ? 3 : 0); }, 1),
@@ -78,18 +78,18 @@ TEST(GroundDoubles, AHollowCopyWithinAnothersLifeGoes) {
 
 TEST(GroundDoubles, TwoWhomACameraSeesBothStayTwo) {
   for (const double aside : {0.5, 1.0}) {
-    const auto beside = [&](double t) { return Vector<2>(strolls(t) + Vector<2>(0, aside)); };
+    const auto next_to = [&](double t) { return Vector<2>(strolls(t) + Vector<2>(0, aside)); };
     EXPECT_EQ(merge_doubles({tracklet(
                                  1, 0, 250, strolls, [](int) { return CameraMask(1); }, 1),
                              tracklet(
-                                 2, 60, 250, beside, [](int k) { return CameraMask(k % 5 == 0 ? 1 : 0); }, 2)},
+                                 2, 60, 250, next_to, [](int k) { return CameraMask(k % 5 == 0 ? 1 : 0); }, 2)},
                             instants(250))
                   .size(),
               2U);
   }
 }
 
-TEST(GroundDoubles, WhoIsHiddenBehindAnotherStaysHimself) {
+TEST(GroundDoubles, OccludedPersonKeepsIdentity) {
   // Seen both before and after; for two seconds between only the one or the other.
   const auto one = [](int k) { return CameraMask(k < 100 || k >= 150 || k % 3 != 0 ? 1 : 0); };
   const auto other = [](int k) { return CameraMask(k < 100 || k >= 150 || k % 3 == 0 ? 1 : 0); };
@@ -107,7 +107,7 @@ TEST(GroundDoubles, OtherShirtsAreOtherPeople) {
             2U);
 }
 
-TEST(GroundDoubles, WhoPartsIsAnother) {
+TEST(GroundDoubles, SeparatingPersonIsDistinct) {
   const auto leaves = [](double t) { return Vector<2>(strolls(t) + Vector<2>(0.2, 0.4 + std::max(0.0, t - 5))); };
   EXPECT_EQ(merge_doubles({tracklet(
                                1, 0, 250, strolls, [](int) { return CameraMask(1); }, 1),

@@ -1,18 +1,18 @@
 // Who is who over a whole recording, once people were named: which paths the names go along.
 //
-// A tracker's tracks are cut wherever it may have been wrong: where two met (ground_meetings.h) and where one was lost. Each
+// A tracker's tracks are cut wherever it may have been wrong: where two met (ground_encounters.h) and where one was lost. Each
 // stretch between is one person's. How stretches follow each other is then decided over the recording at once, so that the sum of
 // logarithms of likelihoods is the greatest that is found:
-//   meetings   two go on as they were tracked, or exchanged: by place, velocity and clothes right before and after;
+//   meetings   two continue as they were tracked, or exchanged: by place, velocity and clothes right before and after;
 //   gaps       an end is followed by a beginning, or none (ground_join.h);
 //   roles      all stretches of a path have their places among the others as one person has (ground_roles.h): minutes after two
 //              were exchanged, the back is found where the winger was. This settles what the moment itself leaves open;
-//   names      nobody is two people: a path that was given two names is cut between them.
-// From what the tracker thought, the search goes on by the best of all moves that exchange what two paths have from some point on,
-// or between two points, until none gains: Markov-chain data association's moves (Oh, Russell & Sastry, "Markov chain Monte Carlo
-// data association for multi-target tracking", IEEE Trans. AC 54, 2009), taken greedily. How much the second-best way would lose is
-// how sure each decision is. Assumes that most meetings are tracked rightly, and that roles last.
-// Cost: for each move made the meetings and pairs of ends and beginnings, each in constant time, as sums along paths are kept.
+//   names      no person is two people: a path that was given two names is cut between them.
+// From what the tracker thought, the search continues by the best of all moves that exchange what two paths have from some point
+// on, or between two points, until none gains: Markov-chain data association's moves (Oh, Russell & Sastry, "Markov chain Monte
+// Carlo data association for multi-target tracking", IEEE Trans. AC 54, 2009), taken greedily. How much the second-best way would
+// lose is how sure each decision is. Assumes that most meetings are tracked rightly, and that roles last. Cost: for each move made
+// the meetings and pairs of ends and beginnings, each in constant time, as sums along paths are kept.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@
 #include <vector>
 
 #include "marey/core/time.h"
+#include "marey/track/ground/offline/ground_encounters.h"
 #include "marey/track/ground/offline/ground_join.h"
-#include "marey/track/ground/offline/ground_meetings.h"
 #include "marey/track/ground/offline/ground_tracklet.h"
 
 namespace marey::track::ground::offline {
 
-/// Somebody was named.
+/// A person was named.
 struct GroundNaming {
   int tracklet = 0;
   std::int32_t instant = 0;
@@ -34,48 +34,48 @@ struct GroundNaming {
 };
 
 struct GroundIdentityOptions {
-  MeetingOptions meeting{.near = 2, .motion = {}};
+  CloseEncounterOptions close_encounter{.near = 2, .motion = {}};
   GroundChainOptions join;
-  double exchanged = -3;  ///< logarithm of the odds that a meeting was tracked exchanged, before anything else is known
-  double believed = 0.3;  ///< share of what place and velocity tell of a meeting that is believed: tracks were smoothed through it
-  double coming = 1e-6;   ///< people who come into a match, per m² and s
+  double swapped = -3;   ///< logarithm of the odds that a meeting was tracked exchanged, before anything else is known
+  double trusted = 0.3;  ///< share of what place and velocity tell of a meeting that is trusted: tracks were smoothed through it
+  double coming = 1e-6;  ///< people who come into a match, per m² and s
 };
 
 struct GroundIdentities {
   /// A part of a tracklet that is one person's. Without samples where two meetings are at one instant.
-  struct Stretch {
+  struct TimeChunk {
     int tracklet = 0;
     std::int32_t first = 0, last = 0;  ///< instants, both included
     int path = 0;
   };
   /// One person's stretches, in the order of time.
   struct Path {
-    int name = -1;  ///< −1: nobody named it
-    std::vector<int> stretches;
+    int name = -1;  ///< −1: no person named it
+    std::vector<int> segments;
   };
   /// Two met. `probability`: that `paths` should have been exchanged from there on.
-  struct Meeting {
+  struct CloseEncounter {
     std::int32_t instant = 0;
     int before_a = 0, before_b = 0;  ///< stretches
-    bool exchanged = false;          ///< against how they were tracked
+    bool swapped = false;            ///< against how they were tracked
     double probability = 0;
   };
-  /// `after` was taken for the one of `before`. `probability`: that it is somebody else.
+  /// `after` was taken for the one of `before`. `probability`: that it is another person.
   struct Link {
     int before = 0, after = 0;  ///< stretches
     double probability = 0;
   };
-  /// Who an unnamed path may be; the rest of the probability is somebody else's.
+  /// Who an unnamed path may be; the rest of the probability is another person's.
   struct Candidate {
     int path = 0, name = 0;
     double probability = 0;
   };
 
-  std::vector<Stretch> stretches;  ///< by tracklet, then by time
+  std::vector<TimeChunk> segments;  ///< by tracklet, then by time
   std::vector<Path> paths;
-  std::vector<Meeting> meetings;      ///< in the order of time
-  std::vector<Link> links;            ///< by `before`
-  std::vector<Candidate> candidates;  ///< by path, the likeliest first
+  std::vector<CloseEncounter> close_encounters;  ///< in the order of time
+  std::vector<Link> links;                       ///< by `before`
+  std::vector<Candidate> candidates;             ///< by path, the likeliest first
 };
 
 /// `tracklets` as tracked, by track and time, those cut off saying so (`goes_on`); `teams` of each: 0, 1, or −1 where it is not

@@ -18,43 +18,44 @@ std::vector<Timestamp> scene_clock(int instants) {
 }
 
 /// Where player `who` of six is: at a home of its own, which it strolls about; players 0 and 1 run side by side round 60 s.
-Vector<2> place_of(int who, int k) {
+Vector<2> position_of(int identity, int k) {
   const double t = k / kSceneRate;
-  const Vector<2> home(15.0 * (who % 3), 20.0 * (who / 3));
-  const Vector<2> about = home + Vector<2>(4 * std::sin(t / 7 + who), 4 * std::cos(t / 9 + 2 * who));
-  if (who > 1) return about;
+  const Vector<2> home(15.0 * (identity % 3), 20.0 * (identity / 3));
+  const Vector<2> about = home + Vector<2>(4 * std::sin(t / 7 + identity), 4 * std::cos(t / 9 + 2 * identity));
+  if (identity > 1) return about;
   const double together = std::exp(-std::pow((t - 60) / 8, 4));
-  const Vector<2> meeting(7.5, 2.0 + 0.35 * (who == 0 ? 1 : -1));
-  return (1 - together) * about + together * meeting;
+  const Vector<2> close_encounter(7.5, 2.0 + 0.35 * (identity == 0 ? 1 : -1));
+  return (1 - together) * about + together * close_encounter;
 }
 
 GroundTracklet empty_track(int track) {
   return {.runs = {{TrackId{track}, 0}}, .confirmed = true, .samples = {}};
 }
 
-void see(GroundTracklet& tracklet, int who, int k) {
+void observe_frame(GroundTracklet& tracklet, int identity, int k) {
   GroundSample sample;
   sample.instant = k;
-  const Vector<2> place = place_of(who, k);
-  sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+  const Vector<2> location = position_of(identity, k);
+  sample.location = {static_cast<float>(location.x()), static_cast<float>(location.y())};
   sample.covariance = {0.02F, 0, 0.02F};
   sample.cameras = 1;
   tracklet.samples.push_back(sample);
 }
 
 /// Six tracks over three minutes, of which 0 and 1 show each other's players from `exchanged` s on.
-std::vector<GroundTracklet> six(double exchanged, int instants) {
+std::vector<GroundTracklet> six(double swapped, int instants) {
   std::vector<GroundTracklet> tracklets;
-  for (int who = 0; who < 6; ++who) {
-    tracklets.push_back(empty_track(who + 1));
-    for (int k = 0; k < instants; ++k) see(tracklets.back(), who < 2 && k / kSceneRate >= exchanged ? 1 - who : who, k);
+  for (int identity = 0; identity < 6; ++identity) {
+    tracklets.push_back(empty_track(identity + 1));
+    for (int k = 0; k < instants; ++k)
+      observe_frame(tracklets.back(), identity < 2 && k / kSceneRate >= swapped ? 1 - identity : identity, k);
   }
   return tracklets;
 }
 
 std::vector<GroundNaming> named_at_once(int people) {
   std::vector<GroundNaming> namings;
-  for (int who = 0; who < people; ++who) namings.push_back({who, 5, who});
+  for (int identity = 0; identity < people; ++identity) namings.push_back({identity, 5, identity});
   return namings;
 }
 
@@ -62,9 +63,9 @@ std::vector<GroundNaming> named_at_once(int people) {
 std::string names_of(const GroundIdentities& found, int tracklet, int every_s, int instants) {
   std::string names;
   for (int k = 0; k < instants; k += static_cast<int>(every_s * kSceneRate)) {
-    for (const GroundIdentities::Stretch& stretch : found.stretches) {
-      if (stretch.tracklet != tracklet || k < stretch.first || k > stretch.last) continue;
-      const int name = found.paths[static_cast<std::size_t>(stretch.path)].name;
+    for (const GroundIdentities::TimeChunk& segment : found.segments) {
+      if (segment.tracklet != tracklet || k < segment.first || k > segment.last) continue;
+      const int name = found.paths[static_cast<std::size_t>(segment.path)].name;
       names += name < 0 ? '?' : static_cast<char>('0' + name);
     }
   }
@@ -81,7 +82,8 @@ TEST(GroundIdentities, NamesGoAlongTracks) {
   EXPECT_EQ(names_of(found, 0, 30, 900), "000000");
   EXPECT_EQ(names_of(found, 1, 30, 900), "111111");
   EXPECT_EQ(names_of(found, 5, 30, 900), "555555");
-  for (const auto& meeting : found.meetings) EXPECT_LT(meeting.probability, 0.05) << "roles say that nothing was exchanged";
+  for (const auto& close_encounter : found.close_encounters)
+    EXPECT_LT(close_encounter.probability, 0.05) << "roles say that nothing was exchanged";
 }
 
 TEST(GroundIdentities, TwoWhoWereExchangedAreFoundByTheirRoles) {
@@ -92,23 +94,23 @@ TEST(GroundIdentities, TwoWhoWereExchangedAreFoundByTheirRoles) {
 }
 
 TEST(GroundIdentities, AnExchangeOfWhichLittleIsSeenAfterwardsIsInDoubt) {
-  const int instants = static_cast<int>(72 * kSceneRate);  // they have hardly parted
+  const int instants = static_cast<int>(72 * kSceneRate);  // they have barely parted
   const auto found = identify_all(six(60, instants), named_at_once(6), instants);
-  double most = 0;
-  for (const auto& meeting : found.meetings) most = std::max(most, meeting.probability);
-  EXPECT_GT(most, 0.03);
+  double maximum = 0;
+  for (const auto& close_encounter : found.close_encounters) maximum = std::max(maximum, close_encounter.probability);
+  EXPECT_GT(maximum, 0.03);
 }
 
-TEST(GroundIdentities, OneWhoIsLostAndFoundAgainKeepsTheName) {
+TEST(GroundIdentities, ReacquiredPersonKeepsName) {
   std::vector<GroundTracklet> tracklets = six(1e9, 900);
   tracklets[4].samples.resize(300);
   tracklets.push_back(empty_track(7));
-  for (int k = 340; k < 900; ++k) see(tracklets.back(), 4, k);  // 8 s later
+  for (int k = 340; k < 900; ++k) observe_frame(tracklets.back(), 4, k);  // 8 s later
   const auto found = identify_all(tracklets, named_at_once(6), 900);
   EXPECT_EQ(names_of(found, 6, 30, 900), "444");
 }
 
-TEST(GroundIdentities, OneTrackThatWasNamedTwiceIsExchangedWhereTwoMet) {
+TEST(GroundIdentities, SwapsDoublyNamedTrackAtEncounter) {
   // Too little is seen for roles to tell: what was said decides.
   const int instants = static_cast<int>(80 * kSceneRate);
   std::vector<GroundNaming> namings = named_at_once(6);
@@ -124,13 +126,13 @@ TEST(GroundIdentities, TwoNamesWithNothingBetweenAreCutHalfWay) {
   EXPECT_EQ(names_of(found, 5, 30, 900), "000111");
 }
 
-TEST(GroundIdentities, WhoIsUnnamedHasThoseForCandidatesWhoAreNotThere) {
+TEST(GroundIdentities, OffersAbsentPeopleAsCandidates) {
   std::vector<GroundTracklet> tracklets = six(1e9, 900);
   tracklets[4].samples.resize(300);
   tracklets.push_back(empty_track(7));
-  for (int k = 880; k < 900; ++k) see(tracklets.back(), 4, k);  // too long after to be joined, and brief
+  for (int k = 880; k < 900; ++k) observe_frame(tracklets.back(), 4, k);  // too long after to be joined, and brief
   const auto found = identify_all(tracklets, named_at_once(6), 900);
-  const int path = found.stretches.back().path;
+  const int path = found.segments.back().path;
   if (found.paths[static_cast<std::size_t>(path)].name >= 0) GTEST_SKIP() << "joined";
   ASSERT_FALSE(found.candidates.empty());
   for (const auto& candidate : found.candidates) {

@@ -19,19 +19,19 @@
 namespace marey::track::ground::offline {
 namespace {
 
-constexpr double end_span = 3;  // s of a tracklet that its end is judged by
+constexpr double end_span = 3;  // s of a tracklet that its end is evaluated by
 
-constexpr double tracker_knows = 2;    // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
-constexpr double stands = 0.1;         // gain, at least, of going on as the tracker said: less than any other claim; unswept
-constexpr double plainly_others = -4;  // of colours: the tracker went over to somebody else; unswept
-constexpr double clothes_vary = 5;     // as perceived, one person's colour from one stretch to another: sun, shade, another camera
-constexpr double thinned = 0.6;        // deviation as perceived, of one in L*a*b*
-constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be somebody else's
-constexpr std::size_t kMostKinds = 300;
+constexpr double tracker_knows = 2;  // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
+constexpr double stands = 0.1;       // gain, at least, of continuing as the tracker said: less than any other claim; unswept
+constexpr double unambiguously_others = -4;  // of colours: the tracker went over to another person; unswept
+constexpr double clothes_vary = 5;  // as perceived, one person's colour from one stretch to another: sun, shade, another camera
+constexpr double thinned = 0.6;     // deviation as perceived, of one in L*a*b*
+constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be another person's
+constexpr std::size_t kMaxKinds = 300;
 
-constexpr int kTurns = 5;          // of learning who left, and where people leave
-constexpr double kLeastOdds = -6;  // logarithm of odds: pairs that are less likely to begin with are left out
-constexpr double kBounds = 1.5;    // s
+constexpr int kRotations = 5;    // of learning who left, and where people leave
+constexpr double kMinOdds = -6;  // logarithm of odds: pairs that are less likely to begin with are omitted
+constexpr double kBounds = 1.5;  // s
 
 template <int N>
 double log_normal(const Vector<N>& residual, const Matrix<N>& S) {
@@ -52,10 +52,10 @@ double colour_log_normal(const Appearance& a, const Appearance& b) {
   return -0.5 * ((perceived(a) - perceived(b)).squaredNorm() / variance + 3 * std::log(2 * std::numbers::pi * variance));
 }
 
-/// Whether somebody there may be about to be out of sight: some place a second's way around is.
+/// Whether a person there may be about to be out of sight: some place a second's way around is.
 bool near_border(const GroundState& state, Timestamp time, double direction, const InSight& in_sight) {
   if (!in_sight) return false;
-  const Vector<2> ahead = state.place() + direction * 0.7 * state.velocity();
+  const Vector<2> ahead = state.location() + direction * 0.7 * state.velocity();
   for (int k = 0; k < 8; ++k) {
     const double angle = k * std::numbers::pi / 4;
     if (!in_sight(ahead + 1.5 * Vector<2>(std::cos(angle), std::sin(angle)), time)) return true;
@@ -65,11 +65,11 @@ bool near_border(const GroundState& state, Timestamp time, double direction, con
 
 /// Pairs within the longest gap that gain more than `least`.
 std::vector<assign::GatedPair> gated_pairs(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads,
-                                           const GroundColours& colours, const GroundChainOptions& options, double least) {
+                                           const GroundColours& colours, const GroundChainOptions& options, double minimum) {
   std::vector<assign::GatedPair> pairs;
   track::offline::for_each_successor(tails, heads, duration_from_seconds(options.longest_gap), [&](int tail, int head) {
     const std::optional<double> gain = gain_of_joining(tails[tail], heads[head], colours, options);
-    if (gain && *gain > least) pairs.push_back({tail, head, *gain});
+    if (gain && *gain > minimum) pairs.push_back({tail, head, *gain});
   });
   return pairs;
 }
@@ -99,7 +99,7 @@ class Chainer {
   std::vector<GroundChain> chains() {
     std::vector<std::vector<int>> chains(tracklets_.size());
     for (std::size_t i = 0; i < chains.size(); ++i) chains[i] = {static_cast<int>(i)};
-    for (const double share : {0.05, 0.25, 1.0}) lengthen(chains, share * options_.longest_gap);
+    for (const double fraction : {0.05, 0.25, 1.0}) lengthen(chains, fraction * options_.longest_gap);
     std::sort(chains.begin(), chains.end(), [&](const std::vector<int>& a, const std::vector<int>& b) {
       return std::pair(heads_[a.front()].time, a.front()) < std::pair(heads_[b.front()].time, b.front());
     });
@@ -125,10 +125,10 @@ class Chainer {
       if (seconds(times_.back() - tails_[i].time) > bounds) ended.push_back(i);
     }
     std::vector<double> came(n, 0.5), left(n, 0.5);
-    for (int turn = 0; turn < kTurns; ++turn) {
+    for (int turn = 0; turn < kRotations; ++turn) {
       std::vector<GroundOpenness::Passage> comings, leavings;
-      for (const std::size_t i : begun) comings.push_back({heads_[i].state.place(), head_at_border_[i] != 0, came[i]});
-      for (const std::size_t i : ended) leavings.push_back({tails_[i].state.place(), tail_at_border_[i] != 0, left[i]});
+      for (const std::size_t i : begun) comings.push_back({heads_[i].state.location(), head_at_border_[i] != 0, came[i]});
+      for (const std::size_t i : ended) leavings.push_back({tails_[i].state.location(), tail_at_border_[i] != 0, left[i]});
       const GroundOpenness openness(comings, leavings, recorded);
       for (std::size_t k = 0; k < begun.size(); ++k) heads_[begun[k]].coming = openness.coming(comings[k]);
       for (std::size_t k = 0; k < ended.size(); ++k) tails_[ended[k]].leaving = openness.leaving(leavings[k]);
@@ -138,12 +138,12 @@ class Chainer {
 
   /// Pairs with what does not depend on where people come and leave, found once.
   void find_pairs() {
-    std::vector<GroundColours::Seen> seen;
+    std::vector<GroundColours::Detected> detected;
     for (std::size_t i = 0; i < tracklets_.size(); ++i) {
       heads_[i].appearance = tails_[i].appearance = appearance_of(tracklets_[i].samples);
-      if (heads_[i].appearance) seen.push_back({*heads_[i].appearance, seconds(tails_[i].time - heads_[i].time)});
+      if (heads_[i].appearance) detected.push_back({*heads_[i].appearance, seconds(tails_[i].time - heads_[i].time)});
     }
-    pairs_ = gated_pairs(tails_, heads_, GroundColours(seen, options_.teams), options_, kLeastOdds);
+    pairs_ = gated_pairs(tails_, heads_, GroundColours(detected, options_.teams), options_, kMinOdds);
     for (assign::GatedPair& pair : pairs_) pair.gain -= openness_gain(pair);
   }
 
@@ -152,7 +152,7 @@ class Chainer {
     return std::log((1 - leaving) / leaving) - std::log(heads_[static_cast<std::size_t>(pair.column)].coming);
   }
 
-  /// Marginal probabilities of all pairs, each end with one beginning at most and the other way round.
+  /// Marginal probabilities of all pairs, each end with one beginning at most and vice versa.
   void weigh_pairs(std::vector<double>& came, std::vector<double>& left) {
     if (pairs_.empty()) find_pairs();
     std::vector<assign::GatedPair> weighed = pairs_;
@@ -183,7 +183,7 @@ class Chainer {
   /// Joins chains over gaps of at most `longest`.
   void lengthen(std::vector<std::vector<int>>& chains, double longest) {
     std::vector<GroundEnd> heads, tails;
-    std::vector<GroundColours::Seen> seen;
+    std::vector<GroundColours::Detected> detected;
     for (const std::vector<int>& members : chains) {
       heads.push_back(heads_[members.front()]);
       tails.push_back(tails_[members.back()]);
@@ -194,11 +194,11 @@ class Chainer {
       }
       heads.back().appearance = tails.back().appearance = appearance_of(all);
       if (!heads.back().appearance) continue;
-      seen.push_back({*heads.back().appearance, seconds(tails.back().time - heads.back().time)});
+      detected.push_back({*heads.back().appearance, seconds(tails.back().time - heads.back().time)});
     }
     GroundChainOptions options = options_;
     options.longest_gap = longest;
-    merge(chains, follow(tails, heads, GroundColours(seen, options_.teams), options));
+    merge(chains, run_tracker(tails, heads, GroundColours(detected, options_.teams), options));
   }
 
   static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
@@ -221,18 +221,18 @@ class Chainer {
 
 }  // namespace
 
-GroundColours::GroundColours(std::span<const Seen> seen, const std::optional<GroundTeams>& teams)
-    : kinds_(seen.begin(), seen.end()), teams_(teams) {
-  std::stable_sort(kinds_.begin(), kinds_.end(), [](const Seen& a, const Seen& b) { return a.seconds > b.seconds; });
-  if (kinds_.size() > kMostKinds) kinds_.resize(kMostKinds);
+GroundColours::GroundColours(std::span<const Detected> detected, const std::optional<GroundTeams>& teams)
+    : kinds_(detected.begin(), detected.end()), teams_(teams) {
+  std::stable_sort(kinds_.begin(), kinds_.end(), [](const Detected& a, const Detected& b) { return a.seconds > b.seconds; });
+  if (kinds_.size() > kMaxKinds) kinds_.resize(kMaxKinds);
 }
 
 double GroundColours::same(const std::optional<Appearance>& a, const std::optional<Appearance>& b) const {
   if (!a || !b || kinds_.empty()) return 0;
   double common = 0;
   double all = 0;
-  for (const Seen& kind : kinds_) {
-    common += (kind.seconds + 0.1) * std::exp(colour_log_normal(kind.wears, *b));
+  for (const Detected& kind : kinds_) {
+    common += (kind.seconds + 0.1) * std::exp(colour_log_normal(kind.clothing, *b));
     all += kind.seconds + 0.1;
   }
   const double newcomer = std::log(std::max(common / all, 1e-12));  // of some colour that was not seen yet
@@ -241,12 +241,12 @@ double GroundColours::same(const std::optional<Appearance>& a, const std::option
 }
 
 double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
-                      const GroundStray& stray) {
+                      const EndpointError& stray) {
   const GroundState expected = predicted(tail.state, seconds(head.time - tail.time), motion);
   Vector<4> residual;
-  residual << head.state.place() - expected.place(), head.state.velocity() - expected.velocity();
+  residual << head.state.location() - expected.location(), head.state.velocity() - expected.velocity();
   Matrix<4> S = expected.covariance() + head.state.covariance();
-  S.diagonal().head<2>().array() += 2 * square(stray.place);
+  S.diagonal().head<2>().array() += 2 * square(stray.location);
   S.diagonal().tail<2>().array() += 2 * square(stray.speed);
   return log_normal<4>(residual, S) + colours.same(tail.appearance, head.appearance);
 }
@@ -255,21 +255,21 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
                                       const GroundChainOptions& options) {
   const double gap = seconds(head.time - tail.time);
   if (gap <= 0 || gap > options.longest_gap) return std::nullopt;
-  const double way = (head.state.place() - tail.state.place()).norm();
-  const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * square(GroundStray{}.place));
-  if (way > options.max_speed * gap + unsure) return std::nullopt;
+  const double method = (head.state.location() - tail.state.location()).norm();
+  const double unsure = 3 * std::sqrt(tail.state.P[0].trace() + head.state.P[0].trace() + 2 * square(EndpointError{}.location));
+  if (method > options.max_speed * gap + unsure) return std::nullopt;
   const Matrix<2> anyhow = head.state.P[3] + speed_variance(options.motion) * Matrix<2>::Identity();
   const double found_again = std::log((1 - tail.leaving) / tail.leaving) - 2 * std::log1p(gap);
   const double came = std::log(head.coming) + log_normal<2>(head.state.velocity(), anyhow);
   const bool as_tracked = tail.goes_on && head.piece == tail.piece + 1;
   const double gain = log_continuity(tail, head, colours, options.motion) + found_again - came + (as_tracked ? tracker_knows : 0);
-  // What the tracker said stands where nobody else wants either piece, unless they are plainly two people's.
-  if (as_tracked && colours.same(tail.appearance, head.appearance) > plainly_others) return std::max(gain, stands);
+  // What the tracker said stands where no other person wants either piece, unless they are plainly two people's.
+  if (as_tracked && colours.same(tail.appearance, head.appearance) > unambiguously_others) return std::max(gain, stands);
   return gain;
 }
 
-std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
-                        const GroundChainOptions& options) {
+std::vector<int> run_tracker(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
+                             const GroundChainOptions& options) {
   const std::vector<assign::GatedPair> pairs = gated_pairs(tails, heads, colours, options, 0);
   return assign::sparse_assignment(static_cast<int>(tails.size()), static_cast<int>(heads.size()), pairs);
 }
@@ -289,7 +289,7 @@ std::optional<Appearance> appearance_of(std::span<const GroundSample> samples) {
   }
   const std::size_t n = values[0].size();
   if (n == 0) return std::nullopt;
-  constexpr double alike = 8;  // neighbouring samples err alike: so many count as one
+  constexpr double alike = 8;  // neighbouring samples err alike: this many count as one
   const double count = static_cast<double>(n);
   return Appearance{.lightness = geometry::median(values[0]),
                     .a = geometry::median(values[1]),

@@ -1,18 +1,18 @@
 // Which tracklets on the ground are one person's, decided over the whole recording at once.
 //
-// Every tracklet begins because somebody came into sight or because somebody who had been lost was found again, and likewise ends.
+// Every tracklet begins because a person came into sight or because a person who had been lost was found again, and likewise ends.
 // The chains of tracklets that explain all beginnings and ends best are a flow of least cost through the graph of tracklets; as
 // every tracklet carries exactly one person, that is an assignment of ends to beginnings, each of which may stay alone. What a pair
 // gains is a logarithm of likelihoods, one person against two:
 //   motion     the state at the end, predicted over the gap by the damped walk of ground_smooth.h, meets the state at the beginning
-//              (place and velocity, both with what is uncertain of them), against somebody who comes from anywhere, anyhow;
+//              (place and velocity, both with what is uncertain of them), against a person who comes from anywhere, anyhow;
 //   time       lost people are found again sooner rather than later;
 //   place      where people come into sight and leave it, they are likely to have done so; elsewhere they are not: that is learned
 //              from the recording (ground_openness.h);
 //   clothes    the two colours are as one person's, against how common such a colour is in this recording.
-// Nobody is in two places at once, since a chain never goes back in time, and nobody is faster than people are. Short gaps are
-// settled first: what that joins is longer, and surer of its velocities and colours, when the long gaps follow. Cost: pairs within
-// the longest gap, about 10 a tracklet, and a local search for each tracklet (sparse_assignment.h). References: Zhang, Li &
+// No person is in two places at once, since a chain never goes back in time, and no person is faster than people are. Short gaps
+// are settled first: what that joins is longer, and surer of its velocities and colours, when the long gaps follow. Cost: pairs
+// within the longest gap, about 10 a tracklet, and a local search for each tracklet (sparse_assignment.h). References: Zhang, Li &
 // Nevatia, "Global data association for multi-object tracking using network flows", CVPR 2008; Perera et al. 2006.
 #pragma once
 
@@ -27,7 +27,7 @@
 
 namespace marey::track::ground::offline {
 
-/// Whether somebody who stands there at that time would be seen and reported: within some camera's picture, and on the pitch.
+/// Whether a person who stands there at that time would be seen and reported: within some camera's image, and on the pitch.
 using InSight = std::function<bool(const Vector<2>&, Timestamp)>;
 
 struct GroundChainOptions {
@@ -44,7 +44,7 @@ struct GroundEnd {
   int piece = 0;                              ///< index of the tracklet
   bool goes_on = false;                       ///< the tracker thought that the next tracklet follows
   double coming = 5e-5;                       ///< people who come into sight there, per m² and s
-  double leaving = 0.02;                      ///< of those whose tracks end there, the share who left for good
+  double leaving = 0.02;                      ///< of those whose tracks end there, the share who left permanently
   std::optional<Appearance> appearance = {};  ///< of the whole tracklet
 };
 
@@ -52,38 +52,38 @@ struct GroundEnd {
 class GroundColours {
  public:
   /// `wears` of each tracklet that has a colour, with how long it was seen.
-  struct Seen {
-    Appearance wears;
+  struct Detected {
+    Appearance clothing;
     double seconds = 0;
   };
-  explicit GroundColours(std::span<const Seen> seen, const std::optional<GroundTeams>& teams = {});
+  explicit GroundColours(std::span<const Detected> detected, const std::optional<GroundTeams>& teams = {});
 
   /// Logarithm of how much likelier it is that both are one person's than two people's; 0 where one is unknown.
   double same(const std::optional<Appearance>& a, const std::optional<Appearance>& b) const;
 
  private:
-  std::vector<Seen> kinds_;
+  std::vector<Detected> kinds_;
   std::optional<GroundTeams> teams_;
 };
 
 /// What an end may be off by beyond what its covariance says: standard deviations per axis.
-struct GroundStray {
-  double place = 0.4;  ///< m; who is about to be lost is half hidden already
-  double speed = 0.9;  ///< m/s
+struct EndpointError {
+  double location = 0.4;  ///< m; who is about to be lost is half hidden already
+  double speed = 0.9;     ///< m/s
 };
 
-/// Logarithm of how likely whoever made `tail` is to be found as `head` is: place, velocity and clothes. `tail` is the earlier.
+/// Logarithm of how likely the one who made `tail` is to be found as `head` is: place, velocity and clothes. `tail` is the earlier.
 double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
-                      const GroundStray& stray = {});
+                      const EndpointError& stray = {});
 
-/// Logarithm of how much likelier it is that one person made both ends than that one left and another came; nothing where one
+/// Logarithm of how much likelier it is that one person made both ends than that one left and another came; nothing if one
 /// person cannot have.
 std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours,
                                       const GroundChainOptions& options);
 
 /// For each end the beginning that follows it, or assign::kNoIndex. `tails[i]` and `heads[i]` belong to one tracklet.
-std::vector<int> follow(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
-                        const GroundChainOptions& options);
+std::vector<int> run_tracker(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
+                             const GroundChainOptions& options);
 
 /// Tracklets that are one person's.
 struct GroundChain {
@@ -95,7 +95,7 @@ struct GroundChain {
 std::vector<GroundChain> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, const InSight& in_sight,
                                const GroundChainOptions& options);
 
-/// What somebody wears by all samples: the median of each component. Nothing where no sample has a colour.
+/// What a person wears by all samples: the median of each component. Nothing if no sample has a colour.
 std::optional<Appearance> appearance_of(std::span<const GroundSample> samples);
 
 }  // namespace marey::track::ground::offline

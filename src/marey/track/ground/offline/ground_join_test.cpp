@@ -14,21 +14,21 @@ namespace {
 constexpr Appearance white{.lightness = 90, .a = 0, .b = 0, .deviation = 3};
 constexpr Appearance blue{.lightness = 35, .a = 15, .b = -50, .deviation = 3};
 
-/// Somebody who walks straight from `first` to `last`, seen ten times a second.
+/// A person who walks straight from `first` to `last`, seen ten times a second.
 GroundTracklet walk(int track, double first, double last, const Vector<2>& from, const Vector<2>& velocity,
-                    const std::optional<Appearance>& wears = {}) {
+                    const std::optional<Appearance>& clothing = {}) {
   GroundTracklet tracklet{.runs = {{TrackId{track}, 0}}, .confirmed = true, .samples = {}};
   for (int k = static_cast<int>(10 * first + 0.5); k <= static_cast<int>(10 * last + 0.5); ++k) {
     GroundSample sample;
     sample.instant = k;
-    const Vector<2> place = from + (0.1 * k - first) * velocity;
-    sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+    const Vector<2> location = from + (0.1 * k - first) * velocity;
+    sample.location = {static_cast<float>(location.x()), static_cast<float>(location.y())};
     sample.covariance = {0.01F, 0, 0.01F};
     sample.cameras = 1;
-    if (wears) {
-      sample.colour = {static_cast<std::int8_t>(wears->lightness), static_cast<std::int8_t>(wears->a),
-                       static_cast<std::int8_t>(wears->b)};
-      sample.colour_deviation = static_cast<std::uint8_t>(wears->deviation);
+    if (clothing) {
+      sample.colour = {static_cast<std::int8_t>(clothing->lightness), static_cast<std::int8_t>(clothing->a),
+                       static_cast<std::int8_t>(clothing->b)};
+      sample.colour_deviation = static_cast<std::uint8_t>(clothing->deviation);
     }
     tracklet.samples.push_back(sample);
   }
@@ -49,15 +49,15 @@ Chains chains_of(const std::vector<GroundTracklet>& tracklets, const InSight& in
   return chains;
 }
 
-TEST(GroundJoin, OneWhoWalksOnIsOne) {
+TEST(GroundJoin, LinksContinuingPerson) {
   EXPECT_EQ(chains_of({walk(1, 0, 3, {0, 0}, {2, 0}), walk(2, 5, 9, {10, 0.5}, {2, 0})}), (Chains{{0, 1}}));
 }
 
-TEST(GroundJoin, OneWhoWouldHaveToFlyIsAnother) {
+TEST(GroundJoin, RejectsImpossibleSpeed) {
   EXPECT_EQ(chains_of({walk(1, 0, 3, {0, 0}, {2, 0}), walk(2, 5, 9, {45, 0}, {2, 0})}), (Chains{{0}, {1}}));
 }
 
-TEST(GroundJoin, NobodyIsInTwoPlacesAtOnce) {
+TEST(GroundJoin, PersonHasOnePositionAtATime) {
   EXPECT_EQ(chains_of({walk(1, 0, 3, {0, 0}, {2, 0}), walk(2, 2.5, 9, {5, 0.2}, {2, 0})}), (Chains{{0}, {1}}));
 }
 
@@ -68,17 +68,17 @@ TEST(GroundJoin, TwoWhoMeetGoOnAsTheyWent) {
 }
 
 TEST(GroundJoin, ClothesTellWhoIsWhoWhereWaysDoNot) {
-  for (const bool exchanged : {false, true}) {
-    const Appearance& third = exchanged ? blue : white;
-    const Appearance& fourth = exchanged ? white : blue;
+  for (const bool swapped : {false, true}) {
+    const Appearance& third = swapped ? blue : white;
+    const Appearance& fourth = swapped ? white : blue;
     const std::vector<GroundTracklet> tracklets = {walk(1, 0, 3, {0, 0}, {1, 0}, white), walk(2, 0, 3, {0, 1}, {1, 0}, blue),
                                                    walk(3, 4, 8, {4, 0.2}, {1, 0}, third), walk(4, 4, 8, {4, 0.8}, {1, 0}, fourth)};
-    EXPECT_EQ(chains_of(tracklets), exchanged ? (Chains{{0, 3}, {1, 2}}) : (Chains{{0, 2}, {1, 3}}));
+    EXPECT_EQ(chains_of(tracklets), swapped ? (Chains{{0, 3}, {1, 2}}) : (Chains{{0, 2}, {1, 3}}));
   }
 }
 
-/// Somebody who was followed through, cut where another's track ends nearby: they slow down, turn or come into shade there, so that
-/// motion and clothes fit badly, and nobody else is there who might be either piece.
+/// A person who was followed through, cut where another's track ends nearby: they slow down, turn or come into shade there, so that
+/// motion and clothes fit badly, and no other person is there who might be either piece.
 int left_cut_although_alone(int cases, unsigned first_seed) {
   int cut = 0;
   for (int i = 0; i < cases; ++i) {
@@ -101,20 +101,20 @@ int left_cut_although_alone(int cases, unsigned first_seed) {
   return cut;
 }
 
-TEST(GroundJoin, WhatTheTrackerSaidStandsWhereNobodyElseWantsIt) {
+TEST(GroundJoin, KeepsTrackerLinkWithoutCompetitor) {
   EXPECT_EQ(left_cut_although_alone(100, 5100), 0) << "seeds 5100 to 5199";
-  std::vector<GroundTracklet> exchanged = {walk(1, 0, 5, {0, 0}, {3, 0}, white), walk(1, 5.1, 10, {15.3, 0}, {-2, 6}, blue)};
-  exchanged.front().goes_on = true;
+  std::vector<GroundTracklet> swapped = {walk(1, 0, 5, {0, 0}, {3, 0}, white), walk(1, 5.1, 10, {15.3, 0}, {-2, 6}, blue)};
+  swapped.front().goes_on = true;
   for (int other = 0; other < 6; ++other)
-    exchanged.push_back(walk(2 + other, 0, 99, {200.0 + 20 * other, 200}, {0, 0}, other % 2 == 0 ? white : blue));
-  const Chains chains = chains_of(exchanged);
+    swapped.push_back(walk(2 + other, 0, 99, {200.0 + 20 * other, 200}, {0, 0}, other % 2 == 0 ? white : blue));
+  const Chains chains = chains_of(swapped);
   EXPECT_NE(std::find(chains.begin(), chains.end(), std::vector<int>{0}), chains.end()) << "white does not become blue";
 }
 
 TEST(GroundJoin, AtTheBorderOfSightPeopleLeaveAndOthersCome) {
   const std::vector<GroundTracklet> tracklets = {walk(1, 0, 3, {94, 30}, {2, 0}), walk(2, 12, 15, {100, 34}, {-2, 0})};
-  EXPECT_EQ(chains_of(tracklets), (Chains{{0, 1}})) << "on an endless pitch nobody leaves";
-  EXPECT_EQ(chains_of(tracklets, [](const Vector<2>& place, Timestamp) { return place.x() < 101; }), (Chains{{0}, {1}}));
+  EXPECT_EQ(chains_of(tracklets), (Chains{{0, 1}})) << "on an endless pitch no person leaves";
+  EXPECT_EQ(chains_of(tracklets, [](const Vector<2>& location, Timestamp) { return location.x() < 101; }), (Chains{{0}, {1}}));
 }
 
 /// The best of all ways to give ends their beginnings.
@@ -139,7 +139,7 @@ TEST(GroundJoin, NoOtherChainsExplainMore) {
       return low + (high - low) * static_cast<double>(engine() >> 11) * 0x1.0p-53;
     };
     std::vector<GroundEnd> tails, heads;
-    std::vector<GroundColours::Seen> seen;
+    std::vector<GroundColours::Detected> detected;
     for (int k = 0; k < 6; ++k) {
       GroundEnd head, tail;
       const double begun = uniform(0, 8);
@@ -155,13 +155,13 @@ TEST(GroundJoin, NoOtherChainsExplainMore) {
       }
       if (uniform(0, 1) < 0.8) {
         head.appearance = tail.appearance = uniform(0, 1) < 0.5 ? white : blue;
-        seen.push_back({*head.appearance, 1});
+        detected.push_back({*head.appearance, 1});
       }
       tails.push_back(tail);
       heads.push_back(head);
     }
-    const GroundColours colours(seen);
-    const std::vector<int> next = follow(tails, heads, colours, {});
+    const GroundColours colours(detected);
+    const std::vector<int> next = run_tracker(tails, heads, colours, {});
     double sum = 0;
     for (std::size_t k = 0; k < next.size(); ++k) {
       if (next[k] != assign::kNoIndex) sum += *gain_of_joining(tails[k], heads[next[k]], colours, {});

@@ -23,7 +23,7 @@ constexpr double kFewPassages = 0.002;  // of the passages lie beyond the grid o
 GroundGrid grid_over(std::span<const GroundOpenness::Passage> came, std::span<const GroundOpenness::Passage> left) {
   std::vector<double> x, y;
   for (const auto& passages : {came, left}) {
-    for (const GroundOpenness::Passage& one : passages) x.push_back(one.place.x()), y.push_back(one.place.y());
+    for (const GroundOpenness::Passage& one : passages) x.push_back(one.location.x()), y.push_back(one.location.y());
   }
   if (x.empty()) return {};
   return GroundGrid::over({geometry::quantile(x, kFewPassages), geometry::quantile(y, kFewPassages)},
@@ -32,7 +32,7 @@ GroundGrid grid_over(std::span<const GroundOpenness::Passage> came, std::span<co
 
 std::vector<double> sums_over(const GroundGrid& grid, std::span<const GroundOpenness::Passage> passages, bool weighted) {
   std::vector<double> sums(grid.size(), 0);
-  for (const GroundOpenness::Passage& one : passages) sums[grid.index(one.place)] += weighted ? one.probability : 1;
+  for (const GroundOpenness::Passage& one : passages) sums[grid.index(one.location)] += weighted ? one.probability : 1;
   return spread_over(grid, sums, std::max(kReach, grid.cell));
 }
 
@@ -49,14 +49,14 @@ double GroundOpenness::coming(const Passage& one) const {
   const double prior = one.at_border ? kComingAtBorder : kComingInside;
   if (came_.empty()) return prior;
   const double reach = std::max(kReach, grid_.cell);
-  const double others = std::max(0.0, came_[grid_.index(one.place)] - one.probability);
+  const double others = std::max(0.0, came_[grid_.index(one.location)] - one.probability);
   return (others / (2 * std::numbers::pi * reach * reach) + kPriorSeconds * prior) / (recorded_ + kPriorSeconds);
 }
 
 double GroundOpenness::leaving(const Passage& one) const {
   const double prior = one.at_border ? kLeavingAtBorder : kLeavingInside;
   if (left_.empty()) return prior;
-  const std::size_t cell = grid_.index(one.place);
+  const std::size_t cell = grid_.index(one.location);
   const double left = std::max(0.0, left_[cell] - one.probability), ended = std::max(left, ended_[cell] - 1);
   return std::clamp((left + kPriorTracks * prior) / (ended + kPriorTracks), 1e-3, 0.999);
 }

@@ -1,6 +1,6 @@
-// How open an area is: where people come into sight and leave for good, and how often.
+// How open an area is: where people come into sight and leave permanently, and how often.
 //
-// A track that begins is somebody who came, or who had been lost and is found again; one that ends is somebody who left, or was
+// A track that begins is a person who came, or who had been lost and is found again; one that ends is a person who left, or was
 // lost. On a pitch nearly all are the second, in a square the first, and mostly at its sides. Both are densities over the ground:
 // people who come, a m² and second; and of those whose tracks end at a place, the share that left. They are learned by turns
 // with the probabilities that ends and beginnings belong together (expectation and maximisation, Dempster, Laird & Rubin 1977),
@@ -18,9 +18,9 @@ namespace marey::track::ground::offline {
 
 class GroundOpenness {
  public:
-  /// A place where tracks begin or end, and the probability that whoever it is came or left just there.
+  /// A place where tracks begin or end, and the probability that the one who it is came or left just there.
   struct Passage {
-    Vector<2> place = Vector<2>::Zero();
+    Vector<2> location = Vector<2>::Zero();
     bool at_border = false;  ///< of what is in sight
     double probability = 0.5;
   };
@@ -32,7 +32,7 @@ class GroundOpenness {
 
   /// People who come into sight at the place of one that was learned from, a m² and s: by all others.
   double coming(const Passage& one) const;
-  /// Of those whose tracks end there, the share who left for good: likewise.
+  /// Of those whose tracks end there, the share who left permanently: likewise.
   double leaving(const Passage& one) const;
 
  private:

@@ -16,7 +16,7 @@ TEST(GroundOpenness, NothingSeenIsThePrior) {
   EXPECT_GT(openness.leaving({{0, 0}, true, 1}), 0.5);
 }
 
-TEST(GroundOpenness, WherePeopleComeAndLeaveIsLearned) {
+TEST(GroundOpenness, EstimatesEntryExitDensity) {
   ground_scene::Random random(1);
   std::vector<Passage> came, left;
   for (int i = 0; i < 200; ++i) {
@@ -32,7 +32,7 @@ TEST(GroundOpenness, WherePeopleComeAndLeaveIsLearned) {
   EXPECT_LT(openness.leaving({{18, 6}, false, 0}), 0.1);
 }
 
-TEST(GroundOpenness, NobodyIsItsOwnWitness) {
+TEST(GroundOpenness, TrackIsNotItsOwnEvidence) {
   const std::vector<Passage> one = {{{5, 5}, false, 1}};
   const GroundOpenness alone(one, one, 60), prior;
   EXPECT_LE(alone.coming(one.front()), prior.coming(one.front()));

@@ -15,15 +15,15 @@ class Writer {
   Writer(const GroundInstants& instants, const GroundJoinOptions& options)
       : times_(instants.times), camera_begins_(instants.camera_begins), options_(options), motion_(options.motion) {}
 
-  /// Too brief, or seen too seldom, to be somebody.
+  /// Too brief, or seen too rarely, to be a person.
   bool is_false_alarm(const std::vector<GroundTracklet>& tracklets, const std::vector<int>& chain) const {
-    std::int64_t seen = 0;
-    std::int64_t told = 0;
+    std::int64_t detected = 0;
+    std::int64_t reported = 0;
     const GroundSample* last = nullptr;
     for (const int member : chain) {
       for (const GroundSample& sample : tracklets[member].samples) {
-        ++seen;
-        told += last == nullptr || !fills(*last, sample) ? 1 : sample.instant - last->instant;
+        ++detected;
+        reported += last == nullptr || !fills(*last, sample) ? 1 : sample.instant - last->instant;
         last = &sample;
       }
     }
@@ -31,18 +31,18 @@ class Writer {
     const double lasted = seconds(times_[last->instant] - times_[first.front().instant]);
     const double recorded = seconds(times_.back() - times_.front());
     return lasted < std::min(options_.shortest, recorded / 2) ||
-           static_cast<double>(seen) < options_.rarest * static_cast<double>(told);
+           static_cast<double>(detected) < options_.rarest * static_cast<double>(reported);
   }
 
   /// One person's rows. Its gaps that are not too long are filled.
   TrackColumns columns(const std::vector<GroundSample>& samples, TrackId person) const {
-    const std::vector<GroundMoment> moments = smooth_ground(samples, times_, motion_);
+    const std::vector<GroundTimeStep> time_steps = smooth_ground(samples, times_, motion_);
     TrackColumns track({.id = person, .label = {}, .team = {}, .kind = TrackKind::person}, 2);
     track.reserve(count(samples));
-    if (!samples.empty() && began_with_cameras(samples.front())) predict_back(samples.front().instant, moments.front(), track);
+    if (!samples.empty() && began_with_cameras(samples.front())) predict_back(samples.front().instant, time_steps.front(), track);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (i > 0 && fills(samples[i - 1], samples[i])) fill(samples, moments, i, track);
-      add(samples[i].instant, moments[i], samples[i].cameras, track);
+      if (i > 0 && fills(samples[i - 1], samples[i])) fill(samples, time_steps, i, track);
+      add(samples[i].instant, time_steps[i], samples[i].cameras, track);
     }
     return track;
   }
@@ -53,17 +53,17 @@ class Writer {
     constexpr std::int32_t unnoticed = 2;  // instants in which a newcomer may be missed
     if (first.instant == 0 || seconds(times_[first.instant] - times_.front()) > options_.longest_begun) return false;
     for (std::size_t camera = 0; camera < camera_begins_.size(); ++camera) {
-      const bool saw = (first.cameras & mask_of(CameraId{static_cast<int>(camera)})) != 0;
-      if (saw && (camera_begins_[camera] == 0 || first.instant - camera_begins_[camera] > unnoticed)) return false;
+      const bool observed = (first.cameras & mask_of(CameraId{static_cast<int>(camera)})) != 0;
+      if (observed && (camera_begins_[camera] == 0 || first.instant - camera_begins_[camera] > unnoticed)) return false;
     }
     return true;
   }
 
   /// Straight back to the recording's beginning.
-  void predict_back(std::int32_t until, const GroundMoment& first, TrackColumns& track) const {
+  void predict_back(std::int32_t until, const GroundTimeStep& first, TrackColumns& track) const {
     for (std::int32_t k = 0; k < until; ++k) {
       Sample sample;
-      sample.position.head<2>() = first.place - seconds(times_[until] - times_[k]) * first.velocity;
+      sample.position.head<2>() = first.location - seconds(times_[until] - times_[k]) * first.velocity;
       sample.velocity = Vector<3>(first.velocity.x(), first.velocity.y(), 0);
       sample.provenance = Provenance::predicted;
       track.add(k, sample);
@@ -83,21 +83,21 @@ class Writer {
   }
 
   /// What lies between samples i − 1 and i.
-  void fill(const std::vector<GroundSample>& samples, const std::vector<GroundMoment>& moments, std::size_t i,
+  void fill(const std::vector<GroundSample>& samples, const std::vector<GroundTimeStep>& time_steps, std::size_t i,
             TrackColumns& track) const {
     const Timestamp before = times_[samples[i - 1].instant];
     const Timestamp after = times_[samples[i].instant];
     for (std::int32_t k = samples[i - 1].instant + 1; k < samples[i].instant; ++k) {
-      add(k, between(moments[i - 1], seconds(times_[k] - before), moments[i], seconds(after - times_[k]), motion_), 0, track);
+      add(k, between(time_steps[i - 1], seconds(times_[k] - before), time_steps[i], seconds(after - times_[k]), motion_), 0, track);
     }
   }
 
-  static void add(std::int32_t instant, const GroundMoment& moment, CameraMask cameras, TrackColumns& track) {
+  static void add(std::int32_t instant, const GroundTimeStep& time_step, CameraMask cameras, TrackColumns& track) {
     Sample sample;
-    sample.position.head<2>() = moment.place;
-    sample.velocity = Vector<3>(moment.velocity.x(), moment.velocity.y(), 0);
+    sample.position.head<2>() = time_step.location;
+    sample.velocity = Vector<3>(time_step.velocity.x(), time_step.velocity.y(), 0);
     sample.provenance = cameras != 0 ? Provenance::measured : Provenance::filled;
-    if (cameras != 0) sample.covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() = moment.spread;
+    if (cameras != 0) sample.covariance.emplace(Matrix<3>::Zero()).topLeftCorner<2, 2>() = time_step.spread;
     sample.cameras = cameras;
     track.add(instant, sample);
   }
@@ -108,11 +108,11 @@ class Writer {
   GroundMotion motion_;
 };
 
-RecordingHeader header_of(std::span<const Recording::Moment> moments) {
+RecordingHeader header_of(std::span<const Recording::TimeStep> time_steps) {
   RecordingHeader header;
   header.name = "people on the ground";
   header.frame.kind = FrameOfReference::Kind::ground;
-  header.rate_hz = median_rate_hz(moments).value_or(0);
+  header.rate_hz = median_rate_hz(time_steps).value_or(0);
   header.smoothed = true;
   return header;
 }
@@ -136,11 +136,11 @@ GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets,
                                           const GroundInstants& instants, const GroundJoinOptions& options) {
   const std::span<const std::int32_t> frames = instants.frames;
   const std::span<const Timestamp> times = instants.times;
-  std::vector<Recording::Moment> moments;
-  for (std::size_t i = 0; i < frames.size(); ++i) moments.push_back({frames[i], times[i]});
+  std::vector<Recording::TimeStep> time_steps;
+  for (std::size_t i = 0; i < frames.size(); ++i) time_steps.push_back({frames[i], times[i]});
   GroundRecorder::Joined joined;
-  joined.recording.header = header_of(moments);
-  for (const Recording::Moment& moment : moments) joined.recording.add_moment(moment);
+  joined.recording.header = header_of(time_steps);
+  for (const Recording::TimeStep& time_step : time_steps) joined.recording.add_time_step(time_step);
   const Writer writer(instants, options);
   std::vector<const GroundChain*> kept;
   for (const GroundChain& chain : chains) {
@@ -159,7 +159,7 @@ GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets,
       }
       samples.insert(samples.end(), piece.samples.begin(), piece.samples.end());
     }
-    joined.wears.push_back(appearance_of(samples));
+    joined.clothing.push_back(appearance_of(samples));
     joined.recording.put(writer.columns(samples, person));
   }
   std::sort(joined.pieces.begin(), joined.pieces.end(), [](const GroundRecorder::Piece& a, const GroundRecorder::Piece& b) {

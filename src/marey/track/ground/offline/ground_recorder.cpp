@@ -18,7 +18,8 @@ namespace {
 
 static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames a second are 3.4 million samples");
 
-constexpr double kUnseenPush = 1.6;  // times the usual: an unseen target may have done anything; a wrong join costs an identity
+constexpr double kUnobservedPush =
+    1.6;  // times the typical: an unseen target may have done anything; a wrong join costs an identity
 
 constexpr double kNear =
     4 / 1.5;  // m: who was nearer than this, for each m/s^1.5 of how hastily people move, may have been taken over
@@ -30,15 +31,15 @@ std::int8_t rounded(double value) {
 /// The observations of one target at one instant, as one.
 class JointObservation {
  public:
-  void add(const Observation<2>& seen, const Vector<2>& brought) {
-    const Matrix<2> weight = seen.covariance->inverse();
+  void add(const Observation<2>& detected, const Vector<2>& brought) {
+    const Matrix<2> weight = detected.covariance->inverse();
     weights_ += weight;
-    places_ += weight * (seen.value + brought);
-    cameras_ |= mask_of(seen.camera);
-    score_ = std::max(score_, seen.score);
-    shared_ = shared_ && seen.shared;
-    if (!seen.appearance) return;
-    const Appearance& appearance = *seen.appearance;
+    locations_ += weight * (detected.value + brought);
+    cameras_ |= mask_of(detected.camera);
+    score_ = std::max(score_, detected.score);
+    shared_ = shared_ && detected.shared;
+    if (!detected.appearance) return;
+    const Appearance& appearance = *detected.appearance;
     const double certainty = 1 / (static_cast<double>(appearance.deviation) * appearance.deviation);
     certainty_ += certainty;
     colours_ += certainty * Vector<3>(appearance.lightness, appearance.a, appearance.b);
@@ -46,10 +47,10 @@ class JointObservation {
 
   GroundSample sample(std::int32_t instant) const {
     const Matrix<2> covariance = weights_.inverse();
-    const Vector<2> place = covariance * places_;
+    const Vector<2> location = covariance * locations_;
     GroundSample sample;
     sample.instant = instant;
-    sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+    sample.location = {static_cast<float>(location.x()), static_cast<float>(location.y())};
     sample.covariance = {static_cast<float>(covariance(0, 0)), static_cast<float>(covariance(0, 1)),
                          static_cast<float>(covariance(1, 1))};
     sample.score = static_cast<float>(score_);
@@ -65,7 +66,7 @@ class JointObservation {
 
  private:
   Matrix<2> weights_ = Matrix<2>::Zero();
-  Vector<2> places_ = Vector<2>::Zero();
+  Vector<2> locations_ = Vector<2>::Zero();
   CameraMask cameras_ = 0;
   double score_ = 0;
   bool shared_ = true;
@@ -79,7 +80,7 @@ JointObservation join_observations(const Track<2>& track, Timestamp now, std::sp
   for (const ObservationMatch& match : matches) {
     if (match.track != track.id) continue;
     const CameraObservations& view = views[match.view];
-    joint.add(view.seen[match.observation], seconds(now - view.time) * track.velocity);
+    joint.add(view.detected[match.observation], seconds(now - view.time) * track.velocity);
   }
   return joint;
 }
@@ -148,11 +149,11 @@ GroundRecorder::Joined GroundRecorder::join(const GroundJoinOptions& options, co
   tracklets = merge_doubles(std::move(tracklets), times_);
   tracklets = end_before_successors(std::move(tracklets), times_);
   tracklets = cut_where_others_end(std::move(tracklets), times_, {.near = kNear * options.motion.acceleration});
-  GroundMotion unseen = options.motion;
-  unseen.acceleration *= kUnseenPush;
+  GroundMotion unobserved = options.motion;
+  unobserved.acceleration *= kUnobservedPush;
   const std::vector<GroundChain> chains =
       chain(tracklets, times_, in_sight,
-            {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = unseen, .teams = options.teams});
+            {.longest_gap = options.longest_gap, .max_speed = options.max_speed, .motion = unobserved, .teams = options.teams});
   return people_from_chains(std::move(tracklets), chains, {frames_, times_, camera_begins_}, options);
 }
 

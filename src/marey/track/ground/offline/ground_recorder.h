@@ -17,18 +17,18 @@ namespace marey::track::ground::offline {
 
 /// Lengths in m, times in s.
 struct GroundJoinOptions {
-  double longest_gap = 20;     ///< who reappears later is somebody new
-  double longest_filled = 5;   ///< a longer gap is joined, but nothing is said of where the person was meanwhile
-  double longest_begun = 0.5;  ///< who is seen from a camera's own first instant on is told before that, for so long at most
+  double longest_gap = 20;     ///< who reappears later is a person new
+  double longest_filled = 5;   ///< a longer gap is joined, but nothing is said of where the person was in the meantime
+  double longest_begun = 0.5;  ///< who is seen from a camera's own first instant on is reported before that, for this long at most
   double shortest = 0.5;       ///< who is seen for less is taken for a false alarm
   double rarest = 0.4;         ///< who is seen in a smaller share of the instants between first and last likewise
-  double max_speed = 12;       ///< m/s; nobody runs faster
+  double max_speed = 12;       ///< m/s; no person runs faster
   GroundMotion motion;         ///< how people move
   std::optional<GroundTeams> teams = {};  ///< what two teams wear, where that is known
 };
 
-/// What was seen of people on the ground, instant by instant, kept for a second pass that may look ahead: 48 bytes a person and
-/// instant. Tracks that are never confirmed are forgotten as they end.
+/// What was seen of people on the ground, instant by instant, kept for a second pass that may use later frames: 48 bytes a person
+/// and instant. Tracks that are never confirmed are forgotten as they end.
 class GroundRecorder {
  public:
   /// One instant: the tracks, views and matches of one GroundTracker::step. Frames grow from call to call; some may be missing.
@@ -51,13 +51,13 @@ class GroundRecorder {
     marey::Recording recording;  ///< a track a person, smoothed, on the world's ground; every frame that was added is an instant
     std::vector<Piece> pieces;   ///< by track, then by frame; what is in none was a false alarm
     std::vector<Join> joins;     ///< by person, then by frame
-    std::vector<std::optional<Appearance>> wears;  ///< of each of its tracks: the median over all that was seen of it
+    std::vector<std::optional<Appearance>> clothing;  ///< of each of its tracks: the median over all that was seen of it
 
     /// Who it was that the tracker called `track` in `frame`.
     std::optional<TrackId> person_of(TrackId track, std::int32_t frame) const;
   };
 
-  /// Joins what is one person's (by place, speed and what they wear), drops false alarms, fills gaps, smooths. Ids are given anew
+  /// Joins what is one person's (by place, speed and what they wear), drops false alarms, fills gaps, smooths. Ids are given again
   /// from 1 in the order of first appearance. `in_sight` tells where people are seen and reported: at its border they are likely to
   /// come and go; without it, nowhere. Used up afterwards.
   Joined join(const GroundJoinOptions& options = {}, const InSight& in_sight = {}) &&;

@@ -17,24 +17,24 @@ constexpr Appearance blue_shirt{.lightness = 35, .a = 15, .b = -50, .deviation =
 struct Sighting {
   int track = 0;
   double x = 0, y = 0;
-  std::optional<Appearance> wears = {};
+  std::optional<Appearance> clothing = {};
   bool confirmed = true;
   bool observed = true;
   CameraId camera{};
   double sigma = 0.1;
 };
 
-/// Records instants as a tracker would tell them, one look a camera.
+/// Records instants as a tracker would tell them, one inspection a camera.
 class Story {
  public:
   explicit Story(double rate = 25) : rate_(rate) {}
 
-  void instant(const std::vector<Sighting>& seen, double late = 0) {
+  void instant(const std::vector<Sighting>& detected, double late = 0) {
     const Timestamp now = timestamp_from_seconds(frame_ / rate_);
     std::map<CameraId, std::vector<Observation<2>>> observations;
     std::vector<Track<2>> tracks;
     std::vector<std::tuple<CameraId, int, TrackId>> claims;
-    for (const Sighting& s : seen) {
+    for (const Sighting& s : detected) {
       Track<2> track;
       track.id = TrackId{s.track};
       track.position = Vector<2>(s.x, s.y);
@@ -46,20 +46,20 @@ class Story {
       observation.value = Vector<2>(s.x, s.y);
       observation.covariance = s.sigma * s.sigma * Matrix<2>::Identity();
       observation.camera = s.camera;
-      observation.appearance = s.wears;
+      observation.appearance = s.clothing;
       auto& list = observations[s.camera];
       claims.emplace_back(s.camera, static_cast<int>(list.size()), track.id);
       list.push_back(observation);
     }
-    std::vector<CameraObservations> looks;
+    std::vector<CameraObservations> appearances;
     std::map<CameraId, int> look_of;
     for (const auto& [camera, list] : observations) {
-      look_of[camera] = static_cast<int>(looks.size());
-      looks.push_back({camera, now - duration_from_seconds(late), list});
+      look_of[camera] = static_cast<int>(appearances.size());
+      appearances.push_back({camera, now - duration_from_seconds(late), list});
     }
-    std::vector<ObservationMatch> told;
-    for (const auto& [camera, index, track] : claims) told.push_back({track, look_of[camera], index});
-    recorder_.add(frame_++, now, tracks, looks, told);
+    std::vector<ObservationMatch> reported;
+    for (const auto& [camera, index, track] : claims) reported.push_back({track, look_of[camera], index});
+    recorder_.add(frame_++, now, tracks, appearances, reported);
   }
 
   double now() const { return frame_ / rate_; }
@@ -75,7 +75,7 @@ struct Row {
   std::int32_t frame = 0;
   Sample sample;
 
-  Vector<2> place() const { return sample.position.head<2>(); }
+  Vector<2> location() const { return sample.position.head<2>(); }
   std::size_t person() const { return static_cast<std::size_t>(number(sample.track)) - 1; }
 };
 
@@ -89,13 +89,13 @@ std::vector<Row> rows_of(const Recording& recording) {
   return rows;
 }
 
-TEST(GroundRecorder, WhoStoodThereBeforeACameraBeganIsPredicted) {
+TEST(GroundRecorder, PredictsPersonBeforeCameraStart) {
   Story story;
   for (int k = 0; k < 50; ++k) {
-    std::vector<Sighting> seen = {{.track = 1, .x = 0.2 * k, .y = 0}};
-    if (k >= 5) seen.push_back({.track = 2, .x = 30 + 0.08 * k, .y = 5, .camera = CameraId{1}});
-    if (k >= 20) seen.push_back({.track = 3, .x = 60 + 0.08 * k, .y = 5, .camera = CameraId{1}});
-    story.instant(seen);
+    std::vector<Sighting> detected = {{.track = 1, .x = 0.2 * k, .y = 0}};
+    if (k >= 5) detected.push_back({.track = 2, .x = 30 + 0.08 * k, .y = 5, .camera = CameraId{1}});
+    if (k >= 20) detected.push_back({.track = 3, .x = 60 + 0.08 * k, .y = 5, .camera = CameraId{1}});
+    story.instant(detected);
   }
   const GroundRecorder::Joined joined = story.join();
   ASSERT_EQ(joined.recording.tracks().size(), 3U);
@@ -112,10 +112,10 @@ TEST(GroundRecorder, WhoStoodThereBeforeACameraBeganIsPredicted) {
 TEST(GroundRecorder, JoinsFillsAndTellsWhichTrackWasWhom) {
   Story story;
   for (int k = 0; k < 200; ++k) {
-    const Vector<2> place(0.1 * k, 3);
-    if (k < 80) story.instant({{.track = 4, .x = place.x(), .y = place.y()}});
+    const Vector<2> location(0.1 * k, 3);
+    if (k < 80) story.instant({{.track = 4, .x = location.x(), .y = location.y()}});
     if (k >= 80 && k < 120) story.instant({});
-    if (k >= 120) story.instant({{.track = 9, .x = place.x(), .y = place.y()}});
+    if (k >= 120) story.instant({{.track = 9, .x = location.x(), .y = location.y()}});
   }
   const auto joined = story.join();
   ASSERT_EQ(joined.recording.tracks().size(), 1U);
@@ -124,7 +124,7 @@ TEST(GroundRecorder, JoinsFillsAndTellsWhichTrackWasWhom) {
   for (const Row& row : rows_of(joined.recording)) {
     EXPECT_EQ(row.sample.measured(), row.frame < 80 || row.frame >= 120);
     EXPECT_EQ(row.sample.cameras, row.sample.measured() ? 1U : 0U);
-    EXPECT_NEAR(row.place().x(), 0.1 * row.frame, 0.1);
+    EXPECT_NEAR(row.location().x(), 0.1 * row.frame, 0.1);
     EXPECT_NEAR(row.sample.velocity->x(), 2.5, 0.3);
   }
   EXPECT_EQ(joined.person_of(TrackId{4}, 79), TrackId{1});
@@ -155,14 +155,14 @@ TEST(GroundRecorder, LateFramesAreBroughtToTheInstant) {
   EXPECT_NEAR(joined.recording.tracks()[0].x()[25], 5.0, 1e-2);
 }
 
-TEST(GroundRecorder, WhatIsBriefSeldomOrNeverConfirmedIsNobody) {
+TEST(GroundRecorder, DropsBriefRareAndUnconfirmedTracks) {
   Story story;
   for (int k = 0; k < 250; ++k) {
-    std::vector<Sighting> seen{{.track = 1, .x = 0.1 * k, .y = 3}};
-    if (k < 100) seen.push_back({.track = 2, .x = 50, .y = 50, .confirmed = false});
-    if (k >= 30 && k < 40) seen.push_back({.track = 3, .x = 70, .y = 50});
-    if (k > 100) seen.push_back({.track = 4, .x = 90, .y = 10, .observed = k % 20 == 0});
-    story.instant(seen);
+    std::vector<Sighting> detected{{.track = 1, .x = 0.1 * k, .y = 3}};
+    if (k < 100) detected.push_back({.track = 2, .x = 50, .y = 50, .confirmed = false});
+    if (k >= 30 && k < 40) detected.push_back({.track = 3, .x = 70, .y = 50});
+    if (k > 100) detected.push_back({.track = 4, .x = 90, .y = 10, .observed = k % 20 == 0});
+    story.instant(detected);
   }
   const auto joined = story.join();
   EXPECT_EQ(joined.recording.tracks().size(), 1U);
@@ -172,9 +172,9 @@ TEST(GroundRecorder, WhatIsBriefSeldomOrNeverConfirmedIsNobody) {
 TEST(GroundRecorder, AnEmptyOneIsAnEmptyRecording) {
   Story nothing;
   EXPECT_TRUE(nothing.join().recording.tracks().empty());
-  Story nobody;
-  for (int k = 0; k < 10; ++k) nobody.instant({});
-  EXPECT_TRUE(nobody.join().recording.tracks().empty());
+  Story no_person;
+  for (int k = 0; k < 10; ++k) no_person.instant({});
+  EXPECT_TRUE(no_person.join().recording.tracks().empty());
 }
 
 TEST(GroundRecorder, ALongGapIsJoinedButNothingIsSaidOfIt) {
@@ -204,8 +204,8 @@ TEST(GroundRecorder, ExchangedIdentitiesAreExchangedBack) {
     const Vector<2>& first = swapped ? b : a;
     const Vector<2>& second = swapped ? a : b;
     story.instant(
-        {{.track = 1, .x = first.x() + noise(), .y = first.y() + noise(), .wears = swapped ? blue_shirt : white_shirt},
-         {.track = 2, .x = second.x() + noise(), .y = second.y() + noise(), .wears = swapped ? white_shirt : blue_shirt}});
+        {{.track = 1, .x = first.x() + noise(), .y = first.y() + noise(), .clothing = swapped ? blue_shirt : white_shirt},
+         {.track = 2, .x = second.x() + noise(), .y = second.y() + noise(), .clothing = swapped ? white_shirt : blue_shirt}});
   }
   const auto joined = story.join();
   ASSERT_EQ(joined.recording.tracks().size(), 2U);
@@ -213,9 +213,9 @@ TEST(GroundRecorder, ExchangedIdentitiesAreExchangedBack) {
   for (const Row& row : rows_of(joined.recording)) {
     const double t = 0.04 * row.frame - 5;
     if (std::abs(t) < 0.5) continue;
-    const bool first = joined.wears[row.person()]->lightness > 60;
+    const bool first = joined.clothing[row.person()]->lightness > 60;
     const Vector<2> truth = first ? Vector<2>(20 + 2 * t, 10 + 0.3 * t * t) : Vector<2>(20 - 2 * t, 10.3 - 0.3 * t * t);
-    EXPECT_LT((row.place() - truth).norm(), 0.5) << "frame " << row.frame;
+    EXPECT_LT((row.location() - truth).norm(), 0.5) << "frame " << row.frame;
   }
   EXPECT_NE(joined.person_of(TrackId{1}, 0), joined.person_of(TrackId{1}, 249));
 }
@@ -229,13 +229,13 @@ Vector<2> runs_left(double t) {
 }
 
 /// The story of two who run past each other at t = 0; from then on with their names exchanged, or not.
-GroundRecorder::Joined two_pass(bool exchanged) {
+GroundRecorder::Joined two_pass(bool swapped) {
   Story story;
   std::mt19937_64 engine(8);
   std::normal_distribution<double> normal;
   for (int k = 0; k < 150; ++k) {
     const double t = 0.04 * k - 3;
-    const bool swapped = exchanged && t >= 0;
+    const bool swapped = swapped && t >= 0;
     const Vector<2> first = swapped ? runs_left(t) : runs_right(t);
     const Vector<2> second = swapped ? runs_right(t) : runs_left(t);
     const auto noise = [&] { return 0.1 * normal(engine); };
@@ -245,20 +245,20 @@ GroundRecorder::Joined two_pass(bool exchanged) {
   return story.join();
 }
 
-TEST(GroundRecorder, WhoRunsPastAnotherRunsOn) {
-  for (const bool exchanged : {false, true}) {
-    const auto joined = two_pass(exchanged);
+TEST(GroundRecorder, RunnerPassingAnotherContinues) {
+  for (const bool swapped : {false, true}) {
+    const auto joined = two_pass(swapped);
     ASSERT_EQ(joined.recording.tracks().size(), 2U);
     for (const Row& row : rows_of(joined.recording)) {
       const double t = 0.04 * row.frame - 3;
       const bool right = row.sample.track == *joined.person_of(TrackId{1}, 0);
-      EXPECT_LT((row.place() - (right ? runs_right(t) : runs_left(t))).norm(), 0.3) << "frame " << row.frame;
+      EXPECT_LT((row.location() - (right ? runs_right(t) : runs_left(t))).norm(), 0.3) << "frame " << row.frame;
     }
-    EXPECT_EQ(joined.person_of(TrackId{1}, 0) == joined.person_of(TrackId{1}, 149), !exchanged);
+    EXPECT_EQ(joined.person_of(TrackId{1}, 0) == joined.person_of(TrackId{1}, 149), !swapped);
   }
 }
 
-TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
+TEST(GroundRecorder, ReturnsTakenOverTrack) {
   Story story;
   std::mt19937_64 engine(4);
   std::normal_distribution<double> normal;
@@ -266,11 +266,11 @@ TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
     const double t = 0.04 * k - 3;
     const Vector<2> right = runs_right(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
     const Vector<2> left = runs_left(t) + 0.1 * Vector<2>(normal(engine), normal(engine));
-    // The track of the one goes on with the other, whose track ends; the one is found again under a new id.
-    std::vector<Sighting> seen{{.track = 1, .x = t < 0 ? right.x() : left.x(), .y = t < 0 ? right.y() : left.y()}};
-    if (t < -0.1) seen.push_back({.track = 2, .x = left.x(), .y = left.y()});
-    if (t > 0.3) seen.push_back({.track = 3, .x = right.x(), .y = right.y()});
-    story.instant(seen);
+    // The track of the one continues with the other, whose track ends; the one is found again under a new id.
+    std::vector<Sighting> detected{{.track = 1, .x = t < 0 ? right.x() : left.x(), .y = t < 0 ? right.y() : left.y()}};
+    if (t < -0.1) detected.push_back({.track = 2, .x = left.x(), .y = left.y()});
+    if (t > 0.3) detected.push_back({.track = 3, .x = right.x(), .y = right.y()});
+    story.instant(detected);
   }
   const auto joined = story.join();
   ASSERT_EQ(joined.recording.tracks().size(), 2U);
@@ -280,25 +280,25 @@ TEST(GroundRecorder, WhoTakesOverAnothersTrackGivesItBack) {
 
 /// People who run about as people do, five metres apart at first.
 struct Runner {
-  Vector<2> place, velocity, push;
+  Vector<2> location, velocity, push;
   double length = 0;  ///< m, of the path
 
   void go_on(std::mt19937_64& engine) {
     std::normal_distribution<double> normal;
     push = 0.9 * push + 0.6 * Vector<2>(normal(engine), normal(engine));
     velocity = 0.99 * velocity + 0.04 * push;
-    place += 0.04 * velocity;
+    location += 0.04 * velocity;
     length += 0.04 * velocity.norm();
   }
 };
 
 /// What two cameras see of a runner: a tenth of the looks is missed.
-void look(const Runner& runner, int track, std::mt19937_64& engine, std::vector<Sighting>& seen) {
+void inspect(const Runner& runner, int track, std::mt19937_64& engine, std::vector<Sighting>& detected) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> unit(0, 1);
   for (int camera = 0; camera < 2; ++camera) {
-    const Vector<2> at = runner.place + 0.2 * Vector<2>(normal(engine), normal(engine));
-    seen.push_back(
+    const Vector<2> at = runner.location + 0.2 * Vector<2>(normal(engine), normal(engine));
+    detected.push_back(
         {.track = track, .x = at.x(), .y = at.y(), .observed = unit(engine) > 0.1, .camera = CameraId{camera}, .sigma = 0.2});
   }
 }
@@ -311,37 +311,37 @@ TEST(GroundRecorder, PlacesAndSpeedsAreNearTheTruth) {
   std::vector<std::vector<Runner>> truth;
   Story story;
   for (int frame = 0; frame < 1500; ++frame) {
-    std::vector<Sighting> seen;
+    std::vector<Sighting> detected;
     for (std::size_t k = 0; k < runners.size(); ++k) {
       runners[k].go_on(engine);
-      look(runners[k], static_cast<int>(k) + 1, engine, seen);
+      inspect(runners[k], static_cast<int>(k) + 1, engine, detected);
     }
     truth.push_back(runners);
-    story.instant(seen);
+    story.instant(detected);
   }
   const auto joined = story.join();
   ASSERT_EQ(joined.recording.tracks().size(), 20U);
-  double place = 0, speed = 0, in_sigmas = 0;
+  double location = 0, speed = 0, in_sigmas = 0;
   std::map<int, double> length;
   std::map<int, Vector<2>> last;
   for (const Row& row : rows_of(joined.recording)) {
     const Runner& runner = truth[row.frame][number(*joined.person_of(row.sample.track, row.frame)) - 1];
-    place += (row.place() - runner.place).squaredNorm();
+    location += (row.location() - runner.location).squaredNorm();
     if (row.sample.covariance) {
-      const Vector<2> off = row.place() - runner.place;
+      const Vector<2> off = row.location() - runner.location;
       in_sigmas += off.dot(row.sample.covariance->topLeftCorner<2, 2>().inverse() * off);
     }
     speed += std::pow(row.sample.velocity->norm() - runner.velocity.norm(), 2);
-    const int who = static_cast<int>(row.person());
-    if (last.contains(who)) length[who] += (row.place() - last[who]).norm();
-    last[who] = row.place();
+    const int identity = static_cast<int>(row.person());
+    if (last.contains(identity)) length[identity] += (row.location() - last[identity]).norm();
+    last[identity] = row.location();
   }
   const auto n = static_cast<double>(joined.recording.samples());
-  EXPECT_LT(std::sqrt(place / n), 0.12);
+  EXPECT_LT(std::sqrt(location / n), 0.12);
   EXPECT_LT(std::sqrt(speed / n), 0.25);
   EXPECT_GT(in_sigmas / n, 0.5) << "two, where covariances are just right;";
   EXPECT_LT(in_sigmas / n, 3) << "less, where errors are taken to persist and do not";
-  for (const auto& [person, way] : length) EXPECT_NEAR(way / truth.back()[person].length, 1, 0.03);
+  for (const auto& [person, method] : length) EXPECT_NEAR(method / truth.back()[person].length, 1, 0.03);
 }
 
 }  // namespace

@@ -11,10 +11,10 @@ namespace marey::track::ground::offline {
 namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
-constexpr int usual_passes = 3;
-constexpr double round_moment = 0.5;   // s before and after within which pushes tell how strong they are
-constexpr double strongest = 3;        // in units of the pushes' usual power
-constexpr double shared_memory = 0.5;  // s for which errors persist of who is seen in one region with others
+constexpr int default_passes = 3;
+constexpr double round_time_step = 0.5;  // s before and after within which pushes tell how strong they are
+constexpr double strongest = 3;          // in units of the pushes' typical power
+constexpr double shared_memory = 0.5;    // s for which errors persist of who is seen in one region with others
 
 constexpr int upper(int i, int j) {
   constexpr std::array<std::array<int, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
@@ -58,8 +58,8 @@ Step step_of(double dt, const GroundMotion& motion) {
                                                            {0.3300094782075719, 0.3260725774312731},
                                                            {0.6699905217924281, 0.3260725774312731},
                                                            {0.9305681557970263, 0.1739274225687269}}};
-  for (const auto& [place, weight] : gauss) {
-    const Vector<3> reached = flow(h * place).col(2);
+  for (const auto& [location, weight] : gauss) {
+    const Vector<3> reached = flow(h * location).col(2);
     step.Q += density * h * weight * reached * reached.transpose();
   }
   for (int k = 0; k < doublings; ++k) {
@@ -87,7 +87,7 @@ class Steps {
   Step step_;
 };
 
-/// `push`: the power of the pushes in units of the usual.
+/// `push`: the power of the pushes in units of the typical.
 void advance(GroundState& state, const Step& step, double push = 1) {
   const Matrix<3>& F = step.F;
   std::array<Matrix<2>, 6> P;
@@ -147,8 +147,8 @@ GroundState unknown(const Vector<2>& z, const Matrix<2>& R, const GroundMotion& 
   return state;
 }
 
-double weight_of(const GroundSample& sample, const Vector<2>& place) {
-  const Vector<2> residual = sample.at() - place;
+double weight_of(const GroundSample& sample, const Vector<2>& location) {
+  const Vector<2> residual = sample.at() - location;
   const double distance = residual.dot(sample.spread().inverse() * residual);
   return (student_degrees + 2) / (student_degrees + distance);
 }
@@ -158,13 +158,13 @@ struct SmoothingPass {
   std::span<const GroundSample> samples;
   std::span<const Timestamp> times;
   const GroundMotion& motion;
-  std::vector<GroundMoment> moments;
+  std::vector<GroundTimeStep> time_steps;
   std::vector<double> echoes;      ///< factor on covariances
-  std::vector<double> pushes;      ///< up to the sample, in units of the usual power
-  std::vector<Matrix<2>> doubted;  ///< in place of the samples' own covariances, where there are any
+  std::vector<double> pushes;      ///< up to the sample, in units of the typical power
+  std::vector<Matrix<2>> flagged;  ///< in place of the samples' own covariances, where there are any
 
   SmoothingPass(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
-      : samples(s), times(t), motion(m), moments(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
+      : samples(s), times(t), motion(m), time_steps(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
     if (!(motion.error_memory > 0) || samples.size() < 2) return;
     // Samples of an autoregressive process of the first order, ρ from one to the next: n of them tell as much of its mean as
     // n (1 − ρ) / (1 + ρ) that err on their own.
@@ -177,12 +177,12 @@ struct SmoothingPass {
 
   /// Counts samples of regions that are shared by how long their errors really persist, and those right before and after for no
   /// better: two who run together are seen as one before it is noticed. Paths are not found with that: too little would hold them.
-  void doubt_shared() {
-    doubted.clear();
-    for (const GroundSample& sample : samples) doubted.push_back(sample.spread());
-    const auto doubt = [&](std::size_t i, std::size_t shared) {
+  void ambiguity_shared() {
+    flagged.clear();
+    for (const GroundSample& sample : samples) flagged.push_back(sample.spread());
+    const auto review_item = [&](std::size_t i, std::size_t shared) {
       if (std::abs(seconds(times[samples[i].instant] - times[samples[shared].instant])) > shared_memory) return;
-      if (samples[shared].spread().trace() > doubted[i].trace()) doubted[i] = samples[shared].spread();
+      if (samples[shared].spread().trace() > flagged[i].trace()) flagged[i] = samples[shared].spread();
       const double before = i > 0 ? seconds_to(i) : seconds_to(1);
       const double after = i + 1 < samples.size() ? seconds_to(i + 1) : before;
       echoes[i] = std::max(echoes[i], 1 / std::tanh((before + after) / 4 / shared_memory));
@@ -191,35 +191,36 @@ struct SmoothingPass {
     std::size_t last = none;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (samples[i].shared) last = i;
-      if (last != none) doubt(i, last);
+      if (last != none) review_item(i, last);
     }
     last = none;
     for (std::size_t i = samples.size(); i-- > 0;) {
       if (samples[i].shared) last = i;
-      if (last != none) doubt(i, last);
+      if (last != none) review_item(i, last);
     }
   }
 
   Matrix<2> spread(std::size_t i) const {
-    const Matrix<2> own = doubted.empty() ? samples[i].spread() : doubted[i];
-    return own * (echoes[i] / moments[i].fit);
+    const Matrix<2> own = flagged.empty() ? samples[i].spread() : flagged[i];
+    return own * (echoes[i] / time_steps[i].fit);
   }
   /// From the sample before.
   double seconds_to(std::size_t i) const { return seconds(times[samples[i].instant] - times[samples[i - 1].instant]); }
 };
 
 /// The power of the pushes round each moment, from the accelerations found there.
-void weigh_pushes(SmoothingPass& seen) {
-  const std::size_t n = seen.samples.size();
-  const double usual = 2 * settled(seen.motion)(1, 1);
-  const auto mix = [&](std::size_t i) { return std::exp(-seen.seconds_to(i) / round_moment); };
+void weigh_pushes(SmoothingPass& detected) {
+  const std::size_t n = detected.samples.size();
+  const double typical = 2 * settled(detected.motion)(1, 1);
+  const auto mix = [&](std::size_t i) { return std::exp(-detected.seconds_to(i) / round_time_step); };
   std::vector<double> power(n);
-  for (std::size_t i = 0; i < n; ++i) power[i] = seen.moments[i].acceleration.squaredNorm() / usual;
-  seen.pushes = power;
-  for (std::size_t i = 1; i < n; ++i) seen.pushes[i] += mix(i) * (seen.pushes[i - 1] - power[i]);
+  for (std::size_t i = 0; i < n; ++i) power[i] = detected.time_steps[i].acceleration.squaredNorm() / typical;
+  detected.pushes = power;
+  for (std::size_t i = 1; i < n; ++i) detected.pushes[i] += mix(i) * (detected.pushes[i - 1] - power[i]);
   for (std::size_t i = n - 1; i-- > 0;) power[i] += mix(i + 1) * (power[i + 1] - power[i]);
   for (std::size_t i = 0; i < n; ++i) {
-    seen.pushes[i] = std::min(strongest, seen.motion.calm + (1 - seen.motion.calm) * (seen.pushes[i] + power[i]) / 2);
+    detected.pushes[i] =
+        std::min(strongest, detected.motion.calm + (1 - detected.motion.calm) * (detected.pushes[i] + power[i]) / 2);
   }
 }
 
@@ -236,88 +237,90 @@ Matrix<6> whole_covariance(const GroundState& state) {
 
 /// The covariance of places, given all samples: that of each state before its observation, less what this one and all later ones
 /// tell of it (the adjoint's information, Bierman 1973).
-void spread_places(SmoothingPass& seen, const std::vector<GroundState>& before) {
-  Steps steps(seen.motion);
-  Matrix<6> told = Matrix<6>::Zero();
-  for (std::size_t i = seen.samples.size(); i-- > 0;) {
+void spread_positions(SmoothingPass& detected, const std::vector<GroundState>& before) {
+  Steps steps(detected.motion);
+  Matrix<6> reported = Matrix<6>::Zero();
+  for (std::size_t i = detected.samples.size(); i-- > 0;) {
     const Matrix<6> P = whole_covariance(before[i]);
-    const Matrix<2> S_inverse = (P.topLeftCorner<2, 2>() + seen.spread(i)).inverse();
+    const Matrix<2> S_inverse = (P.topLeftCorner<2, 2>() + detected.spread(i)).inverse();
     Matrix<6> left = Matrix<6>::Identity();
     left.leftCols<2>() -= P.leftCols<2>() * S_inverse;
-    told = (left.transpose() * told * left).eval();
-    told.topLeftCorner<2, 2>() += S_inverse;
-    seen.moments[i].spread = P.topLeftCorner<2, 2>() - P.topRows<2>() * told * P.leftCols<2>();
+    reported = (left.transpose() * reported * left).eval();
+    reported.topLeftCorner<2, 2>() += S_inverse;
+    detected.time_steps[i].spread = P.topLeftCorner<2, 2>() - P.topRows<2>() * reported * P.leftCols<2>();
     if (i == 0) break;
-    const Matrix<3>& F = steps(seen.seconds_to(i)).F;
+    const Matrix<3>& F = steps(detected.seconds_to(i)).F;
     Matrix<6> forward = Matrix<6>::Zero();
     for (int row = 0; row < 3; ++row) {
       for (int column = row; column < 3; ++column) forward.block<2, 2>(2 * row, 2 * column).diagonal().setConstant(F(row, column));
     }
-    told = (forward.transpose() * told * forward).eval();
+    reported = (forward.transpose() * reported * forward).eval();
   }
 }
 
 /// Forwards, keeping each state before its observation; then back with the adjoint.
-void smooth_once(SmoothingPass& seen, std::vector<GroundState>& before) {
-  const std::span<const GroundSample> samples = seen.samples;
-  std::vector<GroundMoment>& moments = seen.moments;
-  Steps steps(seen.motion);
-  GroundState state = unknown(samples[0].at(), seen.spread(0), seen.motion);
+void smooth_once(SmoothingPass& detected, std::vector<GroundState>& before) {
+  const std::span<const GroundSample> samples = detected.samples;
+  std::vector<GroundTimeStep>& time_steps = detected.time_steps;
+  Steps steps(detected.motion);
+  GroundState state = unknown(samples[0].at(), detected.spread(0), detected.motion);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (i > 0) advance(state, steps(seen.seconds_to(i)), seen.pushes[i]);
+    if (i > 0) advance(state, steps(detected.seconds_to(i)), detected.pushes[i]);
     before[i] = state;
-    correct(state, samples[i].at(), seen.spread(i));
+    correct(state, samples[i].at(), detected.spread(i));
   }
   std::array<Vector<2>, 3> l{Vector<2>::Zero(), Vector<2>::Zero(), Vector<2>::Zero()};  // the adjoint
   for (std::size_t i = samples.size(); i-- > 0;) {
     const GroundState& b = before[i];
     const std::array<Matrix<2>, 6>& P = b.P;
-    l[0] -= (P[0] + seen.spread(i)).inverse() * (samples[i].at() - b.x[0] + P[0] * l[0] + P[1] * l[1] + P[2] * l[2]);
-    moments[i].place = b.x[0] - P[0] * l[0] - P[1] * l[1] - P[2] * l[2];
-    moments[i].velocity = b.x[1] - P[1].transpose() * l[0] - P[3] * l[1] - P[4] * l[2];
-    moments[i].acceleration = b.x[2] - P[2].transpose() * l[0] - P[4].transpose() * l[1] - P[5] * l[2];
+    l[0] -= (P[0] + detected.spread(i)).inverse() * (samples[i].at() - b.x[0] + P[0] * l[0] + P[1] * l[1] + P[2] * l[2]);
+    time_steps[i].location = b.x[0] - P[0] * l[0] - P[1] * l[1] - P[2] * l[2];
+    time_steps[i].velocity = b.x[1] - P[1].transpose() * l[0] - P[3] * l[1] - P[4] * l[2];
+    time_steps[i].acceleration = b.x[2] - P[2].transpose() * l[0] - P[4].transpose() * l[1] - P[5] * l[2];
     if (i == 0) break;
-    const Matrix<3>& F = steps(seen.seconds_to(i)).F;
+    const Matrix<3>& F = steps(detected.seconds_to(i)).F;
     l[2] = (F(0, 2) * l[0] + F(1, 2) * l[1] + F(2, 2) * l[2]).eval();
     l[1] = (F(0, 1) * l[0] + F(1, 1) * l[1]).eval();
   }
 }
 
 /// How sure the places of the last pass are; `before` are its states.
-void find_spreads(SmoothingPass& seen, std::vector<GroundState>& before) {
-  const bool shared = std::any_of(seen.samples.begin(), seen.samples.end(), [](const GroundSample& one) { return one.shared; });
-  if (!shared || seen.samples.size() < 2) return spread_places(seen, before);
-  SmoothingPass doubting = seen;
-  doubting.doubt_shared();
+void find_spreads(SmoothingPass& detected, std::vector<GroundState>& before) {
+  const bool shared =
+      std::any_of(detected.samples.begin(), detected.samples.end(), [](const GroundSample& one) { return one.shared; });
+  if (!shared || detected.samples.size() < 2) return spread_positions(detected, before);
+  SmoothingPass doubting = detected;
+  doubting.ambiguity_shared();
   smooth_once(doubting, before);
-  spread_places(doubting, before);
-  for (std::size_t i = 0; i < seen.moments.size(); ++i) seen.moments[i].spread = doubting.moments[i].spread;
+  spread_positions(doubting, before);
+  for (std::size_t i = 0; i < detected.time_steps.size(); ++i) detected.time_steps[i].spread = doubting.time_steps[i].spread;
 }
 
 SmoothingPass smoothed(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
                        int passes, bool with_spread) {
-  SmoothingPass seen(samples, times, motion);
+  SmoothingPass detected(samples, times, motion);
   std::vector<GroundState> before(samples.size());
   for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t i = 0; pass > 0 && i < samples.size(); ++i) seen.moments[i].fit = weight_of(samples[i], seen.moments[i].place);
-    if (pass > 0 && motion.calm < 1) weigh_pushes(seen);
-    smooth_once(seen, before);
+    for (std::size_t i = 0; pass > 0 && i < samples.size(); ++i)
+      detected.time_steps[i].fit = weight_of(samples[i], detected.time_steps[i].location);
+    if (pass > 0 && motion.calm < 1) weigh_pushes(detected);
+    smooth_once(detected, before);
   }
-  if (with_spread) find_spreads(seen, before);
-  return seen;
+  if (with_spread) find_spreads(detected, before);
+  return detected;
 }
 
 /// The filter alone, over all samples, from the first or from the last on. Of what comes beyond nothing is known: all push alike.
 GroundState filtered(std::span<const GroundSample> samples, std::span<const Timestamp> times, GroundMotion motion, bool forwards) {
   motion.calm = 1;
-  const SmoothingPass seen = smoothed(samples, times, motion, usual_passes, false);
-  const std::size_t n = seen.samples.size();
+  const SmoothingPass detected = smoothed(samples, times, motion, default_passes, false);
+  const std::size_t n = detected.samples.size();
   const auto at = [&](std::size_t k) { return forwards ? k : n - 1 - k; };
-  Steps steps(seen.motion);
-  GroundState state = unknown(seen.samples[at(0)].at(), seen.spread(at(0)), seen.motion);
+  Steps steps(detected.motion);
+  GroundState state = unknown(detected.samples[at(0)].at(), detected.spread(at(0)), detected.motion);
   for (std::size_t k = 0; k < n; ++k) {
-    if (k > 0) advance(state, steps(seen.seconds_to(std::max(at(k), at(k - 1)))));
-    correct(state, seen.samples[at(k)].at(), seen.spread(at(k)));
+    if (k > 0) advance(state, steps(detected.seconds_to(std::max(at(k), at(k - 1)))));
+    correct(state, detected.samples[at(k)].at(), detected.spread(at(k)));
   }
   return state;
 }
@@ -334,10 +337,10 @@ GroundState predicted(const GroundState& state, double dt, const GroundMotion& m
   return later;
 }
 
-std::vector<GroundMoment> smooth_ground(std::span<const GroundSample> samples, std::span<const Timestamp> times,
-                                        const GroundMotion& motion, int passes) {
+std::vector<GroundTimeStep> smooth_ground(std::span<const GroundSample> samples, std::span<const Timestamp> times,
+                                          const GroundMotion& motion, int passes) {
   assert(!samples.empty() && passes > 0 && "there is something to smooth");
-  return std::move(smoothed(samples, times, motion, passes, true).moments);
+  return std::move(smoothed(samples, times, motion, passes, true).time_steps);
 }
 
 GroundState first_state(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
@@ -365,22 +368,22 @@ GroundState last_state(std::span<const GroundSample> samples, std::span<const Ti
   return filtered(some, times, motion, true);
 }
 
-GroundMoment between(const GroundMoment& earlier, double since, const GroundMoment& later, double until,
-                     const GroundMotion& motion) {
+GroundTimeStep between(const GroundTimeStep& earlier, double since, const GroundTimeStep& later, double until,
+                       const GroundMotion& motion) {
   const Step one = step_of(since, motion);
   const Step two = step_of(until, motion);
   // Per axis: x = F₁ a + C (b − F₂ F₁ a), C = Q₁ F₂ᵀ (F₂ Q₁ F₂ᵀ + Q₂)⁻¹.
   const Matrix<3> C = one.Q * two.F.transpose() * (two.F * one.Q * two.F.transpose() + two.Q).inverse();
-  GroundMoment moment;
+  GroundTimeStep time_step;
   for (int axis = 0; axis < 2; ++axis) {
-    const Vector<3> a = one.F * Vector<3>(earlier.place[axis], earlier.velocity[axis], earlier.acceleration[axis]);
-    const Vector<3> b(later.place[axis], later.velocity[axis], later.acceleration[axis]);
+    const Vector<3> a = one.F * Vector<3>(earlier.location[axis], earlier.velocity[axis], earlier.acceleration[axis]);
+    const Vector<3> b(later.location[axis], later.velocity[axis], later.acceleration[axis]);
     const Vector<3> x = a + C * (b - two.F * a);
-    moment.place[axis] = x[0];
-    moment.velocity[axis] = x[1];
-    moment.acceleration[axis] = x[2];
+    time_step.location[axis] = x[0];
+    time_step.velocity[axis] = x[1];
+    time_step.acceleration[axis] = x[2];
   }
-  return moment;
+  return time_step;
 }
 
 }  // namespace marey::track::ground::offline

@@ -15,10 +15,10 @@ struct Scene {
   std::vector<Timestamp> times;
 };
 
-GroundSample sample(int instant, const Vector<2>& place, double xx, double xy, double yy) {
+GroundSample sample(int instant, const Vector<2>& location, double xx, double xy, double yy) {
   GroundSample sample;
   sample.instant = instant;
-  sample.place = {static_cast<float>(place.x()), static_cast<float>(place.y())};
+  sample.location = {static_cast<float>(location.x()), static_cast<float>(location.y())};
   sample.covariance = {static_cast<float>(xx), static_cast<float>(xy), static_cast<float>(yy)};
   sample.cameras = 1;
   return sample;
@@ -31,24 +31,24 @@ Scene random_scene(std::uint64_t seed) {
   std::normal_distribution<double> normal;
   Scene scene;
   double time = 0;
-  Vector<2> place(10, 20);
+  Vector<2> location(10, 20);
   Vector<2> velocity(3, -1);
   for (int k = 0; k < 60; ++k) {
     const double dt = unit(engine) < 0.1 ? 0.02 : 0.1 + unit(engine);
     time += dt;
     velocity += Vector<2>(normal(engine), normal(engine));
-    place += dt * velocity;
+    location += dt * velocity;
     scene.times.push_back(timestamp_from_seconds(time));
     if (k > 0 && unit(engine) < 0.3) continue;
     const double xx = 0.01 + unit(engine), yy = 0.01 + unit(engine);
     const double xy = 0.8 * (2 * unit(engine) - 1) * std::sqrt(xx * yy);
-    scene.samples.push_back(sample(k, place + 0.3 * Vector<2>(normal(engine), normal(engine)), xx, xy, yy));
+    scene.samples.push_back(sample(k, location + 0.3 * Vector<2>(normal(engine), normal(engine)), xx, xy, yy));
   }
   return scene;
 }
 
 /// Places, velocities and accelerations in one least-squares problem, solved densely: the same answer, without a filter.
-std::vector<GroundMoment> twin(const Scene& scene, const GroundMotion& motion) {
+std::vector<GroundTimeStep> twin(const Scene& scene, const GroundMotion& motion) {
   const auto n = static_cast<Eigen::Index>(scene.samples.size());
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(6 * n);
@@ -77,12 +77,12 @@ std::vector<GroundMoment> twin(const Scene& scene, const GroundMotion& motion) {
     }
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    const GroundSample& seen = scene.samples[i];
-    const Matrix<2> W = seen.spread().inverse();
+    const GroundSample& detected = scene.samples[i];
+    const Matrix<2> W = detected.spread().inverse();
     A.block<2, 2>(6 * i, 6 * i) += W;
-    b.segment<2>(6 * i) += W * seen.at();
+    b.segment<2>(6 * i) += W * detected.at();
     if (i == 0) continue;
-    const double dt = seconds(scene.times[seen.instant] - scene.times[scene.samples[i - 1].instant]);
+    const double dt = seconds(scene.times[detected.instant] - scene.times[scene.samples[i - 1].instant]);
     run(dt, dt / 2000, F, Q);
     Eigen::Matrix<double, 3, 6> difference;
     difference << -F, Matrix<3>::Identity();
@@ -96,13 +96,13 @@ std::vector<GroundMoment> twin(const Scene& scene, const GroundMotion& motion) {
   }
   const Eigen::MatrixXd covariance = A.fullPivLu().inverse();
   const Eigen::VectorXd x = covariance * b;
-  std::vector<GroundMoment> moments(static_cast<std::size_t>(n));
+  std::vector<GroundTimeStep> time_steps(static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i) {
-    moments[i].place = x.segment<2>(6 * i);
-    moments[i].velocity = x.segment<2>(6 * i + 2);
-    moments[i].spread = covariance.block<2, 2>(6 * i, 6 * i);
+    time_steps[i].location = x.segment<2>(6 * i);
+    time_steps[i].velocity = x.segment<2>(6 * i + 2);
+    time_steps[i].spread = covariance.block<2, 2>(6 * i, 6 * i);
   }
-  return moments;
+  return time_steps;
 }
 
 TEST(GroundSmooth, IsTheLeastSquaresPath) {
@@ -113,7 +113,7 @@ TEST(GroundSmooth, IsTheLeastSquaresPath) {
     const auto expected = twin(scene, motion);
     for (std::size_t i = 0; i < path.size(); ++i) {
       // The first place is not quite unknown to the filter; the dense twin knows nothing, and takes small steps of Euler's.
-      EXPECT_NEAR((path[i].place - expected[i].place).norm(), 0, 0.01) << "seed " << seed << ", sample " << i;
+      EXPECT_NEAR((path[i].location - expected[i].location).norm(), 0, 0.01) << "seed " << seed << ", sample " << i;
       EXPECT_NEAR((path[i].velocity - expected[i].velocity).norm(), 0, 0.02) << "seed " << seed << ", sample " << i;
       EXPECT_NEAR((path[i].spread - expected[i].spread).norm(), 0, 0.01 * expected[i].spread.norm())
           << "seed " << seed << ", sample " << i;
@@ -128,10 +128,10 @@ TEST(GroundSmooth, BetweenTwoMomentsIsWhereTheSmootherPutsWhatIsHardlySeen) {
   scene.samples[middle].covariance = {1e6F, 0, 1e6F};
   const auto path = smooth_ground(scene.samples, scene.times, motion, 1);
   const auto time = [&](std::size_t i) { return scene.times[scene.samples[i].instant]; };
-  const GroundMoment moment = between(path[middle - 1], seconds(time(middle) - time(middle - 1)), path[middle + 1],
-                                      seconds(time(middle + 1) - time(middle)), motion);
-  EXPECT_NEAR((moment.place - path[middle].place).norm(), 0, 1e-3);
-  EXPECT_NEAR((moment.velocity - path[middle].velocity).norm(), 0, 1e-3);
+  const GroundTimeStep time_step = between(path[middle - 1], seconds(time(middle) - time(middle - 1)), path[middle + 1],
+                                           seconds(time(middle + 1) - time(middle)), motion);
+  EXPECT_NEAR((time_step.location - path[middle].location).norm(), 0, 1e-3);
+  EXPECT_NEAR((time_step.velocity - path[middle].velocity).norm(), 0, 1e-3);
 }
 
 TEST(GroundSmooth, EndsAreWhatTheSmootherSaysOfThem) {
@@ -140,13 +140,13 @@ TEST(GroundSmooth, EndsAreWhatTheSmootherSaysOfThem) {
   const auto path = smooth_ground(scene.samples, scene.times, motion);
   const GroundState first = first_state(scene.samples, scene.times, motion, 1e6);
   const GroundState last = last_state(scene.samples, scene.times, motion, 1e6);
-  EXPECT_NEAR((first.place() - path.front().place).norm(), 0, 0.02);
+  EXPECT_NEAR((first.location() - path.front().location).norm(), 0, 0.02);
   EXPECT_NEAR((first.velocity() - path.front().velocity).norm(), 0, 0.02);
-  EXPECT_NEAR((last.place() - path.back().place).norm(), 0, 0.02);
+  EXPECT_NEAR((last.location() - path.back().location).norm(), 0, 0.02);
   EXPECT_NEAR((last.velocity() - path.back().velocity).norm(), 0, 0.02);
 }
 
-TEST(GroundSmooth, WhatDoesNotFitCountsLess) {
+TEST(GroundSmooth, DownweightsOutliers) {
   Scene scene;
   for (int k = 0; k < 100; ++k) {
     scene.times.push_back(timestamp_from_seconds(0.04 * k));
@@ -155,45 +155,45 @@ TEST(GroundSmooth, WhatDoesNotFitCountsLess) {
   }
   const auto once = smooth_ground(scene.samples, scene.times, {}, 1);
   const auto path = smooth_ground(scene.samples, scene.times, {}, 4);
-  EXPECT_GT(std::abs(once[51].place.y()), 0.5);
-  EXPECT_LT(std::abs(path[51].place.y()), 0.15);
+  EXPECT_GT(std::abs(once[51].location.y()), 0.5);
+  EXPECT_LT(std::abs(path[51].location.y()), 0.15);
   EXPECT_LT(path[51].fit, 0.1);
   EXPECT_GT(path[20].fit, 1);
 }
 
-/// m that a smoothed path goes, and its fastest moment.
-struct Way {
+/// m that a smoothed path goes, and its fastest instant.
+struct Trajectory {
   double length = 0, fastest = 0;
 };
 
-/// Somebody who stands, sprints for two seconds and stands again, seen with errors that persist for `memory` s.
-Way sprint(double rate_hz, double memory, const GroundMotion& motion) {
+/// A person who stands, sprints for two seconds and stands again, seen with errors that persist for `memory` s.
+Trajectory sprint(double rate_hz, double memory, const GroundMotion& motion) {
   std::mt19937_64 engine(11);
   std::normal_distribution<double> normal;
   Scene scene;
   const double dt = 1 / rate_hz, kept = memory > 0 ? std::exp(-dt / memory) : 0;
   Vector<2> error = Vector<2>::Zero();
-  double place = 0, speed = 0;
+  double location = 0, speed = 0;
   for (int k = 0; k < 40 * rate_hz; ++k) {
     const double t = k * dt;
     speed += dt * std::clamp((t > 20 && t < 23 ? 8.0 : 0.0) - speed, -1.0, 1.0) * 5;
-    place += dt * speed;
+    location += dt * speed;
     error = kept * error + 0.3 * std::sqrt(1 - kept * kept) * Vector<2>(normal(engine), normal(engine));
     scene.times.push_back(timestamp_from_seconds(t));
-    scene.samples.push_back(sample(k, Vector<2>(place, 0) + error, 0.09, 0, 0.09));
+    scene.samples.push_back(sample(k, Vector<2>(location, 0) + error, 0.09, 0, 0.09));
   }
   const auto path = smooth_ground(scene.samples, scene.times, motion);
-  Way way;
+  Trajectory method;
   for (std::size_t i = 1; i < path.size(); ++i) {
-    way.length += (path[i].place - path[i - 1].place).norm();
-    way.fastest = std::max(way.fastest, path[i].velocity.norm());
+    method.length += (path[i].location - path[i - 1].location).norm();
+    method.fastest = std::max(method.fastest, path[i].velocity.norm());
   }
-  return way;
+  return method;
 }
 
-TEST(GroundSmooth, WhoStandsDoesNotWalkByTheJitterOfHisPlacesAndWhoSprintsDoes) {
-  const Way plain = sprint(25, 0.05, {.calm = 1, .error_memory = 0});
-  const Way calm = sprint(25, 0.05, {});
+TEST(GroundSmooth, StandingHasNoSpeedAndSprintKeepsIt) {
+  const Trajectory plain = sprint(25, 0.05, {.calm = 1, .error_memory = 0});
+  const Trajectory calm = sprint(25, 0.05, {});
   EXPECT_GT(plain.length, 30) << "the scene is too easy";
   EXPECT_LT(calm.length, plain.length - 5);
   EXPECT_GT(calm.fastest, 7.2);
@@ -201,7 +201,7 @@ TEST(GroundSmooth, WhoStandsDoesNotWalkByTheJitterOfHisPlacesAndWhoSprintsDoes) 
 }
 
 TEST(GroundSmooth, MoreFramesOfErrorsThatPersistAreNoMoreEvidence) {
-  const Way slow = sprint(25, 0.05, {}), fast = sprint(100, 0.05, {});
+  const Trajectory slow = sprint(25, 0.05, {}), fast = sprint(100, 0.05, {});
   EXPECT_NEAR(fast.length, slow.length, 0.15 * slow.length);
 }
 

@@ -10,24 +10,24 @@
 namespace marey::track::ground::offline {
 namespace {
 
-constexpr double kStep = 0.2;        // s between places that are counted
-constexpr double kLongestStep = 1;   // s that one place counts for
-constexpr double kJudgedSpan = 3;    // s of a tracklet that its end is judged by
-constexpr double kLeastGain = -12;   // of pairs of an end and a beginning that come into question
-constexpr double kMostBelieved = 3;  // either way, of what place and velocity tell of a meeting
-constexpr double kTouching = 0.8;    // m: who keep farther apart than this are less often exchanged,
-constexpr double kPassing = -3;      // for each metre more, as a logarithm of odds
+constexpr double kStep = 0.2;         // s between places that are counted
+constexpr double kMaxStep = 1;        // s that one place counts for
+constexpr double kEvaluatedSpan = 3;  // s of a tracklet that its end is evaluated by
+constexpr double kMinGain = -12;      // of pairs of an end and a beginning that come into question
+constexpr double kMaxTrusted = 3;     // either way, of what place and velocity tell of a meeting
+constexpr double kTouching = 0.8;     // m: who keep farther apart than this are less often exchanged,
+constexpr double kPassing = -3;       // for each metre more, as a logarithm of odds
 
-class GraphOfStretches {
+class GraphOfSegments {
  public:
-  GraphOfStretches(std::span<const GroundTracklet> tracklets, std::span<const int> teams, std::span<const Timestamp> times,
-                   const GroundIdentityOptions& options)
+  GraphOfSegments(std::span<const GroundTracklet> tracklets, std::span<const int> teams, std::span<const Timestamp> times,
+                  const GroundIdentityOptions& options)
       : tracklets_(tracklets), teams_(teams), times_(times), options_(options) {}
 
-  StretchGraph graph(std::span<const GroundNaming> namings) {
-    cut(find_meetings(tracklets_, times_, options_.meeting.near), namings);
+  SegmentGraph graph(std::span<const GroundNaming> namings) {
+    cut(find_encounters(tracklets_, times_, options_.close_encounter.near), namings);
     find_middles();
-    for (StretchGraph::Node& node : graph_.nodes) node.role = role_of(node);
+    for (SegmentGraph::Node& node : graph_.nodes) node.role = role_of(node);
     for (const GroundNaming& naming : namings)
       node_at(naming.tracklet, naming.instant).names.set(static_cast<std::size_t>(naming.name));
     find_gaps();
@@ -38,18 +38,18 @@ class GraphOfStretches {
   /// Where a tracklet is cut: from this instant on.
   struct Cut {
     std::int32_t from = 0;
-    int meeting = assign::kNoIndex;  // or two names that nothing lies between
+    int close_encounter = assign::kNoIndex;  // or two names that nothing lies between
   };
 
-  void cut(const std::vector<GroundMeeting>& meetings, std::span<const GroundNaming> namings) {
+  void cut(const std::vector<CloseGroundEncounter>& close_encounters, std::span<const GroundNaming> namings) {
     std::vector<std::vector<Cut>> cuts(tracklets_.size());
-    for (std::size_t m = 0; m < meetings.size(); ++m) {
-      for (const int tracklet : {meetings[m].a, meetings[m].b})
-        cuts[static_cast<std::size_t>(tracklet)].push_back({meetings[m].nearest, static_cast<int>(m)});
-      graph_.crossings.push_back({.instant = meetings[m].nearest, .log_odds = log_odds_of(meetings[m])});
+    for (std::size_t m = 0; m < close_encounters.size(); ++m) {
+      for (const int tracklet : {close_encounters[m].a, close_encounters[m].b})
+        cuts[static_cast<std::size_t>(tracklet)].push_back({close_encounters[m].nearest, static_cast<int>(m)});
+      graph_.crossings.push_back({.instant = close_encounters[m].nearest, .log_odds = log_odds_of(close_encounters[m])});
     }
     cut_between_names(cuts, namings);
-    for (std::size_t t = 0; t < tracklets_.size(); ++t) add_nodes(static_cast<int>(t), cuts[t], meetings);
+    for (std::size_t t = 0; t < tracklets_.size(); ++t) add_nodes(static_cast<int>(t), cuts[t], close_encounters);
   }
 
   /// Where nothing lies between two names of a tracklet, it is cut half-way.
@@ -70,7 +70,7 @@ class GraphOfStretches {
     }
   }
 
-  void add_nodes(int tracklet, const std::vector<Cut>& cuts, const std::vector<GroundMeeting>& meetings) {
+  void add_nodes(int tracklet, const std::vector<Cut>& cuts, const std::vector<CloseGroundEncounter>& close_encounters) {
     const std::vector<GroundSample>& samples = tracklets_[static_cast<std::size_t>(tracklet)].samples;
     std::int32_t from = samples.front().instant;
     first_.push_back(static_cast<int>(graph_.nodes.size()));
@@ -78,24 +78,24 @@ class GraphOfStretches {
       const int node = static_cast<int>(graph_.nodes.size());
       graph_.nodes.push_back({.tracklet = tracklet, .first = from, .last = std::max(cut.from, from) - 1, .role = {}, .names = {}});
       from = std::max(cut.from, from);
-      graph_.follows.push_back(cut.meeting == assign::kNoIndex ? assign::kNoIndex : node + 1);
-      if (cut.meeting == assign::kNoIndex) continue;
-      StretchGraph::Crossing& crossing = graph_.crossings[static_cast<std::size_t>(cut.meeting)];
-      const std::size_t side = meetings[static_cast<std::size_t>(cut.meeting)].a == tracklet ? 0 : 1;
+      graph_.tracks.push_back(cut.close_encounter == assign::kNoIndex ? assign::kNoIndex : node + 1);
+      if (cut.close_encounter == assign::kNoIndex) continue;
+      SegmentGraph::Crossing& crossing = graph_.crossings[static_cast<std::size_t>(cut.close_encounter)];
+      const std::size_t side = close_encounters[static_cast<std::size_t>(cut.close_encounter)].a == tracklet ? 0 : 1;
       crossing.before[side] = node;
       crossing.after[side] = node + 1;
     }
     graph_.nodes.push_back({.tracklet = tracklet, .first = from, .last = samples.back().instant, .role = {}, .names = {}});
-    graph_.follows.push_back(assign::kNoIndex);
+    graph_.tracks.push_back(assign::kNoIndex);
     last_.push_back(static_cast<int>(graph_.nodes.size()) - 1);
   }
 
-  double log_odds_of(const GroundMeeting& meeting) const {
-    const auto gain =
-        gain_of_exchange(tracklets_[static_cast<std::size_t>(meeting.a)].samples,
-                         tracklets_[static_cast<std::size_t>(meeting.b)].samples, meeting, times_, colours_, options_.meeting);
-    const double told = gain ? std::clamp(options_.believed * *gain, -kMostBelieved, kMostBelieved) : 0;
-    return options_.exchanged + told + kPassing * std::max(0.0, std::sqrt(meeting.distance) - kTouching);
+  double log_odds_of(const CloseGroundEncounter& close_encounter) const {
+    const auto gain = gain_of_swap(tracklets_[static_cast<std::size_t>(close_encounter.a)].samples,
+                                   tracklets_[static_cast<std::size_t>(close_encounter.b)].samples, close_encounter, times_,
+                                   colours_, options_.close_encounter);
+    const double reported = gain ? std::clamp(options_.trusted * *gain, -kMaxTrusted, kMaxTrusted) : 0;
+    return options_.swapped + reported + kPassing * std::max(0.0, std::sqrt(close_encounter.distance) - kTouching);
   }
 
   /// The mean place of all that are there, by instant.
@@ -111,7 +111,7 @@ class GraphOfStretches {
     for (std::size_t i = 0; i < counts.size(); ++i) middles_[i] /= std::max(1, counts[i]);
   }
 
-  RoleSum role_of(const StretchGraph::Node& node) const {
+  RoleSum role_of(const SegmentGraph::Node& node) const {
     const std::span<const GroundSample> samples = tracklets_[static_cast<std::size_t>(node.tracklet)].samples;
     RoleSum role;
     std::size_t i = index_from(samples, node.first);
@@ -123,18 +123,18 @@ class GraphOfStretches {
         ++next;
       const auto end = std::min(next < samples.size() ? samples[next].instant : node.last, node.last);
       role.add(samples[i].at() - middles_[static_cast<std::size_t>(samples[i].instant)],
-               std::min(kLongestStep, seconds(times_[static_cast<std::size_t>(end)] - now)),
+               std::min(kMaxStep, seconds(times_[static_cast<std::size_t>(end)] - now)),
                teams_[static_cast<std::size_t>(node.tracklet)]);
       i = next;
     }
     return role;
   }
 
-  StretchGraph::Node& node_at(int tracklet, std::int32_t instant) {
+  SegmentGraph::Node& node_at(int tracklet, std::int32_t instant) {
     const auto begin = graph_.nodes.begin() + first_[static_cast<std::size_t>(tracklet)];
     const auto end = graph_.nodes.begin() + last_[static_cast<std::size_t>(tracklet)] + 1;
     const auto after = std::upper_bound(begin, end, instant,
-                                        [](std::int32_t sought, const StretchGraph::Node& node) { return sought < node.first; });
+                                        [](std::int32_t sought, const SegmentGraph::Node& node) { return sought < node.first; });
     return after == begin ? *begin : *std::prev(after);
   }
 
@@ -146,8 +146,8 @@ class GraphOfStretches {
       head.piece = tail.piece = static_cast<int>(t);
       head.time = times_[static_cast<std::size_t>(samples.front().instant)];
       tail.time = times_[static_cast<std::size_t>(samples.back().instant)];
-      head.state = first_state(samples, times_, options_.join.motion, kJudgedSpan);
-      tail.state = last_state(samples, times_, options_.join.motion, kJudgedSpan);
+      head.state = first_state(samples, times_, options_.join.motion, kEvaluatedSpan);
+      tail.state = last_state(samples, times_, options_.join.motion, kEvaluatedSpan);
       head.coming = options_.coming;
       tail.goes_on = tracklets_[t].goes_on;
       heads.push_back(head);
@@ -156,8 +156,8 @@ class GraphOfStretches {
     track::offline::for_each_successor(tails, heads, duration_from_seconds(options_.join.longest_gap), [&](int tail, int head) {
       const auto gain =
           gain_of_joining(tails[static_cast<std::size_t>(tail)], heads[static_cast<std::size_t>(head)], colours_, options_.join);
-      if (!gain || *gain < kLeastGain) return;
-      const StretchGraph::Gap gap{last_[static_cast<std::size_t>(tail)], first_[static_cast<std::size_t>(head)], *gain};
+      if (!gain || *gain < kMinGain) return;
+      const SegmentGraph::Gap gap{last_[static_cast<std::size_t>(tail)], first_[static_cast<std::size_t>(head)], *gain};
       graph_.gaps.push_back(gap);
       graph_.gain_of_gap[{gap.before, gap.after}] = gap.gain;
     });
@@ -168,17 +168,17 @@ class GraphOfStretches {
   std::span<const Timestamp> times_;
   const GroundIdentityOptions& options_;
   GroundColours colours_{{}};
-  StretchGraph graph_;
+  SegmentGraph graph_;
   std::vector<Vector<2>> middles_;
   std::vector<int> first_, last_;  // of each tracklet its first and last node
 };
 
 }  // namespace
 
-StretchGraph graph_of_stretches(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
-                                std::span<const Timestamp> times, std::span<const GroundNaming> namings,
-                                const GroundIdentityOptions& options) {
-  return GraphOfStretches(tracklets, teams, times, options).graph(namings);
+SegmentGraph graph_of_segments(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
+                               std::span<const Timestamp> times, std::span<const GroundNaming> namings,
+                               const GroundIdentityOptions& options) {
+  return GraphOfSegments(tracklets, teams, times, options).graph(namings);
 }
 
 }  // namespace marey::track::ground::offline

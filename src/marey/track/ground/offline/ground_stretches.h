@@ -16,7 +16,7 @@ namespace marey::track::ground::offline {
 /// Names that were given, by their numbers.
 using NameSet = std::bitset<256>;
 
-struct StretchGraph {
+struct SegmentGraph {
   struct Node {
     int tracklet = 0;
     std::int32_t first = 0, last = 0;  ///< instants, both included; last < first where nothing lies between two meetings
@@ -39,11 +39,11 @@ struct StretchGraph {
   std::vector<Crossing> crossings;
   std::vector<Gap> gaps;
   std::map<std::array<int, 2>, double> gain_of_gap;  ///< by its nodes
-  std::vector<int> follows;                          ///< of each node the next one of its tracklet, or assign::kNoIndex
+  std::vector<int> tracks;                           ///< of each node the next one of its tracklet, or assign::kNoIndex
 };
 
-StretchGraph graph_of_stretches(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
-                                std::span<const Timestamp> times, std::span<const GroundNaming> namings,
-                                const GroundIdentityOptions& options);
+SegmentGraph graph_of_segments(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
+                               std::span<const Timestamp> times, std::span<const GroundNaming> namings,
+                               const GroundIdentityOptions& options);
 
 }  // namespace marey::track::ground::offline

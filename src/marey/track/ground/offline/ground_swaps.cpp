@@ -8,11 +8,11 @@
 namespace marey::track::ground::offline {
 namespace {
 
-constexpr std::size_t kMostKindsTried = 60;  // of colours; more only costs time
+constexpr std::size_t kMaxKindsTried = 60;  // of colours; more only costs time
 
-class Exchanger {
+class Swapper {
  public:
-  Exchanger(std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times, const SwapRepairOptions& options)
+  Swapper(std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times, const SwapRepairOptions& options)
       : tracklets_(tracklets),
         times_(times),
         options_(options),
@@ -22,34 +22,34 @@ class Exchanger {
   }
 
   /// Whether the two were exchanged.
-  bool settle(const GroundMeeting& meeting) {
-    const int a = holder_[meeting.a];
-    const int b = holder_[meeting.b];
-    const auto gain = gain_of_exchange(samples_of(a), samples_of(b), meeting, times_, colours_, options_);
-    if (!gain || *gain < options_.surely) return false;
-    exchange(a, b, meeting.nearest);
-    std::swap(holder_[meeting.a], holder_[meeting.b]);
+  bool settle(const CloseGroundEncounter& close_encounter) {
+    const int a = holder_[close_encounter.a];
+    const int b = holder_[close_encounter.b];
+    const auto gain = gain_of_swap(samples_of(a), samples_of(b), close_encounter, times_, colours_, options_);
+    if (!gain || *gain < options_.certainly) return false;
+    interchange(a, b, close_encounter.nearest);
+    std::swap(holder_[close_encounter.a], holder_[close_encounter.b]);
     return true;
   }
 
  private:
   static GroundColours kinds(const std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times,
                              const std::optional<GroundTeams>& teams) {
-    std::vector<GroundColours::Seen> seen;
+    std::vector<GroundColours::Detected> detected;
     for (const GroundTracklet& tracklet : tracklets) {
-      const auto wears = appearance_of(tracklet.samples);
-      if (!wears) continue;
-      seen.push_back({*wears, seconds(times[tracklet.samples.back().instant] - times[tracklet.samples.front().instant])});
+      const auto clothing = appearance_of(tracklet.samples);
+      if (!clothing) continue;
+      detected.push_back({*clothing, seconds(times[tracklet.samples.back().instant] - times[tracklet.samples.front().instant])});
     }
-    std::stable_sort(seen.begin(), seen.end(),
-                     [](const GroundColours::Seen& a, const GroundColours::Seen& b) { return a.seconds > b.seconds; });
-    if (seen.size() > kMostKindsTried) seen.resize(kMostKindsTried);
-    return GroundColours(seen, teams);
+    std::stable_sort(detected.begin(), detected.end(),
+                     [](const GroundColours::Detected& a, const GroundColours::Detected& b) { return a.seconds > b.seconds; });
+    if (detected.size() > kMaxKindsTried) detected.resize(kMaxKindsTried);
+    return GroundColours(detected, teams);
   }
 
   std::span<const GroundSample> samples_of(int tracklet) const { return tracklets_[tracklet].samples; }
 
-  void exchange(int a, int b, std::int32_t instant) {
+  void interchange(int a, int b, std::int32_t instant) {
     GroundTracklet later_a = split(tracklets_[a], index_from(tracklets_[a].samples, instant));
     GroundTracklet later_b = split(tracklets_[b], index_from(tracklets_[b].samples, instant));
     append(tracklets_[a], later_b);
@@ -60,16 +60,17 @@ class Exchanger {
   std::span<const Timestamp> times_;
   const SwapRepairOptions& options_;
   GroundColours colours_;
-  std::vector<int> holder_;  // where what was recorded as a tracklet goes on now
+  std::vector<int> holder_;  // where what was recorded as a tracklet continues now
 };
 
 }  // namespace
 
 int repair_swaps(std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times, const SwapRepairOptions& options) {
-  Exchanger exchanger(tracklets, times, options);
-  int exchanged = 0;
-  for (const GroundMeeting& meeting : find_meetings(tracklets, times, options.near)) exchanged += exchanger.settle(meeting) ? 1 : 0;
-  return exchanged;
+  Swapper exchanger(tracklets, times, options);
+  int swapped = 0;
+  for (const CloseGroundEncounter& close_encounter : find_encounters(tracklets, times, options.near))
+    swapped += exchanger.settle(close_encounter) ? 1 : 0;
+  return swapped;
 }
 
 }  // namespace marey::track::ground::offline

@@ -15,7 +15,7 @@ namespace marey::track::ground::offline {
 /// What all cameras together saw of one target at one instant.
 struct GroundSample {
   std::int32_t instant = 0;           ///< counts the instants recorded
-  std::array<float, 2> place{};       ///< m; the observations' mean by their covariances, brought to the instant
+  std::array<float, 2> location{};    ///< m; the observations' mean by their covariances, brought to the instant
   std::array<float, 3> covariance{};  ///< of `place`, m²: xx, xy, yy
   float score = 1;                    ///< of the surest observation
   CameraMask cameras = 0;
@@ -25,7 +25,7 @@ struct GroundSample {
 
   static constexpr std::uint8_t none = 255;
 
-  Vector<2> at() const { return {place[0], place[1]}; }
+  Vector<2> at() const { return {location[0], location[1]}; }
   Matrix<2> spread() const { return (Matrix<2>() << covariance[0], covariance[1], covariance[1], covariance[2]).finished(); }
   bool has_colour() const { return colour_deviation != none; }
   Vector<3> lab() const { return {static_cast<double>(colour[0]), static_cast<double>(colour[1]), static_cast<double>(colour[2])}; }

@@ -1,0 +1,177 @@
+#include "marey/calibrate/ptz/odometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "marey/calibrate/ptz/ptz_fit.h"
+#include "marey/geometry/median.h"
+
+namespace marey::calibrate::ptz {
+namespace {
+
+constexpr int kWindow = 15, kLevels = 3;
+constexpr double kMaxDistance = 110;      // m: what is seen above the ground stands so far away
+constexpr double kStillPixels = 0.35;     // shrunk px: what moved less on the image stands still
+constexpr double kMovingFraction = 0.35;  // of those that stand: so many that move together are the scene
+constexpr double kMaxTrajectory = 0.3;    // of the image's width: then there is a new reference
+constexpr double kMaxZoom = 0.1;
+
+/// What a pixel shows: the ground, or something far away.
+Vector<3> shown(const geometry::TripodFrame<double>& frame, const Vector<2>& detected) {
+  const Vector<2> straight = detected / (1 + frame.bend * detected.squaredNorm());
+  const Vector<3> ray = frame.focal * frame.ahead + straight.x() * frame.right + straight.y() * frame.down;
+  const double far = ray.z() < -1e-9 ? -frame.centre.z() / ray.z() * ray.norm() : kMaxDistance;
+  return frame.centre + std::min(kMaxDistance, far) * ray.normalized();
+}
+
+}  // namespace
+
+Odometry::Odometry(cv::Size size, const OdometryOptions& options) : options_(options) {
+  const double factor = std::min(1.0, static_cast<double>(options.width) / size.width);
+  size_ = {cvRound(size.width * factor), cvRound(size.height * factor)};
+}
+
+void Odometry::refer(const geometry::Tripod& tripod, const geometry::Heading& heading) {
+  reference_ = pyramid_;
+  reference_tripod_ = tripod;
+  reference_heading_ = chained_ = heading;
+  age_ = 0;
+  corners_.clear();
+  locations_.clear();
+  cv::goodFeaturesToTrack(reference_[0], corners_, options_.corners, 0.01, 8);
+  const auto numbers = tripod.as_numbers();
+  const Vector<3> rotated = heading.as_vector();
+  const geometry::TripodFrame<double> frame(numbers.data(), rotated.data());
+  for (const cv::Point2f& corner : corners_) locations_.push_back(shown(frame, geometry::from_pixel({corner.x, corner.y}, size_)));
+  now_ = corners_;
+  begun_with_ = corners_.size();
+}
+
+/// The corners in the new image; those that cannot be followed are dropped.
+std::vector<Odometry::Match> Odometry::run_tracker() {
+  std::vector<Match> matches;
+  if (corners_.empty()) return matches;
+  std::vector<unsigned char> found;
+  std::vector<float> error;
+  const std::vector<cv::Point2f> before = now_;
+  cv::calcOpticalFlowPyrLK(reference_, pyramid_, corners_, now_, found, error, {kWindow, kWindow}, kLevels,
+                           {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.02}, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const cv::Point2f& at = now_[i];
+    if (found[i] == 0 || error[i] > 30 || at.x < 2 || at.y < 2 || at.x > size_.width - 3 || at.y > size_.height - 3) continue;
+    const bool still = std::hypot(at.x - corners_[i].x, at.y - corners_[i].y) < kStillPixels;
+    matches.push_back({locations_[i], geometry::from_pixel({at.x, at.y}, size_), still});
+    corners_[kept] = corners_[i], now_[kept] = at, locations_[kept] = locations_[i];
+    ++kept;
+  }
+  corners_.resize(kept), now_.resize(kept), locations_.resize(kept);
+  return matches;
+}
+
+namespace {
+
+struct OdometryFit {
+  Vector<3> heading;
+  int agreeing = 0;
+};
+
+/// Pan, tilt and ln f that most places agree with, from `start` on.
+template <typename Matches>
+OdometryFit fit_heading(const geometry::Tripod& tripod, const Matches& matches, const geometry::Heading& start, cv::Size size,
+                        double agree_px) {
+  const double px = size.width / 2.0;
+  const auto numbers = tripod.as_numbers();
+  OdometryFit result{start.as_vector()};
+  // The middle of all ways brings most of them near.
+  std::vector<double> across, down;
+  {
+    const geometry::TripodFrame<double> frame(numbers.data(), result.heading.data());
+    for (const auto& match : matches) {
+      const Vector<2> off = match.detected - frame.detected(match.location);
+      across.push_back(off.x()), down.push_back(off.y());
+    }
+    const auto median = [](std::vector<double>& values) { return geometry::median(values); };
+    result.heading.x() -= median(across) / frame.focal / std::max(0.3, std::cos(start.tilt));
+    result.heading.y() -= median(down) / frame.focal;
+  }
+  for (double reach = 6 * agree_px; reach > 0.6 * agree_px; reach /= 1.5) {
+    Matrix<3> information = Matrix<3>::Identity() * 1e-3;
+    Vector<3> slope = Vector<3>::Zero();
+    const geometry::TripodFrame<double> frame(numbers.data(), result.heading.data());
+    for (const auto& match : matches) {
+      const Vector<2> off = px * (frame.detected(match.location) - match.detected);
+      const auto by = pixel_by_heading(tripod, geometry::Heading::of(result.heading), size, match.location);
+      const double robust = 1 / std::pow(1 + off.squaredNorm() / (reach * reach), 2);
+      information += robust * by.transpose() * by;
+      slope += robust * by.transpose() * off;
+    }
+    result.heading -= information.ldlt().solve(slope);
+  }
+  const geometry::TripodFrame<double> frame(numbers.data(), result.heading.data());
+  for (const auto& match : matches)
+    result.agreeing += px * (frame.detected(match.location) - match.detected).norm() < agree_px ? 1 : 0;
+  return result;
+}
+
+}  // namespace
+
+std::optional<Rotated> Odometry::fit(const geometry::Tripod& tripod, const std::vector<Match>& matches,
+                                     const geometry::Heading& start) const {
+  if (std::ssize(matches) < options_.lowest_count) return std::nullopt;
+  const int tracked = static_cast<int>(matches.size());
+  std::vector<Match> moving;
+  for (const Match& match : matches) {
+    if (!match.still) moving.push_back(match);
+  }
+  OdometryFit best = fit_heading(tripod, matches, start, size_, options_.agree_px);
+  if (std::ssize(moving) >= options_.lowest_count && moving.size() < matches.size()) {
+    const OdometryFit other = fit_heading(tripod, moving, start, size_, options_.agree_px);
+    const auto still = static_cast<double>(matches.size() - moving.size());
+    if (other.agreeing >= options_.lowest_count && other.agreeing >= 0.6 * static_cast<double>(moving.size()) &&
+        other.agreeing > kMovingFraction * still)
+      best = other;
+  }
+  if (best.agreeing < options_.lowest_count || best.agreeing < options_.fraction * tracked) return std::nullopt;
+  Rotated rotated;
+  rotated.by = best.heading - chained_.as_vector();
+  rotated.log_focal = reference_heading_.log_focal;
+  rotated.agreeing = best.agreeing, rotated.tracked = tracked;
+  return rotated;
+}
+
+std::optional<Rotated> Odometry::step(const cv::Mat& luma, const geometry::Tripod& tripod, const geometry::Heading& last) {
+  cv::Mat shrunk;
+  if (luma.size() == size_)
+    shrunk = luma;
+  else
+    cv::resize(luma, shrunk, size_, 0, 0, cv::INTER_AREA);
+  pyramid_.clear();
+  cv::buildOpticalFlowPyramid(shrunk, pyramid_, {kWindow, kWindow}, kLevels, true, cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT,
+                              false);
+  if (reference_.empty()) {
+    refer(tripod, last);
+    return std::nullopt;
+  }
+  const auto rotated = fit(reference_tripod_, run_tracker(), chained_);
+  if (!rotated) {
+    refer(tripod, last);
+    return std::nullopt;
+  }
+  chained_ = geometry::Heading::of(chained_.as_vector() + rotated->by);
+  ++age_;
+  const double method =
+      std::exp(chained_.log_focal) / 2 * std::hypot(chained_.pan - reference_heading_.pan, chained_.tilt - reference_heading_.tilt);
+  const bool spent = age_ >= options_.longest || method > kMaxTrajectory ||
+                     std::abs(chained_.log_focal - reference_heading_.log_focal) > kMaxZoom || 2 * corners_.size() < begun_with_ ||
+                     rotated->agreeing < 3 * options_.lowest_count;
+  if (spent) refer(tripod, geometry::Heading::of(last.as_vector() + rotated->by));
+  return rotated;
+}
+
+}  // namespace marey::calibrate::ptz

@@ -1,0 +1,32 @@
+// Where a camera on a known tripod looks, from one image alone: at the beginning, and after a cut.
+//
+// Bright ridges on green are a mask of what may be paint. Headings all over the pitch are tried, coarse first: of each, the model's
+// lines are laid over the distances to the mask, and what lies near counts, by its length in the image, what lies far counts
+// against it. The best few are refined on the paint itself. A heading counts only where most of the lines that it promises are
+// there, and no other one explains the image nearly as well: who sees another place, or a goal mouth alone, gets nothing. Cost:
+// some 50 ms. Reference: Thomas 2007 (a search over the possible views starts the tracker).
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "marey/calibrate/ptz/ptz_fit.h"
+#include "marey/core/image.h"
+#include "marey/geometry/pitch.h"
+#include "marey/geometry/tripod.h"
+
+namespace marey::calibrate::ptz {
+
+struct FindAgainOptions {
+  double min_log_focal = 0.3, max_log_focal = 2.4;
+  double fraction = 0.55;  ///< of the samples of the lines in view that have to be paint,
+  int lowest_count = 35;   ///< and this many of them,
+  int lines = 3;           ///< on this many lines
+  double rival = 0.8;      ///< another heading may agree with at most this share of as many
+};
+
+/// `lines` in the world. The covariance is that of the paint alone.
+std::optional<AimFit> find_again(const Image& image, const geometry::Tripod& tripod, const geometry::PitchSize& pitch,
+                                 std::span<const geometry::PitchLine> lines, const FindAgainOptions& options = {});
+
+}  // namespace marey::calibrate::ptz

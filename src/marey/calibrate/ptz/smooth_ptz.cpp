@@ -1,0 +1,91 @@
+#include "marey/calibrate/ptz/smooth_ptz.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace marey::calibrate::ptz {
+namespace {
+
+/// Pan and tilt were found for another focal length than they have now.
+Vector<3> step_of(const Rotated& rotated, double log_focal) {
+  const double scale = std::exp(rotated.log_focal - log_focal);
+  return {scale * rotated.by.x(), scale * rotated.by.y(), rotated.by.z()};
+}
+
+constexpr int kMaxBridge = 12;                        // frames before a piece's first known one that flow alone tells of
+constexpr double kWideAngle = 0.05, kWideZoom = 0.2;  // of a piece's first frame, before its paint: rad, ln f
+
+struct Filtered {
+  std::optional<Aim> expected;  // before its paint
+  std::optional<Aim> aim;
+};
+
+std::vector<Filtered> filtered(const std::vector<TurnRecord>& records, const geometry::Tripod& tripod, cv::Size size,
+                               const SmoothOptions& options) {
+  std::vector<Filtered> all(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const TurnRecord& record = records[i];
+    Filtered& here = all[i];
+    if (!record.found) continue;
+    if (i > 0 && all[i - 1].aim && record.rotated) {
+      const Aim& before = *all[i - 1].aim;
+      here.expected = Aim{geometry::Heading::of(before.heading.as_vector() + step_of(*record.rotated, before.heading.log_focal)),
+                          before.covariance + flow_covariance(*record.rotated, before.heading.log_focal, options)};
+    } else if (record.found && !record.paint.empty()) {
+      here.expected =
+          Aim{record.found->heading,
+              Vector<3>(kWideAngle * kWideAngle, kWideAngle * kWideAngle, kWideZoom * kWideZoom).asDiagonal().toDenseMatrix()};
+    }
+    if (!here.expected) continue;
+    here.aim = here.expected;
+    if (!record.paint.empty()) here.aim = solve_aim(tripod, size, record.paint, *here.expected, options.aim).aim;
+  }
+  return all;
+}
+
+}  // namespace
+
+Matrix<3> flow_covariance(const Rotated& rotated, double log_focal, const SmoothOptions& options) {
+  const double angle = options.flow_px / 640 * std::exp(-log_focal), zoom = options.flow_zoom;
+  const Vector<3> method = options.moving_fraction * rotated.by;
+  return Vector<3>(angle * angle + method.x() * method.x(), angle * angle + method.y() * method.y(),
+                   zoom * zoom + method.z() * method.z())
+      .asDiagonal()
+      .toDenseMatrix();
+}
+
+std::vector<std::optional<Aim>> smooth_ptz(const std::vector<TurnRecord>& records, const geometry::Tripod& tripod, cv::Size size,
+                                           const SmoothOptions& options) {
+  const std::vector<Filtered> forwards = filtered(records, tripod, size, options);
+  std::vector<std::optional<Aim>> smooth(records.size());
+  int alone = 0;  // frames in a row that only what came after them tells of
+  for (std::size_t k = records.size(); k-- > 0;) {
+    smooth[k] = forwards[k].aim;
+    if (smooth[k]) alone = 0;
+    if (k + 1 == records.size() || !smooth[k + 1] || !records[k + 1].rotated) continue;
+    const Rotated& rotated = *records[k + 1].rotated;
+    if (!forwards[k].aim) {
+      if (++alone > kMaxBridge) {
+        smooth[k].reset();
+        continue;
+      }
+      // Before the first known frame of a piece there is only what came after it.
+      const Aim& after = *smooth[k + 1];
+      smooth[k] = Aim{geometry::Heading::of(after.heading.as_vector() - step_of(rotated, after.heading.log_focal)),
+                      after.covariance + flow_covariance(rotated, after.heading.log_focal, options)};
+      continue;
+    }
+    if (!forwards[k + 1].expected) continue;  // after a loss: nothing leads from here to there
+    const Aim& here = *forwards[k].aim;
+    const Aim& expected = *forwards[k + 1].expected;
+    const Matrix<3> gain = here.covariance * expected.covariance.inverse();
+    const Vector<3> off = smooth[k + 1]->heading.as_vector() - expected.heading.as_vector();
+    smooth[k]->heading = geometry::Heading::of(here.heading.as_vector() + gain * off);
+    smooth[k]->covariance = here.covariance + gain * (smooth[k + 1]->covariance - expected.covariance) * gain.transpose();
+  }
+  return smooth;
+}
+
+}  // namespace marey::calibrate::ptz
