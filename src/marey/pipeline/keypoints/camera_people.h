@@ -21,7 +21,7 @@ struct CameraPeopleOptions {
   double retry_s = 0.5;          ///< and at most this often when a region has ended or there is none, unswept
   double expect_s = 0.2;         ///< between two searches for people that only other cameras see, unswept
   std::size_t max_regions = 12;  ///< of an image; further people wait, unswept
-  int min_looks = 2;             ///< after which a person is reported: the first region is only a box, which makes points worse
+  int min_detector_runs = 2;             ///< after which a person is reported: the first region is only a box, which makes points worse
   double same_centre = 0.2;      ///< distance of the centres of regions of one person, of the larger side, unswept
   double same_points = 0.06;     ///< mean distance between the points of bodies that are the same, of the height
   double max_step = 0.5;         ///< of a region's centre from image to image, of its side, unswept
@@ -45,7 +45,7 @@ class CameraPeople {
   /// What the network saw in each of them.
   void take(std::span<const detect::keypoints::Body> bodies, Timestamp now);
 
-  /// The people of the last image, those that the network saw in `min_looks` images at least; `placed` says which of them other
+  /// The people of the last image, those that the network saw in `min_detector_runs` images at least; `placed` says which of them other
   /// cameras confirm.
   const std::vector<Keypoints<2>>& people() const { return people_; }
   void located(std::size_t index, Timestamp now);

@@ -36,7 +36,7 @@ struct KeypointsLiveOptions {
   FindBodies find_bodies = {};  ///< in place of `model`
   KeypointSet set = keypoint_set_named("blazepose");  ///< of `find_bodies`
   CameraPeopleOptions cameras = {};
-  PlacedPeopleOptions people = {};
+  LocatedPeopleOptions people = {};
   double gate_slack = 1.3;               ///< factor of the noise for the association, as for recordings
   double min_visibility = 0.5;           ///< of a point that is reported as seen by a camera, unswept
   std::size_t min_points_in_image = 12;  ///< of a person that is searched in another camera's image, unswept

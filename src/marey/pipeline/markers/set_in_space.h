@@ -54,7 +54,7 @@ class LiveLabelling {
 
  private:
   struct Counts {
-    std::size_t most_points = 0;         // at an instant
+    std::size_t max_points = 0;         // at an instant
     std::int64_t points = 0, named = 0;  // since labels were found
     std::vector<std::int64_t> observed;  // by label
     std::optional<double> found_at_s;
