@@ -81,7 +81,7 @@ class KeypointsLive final : public corridor::Stage {
         options_(options) {
     for (const RigCamera& camera : rig.cameras) {
       cameras_.push_back(camera.camera());
-      counts_.push_back({.name = camera.name});
+      counts_.emplace_back().name = camera.name;
       in_images_.emplace_back(set_, options.cameras);
       auto& kept = kept_.emplace_back();
       if (!cameras_.back()) continue;
