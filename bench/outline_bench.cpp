@@ -1,5 +1,5 @@
 // 25 outlines a frame, 24 lines and 24 control points each, beside what else could be done to get them in the same run: OpenCV's
-// contours of the same mask, each approximated; and the bound, reading as many bytes as the lines do. What to look at: ms a frame,
+// contours of the same mask, each approximated; and the bound, reading as many bytes as the lines do. Relevant figures: ms a frame,
 // which must stay below 5.
 #include <cmath>
 #include <numeric>

@@ -107,7 +107,7 @@ struct Case {
 const std::vector<Case> kWritten = {
     {"tracab", "m.dat", false, true, true}, {"metrica", "m_home.csv", false, true, true}, {"epts", "m.xml", false, true, true}};
 
-/// Without the referee, whom only some formats hold.
+/// Without the referee, which only some formats contain.
 std::map<Key, Vector<2>> players_of(const GroundMatch& match) {
   auto locations = positions_of(match);
   std::erase_if(locations,
@@ -356,7 +356,7 @@ TEST(GroundExchange, PixelsAreRefusedByEveryFormat) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-/// Of the first person whom the file names, at the first instant.
+/// Of the first person that the file names, at the first instant.
 Vector<2> first_position(const GroundMatch& match) {
   InstantRows rows(match.recording);
   const InstantRows::Row row = rows.at(0).front();

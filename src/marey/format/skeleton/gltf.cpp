@@ -102,7 +102,7 @@ struct StickFigure {
   std::vector<std::uint16_t> joints;
   std::vector<std::uint32_t> indices;
 
-  /// An octahedron, thickest at a fifth of the bone; eight faces with corners of their own, so that they look flat.
+  /// An octahedron, thickest at a fifth of the bone; eight faces with corners of their own, so that they appear flat.
   void add_bone(const Vector<3>& from, const Vector<3>& to, std::size_t joint) {
     const Vector<3> along = to - from;
     const double length = along.norm();

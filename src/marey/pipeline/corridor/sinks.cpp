@@ -61,7 +61,7 @@ class Sinks::Lane {
   /// Only where there is room.
   void offer(const Work& work) { skipped_ += failed_ || queue_.try_push(work) ? 0 : 1; }
 
-  /// Nothing if there is none.
+  /// Nothing if it does not exist.
   std::string trouble() const {
     if (failed_) return message_of_failure();
     return skipped_ > 0 ? fmt::format("{}: too slow for {} instants, which it does not have", name_, skipped_) : "";

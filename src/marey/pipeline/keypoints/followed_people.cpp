@@ -22,7 +22,7 @@ void add_to_tracks(const rk::LocatedPerson& person, std::size_t instant, Tracked
 
 /// The first `most` instants.
 TrackedPeople track_some(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
-                           std::size_t maximum, const Hooks& hooks) {
+                         std::size_t maximum, const Hooks& hooks) {
   TrackedPeople tracked;
   rk::PeopleInViews people(set, static_cast<int>(cameras.size()));
   std::vector<rk::PersonView> views;
@@ -53,7 +53,7 @@ TrackedPeople track_some(const CalibratedCameras& cameras, const KeypointFrames&
 }  // namespace
 
 TrackedPeople track_in_views(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
-                               const Hooks& hooks) {
+                             const Hooks& hooks) {
   return track_some(cameras, frames, set, noise, frames.size(), hooks);
 }
 

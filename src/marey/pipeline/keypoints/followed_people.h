@@ -25,7 +25,7 @@ using CalibratedCameras = std::vector<std::optional<Camera>>;  ///< nothing: it 
 
 /// By several cameras (people_in_views.h); `noise` times the deviations that the keypoints state.
 TrackedPeople track_in_views(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
-                               const Hooks& hooks);
+                             const Hooks& hooks);
 /// By the only camera that there is (one_camera.h).
 TrackedPeople track_on_floor(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set);
 

@@ -286,7 +286,7 @@ Recording KeypointJob::run() {
   ratios_.resize(cameras_.size());
   const double noise = summary_.one_camera ? 1 : keypoint_noise(cameras_, *frames_, set_);
   TrackedPeople tracked = summary_.one_camera ? track_on_floor(cameras_, *frames_, set_)
-                                               : track_in_views(cameras_, *frames_, set_, kGateSlack * noise, hooks_);
+                                              : track_in_views(cameras_, *frames_, set_, kGateSlack * noise, hooks_);
   std::vector<rk::PersonTrack> people = people_kept(std::move(tracked.tracks));
   if (people.empty() && summary_.one_camera)
     throw Error("no person is placed: of {} people in the images none stands on the floor; is z = 0 the floor in the rig?",

@@ -26,7 +26,7 @@ using detect::keypoints::Body;
 using detect::keypoints::Look;
 using detect::keypoints::PersonRegion;
 
-constexpr double kMinLocated = 0.75;   // fraction of people in images below which the reasons are searched: as for recordings
+constexpr double kMinLocated = 0.75;     // fraction of people in images below which the reasons are searched: as for recordings
 constexpr double kWorstLiveNoise = 2.5;  // factor of the stated deviations, numerical: just below where learning begins and ends
 constexpr std::size_t kMaxKept = 120;    // numerical: instants that are kept for that
 

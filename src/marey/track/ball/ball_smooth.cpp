@@ -30,7 +30,7 @@ BallBelief detected(BallBelief belief, const BallStep& step, const BallObservati
   return belief;
 }
 
-/// Backwards from the end of a stretch without a gap.
+/// Backwards from the end of a segment without a gap.
 void smooth_back(std::span<const Pass> passes, std::span<BallState> states) {
   states.back().belief = passes.back().filtered;
   for (std::size_t i = passes.size() - 1; i-- > 0;) {
@@ -46,7 +46,7 @@ void smooth_back(std::span<const Pass> passes, std::span<BallState> states) {
   }
 }
 
-/// A stretch without a gap, from what was known at its first moment. Where a belief was wide, cameras do not see it in proportion
+/// A segment without a gap, from the state at its first instant. Where a belief was wide, cameras do not see it in proportion
 /// to its place: each further pass takes what they see of the places that the pass before came to (an iterated smoother: Bell
 /// 1994, "The iterated Kalman smoother as a Gauss-Newton method").
 void smooth_segment(std::span<const BallObservations> time_steps, std::span<const BallStep> steps, const GroundViews& views,

@@ -32,7 +32,7 @@ TrackRow straight_row(const TrackRow& a, const TrackRow& b, std::int32_t frame, 
   return row;
 }
 
-/// Hermite's cubic from `a` to `b`, which are `span` seconds apart, at a share `u` of the way. Velocities at the ends are
+/// Hermite's cubic from `a` to `b`, which are `span` seconds apart, at a share `u` of the span. Velocities at the ends are
 /// means over the gap where they would throw the curve wide: a target that turned unseen has left with another velocity.
 float on_cubic(float a, float va, float b, float vb, double span, double u) {
   const double rise = b - a;

@@ -37,7 +37,7 @@ struct GroundChainOptions {
   std::optional<GroundTeams> teams = {};
 };
 
-/// What an end of a tracklet, or its beginning, tells of joining it.
+/// What an end of a tracklet, or its beginning, shows about joining it.
 struct GroundEnd {
   Timestamp time{};
   GroundState state;
@@ -68,7 +68,7 @@ class GroundColours {
 
 /// What an end may be off by beyond what its covariance says: standard deviations per axis.
 struct EndpointError {
-  double location = 0.4;  ///< m; who is about to be lost is half hidden already
+  double location = 0.4;  ///< m; a person about to be lost is half hidden already
   double speed = 0.9;     ///< m/s
 };
 

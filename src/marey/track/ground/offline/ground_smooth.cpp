@@ -12,7 +12,7 @@ namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
 constexpr int default_passes = 3;
-constexpr double round_time_step = 0.5;  // s before and after within which pushes tell how strong they are
+constexpr double round_time_step = 0.5;  // s before and after within which the strength of pushes is measured
 constexpr double strongest = 3;          // in units of the pushes' typical power
 constexpr double shared_memory = 0.5;    // s for which errors persist of who is seen in one region with others
 
@@ -153,7 +153,7 @@ double weight_of(const GroundSample& sample, const Vector<2>& location) {
   return (student_degrees + 2) / (student_degrees + distance);
 }
 
-/// Samples with what is made of them: each one's weight is its moment's fit, less for errors that it shares with its neighbours.
+/// Samples with what is made of them: each one's weight is its instant's fit, less for errors that it shares with its neighbours.
 struct SmoothingPass {
   std::span<const GroundSample> samples;
   std::span<const Timestamp> times;
@@ -166,7 +166,7 @@ struct SmoothingPass {
   SmoothingPass(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
       : samples(s), times(t), motion(m), time_steps(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
     if (!(motion.error_memory > 0) || samples.size() < 2) return;
-    // Samples of an autoregressive process of the first order, ρ from one to the next: n of them tell as much of its mean as
+    // Samples of an autoregressive process of the first order, ρ from one to the next: n of them show as much of its mean as
     // n (1 − ρ) / (1 + ρ) that err on their own.
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double before = i > 0 ? seconds_to(i) : seconds_to(1);
@@ -208,7 +208,7 @@ struct SmoothingPass {
   double seconds_to(std::size_t i) const { return seconds(times[samples[i].instant] - times[samples[i - 1].instant]); }
 };
 
-/// The power of the pushes round each moment, from the accelerations found there.
+/// The power of the pushes round each instant, from the accelerations found there.
 void weigh_pushes(SmoothingPass& detected) {
   const std::size_t n = detected.samples.size();
   const double typical = 2 * settled(detected.motion)(1, 1);
@@ -236,7 +236,7 @@ Matrix<6> whole_covariance(const GroundState& state) {
 }
 
 /// The covariance of places, given all samples: that of each state before its observation, less what this one and all later ones
-/// tell of it (the adjoint's information, Bierman 1973).
+/// show of it (the adjoint's information, Bierman 1973).
 void spread_positions(SmoothingPass& detected, const std::vector<GroundState>& before) {
   Steps steps(detected.motion);
   Matrix<6> reported = Matrix<6>::Zero();
