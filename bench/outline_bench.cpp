@@ -59,7 +59,7 @@ const Scene& scene() {
 
 /// With silhouettes, every target is seen by the detector and its outline taken from there; without, lines alone follow it.
 void track_outlines(benchmark::State& state) {
-  const bool detected = state.range(0) != 0;
+  const bool always = state.range(0) != 0;
   track::contour::OutlineOptions options;
   options.control_points = kPoints;
   options.lines = kLines;
@@ -82,7 +82,7 @@ void track_outlines(benchmark::State& state) {
     benchmark::DoNotOptimize(tracker.attach(tracks, detected));
   };
   for (int k = 0; k < 4; ++k) step(true);
-  for (auto _ : state) step(detected || frame % kFrames < 3);
+  for (auto _ : state) step(always || frame % kFrames < 3);
 }
 BENCHMARK(track_outlines)->ArgName("silhouettes")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
