@@ -77,7 +77,7 @@ struct TaskRecord {
   std::string message_text;  ///< why it failed; what the run warned of
 };
 
-/// The jobs that `--do` names.
+/// The jobs that `--job` names.
 const std::vector<std::string>& batch_jobs();
 /// The words of the command that does a job; its input follows.
 std::vector<std::string> words_of_job(const std::string& job);

@@ -236,7 +236,7 @@ class Recording:
     def to_pandas(self) -> pd.DataFrame:
         """A row for each target and instant: frame, time (s), id, label, team, x, y[, z], provenance, and where the recording has them vx, vy[, vz],
         score, left, top, width, height (px), residual. Needs pandas."""
-        pandas = _interop.wanted("pandas", "to_pandas()")
+        pandas = _interop.required("pandas", "to_pandas()")
         axes = ["x", "y", "z"][: self.dimensions]
         columns: dict[str, list[Any]] = {name: [] for name in ("frame", "time", "id", "label", "team", *axes, "provenance")}
         extra: dict[str, list[NDArray[np.float64]]] = {}

@@ -486,7 +486,7 @@ class Skeleton(unittest.TestCase):
                 self.assertIn(word, done.stderr)
 
         states(1, ["figure.bvh", "none of its labels is a marker of the skeleton"], "walk.trc", "--skeleton", "figure.bvh", "-o", "x.mot")
-        states(1, ["no whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
+        states(1, ["not a whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
         states(1, ["stands still"], "walk.c3d", "--static-trial", "walk.c3d", "-o", "x.mot")
         states(2, ["x.png"], "walk.trc", "--skeleton", "model.osim", "-o", "x.png")
         states(1, ["no skeleton that Marey knows"], "walk.trc", "--skeleton", "walk.trc", "-o", "x.mot")
