@@ -18,7 +18,7 @@ struct FoxgloveRequest {
   std::vector<std::uint32_t> unsubscribe;
 };
 
-/// Of a text message. Nothing for what asks for something else. Throws Error for what is not a JSON, and for more than a few
+/// Of a text message. Nothing for what asks for something else. Throws Error for what is not JSON, and for more than a few
 /// hundred subscriptions.
 std::optional<FoxgloveRequest> foxglove_request(std::string_view text);
 

@@ -324,7 +324,7 @@ TEST(GroundExchange, BadFilesAreNamed) {
   EXPECT_NE(stated("far.txt", "1,1,-1,-1,-1,-1,1,1e7,0,0\n").find("far.txt:1"), std::string::npos);
   EXPECT_NE(stated("twice.txt", "1,1,-1,-1,-1,-1,1,5,0,0\n1,1,-1,-1,-1,-1,1,6,0,0\n").find("twice"), std::string::npos);
   EXPECT_NE(stated("list.json", "{\"predictions\": {}}").find("list.json"), std::string::npos);
-  EXPECT_NE(stated("open.json", "{\"predictions\": [").find("no JSON"), std::string::npos);
+  EXPECT_NE(stated("open.json", "{\"predictions\": [").find("not JSON"), std::string::npos);
   EXPECT_THROW(read_match(folder / "missing.dat"), Error);
   EXPECT_THROW(read_match(folder.path()), Error);
 }

@@ -328,7 +328,7 @@ std::vector<Fact> facts_of_glb(std::string_view bytes, const std::string& name) 
   const std::string_view description = bytes.substr(kGlbHead, size);
   check_nesting(description, Notation::json, name);
   const auto json = nlohmann::json::parse(description, nullptr, false);
-  if (!json.is_object()) throw Error("{}: its description is not a JSON", name);
+  if (!json.is_object()) throw Error("{}: its description is not JSON", name);
   const auto count = [&](const char* what) {
     const auto found = json.find(what);
     return found != json.end() && found->is_array() ? std::ssize(*found) : std::ptrdiff_t{0};
