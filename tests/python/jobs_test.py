@@ -96,7 +96,7 @@ class Jobs(SimulatedVideo):
             (lambda: marey.track(self.film, measured_onyl=True), "did you mean measured_only?"),
             (lambda: marey.track(self.film, association="mht"), "association is not an option of this job (track people)"),
             (lambda: marey.track(self.film, lag=1), "lag 1: is an option of live"),
-            (lambda: marey.track(self.film, spline_order=3), "order requires outline"),
+            (lambda: marey.track(self.film, spline_order=3), "spline_order requires contour"),
             (lambda: marey.track(self.film, plot="plot.png"), "name a file that ends in .svg"),
             (lambda: marey.track(self.film, rate=[1, 2]), 'rate: "1x2" is no number'),
             (lambda: marey.track(self.film, plot=object()), "is neither a number nor text nor a path"),
