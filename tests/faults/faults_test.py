@@ -256,7 +256,7 @@ class Faults:
                 continue
             if name.endswith(".marey"):
                 done = subprocess.run([self.marey, "info", name], cwd=self.folder, capture_output=True, timeout=SECONDS)
-                if done.returncode == 0 or b"nothing" in done.stderr or b"no take" not in done.stderr and done.returncode == 1:
+                if done.returncode == 0 or b"nothing" in done.stderr or b"not a take" not in done.stderr and done.returncode == 1:
                     continue
             return f"half of {name} is at its final name ({len(bytes_there)} of {len(whole[name])} bytes)"
         return None
