@@ -152,7 +152,7 @@ def real_changes(runs, names):
 
 def listed(changes, doubts, rate):
     def has(frame, who):
-        return any(abs(int(row["frame"]) - frame) < 5 * rate and (row["a"].endswith(who) or row["b"].endswith(who))
+        return any(abs(int(row["frame"]) - frame) < 5 * rate and (row["track_a"].endswith(who) or row["track_b"].endswith(who))
                    for row in doubts)
     return sum(has(frame, who) for frame, who in changes)
 
@@ -187,15 +187,15 @@ def swapped_rows(rows, runs, rate):
     yes = set()
     for frame, two in swaps(runs, rate):
         near = [(abs(int(row["frame"]) - frame), i) for i, row in enumerate(rows)
-                if row["kind"] == "exchange" and {track_in(row["a"]), track_in(row["b"])} == two]
+                if row["kind"] == "swap" and {track_in(row["track_a"]), track_in(row["track_b"])} == two]
         if near and min(near)[0] < 6 * rate:
             yes.add(min(near)[1])
     return yes
 
 
 def answer(row, runs):
-    frame, a = int(row["frame"]), track_in(row["a"])
-    if row["kind"] == "same":
+    frame, a = int(row["frame"]), track_in(row["track_a"])
+    if row["kind"] == "continuity":
         before, after = person_before(runs, a, frame), person_after(runs, a, frame)
         if after is None or before is None:
             return ""
@@ -209,7 +209,7 @@ def answer_all(path, runs, rate):
         rows = list(csv.DictReader(file))
     yes = swapped_rows(rows, runs, rate)
     for i, row in enumerate(rows):
-        row["answer"] = ("yes" if i in yes else "no") if row["kind"] == "exchange" else answer(row, runs)
+        row["answer"] = ("yes" if i in yes else "no") if row["kind"] == "swap" else answer(row, runs)
     write_rows(path, rows)
     return rows
 
@@ -268,7 +268,7 @@ def one_match(marey, stand, seed, seconds, work):
     rows = answer_all(doubts, runs, rate)
     apply_all(marey, take, folder / "squads.csv", doubts, rows)
     answered = assess(marey, folder, truth, rate)[1]
-    yes = sum(row["answer"] == "yes" and row["kind"] == "exchange" for row in rows)
+    yes = sum(row["answer"] == "yes" and row["kind"] == "swap" for row in rows)
     return before, named, once, len(changes), listed(changes, rows, rate), len(rows), yes, answered
 
 

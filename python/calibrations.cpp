@@ -33,7 +33,7 @@ nb::tuple calibrate_wand(nb::dict given) {
   for (const calibrate::CameraReport& camera : report.cameras) cameras[camera.name.c_str()] = dict_of(camera.fit);
   dict["cameras"] = cameras;
   dict["grade"] = report.grade;
-  dict["meaning"] = report.meaning;
+  dict["grade_text"] = report.meaning;
   dict["notes"] = found.found.notes;
   dict["warnings"] = found.warnings;
   return nb::make_tuple(found.found.rig, dict);

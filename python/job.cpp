@@ -29,13 +29,13 @@ nb::dict dict_of(const pipeline::corridor::Summary& summary) {
   dict["predicted"] = summary.predicted;
   dict["detections"] = summary.detections;
   nb::dict excluded, figures;
-  for (const auto& [name, count] : summary.excluded) excluded[name.c_str()] = count;
-  for (const auto& [name, value] : summary.figures) figures[name.c_str()] = value;
-  dict["left_out"] = excluded;
+  for (const pipeline::corridor::Exclusion& one : exclusions(summary)) excluded[std::string(one.key).c_str()] = one.count;
+  for (const auto& [name, value] : pipeline::corridor::figures(summary)) figures[std::string(name).c_str()] = value;
+  dict["excluded"] = excluded;
   dict["figures"] = figures;
   dict["notes"] = summary.notes;
   dict["warnings"] = summary.warnings;
-  dict["stopped"] = summary.stopped;
+  dict["interrupted"] = summary.stopped;
   return dict;
 }
 

@@ -116,8 +116,7 @@ pipeline::corridor::Summary summary_of(const pipeline::keypoints::KeypointsSumma
   summary.tracks = found.points * std::ssize(found.people);
   summary.measured = found.measured;
   summary.filled = found.filled;
-  summary.figures = {
-      {"people", static_cast<double>(found.people.size())}, {"residual_px", found.residual_px}, {"noise", found.noise}};
+  summary.body_points = {.people = std::ssize(found.people), .residual_px = found.residual_px, .noise = found.noise};
   summary.warnings = found.warnings;
   summary.stopped = found.stopped;
   return summary;

@@ -70,7 +70,7 @@ Totals totals_of(const Season& season, const SeasonTable& table) {
     total.distance_m += table.number(row, "distance_m");
     total.seconds += table.number(row, "seconds");
     total.sprints += table.number(row, "sprints");
-    total.top_mps = std::max(total.top_mps, table.number(row, "top_mps"));
+    total.top_mps = std::max(total.top_mps, table.number(row, "max_mps"));
   }
   return totals;
 }
@@ -133,7 +133,7 @@ std::vector<ShownColumn> shown_columns(const Season& season) {
                                  {"team", "team", ""},
                                  {"distance_m", "distance, m", ""},
                                  {"mean_mps", "mean", speed},
-                                 {"top_mps", "top", speed},
+                                 {"max_mps", "top", speed},
                                  {"sprints", "sprints", efforts},
                                  {"accelerations", "acceler\u00ADations", efforts},
                                  {"decelerations", "deceler\u00ADations", efforts},
@@ -152,7 +152,7 @@ std::string rounded_figure(const std::string& field, const std::string& column) 
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc{} || end != field.data() + field.size()) return field;
   if (column == "mean_mps") return fmt::format("{:.2f}", value);
-  if (column == "top_mps") return fmt::format("{:.1f}", value);
+  if (column == "max_mps") return fmt::format("{:.1f}", value);
   return fmt::format("{:.0f}", value);
 }
 
@@ -194,7 +194,7 @@ void add_measured(draw::Page& page, const Season& season, const SeasonTable& tab
     return before + table.number(row, "distance_m") / 1000;
   };
   const auto top = [&](double before, const std::vector<std::string>& row) {
-    return std::max(before, table.number(row, "top_mps"));
+    return std::max(before, table.number(row, "max_mps"));
   };
   std::vector<draw::LineChart> charts;
   add_chart("Distance from recording to recording", "km", by_recording(season, table, identity, sum), table.recordings().size(),

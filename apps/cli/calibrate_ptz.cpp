@@ -56,7 +56,7 @@ Json as_json(const pipeline::calibrate::PtzRun& run) {
   return {{"frames", run.result.camera.rotations.size()},
           {"lost", run.result.lost},
           {"cuts", run.result.cuts},
-          {"found_again", run.result.found_again},
+          {"reacquired", run.result.found_again},
           {"paint_median_px", run.result.median_px},
           {"tripod", {tripod.location.x(), tripod.location.y(), tripod.location.z()}},
           {"seconds", run.seconds},

@@ -75,9 +75,9 @@ Json as_json(const calibrate::wand::WandResult& result) {
                           {"focal", camera.deviation.focal}};
   }
   json["volume"] = {{"median_mm", report.volume.median_mm},
-                    {"worst_tenth_mm", report.volume.worst_tenth_mm},
-                    {"seen_by_two", report.volume.observed_by_two},
-                    {"seen_by_three", report.volume.observed_by_three}};
+                    {"p90_mm", report.volume.worst_tenth_mm},
+                    {"two_view", report.volume.observed_by_two},
+                    {"three_view", report.volume.observed_by_three}};
   if (report.held_out) {
     json["held_out"] = as_json(report.held_out->fit);
     json["held_out"]["frames"] = report.held_out->frames;
@@ -86,7 +86,7 @@ Json as_json(const calibrate::wand::WandResult& result) {
     json["held_out"]["length_rms_mm"] = report.held_out->length_rms_mm;
   }
   json["grade"] = report.grade;
-  json["meaning"] = report.meaning;
+  json["grade_text"] = report.meaning;
   json["notes"] = result.notes;
   return json;
 }

@@ -39,7 +39,7 @@ Json as_json(const FoundCamera& camera) {
         {{"format", mode.format}, {"width", mode.size.width}, {"height", mode.size.height}, {"rates_hz", mode.rates_hz}});
   json["controls"] = Json::object();
   for (const FoundCamera::Control& control : camera.controls)
-    json["controls"][control.name] = {{"least", control.minimum}, {"most", control.maximum}, {"now", control.now}};
+    json["controls"][control.name] = {{"min", control.minimum}, {"max", control.maximum}, {"now", control.now}};
   return json;
 }
 

@@ -52,14 +52,14 @@ void print_blob_summary(const DetectCommand& command, const pipeline::markers::B
 
 void print_blob_json(const DetectCommand& command, const pipeline::markers::BlobSummary& summary, double elapsed) {
   Json json = {{"frames", summary.frames},       {"markers", summary.blobs},
-               {"most", summary.maximum},        {"seconds", summary.seconds},
+               {"max", summary.maximum},         {"seconds", summary.seconds},
                {"detect_s", summary.detect_s},   {"elapsed", elapsed},
                {"threshold", summary.threshold}, {"noise", summary.noise},
-               {"split", summary.counts.split},  {"masked_share", summary.counts.masked_fraction},
-               {"stopped", summary.stopped},     {"warnings", summary.warnings},
+               {"split", summary.counts.split},  {"masked_fraction", summary.counts.masked_fraction},
+               {"interrupted", summary.stopped}, {"warnings", summary.warnings},
                {"blobs", command.output.blobs},  {"overlay", path_or_null(command.output.overlay)}};
   const detect::markers::MarkerCounts& counts = summary.counts;
-  json["left_out"] = {{"too_small", counts.too_small},
+  json["excluded"] = {{"too_small", counts.too_small},
                       {"too_large", counts.too_large},
                       {"not_round", counts.not_round},
                       {"unlike", counts.unlike},

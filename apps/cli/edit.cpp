@@ -38,7 +38,7 @@ void list(const EditCommand& command) {
   Json entries = Json::array();
   for (const EditLine& line : pipeline::take::lines_of(history)) {
     Json entry = edit_json(line);
-    entry["counts"] = line.counts;
+    entry["active"] = line.counts;
     entries.push_back(std::move(entry));
     if (!command.json) fmt::print("{} {:4}  {}\n", line.counts ? "*" : " ", line.id, line.words);
   }
@@ -54,7 +54,7 @@ void list(const EditCommand& command) {
 void report_head(const EditCommand& command) {
   const std::size_t count = pipeline::take::edit_history(command.take).counting.size();
   if (command.json) {
-    print({{"take", command.take}, {"counting", static_cast<std::int64_t>(count)}});
+    print({{"take", command.take}, {"active", static_cast<std::int64_t>(count)}});
   } else if (!command.quiet) {
     fmt::print(stderr, "{}: {}\n", command.take,
                count == 0   ? "as it was recorded"

@@ -45,9 +45,13 @@ Json people_json(const pipeline::take::MatchEvaluation& judgement) {
   for (const pipeline::take::PathLengths& method : judgement.methods) methods[method.id] = method;
   Json people = Json::array();
   for (const evaluate::TargetFate& person : judgement.evaluation.people) {
-    Json entry{{"id", person.id},       {"track", nullptr},       {"frames", person.frames},
-               {"found", person.found}, {"own", person.agreeing}, {"switches", person.switches},
-               {"kept", person.kept()}};
+    Json entry{{"id", person.id},
+               {"track", nullptr},
+               {"frames", person.frames},
+               {"found", person.found},
+               {"own", person.agreeing},
+               {"switches", person.switches},
+               {"tracked_fraction", person.kept()}};
     if (person.track) entry["track"] = *person.track;
     if (const auto method = methods.find(person.id); method != methods.end()) {
       entry["true_distance_m"] = method->second.true_m;
@@ -67,7 +71,7 @@ Json as_json(const pipeline::take::MatchEvaluation& judgement, double distance, 
   json["track_places"] = scores.track_boxes;
   json["found"] = or_null(scores.clear.recall);
   json["false"] = or_null(fraction_false(scores.clear));
-  json["kept"] = or_null(fraction_kept(judgement.evaluation.people));
+  json["tracked_fraction"] = or_null(fraction_kept(judgement.evaluation.people));
   json["distance_error"] = or_null(judgement.distance_error);
   json["people"] = people_json(judgement);
   json["warnings"] = warnings;

@@ -22,28 +22,30 @@ std::int64_t camera_frames(const pipeline::people::GroundSummary& summary) {
 void print_json(const pipeline::people::GroundSummary& summary, const pipeline::people::GroundOutput& output, double elapsed) {
   Json cameras = Json::array();
   for (const pipeline::corridor::Summary::Camera& camera : summary.cameras) {
-    cameras.push_back({{"name", camera.name},
-                       {"frames", camera.frames},
-                       {"missed", camera.missed},
-                       {"detections", camera.detections},
-                       {"dropped", {{"outside", camera.outside}, {"noise", camera.noise}, {"misfits", camera.misfits}}}});
+    cameras.push_back(
+        {{"name", camera.name},
+         {"frames", camera.frames},
+         {"missed", camera.missed},
+         {"detections", camera.detections},
+         {"dropped", {{"outside", camera.outside}, {"noise", camera.noise}, {"unexplained_regions", camera.misfits}}}});
   }
   Json teams = Json::array();
   for (const analyse::Teams::Team& team : summary.teams) teams.push_back({{"name", team.name}, {"people", team.people}});
+  const pipeline::corridor::GroundFigures ground = summary.ground.value_or(pipeline::corridor::GroundFigures{});
   const Json json = {{"frames", summary.frames},
                      {"seconds", summary.seconds},
                      {"people", summary.tracks},
                      {"rows", summary.samples},
                      {"predicted", summary.samples - summary.measured},
-                     {"off_pitch", excluded_of(summary, "off_pitch")},
+                     {"off_pitch", summary.dropped.off_pitch.value_or(0)},
                      {"cameras", cameras},
                      {"teams", teams},
                      {"elapsed", elapsed},
                      {"tracking_s", summary.first_pass_s},
-                     {"joining_s", figure_of(summary, "joining_s")},
-                     {"joins", static_cast<std::int64_t>(figure_of(summary, "joins"))},
-                     {"doubtful_joins", static_cast<std::int64_t>(figure_of(summary, "doubtful_joins"))},
-                     {"stopped", summary.stopped},
+                     {"linking_s", ground.linking_s},
+                     {"links", ground.links},
+                     {"uncertain_links", ground.uncertain_links},
+                     {"interrupted", summary.stopped},
                      {"notes", summary.notes},
                      {"warnings", summary.warnings},
                      {"tracks", output.tracks},
@@ -63,7 +65,8 @@ void print_summary(const pipeline::people::GroundSummary& summary, const pipelin
   if (predicted > 0)
     fmt::print(stderr, "{:.1f} % of their places were not seen but distinguished from before and after\n",
                percent_of(predicted, summary.samples));
-  if (const auto off = excluded_of(summary, "off_pitch")) fmt::print(stderr, "omitted: {} who were never on the pitch\n", off);
+  if (const std::int64_t off = summary.dropped.off_pitch.value_or(0); off > 0)
+    fmt::print(stderr, "omitted: {} who were never on the pitch\n", off);
   for (const pipeline::corridor::Summary::Camera& camera : summary.cameras) {
     fmt::print(stderr, "{}: {} frames, {:.1f} people in each", camera.name, camera.frames,
                static_cast<double>(camera.detections) / static_cast<double>(std::max<std::int64_t>(1, camera.frames)));

@@ -38,14 +38,14 @@ Json json_of(const pipeline::identify::ReviewItem& review_item) {
 void report_json(const IdentifyCommand& command, const pipeline::identify::IdentifySummary& summary) {
   Json people = Json::array(), review_items = Json::array();
   for (const pipeline::identify::IdentifySummary::Person& person : summary.people)
-    people.push_back({{"label", person.label}, {"team", person.team}, {"track", person.track}, {"known_s", person.known_s}});
+    people.push_back({{"label", person.label}, {"team", person.team}, {"track", person.track}, {"identified_s", person.known_s}});
   for (const pipeline::identify::ReviewItem& review_item : summary.review_items) review_items.push_back(json_of(review_item));
   print({{"take", command.take},
          {"seconds", summary.recorded_s},
          {"people", people},
-         {"unnamed_s", summary.unnamed_s},
-         {"left_out", summary.excluded},
-         {"doubts", review_items},
+         {"unidentified_s", summary.unnamed_s},
+         {"excluded", summary.excluded},
+         {"review", review_items},
          {"edits", summary.edits}});
 }
 

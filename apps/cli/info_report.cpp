@@ -241,7 +241,7 @@ Json info_json(const format::Format& format, const format::FileInfo& info, const
     Json entry{{"id", edit.id}, {"operation", edit.operation}, {"payload", edit.payload}};
     const auto line =
         std::find_if(edits.begin(), edits.end(), [&](const pipeline::take::EditLine& each) { return each.id == edit.id; });
-    if (line != edits.end()) entry["words"] = line->words, entry["counts"] = line->counts;
+    if (line != edits.end()) entry["description"] = line->words, entry["active"] = line->counts;
     reported.push_back(std::move(entry));
   }
   if (!reported.empty()) result["edits"] = std::move(reported);

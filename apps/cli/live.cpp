@@ -33,8 +33,8 @@
 namespace marey::cli {
 namespace {
 
-enum class Kept { solved, raw };
-constexpr std::array<std::pair<const char*, Kept>, 2> kKept{{{"solved", Kept::solved}, {"raw", Kept::raw}}};
+enum class Kept { results, video };
+constexpr std::array<std::pair<const char*, Kept>, 2> kKept{{{"results", Kept::results}, {"video", Kept::video}}};
 
 using pipeline::live::LiveJob;
 using pipeline::live::LiveTargets;
@@ -48,14 +48,11 @@ std::string name_of(LiveTargets targets) {
   return {};
 }
 
-/// Of keypoints in space: what the stage counted.
-constexpr std::array kKeypointFigures{"people", "people_in_images", "people_placed", "regions", "person_searches", "noise"};
-
 struct LiveCommand {
   std::vector<std::string> sources;
   pipeline::jobs::Live job;
   std::string out;
-  Kept record = Kept::solved;
+  Kept record = Kept::results;
   bool armed = false, realtime = false;
   std::optional<double> for_s;
   LiveOutputOptions outputs;
@@ -72,7 +69,7 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
                {"samples", summary.samples},
                {"take", summary.recorded ? Json(command.out) : Json()},
                {"warnings", summary.warnings}};
-  json["dropped"] = {{"overtaken", drops.superseded},
+  json["dropped"] = {{"superseded", drops.superseded},
                      {"incomplete", drops.incomplete},
                      {"empty", drops.empty},
                      {"late_frames", drops.late_frames},
@@ -84,8 +81,13 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
     reported["connections"] = camera.connections;
     if (i < summary.cameras.size()) reported["missed"] = summary.cameras[i].missed;
   }
-  if (summary.job == LiveJob::keypoints_in_space) {
-    for (const char* figure : kKeypointFigures) json[figure] = figure_of(summary, figure);
+  if (const auto& keypoints = summary.body_points) {
+    json.update({{"people", keypoints->people},
+                 {"people_in_images", keypoints->people_in_images},
+                 {"people_placed", keypoints->people_placed},
+                 {"regions", keypoints->regions},
+                 {"person_searches", keypoints->person_searches},
+                 {"noise", keypoints->noise}});
   }
   add_set_figures(summary, json);
   add_skeleton_figures(summary, json);
@@ -103,12 +105,10 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
   const pipeline::corridor::LiveDrops& drops = summary.last.drops;
   fmt::print(stderr, "drop: {} instants overtaken, {} incomplete, {} empty; {} frames late\n", drops.superseded, drops.incomplete,
              drops.empty, drops.late_frames);
-  if (summary.job == LiveJob::keypoints_in_space)
-    fmt::print(stderr,
-               "keypoints: {:.0f} people; {:.0f} of {:.0f} in images are placed; {:.0f} regions were searched for points, {:.0f} "
-               "images for people\n",
-               figure_of(summary, "people"), figure_of(summary, "people_placed"), figure_of(summary, "people_in_images"),
-               figure_of(summary, "regions"), figure_of(summary, "person_searches"));
+  if (const auto& keypoints = summary.body_points)
+    fmt::print(
+        stderr, "keypoints: {} people; {} of {} in images are placed; {} regions were searched for points, {} images for people\n",
+        keypoints->people, keypoints->people_placed, keypoints->people_in_images, keypoints->regions, keypoints->person_searches);
   print_set_figures(summary);
   print_skeleton_figures(summary);
   print_stages(summary);
@@ -117,7 +117,7 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
 
 /// The folder of the images beside a take.
 std::string images_of(const std::string& take) {
-  return take.substr(0, take.rfind(".marey")) + "_pictures";
+  return take.substr(0, take.rfind(".marey")) + "_video";
 }
 
 std::vector<std::string> played_files(const LiveCommand& command) {
@@ -127,7 +127,7 @@ std::vector<std::string> played_files(const LiveCommand& command) {
 }
 
 std::vector<std::string> files_next_to_take(const LiveCommand& command) {
-  if (command.record != Kept::raw) return {};
+  if (command.record != Kept::video) return {};
   return pipeline::live::CameraVideos::files_of(images_of(command.out), rig_of_live_sources(command.sources));
 }
 
@@ -136,7 +136,7 @@ pipeline::live::LiveOptions options_of(const LiveCommand& command, const Rig& ri
   pipeline::live::LiveOptions options = resolved(command.job, rig, warnings);
   warn(warnings);
   options.take = command.out;
-  if (command.record == Kept::raw) options.images = images_of(command.out);
+  if (command.record == Kept::video) options.images = images_of(command.out);
   options.recording = std::make_shared<pipeline::corridor::RecordSwitch>(!command.armed);
   options.policy.time = source::steady_time();
   return options;
@@ -222,7 +222,7 @@ void add_live(Command& program) {
   command.also_reads([options] { return played_files(*options); });
   command.also_writes([options] { return files_next_to_take(*options); });
   command.choice("--record", options->record, kKept,
-                 "what is kept: the take alone, or the images too, a video of each camera and rig.toml in NAME_pictures");
+                 "what is kept: the take alone, or the images too, a video of each camera and rig.toml in NAME_video");
   command.flag("--armed", options->armed, "record only from when r is pressed on, with the seconds before it");
   command.number("--duration", options->for_s, "s", closed(0.1, 1e7), "end after this long (default: on Ctrl-C, or q)");
   command.flag("--realtime-priority", options->realtime, "go before other programs, where the system allows it");
@@ -242,7 +242,7 @@ void add_live(Command& program) {
     options->outputs.streams.unlabelled_slots =
         std::min(stream::kMaxUnlabelledSlots, static_cast<std::size_t>(options->job.markers.max_markers));
     if (options->armed && options->out.empty()) throw WrongUsage("{}", "--armed: name the take with -o");
-    if (options->record == Kept::raw && options->out.empty()) throw WrongUsage("{}", "--record raw: name the take with -o");
+    if (options->record == Kept::video && options->out.empty()) throw WrongUsage("{}", "--record video: name the take with -o");
     run(*options);
   });
 }

@@ -53,7 +53,7 @@ Json ball_json(const analyse::BallMeasure& ball) {
                       {"completed", pass.completed}});
   for (const analyse::BallSpell& spell : ball.spells)
     spells.push_back({{"id", spell.person}, {"team", spell.team}, {"begin_s", spell.begin_s}, {"end_s", spell.end_s}});
-  return {{"seconds", ball.seconds}, {"dead_s", ball.dead_s}, {"distance_m", ball.distance_m}, {"top_mps", ball.top_mps},
+  return {{"seconds", ball.seconds}, {"dead_s", ball.dead_s}, {"distance_m", ball.distance_m}, {"max_mps", ball.top_mps},
           {"teams", teams},          {"passes", passes},      {"possession", spells}};
 }
 
@@ -77,7 +77,7 @@ void report_json(const analyse::Measurement& measured) {
                       {"seconds", person.seconds},
                       {"distance_m", person.distance_m},
                       {"mean_mps", person.mean_mps},
-                      {"top_mps", json_or_null(person.top_mps)},
+                      {"max_mps", json_or_null(person.top_mps)},
                       {"top_sigma_mps", json_or_null(person.top_sigma_mps)},
                       {"seen_s", person.observed_s},
                       {"impossible", impossible_json(person.impossible)},

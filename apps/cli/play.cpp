@@ -41,11 +41,11 @@ void report(const PlayCommand& command, const pipeline::take::PlaySummary& done,
   if (command.json) {
     print({{"recording", command.recording},
            {"instants", done.instants},
-           {"left_out", done.excluded},
+           {"excluded", done.excluded},
            {"skipped", done.skipped},
-           {"rounds", done.rounds},
+           {"loops", done.rounds},
            {"seconds", done.seconds},
-           {"stopped", done.stopped},
+           {"interrupted", done.stopped},
            {"streams", json_of(streams)}});
   } else if (!command.quiet) {
     fmt::print(stderr, "{}: {} instants in {:.1f} s", command.recording, done.instants, done.seconds);

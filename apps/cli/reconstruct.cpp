@@ -35,21 +35,21 @@ struct ReconstructCommand {
 };
 
 Json as_json(const pipeline::corridor::Summary& summary, const std::string& out) {
+  const pipeline::corridor::SpacePointFigures points = summary.points.value_or(pipeline::corridor::SpacePointFigures{});
   Json json = {{"frames", summary.frames},
                {"seconds", summary.seconds},
                {"rate_hz", summary.rate_hz},
                {"markers", summary.tracks},
                {"labelled", summary.labelled},
-               {"observations", static_cast<std::int64_t>(figure_of(summary, "observations"))},
-               {"unexplained", static_cast<std::int64_t>(figure_of(summary, "unexplained"))},
+               {"observations", points.observations},
+               {"unexplained", points.unexplained},
                {"points", {{"measured", summary.measured}, {"filled", summary.filled}, {"predicted", summary.predicted}}},
-               {"noise_px", figure_of(summary, "noise_px")},
-               {"stopped", summary.stopped},
+               {"noise_px", points.noise_px},
+               {"interrupted", summary.stopped},
                {"warnings", summary.warnings},
                {"take", out}};
-  json["residual_px"] = summary.figures.contains("residual_px") ? Json(figure_of(summary, "residual_px")) : Json();
-  json["left_out"] = Json::object();
-  for (const auto& [reason, count] : summary.excluded) json["left_out"][reason] = count;
+  json["residual_px"] = points.residual_px ? Json(*points.residual_px) : Json();
+  json["excluded"] = exclusions_of(summary);
   for (const auto& camera : summary.cameras) json["cameras"][camera.name] = {{"frames", camera.frames}, {"missed", camera.missed}};
   add_set_figures(summary, json);
   add_skeleton_figures(summary, json);
@@ -58,16 +58,16 @@ Json as_json(const pipeline::corridor::Summary& summary, const std::string& out)
 }
 
 void print_points_summary(const pipeline::corridor::Summary& summary, const std::string& out) {
+  const pipeline::corridor::SpacePointFigures points = summary.points.value_or(pipeline::corridor::SpacePointFigures{});
   fmt::print(stderr, "{} {} ({} with labels) in {} frames ({:.1f} s at {:g} Hz)\n", summary.tracks,
              summary.tracks == 1 ? "marker" : "markers", summary.labelled, summary.frames, summary.seconds, summary.rate_hz);
   fmt::print(stderr, "points: {} measured, {} filled, {} predicted; {} of {} blobs belong to no marker\n", summary.measured,
-             summary.filled, summary.predicted, figure_of(summary, "unexplained"), figure_of(summary, "observations"));
-  for (const auto& [reason, count] : summary.excluded) {
-    if (count > 0) fmt::print(stderr, "not placed, {} times: {}\n", count, reason);
+             summary.filled, summary.predicted, points.unexplained, points.observations);
+  for (const pipeline::corridor::Exclusion& one : exclusions(summary)) {
+    if (one.count > 0) fmt::print(stderr, "not placed, {} times: {}\n", one.count, one.description);
   }
   if (summary.measured > 0)
-    fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", figure_of(summary, "residual_px"),
-               figure_of(summary, "noise_px"));
+    fmt::print(stderr, "reprojection: {:.3f} px rms; noise of a blob {:.3f} px\n", points.residual_px.value_or(0), points.noise_px);
   print_set_figures(summary);
   print_skeleton_figures(summary);
   print_stages(summary);

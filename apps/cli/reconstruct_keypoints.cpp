@@ -33,7 +33,7 @@ Json keypoints_json(const pipeline::keypoints::KeypointsSummary& summary, const 
           {"noise", summary.noise},
           {"place_ms", summary.position_ms},
           {"one_camera", summary.one_camera},
-          {"stopped", summary.stopped},
+          {"interrupted", summary.stopped},
           {"warnings", summary.warnings},
           {"take", out}};
 }

@@ -89,23 +89,23 @@ void add_videos(Command& match, SimulateMatch& options) {
   match.flag("--no-shadows", files.video.shadows, "videos: no person casts a shadow", false);
   match.flag("--broadcast-look", options.recorded,
              "videos as a broadcast chain shows them: blur, halo, colour that runs, blocks of a codec");
-  match.number("--contact-shadow", files.video.contact, "share", closed(0, 1),
+  match.number("--contact-shadow", files.video.contact, "fraction", closed(0, 1),
                "videos: of the light, that shoes keep from the ground");
   match.number("--noise", files.video.noise, "grey levels", closed(0, 50), "videos: standard deviation of the pixels");
-  match.number("--light-variation", files.video.light_change, "share", closed(0, 0.9), "videos: by which the light swings");
+  match.number("--light-variation", files.video.light_change, "fraction", closed(0, 0.9), "videos: by which the light swings");
   match.number("--shake", files.video.shake_px, "px", closed(0, 50),
                "videos: cameras shake in wind and by steps: how far their images move, root mean square");
   match.whole("--wrong-clicks", files.wrong_clicks, "N", 0, 100, "videos: how many of each camera's clicks are wrong");
 }
 
 void add_detector(Command& match, simulate::match::MatchDetectorOptions& detector) {
-  match.number("--miss-rate", detector.missed, "share", closed(0, 1), "of people in plain view that a camera's detector misses");
-  match.number("--size-noise", detector.size_noise, "share", closed(0, 1),
+  match.number("--miss-rate", detector.missed, "fraction", closed(0, 1), "of people in plain view that a camera's detector misses");
+  match.number("--size-noise", detector.size_noise, "fraction", closed(0, 1),
                "standard deviation of a box's width and height, of them");
   match.number(
       "--foot-error", detector.foot_error, "m", closed(0, 5),
       "standard deviation on the ground, by which boxes end beside the feet for half a second or so, each camera its own way");
-  match.number("--foot-along", detector.foot_along, "share", closed(0, 1), "of that error's variance, along the view");
+  match.number("--foot-along", detector.foot_along, "fraction", closed(0, 1), "of that error's variance, along the view");
   match.number("--false-alarms", detector.false_alarms, "a frame", closed(0, 100), "boxes of no person");
 }
 

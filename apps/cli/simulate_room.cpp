@@ -117,10 +117,10 @@ void add_scene(Command& room, SimulateRoom& options) {
 void add_troubles(Command& room, SimulateRoom& options) {
   simulate::room::RoomOptions& scene = options.room;
   room.number("--noise", scene.noise_px, "px", closed(0, 100), "standard deviation of a blob's place");
-  room.number("--miss-rate", scene.dropped, "share", closed(0, 0.99), "of blobs that a camera misses");
-  room.number("--ghosts", scene.ghosts, "share", closed(0, 0.99), "false blobs, of the true ones");
+  room.number("--miss-rate", scene.dropped, "fraction", closed(0, 0.99), "of blobs that a camera misses");
+  room.number("--ghosts", scene.ghosts, "fraction", closed(0, 0.99), "false blobs, of the true ones");
   room.number("--merge", scene.merge_px, "px", closed(0, 1000), "blobs nearer than this are seen as one");
-  room.number("--gaps", scene.gap_fraction, "share", closed(0, 0.25), "of the time that a marker is covered for all cameras");
+  room.number("--gaps", scene.gap_fraction, "fraction", closed(0, 0.25), "of the time that a marker is covered for all cameras");
   room.number("--gap-length", scene.gap_s, "s", closed(0.01, 60), "the longest such time");
   room.number("--offset", scene.offset_s, "s", closed(0, 60), "cameras were started up to this much before or after the first");
   room.text("--bump", options.bump,
@@ -130,7 +130,7 @@ void add_troubles(Command& room, SimulateRoom& options) {
   room.flag("--unnamed", options.files.unnamed, "the points without names too, as tracks that end at gaps, with ghosts among them");
   room.flag("--keypoints", options.files.keypoints,
             "people's body keypoints with a network's errors: keypoints_CAMERA.json (COCO) and keypoints_truth.csv");
-  room.number("--swapped", options.files.keypoint_errors.swapped, "share", closed(0, 0.99),
+  room.number("--swapped", options.files.keypoint_errors.swapped, "fraction", closed(0, 0.99),
               "of time during which arms, or legs, are exchanged in a camera's keypoints");
   room.flag("--render", options.files.videos, "render a video of each camera too");
 }

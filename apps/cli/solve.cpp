@@ -133,7 +133,7 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
           {"markers_a_frame", summary.markers_a_frame},
           {"rms_mm", 1000 * summary.rms_m},
           {"worst_mm", 1000 * summary.worst_m},
-          {"starts", summary.starts},
+          {"initialisations", summary.starts},
           {"overall_scale", summary.overall_scale},
           {"sizes_not_determined", summary.undetermined},
           {"markers", markers},

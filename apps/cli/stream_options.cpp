@@ -44,7 +44,7 @@ Json json_of(const stream::Streams& streams) {
                    {"sent", report.sent},
                    {"dropped", report.dropped},
                    {"refused", report.refused},
-                   {"sent_off", report.disconnected_clients},
+                   {"disconnected", report.disconnected_clients},
                    {"notes", report.notes}});
     if (report.sending.count() > 0) {
       reported["p50_ms"] = 1e3 * report.sending.quantile(0.5);

@@ -6,14 +6,10 @@
 
 namespace marey::cli {
 
-double figure_of(const pipeline::corridor::Summary& summary, std::string_view name) {
-  const auto found = summary.figures.find(name);
-  return found != summary.figures.end() ? found->second : 0;
-}
-
-std::int64_t excluded_of(const pipeline::corridor::Summary& summary, std::string_view reason) {
-  const auto found = summary.excluded.find(reason);
-  return found != summary.excluded.end() ? found->second : 0;
+Json exclusions_of(const pipeline::corridor::Summary& summary) {
+  Json json = Json::object();
+  for (const pipeline::corridor::Exclusion& one : exclusions(summary)) json[std::string(one.key)] = one.count;
+  return json;
 }
 
 double percent_of(std::int64_t part, std::int64_t whole) {
@@ -21,15 +17,14 @@ double percent_of(std::int64_t part, std::int64_t whole) {
 }
 
 void add_skeleton_figures(const pipeline::corridor::Summary& summary, Json& json) {
-  if (!summary.figures.contains("skeleton_rms_mm")) return;
-  json["skeleton"] = {{"rms_mm", figure_of(summary, "skeleton_rms_mm")},
-                      {"starts", static_cast<std::int64_t>(figure_of(summary, "skeleton_starts"))}};
+  if (!summary.skeleton || !summary.skeleton->rms_mm) return;
+  json["skeleton"] = {{"rms_mm", *summary.skeleton->rms_mm}, {"initialisations", summary.skeleton->initialisations}};
 }
 
 void print_skeleton_figures(const pipeline::corridor::Summary& summary) {
-  if (!summary.figures.contains("skeleton_rms_mm")) return;
-  const auto lost = static_cast<std::int64_t>(figure_of(summary, "skeleton_starts")) - 1;
-  fmt::print(stderr, "skeleton: markers lie {:.1f} mm RMS from where it has them{}\n", figure_of(summary, "skeleton_rms_mm"),
+  if (!summary.skeleton || !summary.skeleton->rms_mm) return;
+  const std::int64_t lost = summary.skeleton->initialisations - 1;
+  fmt::print(stderr, "skeleton: markers lie {:.1f} mm RMS from where it has them{}\n", *summary.skeleton->rms_mm,
              lost > 0 ? fmt::format("; lost and found again {} times", lost) : "");
 }
 

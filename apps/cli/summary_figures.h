@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "marey/pipeline/corridor/run.h"
 
@@ -10,10 +9,8 @@
 // Figures that the summaries of several commands share.
 namespace marey::cli {
 
-/// 0 where the run did not find it out.
-double figure_of(const pipeline::corridor::Summary& summary, std::string_view name);
-/// How many were omitted for this reason.
-std::int64_t excluded_of(const pipeline::corridor::Summary& summary, std::string_view reason);
+/// Its losses: key → count.
+Json exclusions_of(const pipeline::corridor::Summary& summary);
 /// In per cent; 0 of nothing.
 double percent_of(std::int64_t part, std::int64_t whole);
 

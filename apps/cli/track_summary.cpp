@@ -18,13 +18,9 @@ std::string_view counted(bool markers, std::int64_t count) {
 }
 
 void print_excluded(const pipeline::corridor::Summary& summary) {
-  const auto print = [&](std::string_view reason, std::string_view what) {
-    if (const auto count = excluded_of(summary, reason)) fmt::print(stderr, "omitted: {} {}\n", count, what);
-  };
-  print("too_brief", "seen too briefly to be trusted");
-  print("noise", "moving regions too small to be a part of a person");
-  print("nobody", "boxes in which the network sees no person");
-  print("misfits", "moving regions that no body explains");
+  for (const pipeline::corridor::Exclusion& one : exclusions(summary)) {
+    if (one.count > 0) fmt::print(stderr, "omitted: {} {}\n", one.count, one.description);
+  }
 }
 
 }  // namespace
@@ -37,20 +33,23 @@ void print_json(const pipeline::corridor::Summary& summary, const pipeline::peop
                {"rows", summary.samples},
                {"detections", summary.detections},
                {"elapsed", elapsed},
-               {"stopped", summary.stopped},
+               {"interrupted", summary.stopped},
                {"notes", summary.notes},
                {"warnings", summary.warnings},
                {"tracks", output.tracks},
                {"overlay", path_or_null(output.overlay)},
                {"plot", path_or_null(output.plot)}};
   if (!markers) {
-    json["dropped"] = {{"noise", excluded_of(summary, "noise")},
-                       {"misfits", excluded_of(summary, "misfits")},
-                       {"too_brief", excluded_of(summary, "too_brief")}};
+    const pipeline::corridor::Dropped& dropped = summary.dropped;
+    json["dropped"] = {{"noise", dropped.noise.value_or(0)},
+                       {"unexplained_regions", dropped.unexplained_regions.value_or(0)},
+                       {"too_short", dropped.too_short.value_or(0)}};
   }
-  for (const auto& [name, figure] : summary.figures) json["noise"][name] = figure;
-  if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"held", summary.held_outlines}};
-  if (summary.keypoints > 0) json["keypoints"] = {{"rows", summary.keypoints}, {"nobody", excluded_of(summary, "nobody")}};
+  if (summary.noise)
+    json["noise"] = {{"measurement_px", summary.noise->measurement_px}, {"acceleration_px_s2", summary.noise->acceleration_px_s2}};
+  if (summary.outlines > 0) json["outlines"] = {{"rows", summary.outlines}, {"coasted", summary.held_outlines}};
+  if (summary.keypoints > 0)
+    json["keypoints"] = {{"rows", summary.keypoints}, {"no_person", summary.dropped.no_person.value_or(0)}};
   print(json);
 }
 
@@ -61,9 +60,9 @@ void print_summary(const pipeline::corridor::Summary& summary, const pipeline::p
              summary.frames, summary.frames == 1 ? "frame" : "frames", summary.seconds,
              static_cast<double>(summary.frames) / elapsed);
   print_excluded(summary);
-  if (const auto measured = summary.figures.find("measurement_px"); measured != summary.figures.end()) {
-    fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n", measured->second,
-               summary.figures.at("acceleration_px_s2"));
+  if (summary.noise) {
+    fmt::print(stderr, "noise: {:.3f} px in a measured place, {:.0f} px/s\u00b2 of acceleration\n", summary.noise->measurement_px,
+               summary.noise->acceleration_px_s2);
   }
   if (summary.outlines > 0) {
     fmt::print(stderr, "outlines: {}, {:.0f} % of them held while too little was seen\n", summary.outlines,

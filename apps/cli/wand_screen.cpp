@@ -110,7 +110,7 @@ void WandPage::show(const pipeline::calibrate::WandObserved& detected) {
   for (const pipeline::calibrate::WandObserved::Camera& camera : detected.cameras)
     reported_["cameras"].push_back(observed_by(camera));
   for (const pipeline::calibrate::WandObserved::Shared& pair : detected.shared)
-    reported_["shared"].push_back({{"a", pair.a}, {"b", pair.b}, {"views", pair.views}, {"enough", pair.enough}});
+    reported_["shared"].push_back({{"a", pair.a}, {"b", pair.b}, {"views", pair.views}, {"sufficient", pair.enough}});
   notify("waving");
 }
 

@@ -5,7 +5,7 @@
 namespace marey::cli {
 
 Json edit_json(const pipeline::take::EditLine& line) {
-  Json entry{{"id", line.id}, {"operation", line.operation}, {"words", line.words}};
+  Json entry{{"id", line.id}, {"operation", line.operation}, {"description", line.words}};
   if (line.parent) entry["parent"] = *line.parent;
   if (line.gaps.empty()) return entry;
   Json gaps = Json::array();

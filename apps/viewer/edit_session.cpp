@@ -19,7 +19,7 @@ std::string history_text(const pipeline::take::EditHistory& history) {
   cli::Json edits = cli::Json::array();
   for (const pipeline::take::EditLine& line : pipeline::take::lines_of(history)) {
     cli::Json entry = cli::edit_json(line);
-    entry["counts"] = line.counts;
+    entry["active"] = line.counts;
     edits.push_back(std::move(entry));
   }
   return cli::compact({{"edits", edits}, {"head", history.state.head}, {"newest", history.state.newest}});

@@ -211,8 +211,8 @@ TEST_F(EditedTake, TheHistoryIsTold) {
   EXPECT_EQ(requested("undo 2 2"), "done");
   EXPECT_EQ(requested("undo 1 2"), "done");
   const std::string history = *session_->history();
-  EXPECT_NE(history.find(R"("words":"rename C to knee")"), std::string::npos) << history;
-  EXPECT_NE(history.find(R"("words":"fill knee: 1 gap, 5 frames)"), std::string::npos) << history;
+  EXPECT_NE(history.find(R"("description":"rename C to knee")"), std::string::npos) << history;
+  EXPECT_NE(history.find(R"("description":"fill knee: 1 gap, 5 frames)"), std::string::npos) << history;
   EXPECT_NE(history.find(R"("head":0)"), std::string::npos) << history;
   EXPECT_NE(history.find(R"("newest":2)"), std::string::npos) << history;
 }

@@ -12,8 +12,8 @@ cli::Json camera_json(const LiveReport::Camera& camera) {
   for (const auto& camera_control : camera.controls) {
     reported["dials"].push_back({{"name", camera_control.name},
                                  {"unit", camera_control.unit},
-                                 {"least", camera_control.minimum},
-                                 {"most", camera_control.maximum},
+                                 {"min", camera_control.minimum},
+                                 {"max", camera_control.maximum},
                                  {"now", camera_control.now}});
   }
   if (!camera.refused.empty()) reported["refused"] = camera.refused;
@@ -30,7 +30,7 @@ cli::Json camera_json(const LiveReport::Camera& camera) {
 std::string status_text(const LiveReport& report) {
   cli::Json status{{"cameras", cli::Json::array()},
                    {"steps", cli::Json::array()},
-                   {"overtaken", report.superseded},
+                   {"superseded", report.superseded},
                    {"unsaved", report.unsaved},
                    {"notes", cli::Json(report.notes)}};
   for (const LiveReport::Camera& camera : report.cameras) status["cameras"].push_back(camera_json(camera));

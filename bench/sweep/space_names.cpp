@@ -212,7 +212,7 @@ Result assess(const simulate::room::RoomOptions& options, bool live, bool events
   pipeline::corridor::Summary summary;
   stage->report(summary);
   for (const std::string& warning : summary.warnings) std::printf("        %s\n", warning.c_str());
-  if (events) std::printf("        noise %.3f px\n", summary.figures.at("noise_px"));
+  if (events) std::printf("        noise %.3f px\n", summary.points.value().noise_px);
   Result result{ours.verdict(events), peers.verdict(false)};
   const double maximum = static_cast<double>(options.frames) * static_cast<double>(markers);
   result.reported = 100 * static_cast<double>(ours.reported()) / maximum;

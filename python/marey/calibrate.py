@@ -63,7 +63,7 @@ def wand(
     return Calibration(
         rig=Rig(core),
         grade=report["grade"],
-        meaning=report["meaning"],
+        grade_text=report["grade_text"],
         mean_px=report["all"]["mean_px"],
         rms_px=report["all"]["rms_px"],
         cameras=report["cameras"],

@@ -109,7 +109,7 @@ class Ball(unittest.TestCase):
     def test_possession_is_measured(self):
         said = json.loads(marey("measure", self.text, "-o", self.folder / "figures.csv", "--report", self.folder / "report", "--json").stdout)
         self.assertGreater(said["ball"]["seconds"], 1)
-        self.assertEqual({"seconds", "dead_s", "distance_m", "top_mps", "teams", "passes", "possession"}, said["ball"].keys())
+        self.assertEqual({"seconds", "dead_s", "distance_m", "max_mps", "teams", "passes", "possession"}, said["ball"].keys())
         self.assertNotIn("ball", {person["label"] for person in said["people"]})
         self.assertIn("The ball", (self.folder / "report/report.html").read_text())
 

@@ -61,8 +61,8 @@ class Edit(unittest.TestCase):
         self.assertIn("undone:    4  rename C to hip\n", marey("edit", self.take, "--undo").stderr)
         said = json.loads(marey("info", self.take, "--json").stdout)
         self.assertEqual([(track["label"], track["measured"], track["filled"]) for track in said["tracks"]], [("ankle", FRAMES, 0), ("C", FRAMES - 5, 5)])
-        self.assertEqual([edit["counts"] for edit in said["edits"]], [True, True, True, False])
-        self.assertEqual(said["edits"][0]["words"], "rename A to ankle")
+        self.assertEqual([edit["active"] for edit in said["edits"]], [True, True, True, False])
+        self.assertEqual(said["edits"][0]["description"], "rename A to ankle")
         shown = marey("info", self.take).stdout
         self.assertIn("rename A to ankle\n", shown)
         self.assertIn("rename C to hip (does not count)", shown)
@@ -102,7 +102,7 @@ class Edit(unittest.TestCase):
         self.assertIn("nothing to be undone", marey("edit", self.take, "--undo", code=1).stderr)
         self.assertIn("no edit 7", marey("edit", self.take, "--undo-to", 7, code=1).stderr)
         listed = json.loads(marey("edit", self.take, "--list", "--json").stdout)
-        self.assertEqual([edit["counts"] for edit in listed["edits"]], [False, False])
+        self.assertEqual([edit["active"] for edit in listed["edits"]], [False, False])
 
     def test_a_script_is_done_whole_or_not_at_all(self):
         script = self.folder / "edits.txt"

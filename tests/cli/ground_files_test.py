@@ -60,7 +60,7 @@ class GroundFiles(unittest.TestCase):
             rows = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))
             self.assertAlmostEqual(float(rows[1]["distance_m"]), 20, delta=0.2, msg=f"{rate} Hz")
             self.assertAlmostEqual(float(rows[0]["distance_m"]), self.run_length, delta=8, msg=f"{rate} Hz")
-            self.assertAlmostEqual(float(rows[0]["top_mps"]), 8, delta=0.9, msg=f"{rate} Hz")
+            self.assertAlmostEqual(float(rows[0]["max_mps"]), 8, delta=0.9, msg=f"{rate} Hz")
             self.assertGreaterEqual(int(rows[0]["sprints"]), 2, f"{rate} Hz")
 
     def test_what_none_can_do_is_reported_and_not_counted(self):
@@ -78,7 +78,7 @@ class GroundFiles(unittest.TestCase):
         rows = list(csv.DictReader((self.folder / "slid_figures.csv").read_text().splitlines()))
         self.assertEqual([row["impossible"] for row in rows], ["1", "0"])
         for row in rows:
-            self.assertLess(float(row["top_mps"]), 4, row["id"])
+            self.assertLess(float(row["max_mps"]), 4, row["id"])
             self.assertLess(float(row["seen_s"]), 9.7, row["id"])
             self.assertGreater(float(row["top_sigma_mps"]), 0, row["id"])
 
@@ -112,7 +112,7 @@ class GroundFiles(unittest.TestCase):
         (self.folder / "zero.csv").write_text("frame,time,id,x,y\n" + "".join(f"{i},{i / 25},1,2,3\n" for i in range(50)))
         self.marey("measure", "zero.csv", "-o", "summary.csv", "-q")
         row = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))[0]
-        self.assertEqual((float(row["distance_m"]), float(row["top_mps"]), row["sprints"]), (0, 0, "0"))
+        self.assertEqual((float(row["distance_m"]), float(row["max_mps"]), row["sprints"]), (0, 0, "0"))
 
     def judged(self, *options):
         return json.loads(self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5, "--json", *options).stdout)
@@ -121,7 +121,7 @@ class GroundFiles(unittest.TestCase):
         self.write_run("truth.csv", 25)
         self.write_run("tracks.csv", 25, shift=0.4)
         result = self.judged()
-        self.assertEqual((result["mota"], result["idf1"], result["idsw"], result["kept"], result["found"]), (1, 1, 0, 1, 1))
+        self.assertEqual((result["mota"], result["idf1"], result["idsw"], result["tracked_fraction"], result["found"]), (1, 1, 0, 1, 1))
         self.assertAlmostEqual(result["position_rms_m"], 0.4, delta=1e-6)
         self.assertAlmostEqual(result["distance_error"], 0, delta=1e-6)
         self.assertEqual(result["warnings"], [])
@@ -140,7 +140,7 @@ class GroundFiles(unittest.TestCase):
         for columns in ("frame,id,x,y", "time,id,x,y"):
             self.write_run("truth.csv", 50, columns=columns)
             result = self.judged()
-            self.assertEqual((result["paired_by"], result["mota"], result["kept"]), ("frame", 1, 1), columns)
+            self.assertEqual((result["paired_by"], result["mota"], result["tracked_fraction"]), ("frame", 1, 1), columns)
 
     def test_none_is_evaluated_with_a_warning(self):
         self.write_run("truth.csv", 25)

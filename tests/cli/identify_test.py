@@ -119,11 +119,11 @@ class Identify(unittest.TestCase):
 
     def test_what_is_in_ambiguity_is_listed_and_answers_are_edits(self):
         self.who("--min-probability", "0", "-q")
-        rows = [row for row in self.doubts() if row["kind"] == "exchange"]
+        rows = [row for row in self.doubts() if row["kind"] == "swap"]
         self.assertTrue(any("Adams" in row["question"] and "Brown" in row["question"] for row in rows), rows)
         before = self.right()
         asked = self.doubts()
-        wrongly = ["yes" if "Adams" in row["question"] and row["kind"] == "exchange" else "" for row in asked]
+        wrongly = ["yes" if "Adams" in row["question"] and row["kind"] == "swap" else "" for row in asked]
         only = wrongly.index("yes")
         self.answer(["yes" if i == only else "" for i in range(len(asked))])
         self.assertLess(self.right(), before - 0.15, "they were exchanged though they should not have been")
@@ -135,7 +135,7 @@ class Identify(unittest.TestCase):
     def test_answers_that_were_applied_before_are_left_alone(self):
         self.who("--min-probability", "0", "-q")
         asked = self.doubts()
-        exchanges = [i for i, row in enumerate(asked) if row["kind"] == "exchange"]
+        exchanges = [i for i, row in enumerate(asked) if row["kind"] == "swap"]
         first = next(i for i in exchanges if "Adams" in asked[i]["question"])
         answers = ["yes" if i == first else "" for i in range(len(asked))]
         self.assertIn("1 answered, ", self.answer(answers).stdout)
@@ -158,7 +158,7 @@ class Identify(unittest.TestCase):
     def test_a_row_given_twice_is_applied_once(self):
         self.who("--min-probability", "0", "-q")
         rows = self.doubts()
-        row = next(row for row in rows if row["kind"] == "exchange")
+        row = next(row for row in rows if row["kind"] == "swap")
         row["answer"] = "yes"
         with open(self.folder / "answers.csv", "w", newline="") as file:
             writer = csv.DictWriter(file, row.keys())
@@ -185,7 +185,7 @@ class Identify(unittest.TestCase):
         self.name([f"2,{who},{name}" for who, name in enumerate(NAMES, 1) if who != 6])
         self.who("-q")
         asked = self.doubts()
-        nobody = [i for i, row in enumerate(asked) if row["kind"] == "who"]
+        nobody = [i for i, row in enumerate(asked) if row["kind"] == "identity"]
         self.assertEqual(len(nobody), 1, asked)
         self.assertEqual(float(asked[nobody[0]]["probability"]), 1, "Foster is in the roster, and no person was called so")
         rows = ["" if i != nobody[0] else "Foster" for i in range(len(asked))]
@@ -202,14 +202,14 @@ class Identify(unittest.TestCase):
             self.take.unlink(missing_ok=True)
             self.record(lambda who, t: who, seconds=61, left_out=lambda track, t: track < 3 and t > end)
             self.name([f"2,{who},{name}" for who, name in enumerate(NAMES, 1)])
-            told = json.loads(self.who("--min-probability", "0", "--json", "-q").stdout)["doubts"]
-            exchanges = [one for one in told if one["kind"] == "exchange" and one["time"] > 58]
+            told = json.loads(self.who("--min-probability", "0", "--json", "-q").stdout)["review"]
+            exchanges = [one for one in told if one["kind"] == "swap" and one["time"] > 58]
             self.assertEqual(len(exchanges), 0 if end < 58.3 else 1, f"lost at {end} s: {told}")
             if not exchanges:
                 continue
             before = self.labels()
             rows = self.doubts()
-            self.answer(["yes" if row["kind"] == "exchange" and float(row["time"]) > 58 else "" for row in rows])
+            self.answer(["yes" if row["kind"] == "swap" and float(row["time"]) > 58 else "" for row in rows])
             now = self.labels()
             self.assertAlmostEqual(sum(now[key] != before[key] for key in before) / RATE, exchanges[0]["changes_s"])
             changed.append(exchanges[0]["changes_s"])
@@ -217,7 +217,7 @@ class Identify(unittest.TestCase):
 
     def test_what_is_gained_max_by_is_requested_first(self):
         self.who("--min-probability", "0", "-q")
-        told = json.loads(self.again("--min-probability", "0", "--json", "-q").stdout)["doubts"]
+        told = json.loads(self.again("--min-probability", "0", "--json", "-q").stdout)["review"]
         gains = [one["probability"] * one["changes_s"] for one in told]
         self.assertTrue(gains)
         self.assertEqual(gains, sorted(gains, reverse=True))
@@ -273,7 +273,7 @@ class Identify(unittest.TestCase):
         squads.write_text("\n".join(ROSTER.split("\n")[:-2]) + "\n")
         self.name([f"2,{who},{name}" for who, name in enumerate(NAMES, 1) if who != 6])
         self.who("--min-probability", "1", "-q")
-        self.assertEqual([row for row in self.doubts() if row["kind"] == "who"], [])
+        self.assertEqual([row for row in self.doubts() if row["kind"] == "identity"], [])
 
     def test_what_is_deleted_is_counted(self):
         self.record(lambda who, t: who, left_out=lambda track, t: track == 5 and t > 103)
@@ -285,9 +285,9 @@ class Identify(unittest.TestCase):
         path.write_text(rows)
         marey("convert", path, self.take, "-q")
         before = self.places().count("\n")
-        left_out = json.loads(self.who("--json", "-q").stdout)["left_out"]
-        self.assertGreater(left_out, 0)
-        self.assertEqual(left_out, before - self.places().count("\n"))
+        excluded = json.loads(self.who("--json", "-q").stdout)["excluded"]
+        self.assertGreater(excluded, 0)
+        self.assertEqual(excluded, before - self.places().count("\n"))
 
     def test_names_are_given_once(self):
         self.who("-q")

@@ -57,7 +57,7 @@ class Killed(unittest.TestCase):
                 begun.append(time.monotonic())
             return begun and time.monotonic() > begun[0] + 3
 
-        self.killed("live", ROOM, "--record", "raw", "-o", "take.marey", "-q", when=three_seconds)
+        self.killed("live", ROOM, "--record", "video", "-o", "take.marey", "-q", when=three_seconds)
         self.assertIn("cam2.mp4", (pictures / "rig.toml").read_text())
         self.assertFalse(list(pictures.glob("*.part")))
         for camera in ("cam1.mp4", "cam2.mp4"):
@@ -66,7 +66,7 @@ class Killed(unittest.TestCase):
             self.assertLess(self.instants("take.marey") - frames, RATE, "less than a second is lost, as of the take")
         self.marey("reconstruct", "take_pictures/rig.toml", "-o", "again.marey", "-q")
         self.assertGreater(self.instants("again.marey"), RATE)
-        self.marey("live", ROOM, "--record", "raw", "-o", "take.marey", "--duration", 1, "-q")  # nothing of the killed run is in its way
+        self.marey("live", ROOM, "--record", "video", "-o", "take.marey", "--duration", 1, "-q")  # nothing of the killed run is in its way
         self.assertEqual({path.name for path in pictures.iterdir()}, {"cam1.mp4", "cam2.mp4", "rig.toml"})
 
     def test_an_overlay_can_be_read_as_far_as_it_was_written(self):

@@ -94,7 +94,7 @@ class LiveCameras(unittest.TestCase):
         for name, camera in told["cameras"].items():
             self.assertEqual(camera["lost"] + camera["damaged"], 0, name)
             # What came is in an instant, or waited when it ended, or was dropped.
-            gone = dropped["overtaken"] + dropped["incomplete"] + dropped["late_frames"] + camera["overrun"]
+            gone = dropped["superseded"] + dropped["incomplete"] + dropped["late_frames"] + camera["overrun"]
             self.assertLessEqual(abs(camera["frames"] - (told["instants"] - camera["missed"]) - gone), 4 + dropped["late_frames"], name)
 
     def test_a_camera_that_goes_away_costs_only_itself_and_comes_back(self):
@@ -162,20 +162,20 @@ class LiveCameras(unittest.TestCase):
 
     def test_the_images_are_kept_to_do_it_again(self):
         room = "sim://room?cameras=3&rate=15&markers=20&size=320x240&drawn=1"
-        told = self.live(room, "--duration", 4, "-o", "walk.marey", "--record", "raw")
-        pictures = self.folder / "walk_pictures"
+        told = self.live(room, "--duration", 4, "-o", "walk.marey", "--record", "video")
+        pictures = self.folder / "walk_video"
         self.assertEqual(sorted(path.name for path in pictures.iterdir()), ["cam1.mp4", "cam2.mp4", "cam3.mp4", "rig.toml"])
-        again = json.loads(self.marey("reconstruct", "walk_pictures/rig.toml", "-o", "again.marey", "--json", "-q").stdout)
+        again = json.loads(self.marey("reconstruct", "walk_video/rig.toml", "-o", "again.marey", "--json", "-q").stdout)
         self.assertGreater(told["instants"], 5)
         self.assertLessEqual(abs(again["frames"] - told["instants"]), 3)
         live, anew = (json.loads(self.marey("info", take, "--json").stdout) for take in ("walk.marey", "again.marey"))
         self.assertGreater(live["observations"], 50)
         self.assertLess(abs(live["observations"] - anew["observations"]), 0.1 * live["observations"])
-        self.live(room, "--duration", 0.5, "-o", "none.marey", "--record", "raw", "--armed")
+        self.live(room, "--duration", 0.5, "-o", "none.marey", "--record", "video", "--armed")
         self.assertFalse((self.folder / "none_pictures").exists())
-        self.assertIn("--record raw: name the take with -o", self.marey("live", room, "--record", "raw", code=2).stderr)
-        (self.folder / "file_pictures").write_text("a file")
-        self.assertIn("file_pictures", self.marey("live", room, "--duration", 0.5, "-o", "file.marey", "--record", "raw", code=1).stderr)
+        self.assertIn("--record video: name the take with -o", self.marey("live", room, "--record", "video", code=2).stderr)
+        (self.folder / "file_video").write_text("a file")
+        self.assertIn("file_video", self.marey("live", room, "--duration", 0.5, "-o", "file.marey", "--record", "video", code=1).stderr)
 
     def test_images_drawn_beforehand_take_little_memory(self):
         room = "sim://room?cameras=8&rate=240&markers=8&size=1280x1024&drawn=2"  # 5 GB of images
@@ -187,18 +187,18 @@ class LiveCameras(unittest.TestCase):
         self.assertLess(used.ru_maxrss, 500_000, "kB")
 
     def test_what_is_played_is_not_recorded_over(self):
-        self.live("sim://room?cameras=2&rate=15&markers=20&size=320x240&drawn=1", "--duration", 1, "-o", "walk.marey", "--record", "raw")
-        pictures = self.folder / "walk_pictures"
+        self.live("sim://room?cameras=2&rate=15&markers=20&size=320x240&drawn=1", "--duration", 1, "-o", "walk.marey", "--record", "video")
+        pictures = self.folder / "walk_video"
         before = {path.name: path.read_bytes() for path in pictures.iterdir()}
-        for played in (["walk_pictures/rig.toml"], ["cam1=walk_pictures/cam1.mp4"], ["play:walk_pictures/cam1.mp4?loop"],
-                       ["./walk_pictures/../walk_pictures/cam1.mp4"]):
-            said = self.marey("live", *played, "-o", "walk.marey", "--record", "raw", "--duration", 0.5, code=2).stderr
+        for played in (["walk_video/rig.toml"], ["cam1=walk_video/cam1.mp4"], ["play:walk_video/cam1.mp4?loop"],
+                       ["./walk_video/../walk_video/cam1.mp4"]):
+            said = self.marey("live", *played, "-o", "walk.marey", "--record", "video", "--duration", 0.5, code=2).stderr
             self.assertIn("is an input too", said)
             self.assertEqual({path.name: path.read_bytes() for path in pictures.iterdir()}, before, played)
         taken = (self.folder / "walk.marey").read_bytes()
         self.assertIn("is an input too", self.marey("live", "play:walk.marey", "-o", "walk.marey", "--duration", 0.5, code=2).stderr)
         self.assertEqual((self.folder / "walk.marey").read_bytes(), taken)
-        self.marey("live", "walk_pictures/rig.toml", "-o", "again.marey", "--record", "raw", "--duration", 0.5, "-q")
+        self.marey("live", "walk_video/rig.toml", "-o", "again.marey", "--record", "video", "--duration", 0.5, "-q")
         self.assertEqual({path.name: path.read_bytes() for path in pictures.iterdir()}, before)
 
     def test_a_take_is_played_as_its_cameras(self):

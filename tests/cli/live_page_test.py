@@ -41,7 +41,7 @@ class Page(unittest.TestCase):
             page = WebSocket(shown)
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(len(c["dials"]) == 2 for c in s["cameras"]))
             dials = {camera_control["name"]: camera_control for camera_control in status["cameras"][0]["dials"]}
-            self.assertEqual((dials["exposure"]["unit"], dials["exposure"]["most"], dials["exposure"]["now"]), ("ms", 50, 2))
+            self.assertEqual((dials["exposure"]["unit"], dials["exposure"]["max"], dials["exposure"]["now"]), ("ms", 50, 2))
             self.assertFalse(status["unsaved"])
             for line in ("dial 0 exposure 1.5", "dial 0 gain 2", "threshold 1 90", "mask 1 10 20 30 40", "mask 1 50 60 7 8", "unmask 1 10 20 30 40", "mask 1 9 9 90 9 50 80", "mask 1 1 1 2 2 3 9", "unmask 1 1 1 2 2 3 9"):
                 page.say(line)
@@ -270,7 +270,7 @@ class MachineVision(unittest.TestCase):
             page.say("dial 0 exposure 7.5")
             receive_until(page, "status", lambda s: abs(camera_control(s, "exposure")["now"] - 7.5) < 0.01)
             page.say(f"dial 0 gain {camera_control(status, 'gain')['most'] / 2}")
-            receive_until(page, "status", lambda s: abs(camera_control(s, "gain")["now"] - camera_control(s, "gain")["most"] / 2) < 0.51)
+            receive_until(page, "status", lambda s: abs(camera_control(s, "gain")["now"] - camera_control(s, "gain")["max"] / 2) < 0.51)
             page.say("save")
             receive_until(page, "status", lambda s: not s["unsaved"])
         self.assertEqual(tomllib.loads((folder / "rig.toml").read_text())["camera"][0]["exposure"], 7.5)

@@ -50,7 +50,7 @@ class Play(unittest.TestCase):
 
     def test_the_summary_counts(self):
         told = json.loads(self.marey("play", "points.csv", "--speed", 10, "--stream", "osc", "--stream", "json::0", "--json").stdout)
-        self.assertEqual((told["instants"] + told["skipped"], told["rounds"], told["stopped"]), (100, 1, False))
+        self.assertEqual((told["instants"] + told["skipped"], told["loops"], told["interrupted"]), (100, 1, False))
         self.assertEqual([wire["wire"] for wire in told["streams"]], ["osc", "json"])
         self.assertEqual(told["streams"][0]["sent"], told["instants"])
         said = self.marey("play", "points.csv", "--speed", 10, "--rate", 10, "--stream", "vmc").stderr
@@ -87,7 +87,7 @@ class Play(unittest.TestCase):
         process, _ = self.start("points.csv", "--loop", "--stream", "json::0")
         code, _, said = self.end(process)
         self.assertEqual(code, 0, said)
-        self.assertIn("rounds", said)
+        self.assertIn("loops", said)
         process, _ = self.start("points.csv", "--speed", "0.01", "--stream", "json::0")
         self.assertEqual(self.end(process)[0], 130)
 
@@ -120,7 +120,7 @@ class Play(unittest.TestCase):
         code, out, said = self.end(process)
         self.assertEqual(code, 0, said)
         told = {wire["wire"]: wire for wire in json.loads(out)["streams"]}
-        self.assertGreater(told["qtm"]["sent_off"], 0)
+        self.assertGreater(told["qtm"]["disconnected"], 0)
         self.assertGreater(told["qtm"]["refused"], 0)
 
 

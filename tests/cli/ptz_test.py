@@ -37,7 +37,7 @@ class Ptz(unittest.TestCase):
                                            "film/found.toml", "--json").stdout)
         self.assertEqual(report["frames"], 200)
         self.assertLess(report["lost"], 5)
-        truth, found = self.rows("film/rig_main_turns.csv"), self.rows("film/found_main_turns.csv")
+        truth, found = self.rows("film/rig_main_ptz.csv"), self.rows("film/found_main_ptz.csv")
         self.assertEqual(len(truth), len(found))
         for is_, was in zip(truth, found):
             if was["pan"]:
@@ -48,7 +48,7 @@ class Ptz(unittest.TestCase):
 
     def test_images_need_a_network(self):
         said = self.run_marey("track", "film/rig.toml", "--ground", "-o", "none.csv", code=1).stderr
-        self.assertIn("turns", said)
+        self.assertIn("PTZ", said)
         self.assertIn("--detector", said)
 
     def test_clicks_have_to_report_their_frame_and_lie_on_the_pitch(self):
@@ -62,12 +62,12 @@ class Ptz(unittest.TestCase):
 
     def test_rotations_that_cannot_be_read_are_reported_with_their_line(self):
         rig = (self.folder / "film/rig.toml").read_text()
-        (self.folder / "film/bad.toml").write_text(rig.replace("rig_main_turns.csv", "bad_turns.csv"))
-        turns = (self.folder / "film/rig_main_turns.csv").read_text().splitlines()
+        (self.folder / "film/bad.toml").write_text(rig.replace("rig_main_ptz.csv", "bad_turns.csv"))
+        turns = (self.folder / "film/rig_main_ptz.csv").read_text().splitlines()
         (self.folder / "film/bad_turns.csv").write_text("\n".join([turns[0], turns[2], turns[1]]) + "\n")
         said = self.run_marey("track", "film/bad.toml", "--ground", "main=film/boxes.txt", "-o", "none.csv", code=1).stderr
         self.assertIn("bad_turns.csv:3", said)
-        (self.folder / "film/bad.toml").write_text(rig.replace("rig_main_turns.csv", "missing.csv"))
+        (self.folder / "film/bad.toml").write_text(rig.replace("rig_main_ptz.csv", "missing.csv"))
         said = self.run_marey("track", "film/bad.toml", "--ground", "main=film/boxes.txt", "-o", "none.csv", code=1).stderr
         self.assertIn("missing.csv", said)
 

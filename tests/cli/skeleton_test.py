@@ -398,7 +398,7 @@ class Skeleton(unittest.TestCase):
     def test_with_every_instant_is_what_is_solved_afterwards(self):
         said = json.loads(self.marey("reconstruct", *self.room(), "--skeleton", "room/skeleton.toml", "--live", "-o", "live.marey", "--json").stdout)
         self.assertLess(said["skeleton"]["rms_mm"], 2)
-        self.assertEqual(said["skeleton"]["starts"], 1)
+        self.assertEqual(said["skeleton"]["initialisations"], 1)
         self.assertIn("skeleton", said["stages"])
         self.marey("solve", "live.marey", "--skeleton", "room/skeleton.toml", "-o", "after.marey", "-q")
         live, after = self.poses("live.marey"), self.poses("after.marey")

@@ -184,7 +184,7 @@ class Stopping(unittest.TestCase):
             self.assertIn("what was tracked until then is written", said)
             self.assertEqual(self.files(), ["film.mkv", "out.csv", "pipe", "rig.toml"], said)
             summary = json.loads(written)
-            self.assertTrue(summary["stopped"])
+            self.assertTrue(summary["interrupted"])
             self.assertTrue(50 < summary["frames"] < 100, summary)
             rows = (self.folder / "out.csv").read_text().splitlines()[1:]
             self.assertEqual(len(rows), summary["rows"])

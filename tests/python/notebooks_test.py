@@ -130,7 +130,7 @@ class Notebooks(unittest.TestCase):
         figures = pandas.read_csv(self.folder / "figures.csv")
         self.assertTrue(24 <= len(figures) <= 28, len(figures))
         self.assertTrue(figures.distance_m.between(0, 30 * 9).all() and 20 < figures.distance_m.median() < 120)
-        self.assertTrue(figures.top_mps.max() < 10)
+        self.assertTrue(figures.max_mps.max() < 10)
         self.assertIn("<svg", (self.folder / "report/report.html").read_text())
         self.assertEqual(len(marey.read(self.folder / "match.dat").tracks), len(figures))
         self.assert_picture("match.png")

@@ -9,8 +9,8 @@ import { put } from "./state";
 export interface CameraControl {
   name: string;
   unit: string;
-  least: number;
-  most: number;
+  min: number;
+  max: number;
   now: number;
 }
 export interface Changeable {
@@ -80,7 +80,7 @@ export class Controls {
         this.sliders.set(dial.name, slider);
         this.marker_rows.before(slider.element);
       }
-      slider.span(dial.least, dial.most);
+      slider.span(dial.min, dial.max);
       slider.show(dial.now);
     }
     this.marker_rows.hidden = status.threshold === undefined;

@@ -109,9 +109,9 @@ export class Editor {
     const asked = this.pending;
     this.pending = null;
     const head = this.history.edits.find((edit) => edit.id === this.history.head);
-    const now = head ? `as after ${head.id}: ${head.words}` : "as it was recorded";
+    const now = head ? `as after ${head.id}: ${head.description}` : "as it was recorded";
     if (refused) this.said(`Not done. ${capital(refused)}${/[.?!]$/.test(refused) ? "" : "."}`, false);
-    else this.said(asked === "edit" && head ? `Done: ${head.words}.` : `Now ${now}.`, true);
+    else this.said(asked === "edit" && head ? `Done: ${head.description}.` : `Now ${now}.`, true);
     if (!refused) this.kind = null;
     this.tell();
   }

@@ -14,8 +14,8 @@ export interface Edit {
   id: number;
   parent?: number;
   operation: string;
-  words: string;
-  counts: boolean;
+  description: string;
+  active: boolean;
   gaps?: { track: string; first: number; last: number; method: string; expected_mm: number }[];
 }
 

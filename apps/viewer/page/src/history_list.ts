@@ -17,7 +17,7 @@ export class HistoryList {
     for (const edit of history.edits) {
       const parent = edit.parent ?? 0;
       const branch = parent === before ? "" : parent === 0 ? "a branch from the recording" : `a branch from ${parent}`;
-      const row = this.row(edit.id, edit.words, history.head === edit.id, edit.counts, branch);
+      const row = this.row(edit.id, edit.description, history.head === edit.id, edit.active, branch);
       if (edit.gaps?.length) row.append(this.gaps(edit));
       rows.push(row);
       before = edit.id;

@@ -13,7 +13,7 @@ export interface Status {
   cameras?: CameraStatus[];
   unsaved?: boolean;
   steps?: { name: string; median: number; p99: number }[];
-  overtaken?: number;
+  superseded?: number;
   notes?: string[];
 }
 
@@ -93,7 +93,7 @@ export class Words {
     else if (scene.frame === "space" && scene.kind === "recording") rows.push(["Cameras", "this file holds no calibration, so that neither they nor rays can be shown; a take does"]);
     if (scene.bodies.length) rows.push(["Bodies", scene.bodies.map((body) => body.label).join(", ")]);
     for (const step of this.status.steps ?? []) rows.push([step.name, `${ms(step.median)}, 99 % within ${ms(step.p99)}`]);
-    if (this.status.overtaken !== undefined) rows.push(["Overtaken", many(this.status.overtaken, "moment")]);
+    if (this.status.superseded !== undefined) rows.push(["Overtaken", many(this.status.superseded, "moment")]);
     const [median, late] = [this.latency.of(0.5), this.latency.of(0.95)];
     if (median !== null && late !== null) rows.push(["Capture to screen", `${median.toFixed(0)} ms, 95 % within ${late.toFixed(0)} ms`]);
     for (const warning of scene.warnings ?? []) rows.push(["Warning", warning]);

@@ -23,10 +23,10 @@ interface Fit {
 interface Report {
   all: Fit;
   cameras: Record<string, Fit & { coverage: number; world_error_mm: number }>;
-  volume: { median_mm: number; worst_tenth_mm: number; seen_by_three: number };
+  volume: { median_mm: number; p90_mm: number; three_view: number };
   held_out?: { rms_px: number; length_mean_mm: number; length_rms_mm: number; frames: number };
   grade: string;
-  meaning: string;
+  grade_text: string;
   notes: string[];
 }
 /** As apps/cli/wand_screen.cpp says it. */
@@ -39,7 +39,7 @@ interface Waved {
   down: number;
   seconds?: number;
   cameras?: Detected[];
-  shared?: { a: number; b: number; views: number; enough: boolean }[];
+  shared?: { a: number; b: number; views: number; sufficient: boolean }[];
   report?: Report;
   rig?: string;
   why?: string;
@@ -85,7 +85,7 @@ class CameraCard {
       .filter((pair) => pair.a === index || pair.b === index)
       .map((pair) => {
         const other = cameras?.[pair.a === index ? pair.b : pair.a]?.name ?? "";
-        const chip = make("span", pair.enough ? "pair enough" : "pair", pair.enough ? `✓ ${other}` : `${other} ${pair.views}/${needed}`);
+        const chip = make("span", pair.sufficient ? "pair enough" : "pair", pair.sufficient ? `✓ ${other}` : `${other} ${pair.views}/${needed}`);
         chip.title = `The wand was seen ${pair.views} times together with ${other}; ${needed} tell how they stand to each other`;
         return chip;
       });
@@ -246,7 +246,7 @@ export class Wand {
 
   private judged(report: Report): HTMLElement[] {
     const grade = make("p", `grade ${report.grade}`);
-    grade.append(make("strong", "", report.grade), make("span", "", report.meaning));
+    grade.append(make("strong", "", report.grade), make("span", "", report.grade_text));
     const table = make("table");
     const row = (kind: "th" | "td", ...texts: string[]) => {
       const line = make("tr");
@@ -260,7 +260,7 @@ export class Wand {
     const facts = make("ul");
     const { held_out: held, volume } = report;
     if (held) facts.append(make("li", "", `Judged on ${held.frames} places of the wand that took no part: its length is off by ${held.length_rms_mm.toFixed(2)} mm`));
-    facts.append(make("li", "", `A marker's place is known to ${volume.median_mm.toFixed(2)} mm, in the worst tenth of the volume to ${volume.worst_tenth_mm.toFixed(2)} mm`));
+    facts.append(make("li", "", `A marker's place is known to ${volume.median_mm.toFixed(2)} mm, in the worst tenth of the volume to ${volume.p90_mm.toFixed(2)} mm`));
     for (const note of report.notes) facts.append(make("li", "", capital(note.replaceAll("`", ""))));
     return [grade, table, facts, make("p", "hint", "Close this page to end.")];
   }

@@ -149,7 +149,7 @@ RigCamera read_camera(Section& section, int index, const std::string& folder) {
   section.rename(camera.name.empty() ? fmt::format("camera {}", index + 1) : fmt::format("camera \"{}\"", excerpt(camera.name)));
   section.only({"name",   "source", "detections", "region",     "rate",         "offset_s",    "size",
                 "model",  "focal",  "principal",  "distortion", "rotation",     "translation", "ground_from_image",
-                "rms_px", "turns",  "tripod",     "lean",       "nodal_offset", "bend",        "exposure",
+                "rms_px", "ptz",    "pivot",      "axis_tilt",  "nodal_offset", "radial",      "exposure",
                 "gain",   "masks",  "threshold"});
   check_name(section, camera.name);
   camera.source = source_next_to(folder, section.text("source").value_or(""));
@@ -199,11 +199,11 @@ geometry::GroundSurface read_ground(const toml::node& node, Problems& problems) 
     return ground;
   }
   const Section section(*node.as_table(), "ground", problems);
-  section.only({"middle", "half", "across", "along", "dome", "ridge"});
-  const auto middle = read_pair(section, "middle"), half = read_pair(section, "half");
+  section.only({"centre", "half_size", "crown_across", "crown_along", "crown_dome", "ridge"});
+  const auto centre = read_pair(section, "centre"), half = read_pair(section, "half_size");
   if (half && !(half->minCoeff() >= kMinGround && half->maxCoeff() <= kMaxGround)) {
-    section.problem("half", fmt::format("half is [{}, {}]; from the middle to the lines it must be {} to {} m", half->x(),
-                                        half->y(), kMinGround, kMaxGround));
+    section.problem("half_size", fmt::format("half_size is [{}, {}]; from the centre to the lines it must be {} to {} m", half->x(),
+                                             half->y(), kMinGround, kMaxGround));
     return {};
   }
   const auto height = [&](std::string_view key) {
@@ -213,13 +213,13 @@ geometry::GroundSurface read_ground(const toml::node& node, Problems& problems) 
                     fmt::format("{} is {} m; a pitch is raised by at most {} m", key, value, geometry::GroundSurface::kMaxLevel));
     return 0.0;
   };
-  ground.across = height("across"), ground.along = height("along"), ground.dome = height("dome");
+  ground.across = height("crown_across"), ground.along = height("crown_along"), ground.dome = height("crown_dome");
   ground.ridge = section.number("ridge").value_or(0);
   if (!(ground.ridge >= 0 && ground.ridge <= 1)) {
     section.problem("ridge", fmt::format("ridge is {}; it must be between 0, a parabola, and 1, a roof", ground.ridge));
     return {};
   }
-  if (middle) ground.middle = *middle;
+  if (centre) ground.middle = *centre;
   if (half) ground.half = *half;
   return ground;
 }

@@ -46,7 +46,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 const std::string kCrowned =
-    "[world.ground]\nmiddle = [52.5, -34.0]\nhalf = [52.5, 34.0]\nacross = 0.15\nalong = 0.2\nridge = 0.25\n";
+    "[world.ground]\ncentre = [52.5, -34.0]\nhalf_size = [52.5, 34.0]\ncrown_across = 0.15\ncrown_along = 0.2\nridge = 0.25\n";
 
 TEST(RigFile, KeepsACrownedGround) {
   EXPECT_TRUE(parse_rig(kExample, "rig.toml").ground.flat());
@@ -62,18 +62,36 @@ TEST(RigFile, KeepsACrownedGround) {
   EXPECT_EQ(view.surface().height({52.5, -34}), rig.ground.height({52.5, -34}));
 }
 
+TEST(RigFile, ReadsTheKeysOfEarlierVersions) {
+  const std::string earlier =
+      "[world.ground]\nmiddle = [52.5, -34.0]\nhalf = [52.5, 34.0]\nacross = 0.15\nalong = 0.2\ndome = 0.1\nridge = 0.25\n";
+  const Rig rig = parse_rig(replaced(kExample, "[[camera]]", earlier + "[[camera]]"), "rig.toml");
+  EXPECT_EQ(rig.ground.middle, Vector<2>(52.5, -34));
+  EXPECT_EQ(rig.ground.half, Vector<2>(52.5, 34));
+  EXPECT_EQ(rig.ground.terms(), (std::array<double, 4>{0.15, 0.2, 0.1, 0.25}));
+  EXPECT_NE(rig_text(rig).find("crown_dome = 0.1"), std::string::npos);
+  EXPECT_NE(problems_of(replaced(kExample, "[[camera]]", replaced(earlier, "along", "crown_along = 0.2\nalong") + "[[camera]]"))
+                .find("ground: along is the earlier name of crown_along; keep one of them"),
+            std::string::npos);
+  EXPECT_NE(problems_of(replaced(kExample, "name = \"far\"", "name = \"far\"\nmiddle = [1, 2]")).find("unknown key \"middle\""),
+            std::string::npos)
+      << "in a table that never had it";
+}
+
 TEST(RigFile, AGroundThatIsNoneIsRefused) {
   const auto reported = [](const std::string& from, const std::string& to) {
     return problems_of(replaced(kExample, "[[camera]]", replaced(kCrowned, from, to) + "[[camera]]"));
   };
-  EXPECT_NE(reported("across = 0.15", "across = 50").find("rig.toml:6: ground: across is 50 m; a pitch is raised by at most 2 m"),
+  EXPECT_NE(reported("crown_across = 0.15", "crown_across = 50")
+                .find("rig.toml:6: ground: crown_across is 50 m; a pitch is raised by at most 2 m"),
             std::string::npos);
   for (const char* value : {"nan", "inf", "-inf", "1e300", "\"much\"", "[1]"})
-    EXPECT_NE(reported("along = 0.2", fmt::format("along = {}", value)).find("along must be a finite number"), std::string::npos)
+    EXPECT_NE(reported("crown_along = 0.2", fmt::format("crown_along = {}", value)).find("crown_along must be a finite number"),
+              std::string::npos)
         << value;
-  EXPECT_NE(reported("half = [52.5, 34.0]", "half = [52.5, 0.0]").find("must be 10 to 500 m"), std::string::npos);
-  EXPECT_NE(reported("half = [52.5, 34.0]\n", "").find("half is missing"), std::string::npos);
-  EXPECT_NE(reported("middle = [52.5, -34.0]", "middle = [nan, 0]").find("middle must be [x, y] in m"), std::string::npos);
+  EXPECT_NE(reported("half_size = [52.5, 34.0]", "half_size = [52.5, 0.0]").find("must be 10 to 500 m"), std::string::npos);
+  EXPECT_NE(reported("half_size = [52.5, 34.0]\n", "").find("half_size is missing"), std::string::npos);
+  EXPECT_NE(reported("centre = [52.5, -34.0]", "centre = [nan, 0]").find("centre must be [x, y] in m"), std::string::npos);
   EXPECT_NE(reported("ridge = 0.25", "ridge = 1.5").find("ridge is 1.5"), std::string::npos);
   EXPECT_NE(reported("ridge = 0.25", "bump = 1").find("unknown key \"bump\""), std::string::npos);
   EXPECT_NE(problems_of(replaced(kExample, "[[camera]]", "ground = 3\n[[camera]]")).find("ground must be a table"),
@@ -164,8 +182,8 @@ TEST(RigFile, TellsAllProblemsAtOnceEachWithItsLine) {
       "rig.toml:12: camera \"left\": rotation is a mirroring (its determinant is -1); it must be a rotation\n"
       "rig.toml:15: camera \"left\": another camera has this name; each needs its own\n"
       "rig.toml:16: camera \"left\": unknown key \"focul\"; there are: name, source, detections, region, rate, offset_s, size, "
-      "model, focal, principal, distortion, rotation, translation, ground_from_image, rms_px, turns, tripod, lean, nodal_offset, "
-      "bend, exposure, gain, masks, threshold");
+      "model, focal, principal, distortion, rotation, translation, ground_from_image, rms_px, ptz, pivot, axis_tilt, nodal_offset, "
+      "radial, exposure, gain, masks, threshold");
 }
 
 TEST(RigFile, KeepsHowALiveCameraIsSet) {

@@ -1,7 +1,10 @@
 #include "marey/format/rig/rig_section.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -36,6 +39,25 @@ std::optional<std::vector<double>> numbers_of(const toml::node& node) {
   return values;
 }
 
+/// Keys that had another name in files of earlier versions.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kEarlierKeys{{{"ptz", "turns"},
+                                                                                     {"pivot", "tripod"},
+                                                                                     {"axis_tilt", "lean"},
+                                                                                     {"radial", "bend"},
+                                                                                     {"centre", "middle"},
+                                                                                     {"half_size", "half"},
+                                                                                     {"crown_across", "across"},
+                                                                                     {"crown_along", "along"},
+                                                                                     {"crown_dome", "dome"}}};
+
+/// Empty for a key that always had its name.
+std::string_view earlier_name(std::string_view key) {
+  for (const auto& [today, earlier] : kEarlierKeys) {
+    if (key == today) return earlier;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string excerpt(std::string_view text, std::size_t maximum) {
@@ -57,20 +79,32 @@ void Problems::throw_if_any() {
 }
 
 void Section::problem(std::string_view key, std::string_view what) const {
-  const toml::node* node = table_.get(key);
+  const toml::node* node = find(key);
   problems_.add(node != nullptr ? node->source() : table_.source(), fmt::format("{}: {}", title_, what));
+}
+
+const toml::node* Section::find(std::string_view key) const {
+  if (const toml::node* node = table_.get(key)) return node;
+  const std::string_view earlier = earlier_name(key);
+  return earlier.empty() ? nullptr : table_.get(earlier);
 }
 
 void Section::only(std::initializer_list<std::string_view> known) const {
   for (const auto& [key, value] : table_) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+    const auto today = std::find_if(known.begin(), known.end(), [&](std::string_view k) { return earlier_name(k) == key.str(); });
+    if (today != known.end()) {
+      if (table_.contains(*today))
+        problems_.add(key.source(), fmt::format("{}: {} is the earlier name of {}; keep one of them", title_, key.str(), *today));
+      continue;
+    }
     problems_.add(key.source(),
                   fmt::format("{}: unknown key \"{}\"; there are: {}", title_, excerpt(key.str()), fmt::join(known, ", ")));
   }
 }
 
 std::optional<std::string> Section::text(std::string_view key) const {
-  const toml::node* node = table_.get(key);
+  const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
   if (const auto* value = node->as_string()) {
     if (value->get().find('\0') == std::string::npos) return value->get();
@@ -80,7 +114,7 @@ std::optional<std::string> Section::text(std::string_view key) const {
 }
 
 std::optional<double> Section::number(std::string_view key) const {
-  const toml::node* node = table_.get(key);
+  const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
   if (const auto value = number_in_node(*node)) return value;
   problem(key, fmt::format("{} must be a finite number below 1e9", key));
@@ -104,7 +138,7 @@ std::optional<int> Section::count(std::string_view key) const {
 
 std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t lowest_count, std::size_t maximum,
                                                     std::string_view form) const {
-  const toml::node* node = table_.get(key);
+  const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
   if (auto values = numbers_of(*node); values && values->size() >= lowest_count && values->size() <= maximum) return values;
   problem(key, fmt::format("{} must be {}", key, form));
@@ -113,7 +147,7 @@ std::optional<std::vector<double>> Section::numbers(std::string_view key, std::s
 
 std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t lowest_count, std::size_t maximum,
                                                std::string_view form) const {
-  const toml::node* node = table_.get(key);
+  const toml::node* node = find(key);
   if (node == nullptr) return {};
   const toml::array* array = node->as_array();
   std::vector<std::vector<double>> rows;
@@ -129,7 +163,7 @@ std::vector<std::vector<double>> Section::rows(std::string_view key, std::size_t
 }
 
 std::optional<Matrix<3>> Section::matrix(std::string_view key) const {
-  const toml::node* node = table_.get(key);
+  const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;
   Matrix<3> result;
   const toml::array* rows = node->as_array();

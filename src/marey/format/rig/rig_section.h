@@ -40,11 +40,12 @@ class Section {
       : table_(table), title_(std::move(title)), problems_(problems) {}
 
   void rename(std::string title) { title_ = std::move(title); }
-  bool has(std::string_view key) const { return table_.contains(key); }
+  /// Under its name of today, or the one that files of earlier versions have.
+  bool has(std::string_view key) const { return find(key) != nullptr; }
 
   /// A problem with a value, or, where the key is missing, with the table.
   void problem(std::string_view key, std::string_view what) const;
-  /// Any other key is a problem.
+  /// Any other key is a problem, and so is one that is there under its earlier name as well.
   void only(std::initializer_list<std::string_view> known) const;
 
   std::optional<std::string> text(std::string_view key) const;
@@ -64,6 +65,8 @@ class Section {
   std::optional<Matrix<3>> rotation(std::string_view key) const;
 
  private:
+  const toml::node* find(std::string_view key) const;
+
   const toml::table& table_;
   std::string title_;
   Problems& problems_;

@@ -157,11 +157,12 @@ std::string calibration_text(const Rig::Calibration& calibration) {
 std::string ground_text(const geometry::GroundSurface& ground) {
   if (ground.flat()) return "";
   Lines lines(true);
-  lines.add("middle", row(ground.middle), "m, in the world; how high the ground is above z = 0:");
-  lines.add("half", row(ground.half), "m from the middle to the lines: u and v are 1 there");
-  lines.add("across", number_text(ground.across), "m: across (1 - v^2) + along (1 - u^2) + dome (1 - u^2) (1 - v^2)");
-  lines.add("along", number_text(ground.along));
-  if (ground.dome != 0) lines.add("dome", number_text(ground.dome));
+  lines.add("centre", row(ground.middle), "m, in the world; how high the ground is above z = 0:");
+  lines.add("half_size", row(ground.half), "m from the centre to the lines: u and v are 1 there");
+  lines.add("crown_across", number_text(ground.across),
+            "m: crown_across (1 - v^2) + crown_along (1 - u^2) + crown_dome (1 - u^2) (1 - v^2)");
+  lines.add("crown_along", number_text(ground.along));
+  if (ground.dome != 0) lines.add("crown_dome", number_text(ground.dome));
   if (ground.ridge != 0) lines.add("ridge", number_text(ground.ridge), "0: parabolas as above; 1: roofs");
   return "\n[world.ground]\n" + lines.text();
 }

@@ -67,24 +67,24 @@ bool in_domain(const std::array<double, kPtzColumns>& row) {
 
 /// What a camera's table says of how it turns; nothing if it stands.
 std::shared_ptr<const PtzCamera> ptz_in(const Section& section, const std::string& folder) {
-  const auto file = section.text("turns");
-  if (!section.has("turns")) {
-    for (const char* key : {"tripod", "lean", "nodal_offset", "bend"}) {
-      if (section.has(key)) section.problem(key, fmt::format("{} is of a PTZ camera: add turns = \"FILE.csv\"", key));
+  const auto file = section.text("ptz");
+  if (!section.has("ptz")) {
+    for (const char* key : {"pivot", "axis_tilt", "nodal_offset", "radial"}) {
+      if (section.has(key)) section.problem(key, fmt::format("{} is of a PTZ camera: add ptz = \"FILE.csv\"", key));
     }
     return nullptr;
   }
   for (const char* key : {"focal", "rotation", "translation", "ground_from_image"}) {
     if (section.has(key))
-      section.problem(key, fmt::format("{} is of a static camera, and this one has turns; keep one of them", key));
+      section.problem(key, fmt::format("{} is of a static camera, and this one is a PTZ camera; keep one of them", key));
   }
-  if (!section.has("tripod")) section.problem("turns", "a PTZ camera needs its place: add tripod = [x, y, z] in m");
+  if (!section.has("pivot")) section.problem("ptz", "a PTZ camera needs its place: add pivot = [x, y, z] in m");
   if (!section.has("size"))
-    section.problem("turns", "a PTZ camera needs the size its focal lengths are for: add size = [width, height]");
+    section.problem("ptz", "a PTZ camera needs the size its focal lengths are for: add size = [width, height]");
   const auto size = section.numbers("size", 2, 2, "[width, height] in px"),
-             location = section.numbers("tripod", 3, 3, "[x, y, z] in m"),
-             lean = section.numbers("lean", 3, 3, "[about x, about y, roll] in degrees");
-  const auto ahead = section.number("nodal_offset"), bend = section.number("bend");
+             location = section.numbers("pivot", 3, 3, "[x, y, z] in m"),
+             lean = section.numbers("axis_tilt", 3, 3, "[about x, about y, roll] in degrees");
+  const auto ahead = section.number("nodal_offset"), bend = section.number("radial");
   if (!file || !location || !size) return nullptr;
   auto camera = std::make_shared<PtzCamera>();
   camera->tripod.location = {(*location)[0], (*location)[1], (*location)[2]};
@@ -95,7 +95,7 @@ std::shared_ptr<const PtzCamera> ptz_in(const Section& section, const std::strin
     const std::string path = (std::filesystem::path(folder) / *file).string();
     camera->rotations = parse_ptz(read_file(path), path, cv::Size(static_cast<int>((*size)[0]), static_cast<int>((*size)[1])));
   } catch (const Error& error) {
-    section.problem("turns", error.what());
+    section.problem("ptz", error.what());
     return nullptr;
   }
   return camera;
@@ -104,11 +104,11 @@ std::shared_ptr<const PtzCamera> ptz_in(const Section& section, const std::strin
 /// The keys of a camera's table that specify its rotation.
 std::string tripod_text(const geometry::Tripod& tripod, const std::string& rotations) {
   return fmt::format(
-      "turns = \"{}\"  # where it looks, a row a frame\n"
-      "tripod = [{:.6f}, {:.6f}, {:.6f}]  # m: where the axes of pan and tilt meet\n"
-      "lean = [{:.6f}, {:.6f}, {:.6f}]  # of the pan axis about x and y, and roll, in degrees\n"
+      "ptz = \"{}\"  # pan, tilt and focal length, a row per frame\n"
+      "pivot = [{:.6f}, {:.6f}, {:.6f}]  # m: where the axes of pan and tilt meet\n"
+      "axis_tilt = [{:.6f}, {:.6f}, {:.6f}]  # of the pan axis about x and y, and roll, in degrees\n"
       "nodal_offset = {:.6f}  # m from the axes to the centre of projection\n"
-      "bend = {:.8f}  # radial term per half picture width squared\n",
+      "radial = {:.8f}  # distortion per half image width squared\n",
       rotations, tripod.location.x(), tripod.location.y(), tripod.location.z(), tripod.lean.x() / kTurnDegree,
       tripod.lean.y() / kTurnDegree, tripod.roll / kTurnDegree, tripod.ahead, tripod.bend);
 }
@@ -132,7 +132,8 @@ std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string&
       const auto row = numbers_in_row(fields);
       if (!row || !in_domain(*row))
         throw Error(
-            "{}:{}: {} is not a row of turns: time in s, pan and tilt in degrees, a positive focal length in px, three standard "
+            "{}:{}: {} is not a row of a PTZ file: time in s, pan and tilt in degrees, a positive focal length in px, three "
+            "standard "
             "deviations, three correlations; or the time alone where the camera is lost",
             name, lines.number(), shown(line));
       turn = turn_of(*row, size);
@@ -198,7 +199,7 @@ void write_ptz_rig(const Rig& rig, const std::vector<std::shared_ptr<const PtzCa
     const std::string one = rig_text(camera_alone, folder);
     text += i == 0 ? one : one.substr(one.find("\n[[camera]]"));
     if (i >= ptz.size() || !ptz[i]) continue;
-    const std::string name = fmt::format("{}_{}_turns.csv", location.stem().string(), rig.cameras[i].name);
+    const std::string name = fmt::format("{}_{}_ptz.csv", location.stem().string(), rig.cameras[i].name);
     WholeFile rows((location.parent_path() / name).string());
     rows.write(ptz_text(*ptz[i], rig.cameras[i].size.value()));
     rows.finish();

@@ -181,13 +181,7 @@ Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
   summary.sink_failed = sinks.failed();
   counter.finish();
   summary.rate_hz = clock.rate_hz();
-  if (const auto drops = clock.drops()) {
-    summary.excluded["instants overtaken"] = drops->superseded;
-    summary.excluded["instants incomplete"] = drops->incomplete;
-    summary.excluded["instants without a camera"] = drops->empty;
-    summary.excluded["frames late"] = drops->late_frames;
-    summary.excluded["frames overrun"] = drops->overrun;
-  }
+  summary.live = clock.drops();
   for (std::string& warning : clock.warnings()) summary.warnings.push_back(std::move(warning));
   stage.report(summary);
   return summary;

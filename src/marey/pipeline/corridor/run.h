@@ -5,58 +5,21 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "marey/core/camera_health.h"
 #include "marey/core/hooks.h"
 #include "marey/core/instant.h"
 #include "marey/core/recording.h"
 #include "marey/core/sink.h"
 #include "marey/pipeline/corridor/clock.h"
 #include "marey/pipeline/corridor/foreground_sink.h"
+#include "marey/pipeline/corridor/summary.h"
 
 namespace marey::pipeline::corridor {
-
-/// What results from a run: the content of its results, the losses and their causes.
-struct Summary {
-  /// Its frames are those that were searched, its detections those that the tracker was given.
-  struct Camera : CameraHealth {
-    std::int64_t outside = 0;  ///< detections where nothing counts: beyond the area, above the horizon
-    std::int64_t noise = 0;    ///< regions too small to be a part of a person
-    std::int64_t misfits = 0;  ///< regions that no body explains
-  };
-  /// How long one step took, s.
-  struct StepTime {
-    std::string name;
-    std::int64_t count = 0;
-    double median = 0, p99 = 0;
-  };
-
-  std::int64_t frames = 0;                                           ///< instants
-  double seconds = 0;                                                ///< from the first moment to the last
-  double rate_hz = 0;                                                ///< of the instants
-  double first_pass_s = 0;                                           ///< wall time until the cameras had ended
-  std::int64_t tracks = 0;                                           ///< distinct ones in the results
-  std::int64_t labelled = 0;                                         ///< of these, with a label
-  std::int64_t samples = 0;                                          ///< tracks times the instants they are in
-  std::int64_t measured = 0, filled = 0, predicted = 0, solved = 0;  ///< of these
-  std::int64_t outlines = 0, held_outlines = 0;               ///< samples with an outline; those of which too little was seen
-  std::int64_t keypoints = 0;                                 ///< samples with body points
-  std::int64_t detections = 0;                                ///< handed to the tracker
-  std::map<std::string, std::int64_t, std::less<>> excluded;  ///< by reason: "noise", "too_brief", …
-  std::map<std::string, double, std::less<>> figures;         ///< what a stage found out besides: "noise_px", …
-  std::vector<Camera> cameras;
-  std::vector<StepTime> steps;
-  std::vector<std::string> notes;     ///< additional findings, one sentence each
-  std::vector<std::string> warnings;  ///< what went wrong without stopping the run, one sentence each
-  bool stopped = false;               ///< before the end, because a hook said so
-  bool sink_failed = false;           ///< of a live run: a warning names it
-};
 
 /// Instants, one after the other.
 class InstantSource {

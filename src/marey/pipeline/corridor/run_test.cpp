@@ -73,7 +73,7 @@ class Echo final : public Stage {
     };
     return std::make_unique<All>(std::move(known_));
   }
-  void report(Summary& summary) const override { summary.excluded["nothing"] = 0; }
+  void report(Summary& summary) const override { summary.dropped.noise = 0; }
 
  private:
   bool at_the_end_;

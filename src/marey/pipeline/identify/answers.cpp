@@ -138,11 +138,11 @@ class Answerer {
       if (!since_.counts(review_item.edit))
         throw Error("{}: edit {}, after which this was listed, was taken back; list the doubts again", review_item.where,
                     review_item.edit);
-      if (review_item.kind == "exchange") interchange(review_item);
-      if (review_item.kind == "same") same(review_item);
+      if (review_item.kind == "swap") interchange(review_item);
+      if (review_item.kind == "continuity") same(review_item);
     }
     for (const ReviewItem& review_item : review_items) {  // when every other person is where they belong
-      if (review_item.kind == "who") identity(review_item);
+      if (review_item.kind == "identity") identity(review_item);
     }
     return std::move(answered_);
   }

@@ -68,8 +68,8 @@ class TriedAnswer {
 /// The answers to a doubt that are not what the take says already.
 std::vector<std::string> other_answers(const ReviewItem& review_item, const Recording& recording,
                                        const std::vector<SquadMember>& squads) {
-  if (review_item.kind == "exchange") return {"yes"};
-  if (review_item.kind == "same") return {"no"};
+  if (review_item.kind == "swap") return {"yes"};
+  if (review_item.kind == "continuity") return {"no"};
   std::vector<std::string> answers;
   if (!review_item.b.empty()) answers.push_back("yes");
   for (const SquadMember& member : squads) {  // who is not in the take at all
@@ -103,7 +103,7 @@ std::vector<ReviewItem> ambiguities_that_matter(std::vector<ReviewItem> review_i
     for (const std::string& answer : other_answers(review_item, recording, squads)) {
       const auto changed = effect_of_answer(review_item, answer, recording, history, squads, initiated);
       review_item.changes_s = std::max(review_item.changes_s, changed.value_or(0));
-      if (review_item.kind == "who" && review_item.changes_s > 0) break;  // the one who it is, the same places are named
+      if (review_item.kind == "identity" && review_item.changes_s > 0) break;  // the one who it is, the same places are named
     }
   }
   std::erase_if(review_items, [](const ReviewItem& review_item) { return review_item.changes_s < kMinChange; });

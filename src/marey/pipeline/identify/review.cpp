@@ -73,7 +73,7 @@ class ReviewBuilder {
     if (!is_named(a)) std::swap(a, b);
     ReviewItem review_item{
         .time_s = time_of(close_encounter.instant),
-        .kind = "exchange",
+        .kind = "swap",
         .question = fmt::format("{}: did {} and {} change places?", location(close_encounter.before_a, close_encounter.instant),
                                 person(a), person(b)),
         .a = track(a),
@@ -95,7 +95,7 @@ class ReviewBuilder {
     if (path != segment(link.before).path || !has_track(path) || !is_named(path)) return;
     const std::int32_t instant = segment(link.after).first;
     review_items_.push_back({.time_s = time_of(instant),
-                             .kind = "same",
+                             .kind = "continuity",
                              .question = fmt::format("{}: is this still {}, who was lost at {}?", location(link.after, instant),
                                                      person(path), clock_of_seconds(time_of(segment(link.before).last))),
                              .a = track(path),
@@ -133,7 +133,7 @@ class ReviewBuilder {
                                       ? fmt::format("who is #{}", number(*named_.tracks[static_cast<std::size_t>(path)]))
                                       : fmt::format("is #{} {}", number(*named_.tracks[static_cast<std::size_t>(path)]), likeliest);
     review_items_.push_back({.time_s = time_of(first),
-                             .kind = "who",
+                             .kind = "identity",
                              .question = fmt::format("{}: {}, there until {}?", location(segments.front(), first), requested,
                                                      clock_of_seconds(time_of(last))),
                              .a = track(path),
@@ -150,12 +150,27 @@ class ReviewBuilder {
   std::vector<ReviewItem> review_items_;
 };
 
+constexpr std::string_view kReviewHeader = "time,kind,question,track_a,track_b,frame,probability,base_edit,answer";
+
 double number_in(const format::CsvTable::Row& row, const std::string& column) {
   const auto value = format::number_of(row.text(column));
   if (!value || *value < 0 || *value > 1e9)
     throw Error("{}: {} is no {}; leave all columns but the last one as they are", row.where(), format::shown(row.text(column)),
                 column);
   return *value;
+}
+
+/// Lists of earlier versions have other names in their first line, and other kinds.
+std::string with_names_of_today(std::string_view text) {
+  constexpr std::string_view kEarlier = "time,kind,question,a,b,frame,probability,edit,answer";
+  if (!text.starts_with(kEarlier)) return std::string(text);
+  return std::string(kReviewHeader) + std::string(text.substr(kEarlier.size()));
+}
+
+std::string kind_of_today(const std::string& kind) {
+  if (kind == "exchange") return "swap";
+  if (kind == "same") return "continuity";
+  return kind == "who" ? "identity" : kind;
 }
 
 }  // namespace
@@ -167,7 +182,7 @@ std::vector<ReviewItem> review_items_of(const GroundIdentities& found, const Tra
 
 std::string review_csv(const std::vector<ReviewItem>& review_items) {
   using format::quoted_field;
-  std::string text = "time,kind,question,a,b,frame,probability,edit,answer\n";
+  std::string text = std::string(kReviewHeader) + "\n";
   for (const ReviewItem& review_item : review_items)
     text += fmt::format("{:.2f},{},{},{},{},{},{:.2f},{},{}\n", review_item.time_s, review_item.kind,
                         quoted_field(review_item.question), quoted_field(review_item.a), quoted_field(review_item.b),
@@ -176,20 +191,22 @@ std::string review_csv(const std::vector<ReviewItem>& review_items) {
 }
 
 std::vector<ReviewItem> parse_review_items(std::string_view text, const std::string& name) {
-  const format::CsvTable table(text, name, {"time", "kind", "a", "b", "frame", "edit", "answer"}, {"question", "probability"});
+  const format::CsvTable table(with_names_of_today(text), name,
+                               {"time", "kind", "track_a", "track_b", "frame", "base_edit", "answer"}, {"question", "probability"});
   std::vector<ReviewItem> review_items;
   for (const format::CsvTable::Row& row : table.rows()) {
     ReviewItem review_item{.time_s = number_in(row, "time"),
-                           .kind = row.text("kind"),
+                           .kind = kind_of_today(row.text("kind")),
                            .question = row.text("question"),
-                           .a = row.text("a"),
-                           .b = row.text("b"),
+                           .a = row.text("track_a"),
+                           .b = row.text("track_b"),
                            .frame = static_cast<std::int64_t>(number_in(row, "frame")),
-                           .edit = static_cast<std::int64_t>(number_in(row, "edit")),
+                           .edit = static_cast<std::int64_t>(number_in(row, "base_edit")),
                            .answer = row.text("answer"),
                            .where = row.where()};
-    if (review_item.kind != "exchange" && review_item.kind != "same" && review_item.kind != "who")
-      throw Error("{}: {} is not a kind of doubt; exchange, same and who are", row.where(), format::shown(review_item.kind));
+    if (review_item.kind != "swap" && review_item.kind != "continuity" && review_item.kind != "identity")
+      throw Error("{}: {} is not a kind of question; supported: swap, continuity, identity", row.where(),
+                  format::shown(review_item.kind));
     review_items.push_back(std::move(review_item));
   }
   return review_items;

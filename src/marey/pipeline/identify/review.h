@@ -18,7 +18,7 @@ constexpr double kOneEncounter = 4;
 /// One row of the list.
 struct ReviewItem {
   double time_s = 0;       ///< from the recording's beginning
-  std::string kind;        ///< "exchange": did two change places? "same": is it still the same one? "who": who is it?
+  std::string kind;        ///< "swap": did two change places? "continuity": still the same one? "identity": who is it?
   std::string question;    ///< "1:03.2 near (34, 20) m: did 7 Kane and 10 Son change places?"
   std::string a, b;        ///< tracks as "#5 7 Kane"; `b` of "who": names with their probabilities, "7 Kane 0.62; 10 Son 0.21"
   std::int64_t frame = 0;  ///< from which on the answer counts

@@ -73,7 +73,7 @@ void add_blob_rows(Table& table, detect::markers::MarkerOptions& markers) {
               "per frame; beyond, those at predicted positions are kept, then the largest");
   table.number("min-area", markers.min_area, "px^2", closed(0, 1e8), "smallest marker, pixels that exceed the threshold");
   table.number("max-area", markers.max_area, "px^2", closed(0, 1e8), "largest marker, likewise");
-  table.number("min-roundness", markers.min_roundness, "share", closed(0, 1),
+  table.number("min-roundness", markers.min_roundness, "fraction", closed(0, 1),
                "area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes");
 }
 
@@ -85,8 +85,8 @@ void add_marker_rows(Table& table, MarkerDetection& detection) {
             "tolerance")
       .checked(detect::markers::parse_marker_colour);
   table
-      .number("saturation", detection.saturation, "share", closed(0.001, 0.999),
-              "with --colour: minimum of (largest - smallest of red, green, blue), as a share of white (default: 0.2)")
+      .number("saturation", detection.saturation, "fraction", closed(0.001, 0.999),
+              "with --colour: minimum of (largest - smallest of red, green, blue), as a fraction of white (default: 0.2)")
       .depending_on({"colour"});
   table.input_file("mask", detection.mask, "an image of the video's size; what is not black in it is omitted");
   table.number("auto-mask", detection.markers.auto_mask_s, "s", closed(0, 3600),

@@ -140,7 +140,7 @@ TEST(BodyKeypoints, AFilmWithoutPeopleHasNone) {
       folder / "box.mp4");
   const Result result = keypoints_of_video(folder / "box.mp4", {});
   EXPECT_EQ(result.summary.keypoints, 0);
-  EXPECT_GT(result.summary.excluded.at("nobody"), 20) << "a dark plate that moves is a person no longer than its patience";
+  EXPECT_GT(result.summary.dropped.no_person.value(), 20) << "a dark plate that moves is a person no longer than its patience";
 }
 
 TEST(BodyKeypoints, RejectsSourcesWithoutImages) {

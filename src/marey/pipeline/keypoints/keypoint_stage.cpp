@@ -92,7 +92,7 @@ class KeypointStage final : public corridor::Stage {
 
   void report(corridor::Summary& summary) const override {
     stage_->report(summary);
-    summary.excluded["nobody"] = keypoints_.excluded();
+    summary.dropped.no_person = keypoints_.excluded();
     summary.steps.push_back(
         {"keypoints", keypoints_.times().count(), keypoints_.times().quantile(0.5), keypoints_.times().quantile(0.99)});
   }

@@ -323,12 +323,12 @@ void KeypointsLive::report(corridor::Summary& summary) const {
                                     {"placing", &locating_}}) {
     if (times->count() > 0) summary.steps.push_back({name, times->count(), times->quantile(0.5), times->quantile(0.99)});
   }
-  summary.figures["people"] = static_cast<double>(people_.numbers());
-  summary.figures["person_searches"] = static_cast<double>(searches_);
-  summary.figures["regions"] = static_cast<double>(detector_runs_);
-  summary.figures["people_in_images"] = static_cast<double>(views_.views_observed());
-  summary.figures["people_placed"] = static_cast<double>(views_.views_located());
-  summary.figures["noise"] = noise_.times_stated();
+  summary.body_points = {.people = static_cast<std::int64_t>(people_.numbers()),
+                         .person_searches = static_cast<std::int64_t>(searches_),
+                         .regions = static_cast<std::int64_t>(detector_runs_),
+                         .people_in_images = static_cast<std::int64_t>(views_.views_observed()),
+                         .people_placed = static_cast<std::int64_t>(views_.views_located()),
+                         .noise = noise_.times_stated()};
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!cameras_[c])
       summary.warnings.push_back(fmt::format("camera \"{}\" is not calibrated: its images are not used", rig_.cameras[c].name));

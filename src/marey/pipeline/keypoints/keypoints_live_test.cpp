@@ -186,8 +186,8 @@ TEST(KeypointsLive, KeepsEverybodysNumberAndRarelyRunsTheDetector) {
   EXPECT_LT(sum / count, 0.035) << "m, with a network's bias of 20 mm and noise of 8 px";
   corridor::Summary summary;
   stage->report(summary);
-  EXPECT_LE(summary.figures["person_searches"], 4 + 4 * 6 / 2 + 4) << "in 4 cameras and 6 s";
-  EXPECT_EQ(summary.figures["people"], 3);
+  EXPECT_LE(summary.body_points.value().person_searches, 4 + 4 * 6 / 2 + 4) << "in 4 cameras and 6 s";
+  EXPECT_EQ(summary.body_points.value().people, 3);
   EXPECT_TRUE(summary.warnings.empty()) << summary.warnings.front();
 }
 
@@ -250,8 +250,8 @@ TEST(KeypointsLive, SaysThatCamerasAreExchanged) {
   stage->report(summary);
   const bool stated = std::any_of(summary.warnings.begin(), summary.warnings.end(),
                                   [](const std::string& warning) { return warning.find("exchange them") != std::string::npos; });
-  EXPECT_TRUE(stated) << summary.figures["people_placed"] << " of " << summary.figures["people_in_images"] << ", noise "
-                      << summary.figures["noise"];
+  EXPECT_TRUE(stated) << summary.body_points.value().people_placed << " of " << summary.body_points.value().people_in_images
+                      << ", noise " << summary.body_points.value().noise;
 }
 
 TEST(KeypointsLive, SaysThatNoPersonWasSeen) {

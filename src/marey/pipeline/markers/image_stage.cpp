@@ -102,8 +102,7 @@ class ImageMarkerStage final : public corridor::Stage {
   void report(corridor::Summary& summary) const override {
     summary.detections = detections_;
     if (noise_) {
-      summary.figures["measurement_px"] = noise_->measurement_sigma;
-      summary.figures["acceleration_px_s2"] = noise_->acceleration;
+      summary.noise = {noise_->measurement_sigma, noise_->acceleration};
     } else if (options_.fit_noise && !options_.live) {
       summary.warnings.push_back(header_.name +
                                  ": too little moves in its beginning to tell the noise from; the defaults were kept");

@@ -73,8 +73,7 @@ class MarkersInSpace : public corridor::Stage {
 
   void report(corridor::Summary& summary) const override {
     points_.report(summary);
-    const auto residual = decisions_.residual();
-    if (residual) summary.figures["residual_px"] = *residual;
+    summary.points->residual_px = decisions_.residual();
     const auto report_step = [&](const char* step, const StageTimes& times) {
       summary.steps.push_back({step, times.count(), times.quantile(0.5), times.quantile(0.99)});
     };

@@ -73,7 +73,7 @@ TEST(Reconstruct, AWalkBecomesATakeWithTheNamesKept) {
   simulate::write_room(scene, folder.path());
   const auto summary = reconstruct(format::rig::read_rig(folder / "rig.toml"), folder / "observations.csv", folder / "walk.marey");
   EXPECT_EQ(summary.frames, 600);
-  EXPECT_NEAR(summary.figures.at("noise_px"), 0.1, 0.02);
+  EXPECT_NEAR(summary.points.value().noise_px, 0.1, 0.02);
   EXPECT_EQ(summary.steps.size(), 5);
   Score score = score_of(folder / "walk.marey", scene);
   EXPECT_GT(score.points, 0.95 * 600 * 30);
@@ -161,7 +161,7 @@ TEST(Reconstruct, ATakeIsSolvedAgainFromWhatItsCamerasSaw) {
   const auto better = reconstruct(rig, folder / "walk.marey", folder / "better.marey");
   EXPECT_EQ(better.frames, first.frames);
   EXPECT_EQ(better.rate_hz, first.rate_hz);
-  EXPECT_EQ(better.figures.at("observations"), first.figures.at("observations"));
+  EXPECT_EQ(better.points.value().observations, first.points.value().observations);
   EXPECT_NEAR(static_cast<double>(better.measured), static_cast<double>(first.measured),
               0.001 * static_cast<double>(first.measured));
   EXPECT_GT(better.filled, 0);

@@ -49,10 +49,8 @@ class SetStage final : public corridor::Stage {
   void report(corridor::Summary& summary) const override {
     stage_->report(summary);
     summary.steps.push_back({"names", named_.times().count(), named_.times().quantile(0.5), named_.times().quantile(0.99)});
-    summary.figures["set_points"] = static_cast<double>(named_.points());
-    summary.figures["set_named"] = static_cast<double>(named_.named());
-    summary.figures["set_searched_s"] = named_.searched_s();
-    if (const auto found = named_.found_at_s()) summary.figures["set_found_at_s"] = *found;
+    summary.marker_set = {static_cast<std::int64_t>(named_.points()), static_cast<std::int64_t>(named_.named()),
+                          named_.searched_s(), named_.found_at_s()};
     for (std::string& warning : named_.warnings()) summary.warnings.push_back(std::move(warning));
   }
 

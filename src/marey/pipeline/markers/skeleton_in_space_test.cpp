@@ -68,8 +68,8 @@ TEST(SkeletonInSpace, LiveIsWhatIsSolvedAfterwards) {
   std::vector<std::string> warnings;
   options.skeleton = skeleton_with_markers(folder / "skeleton.toml", warnings);
   const corridor::Summary summary = reconstruct(scene.rig(), folder / "observations.csv", folder / "walk.marey", options);
-  EXPECT_LT(summary.figures.at("skeleton_rms_mm"), 2);
-  EXPECT_EQ(summary.figures.at("skeleton_starts"), 1);
+  EXPECT_LT(summary.skeleton.value().rms_mm.value(), 2);
+  EXPECT_EQ(summary.skeleton.value().initialisations, 1);
   const auto step =
       std::find_if(summary.steps.begin(), summary.steps.end(), [](const auto& each) { return each.name == "skeleton"; });
   ASSERT_NE(step, summary.steps.end());

@@ -52,8 +52,9 @@ class SkeletonStage final : public corridor::Stage {
   void report(corridor::Summary& summary) const override {
     stage_->report(summary);
     summary.steps.push_back({"skeleton", solved_.times().count(), solved_.times().quantile(0.5), solved_.times().quantile(0.99)});
-    if (const auto rms = solved_.rms_m()) summary.figures["skeleton_rms_mm"] = 1000 * *rms;
-    summary.figures["skeleton_starts"] = static_cast<double>(solved_.starts());
+    corridor::SkeletonFigures& figures = summary.skeleton.emplace();
+    if (const auto rms = solved_.rms_m()) figures.rms_mm = 1000 * *rms;
+    figures.initialisations = static_cast<std::int64_t>(solved_.starts());
     for (std::string& warning : solved_.warnings()) summary.warnings.push_back(std::move(warning));
   }
 

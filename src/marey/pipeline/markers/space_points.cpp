@@ -71,11 +71,11 @@ void SpacePoints::warn_of(const reconstruct::MovedCamera& moved) {
 }
 
 void SpacePoints::report(corridor::Summary& summary) const {
-  summary.figures["noise_px"] = noise_.px();
-  summary.figures["observations"] = static_cast<double>(counts_.observations);
-  summary.figures["unexplained"] = static_cast<double>(counts_.unexplained);
-  summary.excluded["points of two rays alone"] = counts_.by_two_rays;
-  for (const auto& [reason, count] : counts_.missed) summary.excluded[std::string(reconstruct::meaning(reason))] = count;
+  corridor::SpacePointFigures& figures = summary.points.emplace();
+  figures.noise_px = noise_.px();
+  figures.observations = counts_.observations, figures.unexplained = counts_.unexplained;
+  figures.two_ray_points = counts_.by_two_rays;
+  for (const auto& [reason, count] : counts_.missed) figures.not_placed[reason] = count;
 }
 
 }  // namespace marey::pipeline::markers

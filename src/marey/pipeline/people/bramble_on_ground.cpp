@@ -173,10 +173,10 @@ class BrambleOnGround final : public GroundStage {
 
   void report(corridor::Summary& summary) const override {
     if (!options_.live) {
-      summary.figures["joining_s"] = second_pass_s_;
       const bool searched =
           std::any_of(cameras_.begin(), cameras_.end(), [](const BrambleCamera& camera) { return camera.ball().has_value(); });
       report_people(people_, options_.ball.has_value(), searched, summary);
+      summary.ground->linking_s = second_pass_s_;
     }
     for (const BrambleCamera& camera : cameras_) camera.report(summary);
     explain_empty_result(summary);

@@ -124,12 +124,12 @@ std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& peo
 }
 
 void report_people(const GroundPeople& people, bool with_ball, bool ball_searched, corridor::Summary& summary) {
-  summary.excluded["off_pitch"] = people.outside;
-  summary.figures["joins"] = static_cast<double>(people.links);
-  summary.figures["doubtful_joins"] = static_cast<double>(people.uncertain_links);
+  summary.dropped.off_pitch = people.outside;
+  corridor::GroundFigures& figures = summary.ground.emplace();
+  figures.links = people.links, figures.uncertain_links = people.uncertain_links;
   if (!with_ball) return;
   const TrackColumns* ball = people.ball ? people.recording.find(*people.ball) : nullptr;
-  summary.figures["ball_samples"] = ball == nullptr ? 0.0 : static_cast<double>(ball->size());
+  figures.ball_samples = ball == nullptr ? 0 : static_cast<std::int64_t>(ball->size());
   if (!ball_searched)
     summary.warnings.push_back(
         "the ball was not searched for: that needs images of a static camera and is calibrated (marey calibrate pitch)");

@@ -106,8 +106,8 @@ class ImageStage : public corridor::Stage {
     if (tracking_.detector() == nullptr) return;
     for (std::string& review_item : review_items_.warnings()) summary.warnings.push_back(std::move(review_item));
     const detect::DetectionCounts counts = tracking_.detector()->detection_counts();
-    if (counts.noise) summary.excluded["noise"] = *counts.noise;
-    if (counts.misfits) summary.excluded["misfits"] = *counts.misfits;
+    summary.dropped.noise = counts.noise;
+    summary.dropped.unexplained_regions = counts.misfits;
   }
 
   /// The camera's motion as boxes alone show it; for images there are other warnings.

@@ -72,7 +72,7 @@ TEST(ImagePeopleStage, DetectionsOfAnotherProgramAreFollowed) {
   EXPECT_EQ(summary.frames, 100);
   EXPECT_EQ(summary.tracks, 3);
   EXPECT_NEAR(summary.seconds, 99 / 25.0, 1e-9);
-  EXPECT_GT(summary.excluded.at("too_brief"), 0);
+  EXPECT_GT(summary.dropped.too_short.value(), 0);
   EXPECT_TRUE(summary.warnings.empty());
   const auto tracks = frames_by_id(folder / "out.txt");
   ASSERT_EQ(tracks.size(), 3u);

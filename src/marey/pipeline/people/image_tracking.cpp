@@ -115,9 +115,9 @@ void ImageTracking::restart(std::span<const Frame> samples) {
 
 void ImageTracking::report(corridor::Summary& summary) const {
   summary.detections = counts_.detections;
-  std::int64_t too_brief = 0;
-  for (const TrackId id : counts_.begun) too_brief += !counts_.confirmed.contains(id);
-  summary.excluded["too_brief"] = too_brief;
+  std::int64_t too_short = 0;
+  for (const TrackId id : counts_.begun) too_short += !counts_.confirmed.contains(id);
+  summary.dropped.too_short = too_short;
 }
 
 }  // namespace marey::pipeline::people

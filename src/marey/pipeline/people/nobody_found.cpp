@@ -9,10 +9,9 @@ namespace {
 
 constexpr double kSlow = 4;  // frames/s, below which people go farther from frame to frame than can be reported
 
-std::int64_t excluded(const corridor::Summary& summary, std::string_view reason,
-                      std::int64_t corridor::Summary::Camera::* of_camera) {
-  const auto found = summary.excluded.find(reason);
-  std::int64_t count = found != summary.excluded.end() ? found->second : 0;
+std::int64_t dropped(const corridor::Summary& summary, std::optional<std::int64_t> corridor::Dropped::* in_image,
+                     std::int64_t corridor::Summary::Camera::* of_camera) {
+  std::int64_t count = (summary.dropped.*in_image).value_or(0);
   for (const corridor::Summary::Camera& camera : summary.cameras) count += camera.*of_camera;
   return count;
 }
@@ -26,8 +25,8 @@ std::string counted(std::int64_t count, std::string_view what) {
 std::optional<std::string> why_none(const corridor::Summary& summary) {
   if (summary.tracks > 0 || summary.stopped) return std::nullopt;
   std::string stated = "no person was found: ";
-  const std::int64_t misfits = excluded(summary, "misfits", &corridor::Summary::Camera::misfits);
-  const std::int64_t noise = excluded(summary, "noise", &corridor::Summary::Camera::noise);
+  const std::int64_t misfits = dropped(summary, &corridor::Dropped::unexplained_regions, &corridor::Summary::Camera::misfits);
+  const std::int64_t noise = dropped(summary, &corridor::Dropped::noise, &corridor::Summary::Camera::noise);
   if (summary.frames < 3)
     return stated + fmt::format("there is no more than {} to see any person move in", counted(summary.frames, "frame"));
   if (summary.detections > 0) {

@@ -80,8 +80,8 @@ class RecordedGround final : public DetectedGround {
   }
 
   void report(corridor::Summary& summary) const override {
-    summary.figures["joining_s"] = second_pass_s_;
     report_people(people_, options_.ball.has_value(), cameras_.search_ball(), summary);
+    summary.ground->linking_s = second_pass_s_;
     cameras_.report(summary);
     explain_empty_result(summary);
     if (options_.learn.agreement) report_agreement(summary);

@@ -65,7 +65,7 @@ draw::MatchReport::Person page_of(const analyse::PersonMeasure& person) {
 
 std::string measurement_csv(const analyse::Measurement& measured, const analyse::MeasureOptions& options) {
   std::string text =
-      "id,label,team,distance_m,mean_mps,top_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y,"
+      "id,label,team,distance_m,mean_mps,max_mps,sprints,seconds,accelerations,decelerations,mean_x,mean_y,"
       "top_sigma_mps,seen_s,impossible";
   for (const char* unit : {"s", "m"}) {
     for (std::size_t zone = 0; zone <= options.zones.size(); ++zone)
