@@ -82,12 +82,12 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
     if (i < summary.cameras.size()) reported["missed"] = summary.cameras[i].missed;
   }
   if (const auto& keypoints = summary.body_points) {
-    json.update({{"people", keypoints->people},
-                 {"people_in_images", keypoints->people_in_images},
-                 {"people_placed", keypoints->people_placed},
-                 {"regions", keypoints->regions},
-                 {"person_searches", keypoints->person_searches},
-                 {"noise", keypoints->noise}});
+    json["people"] = keypoints->people;
+    json["people_in_images"] = keypoints->people_in_images;
+    json["people_placed"] = keypoints->people_placed;
+    json["regions"] = keypoints->regions;
+    json["person_searches"] = keypoints->person_searches;
+    json["noise"] = keypoints->noise;
   }
   add_set_figures(summary, json);
   add_skeleton_figures(summary, json);

@@ -119,9 +119,9 @@ void add_reconstruct(Command& program) {
   Command command =
       program.subcommand("reconstruct", "Place and follow the markers, or people's keypoints, that several calibrated cameras see");
   add_rig_inputs(command, options->inputs);
-  command.output_file("-o,--output", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv")
+  command.output_file("-o,--output", options->out, "what is written: a take, NAME.marey; or .c3d, .trc, .csv, .mcap")
       .required()
-      .ends_in({".marey", ".c3d", ".trc", ".csv"});
+      .ends_in({".marey", ".c3d", ".trc", ".csv", ".mcap"});
   constexpr std::array<std::pair<const char*, bool>, 2> kTargets{{{"markers", false}, {"keypoints", true}}};
   command.choice(
       "--targets", options->of_keypoints, kTargets,

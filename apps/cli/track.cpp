@@ -189,7 +189,7 @@ void add_outputs(Command& command, TrackCommand& options) {
       .text("--format", options.format,
             "one of " + format::names_of_written(format::Content::image) +
                 " (default: by OUTPUT's ending, else mot, with --contour jsonl, for keypoints csv)")
-      .check([](const std::string& name) { format::format_to_write({}, name, format::Content::image); });
+      .check(format::check_written_name);
   command.also_writes([&options]() -> std::vector<std::string> {
     if (options.on_ground) return ground_files(ground_command(options));
     if (options.out.empty()) return {output_of(options).tracks};

@@ -4,9 +4,13 @@
 
 #include "marey/core/error.h"
 #include "marey/core/rig_sources.h"
+#include "marey/core/stop.h"
 #include "marey/files/overwriting.h"
+#include "marey/files/temporary_file.h"
+#include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/rig/rig_turns.h"
+#include "marey/pipeline/take/convert.h"
 
 #include "command_line.h"
 #include "ground_summary.h"
@@ -15,35 +19,66 @@
 namespace marey::cli {
 namespace {
 
+constexpr const char* kBoxes = "mot";  // with --camera: the boxes in its view
+
+void check_boxes(const GroundCommand& command, const std::string& camera) {
+  const bool named_mot = command.format == kBoxes || (command.format.empty() && !camera.empty());
+  if (command.format == kBoxes && camera.empty())
+    throw WrongUsage("--format mot holds the boxes in one camera's view; name the camera with --camera");
+  if (!named_mot && !camera.empty())
+    throw WrongUsage("--camera {} is for --format mot; places on the ground are those of all cameras together", camera);
+  if (named_mot && command.format.empty() && !command.out.empty() && !is_stream(command.out) && !command.out.ends_with(".txt"))
+    throw WrongUsage("--output {}: mot is written, so its name ends in .txt; or name the format with --format", command.out);
+}
+
 pipeline::people::GroundOutput output_of(const GroundCommand& command) {
   pipeline::people::GroundOutput output = command.job.output;
-  output.tracks = command.out;
-  const char* typical = command.out.ends_with(".marey") ? "take" : output.boxes_of.empty() ? "csv" : "mot";
-  const std::string format = command.format.empty() ? typical : command.format;
-  if (format != "csv" && format != "take" && format != "mot")
-    throw WrongUsage("--format {}: places on the ground are written as csv or take, the boxes in one camera's view as mot", format);
-  if (format == "mot" && output.boxes_of.empty())
-    throw WrongUsage("--format mot holds the boxes in one camera's view; name the camera with --camera");
-  if (format != "mot" && !output.boxes_of.empty())
-    throw WrongUsage("--camera {} is for --format mot; places on the ground are those of all cameras together", output.boxes_of);
-  const char* ending = format == "mot" ? ".txt" : format == "take" ? ".marey" : ".csv";
-  if (format == "take" && !command.out.empty() && !command.out.ends_with(ending))
+  output.tracks = command.out == "-" ? "/dev/stdout" : command.out;
+  check_boxes(command, output.boxes_of);
+  const std::string stem = std::filesystem::path(command.rig).stem().string();
+  if (!output.boxes_of.empty()) {
+    if (command.out.empty()) output.tracks = stem + "_tracks.txt";
+    return output;
+  }
+  const bool unnamed = command.out.empty() || is_stream(command.out);
+  const std::string name = command.format.empty() && unnamed ? "csv" : command.format;
+  const format::Format& format = format::format_to_write(unnamed ? std::string() : command.out, name, format::Content::ground);
+  if (format.name == "take" && !command.out.empty() && !command.out.ends_with(".marey"))
     throw WrongUsage("--output {}: a take's name ends in .marey", command.out);
-  if (command.format.empty() && !command.out.empty() && !is_stream(command.out) && !command.out.ends_with(ending))
-    throw WrongUsage("--output {}: {} is written, so its name ends in {}; or name the format with --format", command.out, format,
-                     ending);
-  if (command.out == "-") output.tracks = "/dev/stdout";
-  if (command.out.empty())
-    output.tracks =
-        std::filesystem::path(command.rig).stem().string() + (format == "mot" ? "_tracks.txt" : std::string("_ground") + ending);
+  output.format = format.name;
+  if (command.out.empty()) output.tracks = stem + "_ground" + first_ending(format);
   return output;
+}
+
+bool is_written_whole(const pipeline::people::GroundOutput& output) {
+  if (!output.boxes_of.empty()) return false;
+  return format::format_named(output.format, format::Content::ground)->create == nullptr;
+}
+
+/// Formats that begin with what only the end gives are written from a take that is gone afterwards.
+pipeline::people::GroundSummary track_to(const Rig& rig, const pipeline::people::GroundOutput& output,
+                                         const pipeline::people::PeopleOnGroundOptions& options, const Hooks& hooks) {
+  if (!is_written_whole(output)) return pipeline::people::track_ground(rig, output, options, hooks);
+  pipeline::people::GroundOutput recorded = output;
+  recorded.tracks = output.tracks + ".part.marey", recorded.format = "take";
+  const TemporaryFile take(recorded.tracks);
+  pipeline::people::GroundSummary summary = pipeline::people::track_ground(rig, recorded, options, hooks);
+  const StopScope keeps_partial_results{{}};  // of a run that was stopped too
+  pipeline::take::ConvertOptions how;
+  how.format = output.format;
+  for (std::string& warning : pipeline::take::convert(recorded.tracks, output.tracks, how).warnings)
+    summary.warnings.push_back(std::move(warning));
+  return summary;
 }
 
 }  // namespace
 
 std::vector<std::string> ground_files(const GroundCommand& command) {
   std::vector<std::string> files;
-  if (command.out.empty()) files.push_back(output_of(command).tracks);
+  const pipeline::people::GroundOutput output = output_of(command);
+  if (command.out.empty()) files.push_back(output.tracks);
+  if (const std::string second = format::file_next_to(output.tracks); !second.empty() && is_written_whole(output))
+    files.push_back(second);
   std::error_code error;
   if (!std::filesystem::is_regular_file(command.rig, error)) return files;
   const std::vector<std::string> overlays = pipeline::people::overlays_of(format::rig::read_rig(command.rig), command.job.output);
@@ -59,7 +94,7 @@ void track_on_ground(GroundCommand command) {
   pipeline::people::PeopleOnGroundOptions options = resolved(command.job, rig);
   options.ptz = format::rig::read_ptz(command.rig);
   run_with_progress(
-      command.quiet, [&](const Hooks& hooks) { return pipeline::people::track_ground(rig, output, options, hooks); },
+      command.quiet, [&](const Hooks& hooks) { return track_to(rig, output, options, hooks); },
       [&](const pipeline::people::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);

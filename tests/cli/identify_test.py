@@ -111,6 +111,18 @@ class Identify(unittest.TestCase):
         marey("edit", self.take, "--undo-to", "0", "-q")
         self.assertEqual(self.right(), 0, "all of it can be taken back")
 
+    def test_review_lists_of_earlier_versions_are_read(self):
+        self.who("--min-probability", "0", "-q")
+        self.answer(["yes" if row["kind"] == "swap" else "" for row in self.doubts()])
+        wanted = self.places()
+        marey("edit", self.take, "--undo", "-q")
+        text = (self.folder / "answers.csv").read_text()
+        for today, before in (("track_a,track_b", "a,b"), ("base_edit", "edit"), (",swap,", ",exchange,"), (",continuity,", ",same,"), (",identity,", ",who,")):
+            text = text.replace(today, before)
+        (self.folder / "answers.csv").write_text(text)
+        marey("identify", self.take, "--answers", self.folder / "answers.csv")
+        self.assertEqual(self.places(), wanted)
+
     def test_names_go_over_gaps(self):
         self.record(lambda who, t: who, left_out=lambda track, t: track == 5 and 100 < t < 106,
                     moved=lambda track, t: 7 if track == 5 and t > 100 else track)

@@ -5,6 +5,7 @@ Usage: ptz_test.py MAREY [unittest options]. Nothing else is needed.
 
 import csv
 import json
+import re
 import pathlib
 import shutil
 import subprocess
@@ -45,6 +46,17 @@ class Ptz(unittest.TestCase):
         self.run_marey("track", "film/found.toml", "--ground", "main=film/boxes.txt", "-o", "film/found.csv", "-q")
         score = json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", "film/found.csv", "--distance", "1.5", "--json").stdout)
         self.assertTrue(score)
+
+    def test_rigs_of_earlier_versions_are_read(self):
+        rig = (self.folder / "film/rig.toml").read_text()
+        earlier = rig
+        for today, before in (("ptz", "turns"), ("pivot", "tripod"), ("axis_tilt", "lean"), ("radial", "bend")):
+            self.assertRegex(earlier, rf"(?m)^{today} = ")
+            earlier = re.sub(rf"(?m)^{today} = ", f"{before} = ", earlier)
+        (self.folder / "film/earlier.toml").write_text(earlier)
+        for name in ("rig", "earlier"):
+            self.run_marey("track", f"film/{name}.toml", "--ground", "main=film/boxes.txt", "-o", f"{name}.csv", "-q")
+        self.assertEqual((self.folder / "rig.csv").read_bytes(), (self.folder / "earlier.csv").read_bytes())
 
     def test_images_need_a_network(self):
         said = self.run_marey("track", "film/rig.toml", "--ground", "-o", "none.csv", code=1).stderr

@@ -118,6 +118,22 @@ class TrackGround(unittest.TestCase):
         self.assertEqual([film["frames"] for film in told], [50] * 4)
         self.assertEqual([round(film["seconds"], 3) for film in told], [1.96] * 4)
 
+    def test_every_format_of_people_on_the_ground_is_written(self):
+        rig = self.made / "boxes" / "rig.toml"
+        self.track(rig, "-o", "match.marey", "-q")
+        for name, format_name in (("match.dat", "tracab"), ("match.json", "soccernet"), ("match.mcap", "mcap")):
+            self.track(rig, "-o", name, "-q")
+            said = json.loads(self.marey("info", name, "--json").stdout)
+            self.assertEqual(said["format"], format_name)
+            self.marey("convert", "match.marey", "converted_" + name, "-q")
+            if format_name != "mcap":  # which holds when it was written
+                self.assertEqual((self.folder / name).read_bytes(), (self.folder / ("converted_" + name)).read_bytes(), name)
+        self.track(rig, "-o", "other.txt", "--format", "tracab", "-q")
+        self.assertEqual([path.name for path in self.folder.glob("*.part.marey")], [])
+        said = self.refused(rig, "--ground", "-o", "match.c3d", code=2)
+        self.assertIn("people on the ground", said)
+        self.assertIn("tracab", self.refused(rig, "--ground", "-o", "match.csv", "--format", "c3d", code=2))
+
     def test_one_cameras_boxes(self):
         rig = self.made / "boxes" / "rig.toml"
         self.track(rig, "-o", "cam2.txt", "--format", "mot", "--camera", "cam2", "-q")

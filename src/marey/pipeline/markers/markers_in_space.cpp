@@ -81,7 +81,7 @@ class MarkersInSpace : public corridor::Stage {
     report_step("track", times_.tracking);
     report_step("blobs to instants", times_.all);
     summary.warnings.insert(summary.warnings.begin(), points_.warnings().begin(), points_.warnings().end());
-    if (residual) return;
+    if (summary.points->residual_px) return;
     summary.warnings.push_back("no marker could be placed: are the cameras of this rig the ones that recorded, and synchronised?");
   }
 

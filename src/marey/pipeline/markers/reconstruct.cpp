@@ -1,7 +1,6 @@
 #include "marey/pipeline/markers/reconstruct.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/files/temporary_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/take/take_file.h"
@@ -16,15 +16,6 @@
 
 namespace marey::pipeline::markers {
 namespace {
-
-/// A file that is gone with its owner.
-struct ForAWhile {
-  std::string path;
-  ~ForAWhile() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-};
 
 /// Most formats begin with values available only at the end: the take is read twice.
 void rewrite(const std::string& take, const std::string& out, const format::Format& format) {
@@ -91,10 +82,10 @@ corridor::Summary reconstruct(const Rig& rig, const std::string& observations, c
     return reconstruct(rig, observations, sinks, options, hooks);
   };
   if (format.name == "take") return record(out);
-  const ForAWhile take{out + ".part.marey"};
-  corridor::Summary summary = record(take.path);
+  const TemporaryFile take(out + ".part.marey");
+  corridor::Summary summary = record(take.path());
   const StopScope keeps_what_there_is{{}};  // of a run that was stopped too
-  rewrite(take.path, out, format);
+  rewrite(take.path(), out, format);
   return summary;
 }
 

@@ -13,7 +13,8 @@
 #include "marey/core/rig_sources.h"
 #include "marey/draw/overlay_video.h"
 #include "marey/draw/pitch_view_video.h"
-#include "marey/format/match/ground_file.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
 #include "marey/format/take/take_file.h"
 #include "marey/format/tracks/view_box_file.h"
 #include "marey/pipeline/corridor/stabilised_camera.h"
@@ -61,14 +62,12 @@ void add_videos(corridor::Sinks& sinks, const GroundOutput& output, const std::v
 corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options,
                          const std::vector<corridor::Feed>& feeds) {
   corridor::Sinks sinks;
-  if (output.tracks.empty()) {
-    // the caller's alone
-  } else if (output.tracks.ends_with(".marey")) {
-    sinks.add(std::make_unique<format::take::TakeWriter>(output.tracks));
-  } else if (output.boxes_of.empty()) {
-    sinks.add(std::make_unique<format::match::GroundWriter>(output.tracks));
-  } else {
+  if (!output.boxes_of.empty()) {
     sinks.add(std::make_unique<format::tracks::ViewBoxFile>(output.tracks, id_of(rig, output.boxes_of)));
+  } else if (!output.tracks.empty()) {
+    const bool by_name = output.format.empty() && format::format_of_name(output.tracks, format::Content::ground) != nullptr;
+    const std::string name = by_name || !output.format.empty() ? output.format : "ground";
+    sinks.add(format::create_recording(output.tracks, format::format_to_write(output.tracks, name, format::Content::ground)));
   }
   if (!output.overlays.empty()) add_videos(sinks, output, feeds);
   if (!output.pitch_view.empty()) {
