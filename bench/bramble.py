@@ -3,7 +3,7 @@
 
     bench/bramble.py build/release/marey [--people 2,4,6,8,10] [--seeds 1,2,3] [--frames 250] [--work FOLDER]
 
-For each number of people the videos of all seeds (`marey simulate people --situation crowd`) are followed by `marey track --background-image` at its
+For each number of people the videos of all seeds (`marey simulate people --situation crowd`) are followed by `marey track --ground` at its
 defaults, by the same with `--association gnn --live`, by `--association bramble` and by that with `--live`: the first and third with the
 second pass that joins and smooths, the others as each instant came. Evaluated on the ground by `marey evaluate --distance 1` with hidden
 people counted as missed; figures are means over the seeds. Frames a second are of the whole run, decoding included, on this machine.

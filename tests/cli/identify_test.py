@@ -161,7 +161,7 @@ class Identify(unittest.TestCase):
         self.assertEqual(self.places(), done)
 
         marey("edit", self.take, "--undo", "-q")
-        a, b = (asked[first][column].split(" ")[0] for column in "ab")
+        a, b = (asked[first][column].split(" ")[0] for column in ("track_a", "track_b"))
         marey("edit", self.take, f"swap {a} {b} {int(asked[first]['frame']) + 5}:", "-q")
         by_hand = self.places()
         self.assertIn("(1 applied before)", self.answer(answers).stdout)
