@@ -8,6 +8,7 @@ void add_calibrate(Command& program) {
   Command calibrate = program.subcommand("calibrate", "Find out how the cameras see: their lenses, and where they stand");
   add_calibrate_lens(calibrate);
   add_calibrate_wand(calibrate);
+  add_calibrate_people(calibrate);
   add_calibrate_ground(calibrate);
   add_calibrate_board(calibrate);
   add_calibrate_pitch(calibrate);

@@ -14,6 +14,7 @@
 #include "marey/pipeline/calibrate/live_blobs.h"
 #include "marey/pipeline/jobs/detection_rows.h"
 
+#include "camera_distance.h"
 #include "command_line.h"
 #include "commands.h"
 #include "ground_frame.h"
@@ -44,16 +45,6 @@ calibrate::wand::WandShape wand_of(const std::string& text) {
   wand.distances = numbers_in(text, ',', closed(-100, 100), "the markers' distances from the first in m, as 0,0.12,0.30, or led");
   if (wand.distances.size() >= 2) return wand;
   throw WrongUsage("{}: a wand has two or three markers; a single light is \"led\"", text);
-}
-
-std::optional<calibrate::wand::KnownDistance> distance_of(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  const auto comma = text.find(','), equal = text.find('=');
-  if (comma == std::string::npos || equal == std::string::npos || equal < comma) {
-    throw WrongUsage("{}: write CAM1,CAM2=METRES, two cameras' names and how far they stand apart", text);
-  }
-  const double metres = number_in(text.substr(equal + 1), "m", above(0, 1e5));
-  return calibrate::wand::KnownDistance{text.substr(0, comma), text.substr(comma + 1, equal - comma - 1), metres};
 }
 
 Json as_json(const calibrate::FitQuality& fit) {

@@ -42,6 +42,7 @@ void add_calibrate(Command& program);
 void add_calibrate_lens(Command& calibrate);  ///< below `calibrate`
 void add_calibrate_pitch(Command& calibrate);
 void add_calibrate_wand(Command& calibrate);
+void add_calibrate_people(Command& calibrate);
 void add_calibrate_ground(Command& calibrate);
 void add_calibrate_board(Command& calibrate);
 

@@ -39,16 +39,44 @@ markers::MarkersInSpaceOptions resolved(const ReconstructMarkers& job, std::vect
   return options;
 }
 
+namespace {
+
+void add_set_row(Table& table, std::string& set) {
+  table
+      .text("keypoint-set", set,
+            "the keypoint set of files that do not name their points: " + keypoint_set_names() + " (default: by the points)")
+      .checked([](const std::string& name) { keypoint_set_named(name); });
+}
+
+void add_video_rows(Table& table, std::string& model, PeopleDetection& detection) {
+  table.group("Keypoints in videos");
+  add_model_row(table, model);
+  table.input_file("detector", detection.network,
+                   "a detection network in place of the one for people: the file that describes it (docs/network.md)");
+  table.flag("with-background", detection.without_background,
+             "people are detected by what changes too, which is faster; default: by the network alone", false);
+  table.whole("detector-interval", detection.every, "N", 1, 1000, "run the networks on every N-th frame");
+}
+
+keypoints::FindInImages find_by(const PeopleDetection& detection, const std::string& model) {
+  return [detection, model](const RigCamera& camera, const Hooks& hooks) {
+    TrackPeople search;
+    search.keypoints = true;
+    search.detection = detection;
+    search.model = model;
+    return people::find_keypoints(camera, resolved(search), hooks);
+  };
+}
+
+}  // namespace
+
 Table table_of(ReconstructKeypoints& job) {
   keypoints::KeypointsInSpaceOptions& how = job.options;
   Table table;
   table.always("targets", "keypoints");
   add_rate_row(table, how.rate_hz);
   table.group("Keypoints");
-  table
-      .text("keypoint-set", how.set,
-            "the keypoint set of files that do not name their points: " + keypoint_set_names() + " (default: by the points)")
-      .checked([](const std::string& name) { keypoint_set_named(name); });
+  add_set_row(table, how.set);
   table.whole("people", how.people, "N", 0, 1000, "keep the N people in the most images; 0: all");
   table.flag("no-smooth", how.smooth, "each instant by itself: no trajectories over all instants, no gap filled", false);
   table.flag("no-offsets", how.find_offsets,
@@ -56,25 +84,29 @@ Table table_of(ReconstructKeypoints& job) {
              false);
   table.number("max-offset", how.farthest_offset_s, "s", closed(0.01, 10), "the largest offset that is searched")
       .depending_on({"no-offsets"});
-  table.group("Keypoints in videos");
-  add_model_row(table, job.model);
-  table.input_file("detector", job.detection.network,
-                   "a detection network in place of the one for people: the file that describes it (docs/network.md)");
-  table.flag("with-background", job.detection.without_background,
-             "people are detected by what changes too, which is faster; default: by the network alone", false);
-  table.whole("detector-interval", job.detection.every, "N", 1, 1000, "run the networks on every N-th frame");
+  add_video_rows(table, job.model, job.detection);
+  return table;
+}
+
+Table table_of(CalibratePeople& job) {
+  Table table;
+  table.always("targets", "keypoints");
+  add_rate_row(table, job.options.rate_hz);
+  table.group("Keypoints");
+  add_set_row(table, job.options.set);
+  add_video_rows(table, job.model, job.detection);
   return table;
 }
 
 keypoints::KeypointsInSpaceOptions resolved(const ReconstructKeypoints& job) {
   keypoints::KeypointsInSpaceOptions options = job.options;
-  options.find = [detection = job.detection, model = job.model](const RigCamera& camera, const Hooks& hooks) {
-    TrackPeople search;
-    search.keypoints = true;
-    search.detection = detection;
-    search.model = model;
-    return people::find_keypoints(camera, resolved(search), hooks);
-  };
+  options.find = find_by(job.detection, job.model);
+  return options;
+}
+
+calibrate::CalibratePeopleOptions resolved(const CalibratePeople& job) {
+  calibrate::CalibratePeopleOptions options = job.options;
+  options.find = find_by(job.detection, job.model);
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "marey/pipeline/calibrate/calibrate_people.h"
 #include "marey/pipeline/jobs/detection_rows.h"
 #include "marey/pipeline/jobs/space_names.h"
 #include "marey/pipeline/keypoints/body_keypoints.h"
@@ -30,6 +31,16 @@ struct ReconstructKeypoints {
   std::string model = keypoints::KeypointOptions{}.model;
   keypoints::KeypointsInSpaceOptions options = {};
 };
+
+/// `marey calibrate people`: the same search.
+struct CalibratePeople {
+  PeopleDetection detection = {.without_background = true};
+  std::string model = keypoints::KeypointOptions{}.model;
+  calibrate::CalibratePeopleOptions options = {};
+};
+
+Table table_of(CalibratePeople& job);
+calibrate::CalibratePeopleOptions resolved(const CalibratePeople& job);
 
 Table table_of(ReconstructKeypoints& job);
 /// With the search in videos. It loads its networks when the first video is read.

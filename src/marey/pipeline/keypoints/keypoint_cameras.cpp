@@ -25,10 +25,10 @@ KeypointSequence sequence_of(const RigCamera& camera, const std::string& path, c
               camera.name);
 }
 
-void read_camera(RigCamera& camera, const std::string& set, std::optional<double> rate_hz, const FindInImages& find,
+void read_camera(RigCamera& camera, Cameras which, const std::string& set, std::optional<double> rate_hz, const FindInImages& find,
                  const Hooks& hooks, std::optional<KeypointCamera>& into, std::vector<std::string>& warnings, bool& assumed) {
   const std::string path = keypoint_file_of(camera);
-  if (path.empty() || !camera.camera()) return;
+  if (path.empty() || (which == Cameras::calibrated && !camera.camera())) return;
   KeypointCamera read{
       .sequence = sequence_of(camera, path, set, find, hooks), .rate_hz = 0, .offset_s = camera.offset_s.value_or(0)};
   if (read.sequence.size) fit_to_size(camera, *read.sequence.size);
@@ -62,14 +62,14 @@ std::string keypoint_file_of(const RigCamera& camera) {
   return camera.detections.empty() ? camera.source : camera.detections;
 }
 
-std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const std::string& set, std::optional<double> rate_hz,
-                                                                 const FindInImages& find, const Hooks& hooks,
-                                                                 std::vector<std::string>& warnings) {
+std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, Cameras which, const std::string& set,
+                                                                 std::optional<double> rate_hz, const FindInImages& find,
+                                                                 const Hooks& hooks, std::vector<std::string>& warnings) {
   std::vector<std::optional<KeypointCamera>> cameras(rig.cameras.size());
   bool assumed = false;
   std::vector<const KeypointSequence*> read;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
-    read_camera(rig.cameras[c], set, rate_hz, find, hooks, cameras[c], warnings, assumed);
+    read_camera(rig.cameras[c], which, set, rate_hz, find, hooks, cameras[c], warnings, assumed);
     if (cameras[c] && !cameras[c]->sequence.frames.empty()) read.push_back(&cameras[c]->sequence);
   }
   const auto calibrated =

@@ -17,12 +17,15 @@ using FindInImages = std::function<KeypointSequence(const RigCamera&, const Hook
 /// Where a camera's keypoints are: its `detections`, else its `source`.
 std::string keypoint_file_of(const RigCamera& camera);
 
-/// The keypoints of the rig's calibrated cameras; the rig is fitted to the images' sizes. `set` is that of files that do not
+/// Which of a rig's cameras are read.
+enum class Cameras { calibrated, all };
+
+/// The keypoints of the rig's cameras; the rig is fitted to the images' sizes. `set` is that of files that do not
 /// specify, `rate_hz` counts if neither the rig nor a file specifies it. A take is read too; a camera whose source is neither is
 /// given to `find`, if there is one. Throws Error if a file cannot be read, fewer than two cameras have keypoints and the rig has
 /// more than one that is calibrated, or keypoint sets differ.
-std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, const std::string& set, std::optional<double> rate_hz,
-                                                                 const FindInImages& find, const Hooks& hooks,
-                                                                 std::vector<std::string>& warnings);
+std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, Cameras which, const std::string& set,
+                                                                 std::optional<double> rate_hz, const FindInImages& find,
+                                                                 const Hooks& hooks, std::vector<std::string>& warnings);
 
 }  // namespace marey::pipeline::keypoints

@@ -43,7 +43,8 @@ class KeypointJob {
         options_(options),
         summary_(summary),
         hooks_(hooks),
-        files_(read_keypoint_cameras(rig_, options.set, options.rate_hz, options.find, hooks, summary.warnings)) {
+        files_(
+            read_keypoint_cameras(rig_, Cameras::calibrated, options.set, options.rate_hz, options.find, hooks, summary.warnings)) {
     for (std::size_t c = 0; c < files_.size(); ++c) cameras_.push_back(files_[c] ? rig_.cameras[c].camera() : std::nullopt);
     for (const auto& file : files_) {
       if (file && !file->sequence.frames.empty()) {

@@ -1,0 +1,125 @@
+#include "marey/calibrate/people/people_rig.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "marey/core/error.h"
+#include "marey/simulate/room/room_keypoints.h"
+
+namespace marey::calibrate::people {
+namespace {
+
+using simulate::room::KeypointErrors;
+using simulate::room::RoomOptions;
+using simulate::room::RoomScene;
+
+/// What a room's cameras see, and nothing of how they stand.
+PeopleInput input_of(const RoomScene& scene, const KeypointErrors& errors) {
+  PeopleInput input;
+  for (std::size_t c = 0; c < scene.rig().cameras.size(); ++c) {
+    const RigCamera& camera = scene.rig().cameras[c];
+    input.rig.cameras.push_back({.name = camera.name, .size = camera.size});
+    input.cameras.push_back({keypoints_of_camera(scene, static_cast<int>(c), errors), scene.options().rate_hz});
+  }
+  return input;
+}
+
+RoomOptions walking(int actors, double seconds) {
+  RoomOptions options;
+  options.cameras = 4;
+  options.actors = actors;
+  options.rate_hz = 25;
+  options.frames = static_cast<std::int64_t>(25 * seconds);
+  options.distorted = false;
+  return options;
+}
+
+double apart(const Rig& rig, std::size_t a, std::size_t b) {
+  return (rig.cameras[a].camera_from_world->inverse().translation - rig.cameras[b].camera_from_world->inverse().translation).norm();
+}
+
+struct RigErrors {
+  double distance = 0;  ///< relative, the worst of those between cameras but the first two
+  double rotation = 0;  ///< rad, of a camera against the first, the worst
+  double focal = 0;     ///< relative, the worst
+  double offset_s = 0;  ///< against the first camera's, the worst
+};
+
+RigErrors errors_of(const Rig& found, const Rig& truth) {
+  RigErrors errors;
+  for (std::size_t a = 0; a < truth.cameras.size(); ++a) {
+    for (std::size_t b = a + 1; b < truth.cameras.size(); ++b)
+      errors.distance = std::max(errors.distance, std::abs(apart(found, a, b) / apart(truth, a, b) - 1));
+    const auto turn = [&](const Rig& rig) {
+      return Matrix<3>(rig.cameras[a].camera_from_world->rotation * rig.cameras[0].camera_from_world->rotation.transpose());
+    };
+    const Matrix<3> off = turn(found) * turn(truth).transpose();
+    errors.rotation = std::max(errors.rotation, std::acos(std::clamp((off.trace() - 1) / 2, -1.0, 1.0)));
+    const double focal = geometry::focal_of(*found.cameras[a].lens).x() / geometry::focal_of(*truth.cameras[a].lens).x();
+    errors.focal = std::max(errors.focal, std::abs(focal - 1));
+    const auto offset = [&](const Rig& rig) { return rig.cameras[a].offset_s.value_or(0) - rig.cameras[0].offset_s.value_or(0); };
+    errors.offset_s = std::max(errors.offset_s, std::abs(offset(found) - offset(truth)));
+  }
+  return errors;
+}
+
+PeopleOptions by_distance(const Rig& truth) {
+  PeopleOptions options;
+  options.distance = wand::KnownDistance{truth.cameras[0].name, truth.cameras[1].name, apart(truth, 0, 1)};
+  return options;
+}
+
+TEST(PeopleRig, OnePersonWhoWalksCalibratesFourCameras) {
+  const RoomScene scene(walking(1, 20));
+  const PeopleRig found = calibrate_people(input_of(scene, {}), by_distance(scene.rig()));
+  EXPECT_EQ(found.people, 1);
+  const RigErrors errors = errors_of(found.rig, scene.rig());
+  RecordProperty("distance", std::to_string(errors.distance));
+  EXPECT_LT(errors.distance, 0.02);
+  EXPECT_LT(errors.rotation, 0.02);
+  EXPECT_LT(errors.focal, 0.03);
+  EXPECT_NEAR(found.height, 1.75, 0.15);
+  for (std::size_t c = 0; c < 4; ++c) {
+    const double height = found.rig.cameras[c].camera_from_world->inverse().translation.z();
+    EXPECT_NEAR(height, scene.rig().cameras[c].camera_from_world->inverse().translation.z(), 0.1) << "above the floor";
+  }
+}
+
+TEST(PeopleRig, FindsWhenCamerasWereStarted) {
+  RoomOptions options = walking(1, 20);
+  options.offset_s = 1.3;
+  const RoomScene scene(options);
+  const PeopleRig found = calibrate_people(input_of(scene, {}), by_distance(scene.rig()));
+  EXPECT_LT(errors_of(found.rig, scene.rig()).offset_s, 0.5 / 25) << "half a frame";
+}
+
+TEST(PeopleRig, KnowsPeopleApart) {
+  const RoomScene scene(walking(3, 20));
+  const PeopleRig found = calibrate_people(input_of(scene, {}), by_distance(scene.rig()));
+  EXPECT_GE(found.people, 1);
+  const RigErrors errors = errors_of(found.rig, scene.rig());
+  EXPECT_LT(errors.distance, 0.02);
+  EXPECT_LT(errors.rotation, 0.02);
+}
+
+TEST(PeopleRig, StatesWhyThereIsNone) {
+  const RoomScene scene(walking(1, 4));
+  PeopleInput input = input_of(scene, {});
+  input.cameras[1].sequence.frames.clear();
+  EXPECT_THROW(calibrate_people(input), Error);
+  input = input_of(scene, {});
+  input.rig.cameras[0].size.reset();
+  EXPECT_THROW(calibrate_people(input), Error);
+  input = input_of(scene, {});
+  for (auto& frame : input.cameras[2].sequence.frames) frame.clear();
+  try {
+    calibrate_people(input);
+    FAIL() << "a camera that sees no person";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("cam3"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace marey::calibrate::people
