@@ -41,7 +41,7 @@ Rig people_rig_of(const std::vector<std::string>& inputs) {
     rig = format::rig::read_rig(inputs.front());
     sources.erase(sources.begin());
   } else {
-    for (const std::string& source : sources) rig.cameras.push_back({.name = source.substr(0, source.find('='))});
+    for (const std::string& source : sources) rig.cameras.emplace_back().name = source.substr(0, source.find('='));
   }
   set_sources(rig, sources);
   return rig;
@@ -88,7 +88,7 @@ void print_table(const calibrate::people::PeopleRig& result) {
 void run(const CalibratePeople& command) {
   pipeline::calibrate::CalibratePeopleOptions options = resolved(command.job);
   options.how.distance = distance_of(command.distance);
-  options.how.find_offsets = !command.synced;
+  if (command.synced) options.how.max_offset_s = 0;
   const Rig rig = people_rig_of(command.inputs);
   const pipeline::calibrate::PeopleCalibration result =
       with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate::calibrate_people(rig, options, hooks); });
@@ -123,6 +123,8 @@ void add_calibrate_people(Command& calibrate) {
       .ends_in({".toml"})
       .may_replace(inputs);
   command.flag("--synced", options->synced, "the cameras' clocks are right: search for no time offsets");
+  command.number("--max-offset", options->job.options.how.max_offset_s, "s", closed(0.01, 10),
+                 "the largest offset between two cameras that is searched; walking alone repeats itself with every stride");
   command.seed(options->job.options.how.seed, "of the random draws");
   command.rows(table_of(options->job));
   command.reports(options->json, options->quiet, "table");

@@ -27,7 +27,8 @@ struct PeopleMatch {
   std::vector<std::vector<double>> agreement;  ///< by camera and camera: share of the points that one geometry explains; 0: none
 };
 
-/// `seed` of RANSAC. Cameras that no person chains to the first keep the offset they have.
-PeopleMatch match_people(const std::vector<CameraPeople>& cameras, bool find_offsets, std::uint64_t seed);
+/// Offsets are searched up to `max_offset_s` from those that the cameras have; 0: not at all. `seed` of RANSAC. Cameras that no
+/// person chains to the first keep the offset they have.
+PeopleMatch match_people(const std::vector<CameraPeople>& cameras, double max_offset_s, std::uint64_t seed);
 
 }  // namespace marey::calibrate::people

@@ -31,8 +31,10 @@ constexpr double kFocalOfTwo = 0.1;                            // unswept: the s
 constexpr double kDistortionPrior = 0.05;                      // unswept: of the first radial term
 constexpr std::size_t kGrownPoints = 160;                      // unswept: a camera, by which the rig grows
 constexpr std::size_t kMaxPoints = 6000;                       // unswept: in the last adjustment
+constexpr std::size_t kOffsetPoints = 1200;                    // unswept: while offsets are found
 constexpr double kMaxGrid_hz = 30;                             // unswept
-constexpr int kOffsetRounds = 3;                               // unswept
+constexpr int kOffsetRounds = 12;                              // unswept: at most
+constexpr double kOffsetFound = 0.02;                          // unswept: frames by which none moves any more
 constexpr double kNoiseFactor = 1.5;                           // unswept: times what the points state
 constexpr double kAssumedHeight = 1.75;                        // fixed: m, where neither height nor distance is given
 constexpr int kMinShared = 40;                                 // unswept: points that link two cameras
@@ -117,7 +119,7 @@ void PeopleCalibration::match() {
       throw Error("camera \"{}\": no person is followed for half a second; let people walk where all cameras see them",
                   camera.name);
   }
-  PeopleMatch matched = match_people(people_, options_.find_offsets, options_.seed);
+  PeopleMatch matched = match_people(people_, options_.max_offset_s, options_.seed);
   offsets_ = std::move(matched.offsets_s);
   identity_ = std::move(matched.identity);
   result_.people = matched.people;
@@ -269,7 +271,8 @@ void PeopleCalibration::fill(bundle::Bundle& bundle) {
 void PeopleCalibration::fit() {
   step("adjusting everything");
   bundle_ = growth_.bundle;
-  rows_ = some_of(rows_, kMaxPoints);
+  const std::vector<PointRow> all = some_of(rows_, kMaxPoints);
+  rows_ = some_of(rows_, kOffsetPoints);
   bool first = true;
   for (bundle::BundleCamera& camera : bundle_.cameras) {
     const auto c = static_cast<std::size_t>(&camera - bundle_.cameras.data());
@@ -278,25 +281,24 @@ void PeopleCalibration::fit() {
       camera.freedom = {cameras() > 2 ? kFocalPrior : kFocalOfTwo, 0, 0, {kDistortionPrior}};
       camera.known = wand::starting_lens(rig_camera(c), kLikelyFocal);
     }
-    camera.refine_offset = !first && options_.find_offsets && !rig_camera(c).offset_s;
+    camera.refine_offset = !first && options_.max_offset_s > 0 && !rig_camera(c).offset_s;
     first = false;
   }
   bundle::BundleOptions how;
   how.noise_px = std::max(1.0, growth_.fit.noise_px);
   how.outlier_sigmas = 4;
-  for (int round = 0; round < kOffsetRounds; ++round) {
+  for (int round = 0;; ++round) {
     stop_point();
     fill(bundle_);
-    how.deviations = round + 1 == kOffsetRounds;
     fitted_ = bundle::adjust(bundle_, how);
     how.noise_px = std::max(0.5, fitted_.noise_px);
-    bool any = false;
+    double moved = 0;  // frames
     for (std::size_t c = 0; c < cameras(); ++c) {
-      if (how.deviations || bundle_.cameras[c].offset_s == 0) continue;
+      moved = std::max(moved, std::abs(bundle_.cameras[c].offset_s) * people_[c].rate_hz);
       offsets_[c] += std::exchange(bundle_.cameras[c].offset_s, 0);
-      any = true;
     }
-    if (!any && round == 0) round = kOffsetRounds - 2;  // nothing to take again
+    if (rows_.size() == all.size() && (moved < kOffsetFound || round >= kOffsetRounds)) break;
+    if (moved < kOffsetFound || round + 1 >= kOffsetRounds) rows_ = all;
   }
   if (fitted_.inliers < kMinShared * static_cast<int>(cameras()) / 2)
     throw Error("only {} views of people's points fit together: let one person walk through the whole volume, and turn",

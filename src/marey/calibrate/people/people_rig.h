@@ -39,7 +39,7 @@ struct PeopleInput {
 struct PeopleOptions {
   std::optional<double> height;                 ///< of the people, m, if all are as tall
   std::optional<wand::KnownDistance> distance;  ///< of two cameras
-  bool find_offsets = true;                     ///< of cameras of which the rig has none
+  double max_offset_s = 0.5;  ///< the largest that is searched, of cameras of which the rig has none; 0: they run together
   std::uint64_t seed = 1;
 };
 

@@ -16,8 +16,7 @@ namespace {
 constexpr double kEyeHeight = 0.936, kAnkleHeight = 0.039;  // fixed: of the stature (Drillis & Contini, 1966)
 constexpr double kShoulderHeight = 0.818;                   // fixed: the same
 constexpr double kTallest = 0.8;        // unswept: quantile of the heights: people bend, and stand upright often
-constexpr double kRestingSpeed = 0.25;  // unswept: statures a second, of a foot that rests
-constexpr double kFootSigma = 0.02;     // unswept: statures, of a resting foot's height
+constexpr double kFootSigma = 0.02;     // unswept: statures, of a standing foot's height
 constexpr double kUprightSigma = 0.04;  // unswept: rad, of the mean body's direction
 constexpr int kRounds = 5;              // unswept: of the floor's robust fit
 
@@ -66,20 +65,13 @@ double stature_of(const std::vector<Body3>& bodies, const KeypointSet& set, cons
   return *at;
 }
 
-/// Feet that rest: their ankles, lowered to the sole.
-std::vector<Vector<3>> resting_feet(const std::vector<Body3>& bodies, const KeypointSet& set, const Vector<3>& up, double stature) {
+/// Of each body the lower ankle, which mostly stands, lowered to the sole.
+std::vector<Vector<3>> standing_feet(const std::vector<Body3>& bodies, const KeypointSet& set, const Vector<3>& up,
+                                     double stature) {
   std::vector<Vector<3>> feet;
-  for (const char* name : {"left_ankle", "right_ankle"}) {
-    const auto index = point_named(set, name);
-    if (!index) continue;
-    const auto i = static_cast<std::size_t>(*index);
-    for (std::size_t k = 0; k + 1 < bodies.size(); ++k) {
-      const Body3 &now = bodies[k], &next = bodies[k + 1];
-      const double seconds = next.time_s - now.time_s;
-      if (now.person != next.person || !now.points[i] || !next.points[i] || !(seconds > 0) || seconds > 0.5) continue;
-      if ((*next.points[i] - *now.points[i]).norm() < kRestingSpeed * stature * seconds)
-        feet.push_back(*now.points[i] - kAnkleHeight * stature * up);
-    }
+  for (const Body3& body : bodies) {
+    const auto left = middle(body, set, {"left_ankle"}), right = middle(body, set, {"right_ankle"});
+    if (left && right) feet.push_back((up.dot(*left) < up.dot(*right) ? *left : *right) - kAnkleHeight * stature * up);
   }
   return feet;
 }
@@ -124,7 +116,7 @@ std::optional<PeopleWorld> world_of(const std::vector<Body3>& bodies, const Keyp
   PeopleWorld world;
   world.height = stature_of(bodies, set, *up);
   if (!(world.height > 0)) return std::nullopt;
-  const std::vector<Vector<3>> feet = resting_feet(bodies, set, *up, world.height);
+  const std::vector<Vector<3>> feet = standing_feet(bodies, set, *up, world.height);
   Vector<3> middle_of_all = Vector<3>::Zero();
   double count = 0;
   for (const Body3& body : bodies) {

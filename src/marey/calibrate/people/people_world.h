@@ -22,9 +22,9 @@ struct PeopleWorld {
   double height = 0;        ///< of the person most seen, in the unit of the bodies; 0: not known
 };
 
-/// Upright is how bodies stand on the mean, and the plane of the feet that rest, each as far as it is sure; a person's height comes
-/// from eyes above ankles (Drillis & Contini, "Body segment parameters", 1966: 0.936 and 0.039 of the stature). Nothing if no body
-/// has ankles and shoulders. `bodies` of a person in the order of time.
+/// Upright is how bodies stand on the mean, and the plane of the lower foot of each, each as far as it is sure; a person's height
+/// comes from eyes above ankles (Drillis & Contini, "Body segment parameters", 1966: 0.936 and 0.039 of the stature). Nothing if no
+/// body has ankles and shoulders. `bodies` of a person in the order of time.
 std::optional<PeopleWorld> world_of(const std::vector<Body3>& bodies, const KeypointSet& set);
 
 }  // namespace marey::calibrate::people
