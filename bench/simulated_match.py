@@ -18,7 +18,7 @@ def row(marey, options, distance, work):
     subprocess.run([marey, "track", work / "rig.toml", "--targets", "people", "--ground", "-o", work / "match.csv", "-q"], check=True)
     judge = [marey, "evaluate", "--truth", work / "truth.csv", "--tracks", work / "match.csv", "--distance", str(distance), "--json"]
     scores = json.loads(subprocess.run(judge, check=True, capture_output=True, text=True).stdout)
-    return [f"`{options}`", f"{100 * scores['found']:.1f} / {100 * scores['false']:.1f} %", f"{scores['idf1']:.3f}", f"{100 * scores['kept']:.0f} %",
+    return [f"`{options}`", f"{100 * scores['found']:.1f} / {100 * scores['false']:.1f} %", f"{scores['idf1']:.3f}", f"{100 * scores['tracked_fraction']:.0f} %",
             f"{scores['position_rms_m']:.2f}", f"{scores['speed_rms_mps']:.2f}", f"{100 * scores['distance_error']:.1f} %"]
 
 

@@ -84,7 +84,7 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
   if (const auto& keypoints = summary.body_points) {
     json["people"] = keypoints->people;
     json["people_in_images"] = keypoints->people_in_images;
-    json["people_placed"] = keypoints->people_placed;
+    json["people_located"] = keypoints->people_located;
     json["regions"] = keypoints->regions;
     json["person_searches"] = keypoints->person_searches;
     json["noise"] = keypoints->noise;
@@ -108,7 +108,7 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
   if (const auto& keypoints = summary.body_points)
     fmt::print(
         stderr, "keypoints: {} people; {} of {} in images are placed; {} regions were searched for points, {} images for people\n",
-        keypoints->people, keypoints->people_placed, keypoints->people_in_images, keypoints->regions, keypoints->person_searches);
+        keypoints->people, keypoints->people_located, keypoints->people_in_images, keypoints->regions, keypoints->person_searches);
   print_set_figures(summary);
   print_skeleton_figures(summary);
   print_stages(summary);

@@ -43,6 +43,11 @@ pipeline::people::GroundOutput output_of(const GroundCommand& command) {
   const bool unnamed = command.out.empty() || is_stream(command.out);
   const std::string name = command.format.empty() && unnamed ? "csv" : command.format;
   const format::Format& format = format::format_to_write(unnamed ? std::string() : command.out, name, format::Content::ground);
+  if (format.name == kBoxes)
+    throw WrongUsage(
+        "--output {}: a name that ends in .txt is of the boxes in one camera's view; name the camera with --camera, or end "
+        "the name in .csv",
+        command.out);
   if (format.name == "take" && !command.out.empty() && !command.out.ends_with(".marey"))
     throw WrongUsage("--output {}: a take's name ends in .marey", command.out);
   output.format = format.name;

@@ -49,7 +49,7 @@ class Killed(unittest.TestCase):
         return json.loads(self.marey("info", take, "--json").stdout)["frames"]
 
     def test_images_of_a_live_run_are_kept_as_its_take_is(self):
-        pictures = self.folder / "take_pictures"
+        pictures = self.folder / "take_video"
         begun = []
 
         def three_seconds():
@@ -64,7 +64,7 @@ class Killed(unittest.TestCase):
             frames = frames_in(pictures / camera)
             self.assertGreater(frames, RATE, "three seconds, on a machine that may be busy")
             self.assertLess(self.instants("take.marey") - frames, RATE, "less than a second is lost, as of the take")
-        self.marey("reconstruct", "take_pictures/rig.toml", "-o", "again.marey", "-q")
+        self.marey("reconstruct", "take_video/rig.toml", "-o", "again.marey", "-q")
         self.assertGreater(self.instants("again.marey"), RATE)
         self.marey("live", ROOM, "--record", "video", "-o", "take.marey", "--duration", 1, "-q")  # nothing of the killed run is in its way
         self.assertEqual({path.name for path in pictures.iterdir()}, {"cam1.mp4", "cam2.mp4", "rig.toml"})

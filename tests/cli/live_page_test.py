@@ -269,7 +269,7 @@ class MachineVision(unittest.TestCase):
             self.assertAlmostEqual(camera_control(status, "exposure")["now"], 4, places=2)
             page.say("dial 0 exposure 7.5")
             receive_until(page, "status", lambda s: abs(camera_control(s, "exposure")["now"] - 7.5) < 0.01)
-            page.say(f"dial 0 gain {camera_control(status, 'gain')['most'] / 2}")
+            page.say(f"dial 0 gain {camera_control(status, 'gain')['max'] / 2}")
             receive_until(page, "status", lambda s: abs(camera_control(s, "gain")["now"] - camera_control(s, "gain")["max"] / 2) < 0.51)
             page.say("save")
             receive_until(page, "status", lambda s: not s["unsaved"])

@@ -36,7 +36,7 @@ std::vector<Exclusion> exclusions(const Summary& summary) {
   add("off_pitch", "who were never on the pitch", dropped.off_pitch);
   if (summary.points) {
     add("two_ray_points", "points of two rays alone", summary.points->two_ray_points);
-    for (const auto& [reason, count] : summary.points->not_placed) add(key_of(reason), reconstruct::meaning(reason), count);
+    for (const auto& [reason, count] : summary.points->not_located) add(key_of(reason), reconstruct::meaning(reason), count);
   }
   if (summary.live) {
     add("superseded", "instants superseded by a newer one", summary.live->superseded);
@@ -80,7 +80,7 @@ std::vector<std::pair<std::string_view, double>> figures(const Summary& summary)
   if (const auto& keypoints = summary.body_points) {
     add("people", keypoints->people);
     add("people_in_images", keypoints->people_in_images);
-    add("people_placed", keypoints->people_placed);
+    add("people_located", keypoints->people_located);
     add("regions", keypoints->regions);
     add("person_searches", keypoints->person_searches);
     if (keypoints->residual_px) add("residual_px", *keypoints->residual_px);

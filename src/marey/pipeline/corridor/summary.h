@@ -15,7 +15,7 @@
 
 namespace marey::pipeline::corridor {
 
-/// Of people in an image or on the ground: what was seen and is in no result.
+/// Of people in an image or on the ground: seen, and in no result.
 struct Dropped {
   std::optional<std::int64_t> noise;                ///< regions too small to be a part of a person
   std::optional<std::int64_t> unexplained_regions;  ///< that no body explains
@@ -35,7 +35,7 @@ struct SpacePointFigures {
   std::optional<double> residual_px;               ///< root mean square of the reprojections; nothing without a point
   std::int64_t observations = 0, unexplained = 0;  ///< blobs; those that belong to no marker
   std::int64_t two_ray_points = 0;                 ///< not taken: two rays alone meet by chance
-  std::map<reconstruct::NoPoint, std::int64_t> not_placed;
+  std::map<reconstruct::NoPoint, std::int64_t> not_located;
 };
 
 struct MarkerSetFigures {
@@ -60,7 +60,7 @@ struct KeypointFigures {
   std::int64_t person_searches = 0;        ///< runs of the person detector
   std::int64_t regions = 0;                ///< runs of the landmark network
   std::int64_t people_in_images = 0;       ///< of all views
-  std::int64_t people_placed = 0;          ///< of these, used for a person in space
+  std::int64_t people_located = 0;          ///< of these, used for a person in space
   std::optional<double> residual_px = {};  ///< root mean square of the reprojections, of videos
   double noise = 0;                        ///< residuals, in units of what the network states
 };

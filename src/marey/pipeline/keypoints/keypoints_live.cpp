@@ -327,7 +327,7 @@ void KeypointsLive::report(corridor::Summary& summary) const {
                          .person_searches = static_cast<std::int64_t>(searches_),
                          .regions = static_cast<std::int64_t>(detector_runs_),
                          .people_in_images = static_cast<std::int64_t>(views_.views_observed()),
-                         .people_placed = static_cast<std::int64_t>(views_.views_located()),
+                         .people_located = static_cast<std::int64_t>(views_.views_located()),
                          .noise = noise_.times_stated()};
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!cameras_[c])

@@ -250,7 +250,7 @@ TEST(KeypointsLive, SaysThatCamerasAreExchanged) {
   stage->report(summary);
   const bool stated = std::any_of(summary.warnings.begin(), summary.warnings.end(),
                                   [](const std::string& warning) { return warning.find("exchange them") != std::string::npos; });
-  EXPECT_TRUE(stated) << summary.body_points.value().people_placed << " of " << summary.body_points.value().people_in_images
+  EXPECT_TRUE(stated) << summary.body_points.value().people_located << " of " << summary.body_points.value().people_in_images
                       << ", noise " << summary.body_points.value().noise;
 }
 

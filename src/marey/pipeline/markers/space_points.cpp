@@ -75,7 +75,7 @@ void SpacePoints::report(corridor::Summary& summary) const {
   figures.noise_px = noise_.px();
   figures.observations = counts_.observations, figures.unexplained = counts_.unexplained;
   figures.two_ray_points = counts_.by_two_rays;
-  for (const auto& [reason, count] : counts_.missed) figures.not_placed[reason] = count;
+  for (const auto& [reason, count] : counts_.missed) figures.not_located[reason] = count;
 }
 
 }  // namespace marey::pipeline::markers

@@ -25,7 +25,7 @@ namespace {
 /// Evidence comes from images, through calibrated cameras that are static.
 void check_for_bramble(const RigCamera& camera, const GroundView& view, bool images, bool ptz) {
   if (!images) throw Error("camera \"{}\" brings detections; bramble looks at images", camera.name);
-  if (ptz) throw Error("camera \"{}\" turns, and bramble needs static cameras", camera.name);
+  if (ptz) throw Error("camera \"{}\" is a PTZ camera, and bramble needs static ones", camera.name);
   if (view.camera() == nullptr)
     throw Error("camera \"{}\" is known by ground_from_image alone; bramble must know how tall people are seen: calibrate it",
                 camera.name);

@@ -18,7 +18,7 @@ detect::DetectorOptions for_ptz(detect::DetectorOptions options, const std::stri
   auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
   if (network == nullptr)
     throw Error(
-        "camera \"{0}\" turns, and background subtraction needs a static camera; give a network with --detector MODEL.toml "
+        "camera \"{0}\" is a PTZ camera, and background subtraction needs a static one; give a network with --detector MODEL.toml "
         "(docs/network.md), or what another program detected: {0}=boxes.txt",
         name);
   network->background = false;

@@ -38,7 +38,7 @@ GroundView first_view(const RigCamera& camera, const PtzCamera& ptz, const geome
   const auto known = std::find_if(ptz.rotations.begin(), ptz.rotations.end(),
                                   [](const PtzCamera::Turn& turn) { return turn.heading.has_value(); });
   if (known == ptz.rotations.end())
-    throw Error("camera \"{}\" turns, and in no frame it is known where it looks; run marey calibrate ptz", camera.name);
+    throw Error("camera \"{}\" is a PTZ camera, and its view is known in no frame; run marey calibrate ptz", camera.name);
   return GroundView(geometry::camera_of(ptz.tripod, *known->heading, *camera.size), surface);
 }
 
