@@ -28,7 +28,9 @@ constexpr std::array kFocalGuesses = {0.65, 0.9, 1.25, 1.75};  // unswept: of th
 constexpr double kLikelyFocal = 0.9;                           // unswept: the same, where people are compared
 constexpr double kFocalPrior = 0.5;                            // unswept: relative, of the last adjustment
 constexpr double kFocalOfTwo = 0.1;                            // unswept: the same where two cameras alone see it
-constexpr double kDistortionPrior = 0.05;                      // unswept: of the first radial term
+constexpr double kEqualLenses = 0.01;                          // unswept: relative, between cameras of one make
+constexpr double kNotWorse = 1.1;                              // unswept: noise, times that of free lenses
+constexpr double kDistortionPrior = 0.02;                      // unswept: of the first radial term
 constexpr std::size_t kGrownPoints = 160;                      // unswept: a camera, by which the rig grows
 constexpr std::size_t kMaxPoints = 6000;                       // unswept: in the last adjustment
 constexpr std::size_t kOffsetPoints = 1200;                    // unswept: while offsets are found
@@ -76,6 +78,8 @@ class PeopleCalibration {
   void grow();
   void fill(bundle::Bundle& bundle);
   void fit();
+  bundle::BundleResult adjust_until_still(const bundle::BundleOptions& how);
+  void prefer_equal_lenses(bundle::BundleOptions how);
   void place();
   void store();
   void report_cameras();
@@ -272,7 +276,6 @@ void PeopleCalibration::fit() {
   step("adjusting everything");
   bundle_ = growth_.bundle;
   const std::vector<PointRow> all = some_of(rows_, kMaxPoints);
-  rows_ = some_of(rows_, kOffsetPoints);
   bool first = true;
   for (bundle::BundleCamera& camera : bundle_.cameras) {
     const auto c = static_cast<std::size_t>(&camera - bundle_.cameras.data());
@@ -287,22 +290,71 @@ void PeopleCalibration::fit() {
   bundle::BundleOptions how;
   how.noise_px = std::max(1.0, growth_.fit.noise_px);
   how.outlier_sigmas = 4;
-  for (int round = 0;; ++round) {
+  rows_ = some_of(all, kOffsetPoints);
+  fitted_ = adjust_until_still(how);
+  how.noise_px = std::max(0.5, fitted_.noise_px);
+  prefer_equal_lenses(how);
+  rows_ = all;
+  fill(bundle_);
+  fitted_ = bundle::adjust(bundle_, how);
+  if (fitted_.inliers < kMinShared * static_cast<int>(cameras()) / 2)
+    throw Error("only {} views of people's points fit together: let one person walk through the whole volume, and turn",
+                fitted_.inliers);
+}
+
+/// Round by round, points taken again at the instants that the offsets name, until none moves.
+bundle::BundleResult PeopleCalibration::adjust_until_still(const bundle::BundleOptions& how) {
+  bundle::BundleOptions now = how;
+  now.deviations = false;
+  for (int round = 1;; ++round) {
     stop_point();
     fill(bundle_);
-    fitted_ = bundle::adjust(bundle_, how);
-    how.noise_px = std::max(0.5, fitted_.noise_px);
+    bundle::BundleResult fitted = bundle::adjust(bundle_, now);
+    now.noise_px = std::max(0.5, fitted.noise_px);
     double moved = 0;  // frames
     for (std::size_t c = 0; c < cameras(); ++c) {
       moved = std::max(moved, std::abs(bundle_.cameras[c].offset_s) * people_[c].rate_hz);
       offsets_[c] += std::exchange(bundle_.cameras[c].offset_s, 0);
     }
-    if (rows_.size() == all.size() && (moved < kOffsetFound || round >= kOffsetRounds)) break;
-    if (moved < kOffsetFound || round + 1 >= kOffsetRounds) rows_ = all;
+    if (moved < kOffsetFound || round == kOffsetRounds) return fitted;
   }
-  if (fitted_.inliers < kMinShared * static_cast<int>(cameras()) / 2)
-    throw Error("only {} views of people's points fit together: let one person walk through the whole volume, and turn",
-                fitted_.inliers);
+}
+
+/// Cameras whose lenses are unknown and whose images are of one size are mostly of one make: body points that a network sees where
+/// they are not move a focal length by more than two such lenses differ. Their lenses are kept near the median one, unless that
+/// explains the points worse.
+void PeopleCalibration::prefer_equal_lenses(bundle::BundleOptions how) {
+  std::map<std::pair<int, int>, std::vector<std::size_t>> makes;
+  for (std::size_t c = 0; c < cameras(); ++c) {
+    if (rig_camera(c).lens) continue;
+    const auto [low, high] = std::minmax(rig_camera(c).size->width, rig_camera(c).size->height);
+    makes[{low, high}].push_back(c);
+  }
+  const bundle::Bundle before = bundle_;
+  const std::vector<double> offsets = offsets_;
+  bool any = false;
+  for (const auto& [size, of_make] : makes) {
+    if (of_make.size() < 2) continue;
+    std::vector<double> focals;
+    for (const std::size_t c : of_make) focals.push_back(geometry::focal_of(bundle_.cameras[c].lens).x());
+    const double focal = geometry::median(std::move(focals));
+    for (const std::size_t c : of_make) {
+      const double longer = std::max(rig_camera(c).size->width, rig_camera(c).size->height);
+      bundle_.cameras[c].known = wand::starting_lens(rig_camera(c), focal / longer);
+      bundle_.cameras[c].freedom.focal = kEqualLenses;
+    }
+    any = true;
+  }
+  if (!any) return;
+  const bundle::BundleResult equal = adjust_until_still(how);
+  if (equal.noise_px <= kNotWorse * fitted_.noise_px) {
+    result_.notes.push_back(
+        "cameras with images of one size are taken to have nearly the same focal length; where they have not, give "
+        "their lenses in a rig file");
+    return;
+  }
+  bundle_ = before;
+  offsets_ = offsets;
 }
 
 void PeopleCalibration::place() {
