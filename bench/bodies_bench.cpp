@@ -1,6 +1,6 @@
 // Rigid bodies among points without names, an instant at a time, on one core: fifty bodies of five markers followed in 300 points,
-// ten of them found from nothing in 100 points, and what is found of bodies that are not there. Counters: the time that 99 of 100
-// instants keep (CPU time), the share of instants with a pose, and the share of looks that find what is absent.
+// ten of them found from nothing in 100 points, and the poses found of bodies that are not there. Counters: the time that 99 of 100
+// instants keep (CPU time), the share of instants with a pose, and the share of searches that find an absent body.
 #include <algorithm>
 #include <cstdint>
 #include <ctime>

@@ -1,4 +1,4 @@
-// How well gaps in markers' paths are filled: holes cut into what was seen of real walks, filled with the method that is chosen by
+// How well gaps in markers' paths are filled: holes cut into observed real walks, filled with the method that is chosen by
 // itself, with a polynomial alone and with rigid neighbours alone; medians over holes of the RMS error, of what it was expected to
 // be in the middle, how much of the truth lies within two of the deviations that were reported, and how many holes the limits of
 // "fill all" leave open.

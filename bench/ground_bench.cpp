@@ -1,5 +1,5 @@
 // People followed on the ground: one instant of 16 cameras and 25 people, boxes in, places included; and the tracker alone with
-// growing numbers of targets. What to look at: milliseconds an instant, and `ratio`, by how much it takes longer than a Kalman
+// growing numbers of targets. Relevant figures: milliseconds an instant, and `ratio`, by how much it takes longer than a Kalman
 // filter's predictions and corrections of the same observations when it is known whose each is.
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,4 @@
-// The second pass over the ground: minutes of 25 people at 25 frames a second, lost every half minute or so. What to look at: the
+// The second pass over the ground: minutes of 25 people at 25 frames a second, lost every half minute or so. Relevant figures: the
 // time a person and instant, which should not grow with the length; beside it what a plain forward Kalman filter takes over the
 // same samples
 // (`against_filter`: that over ours), which nothing that smooths can undercut.

@@ -1,4 +1,4 @@
-// Hypotheses beside what decides at once. What to look at:
+// Hypotheses beside what decides at once. Relevant figures:
 //   k_best        `against_one`: the k best answers over the time of the best one alone, by the same gates; k single solutions
 //   would
 //                 be k. Scratch means without the speed-ups of Miller, Stone & Cox: k · rows solutions (`against_scratch`,

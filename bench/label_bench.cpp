@@ -1,6 +1,6 @@
 // Names for markers while cameras see them, on one core, CPU time: how long names are searched for from nothing in the first half
 // second of a simulated walk (a task of its own does that), and how long a frame takes from then on: points hidden and back, their
-// tracks broken. The set was learned from another stretch of the walk. Counters: the share of markers found; what 99 of 100 frames
+// tracks broken. The set was learned from another segment of the walk. Counters: the share of markers found; what 99 of 100 frames
 // keep; the share of points with the right name.
 #include <algorithm>
 #include <cstdint>

@@ -103,7 +103,7 @@ void measure_node(int frames, double rate_hz, int markers) {
   done = true;
   host.join();
   print("marey node", took_s);
-  fmt::print("{:<15} {:>8} lost  its time is off by {:.3f} ms (median), {:.3f} ms (most)\n", "", camera->report().lost,
+  fmt::print("{:<15} {:>8} lost  its time is off by {:.3f} ms (median), {:.3f} ms (most)\n", "", camera->health().lost,
              1e3 * quantile(off_s, 0.5), 1e3 * quantile(off_s, 1));
 }
 

@@ -1,5 +1,5 @@
 // 25 outlines a frame, 24 lines and 24 control points each, beside what else could be done to get them in the same run: OpenCV's
-// contours of the same mask, each approximated; and the bound, reading as many bytes as the lines do. What to look at: ms a frame,
+// contours of the same mask, each approximated; and the bound, reading as many bytes as the lines do. Relevant figures: ms a frame,
 // which must stay below 5.
 #include <cmath>
 #include <numeric>
@@ -59,7 +59,7 @@ const Scene& scene() {
 
 /// With silhouettes, every target is seen by the detector and its outline taken from there; without, lines alone follow it.
 void track_outlines(benchmark::State& state) {
-  const bool detected = state.range(0) != 0;
+  const bool always = state.range(0) != 0;
   track::contour::OutlineOptions options;
   options.control_points = kPoints;
   options.lines = kLines;
@@ -82,7 +82,7 @@ void track_outlines(benchmark::State& state) {
     benchmark::DoNotOptimize(tracker.attach(tracks, detected));
   };
   for (int k = 0; k < 4; ++k) step(true);
-  for (auto _ : state) step(detected || frame % kFrames < 3);
+  for (auto _ : state) step(always || frame % kFrames < 3);
 }
 BENCHMARK(track_outlines)->ArgName("silhouettes")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The pixels that `marey track --masks` calls people, live and offline, beside OpenCV's MOG2 and KNN, on frames of real videos.
+"""The pixels that `marey track --foreground-masks` calls people, live and offline, beside OpenCV's MOG2 and KNN, on frames of real videos.
 
 Usage: real_masks.py MAREY [--masks masks/people.json] [--videos TEXT] [--medians]
 

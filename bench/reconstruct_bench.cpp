@@ -1,6 +1,6 @@
 // From blobs to labelled markers in space, step by step and as a whole, and how each grows with cameras and markers. One core.
 // Peers and bounds: cv::triangulatePoints beside our triangulation of the same two rays; liboptv needs 2.5 ms for the
-// correspondence of 4 cameras and 200 markers, 9.0 ms for 500. Counters tell how right the answers are.
+// correspondence of 4 cameras and 200 markers, 9.0 ms for 500. Counters state how right the answers are.
 #include <cmath>
 #include <map>
 #include <numbers>

@@ -1,4 +1,4 @@
-// Tracker step with growing numbers of targets, gated assignment beside a dense one. What to look at: the time a target, which
+// Tracker step with growing numbers of targets, gated assignment beside a dense one. Relevant figures: the time a target, which
 // should barely grow with the number of targets.
 #include <cmath>
 #include <vector>

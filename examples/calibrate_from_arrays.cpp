@@ -9,7 +9,7 @@
 #include "marey/geometry/rigid.h"
 
 int main() try {
-  // The camera that is to be found: 8 m up, 15 m behind the touchline, looking at the middle and down.
+  // The camera that is to be found: 8 m up, 15 m behind the touchline, aimed at the middle and down.
   const marey::geometry::BrownLens lens{.focal = {1200, 1200}, .principal = {959.5, 539.5}, .distortion = {}};
   marey::Matrix<3> level;
   level << 1, 0, 0, 0, 0, -1, 0, 1, 0;

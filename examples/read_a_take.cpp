@@ -1,5 +1,5 @@
-// Reads a take: who is in it, and one marker's path without the rest; draws all of it from above.
-//   read_a_take walk.marey picture.svg
+// Reads a take: its people, and one marker's path without the rest; draws all of it from above.
+//   read_a_take walk.marey drawing.svg
 #include <cstdio>
 #include <fstream>
 

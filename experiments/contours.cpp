@@ -73,11 +73,11 @@ struct Video {
   std::vector<std::vector<simulate::people::TrueFigure>> truth;
 };
 
-Video render(const PeopleVideo& video, const std::optional<int>& crf) {
+Video render(const PeopleVideo& people, const std::optional<int>& crf) {
   Video video;
-  for (int i = 0; i < PeopleVideo::kEarlier; ++i) video.earlier.push_back(video.render_earlier(i));
-  for (int i = 0; i < video.frames(); ++i) {
-    simulate::people::RenderedFrame rendered = video.render(i);
+  for (int i = 0; i < PeopleVideo::kEarlier; ++i) video.earlier.push_back(people.render_earlier(i));
+  for (int i = 0; i < people.frames(); ++i) {
+    simulate::people::RenderedFrame rendered = people.render(i);
     video.images.push_back(std::move(rendered.image));
     video.truth.push_back(std::move(rendered.people));
   }
@@ -102,8 +102,8 @@ Tallies evaluate(const ContourCase& what, std::uint64_t seed, const ContourExper
   scene.frames = what.frames;
   if (what.hidden_s) scene.hidden_s = *what.hidden_s;
   if (what.degraded) scene.degradation = simulate::people::ImageDegradation::recorded();
-  const PeopleVideo video(what.situation, seed, scene);
-  const Video video = render(video, what.crf);
+  const PeopleVideo people(what.situation, seed, scene);
+  const Video video = render(people, what.crf);
   const std::array<std::unique_ptr<OutlineMethod>, kMethodCount> methods{naive_method(), silhouette_method(),
                                                                          marey_method(options.outlines)};
   std::vector<Frame> samples;

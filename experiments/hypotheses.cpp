@@ -30,7 +30,7 @@ constexpr std::array kKinds{Kind{"cross", simulate::Encounter::cross}, Kind{"sid
 struct Association {
   const char* name;
   track::ground::GroundAssociation association;
-  bool live;  ///< evaluated is what is said at once
+  bool live;  ///< evaluated is the immediate answer
 };
 constexpr std::array kAssociations{Association{"gnn", track::ground::GroundAssociation::gnn, false},
                                    Association{"jpda", track::ground::GroundAssociation::jpda, false},

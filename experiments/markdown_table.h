@@ -19,7 +19,7 @@ inline std::string markdown_header(const std::vector<std::string>& titles) {
   return markdown_row(titles) + markdown_row(std::vector<std::string>(titles.size(), "---"));
 }
 
-/// A figure with this many digits after the point, or a dash if there is none.
+/// A figure with this many digits after the point, or a dash if it is missing.
 template <typename Figure>
 std::string markdown_figure(const Figure& figure, int digits) {
   if constexpr (requires { figure.has_value(); }) {

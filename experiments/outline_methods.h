@@ -20,12 +20,12 @@ struct TrackedShape {
   std::string name;
   Vector<2> centre = Vector<2>::Zero();  ///< px
   std::vector<Vector<2>> polygon;        ///< px
-  std::vector<std::string> behind;       ///< names of those that hide a part of it, as far as the method tells
+  std::vector<std::string> behind;       ///< names of those that hide a part of it, as far as the method reports
   bool is_curve = false;                 ///< a followed outline, not a silhouette or a box
   double box_width = 0, box_height = 0;  ///< px; of its target, where the method knows
 };
 
-/// One way of following outlines, for `marey experiment outlines`.
+/// One method of tracking outlines, for `marey experiment outlines`.
 class OutlineMethod {
  public:
   virtual ~OutlineMethod() = default;

@@ -25,7 +25,7 @@ constexpr int kMinFrames = 25;         // who can be seen for less does not coun
 constexpr double kReachHeights = 0.5;  // a name farther than this from the person is not on him
 constexpr std::array<const char*, 4> kMethods{"silhouettes", "boxes (Xu et al.)", "published (Arnaut & Costa)", "Marey"};
 
-/// Sums of one method over one or more videos; what OutlineScore tells as means.
+/// Sums of one method over one or more videos; what OutlineScore reports as means.
 struct Tally {
   int people = 0, lost = 0;
   std::int64_t frames = 0, tracked = 0;
@@ -284,7 +284,7 @@ Frame frame_of(const simulate::people::PeopleVideo& video, int index, const Imag
   return frame;
 }
 
-/// What results from one film: every method's tally, and the truth's.
+/// The results from one video: every method's tally, and the truth's.
 struct VideoResult {
   std::array<Tally, kMethods.size()> methods;
   Tally truth;

@@ -13,7 +13,7 @@
 
 namespace marey::experiments {
 
-/// What one way of following outlines made of one case. A person counts while at least half of him can be seen, from the frame in
+/// What one outline tracker made of one case. A person counts while at least half of them is visible, from the frame in
 /// which the method first has an outline on him; an outline that is missing then overlaps nothing.
 struct OutlineScore {
   int people = 0;
@@ -60,7 +60,7 @@ struct OutlineExperimentOptions {
   PublishedOptions published;
 };
 
-/// The same videos, seen once by Marey's detector, followed in four ways with settings that are the same for all cases:
+/// The same videos, seen once by Marey's detector, tracked by four methods with settings that are the same for all cases:
 ///   silhouettes  the detector's own outlines under the tracker's names: what there is without any outline filter
 ///   boxes        the box filter of Xu et al., fed with the nearest detection
 ///   published    the coupled filters of Arnaut & Costa, after De Bem

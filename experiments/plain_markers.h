@@ -13,7 +13,7 @@
 
 namespace marey::experiments {
 
-/// Centroids of the connected components above half of the brightest pixel, of at least 2 px. `picture`: CV_8UC1.
+/// Centroids of the connected components above half of the brightest pixel, of at least 2 px. `image`: CV_8UC1.
 std::vector<Observation<2>> plain_detections(const cv::Mat& image);
 
 /// Follows the points of its first frame, and no others.

@@ -1,4 +1,4 @@
-// How `marey experiment trackers` tells its figures: as the paper's tables, and as plots of them.
+// How `marey experiment trackers` presents its figures: as the paper's tables, and as plots of them.
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -109,7 +109,7 @@ draw::LineChart time_chart(const TrackerExperiment& experiment) {
   return chart;
 }
 
-/// Like the paper's Figure 3: the way of a rapid zigzag, dashed; the marker; the alpha-beta filter's prediction and search area.
+/// Like the paper's Figure 3: the path of a rapid zigzag, dashed; the marker; the alpha-beta filter's prediction and search area.
 std::string search_image(std::uint64_t seed) {
   const simulate::markers::MarkerScene scene =
       simulate::markers::simulate_markers(simulate::markers::MarkerSituation::rapid_zigzag, seed);

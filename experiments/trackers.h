@@ -22,7 +22,7 @@ struct StepTime {
   double percentile_5 = 0, median = 0, percentile_95 = 0, maximum = 0;
 };
 
-/// One row of the tables: a way to track, and the result. What is not known is missing.
+/// One row of the tables: a tracking method, and the result. What is not known is missing.
 struct TrackerRow {
   static constexpr std::size_t kSituations = 5;  ///< slow, rapid, acceleration, occlusion, crossing
   static constexpr std::size_t kMotions = 3;     ///< the first three, in which the paper measures errors
@@ -37,7 +37,7 @@ struct TrackerExperiment {
   int videos = 20;  ///< in each situation
   std::uint64_t seed = 0;
   std::vector<TrackerRow> paper;  ///< what the paper printed
-  std::vector<TrackerRow> ours;   ///< what was measured: the paper's three methods first, Marey's default last
+  std::vector<TrackerRow> ours;   ///< measured rows: the paper's three methods first, Marey's default last
 };
 
 struct TrackerExperimentOptions {
@@ -48,7 +48,7 @@ struct TrackerExperimentOptions {
 
 /// Tables I–VII of Queiroz, Gomide, de Albuquerque Araujo, "Evaluation of Real Time Tracking Methods for an Open Source Motion
 /// Capture System". Every video is rendered, encoded, decoded and seen through the marker detector, once; every method then tracks
-/// what was seen, with the past alone. Losses follow evaluate_labels; an error is the distance from the prediction made before
+/// the detections, with the past alone. Losses follow evaluate_labels; an error is the distance from the prediction made before
 /// a frame to the point then measured, in videos without a loss. Throws Error if videos cannot be written to the temporary
 /// folder.
 TrackerExperiment run_tracker_experiment(const TrackerExperimentOptions& options, const Hooks& hooks = {});

@@ -60,7 +60,7 @@ filter::CustomFilterOptions filter_of(const std::shared_ptr<Held>& make);
 /// What python/marey/_instant.py takes apart.
 nb::tuple tuple_of(const Instant& instant, int dimensions, bool images);
 
-/// Writes the file in the format of that name, else of the path's ending; what was lost, one sentence each. Without Python's lock.
+/// Writes the file in the format of that name, else of the path's ending; the losses, one sentence each. Without Python's lock.
 std::vector<std::string> write_recording(const Recording& recording, const std::string& path, const std::string& format);
 
 void bind_recording(nb::module_& module);

@@ -1,4 +1,4 @@
-// What a task takes of memory and time, by what was measured (docs/batch.md; `bench/batch.py MAREY memory` compares).
+// What a task takes of memory and time, from measurements (docs/batch.md; `bench/batch.py MAREY memory` compares).
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -29,7 +29,7 @@ struct CostModel {
   double learned_bytes;  ///< of a pixel of each frame that the background is learned from
   double frame_bytes;    ///< that stay until the end of the recording
   double input_bytes;    ///< of a byte of a text that is read as a whole
-  double pixel_ns;       ///< to decode a pixel and look at it
+  double pixel_ns;       ///< to decode and process a pixel
   double frame_ns;       ///< of an instant, whatever its images
   double input_ns;       ///< of a byte of a text
 };

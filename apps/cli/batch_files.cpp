@@ -1,4 +1,4 @@
-// The plan as a table, a task's record as a list: what is written is read again.
+// The plan as a table, a task's record as a list: the written files are read again.
 #include <algorithm>
 #include <charconv>
 #include <filesystem>

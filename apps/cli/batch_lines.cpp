@@ -36,7 +36,7 @@ BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threa
   const std::string run = fmt::format("{} batch run {} -q --task-threads {}", quoted(program), quoted(plan.path), threads);
   const std::string reduce =
       fmt::format("{} batch reduce {} -o {}", quoted(program), quoted(plan.path), quoted(plan.path + ".csv"));
-  constexpr double kSpare = 1.3;  // what is expected is right within 30 %
+  constexpr double kSpare = 1.3;  // expected values are right within 30 %
   const std::string log = quoted(plan.results() + "/log/%a.txt");
   BatchLines lines;
   lines.loop = run;

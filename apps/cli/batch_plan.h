@@ -52,7 +52,7 @@ struct BatchPlan {
 };
 
 /// Keeps tasks from writing outside of a folder of results: plans and tables may come from untrusted clients. It follows the links
-/// of each folder once, which takes longer than all else that a plan of thousands is looked through for.
+/// of each folder once, which takes longer than all other checks of a plan of thousands.
 class OutputCheck {
  public:
   explicit OutputCheck(std::string results);
@@ -77,7 +77,7 @@ struct TaskRecord {
   std::string message_text;  ///< why it failed; what the run warned of
 };
 
-/// The jobs that `--do` names.
+/// The jobs that `--job` names.
 const std::vector<std::string>& batch_jobs();
 /// The words of the command that does a job; its input follows.
 std::vector<std::string> words_of_job(const std::string& job);
@@ -99,16 +99,16 @@ struct PlanRequest {
   std::string plan;    ///< the file that is written; what it says of inputs that are as they were is kept
 };
 
-/// Finds the recordings, in the order of their names. Throws Error if there is none, or where two would have one name.
+/// Finds the recordings, in the order of their names. Throws Error if there are no recordings, or where two would have one name.
 BatchPlan make_plan(const PlanRequest& request);
 
-/// What differs from the plan, one sentence: the input is gone, or its bytes are others. Looks at size and time of change, and
+/// What differs from the plan, one sentence: the input is gone, or its bytes are others. Compares size and time of change, and
 /// reads only where they differ. Empty if all is as planned.
 std::string changed_input(const BatchTask& task);
 
 bool is_video(const std::filesystem::path& path);
 
-/// What the job will take with such inputs, from what was measured (docs/batch.md).
+/// What the job will take with such inputs, from measurements (docs/batch.md).
 TaskCosts expected_costs(const std::string& job, const std::vector<std::string>& inputs);
 int memory_with_threads(int mb, int threads);
 

@@ -19,7 +19,7 @@ struct Season {
   int done = 0;
   double seconds = 0;  ///< of all tasks that are done
   int peak_mb = 0;     ///< the most that one of them took
-  int planned_mb = 0;  ///< what was expected of that one
+  int planned_mb = 0;  ///< the expectation for that one
 };
 
 /// Throws Stopped.

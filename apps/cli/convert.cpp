@@ -67,7 +67,7 @@ void run(ConvertCommand& command) {
   }
 }
 
-/// What is read or written beside a file of a pair.
+/// The files read or written beside a file of a pair.
 std::vector<std::string> next_to(const std::string& path) {
   const std::string other = format::file_next_to(path);
   return other.empty() ? std::vector<std::string>{} : std::vector{other};

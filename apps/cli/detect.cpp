@@ -40,7 +40,7 @@ std::vector<std::pair<const char*, std::int64_t>> excluded(const detect::markers
 void print_blob_summary(const DetectCommand& command, const pipeline::markers::BlobSummary& summary) {
   const auto frames = static_cast<double>(std::max<std::int64_t>(1, summary.frames));
   fmt::print(stderr, "{} {} in {} {}, {:.1f} an image, at most {}; {:.2f} ms an image\n", summary.blobs,
-             summary.blobs == 1 ? "marker" : "markers", summary.frames, summary.frames == 1 ? "picture" : "pictures",
+             summary.blobs == 1 ? "marker" : "markers", summary.frames, summary.frames == 1 ? "image" : "images",
              static_cast<double>(summary.blobs) / frames, summary.maximum, 1000 * summary.detect_s / frames);
   fmt::print(stderr, "threshold: {:.0f} grey levels above what is around, noise {:.1f}\n", summary.threshold, summary.noise);
   for (const auto& [reason, count] : excluded(summary.counts)) fmt::print(stderr, "omitted: {} {}\n", count, reason);

@@ -97,7 +97,7 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
   fmt::print(stderr, "{}: {} instants in {:.1f} s at {:g} Hz; {} targets\n", to_string(summary.job), summary.frames,
              summary.seconds, summary.rate_hz, summary.tracks);
   for (const CameraHealth& camera : summary.last.cameras) {
-    fmt::print(stderr, "  {}{}\n", line_of(camera, camera.frames, "frames"),
+    fmt::print(stderr, "  {}{}\n", health_line_of(camera, camera.frames, "frames"),
                camera.connections > 1 ? fmt::format("; connected {} times", camera.connections) : "");
   }
   const pipeline::corridor::LiveDrops& drops = summary.last.drops;

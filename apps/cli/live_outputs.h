@@ -18,7 +18,7 @@ struct LiveOutputOptions {
   bool view = false;
   viewer::ListenAddress web;
   std::string take;  ///< what the page's record button records into; empty: it has none
-  std::string rig;   ///< the rig file that the page's changes are saved in; empty: there is none
+  std::string rig;   ///< the rig file that the page's changes are saved in; empty: no such file
 };
 
 /// What of a live run its page may change.
@@ -31,7 +31,7 @@ struct LiveHandles {
 
 void add_live_outputs(Command& command, LiveOutputOptions& options);
 
-/// The wires and the page of one live run. Their ports are taken, and their addresses told, from the beginning on.
+/// The wires and the page of one live run. Their ports are taken, and their addresses reported, from the beginning on.
 class LiveOutputs {
  public:
   /// `finds_markers`: whether cameras' images are searched for markers. `ground`: of people on it, what the page shows.

@@ -58,7 +58,7 @@ Json as_json(const pipeline::live::NodeSummary& summary, const NodeCommand& comm
 
 void print_node(const pipeline::live::NodeSummary& summary) {
   for (const pipeline::live::NodeSummary::Camera& camera : summary.cameras) {
-    fmt::print(stderr, "  {}{}\n", line_of(camera.health, camera.sent, "frames sent"),
+    fmt::print(stderr, "  {}{}\n", health_line_of(camera.health, camera.sent, "frames sent"),
                camera.health.trouble.empty() ? "" : "; " + camera.health.trouble);
   }
   fmt::print(stderr, "{:.1f} s, {:.1f} MB\n", summary.seconds, 1e-6 * static_cast<double>(summary.bytes));

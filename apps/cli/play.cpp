@@ -55,7 +55,7 @@ void report(const PlayCommand& command, const pipeline::take::PlaySummary& done,
     fmt::print(stderr, "\n");
     report_streams(streams);
   }
-  // To end it is the only way where it loops.
+  // If it loops, it has to be ended.
   if (done.stopped && !command.how.loop) throw EndWith{kInterrupted};
 }
 

@@ -14,7 +14,7 @@ std::string percent(std::optional<double> fraction);
 
 Json or_null(std::optional<double> value);
 
-/// What `marey evaluate --json` tells of boxes and of places alike.
+/// What `marey evaluate --json` reports for boxes and for places alike.
 Json as_json(const evaluate::Evaluation& scores);
 
 }  // namespace marey::cli

@@ -6,7 +6,7 @@
 
 namespace marey::cli {
 
-/// How many points bear the set's names, where one was given: "set" of the JSON, a line on standard error.
+/// How many points have the set's names, where one was given: "set" of the JSON, a line on standard error.
 void add_set_figures(const pipeline::corridor::Summary& summary, Json& json);
 void print_set_figures(const pipeline::corridor::Summary& summary);
 

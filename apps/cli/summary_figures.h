@@ -7,7 +7,7 @@
 
 #include "json_value.h"
 
-// What the summaries of several commands tell alike.
+// Figures that the summaries of several commands share.
 namespace marey::cli {
 
 /// 0 where the run did not find it out.

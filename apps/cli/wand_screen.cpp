@@ -21,7 +21,7 @@ namespace marey::cli {
 namespace {
 
 using calibrate::wand::WandCoverage;
-constexpr int kReportedEvery = 3;                           // of the looks, which are ten a second
+constexpr int kReportedEvery = 3;                           // of the checks, which are ten per second
 constexpr auto kToBeSent = std::chrono::milliseconds(300);  // the last words of a program that ends
 
 Json observed_by(const pipeline::calibrate::WandObserved::Camera& camera) {

@@ -17,7 +17,7 @@
 
 namespace marey::cli {
 
-/// What is said while a wand is waved before live cameras: how much each has seen of it, and a sentence for each that has seen
+/// The report while a wand is waved before live cameras: how much each has seen of it, and a sentence for each that has seen
 /// enough.
 class WandScreen {
  public:

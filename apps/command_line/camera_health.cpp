@@ -16,7 +16,7 @@ Json page_json_of(const CameraHealth& health) {
   return {{"state", to_string(health.state)}, {"rate", health.rate_hz}, {"frames", health.frames}, {"dropped", health.dropped()}};
 }
 
-std::string line_of(const CameraHealth& health, std::int64_t count, const char* counted) {
+std::string health_line_of(const CameraHealth& health, std::int64_t count, const char* counted) {
   return fmt::format("{:<12} {:>7} {}, {} lost, {} damaged, {} overrun", health.name, count, counted, health.lost, health.damaged,
                      health.overrun);
 }

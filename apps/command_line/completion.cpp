@@ -13,7 +13,7 @@
 
 namespace marey::cli {
 
-/// The way to what a command declared.
+/// The path to the declaration of a command.
 struct DeclaredOf {
   static const Command::Declared& get(const Command& command) { return *command.declared_; }
 };

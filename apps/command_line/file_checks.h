@@ -10,7 +10,7 @@ namespace marey::cli {
 struct NamedPath {
   std::string option;
   std::string path;
-  std::string may_replace;  ///< of an output: the input that it may be; empty if there is none
+  std::string may_replace;  ///< of an output: the input that it may be; empty if there is no such input
 };
 
 /// Throws WrongUsage where an output is an input, by device and inode, or two outputs are one file. An input that is a folder or

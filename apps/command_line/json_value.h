@@ -31,7 +31,7 @@ class Json {
   Json(const char* text) : value_(std::string(text)) {}
   Json(std::string_view text) : value_(std::string(text)) {}
   Json(const std::string& text) : value_(text) {}
-  /// Null where there is none.
+  /// Null if there is no value.
   template <typename T>
   Json(const std::optional<T>& value) {
     if (value) *this = Json(*value);

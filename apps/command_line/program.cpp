@@ -1,4 +1,4 @@
-// The words of the command line: which command they name, and what is said where they name none; then its run, and the exit code.
+// The words of the command line: which command they name, and the message if they do not name one; then its run, and the exit code.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -190,7 +190,7 @@ Command::Declared& Command::Declared::named_by(const std::vector<std::string>& w
 
 const std::set<std::string_view> kOfThisRun{"--threads", "--quiet", "--json"};  // have no part in what comes out
 
-/// What was asked for, by option, but for its files: those are reported by name and hash.
+/// The request, by option, except for its files: those are reported by name and hash.
 std::map<std::string, std::string> Command::Declared::given() const {
   if (records) return records();
   std::map<std::string, std::string> texts;

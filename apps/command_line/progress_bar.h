@@ -8,7 +8,7 @@
 
 namespace marey::cli {
 
-/// One line on standard error that tells how far a run is, its rate and the time left. Silent where standard error is no
+/// One line on standard error that shows how far a run is, its rate and the time left. Silent where standard error is no
 /// terminal, or where asked to be.
 class ProgressBar {
  public:

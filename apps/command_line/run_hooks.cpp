@@ -17,7 +17,7 @@ namespace {
 
 sem_t signalled;
 
-/// What is written to a terminal that hung up would fail: it goes nowhere instead.
+/// Output to a terminal that hung up would fail: it is discarded instead.
 void leave_terminal() {
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
     struct stat status{};

@@ -110,7 +110,7 @@ void put_tracks(std::vector<Instant>& instants, std::int64_t first, const std::v
   for (Instant& instant : instants) std::ranges::stable_sort(instant.samples, {}, &Sample::track);
 }
 
-/// The rows of a track that fall into a stretch.
+/// The rows of a track that fall into a chunk.
 struct RowsWithin {
   RowsWithin(const TrackColumns& of, std::int64_t first, std::size_t instants) : track(&of) {
     const auto at = of.at();

@@ -139,7 +139,7 @@ void LiveViewer::Core::write(const Instant& instant) {
   const std::uint32_t sequence = written_++;
   if (server_->count().pages == 0) return;
   keep_for_images(instant);
-  // A page that shows how late it is adds what passed between the capture and here, which only the run's clock can tell.
+  // A page that shows how late it is adds what passed between the capture and here, which only the run's clock can measure.
   const std::uint64_t now_ns = steady_ns();
   const std::uint64_t age_ns =
       options_.now ? static_cast<std::uint64_t>(std::max<std::int64_t>(0, (options_.now() - instant.time).count())) : 0;

@@ -17,7 +17,7 @@
 
 namespace marey::viewer {
 
-/// How the cameras are and what is lost, as the page shows it beside them.
+/// The state of the cameras and the losses, as the page shows it beside them.
 struct LiveReport {
   struct Camera {
     CameraHealth health = {};
@@ -31,9 +31,9 @@ struct LiveReport {
     std::optional<double> threshold = {};
     std::vector<Mask> masks = {};
     bool learning = false;     ///< what is lit, to mask it
-    std::string refused = {};  ///< why it did not do what was asked for last
+    std::string refused = {};  ///< why it did not fulfil the last request
   };
-  /// One step of the way from the camera to the page, s.
+  /// One step of the path from the camera to the page, s.
   struct Step {
     std::string name;  ///< "decode", "track"
     double median = 0, p99 = 0;
@@ -54,18 +54,18 @@ struct LiveGround {
 
 struct LiveViewOptions {
   ListenAddress location;
-  /// The page's record button; without it there is none. Called on the server's thread, so it only notes what is wanted. An Error
+  /// The page's record button; without it, no button. Called on the server's thread, so it only notes the request. An Error
   /// of its is shown on the page.
   std::function<void(bool on)> record = {};
   /// What pages change of cameras and names; without it nothing. Called on the server's thread. An Error of its is shown on the
   /// page.
   std::function<void(const PageCommand&)> change = {};
-  std::string rig_file = {};  ///< that changes are saved in; empty: there is none
-  /// What is done, where it is not a run that tracks: "wand". The page looks accordingly.
+  std::string rig_file = {};  ///< that changes are saved in; empty: no such file
+  /// What is done, where it is not a run that tracks: "wand". The page adapts to it.
   std::string job = {};
-  /// The page's button by which a wand has been waved enough; without it there is none. As `record`.
+  /// The page's button by which a wand has been waved enough; without it, no button. As `record`.
   std::function<void()> enough = {};
-  /// The page's button by which the ground is set, by an L-frame on it; without it there is none. As `record`.
+  /// The page's button by which the ground is set, by an L-frame on it; without it, no button. As `record`.
   std::function<void()> ground = {};
   /// The time now by the run's clock, so that the page can say how old is what it shows.
   std::function<Timestamp()> now = {};
@@ -77,7 +77,7 @@ struct LiveViewOptions {
 ///
 /// It holds nothing up: of everything the newest counts, images are made into JPEG on a thread of its own, only of cameras that
 /// some page shows, at the size at which it shows them. A run without tracks (a preview of a rig that is not calibrated) writes
-/// instants with frames and what was seen in them, and nothing else.
+/// instants with frames and their detections, and nothing else.
 class LiveViewer {
  public:
   /// Listens from now on. Throws Error if that cannot be.

@@ -25,7 +25,7 @@ TEST(LiveViewer, AsksForPicturesAndForWhatWasFound) {
   EXPECT_TRUE(needs.images && needs.boxes && needs.detected);
   for (int i = 0; i < 1000; ++i) sink->write(instant_at(i / 100.0));
   sink->finish();
-  EXPECT_EQ(viewer.count().sent, 0U);  // no person looks
+  EXPECT_EQ(viewer.count().sent, 0U);  // no page is connected
 }
 
 TEST(LiveViewer, ItsSinkMayOutliveIt) {

@@ -7,7 +7,7 @@
 
 namespace marey::viewer {
 
-/// A file of the page, which is part of the program; nothing if there is none of that path ("/", "/page.js", "/page.css").
+/// A file of the page, which is part of the program; nothing if no file has that path ("/", "/page.js", "/page.css").
 std::optional<WebAnswer> page_file(std::string_view path);
 
 }  // namespace marey::viewer

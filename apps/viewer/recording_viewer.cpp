@@ -41,7 +41,7 @@ class OwningReader : public format::FileReader {
   std::unique_ptr<format::FileReader> reader_;
 };
 
-/// Formats of matches tell how large the pitch is, which a recording does not.
+/// Formats of matches specify how large the pitch is, which a recording does not.
 std::unique_ptr<format::FileReader> opened(const std::string& path, const ViewOptions& options, GroundChoice& ground) {
   const format::Format& format = format::format_to_read(path, format::kRecordings);
   if (!format.from_corner || format.read == nullptr) return format::open_recording(path, format, options.read);
@@ -75,7 +75,7 @@ class RecordingViewer::Core {
   std::unique_ptr<EditSession> edits_;  // before the reader: what is edited from then on is not missed
   GroundChoice ground_;
   std::unique_ptr<format::FileReader> reader_;
-  RecordingHeader header_;  // a copy: the reader continues while the server looks at it
+  RecordingHeader header_;  // a copy: the reader continues while the server reads it
   StoredRecording recording_;
   std::optional<VideoFrames> video_;
   std::unique_ptr<WebServer> server_;

@@ -28,7 +28,7 @@ class RecordingViewer {
   ~RecordingViewer();
 
   std::string address() const;
-  /// Reads the file to its end; what was read is shown in the meantime. Returns its warnings. Throws Error if the file breaks off,
+  /// Reads the file to its end; read parts are shown meanwhile. Returns its warnings. Throws Error if the file breaks off,
   /// Stopped where it is asked to stop.
   std::vector<std::string> read(const Hooks& hooks);
 

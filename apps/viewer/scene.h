@@ -18,13 +18,13 @@ struct GroundChoice {
   bool centred = false;
 };
 
-/// What the page can do beyond looking.
+/// What the page can do beyond display.
 struct SceneCan {
   bool show_video = false;
   bool edit = false;
 };
 
-/// A recorded scene as JSON: what does not change from instant to instant, and what is known of the recording so far. The fields
+/// A recorded scene as JSON: what does not change from instant to instant, and the known part of the recording so far. The fields
 /// are those that page/src/scene.ts declares.
 std::string scene_text(const RecordingHeader& header, const RecordingState& state, const GroundChoice& ground, const SceneCan& can);
 
@@ -35,7 +35,7 @@ struct LiveScene {
   std::optional<Extent> extent = {};
   bool can_record = false;
   bool can_change = false;    ///< cameras and names
-  std::string rig_file = {};  ///< that changes can be saved in; empty: there is none
+  std::string rig_file = {};  ///< that changes can be saved in; empty: no such file
   std::string job = {};       ///< "wand"; empty for a run that tracks
 };
 std::string scene_text(const RecordingHeader& header, const LiveScene& live);

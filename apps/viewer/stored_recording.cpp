@@ -78,7 +78,7 @@ void StoredRecording::finish(std::vector<std::string> warnings) {
 }
 
 void StoredRecording::put(const std::vector<TrackColumns>& tracks) {
-  // No other person writes now: what is there is read without the lock, and only the exchange takes it.
+  // No other person writes now: present data are read without the lock, and only the exchange takes it.
   std::int64_t first = 0;
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const std::int64_t begins = std::exchange(first, first + state_.segments[i].instants);

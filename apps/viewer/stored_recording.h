@@ -21,7 +21,7 @@ struct Extent {
   Vector<3> low = Vector<3>::Zero(), high = Vector<3>::Zero();
 };
 
-/// What is known of a recording by now.
+/// The part of a recording that is known so far.
 struct RecordingState {
   struct TimeChunk {
     double first_s = 0;
@@ -45,7 +45,7 @@ struct RecordingState {
   bool complete = false;
 };
 
-/// A recording as the page takes it: in stretches of a second or so, each of them the bytes that are sent. Thirty minutes of fifty
+/// A recording as the page takes it: in chunks of a second or so, each of them the bytes that are sent. Thirty minutes of fifty
 /// markers at 100 Hz are 190 MB. One thread adds, others ask in the meantime.
 class StoredRecording {
  public:
@@ -54,15 +54,15 @@ class StoredRecording {
   void add(const Instant& instant);
   /// No more will come.
   void finish(std::vector<std::string> warnings);
-  /// After `finish`, from one thread: these tracks in the place of what was there of them; one without rows is there no more. Their
+  /// After `finish`, from one thread: these tracks in the place of their previous rows; one without rows is there no more. Their
   /// `at` counts the instants that were added.
   void put(const std::vector<TrackColumns>& tracks);
 
   RecordingState state() const;
-  /// Null where there is no such stretch yet.
+  /// Null where there is no such chunk yet.
   Bytes segment(std::size_t number) const;
   /// One track's course, of kind 4: the header's first number is its rows n; then float64 time[n]; float32 x[n], y[n], and z[n]
-  /// with flag 1; uint8 state[n] as in a stretch.
+  /// with flag 1; uint8 state[n] as in a chunk.
   std::string course(TrackId track) const;
 
  private:
@@ -72,7 +72,7 @@ class StoredRecording {
   std::optional<Extent> extent() const;
 
   WireColumns columns_;
-  std::vector<Instant> open_;  // the stretch that is being filled
+  std::vector<Instant> open_;  // the chunk that is being filled
   std::int64_t open_rows_ = 0, added_ = 0;
 
   mutable std::mutex mutex_;  // for what follows

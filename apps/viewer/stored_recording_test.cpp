@@ -186,7 +186,7 @@ TEST(Scene, NamesFromOutsideStayText) {
 }
 
 TEST(PageWords, TakeNumbersAndNothingElse) {
-  std::string_view line = "  video 12 640x";
+  std::string_view line = "  film 12 640x";
   EXPECT_EQ(next_word(line), "film");
   EXPECT_EQ(whole_in(next_word(line), 0, 100), 12);
   EXPECT_EQ(whole_in(next_word(line), 0, 1000), std::nullopt);

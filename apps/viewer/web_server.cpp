@@ -95,7 +95,7 @@ class WebServer::Core {
   Handlers handlers_;
   std::optional<Access> access_;
   std::string shown_host_;
-  std::atomic<std::uint64_t> sent_ = 0, dropped_ = 0;  // as of the last tick: who asks waits for no person
+  std::atomic<std::uint64_t> sent_ = 0, dropped_ = 0;  // as of the last tick: a query never waits
   std::atomic<int> pages_ = 0;
   std::uint64_t last_page_ = 0;
   std::map<PageId, net::Outbox*> open_;
@@ -104,7 +104,7 @@ class WebServer::Core {
   std::map<int, Published> published_;  // by topic: the newest
   bool waking_ = false;
 
-  // Destroyed first, with the pages, which look at what stands above.
+  // Destroyed first, with the pages, which refer to the members above.
   net::Loop loop_;
   net::Server server_;
 };

@@ -59,13 +59,13 @@ class WebServer {
 
   /// Throws Error if it cannot listen there: the port is taken, the address is not one of this machine's.
   WebServer(const ListenAddress& location, Handlers handlers);
-  /// Begins to answer. Who came earlier waits.
+  /// Begins to answer. An earlier client waits.
   void start();
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// "http://127.0.0.1:8780/?token=…": the one who has it may look.
+  /// "http://127.0.0.1:8780/?token=…": a person who has it may view the page.
   std::string address() const;
 
   /// From any thread; never waits. To the pages for which `wants` says so, which is asked on the server's thread.

@@ -3,7 +3,7 @@
 // A header of 40 bytes: uint8 kind, uint8 version (1), uint16 flags, uint32 sequence, uint64 capture time (ns, by the recording's
 // clock), uint64 send time (ns, by the server's steady clock; 0 in what is stored), then four uint32.
 //
-// Kinds 1 (a stretch of a recording; sequence is its first instant's place, from 0) and 2 (one live instant; sequence counts them).
+// Kinds 1 (a chunk of a recording; sequence is its first instant's place, from 0) and 2 (one live instant; sequence counts them).
 // The four are the numbers of instants n, rows r, poses p, and of keypoints of a row k. Then the columns
 //   float64 time[n] (s);  uint32 index[n], row_end[n], pose_end[n];  int32 track[r];  float32 x[r], y[r], with flag 1 z[r];
 //   with flag 2 float32 left[r], top[r], width[r], height[r];  with flag 4 uint32 cameras[r] (who saw it, a bit each: the first 32
@@ -31,7 +31,7 @@
 
 namespace marey::viewer {
 
-/// Which optional columns a recording's stretches have.
+/// Which optional columns a recording's chunks have.
 struct WireColumns {
   bool z = false;
   bool boxes = false;

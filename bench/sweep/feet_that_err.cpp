@@ -1,5 +1,5 @@
 // A football match seen by six cameras that are known by homographies alone, each off by smooth errors, whose boxes end beside the
-// feet for half a second at a time: what is followed live against the whole recording, and what is learned of the cameras against
+// feet for half a second at a time: live tracking against the whole recording, and learned camera properties against
 // the truth.
 //   feet_that_err [--seeds N] [--first SEED] [--seconds S] [--rate HZ] [--foot-error M] [--along SHARE] [--edges SHARE] [--least M]
 //   [--most M] [--length M] [--width M] [--sides] [--only WAY]
@@ -29,7 +29,7 @@ namespace marey::sweep {
 namespace {
 
 constexpr double kMaxDistance = 1.5;     // m from the truth, where a track counts
-constexpr double kAlone = 4, kNear = 2;  // m: who is alone within the one is whatever is seen within the other
+constexpr double kAlone = 4, kNear = 2;  // m: a person alone within the one owns all detections within the other
 constexpr double kLag = 0.1;             // s
 
 struct Scene {

@@ -47,7 +47,7 @@ void name_recording(const std::string& recording, const std::string& set, const 
   file.finish();
 }
 
-/// One kind of scene: who moves how, and what taught the set.
+/// One kind of scene: the people's motion, and what taught the set.
 struct Kind {
   const char* name;
   const char* taught;

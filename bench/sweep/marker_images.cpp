@@ -1,4 +1,4 @@
-// Markers in images that show more than markers: what is found, what is missed, what is false, beside three naive detectors. Each
+// Markers in images that show more than markers: found, missed and false ones, beside three naive detectors. Each
 // image is inspected alone, as the first of a recording.
 //   marker_pictures [--pictures N: of each setting] [--setting NAME] [--first-seed N] [--no-peers] [--times]
 #include <algorithm>

@@ -3,7 +3,7 @@
 //
 //   network_people MODEL.toml VIDEO TRUTH.txt [every=12] [first=10] [last=298] [score=S]
 //
-// Frames are the truth's, from 1. The network looks all over each image; the size of people is learned on the way.
+// Frames are the truth's, from 1. The network searches all of each image; the size of people is learned meanwhile.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

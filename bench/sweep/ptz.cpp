@@ -147,7 +147,7 @@ Vector<2> axis_of(const geometry::Tripod& tripod, const geometry::Heading& headi
   return {std::atan2(ahead.x(), ahead.y()), std::asin(-ahead.z())};
 }
 
-/// What was found of each frame beside the truth: where the axis points, how long the lens is, where places of the pitch are seen.
+/// The result for each frame beside the truth: where the axis points, how long the lens is, where places of the pitch are seen.
 void assess(const PtzResult& result, const geometry::Tripod& tripod, const std::vector<std::optional<geometry::Heading>>& truth,
             const std::vector<GroundView>& views, cv::Size size, Score& score) {
   score.frames += static_cast<int>(truth.size());

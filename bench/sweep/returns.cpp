@@ -263,7 +263,7 @@ Recorded rendered(const Kind& kind, const Sweep& sweep, int seed) {
   options.rate_hz = sweep.rate;
   options.pace = sweep.pace;
   options.own_clothes = kind.own_clothes;
-  if (!sweep.plain) options.inspect = {0.6, 0.2, 1.5, 1.5, 0.5, 8};
+  if (!sweep.plain) options.degradation = {0.6, 0.2, 1.5, 1.5, 0.5, 8};
   return video(options, kind.situation, static_cast<std::uint64_t>(seed));
 }
 

@@ -1,9 +1,9 @@
-// Names of markers in space: how often a marker of a body bears a wrong name, beside a plain tracker on the same points.
+// Names of markers in space: how often a marker of a body has a wrong name, beside a plain tracker on the same points.
 //
 //   space_names [--motion walk|run|kneel] [--cameras N] [--markers N] [--gaps SHARE] [--seconds S] [--rate HZ]
 //               [--noise PX] [--seeds N] [--first-seed N] [--live] [--events]
 //
-// A track is at home on the marker that it was on the longest. `wrong` counts how often a marker bore a track that is at home on
+// A track is at home on the marker that it was on the longest. `wrong` counts how often a marker had a track that is at home on
 // another for 0.1 s and more; `swapped` the markers that do so at the end; `renamed` the tracks that a marker had beside one of its
 // own; `told` of all markers and frames those with a measured point. The peer follows the same true places, where our
 // reconstruction found a point: constant velocity, never given up, the Hungarian method, a gate that grows with the time unseen.
@@ -48,9 +48,9 @@ class NameEvaluate {
   }
 
   struct Verdict {
-    int wrong = 0;    ///< times that a marker bore a name that is at home elsewhere, for kLongEnough and more
+    int wrong = 0;    ///< times that a marker had a name that is at home elsewhere, for kLongEnough and more
     int early = 0;    ///< of these, in the first three seconds
-    int swapped = 0;  ///< markers that bear such a name at the end
+    int swapped = 0;  ///< markers that have such a name at the end
     int renamed = 0;  ///< names that markers had beside their main ones, of their own
   };
 

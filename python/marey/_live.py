@@ -45,8 +45,8 @@ def live(
     """
     cameras = _live_cameras(source)
     if cameras is None:
-        if take is not None or {"ground", "patience", "late", "preroll"} & options.keys():
-            raise Error("ground, take, late, preroll and patience are for live cameras: a rig, or sources such as v4l2:/dev/video0")
+        if take is not None or {"ground", "connect_timeout", "frame_timeout", "preroll"} & options.keys():
+            raise Error("ground, take, frame_timeout, preroll and connect_timeout are for live cameras: a rig, or sources such as v4l2:/dev/video0")
         if targets is not None:
             options["targets"] = targets
         return _time_steps(lambda put, ends: _track_video(source, put, sinks, options), waits=True)

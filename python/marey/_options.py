@@ -18,29 +18,29 @@ class TrackOptions(TypedDict, total=False):
     r"""a video with boxes, IDs and trails drawn into the images: FILE.mp4"""
     plot: Path | None
     r"""the trajectories as one image, in its coordinates: FILE.svg"""
-    masks: Path | None
+    foreground_masks: Path | None
     r"""a new folder for the output of the background model: bin000001.png of the first frame, white on black"""
     live: bool | None
     r"""write each frame's tracks at once; nothing is corrected by later frames"""
-    delay: float | None
+    lag: float | None
     r"""s in [0, 60]: with --live: use the frames of this duration before each frame's tracks are written (default: 0)"""
-    steady: bool | None
+    stabilise: bool | None
     r"""the camera shakes (wind, steps): stabilise its images first; results are in the pixels of its rest"""
-    seen_only: bool | None
-    r"""leave out the rows of people who were not detected in that frame"""
+    measured_only: bool | None
+    r"""omit the rows of people who were not detected in that frame"""
     background: Literal["marey", "mog2", "knn"] | None
     r"""model of the static background: marey, mog2, knn (default: marey)"""
-    every: int | None
+    detector_interval: int | None
     r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
-    without_background: bool | None
+    no_background: bool | None
     r"""the network alone"""
-    outline: bool | None
+    contour: bool | None
     r"""track each person's outline too: a closed spline"""
     control_points: int | None
     r"""N in [3, 64]: of each outline (default: as many as its silhouette needs, at most 40)"""
-    order: int | None
+    spline_order: int | None
     r"""N in [2, 8]: of the spline, degree + 1 (default: 4, cubic)"""
-    lines: int | None
+    measurement_lines: int | None
     r"""N in [1, 512]: measurement lines across each outline, along which it is searched (default: 24)"""
     model: str | None
     r"""the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx (default: full)"""
@@ -48,9 +48,9 @@ class TrackOptions(TypedDict, total=False):
     r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
     dark: bool | None
     r"""markers are darker than their surroundings"""
-    widest: float | None
+    max_width: float | None
     r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
-    most_markers: int | None
+    max_markers: int | None
     r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
     min_area: float | None
     r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
@@ -63,10 +63,10 @@ class TrackOptions(TypedDict, total=False):
     saturation: float | None
     r"""share in [0.001, 0.999]: with --colour: minimum of (largest - smallest of red, green, blue), as a share of white (default: 0.2)"""
     mask: Path | None
-    r"""an image of the video's size; what is not black in it is left out"""
+    r"""an image of the video's size; what is not black in it is omitted"""
     auto_mask: float | None
-    r"""s in [0, 3600]: leave out what is bright and static in the first N seconds (lamps, reflections, and markers that do not move); 0: off (default: 0)"""
-    fit_noise: bool | None
+    r"""s in [0, 3600]: omit what is bright and static in the first N seconds (lamps, reflections, and markers that do not move); 0: off (default: 0)"""
+    estimate_noise: bool | None
     r"""estimate process and measurement noise from the recording"""
 
 
@@ -77,15 +77,15 @@ class GroundOptions(TypedDict, total=False):
     r"""a folder for such a video of each camera, CAMERA.mp4"""
     live: bool | None
     r"""write each frame's tracks at once; nothing is corrected by later frames"""
-    steady: bool | None
+    stabilise: bool | None
     r"""the camera shakes (wind, steps): stabilise its images first; results are in the pixels of its rest"""
     background: Literal["marey", "mog2", "knn"] | None
     r"""model of the static background: marey, mog2, knn (default: marey)"""
     detector: Path | None
     r"""a detection network in addition to the background model: the file that describes it (docs/network.md)"""
-    every: int | None
+    detector_interval: int | None
     r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
-    without_background: bool | None
+    no_background: bool | None
     r"""the network alone"""
     size: str | tuple[float, float] | None
     r"""m, of the pitch, or of any other rectangle from the origin on (default: 105x68 if the rig was calibrated on a pitch, else people count everywhere)"""
@@ -95,7 +95,7 @@ class GroundOptions(TypedDict, total=False):
     r"""m in [0, 1000]: around the pitch or the area in which people still count (default: 2)"""
     teams: str | None
     r'''the teams' colours, "white,blue", or their names too, "City=white,United=blue"'''
-    associate: Literal["gnn", "jpda", "mht", "bramble"] | None
+    association: Literal["gnn", "jpda", "mht", "bramble"] | None
     r"""data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks by particles in the images, without detections: gnn, jpda, mht, bramble"""
     ball: bool | None
     r"""track the ball too: a track named "ball", with its height"""
@@ -106,7 +106,7 @@ class GroundOptions(TypedDict, total=False):
 class ReconstructOptions(TypedDict, total=False):
     labels: Path | None
     r"""the markers' labels: CSV label,x,y,z of their positions at the beginning (m), or one label per line, by increasing x"""
-    set: Path | None
+    marker_set: Path | None
     r"""label the markers, frame by frame, by a set that "marey label learn" made: set.toml"""
     skeleton: Path | None
     r"""solve the pose of this skeleton from the labelled markers in each frame: skeleton.toml or .osim, fitted to the person (marey solve --write-skeleton)"""
@@ -114,13 +114,13 @@ class ReconstructOptions(TypedDict, total=False):
     r"""Hz in [0.001, 1e6]: frame rate, if neither the sources nor the rig specify it"""
     noise: float | None
     r"""px in [0.001, 100]: standard deviation of a blob's position and of the calibration (default: learned)"""
-    fill: float | None
+    max_gap: float | None
     r"""s in [0, 10]: the longest gap that is filled (default: 0.5)"""
-    predict: float | None
-    r"""s in [0, 10]: write predictions for this duration of a longer gap; at most --fill (default: 0)"""
+    max_prediction: float | None
+    r"""s in [0, 10]: write predictions for this duration of a longer gap; at most --max-gap (default: 0)"""
     live: bool | None
     r"""write every instant at once, as marey live does: no gap is filled"""
-    marker_width: float | None
+    marker_diameter: float | None
     r"""m in [0.0001, 1]: markers closer than this disturb each other (default: 0.02)"""
     max_speed: float | None
     r"""m/s in [0.001, 10000]: the largest speed of a marker (default: 15)"""
@@ -128,9 +128,9 @@ class ReconstructOptions(TypedDict, total=False):
     r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
     dark: bool | None
     r"""markers are darker than their surroundings"""
-    widest: float | None
+    max_width: float | None
     r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
-    most_markers: int | None
+    max_markers: int | None
     r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
     min_area: float | None
     r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
@@ -154,7 +154,7 @@ class ReconstructOptions(TypedDict, total=False):
     r"""a detection network in place of the one for people: the file that describes it (docs/network.md)"""
     with_background: bool | None
     r"""people are detected by what changes too, which is faster; default: by the network alone"""
-    every: int | None
+    detector_interval: int | None
     r"""N in [1, 1000]: run the networks on every N-th frame (default: 1)"""
 
 
@@ -169,17 +169,17 @@ class LiveOptions(TypedDict, total=False):
     r"""m in [0, 1000]: around the pitch or the area in which people still count (default: 2)"""
     teams: str | None
     r'''the teams' colours, "white,blue", or their names too, "City=white,United=blue"'''
-    associate: Literal["gnn", "jpda", "mht", "bramble"] | None
+    association: Literal["gnn", "jpda", "mht", "bramble"] | None
     r"""data association (default: mht; gnn with live cameras or --live, and for boxes whose cameras agree); bramble tracks by particles in the images, without detections: gnn, jpda, mht, bramble"""
     preroll: float | None
     r"""s in [0, 60]: kept from before a recording is switched on (default: 5)"""
-    late: float | None
+    frame_timeout: float | None
     r"""s in [0.001, 1]: longest wait for a late frame of an instant (default: 0.05)"""
-    patience: float | None
+    connect_timeout: float | None
     r"""s in [0, 60]: longest wait for cameras at the beginning (default: 3)"""
     labels: Path | None
     r"""the markers' labels: CSV label,x,y,z of their positions at the beginning (m), or one label per line, by increasing x"""
-    set: Path | None
+    marker_set: Path | None
     r"""label the markers, frame by frame, by a set that "marey label learn" made: set.toml"""
     skeleton: Path | None
     r"""solve the pose of this skeleton from the labelled markers in each frame: skeleton.toml or .osim, fitted to the person (marey solve --write-skeleton)"""
@@ -187,9 +187,9 @@ class LiveOptions(TypedDict, total=False):
     r"""grey level in [0, 65535]: that the pixels of a marker exceed, 0 to 255 or 65535 (default: from the image noise)"""
     dark: bool | None
     r"""markers are darker than their surroundings"""
-    widest: float | None
+    max_width: float | None
     r"""px in [2, 200]: largest width of a marker; wider regions are removed from the image (default: only where they disturb)"""
-    most_markers: int | None
+    max_markers: int | None
     r"""N in [1, 1000000]: per frame; beyond, those at predicted positions are kept, then the largest (default: 5000)"""
     min_area: float | None
     r"""px^2 in [0, 1e8]: smallest marker, pixels that exceed the threshold (default: 2)"""
@@ -201,9 +201,9 @@ class LiveOptions(TypedDict, total=False):
     r"""model of the static background: marey, mog2, knn (default: marey)"""
     detector: Path | None
     r"""a detection network in addition to the background model: the file that describes it (docs/network.md)"""
-    every: int | None
+    detector_interval: int | None
     r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
-    without_background: bool | None
+    no_background: bool | None
     r"""the network alone"""
     model: str | None
     r"""the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx (default: lite)"""

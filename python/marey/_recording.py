@@ -236,7 +236,7 @@ class Recording:
     def to_pandas(self) -> pd.DataFrame:
         """A row for each target and instant: frame, time (s), id, label, team, x, y[, z], provenance, and where the recording has them vx, vy[, vz],
         score, left, top, width, height (px), residual. Needs pandas."""
-        pandas = _interop.wanted("pandas", "to_pandas()")
+        pandas = _interop.required("pandas", "to_pandas()")
         axes = ["x", "y", "z"][: self.dimensions]
         columns: dict[str, list[Any]] = {name: [] for name in ("frame", "time", "id", "label", "team", *axes, "provenance")}
         extra: dict[str, list[NDArray[np.float64]]] = {}
@@ -308,7 +308,7 @@ class Recording:
         return f"{_image(self)}<div>{escape(repr(self).strip('<>'))}</div>"
 
 
-def _image(recording: Recording, most_points: int = 400) -> str:
+def _image(recording: Recording, max_points: int = 400) -> str:
     """The paths, from above or in the image, as a small SVG."""
     drawn = [track for track in recording.tracks if len(track) > 1][:60]
     if not drawn:
@@ -320,7 +320,7 @@ def _image(recording: Recording, most_points: int = 400) -> str:
     width, height = (x1 - x0) * scale + 8, (y1 - y0) * scale + 8
     lines = []
     for number, track in enumerate(drawn):
-        step = max(1, len(track) // most_points)
+        step = max(1, len(track) // max_points)
         xs, ys = (track.x[::step] - x0) * scale + 4, (track.y[::step] - y0) * scale + 4
         points = " ".join(f"{x:.1f},{(y if down else height - y):.1f}" for x, y in zip(xs, ys))
         colour = COLOURS[number % len(COLOURS)]

@@ -178,7 +178,7 @@ class BadInput(unittest.TestCase):
         self.assertTrue(pathlib.Path("/dev/full").is_char_device())
 
     def test_unknown_values_list_what_is_known(self):
-        for option, value, known in (("--background", "gsoc", "marey, mog2, knn"), ("--format", "xml", "csv, jsonl, mot"),
+        for option, value, known in (("--background", "gsoc", "marey, mog2, knn"), ("--format", "xml", "csv, jsonl, coco"),
                                      ("--filter", "magic", "kalman"), ("--targets", "cars", "people")):
             said = self.refused("track", "film.avi", option, value, code=2)
             self.assertIn(value, said)

@@ -159,7 +159,7 @@ class CommandLine(unittest.TestCase):
     def test_wrong_words_name_the_right_one(self):
         for words, right in ((("trak",), "track"), (("help", "evalute"), "evaluate"), (("calibrate", "grond"), "ground"),
                              (("track", "plain/video.mp4", "--overly", "o.mp4"), "--overlay"), (("info", "boxes.txt", "--jsno"), "--json"),
-                             (("simulate", "markers", "plain", "--l-frame=3"), "--frames"), (("reconstruct", "--ouput", "x.marey"), "--output"),
+                             (("simulate", "markers", "plain", "--frame=3"), "--frames"), (("reconstruct", "--ouput", "x.marey"), "--output"),
                              (("simulate", "room", "--motion", "wlak"), "walk"), (("track", "a.avi", "--targets", "marker"), "markers")):
             self.assertRegex(self.refused(*words), rf"Did you mean {right}\?$")
         # What is like none of them is not taken for the one that is least unlike.

@@ -136,10 +136,10 @@ class Edit(unittest.TestCase):
         marey("edit", self.take, "delete knee 80:95")
         run = marey("edit", self.take, "fill all longest=0.1")
         self.assertIn("1 gap stays open: 1 longer than 0.1 s (longest=); nothing was filled\n", run.stderr)
-        self.assertIn("\"fill no person\": there is no track", marey("edit", self.take, "fill nobody", code=1).stderr)
+        self.assertIn("\"fill nobody\": there is no track", marey("edit", self.take, "fill nobody", code=1).stderr)
 
     def test_what_cannot_be_is_a_message(self):
-        for arguments, sentence in (((self.folder / "walk.csv", "rename A B"), "no take"), ((self.folder / "none.marey",), "no such file"),
+        for arguments, sentence in (((self.folder / "walk.csv", "rename A B"), "not a take"), ((self.folder / "none.marey",), "no such file"),
                                     ((self.take, "jump A"), "\"jump\" is not an edit")):
             run = marey("edit", *arguments, code=1)
             self.assertIn(sentence, run.stderr)

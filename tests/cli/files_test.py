@@ -77,7 +77,7 @@ class Files(unittest.TestCase):
         self.assertIn("walk.csv: has none of the frames 70:80", self.refused("convert", self.csv, "none.c3d", "--frames", "70:80"))
         self.assertFalse((self.folder / "none.c3d").exists())
         for wrong in ("80:70", "12", "a:b", "-4:5"):
-            self.assertIn("no frames; write FIRST:LAST", self.refused("convert", self.csv, "none.c3d", f"--frames={wrong}", code=2))
+            self.assertIn("not frames; write FIRST:LAST", self.refused("convert", self.csv, "none.c3d", f"--frames={wrong}", code=2))
 
     def test_a_part_of_a_match_and_of_tracks(self):
         (self.folder / "match.csv").write_text("frame,id,x,y,team\n" + "".join(f"{f},{p},{5 * p},{3 * p},red\n" for f in range(40) for p in range(1, 4)))
@@ -129,8 +129,8 @@ class Files(unittest.TestCase):
     def test_what_cannot_be_used(self):
         self.assertIn("no such file", self.refused("info", "none.c3d"))
         (self.folder / "notes.txt").write_text("hello\n")
-        self.assertIn("none of the files", self.refused("info", "notes.txt"))
-        self.assertIn("none of the files", self.refused("convert", "notes.txt", "out.c3d"))
+        self.assertIn("not one of the files", self.refused("info", "notes.txt"))
+        self.assertIn("not one of the files", self.refused("convert", "notes.txt", "out.c3d"))
         self.assertIn("unknown ending; these can be written: ", self.refused("convert", self.csv, "out.xyz", code=2))
         self.assertIn("is an input too", self.refused("convert", self.csv, self.csv, code=2))
         self.assertIn("is not a take", self.refused("convert", self.csv, "notes.txt", "--format", "take"))

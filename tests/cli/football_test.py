@@ -168,8 +168,8 @@ class Football(unittest.TestCase):
     def test_what_cannot_be_measured_is_refused(self):
         for name, text, sentence in [
             ("empty.csv", "", "empty"),
-            ("nobody.csv", "frame,time,id,x,y\n", "nobody"),
-            ("short.csv", "frame,time,id,x,y\n0,0,1,2,3\n", "nobody"),
+            ("nobody.csv", "frame,time,id,x,y\n", "no person"),
+            ("short.csv", "frame,time,id,x,y\n0,0,1,2,3\n", "no person"),
             ("nan.csv", "frame,time,id,x,y\n0,0,1,nan,3\n", "nan.csv:2"),
             ("foreign.csv", "a,b\n1,2\n", "header"),
         ]:

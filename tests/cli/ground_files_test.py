@@ -96,8 +96,8 @@ class GroundFiles(unittest.TestCase):
     def test_what_cannot_be_measured_is_refused(self):
         for name, text, sentence in [
             ("empty.csv", "", "empty"),
-            ("head.csv", "frame,time,id,x,y\n", "nobody"),
-            ("still.csv", "frame,time,id,x,y\n0,0,1,2,3\n0,0,2,2,3\n", "nobody"),
+            ("head.csv", "frame,time,id,x,y\n", "no person"),
+            ("still.csv", "frame,time,id,x,y\n0,0,1,2,3\n0,0,2,2,3\n", "no person"),
             ("cut.csv", "frame,time,id,x,y\n0,0,1,2,3\n1,0.04,1,2", "cut.csv:3"),
             ("hostile.csv", "frame,time,id,x,y\n99999999999,0,1,2,3\n", "hostile.csv:2"),
             ("boxes.txt", "1,1,10,10,5,5,1,-1,-1,-1\n", "no world coordinates"),

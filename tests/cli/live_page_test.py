@@ -129,7 +129,7 @@ class Page(unittest.TestCase):
             page.say(f"name {one} left knee")
             receive_until(page, "said", lambda text: text == "")
             page.say(f"name {two} left knee")
-            self.assertIn("is called left knee and is detected now", receive_until(page, "said"))
+            self.assertIn("is called left knee and is seen now", receive_until(page, "said"))
             page.say("name 999999 no person")
             self.assertIn("there is no track 999999", receive_until(page, "said"))
             page.say("save")

@@ -53,7 +53,7 @@ class Live(unittest.TestCase):
         figures = {}
         for scene, detections, truth, rate in live_peers.scenes(data, self.folder, "all"):
             self.marey("track", "--detections", detections, "--rate", rate, "-o", "live.txt", "-q", "--live")
-            told = live_peers.judged(MAREY, truth, self.folder / "live.txt")
+            told = live_peers.evaluated(MAREY, truth, self.folder / "live.txt")
             figures.setdefault(scene.split(",")[0], []).append([told[name] for name in live_peers.FIGURES])
         for scene, best in BEST_PEER.items():
             ours = [sum(column) / len(figures[scene]) for column in zip(*figures[scene])]

@@ -94,7 +94,7 @@ class PitchElements(unittest.TestCase):
             self.assertFalse((self.folder / "never.toml").exists())
             return done.stderr
 
-        self.assertIn("is not a JSON", refused(self.write("broken.json", "{")))
+        self.assertIn("is not JSON", refused(self.write("broken.json", "{")))
         self.assertIn("is not an element of a pitch", refused(self.write("other.json", {"Tramline": [{"x": 0, "y": 0}]})))
         self.assertIn("at least two are needed", refused(self.write("one.json", {"Middle line": [{"x": 0.5, "y": 0.5}]})))
         frame = self.write("frame.json", labels())

@@ -72,7 +72,7 @@ class Play(unittest.TestCase):
                 (("points.csv", "--stream", "qtm:a:99999"), 2, "names no port"),
                 (("points.csv", "--speed", "0"), 2, "[0.01, 100]"),
                 (("none.csv",), 1, "no such file"),
-                (("points.csv", "--stream", "json:203.0.113.7"), 1, "no address of this host"),
+                (("points.csv", "--stream", "json:203.0.113.7"), 1, "not an address of this host"),
                 (("points.csv", "--stream", "osc:no.such.host.invalid"), 1, "no host is called")):
             said = self.marey("play", *arguments, code=code).stderr
             self.assertIn(sentence, said)

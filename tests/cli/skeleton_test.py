@@ -126,7 +126,7 @@ class Skeleton(unittest.TestCase):
     def test_what_lacks_of_a_marker_set_is_stated(self):
         self.standing_puncher("LSHN", "RKNE")
         done = self.marey("solve", "punches.c3d", "--static-trial", "standing.csv", "-o", "x.mot", code=1)
-        self.assertIn("standing.csv: its labels are not whole marker set that Marey knows; CMU's 41 markers is nearest, and lacks RKNE, LSHN", done.stderr)
+        self.assertIn("standing.csv: its labels are not a whole marker set that Marey knows; CMU's 41 markers is nearest, and lacks RKNE, LSHN", done.stderr)
         done = self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--marker-set", "cmu-41", "-o", "x.mot", code=1)
         self.assertIn("of CMU's 41 markers it lacks LFWT, RFWT", done.stderr)
         self.assertIn("cleveland-clinic", self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "--marker-set", "golem", "-o", "x.mot", code=2).stderr)
@@ -486,10 +486,10 @@ class Skeleton(unittest.TestCase):
                 self.assertIn(word, done.stderr)
 
         states(1, ["figure.bvh", "none of its labels is a marker of the skeleton"], "walk.trc", "--skeleton", "figure.bvh", "-o", "x.mot")
-        states(1, ["no whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
+        states(1, ["not a whole marker set", "skeleton is wanted"], "walk.trc", "-o", "x.mot")
         states(1, ["stands still"], "walk.c3d", "--static-trial", "walk.c3d", "-o", "x.mot")
         states(2, ["x.png"], "walk.trc", "--skeleton", "model.osim", "-o", "x.png")
-        states(1, ["no skeleton that Marey knows"], "walk.trc", "--skeleton", "walk.trc", "-o", "x.mot")
+        states(1, ["not a skeleton that Marey knows"], "walk.trc", "--skeleton", "walk.trc", "-o", "x.mot")
         self.assertFalse((self.folder / "x.mot").exists())
 
 

@@ -188,7 +188,7 @@ class TrackGround(unittest.TestCase):
         rig = self.made / "boxes" / "rig.toml"
         said = self.refused(rig, "--ground", "--format", "mot", "--camera", "nobody", "-o", "boxes.txt")
         self.assertIn("cam1, cam2", said)
-        self.assertIn("pictures", self.refused(rig, "--ground", "--overlay", "films", "-o", "match.csv"))
+        self.assertIn("images", self.refused(rig, "--ground", "--overlay", "films", "-o", "match.csv"))
 
     def test_uncalibrated_cameras(self):
         (self.folder / "rig.toml").write_text(

@@ -178,7 +178,7 @@ class View(unittest.TestCase):
             (["noise.bin"], 1, "noise.bin"),
             (["walk/rig.toml"], 1, "rig.toml"),
             (["walk.marey", "--video", "walk.marey"], 1, "holds no tracks in an image"),
-            (["walk.marey", "--listen", "nowhere"], 1, "no address to listen on"),
+            (["walk.marey", "--listen", "nowhere"], 1, "not an address to listen on"),
             (["walk.marey", "--port", "70000"], 2, "port"),
             (["walk.marey", "--size", "3"], 2, "size"),
         ):

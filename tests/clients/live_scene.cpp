@@ -139,7 +139,7 @@ void play(const std::string& path, double rate_hz) {
     sink->write(instant);
     longest_s = std::max(longest_s, std::chrono::duration<double>(Stabilise::now() - before).count());
     if (count % static_cast<int>(rate_hz / 2) == 0) viewer.report(report_of(take, count, rate_hz));
-    const int record = required.interchange(-1);
+    const int record = required.exchange(-1);
     if (record < 0) continue;
     viewer.recording(record == 1, "walk.marey");
     fmt::print("record {}\n", record == 1 ? "on" : "off");

@@ -55,11 +55,11 @@ COMMANDS = (
     ("body define", "body define leg.csv --markers T1,T2,T3 --name thigh -o out/b.toml", ["out/b.toml"]),
     ("body track", "body track leg.csv bodies.toml -o out/f.marey", ["out/f.marey"]),
     ("label learn", "label learn leg.csv -o out/set.toml --json", ["out/set.toml"]),
-    ("label", "label leg.csv --set set.toml -o out/l.c3d", ["out/l.c3d"]),
+    ("label", "label leg.csv --marker-set set.toml -o out/l.c3d", ["out/l.c3d"]),
     ("solve", "solve leg.csv --skeleton leg.toml -o out/s.mot -o out/s.bvh -o out/s.glb --write-skeleton out/s.toml --json",
      ["out/s.mot", "out/s.bvh", "out/s.glb", "out/s.toml"]),
-    ("gait", "gait walk.c3d --static standing.c3d -o out/c.csv --angles out/a.csv --report out/g.html", ["out/c.csv", "out/a.csv", "out/g.html"]),
-    ("batch plan", "batch plan table.csv --do measure -o out/plan.tsv --json", ["out/plan.tsv"]),
+    ("gait", "gait walk.c3d --static-trial standing.c3d -o out/c.csv --angles out/a.csv --report out/g.html", ["out/c.csv", "out/a.csv", "out/g.html"]),
+    ("batch plan", "batch plan table.csv --job measure -o out/plan.tsv --json", ["out/plan.tsv"]),
     ("batch run", "batch run out/plan.tsv", ["out/plan.tsv.results/places.csv"]),
     ("batch reduce", "batch reduce done/plan.tsv -o out/r.csv --report out/page", ["out/r.csv", "out/page"]),
     ("play", "play points.csv --speed 100 --stream osc -q", []),
@@ -154,7 +154,7 @@ class Faults:
         write("table.csv", "input\nplaces.csv\n")
         for folder in ("done", "out"):
             (self.folder / folder).mkdir()
-            self.plain(f"batch plan table.csv --do measure -o {folder}/plan.tsv")
+            self.plain(f"batch plan table.csv --job measure -o {folder}/plan.tsv")
         self.plain("batch run done/plan.tsv")
         shutil.move(self.folder / "out/plan.tsv", self.folder / "plan.tsv")
         data = pathlib.Path(os.environ.get("MAREY_DATA", pathlib.Path(__file__).resolve().parents[3] / "shared/data")) / "gait_children/HC002D"
@@ -256,7 +256,7 @@ class Faults:
                 continue
             if name.endswith(".marey"):
                 done = subprocess.run([self.marey, "info", name], cwd=self.folder, capture_output=True, timeout=SECONDS)
-                if done.returncode == 0 or b"nothing" in done.stderr or b"no take" not in done.stderr and done.returncode == 1:
+                if done.returncode == 0 or b"nothing" in done.stderr or b"not a take" not in done.stderr and done.returncode == 1:
                     continue
             return f"half of {name} is at its final name ({len(bytes_there)} of {len(whole[name])} bytes)"
         return None

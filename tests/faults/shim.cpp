@@ -1,4 +1,4 @@
-// Loaded before a program (LD_PRELOAD), it makes the outside world fail as told by the environment:
+// Loaded before a program (LD_PRELOAD), it makes the outside world fail as set by the environment:
 //   FAULT_AT=N      call number N that writes, syncs, renames or closes a file fails, and all that follow it where FAULT_STAYS is
 //   set FAULT_SHORT=1   a write that fails writes half of its bytes first, and says so; the next one fails FAULT_CLOCK=1   the
 //   clock of the day jumps by an hour to and fro FAULT_COUNT=F   at its end the program writes to file F how many such calls there

@@ -93,10 +93,10 @@ class Jobs(SimulatedVideo):
             (lambda: marey.track(), "what is to be tracked?"),
             (lambda: marey.track(self.film, targets="cars"), "use one of people, keypoints, markers"),
             (lambda: marey.track(self.film, filter="imn"), 'filter: filter "imn" is not known'),
-            (lambda: marey.track(self.film, seen_onyl=True), "did you mean seen_only?"),
-            (lambda: marey.track(self.film, association="mht"), "associate is not an option of this job (track people)"),
-            (lambda: marey.track(self.film, lag=1), "delay 1: is an option of live"),
-            (lambda: marey.track(self.film, spline_order=3), "order requires outline"),
+            (lambda: marey.track(self.film, measured_onyl=True), "did you mean measured_only?"),
+            (lambda: marey.track(self.film, association="mht"), "association is not an option of this job (track people)"),
+            (lambda: marey.track(self.film, lag=1), "lag 1: is an option of live"),
+            (lambda: marey.track(self.film, spline_order=3), "spline_order requires contour"),
             (lambda: marey.track(self.film, plot="plot.png"), "name a file that ends in .svg"),
             (lambda: marey.track(self.film, rate=[1, 2]), 'rate: "1x2" is no number'),
             (lambda: marey.track(self.film, plot=object()), "is neither a number nor text nor a path"),
@@ -132,7 +132,7 @@ class Jobs(SimulatedVideo):
             "picture = np.zeros((240, 320, 3), dtype=np.uint8)\n"
             "def images():\n"
             "    print('runs', flush=True)\n"
-            "    yield from itertools.repeat(image)\n"
+            "    yield from itertools.repeat(picture)\n"
             "try:\n"
             "    marey.track(marey.Frames(images(), rate=25), live=True, keep=False)\n"
             "except KeyboardInterrupt:\n"
@@ -168,7 +168,7 @@ class Jobs(SimulatedVideo):
     def test_signatures_name_the_options(self):
         import inspect
 
-        for function, option in ((marey.track, "seen_only"), (marey.track, "model"), (marey.track_ground, "ball"), (marey.reconstruct, "no_offsets"), (marey.live, "late")):
+        for function, option in ((marey.track, "measured_only"), (marey.track, "model"), (marey.track_ground, "ball"), (marey.reconstruct, "no_offsets"), (marey.live, "frame_timeout")):
             self.assertIn(option, inspect.signature(function).parameters)
             self.assertIn(f"    {option}: ", function.__doc__)
         self.assertNotIn("options", inspect.signature(marey.track).parameters)

@@ -96,7 +96,7 @@ EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
 WITH = {"foreground-masks": ["background"], "detector-interval": ["detector"], "no-background": ["detector"]}
 # Options whose network is made by script/model, which not every machine has.
-MODEL_OPTIONS = {"detector", "every", "without-background", "model"}
+MODEL_OPTIONS = {"detector", "detector-interval", "no-background", "model"}
 
 
 def shell_words(options):

@@ -126,7 +126,7 @@ class Checks(unittest.TestCase):
         self.check("check-words", 0, "1 id, 1 const, 2 path, 2 prose, 1 test")
 
     def test_a_count_that_rises_fails_and_names_the_rule(self):
-        self.plant("docs/a.md", "An image.\nAnother image.\n")
+        self.plant("docs/a.md", "A pic" "ture.\nAnother pic" "ture.\n")
         self.count_words("prose 1 \\bpicture\\b  ->  image")
         done = subprocess.run([PROJECT / "script/check-words", self.root], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 1, done.stdout)

@@ -81,7 +81,7 @@ class Fitter {
     return fit;
   }
 
-  /// Whose everything is under the fit, and how likely that makes what was seen.
+  /// Whose everything is under the fit, and how likely that makes the data.
   void assess(Fit& fit) const {
     fit.log_likelihood = 0;
     fit.owner.assign(points_.size(), {});

@@ -23,7 +23,7 @@ Appearance colour_named(std::string_view name);
 /// The word that fits a shirt best.
 std::string name_of_colour(const Appearance& colour);
 
-/// How different two shirts look: the distance of the two as perceived (core/colour.h).
+/// The perceived difference of two shirts: the distance of their colours (core/colour.h).
 double colours_apart(const Appearance& a, const Appearance& b);
 
 }  // namespace marey::analyse

@@ -25,7 +25,7 @@ std::vector<std::pair<std::size_t, std::size_t>> bouts(std::size_t count, double
   return found;
 }
 
-/// Change of speed, not of direction: who turns does not brake. m/s².
+/// Change of speed, not of direction: a person who turns does not brake. m/s².
 double along(const Vector<2>& acceleration, const Vector<2>& velocity) {
   const double speed = velocity.norm();
   return speed > 0.1 ? acceleration.dot(velocity) / speed : acceleration.norm();

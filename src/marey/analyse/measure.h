@@ -37,7 +37,7 @@ struct PersonMeasure {
   int id = 0;
   std::string label, team;
   double seconds = 0;     ///< on some path
-  double observed_s = 0;  ///< of them, those in which measured places tell the speed: all below that is of speed is of these alone
+  double observed_s = 0;  ///< of them, those in which measured places give the speed: all below that is of speed is of these alone
   double distance_m = 0;
   double mean_mps = 0;
   std::optional<double> top_mps,
@@ -64,7 +64,7 @@ struct TeamMeasure {
 };
 
 struct Measurement {
-  std::vector<PersonMeasure> people;  ///< by id; those without two places, or of whom nothing was measured, are omitted
+  std::vector<PersonMeasure> people;  ///< by id; those without two places, or without a measurement, are omitted
   std::vector<TeamMeasure> teams;     ///< by name; people without a team are in none
   std::optional<BallMeasure> ball;    ///< where the recording has one, which is not one of the people
 };

@@ -1,4 +1,4 @@
-// Who has the ball, who passes it to whom, and when it is out of play, from where the ball and every person is.
+// Who has the ball, the passes between people, and when it is out of play, from where the ball and every person is.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ struct PossessionOptions {
   geometry::PitchSize pitch;
   double take_m = 1.2;   ///< a person who is nearest and so near to the ball takes it,
   double keep_m = 2;     ///< and has it until it is farther away than this, or another takes it
-  double min_s = 0.2;    ///< for this long at least: who is passed by has not had it
+  double min_s = 0.2;    ///< for this long at least: a person the ball only passes has not had it
   double reach_m = 2.2;  ///< height above which no person has it
   double pass_m = 2;     ///< what goes less far is not a pass
 };

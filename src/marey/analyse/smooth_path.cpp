@@ -11,7 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/filter/human_motion.h"
-#include "marey/filter/place_smoother.h"
+#include "marey/filter/position_smoother.h"
 #include "marey/geometry/butterworth.h"
 #include "marey/geometry/decompositions.h"
 #include "marey/geometry/median.h"
@@ -19,7 +19,7 @@
 namespace marey::analyse {
 namespace {
 
-constexpr double kReported = 0.2;  // s before and after: measured places within tell a speed; smoothing reaches about so far
+constexpr double kReported = 0.2;  // s before and after: measured places within give a speed; smoothing reaches about so far
 
 constexpr double kSureSpeed =
     0.75;  // m/s, standard deviation: half of the narrowest of the typical zones. What is less sure is not one
@@ -60,8 +60,8 @@ Path evenly(std::span<const Row> piece) {
   return path;
 }
 
-/// Half of the instants round each, at least, are measured: one missed look does not take a speed away, and one inspection in a gap
-/// gives none. At its ends a path is not seen from both sides: `ends` tells whether they are known all the same.
+/// Half of the instants round each, at least, are measured: one missed row does not take a speed away, and one inspection in a gap
+/// gives none. At its ends a path is not seen from both sides: `ends` states whether they are known all the same.
 std::vector<bool> reported_by_measured(const std::vector<bool>& measured, double step_s, bool ends) {
   const auto reach = static_cast<std::ptrdiff_t>(std::floor(kReported / step_s + 1e-9));
   const auto count = std::ssize(measured);
@@ -140,7 +140,7 @@ void rauch_tung_striebel(Path& path, double position_noise, double acceleration)
     locations.emplace_back(location.transpose());
   }
   const std::vector<double> variances(locations.size(), position_noise * position_noise);
-  const auto states = filter::smoothed_places<filter::WhiteAcceleration, 2>({.noise = acceleration}, times, locations, variances,
+  const auto states = filter::smoothed_positions<filter::WhiteAcceleration, 2>({.noise = acceleration}, times, locations, variances,
                                                                             unknown_speed * unknown_speed);
   path.velocity.resize(path.location.size());
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -165,7 +165,7 @@ void smooth(Path& path, const PathOptions& options) {
   }
 }
 
-/// By which a speed's deviation is a place's, 1/s. What is left after smoothing are errors slower than the cut-off; of errors whose
+/// By which a speed's deviation is a place's, 1/s. Left after smoothing are errors slower than the cut-off; of errors whose
 /// power is even up to there the derivative has 2π/√3 times the cut-off. Where nothing is smoothed, differences have it all.
 double speed_per_position(const PathOptions& options, double step_s, bool smoothed) {
   if (!smoothed && options.method == PathOptions::Method::raw) return 1 / (std::numbers::sqrt2 * step_s);
@@ -173,7 +173,7 @@ double speed_per_position(const PathOptions& options, double step_s, bool smooth
   return 2 * std::numbers::pi * cutoff / std::numbers::sqrt3;
 }
 
-/// Of each instant, by the covariance of the row that is nearest, along the way.
+/// Of each instant, by the covariance of the row that is nearest, along the path.
 std::vector<double> speed_sigmas(const Path& path, std::span<const Row> piece, double per_place) {
   std::vector<double> sigmas;
   std::size_t near = 0;

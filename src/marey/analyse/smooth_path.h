@@ -9,7 +9,7 @@
 // Paths are cut where a person is missing for long; short gaps are bridged straight. Each piece is brought to an even rate first.
 // What no person can have done (filter/human_motion.h) is omitted before: it is bridged where one person can have gone over it,
 // else the path is cut there. Places that were not measured lie straight between those that were, and speeds are trusted where
-// measured places tell them: not where a tracker filled a gap or ran on blindly. References: Winter, "Biomechanics and Motor
+// measured places give them: not where a tracker filled a gap or ran on blindly. References: Winter, "Biomechanics and Motor
 // Control of Human Movement", ch. 2 (cut-off of two passes); Barris & Button 2008.
 #pragma once
 
@@ -44,19 +44,19 @@ struct Path {
   std::vector<Vector<2>> location;      ///< m
   std::vector<Vector<2>> velocity;      ///< m/s
   std::vector<Vector<2>> acceleration;  ///< m/s²
-  std::vector<bool> detected;           ///< measured places tell the speed there, to 0.75 m/s: only such speeds are trusted
+  std::vector<bool> detected;           ///< measured places give the speed there, to 0.75 m/s: only such speeds are trusted
   std::vector<double> speed_sigma;      ///< m/s, standard deviation of the speed
 
   double seconds() const { return step_s * static_cast<double>(location.empty() ? 0 : location.size() - 1); }
 };
 
-/// A stretch of time in which a person is reported to have done what no person can.
+/// A period of time in which a person is reported to have done what no person can.
 struct ImpossibleSegment {
   double begin_s = 0, end_s = 0;
   bool one_person = true;  ///< places are wrong; else who is there afterwards is another person
 };
 
-/// What is left of a person's rows, and what was not trusted.
+/// The remainder of a person's rows, and the parts not trusted.
 struct PersonPaths {
   std::vector<Path> paths;
   std::vector<ImpossibleSegment> impossible;

@@ -1,6 +1,6 @@
-// Who plays with whom, learned from the recording itself: what each person wears over the whole of it (not frame by frame), the few
+// The teams, learned from the recording itself: what each person wears over the whole of it (not frame by frame), the few
 // colours that there are among them (colour_mixture.h), the two that most people wear. Others are keepers, who wear their own
-// colour and stay near a goal, or referees. Every person's vote comes with its probability; who cannot be reported stays without a
+// colour and stay near a goal, or referees. Every person's vote comes with its probability; an uncertain person stays without a
 // team.
 #pragma once
 
@@ -29,8 +29,8 @@ std::vector<TeamName> parse_teams(std::string_view text);
 struct TeamOptions {
   std::vector<TeamName> names;               ///< none: teams are called by their colours
   double sure = 0.8;                         ///< who belongs to a team with less probability stays without
-  double shortest = 0.8;                     ///< s; who was seen for less likewise
-  std::optional<geometry::PitchSize> pitch;  ///< where goals are, for keepers; without it there are none
+  double shortest = 0.8;                     ///< s; a person seen for less likewise
+  std::optional<geometry::PitchSize> pitch;  ///< where goals are, for keepers; without it no keepers
 };
 
 struct Teams {
@@ -43,7 +43,7 @@ struct Teams {
   struct Member {
     Role role = Role::unknown;
     std::optional<int> team = {};  ///< index into `teams`
-    double confidence = 0;         ///< probability of what is said, in [0, 1]
+    double confidence = 0;         ///< probability of the answer, in [0, 1]
   };
   std::vector<Team> teams;      ///< two at most; as named, else the one most seen first
   std::vector<Member> members;  ///< one a track, in the recording's order
@@ -53,7 +53,7 @@ struct Teams {
 /// `pitch` is given; throws Error for another.
 Teams find_teams(const Recording& recording, std::span<const std::optional<Appearance>> clothing, const TeamOptions& options = {});
 
-/// Writes what was found into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have
+/// Writes the result into the recording: the team of players and keepers; "keeper" and "referee" as labels of those who have
 /// none.
 void note_teams(const Teams& teams, Recording& recording);
 

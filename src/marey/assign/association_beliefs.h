@@ -1,4 +1,4 @@
-// How probable each pair of a row and a column is, over all answers to "who is whom" together, for graphs that are large and hang
+// How probable each pair of a row and a column is, over all assignments together, for graphs that are large and hang
 // together: messages between rows and columns until they agree. Where the graph has loops the probabilities are approximate, and
 // sharper than the exact ones of association_marginals.h, which is for many small clusters. Cost: the pairs, times the rounds.
 // Reference: Williams & Lau, "Approximate evaluation of marginal association probabilities with belief propagation", IEEE Trans.

@@ -1,4 +1,4 @@
-// How probable each pair of a row and a column is, over all answers to "who is whom" together: joint probabilistic data association
+// How probable each pair of a row and a column is, over all assignments together: joint probabilistic data association
 // (Fortmann, Bar-Shalom & Scheffe 1983). An answer gives each row one column at most and each column to one row at most; its weight
 // is the product of its pairs' weights, and a pair's probability is the share of the answers that have it.
 //

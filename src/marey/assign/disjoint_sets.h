@@ -8,7 +8,7 @@
 namespace marey::assign {
 
 /// The root of the tree that `element` is in, where `parent_of(i)` is a reference to the parent of i, a root its own. Halves the
-/// path on its way. For records that hold their own parents; else use DisjointSets.
+/// path as it climbs. For records that hold their own parents; else use DisjointSets.
 template <typename ParentOf>
 int find_root(int element, ParentOf&& parent_of) {
   while (parent_of(element) != element) {

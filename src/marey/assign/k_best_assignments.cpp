@@ -236,7 +236,7 @@ void KBestAssigner::ban(const Part& part, char value) {
 }
 
 /// Dijkstra from the row `from`, which has nothing, to the node `to`, which would be left without it; then choices and prices
-/// follow the path. False, with nothing changed, where there is none.
+/// follow the path. False, with nothing changed, if no path exists.
 bool KBestAssigner::reroute(const Part& part, int from, int to) {
   const Table& table = tables_[part.problem];
   const int sink = table.rows + table.columns;

@@ -1,4 +1,4 @@
-// The k best answers to "who is whom", not the best alone. A row may be given a column or stay without; the worth of an answer is
+// The k best assignments, not the best alone. A row may be given a column or stay without; the worth of an answer is
 // the sum of the gains of its pairs; the k answers of greatest worth are found in order, over one problem or several at once (the
 // children of several parent hypotheses).
 //
@@ -26,7 +26,7 @@
 
 namespace marey::assign {
 
-/// Who may be whom. Unlike for the best answer alone, pairs with a gain ≤ 0 count too: they are in answers that are less worth.
+/// Allowed pairs. Unlike for the best answer alone, pairs with a gain ≤ 0 count too: they are in answers that are less worth.
 struct AssignmentProblem {
   int rows = 0;
   int columns = 0;

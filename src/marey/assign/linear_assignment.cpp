@@ -49,7 +49,7 @@ void LinearAssigner::solve(int rows, int columns, const double* costs) {
   }
 }
 
-/// Dijkstra from `row` to the nearest free column, which is returned; `from_row_` tells the way back.
+/// Dijkstra from `row` to the nearest free column, which is returned; `from_row_` gives the path back.
 int LinearAssigner::find_path(int row, int columns, const double* costs) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   shortest_.assign(columns, infinity);

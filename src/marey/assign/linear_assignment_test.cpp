@@ -9,7 +9,7 @@
 namespace marey::assign {
 namespace {
 
-/// Every way to give each of the shorter side one of the longer.
+/// Every assignment that gives each of the shorter side one of the longer.
 double cheapest_by_trying_all(int rows, int columns, const std::vector<double>& costs) {
   const bool flat = rows <= columns;
   std::vector<int> order(std::max(rows, columns));

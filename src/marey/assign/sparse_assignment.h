@@ -4,7 +4,7 @@
 //
 // Rows are taken one after the other, each by the shortest augmenting path over reduced costs (Dijkstra), which ends as soon as a
 // free column or a row that had better stay alone is reached: a min-cost flow by successive shortest paths. Where neighbouring rows
-// have neighbouring columns the search stays local, and the whole costs little more than looking at the pairs.
+// have neighbouring columns the search stays local, and the whole costs little more than a scan of the pairs.
 // Cost: rows · (pairs + log) at worst. Reference: Ahuja, Magnanti & Orlin, "Network Flows" (1993), §9.7 and §12.4.
 #pragma once
 

@@ -37,7 +37,7 @@ double merit(std::span<const int> columns, const std::vector<GatedPair>& pairs) 
   return sum;
 }
 
-/// Every way of giving rows their columns.
+/// Every assignment of columns to rows.
 double best_of_all(int row, int rows, std::set<int>& used, const std::vector<GatedPair>& pairs) {
   if (row == rows) return 0;
   double best = best_of_all(row + 1, rows, used, pairs);

@@ -56,9 +56,9 @@ std::vector<int> best_successors(int pieces, std::span<const GatedPair> pairs);
 
 /// When a pair is beyond doubt, in units of what an end and its continuation may be off.
 struct ClearPair {
-  double most_off = 1;     ///< of the pair
+  double max_off = 1;     ///< of the pair
   double clearer = 2.5;    ///< times as far off any other that either of both may be paired with must be,
-  double least_off = 0.4;  ///< and so far at least
+  double min_clearance = 0.4;  ///< and so far at least
 };
 
 /// For each end the beginning that follows it, or kNoIndex: pairs within `longest` that are beyond doubt alone. `off(tail, head)` ≥
@@ -85,9 +85,9 @@ std::vector<int> clear_successors(const Ends& tails, const Ends& heads, Gap long
   std::vector<int> next(std::size(tails), kNoIndex);
   for (std::size_t tail = 0; tail < next.size(); ++tail) {
     const Best& best = after[tail];
-    if (best.other == kNoIndex || best.off > limits.most_off) continue;
+    if (best.other == kNoIndex || best.off > limits.max_off) continue;
     const Best& back = before[static_cast<std::size_t>(best.other)];
-    const double clear = std::max(limits.clearer * best.off, limits.least_off);
+    const double clear = std::max(limits.clearer * best.off, limits.min_clearance);
     if (back.other == static_cast<int>(tail) && best.next > clear && back.next > clear) next[tail] = best.other;
   }
   return next;

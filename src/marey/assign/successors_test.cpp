@@ -75,8 +75,8 @@ TEST(Successors, ClearOnesAreEachOthersBestByFar) {
     std::vector<int> slow(kPieces, kNoIndex);
     for (int tail = 0; tail < kPieces; ++tail) {
       for (int head = 0; head < kPieces; ++head) {
-        bool clear = possible(tail, head) && off[tail][head] <= limits.most_off;
-        const double others = std::max(limits.clearer * off[tail][head], limits.least_off);
+        bool clear = possible(tail, head) && off[tail][head] <= limits.max_off;
+        const double others = std::max(limits.clearer * off[tail][head], limits.min_clearance);
         for (int other = 0; other < kPieces; ++other) {
           if (other != head && possible(tail, other) && off[tail][other] <= others) clear = false;
           if (other != tail && possible(other, head) && off[other][head] <= others) clear = false;

@@ -232,7 +232,7 @@ GroundFound find_ground(const Rig& rig, std::span<const std::vector<Vector<2>>> 
 }
 
 GroundFound ground_under_board(std::span<const Rigid3> world_from_board) {
-  // A board's z runs away from who looks at it: into the floor.
+  // A board's z runs away from the viewer: into the floor.
   const Rigid3 board_from_ground{Vector<3>(1, -1, -1).asDiagonal(), Vector<3>::Zero()};
   const auto count = static_cast<double>(world_from_board.size());
   Matrix<3> turn = Matrix<3>::Zero();

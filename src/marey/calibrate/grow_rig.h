@@ -29,7 +29,7 @@ Growth grow_rig(const std::vector<wand::WandCamera>& cameras, const wand::WandSh
 /// At how many instants two cameras both see the wand, by camera and camera.
 std::vector<std::vector<int>> shared_views(const wand::WandTable& table, std::size_t cameras);
 
-/// Refuses cameras that share too few instants, one way or another, to become one rig.
+/// Refuses cameras that share too few instants, directly or indirectly, to become one rig.
 void require_connected(const std::vector<std::string>& names, const std::vector<std::vector<int>>& shared, int minimum);
 
 }  // namespace marey::calibrate

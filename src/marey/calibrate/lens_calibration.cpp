@@ -50,7 +50,7 @@ class Solver {
     }
   }
 
-  /// Step by step from the focal length to all numbers; no corner is put out on the way.
+  /// Step by step from the focal length to all numbers; no corner is excluded in between.
   void approach() {
     bundle::BundleOptions how;
     how.rounds = 0;

@@ -54,7 +54,7 @@ struct LensCalibration {
   std::vector<std::string> warnings;  ///< what is worth knowing before it is used, one sentence each
 };
 
-/// `views` of one board in images of `size` px. Throws Error, with cause and remedy, where they cannot tell the lens: fewer than
+/// `views` of one board in images of `size` px. Throws Error, with cause and remedy, if they do not determine the lens: fewer than
 /// three usable views, or the board at one angle in all.
 LensCalibration calibrate_lens(const board::Board& board, cv::Size size, std::span<const LensView> views,
                                const LensOptions& options = {});

@@ -40,7 +40,7 @@ TEST(Rays, LinesThroughOnePointMeetThere) {
   }
 }
 
-/// The slow twin: the sum of squared angles itself, inspected on all sides of what was found.
+/// The slow twin: the sum of squared angles itself, inspected on all sides of the result.
 TEST(Rays, NoPointNearbyIsNearerToAllLines) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);

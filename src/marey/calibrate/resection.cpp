@@ -16,7 +16,7 @@ constexpr double kWandGate = 4;    // standard deviations within which a wand is
 constexpr double kMinAhead = 0.2;  // of a bearing's z, to be used in OpenCV's plane of images
 constexpr std::size_t kMinWands = 4;
 
-/// Mean squared angle of a wand in units of the noise, the better way round.
+/// Mean squared angle of a wand in units of the noise, in the better orientation.
 double error(const Rigid3& pose, const WandObservation& wand, const ResectionOptions& options, bool& rotated) {
   double best = 0;
   rotated = false;

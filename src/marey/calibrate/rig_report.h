@@ -10,7 +10,7 @@
 
 namespace marey::calibrate {
 
-/// How well one camera, or all of them, explain what was seen. Errors are 2-D distances.
+/// How well one camera, or all of them, explain the observations. Errors are 2-D distances.
 struct FitQuality {
   double mean_px = 0, rms_px = 0;
   int inliers = 0, observations = 0;

@@ -108,7 +108,7 @@ class Relation {
     return off * off / std::max(spread, 1e-300);
   }
 
-  /// Mean squared error of a wand, the better way round.
+  /// Mean squared error of a wand, in the better orientation.
   double error(const Matrix<3>& E, std::size_t pair, bool& rotated) const {
     double best = 0;
     rotated = false;

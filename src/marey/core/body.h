@@ -20,7 +20,7 @@ struct BodyMarker {
   bool operator==(const BodyMarker&) const = default;
 };
 
-/// What a body is, apart from where it is. A skeleton is its segments: they bear its name, and each hangs on its parent.
+/// What a body is, apart from where it is. A skeleton is its segments: they have its name, and each hangs on its parent.
 struct Body {
   BodyId id{};
   std::string label;             ///< "racket"; of a segment "LeftFoot"

@@ -14,7 +14,7 @@ struct Detection {
   std::optional<Matrix<2>> covariance;   ///< of `centre`, px²; nothing if the source does not specify it
   double area = 0;                       ///< px²
   Box box;                               ///< px
-  std::vector<Vector<2>> outline;        ///< closed polygon along pixel edges, ordered; empty if there is none
+  std::vector<Vector<2>> outline;        ///< closed polygon along pixel edges, ordered; empty if absent
   double score = 1;                      ///< how sure the detector is, in [0, 1]
   std::optional<int> group;              ///< several people share this region: its number within the frame
 

@@ -8,7 +8,7 @@
 
 namespace marey {
 
-/// One image of one camera. `picture` is empty if detections come from another program.
+/// One image of one camera. `image` is empty if detections come from another program.
 struct Frame {
   CameraId camera{};
   std::int64_t index = 0;  ///< counts from 0 in the order the source gave the frames

@@ -23,7 +23,7 @@ class FrameNumbers {
   /// read: of frames in any order each run of rows counts as one that is there.
   void check(std::string_view name) const;
 
-  /// Frames a second: that of the median step, as exactly as all steps tell that agree with it. Nothing if no two frames have
+  /// Frames a second: that of the median step, as exactly as all steps that agree with it give it. Nothing if no two frames have
   /// times that go likewise as their numbers.
   std::optional<double> rate_hz() const;
 

@@ -13,7 +13,7 @@ namespace marey {
 /// What one camera gave to one instant.
 struct CameraFrame {
   Frame frame;  ///< its time is by the run's clock; its image is empty if detections come from another program
-  /// What was found in it, where the camera's feed knows that already: another program said so, or the feed searches for it itself.
+  /// The detections in it, where the camera's feed knows that already: another program said so, or the feed searches for it itself.
   std::optional<std::vector<Detection>> detections;
   double decode_s = 0, detect_s = 0;  ///< what it took, s
 };

@@ -12,7 +12,7 @@ struct Rigid3;
 
 namespace marey {
 
-/// The words of geometry that every room uses. Who needs more of a camera than its name includes its header.
+/// The words of geometry that every room uses. A file that needs more of a camera than its name includes its header.
 using geometry::Box;
 using geometry::Camera;
 using geometry::GroundView;

@@ -16,7 +16,7 @@ struct GroundChange {
 /// as it was. `recording` is used up track by track, so that memory holds it once. Throws Error if it is not of the ground in m.
 Recording on_other_ground(Recording recording, const FrameOfReference& frame, const GroundChange& change);
 
-// Which way up the ground is drawn. Every drawing of it from above (viewer, pitch view, report, map) has x to the right and asks
+// Which side of the ground is up. Every drawing of it from above (viewer, pitch view, report, map) has x to the right and asks
 // here whether y grows downwards, so that a corner of the pitch is the same corner in all of them.
 
 /// Whether it makes the right-handed world left-handed: seen from above, y is to the right of x.

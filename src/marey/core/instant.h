@@ -43,7 +43,7 @@ struct Sample {
   CameraMask cameras = 0;                            ///< who saw it at this instant; none where that is not known
   std::optional<double> score;                       ///< confidence, in [0, 1]
   std::optional<Box> box;                            ///< px, in the image
-  std::optional<double> residual_px;                 ///< RMS distance between the position's projections and what was seen
+  std::optional<double> residual_px;                 ///< RMS distance between the position's projections and the observations
   std::optional<double> residual_m;                  ///< the same in space, as other systems' files have it
   std::shared_ptr<const Outline> outline = nullptr;  ///< px, where outlines are followed and this one has one
   /// px, where body points are searched for and some were found; which they are says the recording's header.
@@ -73,7 +73,7 @@ struct TrackName {
   bool operator==(const TrackName&) const = default;
 };
 
-/// What is known of one instant.
+/// The state at one instant.
 struct Instant {
   std::int64_t index = 0;                  ///< counts from 0 at the beginning of the recording; some may be omitted
   Timestamp time{};                        ///< by the recording's clock

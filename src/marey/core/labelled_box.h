@@ -11,7 +11,7 @@ struct LabelledBox {
   static constexpr std::int32_t no_person = -1;
 
   std::int32_t frame = 0;       ///< counts from 0
-  std::int32_t id = no_person;  ///< whose box; `nobody` for detections
+  std::int32_t id = no_person;  ///< whose box; `no_person` for detections
   Box box;                      ///< px
   double score = 1;             ///< as the file has it, in the detector's own scale; 1 where it has none
 

@@ -8,7 +8,7 @@
 
 namespace marey {
 
-/// A marker set as recordings show it in which its markers bear their names: how far each two are from each other, and how much
+/// A marker set as recordings show it in which its markers have their names: how far each two are from each other, and how much
 /// that varies with the subject's motion. What is needed to name the markers of another recording.
 struct LearnedMarkers {
   struct Distance {
@@ -19,7 +19,7 @@ struct LearnedMarkers {
   std::vector<std::string> labels;
   std::vector<Vector<3>> locations;  ///< m: one posture in which they were seen, in any right-handed frame with z up
   std::vector<Distance> distances;   ///< of each two, a before b by rows: index_of(a, b)
-  /// Whether deviations tell what is rigid; false where the subject stood still, and everything was.
+  /// Whether deviations show what is rigid; false where the subject stood still, and everything was.
   bool moves = true;
   /// Whether it stems from subjects of other sizes than the one it is for: distances are of the mean size, and are to be scaled.
   bool scaled = false;

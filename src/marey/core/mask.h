@@ -30,7 +30,7 @@ class Mask {
   std::vector<int> numbers() const;
   /// The smallest rectangle that holds it.
   const cv::Rect& box() const { return box_; }
-  /// Of a polygon; a rectangle tells none.
+  /// Of a polygon; a rectangle reports none.
   const std::vector<cv::Point>& corners() const { return corners_; }
 
   /// A pixel's whole number is its centre.

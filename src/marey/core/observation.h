@@ -18,7 +18,7 @@ struct Observation {
   double score = 1;        ///< in [0, 1]; a weak one may continue a track, not begin one
   std::optional<Box> box;  ///< px, where the thing has an extent in the image
   bool shared = false;     ///< part of a region that several targets share: its place is trusted, its size is not
-  std::optional<Appearance> appearance = {};  ///< what a person wears, where images tell
+  std::optional<Appearance> appearance = {};  ///< clothing colours, if images show them
 };
 
 /// What a detection of a small thing, a marker, is to a tracker: its centre.

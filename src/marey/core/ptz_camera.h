@@ -12,7 +12,7 @@ namespace marey {
 struct PtzCamera {
   struct Turn {
     double time_s = 0;                         ///< by the camera's own clock: the frame's
-    std::optional<geometry::Heading> heading;  ///< nothing: it is not known where the camera looked (a cut, a replay)
+    std::optional<geometry::Heading> heading;  ///< nothing: it is not known where the camera was aimed (a cut, a replay)
     Matrix<3> covariance = Matrix<3>::Zero();  ///< of pan, tilt, rad, and ln of the focal length
   };
 

@@ -38,7 +38,7 @@ struct FrameOfReference {
   bool operator==(const FrameOfReference&) const = default;
 };
 
-/// "px of camera 2's pictures", "m on the ground", …: for sentences to the user.
+/// "px of camera 2's images", "m on the ground", …: for sentences to the user.
 std::string to_string(const FrameOfReference& frame);
 
 /// How a recording was made, so that it can be made again. No time of day, host, thread count or absolute path: the same input with
@@ -55,7 +55,7 @@ struct MadeBy {
   bool operator==(const MadeBy&) const = default;
 };
 
-/// What is known of a recording before its first instant.
+/// The properties of a recording before its first instant.
 struct RecordingHeader {
   std::string name;         ///< free text; by default the file's
   std::string recorded_at;  ///< ISO 8601, UTC; empty if unknown
@@ -67,10 +67,10 @@ struct RecordingHeader {
   std::vector<Body> bodies;                       ///< by id, parents before children; none where none were solved
   std::optional<KeypointSet> keypoints;           ///< which body points samples have, where they have some
   MadeBy made_by;
-  bool smoothed = false;  ///< a second pass has smoothed positions and velocities: who measures does not smooth again
+  bool smoothed = false;  ///< a second pass has smoothed positions and velocities: a measurement does not smooth again
 };
 
-/// What was changed by hand or by a program after the recording: one operation, which is replayed over what was recorded. Edits
+/// What was changed by hand or by a program after the recording: one operation, which is replayed over the recording. Edits
 /// form a tree; the recording's head says which of them count, so that undoing moves the head.
 struct Edit {
   std::int64_t id = 0;                 ///< positive
@@ -230,7 +230,7 @@ class Recording {
 
   RecordingHeader header;
   std::vector<Edit> edits;
-  std::optional<std::int64_t> head;  ///< the edit whose branch counts; nothing: what was recorded, without any
+  std::optional<std::int64_t> head;  ///< the edit whose branch counts; nothing: the recording without any
 
   int dimensions() const { return header.frame.dimensions(); }
   const std::vector<TimeStep>& instants() const { return instants_; }

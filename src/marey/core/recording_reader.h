@@ -24,7 +24,7 @@ class RecordingReader {
   virtual std::vector<TrackName> tracks() const = 0;
   virtual std::vector<Edit> edits() const { return {}; }
   virtual std::optional<std::int64_t> head() const { return std::nullopt; }
-  /// From the first instant to the last; nothing if only reading would tell. For progress.
+  /// From the first instant to the last; nothing if only reading would reveal it. For progress.
   virtual std::optional<std::int64_t> instant_count() const { return std::nullopt; }
 
   /// The next instant, by growing index; nothing at the end. `Instant::named` holds only what `tracks` did not have before. Throws

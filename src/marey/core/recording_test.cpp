@@ -197,7 +197,7 @@ TEST(Recording, RejectsPixelsIfMetresRequired) {
   EXPECT_THROW(require_ground(space, "measuring"), Error);
 }
 
-/// Against looking each track up at each instant.
+/// Against a search for each track at each instant.
 TEST(InstantRows, AreThoseThatAreThere) {
   Recording recording(header_in(FrameOfReference::Kind::user_ground));
   for (int i = 0; i < 200; ++i) {

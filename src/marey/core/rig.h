@@ -17,8 +17,8 @@ namespace marey {
 /// One camera of a rig: where its images come from, and as much of its calibration as is known so far.
 struct RigCamera {
   std::string name;                            ///< unique within the rig, not empty
-  std::string source;                          ///< a path as `open_source` takes it; empty if there is none
-  std::string detections;                      ///< in place of images, what another program detected; empty if there is none
+  std::string source;                          ///< a path as `open_source` takes it; empty if absent
+  std::string detections;                      ///< in place of images, what another program detected; empty if absent
   std::optional<cv::Rect> region;              ///< px: the camera's part of a larger image; pixels count from its corner
   std::optional<double> rate_hz;               ///< in place of what the source's header says
   std::optional<double> offset_s;              ///< added to this camera's times gives the rig's, s; nothing if no person said
@@ -63,7 +63,7 @@ bool unfit_for_camera_name(char c);
 /// The names of all cameras, for messages: "left, right".
 std::string camera_names(const Rig& rig);
 
-/// The camera of that name. Throws Error, with the names that there are, where there is none.
+/// The camera of that name. Throws Error, with the existing names, if it does not exist.
 RigCamera& camera_named(Rig& rig, const std::string& name);
 
 /// Makes a camera's calibration hold for images of `found` px: it is scaled, and its masks with it, where the shapes agree within

@@ -7,7 +7,7 @@ namespace marey {
 
 /// Where the results of a run go: a file, a video, a plot, a stream, a callback. Called in this order, from one thread at a time:
 /// `begin` once, `write` for each instant by growing index, `finish` once. A sink that is destroyed without `finish` leaves nothing
-/// behind (a take: what was written until then).
+/// behind (a take: the output until then).
 class Sink {
  public:
   /// What a sink must be given beside the samples.
@@ -26,7 +26,7 @@ class Sink {
   virtual SinkRequirements begin(const RecordingHeader& header) = 0;
   /// Throws Error if the place is full; the sink then takes no more.
   virtual void write(const Instant& instant) = 0;
-  /// Commits what was written.
+  /// Commits the output.
   virtual void finish() = 0;
 };
 

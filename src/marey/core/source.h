@@ -13,7 +13,7 @@
 
 namespace marey {
 
-/// What is known of a source before its first frame.
+/// The properties of a source before its first frame.
 struct SourceInfo {
   std::string name;                         ///< as the user would recognise it: the path given
   cv::Size size;                            ///< px
@@ -29,7 +29,7 @@ class Source {
   virtual const SourceInfo& info() const = 0;
 
   /// The next frame, in order, its time later than the last one's; nothing at the end. Never throws for a file that breaks
-  /// off or a frame that cannot be decoded: what was lost is reported by `warnings`.
+  /// off or a frame that cannot be decoded: the loss is reported by `warnings`.
   virtual std::optional<Frame> next() = 0;
 
   /// What went wrong so far without stopping the source, one sentence each: where a file breaks off, what was omitted.

@@ -28,7 +28,7 @@ inline double seconds(Timestamp time) {
 inline Duration duration_from_seconds(double value) {
   return Duration(std::llround(value * 1e9));
 }
-/// Hz: what is counted at where neither a file nor its user tells a rate.
+/// Hz: what is counted at where neither a file nor its user specifies a rate.
 inline constexpr double kDefaultRate = 25;
 
 inline Timestamp timestamp_from_seconds(double value) {

@@ -25,8 +25,8 @@ struct Track {
   bool confirmed = true;           ///< false while evidence is still gathered that there is a target at all
   std::optional<Box> box;          ///< px, where the target has an extent in the image
   double score = 1;                ///< of the observation behind it, in [0, 1]
-  CameraMask cameras = 0;          ///< who saw it at this instant, where several cameras look at one ground
-  std::optional<Appearance> appearance = {};         ///< at this instant, of what was seen of it
+  CameraMask cameras = 0;          ///< the ones that saw it at this instant, if several cameras face one ground
+  std::optional<Appearance> appearance = {};         ///< at this instant, of its visible part
   std::shared_ptr<const Outline> outline = nullptr;  ///< in the image, where outlines are followed and this one has one
 
   bool measured() const { return provenance == Provenance::measured; }

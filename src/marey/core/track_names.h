@@ -8,7 +8,7 @@
 
 namespace marey {
 
-/// What tracks are called, as instants tell it.
+/// The names of tracks, as instants report them.
 class TrackNames {
  public:
   void add(std::span<const TrackName> named) {

@@ -1,6 +1,6 @@
 // A person's appearance: the colour of the shirt, and of what the legs wear.
 //
-// Of the person's box the rows between a fifth and a half of the way down are inspected: chest and belly, between the head and the
+// Of the person's box the rows between a fifth and half its height down are inspected: chest and belly, between the head and the
 // shorts. Of those the pixels in the middle, and of those the ones that the background model says are not the scene. The median of
 // their colours is the shirt's, whatever arms, numbers and a little grass are in between. The planes of the video are read as they
 // are, at the chroma's half size, on a grid of a hundred places at most: nothing is converted but those.

@@ -28,7 +28,7 @@ struct DetectorTraits {
   bool knows_body_size = false;  ///< whether `body_at` answers, if not from the first frame on
 };
 
-/// What was seen and not reported, or reported with doubt, since the beginning; nothing if a detector does not count it.
+/// Observations that were not reported, or are uncertain, since the beginning; nothing if a detector does not count it.
 struct DetectionCounts {
   std::optional<std::int64_t> noise;    ///< regions too small to be what is searched for, or a part of it
   std::optional<std::int64_t> misfits;  ///< regions that what is searched for does not explain
@@ -42,11 +42,11 @@ class Detector {
   /// Frames sampled from the recording ahead, before the first `detect`: a file is read ahead, a live camera is not.
   virtual void prime(std::span<const Frame> /*samples*/) {}
 
-  /// What is seen in `frame`. Frames come in order. `expected` says where the tracker expects its targets: a person who stands
+  /// The detections in `frame`. Frames come in order. `expected` says where the tracker expects its targets: a person who stands
   /// still there is not learned as background, and a region several share is split among them.
   virtual Detections detect(const Frame& frame, std::span<const Expected> expected) = 0;
 
-  /// What a user should know of what was seen so far, one sentence each.
+  /// What a user should know of the observations so far, one sentence each.
   virtual std::vector<std::string> warnings() const { return {}; }
 
   /// The same for its whole life.
@@ -55,7 +55,7 @@ class Detector {
   /// For the summary of a run.
   virtual DetectionCounts detection_counts() const { return {}; }
 
-  /// The empty scene as a background model has it; empty if there is none that tells.
+  /// The empty scene as a background model has it; empty if no model has one.
   virtual Image scene() const { return {}; }
 
   /// The image shows the scene where `mask` (CV_8UC1, its upper left pixel at `corner`) is not 0: what was taken for it has gone.

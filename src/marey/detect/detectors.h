@@ -12,7 +12,7 @@
 
 namespace marey::detect {
 
-/// The register of detectors that look at images: which one, with its parameters. A new one is named here and made in
+/// The register of detectors that process images: which one, with its parameters. A new one is named here and made in
 /// detectors.cpp, which does not compile before. Detections that another program found come through a source (pipeline).
 using DetectorOptions = std::variant<people::PeopleDetectorOptions, markers::MarkerOptions, network::NetworkDetectorOptions>;
 
@@ -21,7 +21,7 @@ std::unique_ptr<Detector> make_detector(const DetectorOptions& options);
 /// The detectors' names with commas between, in the order of the register.
 std::string detector_names();
 
-/// The default options of the detector called `name`. Throws Error with the list of names where there is none.
+/// The default options of the detector called `name`. Throws Error with the list of names if it does not exist.
 DetectorOptions detector_named(std::string_view name);
 
 std::string_view name_of(const DetectorOptions& options);

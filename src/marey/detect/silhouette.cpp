@@ -26,7 +26,7 @@ std::vector<PixelRun> runs_of(const cv::Mat& mask) {
   return runs;
 }
 
-/// What is left of the rows and columns of `size` without `runs`.
+/// The remainder of the rows and columns of `size` without `runs`.
 std::vector<PixelRun> gaps_between(std::span<const PixelRun> runs, cv::Size size) {
   std::vector<PixelRun> gaps;
   std::size_t next = 0;

@@ -25,7 +25,7 @@ Image with_white(const Image& image, double white);
 double lightest(const Image& image);
 
 /// An image of one's own to paint on, in the planes that video is made of: nothing is converted to RGB and back. Coordinates
-/// are pixels; what lies outside is cut off. Full-range images are brought to video's range on the way in.
+/// are pixels; what lies outside is cut off. Full-range images are brought to video's range on input.
 class Canvas {
  public:
   explicit Canvas(const Image& image);

@@ -17,7 +17,7 @@ class FadingTrails {
   /// The thing of this number is at `place` (px) now. A trail is drawn in the colour given last.
   void add(int number, Timestamp now, cv::Point2f location, const Colour& colour);
 
-  /// `opacity` of what is new, in [0, 1]; `width` in px. Who was not seen within `lasts` is forgotten.
+  /// `opacity` of what is new, in [0, 1]; `width` in px. A target not seen within `lasts` is forgotten.
   void draw(Canvas& canvas, Timestamp now, double opacity, double width);
 
  private:

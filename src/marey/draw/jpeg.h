@@ -14,7 +14,7 @@ class JpegEncoder {
   JpegEncoder(const JpegEncoder&) = delete;
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
-  static constexpr int kToBeObserved = 75;  ///< a quality for eyes; what is measured in wants 90 and more
+  static constexpr int kToBeObserved = 75;  ///< a quality for eyes; measurement requires 90 and more
 
   /// `most_width` in px, at least 16; `quality` from 1 to 100. Empty for an empty image, and for one that JPEG cannot hold.
   std::string encode(const Image& image, int most_width, int quality = kToBeObserved);

@@ -30,7 +30,7 @@ TEST(MaskFolder, ReadsBackAsGreyPicturesThatCountFromOne) {
   const cv::Mat eighth = cv::imread(masks + "/bin000008.png", cv::IMREAD_UNCHANGED);
   ASSERT_EQ(eighth.type(), CV_8UC1);
   EXPECT_EQ(cv::norm(eighth, mask, cv::NORM_INF), 0);
-  EXPECT_THROW(MaskFolder again(masks), Error);  // what is there stays
+  EXPECT_THROW(MaskFolder again(masks), Error);  // existing files stay
   EXPECT_TRUE(std::filesystem::exists(masks + "/bin000008.png"));
 }
 

@@ -50,7 +50,7 @@ class ReportPage {
     }
     add("{}", PitchSvg::lines_html(report_.pitch));
     write_territories();
-    add("<h2>Where everybody went</h2><div class=\"one\">");
+    add("<h2>Where every person went</h2><div class=\"one\">");
     PitchSvg all(report_.pitch);
     const double opacity = opacity_of(report_.people, 0.25);
     for (const MatchReport::Person& person : report_.people) draw_paths(all.field(), person, 0.25, opacity);

@@ -12,7 +12,7 @@
 
 namespace marey::draw {
 
-/// One page that a browser shows without anything else: who ran how far and how fast, where each person was, and where each team
+/// One page that a browser shows without anything else: how far and fast players ran, where each person was, and where each team
 /// was in each half. Steps do not know each other, so that the caller says what stands in the table, and how the paths ran.
 struct MatchReport {
   struct Person {

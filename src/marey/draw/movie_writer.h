@@ -28,11 +28,11 @@ class MovieWriter {
 
   /// `rate_hz` is what most frames follow each other at; each is shown at its own time all the same.
   /// `sound_of` is a video whose sound goes along unchanged, from its first image on; where it has none that an MP4 holds, or none
-  /// is named, there is none.
+  /// is named, the video is silent.
   /// Throws Error if the file cannot be written or no H.264 encoder is installed.
   MovieWriter(const std::string& path, cv::Size size, std::optional<double> rate_hz, Quality quality = Quality::to_view,
               Keep keep = Keep::when_finished, const std::string& sound_of = {});
-  /// Without `finish`, nothing is left behind, or with Keep::always what was written.
+  /// Without `finish`, nothing is left behind, or with Keep::always the output so far.
   ~MovieWriter();
   MovieWriter(const MovieWriter&) = delete;
   MovieWriter& operator=(const MovieWriter&) = delete;

@@ -145,7 +145,7 @@ Mp4File::Input Mp4File::read_fragments() const {
   return input;
 }
 
-/// The sound up to `until`, in its ticks; `packet` holds what was read beyond.
+/// The sound up to `until`, in its ticks; `packet` holds the packet read beyond.
 void Mp4File::copy_sound(SoundTrack& sound, AVPacket& packet, std::int64_t until, AVFormatContext& output) const {
   for (;;) {
     if (packet.data == nullptr && !sound.next(packet)) return;

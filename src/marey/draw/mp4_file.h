@@ -16,7 +16,7 @@ struct AVPacket;
 namespace marey::draw {
 
 /// One stream of H.264 in an MP4, and in the finished one a video's sound beside it. It is written as fragments of a quarter of a
-/// second, so that at any time what was written can be read; `finish` rewrites it without encoding again as an ordinary MP4 whose
+/// second, so that at any time the output can be read; `finish` rewrites it without encoding again as an ordinary MP4 whose
 /// index comes first.
 class Mp4File {
  public:

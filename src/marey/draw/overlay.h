@@ -24,7 +24,7 @@ struct OverlayOptions {
 /// What a track is drawn in: its own colour, or one that is steady by its number.
 Colour colour_of(const TrackName& name, TrackId id);
 
-/// Draws what is tracked into the images of a recording: a box and a number for each target, thin where it is not seen but
+/// Draws the targets into the images of a recording: a box and a number for each target, thin where it is not seen but
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
 /// its control points, and the measurement lines across it: bright with a dot where the outline was found, faint where it was not.
 /// Body points are drawn with their bones, those on the left lighter, fainter where something may hide them; none where they

@@ -33,7 +33,7 @@ struct PageColumn {
   std::string group;
 };
 
-/// Empty cells tell nothing; a column without any other is omitted.
+/// Empty cells show nothing; a column without any other is omitted.
 std::optional<PageColumn> column_of(const PageTable& table, std::size_t index) {
   PageColumn column{.index = index, .numbers = true, .minimum = HUGE_VAL, .largest = 0, .group = {}};
   if (index < table.groups.size()) column.group = table.groups[index];

@@ -1,4 +1,4 @@
-// How every page looks that draw/page.h writes, and what its script does.
+// The style of every page that draw/page.h writes, and what its script does.
 #pragma once
 
 namespace marey::draw {

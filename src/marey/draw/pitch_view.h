@@ -23,7 +23,7 @@ struct PitchViewOptions {
 };
 
 /// The ground from above, as a radar shows it: the pitch's lines, a disc with a number for each person, hollow where no camera sees
-/// the person, and a trail of where each was that fades with age. Who is hidden by the image's border is not drawn.
+/// the person, and a trail of where each was that fades with age. A person hidden by the image's border is not drawn.
 class PitchView {
  public:
   struct Mark {

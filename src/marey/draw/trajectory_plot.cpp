@@ -17,7 +17,7 @@ constexpr double kMaxSideLength = 900;  // units of the image
 constexpr double kMinSpan = 20;         // px shown at least, where no person moves
 constexpr double kPlotMargin = 56, kPlotTop = 40, kPlotBottom = 48;
 
-/// The part of the image that is shown: what the ways span, and a twentieth more on each side.
+/// The part of the image that is shown: what the trajectories span, and a twentieth more on each side.
 Box window_of(const Vector<2>& low, const Vector<2>& high) {
   const Vector<2> middle = (low + high) / 2;
   const Vector<2> span = (1.1 * (high - low)).cwiseMax(kMinSpan);

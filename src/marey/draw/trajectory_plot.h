@@ -13,8 +13,8 @@
 
 namespace marey::draw {
 
-/// The ways that targets went, in the coordinates of the image: a line each with its number where it begins, broken where nothing
-/// is known of it. Memory grows with the ways' length, not with time: steps of less than half a pixel are skipped.
+/// The trajectories of targets, in the coordinates of the image: a line each with its number where it begins, broken where nothing
+/// is known of it. Memory grows with the paths' length, not with time: steps of less than half a pixel are skipped.
 class TrajectoryPlot {
  public:
   /// Instants come in order; px. The place drawn is the outline's centre where there is an outline, else the target's position.

@@ -15,7 +15,7 @@ namespace marey::edit {
 /// a gap that it can fill is not an Error but an operation without gaps.
 Operation decide(const Request& request, Tracks& tracks, OpenGaps* open = nullptr);
 
-/// "2 gaps stay open: 1 longer than 1 s, …"; that there is none, if there is none.
+/// "2 gaps stay open: 1 longer than 1 s, …"; that no gap is left, if so.
 std::string words_of(const OpenGaps& open, const Request& request);
 
 }  // namespace marey::edit

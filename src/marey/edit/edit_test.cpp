@@ -98,7 +98,7 @@ TEST(Edit, SplitJoinRenameDelete) {
   EXPECT_EQ(image(edited(recording)), "A:1111.. ");
 }
 
-/// What was found when a fill was decided stays with the edit: who then wants one track reads that one alone.
+/// The result when a fill was decided stays with the edit: code that then needs one track reads that one alone.
 TEST(Edit, FillsKeepTheirPlaces) {
   Recording recording = letters(4, 60);
   edit(recording, "delete A 20:22");

@@ -1,4 +1,4 @@
-// Filling a gap in a marker's path: the method is chosen by trying each on holes of the same length, cut into what was seen of the
+// Filling a gap in a marker's path: the method is chosen by trying each on holes of the same length, cut into known parts of the
 // same marker round about; how far it was off there is what the fill is expected to be off.
 #pragma once
 
@@ -25,7 +25,7 @@ struct OpenGaps {
 };
 
 /// The gaps of a track between its first and its last place, within `frames`, that can be filled, and how. What other tracks have
-/// filled or predicted tells nothing. `open` counts those that stay open, too.
+/// filled or predicted gives nothing. `open` counts those that stay open, too.
 std::vector<FilledGap> decide_fills(Tracks& tracks, TrackId track, const std::optional<FrameRange>& frames,
                                     const FillOptions& options, OpenGaps* open = nullptr);
 

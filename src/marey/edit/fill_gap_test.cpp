@@ -149,7 +149,7 @@ TEST(FillGap, StatedErrorCoversTruth) {
   EXPECT_GT(covered, 0.65 * count);
 }
 
-/// There is no room for test holes as long as the gap; what is left is seen for less than half of it on either side.
+/// There is no room for test holes as long as the gap; the remainder is seen for less than half of it on either side.
 TEST(FillGap, ALongGapOfAShortTakeIsFilledWithTheErrorThatIsExpected) {
   const unsigned seed = std::random_device()();
   SCOPED_TRACE(fmt::format("seed {}", seed));
@@ -174,7 +174,7 @@ TEST(FillGap, ALongGapOfAShortTakeIsFilledWithTheErrorThatIsExpected) {
   EXPECT_LT(expected, 10 * squares);
 }
 
-/// The same without any room before the gap: shorter holes behind it tell.
+/// The same without any room before the gap: shorter holes behind it decide.
 TEST(FillGap, ShorterHolesTellOfALongGapAtTheRim) {
   const Recording recording = walk(3e-4, 7, 170);
   Tracks tracks = tracks_of(recording);

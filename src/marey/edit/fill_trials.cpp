@@ -12,10 +12,10 @@ using Path = std::vector<Vector<3>>;
 constexpr std::size_t kMaxTrials = 24;    // holes of a length
 constexpr std::size_t kEnoughTrials = 6;  // of the gap's length: these are spread over 2.7 times as much
 constexpr std::size_t kMinTrials = 3;     // of others
-constexpr double kMinShape = 0.25;        // of an error against that in the middle of its hole: the rims tell little
+constexpr double kMinShape = 0.25;        // of an error against that in the middle of its hole: the rims show little
 // Of how many times as large an error is where the hole is twice as long, the logarithm to base 2. Measured on 184 gaps of 0.25 to
 // 1 s in walks, punches, squats and a run that have room for all lengths: medians of 0.75 (pattern), 1.0 (rigid) and 2.3 (spline);
-// that from a quarter to a half tells that from there to the whole (correlation 0.6 and 0.65, but 0.2 of the spline).
+// that from a quarter to a half predicts that from there to the whole (correlation 0.6 and 0.65, but 0.2 of the spline).
 constexpr double kGrowth = 1, kSplineGrowth = 2.3, kMinGrowth = 0.5;
 constexpr double kShortUntried_s = 0.15;  // where nothing can be tried: a polynomial up to here
 constexpr double kUntriedFraction = 0.1;  // and what it is expected to be off, as a share of how far the marker went

@@ -1,8 +1,8 @@
 // How well a gap can be filled: each method is tried on test holes in the marker's path, where the truth is known.
 //
-// Holes as long as the gap tell it best. In a short take there is room for few or none of them. Then test holes are laid round the
+// Holes as long as the gap show it best. In a short take there is room for few or none of them. Then test holes are laid round the
 // gap itself: they are longer by up to the gap's length, and the truth is known at their rims, from where errors are brought to
-// the middle by how they grow towards it (as of a Brownian bridge). If there is no room for these either, shorter holes tell, whose
+// the middle by how they grow towards it (as of a Brownian bridge). If these have no room either, shorter holes decide, whose
 // errors are scaled up by how they grow with the length.
 #pragma once
 
@@ -48,7 +48,7 @@ class FillTrials {
   const Locations& locations_;
   Hole gap_;
   std::span<const std::size_t> donors_;
-  std::vector<Group> groups_;  // inside what was seen; of the gap's length, a half, a quarter
+  std::vector<Group> groups_;  // inside the observed part; of the gap's length, a half, a quarter
   std::vector<Hole> around_;
 };
 

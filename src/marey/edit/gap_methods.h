@@ -1,5 +1,5 @@
-// Three ways to tell where a marker was while it was hidden. Each knows both ends of the gap and meets them.
-//   spline   a polynomial through what was seen before and after
+// Three methods to estimate where a marker was while it was hidden. Each knows both ends of the gap and meets them.
+//   spline   a polynomial through the observations before and after
 //   rigid    markers that keep their distances to it carry it along; what it moved among them in the meantime is spread over the
 //   gap
 //            (Smolka & Lukasiak; the "rigid body fill" of the field)

@@ -1,5 +1,5 @@
 // What can be done to a recording after it was made. Nothing recorded is ever changed: an operation is kept as an edit
-// (core/recording.h) and replayed over what was recorded, so that undoing forgets nothing.
+// (core/recording.h) and replayed over the recording, so that undoing forgets nothing.
 #pragma once
 
 #include <cstdint>

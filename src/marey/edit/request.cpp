@@ -63,7 +63,7 @@ std::optional<FrameRange> range_in(const Word& word) {
   return word.quoted ? std::nullopt : parse_range(word.text);
 }
 
-/// What is left to be read of a request.
+/// The unread rest of a request.
 class Reader {
  public:
   Reader(std::string_view kind, std::span<const std::vector<Word>> words) : kind_(kind), words_(words) {}

@@ -171,7 +171,7 @@ void Tracks::remove(const Operation& operation) {
 }
 
 void Tracks::fill(const Operation& operation) {
-  std::vector<Rows> filled(operation.gaps.size());  // a marker that is filled tells nothing of another
+  std::vector<Rows> filled(operation.gaps.size());  // a marker that is filled gives nothing about another
   for (std::size_t i = 0; i < filled.size(); ++i) {
     Entry& own = entry(operation.gaps[i].track);
     if (operation.gaps[i].locations.empty() || own.rows) {

@@ -15,14 +15,14 @@ namespace marey::evaluate {
 struct Evaluated {
   Evaluation scores;
   std::vector<ClearCounter::Object> objects;
-  std::vector<int> track_of_object;    ///< whom the identity scores give each; assign::kNoIndex where none
+  std::vector<int> track_of_object;    ///< the one that the identity scores give each; assign::kNoIndex where none
   std::vector<std::int64_t> agreeing;  ///< in how many frames that track found the object
 };
 
 /// Counts the pairs of this frame that are near enough to be a match.
 void count_found(const FramePairs& frame, double most_distance, PairTable& pairs);
 
-/// Fills in the identity scores: one track for each object permanently, so that the most things agree. `judged.scores` has its
+/// Fills in the identity scores: one track for each object permanently, so that the most things agree. `evaluated.scores` has its
 /// sizes.
 void evaluate_identities(const PairTable& pairs, Evaluated& evaluated);
 

@@ -27,7 +27,7 @@ struct OutlineOverlap {
 };
 
 /// Lays a closed polygon (px; inside is where a ray crosses it an odd number of times) over a silhouette, lattice point by lattice
-/// point. With `picture`, only what lies in an image of that size counts. Cost: the lattice points of both boxes.
+/// point. With `image`, only what lies in an image of that size counts. Cost: the lattice points of both boxes.
 OutlineOverlap overlap(std::span<const Vector<2>> polygon, const SilhouetteMask& truth, const cv::Size* image = nullptr);
 
 /// The same of the rest of the polygon where `nearer` curves do not cover it: what is visible of it.

@@ -10,7 +10,7 @@
 namespace marey::evaluate {
 namespace {
 
-/// The obvious way: is each point of a large lattice inside?
+/// The obvious method: is each point of a large lattice inside?
 bool inside(const std::vector<Vector<2>>& polygon, double x, double y) {
   bool odd = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

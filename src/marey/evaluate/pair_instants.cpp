@@ -52,7 +52,7 @@ void number(const InstantClock& leader, const InstantClock& tracker, bool by_tim
   }
 }
 
-/// How much later the tracks' first common frame is than the truth's, s; 0 where there is none.
+/// How much later the tracks' first common frame is than the truth's, s; 0 if no such frame exists.
 double time_between(const InstantClock& truth, const InstantClock& tracks) {
   const auto partner = partners(truth, tracks, false);
   for (std::size_t i = 0; i < partner.size(); ++i) {

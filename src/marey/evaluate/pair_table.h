@@ -10,7 +10,7 @@ namespace marey::evaluate {
 /// The overlaps that HOTA asks a match to have: 0.05, 0.10, ..., 0.95.
 inline constexpr int hota_levels = 19;
 
-/// What is known of an object and a track that overlap somewhere.
+/// The state of an object and a track that overlap somewhere.
 struct IdPair {
   int object = 0;
   int track = 0;

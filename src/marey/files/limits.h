@@ -6,7 +6,7 @@
 namespace marey {
 
 /// What one input may ask for at most, so that a few bytes cannot make hours of work or gigabytes of memory. Each stands far above
-/// what is recorded today; who has more raises it. Messages name the limit as it is named here.
+/// today's recordings; users who have more raise it. Messages name the limit as it is named here.
 struct Limits {
   std::size_t label_bytes = 4096;         ///< of a track's or a team's name
   std::size_t tracks = 100'000;           ///< of one recording

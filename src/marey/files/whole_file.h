@@ -18,7 +18,7 @@ class UnfinishedFile {
   /// Throws Error, one sentence that names `path`, where it is a folder or a device, where another run writes it, and where nothing
   /// can be written. Where the name is a link, the file behind it is what is replaced.
   explicit UnfinishedFile(const std::string& path);
-  /// Without `finish`, nothing is left behind, and what bore the name before is untouched.
+  /// Without `finish`, nothing is left behind, and a former file of the name is untouched.
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
@@ -46,7 +46,7 @@ class WholeFile {
  public:
   /// Throws Error as UnfinishedFile does.
   explicit WholeFile(const std::string& path);
-  /// Without `finish`, nothing is left behind, and what bore the name before is untouched.
+  /// Without `finish`, nothing is left behind, and a former file of the name is untouched.
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;

@@ -76,7 +76,7 @@ TEST(AnyFilter, ACopyGoesOnAlikeAndByItself) {
   }
 }
 
-/// Every kind takes over every other's place: what it held is released (the address sanitizer looks), and it continues as that one.
+/// Every kind takes over every other's place: what it held is released (by address sanitizer), and it continues as that one.
 TEST(AnyFilter, IsAssignedAcrossKinds) {
   for (const NamedFilter& from : named_filters()) {
     for (const NamedFilter& to : named_filters()) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// CONDENSATION: what is known of the target is a cloud of weighted particles. Each step selects particles by weight, predicts
+// CONDENSATION: the state of the target is a cloud of weighted particles. Each step selects particles by weight, predicts
 // each by drift and diffusion, and observes: a particle's new weight is the likelihood of the measurement given its place.
 // Any motion and any likelihood would do; the price is N times the work and an estimate that is noisy as 1/√N.
 //

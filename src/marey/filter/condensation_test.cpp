@@ -11,7 +11,7 @@ namespace {
 
 static_assert(Filter<Condensation<2>> && Filter<Condensation<3>>);
 
-/// What is known of a linear, normal target exactly: Kalman's posterior for one axis, (p) or (p, v).
+/// The exact state of a linear, normal target: Kalman's posterior for one axis, (p) or (p, v).
 struct Exact {
   Matrix<2> P = Matrix<2>::Zero();
   Vector<2> x = Vector<2>::Zero();

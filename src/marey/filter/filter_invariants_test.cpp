@@ -32,7 +32,7 @@ struct FindKind {
   }
 };
 
-/// The register's, but for particles: enough of them, and little enough diffusion, that what is asked is not lost in their
+/// The register's, but for particles: enough of them, and little enough diffusion, that the property is not lost in their
 /// noise.
 FilterOptions requested(const NamedFilter& filter) {
   FilterOptions options = filter.options;

@@ -52,7 +52,7 @@ struct NamedFilter {
 /// Every filter but those that are brought from outside, the simplest first.
 const std::vector<NamedFilter>& named_filters();
 
-/// Its default parameters, in pixels. Throws marey::Error, listing the names, where there is none of this name.
+/// Its default parameters, in pixels. Throws marey::Error, listing the names, if this name does not exist.
 FilterOptions filter_named(std::string_view name);
 
 /// The name of the filter that `options` are for.

@@ -11,7 +11,7 @@ namespace marey::filter {
 namespace {
 
 constexpr std::size_t kMinPositionCount = 5;  // places that a parabola is laid through: with four, one wrong place is trusted
-constexpr double kBangBang = 2.0 / 3;  // of the greatest acceleration of the cubic between two states: what the gentlest way needs
+constexpr double kBangBang = 2.0 / 3;  // of the greatest acceleration of the cubic between two states: what the gentlest path needs
 
 /// Place, velocity and acceleration at one instant, with their covariance.
 struct LocalMotion {
@@ -61,7 +61,7 @@ class HumanEvaluate {
     return length - far > options_.sigmas * std::sqrt(method.dot(both * method)) / length;
   }
 
-  /// The parabola at time `at` through the places of a stretch of time; nothing if they are too few or lie to one side.
+  /// The parabola at time `at` through the places of a segment of time; nothing if they are too few or lie to one side.
   std::optional<LocalMotion> motion_at(double at, double from, double to, std::size_t lowest_count) const {
     const auto earlier = [](const TimedPosition& one, double sought) { return one.time < sought; };
     const auto begin = std::lower_bound(locations_.begin(), locations_.end(), from - 1e-9, earlier);

@@ -7,7 +7,7 @@
 // in-situ", J. Biomech. 123, 2021). A piece is impossible only where it is so by more than its uncertainty, so that noise at the
 // far side of a pitch is not one.
 //
-// The one who follows people by what cameras see breaks these limits in two ways, which are distinguished by leaving the piece out.
+// The one who follows people by what cameras see breaks these limits in two cases, which are separated by leaving the piece out.
 // Where one body can have gone from where it was before to where it is after, the places between were wrong: a foot that was
 // hidden, a shadow. Where it cannot, those before and after are two people: a box has slid from one to the other. Assumes that
 // errors of places persist for some hundredths of a second. Cost: one solution of six unknowns an instant, over the places within
@@ -30,7 +30,7 @@ struct HumanLimits {
 
 struct HumanMotionOptions {
   HumanLimits limits;
-  double reach = 0.4;          ///< s before and after that tell velocity and acceleration
+  double reach = 0.4;          ///< s before and after that give velocity and acceleration
   double error_memory = 0.05;  ///< s for which errors of places persist
   double sigmas = 3;           ///< standard deviations by which limits must be broken
 };

@@ -9,7 +9,7 @@
 namespace marey::filter {
 namespace {
 
-/// Places at a rate, each `sigma` m off, on a way; the same errors for the same seed.
+/// Places at a rate, each `sigma` m off, on a path; the same errors for the same seed.
 std::vector<TimedPosition> locations(double rate, double seconds, double sigma, const std::function<Vector<2>(double)>& method,
                                      std::uint64_t seed = 3) {
   std::mt19937_64 engine(seed);
@@ -22,7 +22,7 @@ std::vector<TimedPosition> locations(double rate, double seconds, double sigma, 
   return all;
 }
 
-/// From rest to the top speed of a sprinter within a second and a half, back to rest in another, and the way back.
+/// From rest to the top speed of a sprinter within a second and a half, back to rest in another, and the return.
 Vector<2> sprinter(double t) {
   constexpr double top = 9.5, tau = 1.2;
   const auto run = [](double s) { return top * (s - tau * (1 - std::exp(-s / tau))); };

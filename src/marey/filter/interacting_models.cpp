@@ -162,7 +162,7 @@ void InteractingModels<D>::correct(const Vector<D>& z, const Matrix<D>& R) {
   }
   if (sum > 0 && std::isfinite(sum)) {
     for (double& probability : probabilities_) probability /= sum;
-  } else {  // so far from all that doubles cannot tell which is nearest
+  } else {  // so far from all that doubles cannot decide which is nearest
     probabilities_ = {options_.fractions[kStationary], options_.fractions[kPull], options_.fractions[kTurn], 0};
   }
   summarise();

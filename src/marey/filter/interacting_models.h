@@ -75,7 +75,7 @@ class InteractingModels {
   InteractingModels(const Options& options, const Vector<D>& z, const Matrix<D>& R);
 
   void predict(double dt);
-  /// The same while the target is hidden: the models run on side by side, unmixed, and none swerves. What was known of a steady
+  /// The same while the target is hidden: the models run on side by side, unmixed, and none swerves. The state of a steady
   /// target thus stays as sharp as it was, however many steps nothing is seen of it.
   void predict_unobserved(double dt);
   void correct(const Vector<D>& z, const Matrix<D>& R);

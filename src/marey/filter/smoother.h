@@ -1,9 +1,9 @@
-// What is known of each instant from all observations before and after it: the smoother of Rauch, Tung & Striebel.
+// The state at each instant given all observations, before and after it: the smoother of Rauch, Tung & Striebel.
 //
-// A filter has gone forwards and has left of each instant what it expected before the instant's observations and what it knew with
-// them; whatever it was (linear, linearised, in any coordinates), the way back is this. Reference: Rauch, Tung & Striebel, "Maximum
-// likelihood estimates of linear dynamic systems", AIAA Journal 3 (1965). Cost: a factorisation and five products of N × N an
-// instant. Where places are observed and the motion is linear, place_smoother.h does the same with less work.
+// A filter has gone forwards and has left its prediction and its corrected state of each instant; whatever it was (linear,
+// linearised, in any coordinates), the backward pass is this. Reference: Rauch, Tung & Striebel, "Maximum likelihood estimates of
+// linear dynamic systems", AIAA Journal 3 (1965). Cost: a factorisation and five products of N × N an instant. Where positions are
+// observed and the motion is linear, position_smoother.h does the same with less work.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ Estimate<N, D> smoothed_back(const Estimate<N, D>& known, const Matrix<N>& F, co
   return {known.mean + gain * (smoothed.mean - expected.mean), 0.5 * (covariance + covariance.transpose())};
 }
 
-/// A whole way forwards, and back.
+/// A forward pass kept, and its backward pass.
 template <int N, int D = 1>
 class Smoother {
  public:
@@ -43,7 +43,7 @@ class Smoother {
     instants_.push_back({F, expected, known});
   }
 
-  /// What is known of all instants so far, each given all; they are forgotten.
+  /// The states at all instants so far, each given all; they are forgotten.
   std::vector<Estimate<N, D>> smoothed() {
     std::vector<Estimate<N, D>> all(instants_.size());
     for (std::size_t i = instants_.size(); i-- > 0;) {

@@ -35,7 +35,7 @@ struct AngleTriple {
   std::vector<std::optional<Vector<3>>> rows;  ///< degrees, an entry a frame, from the first one that is written
 };
 
-/// What was found out of a motion, to be written beside its points.
+/// The results of a motion analysis, to be written beside its points.
 struct MotionFindings {
   std::vector<MotionEvent> events;  ///< by time; in place of those of the file that was read
   std::vector<AngleTriple> angles;

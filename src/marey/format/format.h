@@ -86,13 +86,13 @@ struct Beginning {
 /// Without bytes of what is neither file nor folder. Throws Error if there is no such file or folder, or it may not be read.
 Beginning beginning_of(const std::string& path);
 
-/// What is known of a recording in a file before its first instant.
+/// The properties of a recording in a file before its first instant.
 struct FileInfo {
   RecordingHeader header;
   std::vector<TrackName> tracks;            ///< by id; those that an instant may name
   std::vector<Edit> edits;                  ///< a take's
   std::optional<std::int64_t> head;         ///< of the edits
-  std::optional<std::int64_t> frame_count;  ///< from the first frame to the last; nothing if only reading would tell
+  std::optional<std::int64_t> frame_count;  ///< from the first frame to the last; nothing if only reading would reveal it
   std::optional<UpAxis> up;                 ///< what the file itself says of its world, where it says anything
   AuxiliaryData next_to = {};               ///< of a C3D file
 };
@@ -114,7 +114,7 @@ class FileReader : public RecordingReader {
 /// What a writer must know beforehand, because its format says it before the first frame.
 struct WritePlan {
   FileInfo info;
-  std::int64_t first_frame = 0, last_frame = -1;  ///< indices; last < first where there are none
+  std::int64_t first_frame = 0, last_frame = -1;  ///< indices; last < first if it has no frames
   double farthest_m = 0;                          ///< the largest coordinate by amount
   bool reports_measured = false;                  ///< some point is filled or predicted, or brings a residual or its cameras
   UpAxis up = UpAxis::z;                          ///< of the file's world; instants come turned
@@ -130,11 +130,11 @@ struct Fact {
 
 /// A row of the register. Functions that are not there say what a format cannot do.
 struct Format {
-  std::string_view name;     ///< in options and messages: "c3d". Formats of other contents may bear it too
+  std::string_view name;     ///< in options and messages: "c3d". Formats of other contents may have it too
   std::string_view title;    ///< "a C3D file"
   std::string_view endings;  ///< of names that are written in it, blanks between: ".yml .yaml"; empty: `--format` alone names it
   Contents holds;
-  std::string_view detail;  ///< for the table in docs/formats.md: units, axes, what is kept and what is not
+  std::string_view detail;  ///< for the table in docs/formats.md: units, axes, what it keeps and what not
 
   /// Whether a file is one. Formats are asked in the register's order.
   bool (*is)(const Beginning& file) = nullptr;
@@ -151,7 +151,7 @@ struct Format {
   std::vector<std::string> (*write)(const match::GroundMatch& match, const std::string& path) = nullptr;
   void (*write_rig)(const Rig& rig, const std::string& path) = nullptr;
 
-  /// It can be written while it is recorded, without a plan; the others begin with what is known only at the end.
+  /// It can be written while it is recorded, without a plan; the others begin with values that only the end gives.
   bool while_recording = false;
   /// It holds bodies' poses beside points.
   bool poses = false;

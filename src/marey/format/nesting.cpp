@@ -30,7 +30,7 @@ class Scanner {
   }
 
   void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
-  /// To behind the next `end`; to the end of the text where there is none.
+  /// To behind the next `end`; to the end of the text if it is absent.
   void skip_past(std::string_view end) {
     const std::size_t found = text_.find(end, at_);
     at_ = found == std::string_view::npos ? text_.size() : found + end.size();

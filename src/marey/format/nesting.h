@@ -12,7 +12,7 @@ enum class Notation {
   xml,   ///< elements
 };
 
-/// What no file of this kind needs. Parsers and destructors call themselves once or several times a level; the stack bears this
+/// What no file of this kind needs. Parsers and destructors call themselves once or several times a level; the stack supports this
 /// many.
 inline constexpr int kMaxNestingDepth = 100;
 

@@ -53,9 +53,9 @@ std::vector<LabelledImage> parse_pitch_labels(std::string_view text, const std::
   try {
     root = json::parse(text);
   } catch (const json::parse_error& error) {
-    throw Error("{}: is not a JSON: it breaks off or is wrong at byte {}", name, error.byte);
+    throw Error("{}: is not JSON: it breaks off or is wrong at byte {}", name, error.byte);
   }
-  if (!root.is_object()) throw Error("{}: is not labels of a pitch: it must be an object of elements by name", name);
+  if (!root.is_object()) throw Error("{}: does not hold labels of a pitch: it must be an object of elements by name", name);
   std::vector<LabelledImage> images;
   const bool many = !root.empty() && root.begin()->is_object();
   if (!many) return {image_of(root, std::filesystem::path(name).stem().string(), name, size)};

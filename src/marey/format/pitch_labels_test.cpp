@@ -33,10 +33,11 @@ TEST(PitchLabels, OfOnePictureAndOfMany) {
 }
 
 TEST(PitchLabels, ReportsInvalidLabelsWithPosition) {
-  EXPECT_EQ(refused_labels("{"), "frame.json: is not a JSON: it breaks off or is wrong at byte 2");
-  EXPECT_EQ(refused_labels("[]"), "frame.json: is not labels of a pitch: it must be an object of elements by name");
-  EXPECT_EQ(refused_labels(R"({"Tramline": [{"x": 0, "y": 0}]})"),
-            "frame.json: element \"Tramline\": is no element of a pitch; the names are those of SoccerNet's camera calibration");
+  EXPECT_EQ(refused_labels("{"), "frame.json: is not JSON: it breaks off or is wrong at byte 2");
+  EXPECT_EQ(refused_labels("[]"), "frame.json: does not hold labels of a pitch: it must be an object of elements by name");
+  EXPECT_EQ(
+      refused_labels(R"({"Tramline": [{"x": 0, "y": 0}]})"),
+      "frame.json: element \"Tramline\": is not an element of a pitch; the names are those of SoccerNet's camera calibration");
   EXPECT_EQ(refused_labels(R"({"Middle line": [{"x": 480, "y": 0}]})"),
             "frame.json: element \"Middle line\": a point's \"x\" must be a number, a share of the image between 0 and 1");
   EXPECT_EQ(refused_labels(R"({"Middle line": [3]})"),

@@ -49,7 +49,7 @@ TEST(PitchPoints, ReportsUnreadableLine) {
   EXPECT_NE(message("0,0,1,nan\n").find("clicks:1:"), std::string::npos);
   EXPECT_NE(message("a,b,c,d\n0,0,1,2\n").find("header"), std::string::npos);
   EXPECT_NE(message("").find("not one point"), std::string::npos);
-  EXPECT_NE(message("<annotations><image/>").find("no XML"), std::string::npos);
+  EXPECT_NE(message("<annotations><image/>").find("not XML"), std::string::npos);
   EXPECT_NE(message("<annotations></annotations>").find("no <image>"), std::string::npos);
   EXPECT_NE(message(R"xml(<a><image><points label="corner" points="1,2"/></image></a>)xml").find("\"corner\""), std::string::npos);
 }

@@ -32,7 +32,7 @@ void turn(Instant& instant, const Matrix<3>& rotation) {
   }
 }
 
-/// Turns a world whose y is up so that its z is. `told` is a warning, or empty.
+/// Turns a world whose y is up so that its z is. `reported` is a warning, or empty.
 class AxisConvertingReader : public FileReader {
  public:
   AxisConvertingReader(std::unique_ptr<FileReader> reader, std::string reported)
@@ -236,7 +236,7 @@ std::unique_ptr<Sink> create_recording(const std::string& path, const Format& fo
                                        std::vector<std::string>* lost) {
   if (format.create == nullptr && format.write == nullptr) throw Error("{}: {} is read only", path, format.title);
   if (format.create == nullptr) return std::make_unique<GatheringSink>(path, format, lost);
-  require_short_labels(plan.info, path);  // what is written is read again
+  require_short_labels(plan.info, path);  // the output is read again
   auto sink = format.create(path, plan);
   if (plan.up == UpAxis::z || format.z_up) return sink;
   return std::make_unique<AxisConvertingSink>(std::move(sink));

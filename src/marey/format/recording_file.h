@@ -21,12 +21,12 @@ std::unique_ptr<FileReader> open_recording(const std::string& path, const Format
 /// The same, known by its content.
 std::unique_ptr<FileReader> open_recording(const std::string& path, const ReadOptions& options = {});
 
-/// A whole recording, with what formats of matches tell beyond it.
+/// A whole recording, with what match formats contain beyond it.
 match::GroundMatch read_whole(const std::string& path, const Format& format, const ReadOptions& options = {});
 /// One of people on the ground, known by its content; "-" is CSV from standard input. Throws Error if it is not of the ground.
 match::GroundMatch read_match(const std::string& path, const ReadOptions& options = {});
 
-/// A reader in memory; what formats of matches tell beyond the recording is omitted. The recording must outlive it.
+/// A reader in memory; what match formats contain beyond the recording is omitted. The recording must outlive it.
 std::unique_ptr<FileReader> reader_of(const Recording& recording);
 
 /// What a writer must know beforehand. Reads all of it. Throws Error, with `name` for the file, where millions of frames are
@@ -38,7 +38,7 @@ WritePlan plan_of(FileReader& reader, const std::string& name);
 std::unique_ptr<Sink> create_recording(const std::string& path, const Format& format, const WritePlan& plan = {},
                                        std::vector<std::string>* lost = nullptr);
 
-/// What a user should know where a recording has bodies and `format` holds no poses; nothing if it does, or there are none.
+/// What a user should know where a recording has bodies and `format` holds no poses; nothing if it does, or no bodies exist.
 std::optional<std::string> poses_lost(const RecordingHeader& header, const std::string& path, const Format& format);
 
 /// The same of what stood beside the points of a file that was read.

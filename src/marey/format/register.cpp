@@ -159,7 +159,7 @@ Beginning beginning_of(const std::string& path) {
   if (!fs::exists(status)) throw Error("{}: no such file; is the name right?", path);
   Beginning beginning{.path = path, .folder = fs::is_directory(status), .bytes = {}};
   if (beginning.folder) return beginning;
-  if (!fs::is_regular_file(status)) return beginning;  // what is read of a pipe is gone
+  if (!fs::is_regular_file(status)) return beginning;  // data read from a pipe is gone
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error("{}: cannot be read; have you the right to?", path);
   beginning.bytes.resize(kInspectedAt);

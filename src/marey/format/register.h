@@ -26,12 +26,12 @@ std::span<const Format> formats();
 const Format* format_of_content(const std::string& path);
 /// The same, of those that hold some of `wanted`. Throws Error, which lists them, where it is not one.
 const Format& format_to_read(const std::string& path, Contents required);
-/// The one of that name that holds some of `wanted`; "csv" is each content's own `.csv` too. Null where there is none.
+/// The one of that name that holds some of `wanted`; "csv" is each content's own `.csv` too. Null if it does not exist.
 const Format* format_named(std::string_view name, Contents required);
-/// The one whose ending a name to be written bears.
+/// The one whose ending a name to be written has.
 const Format* format_of_name(std::string_view path, Contents required);
 /// What to write `path` in: the format called `name`, or where that is empty the one of its ending. Throws WrongFormat with what
-/// can be written where there is none, or where it cannot hold this content.
+/// can be written if it does not exist, or if it cannot hold this content.
 const Format& format_to_write(const std::string& path, std::string_view name, Content content);
 /// For a command line, before anything is read: throws WrongFormat where nothing is written under that name.
 void check_written_name(const std::string& name);
@@ -49,7 +49,7 @@ std::string shown_endings(const Format& format);
 /// ".marey"; empty if it has none.
 std::string first_ending(const Format& format);
 
-/// A name's other file, where files of that ending come in pairs: what is read or written without being named.
+/// A name's other file, where files of that ending come in pairs: data read or written without being named.
 std::string file_next_to(const std::string& path);
 
 /// The table of docs/formats.md: Markdown, a row a format.

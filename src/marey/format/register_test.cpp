@@ -18,8 +18,8 @@ TEST(Register, EveryRowIsWhole) {
   std::set<std::pair<std::string_view, std::string_view>> known;
   for (const Format& format : formats()) {
     EXPECT_FALSE(format.name.empty() || format.title.empty() || format.detail.empty()) << format.name;
-    EXPECT_NE(format.is, nullptr) << format.name;
-    EXPECT_TRUE(format.is_read()) << format.name;
+    EXPECT_TRUE(format.is_read() || format.create != nullptr) << format.name;
+    EXPECT_EQ(format.is != nullptr, format.is_read()) << format.name;
     EXPECT_TRUE(format.create == nullptr || format.write == nullptr) << format.name;
     EXPECT_TRUE(format.open == nullptr || format.read == nullptr) << format.name;
     EXPECT_TRUE(known.emplace(format.name, format.title).second) << format.name;
@@ -57,8 +57,8 @@ std::string refusal(const std::string& path, const std::string& name, Content co
 
 TEST(Register, RejectsUnknownFormatWithList) {
   EXPECT_EQ(refusal("b.xyz", "", Content::image),
-            "b.xyz: unknown ending; these can be written: .marey (take), .csv (csv), .jsonl (jsonl), --format mots, "
-            "--format coco, .txt (mot); or name a format "
+            "b.xyz: unknown ending; these can be written: .marey (take), .csv (csv), .jsonl (jsonl), .json (coco), "
+            "_json (openpose), --format mots, --format coco-instances, .txt (mot); or name a format "
             "with --format");
   EXPECT_EQ(refusal("b.c3d", "", Content::ground),
             "b.c3d: a C3D file holds points in space, and not people on the ground; these can be written: .marey (take), .mcap "

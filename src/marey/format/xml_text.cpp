@@ -32,7 +32,7 @@ pugi::xml_document parse_xml(std::string_view text, const std::string& name) {
   if (result) return document;
   const auto read = text.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, result.offset)));
   const auto line = std::count(read.begin(), read.end(), '\n') + 1;
-  throw Error("{}:{}: is not a XML from here on ({}); the file may be cut off", name, line, result.description());
+  throw Error("{}:{}: is not XML from here on ({}); the file may be cut off", name, line, result.description());
 }
 
 std::string to_text(const pugi::xml_document& document) {

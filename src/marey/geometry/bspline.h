@@ -80,7 +80,7 @@ std::optional<ClosedSpline> fit_spline(std::span<const Vector<2>> polygon, const
 
 /// Area by the shoelace formula, px²: positive where the corners run clockwise on the screen.
 double polygon_area(std::span<const Vector<2>> polygon);
-/// Centre of the area; nothing if there is none.
+/// Centre of the area; nothing if it has no area.
 std::optional<Vector<2>> polygon_centroid(std::span<const Vector<2>> polygon);
 
 }  // namespace marey::geometry

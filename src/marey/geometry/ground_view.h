@@ -36,7 +36,7 @@ class GroundView {
     const Whole* whole = std::get_if<Whole>(&view_);
     return whole ? &whole->camera : nullptr;
   }
-  /// The ground that the camera looks at; level for a homography, which knows no heights.
+  /// The ground that the camera faces; level for a homography, which knows no heights.
   const GroundSurface& surface() const;
   cv::Size size() const;
 

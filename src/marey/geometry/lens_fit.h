@@ -10,7 +10,7 @@
 
 namespace marey::geometry {
 
-/// A Brown lens that stands for another way of seeing.
+/// A Brown lens that approximates another lens model.
 struct BrownFit {
   BrownLens lens;
   Matrix<3> turn = Matrix<3>::Identity();  ///< lens's frame from the frame of the directions
@@ -23,7 +23,7 @@ struct BrownFitOptions {
 };
 
 /// The Brown lens that sees nearest to `direction`: for pixels on a grid over an image of `size` it says in which direction
-/// they look (z ahead, any length; nothing if they see nothing). `start` is a first guess of focal length and principal point.
+/// they face (z ahead, any length; nothing if they see nothing). `start` is a first guess of focal length and principal point.
 /// Nothing if fewer than 20 grid points use later frames.
 std::optional<BrownFit> fit_brown(const std::function<std::optional<Vector<3>>(const Vector<2>& pixel)>& direction, cv::Size size,
                                   const BrownLens& start, const BrownFitOptions& options = {});

@@ -38,7 +38,7 @@ inline constexpr int kPitchElements = 26;
 /// All of them, always in the same order: an element is its index.
 std::array<PitchElement, kPitchElements> pitch_elements(const PitchSize& size);
 
-/// The index of that name; nothing if there is none.
+/// The index of that name; nothing if it does not exist.
 std::optional<int> pitch_element_named(std::string_view name);
 
 /// Which element has this one's place when the pitch is mirrored: left and right exchanged, near and far, or both, which is half
@@ -48,7 +48,7 @@ struct PitchMirror {
 };
 int mirrored_element(int element, PitchMirror mirror);
 
-/// One element as it was labelled in an image: points along what is seen of it, px.
+/// One element as it was labelled in an image: points along its visible part, px.
 struct LabelledElement {
   int element = 0;
   std::vector<Vector<2>> points;

@@ -1,4 +1,4 @@
-// What is on its way to one client. Answers go out in order and are never dropped: a client that leaves more than `kMaxUnread`
+// The pending data for one client. Answers go out in order and are never dropped: a client that leaves more than `kMaxUnread`
 // bytes of them unread is disconnected. Of frames the newest win: in a queue of `kMaxFrames` a new one takes the place of the
 // oldest; with a queue for each topic, of one frame, it takes its turn as well.
 #pragma once

@@ -89,7 +89,7 @@ class Server {
   void tick();
 
   // Not under the mutex.
-  /// Gives clients `ms` milliseconds at most to take what is on its way to them.
+  /// Gives clients `ms` milliseconds at most to take their pending data.
   void drain(int ms);
 
  private:

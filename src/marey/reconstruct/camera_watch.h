@@ -36,7 +36,7 @@ class CameraWatch {
   /// `ids[i]` is the CameraId of cameras[i].
   CameraWatch(std::vector<Camera> cameras, std::vector<CameraId> ids);
 
-  /// Takes in what was seen at one instant and the points that were found in it; `noise_px` as the corresponder has it. Says that a
+  /// Takes in one instant's observations and the points found in it; `noise_px` as the corresponder has it. Says that a
   /// camera was moved as soon as its new place is known; from then on cameras() has it there.
   std::optional<MovedCamera> observe_frame(Timestamp now, std::span<const Observation<2>> detected, const Correspondences& found,
                                            double noise_px);

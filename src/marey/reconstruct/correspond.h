@@ -3,11 +3,11 @@
 // (1) Claim: the predictions of a tracker come first. Each is projected into every camera and takes the blob that fits best within
 // its own uncertainty, one to one; a wrong ray shows in the triangulation and is omitted; cameras that gave nothing are then asked
 // again about the place itself, which is known far better than the prediction.
-// (2) Meet: what is left is matched by rays, camera pair by camera pair, the pairs that give depth best first. Two rays that lie in
+// (2) Meet: the rest is matched by rays, camera pair by camera pair, the pairs that give depth best first. Two rays that lie in
 // one epipolar plane propose a point, and every other camera is asked for a blob there. Groups of four rays and more that fit are
 // taken at once, the largest first, so that later pairs have little left to do; groups of three wait until all pairs have been
 // seen, because three rays also meet by chance, and then the best fit wins.
-// (3) Two rays meet by chance so often that they are trusted only where each is the other's only partner among what is left;
+// (3) Two rays meet by chance so often that they are trusted only where each is the other's only partner among the rest;
 // they are reported apart.
 //
 // Assumes that blobs are accurate to a fraction of the distance between them. Cost: near linear in blobs while most have one

@@ -11,14 +11,14 @@
 namespace marey::reconstruct {
 
 /// Everything that the cameras of a rig saw at one instant, as sight lines: those of one camera side by side, and within a camera
-/// those of one cell of a grid over its image, so that the blobs near a pixel are found by looking at a few cells.
+/// those of one cell of a grid over its image, so that the blobs near a pixel are found by inspecting a few cells.
 /// Steady state allocates nothing. Cost: one lens inversion a blob, and a counting sort.
 class FrameRays {
  public:
   /// `ids[i]` is what observations call cameras[i].
   FrameRays(std::vector<Camera> cameras, std::span<const CameraId> ids);
 
-  /// Takes in what was seen. Blobs that no direction leads to, and those of cameras that the rig does not have, are omitted.
+  /// Takes in the observations. Blobs that no direction leads to, and those of cameras that the rig does not have, are omitted.
   /// `noise_px` is the standard deviation, along each axis, of what an observation's own covariance does not cover.
   void build(std::span<const Observation<2>> detected, double noise_px);
 
@@ -30,7 +30,7 @@ class FrameRays {
   const SightLine& line(int ray) const { return lines_[ray]; }
   std::span<const SightLine> lines() const { return lines_; }
   const Vector<2>& pixel(int ray) const { return pixels_[ray]; }
-  int observation(int ray) const { return observations_[ray]; }  ///< index in what was seen
+  int observation(int ray) const { return observations_[ray]; }  ///< index in the observations
   int first(int camera) const { return grids_[camera].begin; }   ///< rays first(c) … last(c) − 1 are camera c's
   int last(int camera) const { return grids_[camera].end; }
   double largest_sigma(int camera) const { return grids_[camera].largest_sigma; }
@@ -69,7 +69,7 @@ class FrameRays {
   std::vector<Camera> cameras_;
   std::vector<std::optional<int>> number_of_;  // by CameraId, the camera's place in `cameras_`
   std::vector<Grid> grids_;
-  std::vector<std::optional<SightLine>> found_;  // by what was seen
+  std::vector<std::optional<SightLine>> found_;  // by observation
   std::vector<SightLine> lines_;
   std::vector<Vector<2>> pixels_;
   std::vector<int> observations_;

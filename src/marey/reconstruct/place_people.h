@@ -4,9 +4,9 @@
 // the covariance: across the view some centimetres, along it a metre and more where the camera stands low and the person is far.
 // Edges of boxes are wrong by a share of the box's height rather than by pixels. Where the whole camera is known, the upper edge
 // counts too: a head is about 1.75 m above the feet. Both are joined as a Kalman filter would, linearised twice. Where the box is
-// too short for a person who stands at its foot, and another box or the image's lower edge hides what is missing, the legs are
+// too short for a person who stands at its foot, and another box or the image's lower edge hides the missing part, the legs are
 // not seen and the head alone counts.
-// Cost: two projections and a ray a person, about a microsecond; searching for who hides whom is quadratic in a frame's boxes.
+// Cost: two projections and a ray a person, about a microsecond; the search for occlusions is quadratic in a frame's boxes.
 #pragma once
 
 #include <span>

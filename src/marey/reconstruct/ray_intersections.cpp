@@ -88,7 +88,7 @@ void RayIntersections::extend(const FrameRays& frame, const EpipolarPair& pair, 
   }
 }
 
-/// Gives rays to proposals, those of most rays first, then those that fit best; who comes too late gets nothing.
+/// Gives rays to proposals, those of most rays first, then those that fit best; a proposal that comes too late gets nothing.
 void RayIntersections::settle(std::vector<Proposal>& proposals, RayGroups& groups) {
   std::stable_sort(proposals.begin(), proposals.end(), [](const Proposal& p, const Proposal& q) {
     return p.point.rays != q.point.rays ? p.point.rays > q.point.rays : p.misfit() < q.misfit();

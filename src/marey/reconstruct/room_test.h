@@ -30,7 +30,7 @@ class Random {
   filter::RandomStream stream_;
 };
 
-/// At `centre`, looking at `target`, with a little distortion: 1280 × 1024 px, 60° wide.
+/// At `centre`, aimed at `target`, with a little distortion: 1280 × 1024 px, 60° wide.
 inline Camera facing(const Vector<3>& centre, const Vector<3>& target) {
   const Vector<3> z = (target - centre).normalized();
   const Vector<3> x = z.cross(Vector<3>::UnitZ()).normalized();
@@ -43,7 +43,7 @@ inline Camera facing(const Vector<3>& centre, const Vector<3>& target) {
   return Camera(lens, Rigid3{rotation, -rotation * centre}, {1280, 1024});
 }
 
-/// On a circle, high and low by turns, all looking inwards.
+/// On a circle, high and low by turns, all facing inwards.
 inline std::vector<Camera> cameras_round(int count) {
   std::vector<Camera> cameras;
   for (int i = 0; i < count; ++i) {

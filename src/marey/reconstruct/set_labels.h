@@ -40,7 +40,7 @@ class SetLabels {
     for (std::size_t m = 0; m < set_.labels.size(); ++m) {
       if (!match->point_of[m] || !given_.insert(m).second) continue;
       const TrackId id = ids_[static_cast<std::size_t>(*match->point_of[m])];
-      if (!label_of_.emplace(id, set_.labels[m]).second) given_.erase(m);  // it bears another name already
+      if (!label_of_.emplace(id, set_.labels[m]).second) given_.erase(m);  // it has another name already
     }
   }
 

@@ -63,7 +63,7 @@ struct Triangulator::Fit {
   double chi_square = 0;
 };
 
-/// What is left without one ray.
+/// The result without one ray.
 struct Triangulator::Rejection {
   Fit fit;
   std::uint64_t used;

@@ -2,7 +2,7 @@
 // least sum of squares, by Gauss and Newton's method from the point nearest to all half-lines.
 //
 // Errors beyond `huber` standard deviations weigh less than their square (Huber 1964). Where the sum is still more than noise
-// explains, the ray without which it falls the most is omitted, and so on, while enough rays remain to tell which of them is the
+// explains, the ray without which it falls the most is omitted, and so on, while enough rays remain to decide which of them is the
 // wrong one. With Gaussian noise the estimate reaches the Cramér-Rao bound: nothing that is unbiased does better.
 // Cost: about 60 ns a ray with three to five steps. References: Hartley & Zisserman, "Multiple View Geometry", 2004, 12.4; Huber,
 // "Robust estimation of a location parameter", 1964.

@@ -8,7 +8,7 @@
 
 namespace marey::simulate {
 
-/// A camera above the origin's near side that looks at the origin: pinhole, no roll, no distortion. World: x to the right, y away
+/// A camera above the origin's near side that faces the origin: pinhole, no roll, no distortion. World: x to the right, y away
 /// from the camera.
 struct LevelCamera {
   cv::Size size{768, 576};  ///< px

@@ -29,7 +29,7 @@ class CameraShake {
   std::uint64_t seed_;
 };
 
-/// Where what is seen at a pixel is seen after the turn `turn` of the scene about a pinhole camera.
+/// Where a point seen at a pixel is seen after the turn `turn` of the scene about a pinhole camera.
 std::function<Vector<2>(const Vector<2>&)> rotated_pixels(const Vector<3>& turn, double focal, const Vector<2>& principal);
 
 }  // namespace marey::simulate

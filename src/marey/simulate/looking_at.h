@@ -4,7 +4,7 @@
 
 namespace marey::simulate {
 
-/// camera_from_world of a camera at `centre` that looks at `target`, both in metres, z upwards: its image's rows are level but
+/// camera_from_world of a camera at `centre` that faces `target`, both in metres, z upwards: its image's rows are level but
 /// for `roll`, rad. The two points may not stand one above the other.
 inline geometry::Rigid3 looking_at(const geometry::Vector<3>& centre, const geometry::Vector<3>& target, double roll = 0) {
   const geometry::Vector<3> ahead = (target - centre).normalized();

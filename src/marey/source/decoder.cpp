@@ -176,7 +176,7 @@ Decoder::Decoder(const std::string& path, int threads) : parts_(std::make_unique
   p.codec->log_level_offset = AV_LOG_TRACE;  // what is damaged is counted; the host program's log gets nothing of ours
   const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   p.codec->thread_count = threads > 0 ? threads : static_cast<int>(allowed);
-  p.codec->max_pixels = largest_image();  // of images that change their size on the way too
+  p.codec->max_pixels = largest_image();  // of images that change their size later too
   if (const int code = avcodec_open2(p.codec.get(), codec, nullptr); code < 0) {
     throw Error("{}: its video ({}) cannot be decoded ({})", path, codec->long_name, reason(code));
   }
@@ -251,7 +251,7 @@ bool Decoder::Parts::receive() {
   }
 }
 
-/// Gives the decoder one more packet of the stream, or tells it that there are no more.
+/// Gives the decoder one more packet of the stream, or reports to it that there are no more.
 void Decoder::Parts::feed() {
   for (;;) {
     av_packet_unref(packet.get());

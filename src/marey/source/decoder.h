@@ -28,7 +28,7 @@ class Decoder {
   cv::Size size() const;  ///< of the images as they are shown: a phone's video held upright is upright
   std::optional<double> rate_hz() const;
   std::optional<std::int64_t> frame_count() const;  ///< where the container counts its frames
-  std::optional<double> duration_s() const;         ///< where the container's header, or its rate and count, tell it
+  std::optional<double> duration_s() const;         ///< where the container's header, or its rate and count, specify it
 
   struct Decoded {
     Image image;

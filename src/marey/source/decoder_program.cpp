@@ -163,7 +163,7 @@ struct Decoder::Parts {
     if (listener.joinable()) listener.join();
   }
 
-  /// Keeps the times that ffmpeg's log tells, in the order of the images.
+  /// Keeps the times that ffmpeg's log states, in the order of the images.
   void listen() {
     std::string line;
     std::array<char, 4096> bytes{};

@@ -25,7 +25,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Length of a `%d`, `%4d` or `%04d` that begins at `at`; 0 where there is none.
+/// Length of a `%d`, `%4d` or `%04d` that begins at `at`; 0 if there is not one.
 std::size_t number_mark(const std::string& text, std::size_t at) {
   if (text[at] != '%') return 0;
   std::size_t end = at + 1;

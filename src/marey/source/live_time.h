@@ -14,7 +14,7 @@ class LiveTime {
   virtual Timestamp now() = 0;
   /// For a short while, a few milliseconds at most, or until `wake`.
   virtual void wait() = 0;
-  /// A frame has come: who waits need not wait longer. From any thread.
+  /// A frame has come: a waiting caller need not wait longer. From any thread.
   virtual void wake() {}
 };
 

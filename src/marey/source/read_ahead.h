@@ -6,7 +6,7 @@
 
 namespace marey::source {
 
-/// The same source, read on a thread of its own, so that decoding and looking at frames continue side by side. At most `depth`
+/// The same source, read on a thread of its own, so that decoding and processing of frames continue side by side. At most `depth`
 /// frames wait. Frames and their order do not depend on the threads.
 std::unique_ptr<Source> read_ahead(std::unique_ptr<Source> source, int depth = 8);
 

@@ -11,7 +11,7 @@
 namespace marey::source {
 namespace {
 
-/// Frames numbered from 0; tells how many were asked for, and fails after `fails_after` where that is given.
+/// Frames numbered from 0; reports how many were requested, and fails after `fails_after` where that is given.
 class Numbers final : public Source {
  public:
   Numbers(int count, std::atomic<int>* requested, int fails_after = -1)

@@ -26,7 +26,7 @@ std::array<char, sizeof(T)> bytes_of(T value) {
   return bytes;
 }
 
-/// What is written one after the other. Widths are said at each call, so that no number goes out in another one than was meant.
+/// Values written one after the other. Widths are said at each call, so that no number goes out in another one than was meant.
 template <std::endian order>
 class BytesIn {
  public:

@@ -7,7 +7,7 @@
 namespace marey::stream {
 namespace {
 
-/// Shirts bear the same number in both teams: a team's name stands before it.
+/// Shirts have the same number in both teams: a team's name stands before it.
 std::string shown_label(const TrackName& name) {
   if (name.label.empty()) return {};
   return plain_text(name.team.empty() ? name.label : name.team + " " + name.label);

@@ -50,7 +50,7 @@ std::string base64(std::string_view bytes) {
 std::optional<FoxgloveRequest> foxglove_request(std::string_view text) {
   if (is_nested_beyond(text, kMaxNesting)) throw Error("a message that is nested too deep");
   const json message = json::parse(text, nullptr, false);
-  if (!message.is_object()) throw Error("a message that is not a JSON object");
+  if (!message.is_object()) throw Error("a message that is not JSON object");
   const auto op = message.find("op");
   if (op == message.end() || !op->is_string()) throw Error("a message without its op");
   FoxgloveRequest request;

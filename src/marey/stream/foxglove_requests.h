@@ -18,7 +18,7 @@ struct FoxgloveRequest {
   std::vector<std::uint32_t> unsubscribe;
 };
 
-/// Of a text message. Nothing for what asks for something else. Throws Error for what is not a JSON, and for more than a few
+/// Of a text message. Nothing for what asks for something else. Throws Error for what is not JSON, and for more than a few
 /// hundred subscriptions.
 std::optional<FoxgloveRequest> foxglove_request(std::string_view text);
 
@@ -28,7 +28,7 @@ std::string base64(std::string_view bytes);
 /// `{"op":"serverInfo",…}` and `{"op":"advertise",…}`, as texts.
 std::string foxglove_server_info(std::string_view name, std::string_view session);
 std::string foxglove_advertisement();
-/// A sentence for the user: level 0 tells, 1 warns.
+/// A sentence for the user: level 0 informs, 1 warns.
 std::string foxglove_status(int level, std::string_view message_text);
 
 /// What stands before a message of a subscription: opcode 1, its id, ns.

@@ -13,7 +13,7 @@ namespace marey::stream {
 /// A text as JSON holds it, with its quotation marks.
 std::string json_quoted(std::string_view text);
 
-/// What is said once: `{"type":"header",…}` with the frame, the unit, the rate and the bodies. One line, without its end.
+/// The line sent once: `{"type":"header",…}` with the frame, the unit, the rate and the bodies. One line, without its end.
 std::string json_header(const RecordingHeader& header, const ChannelLayout& channel_layout);
 /// An instant: `{"type":"frame",…}`, all points and bodies with their names.
 std::string json_frame(const RecordingHeader& header, const ChannelLayout& channel_layout, const Instant& instant,

@@ -36,7 +36,7 @@ struct LslOutlet {
 
 /// `<info>` with what a search sees; `full` with all channels.
 std::string lsl_info_xml(const LslOutlet& outlet, bool full);
-/// Whether the stream that this `<info>` tells of is meant: the query is a condition in XPath, as "type='MoCap'". What is not one
+/// Whether the stream that this `<info>` describes is meant: the query is a condition in XPath, as "type='MoCap'". What is not one
 /// is not met.
 bool lsl_matches(const std::string& info_xml, std::string_view query);
 
@@ -61,10 +61,10 @@ std::optional<LslRequest> lsl_request(std::string_view bytes);
 
 /// The head of a feed and its two test samples; or the refusal of another outlet's.
 std::string lsl_feed_head(const LslOutlet& outlet);
-/// A sample at that time, s: one channel each; NaN for what is missing.
+/// A sample at that time, s: one channel each; NaN for missing values.
 std::string lsl_sample(double time, const std::vector<float>& channels);
 
-/// An instant's channels; `slotted` has the sample in each slot, null where there is none.
+/// An instant's channels; `slotted` has the sample in each slot, null if it is empty.
 std::vector<float> lsl_channels(const LslLayout& layout, const ChannelLayout& channel_layout, const ChannelLayout::Scene& scene,
                                 const Instant& instant, std::span<const Sample* const> slotted = {});
 

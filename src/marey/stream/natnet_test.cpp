@@ -10,7 +10,7 @@
 namespace marey::stream {
 namespace {
 
-/// Reads what was written, in order, and fails beyond the end.
+/// Reads the written bytes, in order, and fails beyond the end.
 class NatNetReader {
  public:
   explicit NatNetReader(std::string_view bytes, std::size_t at = 4) : bytes_(bytes), at_(at) {}

@@ -1,4 +1,4 @@
-// What every wire is: a sink that never waits. It takes a moment's times, keeps who is who, and hands the instant to its protocol.
+// What every wire is: a sink that never waits. It takes times, keeps identities, and passes the instant to its protocol.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ struct StreamReport {
   std::int64_t dropped = 0;               ///< frames that a client, or the system, did not take in time
   std::int64_t refused = 0;               ///< clients rejected because there were too many
   std::int64_t disconnected_clients = 0;  ///< clients that spoke another protocol, or left answers unread
-  StageTimes sending;                     ///< from a moment's arrival to its bytes at the system, s
+  StageTimes sending;                     ///< from an instant's arrival to its bytes at the system, s
   std::vector<std::string> notes = {};    ///< one sentence each
 };
 
@@ -68,9 +68,9 @@ class ProtocolSink : public Sink {
   virtual void send(const Instant& instant, FrameTimes times) = 0;
   /// There are labels that were not there before.
   virtual void labels_grew() {}
-  /// Tells clients that it is over.
+  /// Informs clients that it is over.
   virtual void report_goodbye() {}
-  /// Waits a little until clients have what is on its way to them.
+  /// Waits a little until clients have the data in transit to them.
   virtual void drain() {}
   virtual void fill(StreamReport& report) const = 0;
 

@@ -15,7 +15,7 @@
 
 namespace marey::stream {
 
-/// What was asked for is not a wire, or no address: the command line is wrong.
+/// The request names no known wire, or no address: the command line is wrong.
 class WrongTarget : public Error {
  public:
   using Error::Error;
@@ -55,7 +55,7 @@ std::string protocol_names(std::string_view between = "|");
 /// The table of docs/streams.md: Markdown, a row a wire.
 std::string protocol_table();
 
-/// How long clients are given at the end to take what is on its way to them, ms.
+/// How long clients are given at the end to take the data in transit to them, ms.
 inline constexpr int kDrainMs = 500;
 /// What a server counted, into a report.
 void take_counts(StreamReport& report, const net::Server::Counts& counts);

@@ -117,7 +117,7 @@ std::string QtmSession::current_frame(const std::vector<std::string>& words) con
 std::string QtmSession::stream(const std::vector<std::string>& words) {
   const auto request = qtm_stream_request(words);
   if (!request) return refuse("Parse error");
-  // Frames go to the one who asked: who could name another host could have it flooded.
+  // Frames go to the one who asked: a client that could name another host could have it flooded.
   if (!request->udp_host.empty() && request->udp_host != net::host_text(client_.host))
     return refuse("UDP goes to the client's own address");
   streaming_.reset();

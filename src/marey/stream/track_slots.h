@@ -15,7 +15,7 @@ class TrackSlots {
  public:
   explicit TrackSlots(std::size_t count = 0) : slots_(count) {}
 
-  /// One per slot: its track's sample at this instant, null where there is none. Valid as long as `samples`.
+  /// One per slot: its track's sample at this instant, null if it has no sample. Valid as long as `samples`.
   const std::vector<const Sample*>& location(const std::vector<const Sample*>& samples);
 
   std::size_t size() const { return slots_.size(); }

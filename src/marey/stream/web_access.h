@@ -9,12 +9,12 @@
 
 namespace marey::stream {
 
-/// Whether a page of that origin may read what is measured on this host: none, a local one, a file, Foxglove's own.
+/// Whether a page of that origin may read measurements on this host: none, a local one, a file, Foxglove's own.
 bool is_trusted_origin(std::string_view origin);
 /// Whether it names this host by address, or as localhost.
 bool is_plain_host(std::string_view host);
 
-/// Opens the WebSocket, or says why not. Of `protocols` the first that the client speaks; any, or none, if there are none.
+/// Opens the WebSocket, or says why not. Of `protocols` the first that the client speaks; any, or none, if the list is empty.
 net::HttpAnswer answer_to_upgrade(const net::HttpRequest& request, const std::vector<std::string_view>& protocols = {});
 
 }  // namespace marey::stream

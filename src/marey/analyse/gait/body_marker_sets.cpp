@@ -217,7 +217,7 @@ const BodyMarkerSet& recognised_marker_set(const std::set<std::string, std::less
     }
   }
   if (best == nullptr)
-    throw Error("its labels are not whole marker set that Marey knows; {} is nearest, and lacks {}", nearest->title(),
+    throw Error("its labels are not a whole marker set that Marey knows; {} is nearest, and lacks {}", nearest->title(),
                 fmt::join(nearest->missing(labels), ", "));
   if (second != nullptr)
     throw Error("its labels are as well those of {} as of {}: say which by --marker-set", best->title(), second->title());

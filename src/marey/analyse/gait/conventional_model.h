@@ -61,7 +61,7 @@ struct GaitSubject {
   double marker_radius = 0.007;
   std::array<Matrix<3>, 2> sole_from_ankle_toe = {Matrix<3>::Identity(), Matrix<3>::Identity()};  ///< of a static trial
 
-  /// Fills in what a standing person's markers tell: leg lengths, and how the feet stand.
+  /// Fills in what a standing person's markers determine: leg lengths, and how the feet stand.
   void learn_from(const MarkerPositions& standing);
 };
 

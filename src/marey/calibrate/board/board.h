@@ -11,7 +11,7 @@
 namespace marey::calibrate::board {
 
 /// A flat calibration board. Its corners are the places where four squares meet: they lie in the plane z = 0 of the board's
-/// frame, corner 0 at the origin, numbered along x first; x runs along a row, y from row to row, and z away from who looks at it.
+/// frame, corner 0 at the origin, numbered along x first; x runs along a row, y from row to row, and z away from the viewer.
 struct Board {
   enum class Kind { chess, charuco };
 

@@ -52,7 +52,7 @@ double brightness(const cv::Mat& grey, const cv::Point2f& at) {
 }
 
 /// Corners in the order of Board::corner, whatever order they were found in: right-handed seen from the front, and the square
-/// between corner 0 and its three neighbours dark, where the board tells its ends apart.
+/// between corner 0 and its three neighbours dark, if the board distinguishes its ends.
 void put_in_order(const cv::Mat& grey, const Board& board, std::vector<cv::Point2f>& found) {
   const int columns = board.corners.width, rows = board.corners.height;
   const auto at = [&](int x, int y) -> cv::Point2f& { return found[static_cast<std::size_t>(y * columns + x)]; };
@@ -89,7 +89,7 @@ struct MarkerPosition {
   int column = 0, row = 0;
 };
 
-/// `white_first`: the board's first square is white and bears marker 0 (OpenCV before 4.7, an even number of rows).
+/// `white_first`: the board's first square is white and has marker 0 (OpenCV before 4.7, an even number of rows).
 std::vector<MarkerPosition> marker_positions(const cv::Size& squares, bool white_first) {
   std::vector<MarkerPosition> locations;
   for (int row = 0; row < squares.height; ++row) {

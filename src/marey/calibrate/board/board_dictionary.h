@@ -7,7 +7,7 @@
 
 namespace marey::calibrate::board {
 
-/// How many markers the dictionary of that name ("4X4_50") holds; nothing if there is none of that name.
+/// How many markers the dictionary of that name ("4X4_50") holds; nothing if the name is unknown.
 std::optional<int> board_dictionary_size(const std::string& name);
 
 /// The dictionary itself; `name` is one that board_dictionary_size knows.

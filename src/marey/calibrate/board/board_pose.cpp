@@ -59,7 +59,7 @@ std::optional<Rigid3> board_pose(const Board& board, const BoardView& view, cons
   std::vector<cv::Point2d> directions;
   for (const BoardCorner& corner : view.corners) {
     const auto bearing = camera.bearing(corner.pixel);
-    if (!bearing || bearing->z() < 0.05) continue;  // a plane before the camera cannot hold what is seen at its side
+    if (!bearing || bearing->z() < 0.05) continue;  // a plane before the camera cannot contain observations at its side
     const Vector<3> at = board.corner(corner.id);
     points.emplace_back(at.x(), at.y(), at.z());
     directions.emplace_back(bearing->x() / bearing->z(), bearing->y() / bearing->z());

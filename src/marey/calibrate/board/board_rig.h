@@ -36,7 +36,7 @@ struct BoardRigCamera {
   std::string name;  ///< what messages call it
   cv::Size size;     ///< px
   geometry::Lens lens;
-  double offset_s = 0;  ///< videos: what is known of its offset; where the search begins, and what stays where offsets are held
+  double offset_s = 0;  ///< videos: prior value of its offset; where the search begins, and what stays where offsets are held
   std::vector<TimedView> views;  ///< in the order of time
 };
 
@@ -52,7 +52,7 @@ struct BoardRigOptions {
   bool rolling_shutter = false;  ///< videos: the shutters' readout is sought too
 };
 
-/// What is found of one camera.
+/// The result for one camera.
 struct BoardRigPose {
   geometry::Lens lens;
   Rigid3 camera_from_world;  ///< m; the world is the first camera's frame

@@ -53,7 +53,7 @@ std::optional<BoardView> observe_board(const Camera& camera, const Board& board,
   return view;
 }
 
-/// A camera at `centre` that looks at `target`, upright in a world with z up.
+/// A camera at `centre` that faces `target`, upright in a world with z up.
 inline Rigid3 facing(const Vector<3>& centre, const Vector<3>& target) {
   const Vector<3> ahead = (target - centre).normalized();
   const Vector<3> right = ahead.cross(Vector<3>::UnitZ()).normalized();

@@ -39,13 +39,13 @@ TEST(Board, RejectsNonBoardWithReason) {
     }
     return "";
   };
-  EXPECT_NE(why("").find("no kind of board"), std::string::npos);
+  EXPECT_NE(why("").find("not a kind of board"), std::string::npos);
   EXPECT_NE(why("chess").find("a grid and the side"), std::string::npos);
-  EXPECT_NE(why("chess:9:0.025").find("no grid such as"), std::string::npos);
+  EXPECT_NE(why("chess:9:0.025").find("not a grid such as"), std::string::npos);
   EXPECT_NE(why("chess:2x6:0.025").find("must be 3 to 100"), std::string::npos);
   EXPECT_NE(why("chess:9x6:0").find("above 0"), std::string::npos);
   EXPECT_NE(why("chess:9x6:nan").find("above 0"), std::string::npos);
-  EXPECT_NE(why("chess:9x6:2.5cm").find("no side of a square"), std::string::npos);
+  EXPECT_NE(why("chess:9x6:2.5cm").find("not a side of a square"), std::string::npos);
   EXPECT_NE(why("charuco:4x5:0.05:0.06:4X4_50").find("smaller than its square"), std::string::npos);
   EXPECT_NE(why("charuco:4x5:0.05:0.04:9X9_50").find("no dictionary"), std::string::npos);
   EXPECT_NE(why("charuco:20x20:0.05:0.04:4X4_50").find("needs 200"), std::string::npos);

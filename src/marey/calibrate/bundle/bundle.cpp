@@ -26,7 +26,7 @@ Vector<3> site_of(const Bundle& bundle, const BundleObservation& detected) {
   return Vector<3>::Zero();
 }
 
-/// The numbers that Ceres moves, and the way back into the bundle. All lie in one piece of memory: Ceres orders by address, and
+/// The numbers that Ceres moves, and the path back into the bundle. All lie in one piece of memory: Ceres orders by address, and
 /// so results are the same from run to run.
 class Numbers {
  public:
@@ -272,7 +272,7 @@ std::vector<std::optional<Vector<2>>> errors_of(const Bundle& bundle) {
 BundleResult adjust(Bundle& bundle, const BundleOptions& options) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports every step that it has to shorten; a library prints nothing
   BundleResult result;
-  std::vector<BundleCamera> start = bundle.cameras;  // what was known beforehand stays what it was in every round
+  std::vector<BundleCamera> start = bundle.cameras;  // prior values stay as they were in every round
   for (BundleCamera& camera : start) camera.lens = camera.known.value_or(camera.lens);
   const auto errors = errors_of(bundle);
   for (const auto& error : errors) result.inlier.push_back(error.has_value());

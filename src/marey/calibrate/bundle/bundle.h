@@ -21,7 +21,7 @@
 namespace marey::calibrate::bundle {
 
 /// How far each number of a lens may move from where it starts: 0 holds it, infinity frees it, anything between is the standard
-/// deviation of what was known beforehand.
+/// deviation of the prior value.
 struct LensFreedom {
   static constexpr double free = std::numeric_limits<double>::infinity();
 
@@ -58,7 +58,7 @@ struct BundleObservation {
   Vector<2> velocity = Vector<2>::Zero();  ///< px/s, of the marker in the image: needed where the time offset is refined
 };
 
-/// What is known before, and after `adjust` what is found.
+/// The prior values, and after `adjust` the result.
 struct Bundle {
   std::vector<BundleCamera> cameras;
   std::vector<double> wand;      ///< m: distances of a wand's markers along it
@@ -68,7 +68,7 @@ struct Bundle {
 };
 
 struct BundleOptions {
-  double noise_px = 0.5;        ///< expected of an observation, each axis: weighs what was known beforehand
+  double noise_px = 0.5;        ///< expected of an observation, each axis: weighs the prior values
   double loss_sigmas = 3;       ///< beyond this many times the noise an error counts linearly (Huber)
   double outlier_sigmas = 5;    ///< beyond this many times the noise that the others show, an observation is put out
   double min_outlier_px = 0.2;  ///< what is nearer is never put out

@@ -21,7 +21,7 @@ struct Dice {
   std::mt19937 engine;
 };
 
-/// A camera at `centre` that looks at the origin, its image upright.
+/// A camera at `centre` that faces the origin, its image upright.
 Rigid3 facing_inward(const Vector<3>& centre) {
   const Vector<3> ahead = -centre.normalized(), right = ahead.cross(Vector<3>::UnitZ()).normalized();
   Matrix<3> R;
@@ -216,7 +216,7 @@ TEST(Bundle, FindsALensByABoardInOneView) {
 }
 
 TEST(Bundle, WeightsPriorKnowledge) {
-  // One point tells nothing of a focal length: it stays at what was known, and so does its deviation.
+  // One point does not determine a focal length: it stays at its prior value, and so does its deviation.
   Dice dice(6);
   Bundle bundle = ring_of_cameras(3, kTsai);
   bundle.cameras[1].freedom.focal = 0.01;

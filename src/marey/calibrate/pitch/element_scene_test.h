@@ -33,7 +33,7 @@ inline std::vector<geometry::LabelledElement> labels_of(const geometry::Camera& 
   return labels;
 }
 
-/// A camera as they stand and look at matches: at a goal's half, or (every fourth) at the middle.
+/// A camera as they stand at matches: aimed at a goal's half, or (every fourth) at the middle.
 inline ElementView main_camera(std::mt19937& random) {
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   ElementView view;

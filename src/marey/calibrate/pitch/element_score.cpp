@@ -15,7 +15,7 @@ bool inside(const Vector<2>& pixel, cv::Size size) {
   return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < size.width && pixel.y() < size.height;
 }
 
-/// Where the way from `in` to `out` leaves the image.
+/// Where the line from `in` to `out` leaves the image.
 Vector<2> leaving(const Vector<2>& in, const Vector<2>& out, cv::Size size) {
   const Vector<2> method = out - in, last(size.width - 1, size.height - 1);
   double t = 1;

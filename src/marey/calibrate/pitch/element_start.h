@@ -1,4 +1,4 @@
-// Where a camera that sees labelled elements of the pitch may look, before anything is refined.
+// Where a camera that sees labelled elements of the pitch may be aimed, before anything is refined.
 //
 // Where two labelled elements cross, a place of the pitch has a pixel. For an assumed place of the camera, two crossings give the
 // rest: the angle between them the focal length, then pan, tilt and roll (the two-point start of PTZ cameras: Chen, Zhu &

@@ -1,4 +1,4 @@
-// When cameras over one ground were started, from the people whom they see.
+// When cameras over one ground were started, from the people that they see.
 //
 // Each camera follows people by itself; the paths of one person, seen by two cameras, agree when the clocks do. Two seconds of a
 // path from one camera are compared with every path from the other, its time shifted: as one person's (both apart by something
@@ -52,7 +52,7 @@ struct GroundOffset {
   double gain = 0;         ///< nats by which it explains the paths better than the offset that was assumed
 };
 
-/// Whether what was found speaks against an offset: by several deviations, more than a hundredth of a second or two, and by how
+/// Whether the result speaks against an offset: by several deviations, more than a hundredth of a second or two, and by how
 /// well people's paths are explained.
 bool contradicts(const GroundOffset& found, double assumed_s, const GroundOffsetOptions& options = {});
 

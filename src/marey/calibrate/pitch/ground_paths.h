@@ -7,7 +7,7 @@
 
 namespace marey::calibrate::pitch {
 
-/// One person's path, smoothed without lag: a parabola through what was seen within half a second before and after, at even times.
+/// A person's path, smoothed without lag: a parabola through observations within half a second before and after, at even times.
 class SmoothPath {
  public:
   static constexpr double kStep_s = 0.1;

@@ -155,7 +155,7 @@ constexpr double kWorstMedian = 0.02;  // of the image's width: points that half
 constexpr double kMinOutlier = 6;      // px: no user clicks better than this always
 constexpr double kOutlierSigmas = 4;
 
-/// Whether it is above the ground and sees most of these points at all: a camera under it that sees them mirrored, one that looks
+/// Whether it is above the ground and sees most of these points at all: a camera under it that sees them mirrored, one that faces
 /// away, or a lens that folds over may fit them in the formulas.
 bool faces_ground(const Camera& camera, const std::vector<PitchPoint>& points, const std::vector<char>& which) {
   if (!(camera.camera_from_world().inverse().translation.z() > 0)) return false;

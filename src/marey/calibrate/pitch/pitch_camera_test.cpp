@@ -12,7 +12,7 @@ using board::Noise;
 
 const cv::Size kSize(1536, 864);
 
-/// On a stand, looking at one half; the world's y points away from it.
+/// On a stand, aimed at one half; the world's y points away from it.
 Camera on_the_stand(double bend = -0.3) {
   return {geometry::BrownLens{{1050, 1050}, {767.5, 431.5}, {bend, 0.1}}, board::facing({52, -20, 10}, {35, 34, 0}), kSize};
 }

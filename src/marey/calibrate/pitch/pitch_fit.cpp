@@ -285,7 +285,7 @@ Noise learned(const std::vector<ObservedPitch>& detected, const PitchModel& rich
   }
   Noise noise;
   const double count = news_in(detected, noise), numbers = free_terms(richest) + 9.0 * static_cast<double>(detected.size());
-  if (count < 1.5 * numbers) return noise;  // too little to tell noise from what the model takes
+  if (count < 1.5 * numbers) return noise;  // too little to distinguish noise from what the model takes
   const double taken = std::sqrt(count / (count - numbers));
   if (!clicks.empty()) noise.click = std::max(kMinScale, taken * geometry::median(clicks) / kOfPlane);
   if (!paint.empty()) noise.paint = std::max(kMinScale, taken * geometry::median(paint) / kOfLine);

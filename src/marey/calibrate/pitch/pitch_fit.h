@@ -3,7 +3,7 @@
 // A crown of a decimetre bends the lines of a pitch much as a lens does. Held level, the ground leaves its crown to the lens, whose
 // eight coefficients take it and put places wrong elsewhere; so lens and ground are chosen together: every pair of a row of lenses
 // (one radial term … all eight) and a row of grounds (level … all four terms) is fitted, and the one with the least Bayesian
-// information criterion is kept. All cameras see one ground, which is what tells it from a lens.
+// information criterion is kept. All cameras see one ground, which distinguishes it from a lens.
 //
 // Errors are weighted as Student's t would (few degrees of freedom: some clicks are gross, some names wrong). Clicks err in pixels
 // and, since paint is wide and people do not all mean the same edge, in metres. Paint is averaged over pieces of two metres; pieces
@@ -32,7 +32,7 @@ struct PitchEvidence {
   std::vector<LineSighting> clicked;
 };
 
-/// What is known of the ground before.
+/// Prior knowledge of the ground.
 enum class GroundKnown {
   nothing,  ///< its terms are chosen
   level,

@@ -43,7 +43,7 @@ Eigen::Matrix<T, 2, 1> project_ground(const T* p, const Vector<2>& ground, const
           p[CameraNumbers::focal] * plane.y() + p[CameraNumbers::principal + 1]};
 }
 
-/// What is known of any lens before anything is seen: its numbers from the principal point to the last coefficient. Deviation 0
+/// Prior knowledge of any lens before anything is seen: its numbers from the principal point to the last coefficient. Deviation 0
 /// holds the number.
 struct LensPrior {
   CameraNumbers middle, sigma;

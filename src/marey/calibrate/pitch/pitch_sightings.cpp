@@ -185,7 +185,7 @@ std::vector<int> on_one_curve(const std::vector<Candidate>& all, std::size_t sam
   return best;
 }
 
-/// Walks on from what was found, `step` +1 or -1 along the candidates (which are in the order of their samples): paint continues
+/// Walks on from known sightings, `step` +1 or -1 along the candidates (which are in the order of their samples): paint continues
 /// where the last of it points to, even where no polynomial follows.
 void walk_on(const std::vector<Candidate>& all, std::vector<int>& found, int step) {
   std::vector<char> taken(all.size(), 0);

@@ -1,6 +1,6 @@
 // Where the search for a camera over a pitch begins: the points are straightened by each of a row of one-parameter distortions
 // (Fitzgibbon's division model), and a homography is sought by consensus of four, then by all points within its reach. For either
-// hand of the points' frame: clicks nearly on one line tell it only together with a camera.
+// hand of the points' frame: clicks nearly on one line determine it only together with a camera.
 // Cost: some thousand homographies of a few dozen points. Reference: Fitzgibbon, "Simultaneous linear estimation of multiple view
 // geometry and lens distortion", CVPR 2001; Hartley, "In defense of the eight-point algorithm", PAMI 1997 (scaling).
 #pragma once

@@ -46,7 +46,7 @@ std::vector<PitchPoint> clicks(const Camera& camera, double sigma, bool left_han
   return points;
 }
 
-/// Grass with the lines painted on it: every pixel looks at its own place on the ground, 4 × 4 times.
+/// Grass with the lines painted on it: every pixel shows its own place on the ground, 4 × 4 times.
 cv::Mat painted(const Camera& camera, const geometry::GroundSurface& ground = {}) {
   cv::Mat image(kClickedSize, CV_8UC1, cv::Scalar(90));
   const GroundView view(camera, ground);
@@ -68,7 +68,7 @@ cv::Mat painted(const Camera& camera, const geometry::GroundSurface& ground = {}
   return image;
 }
 
-/// Camera `index` of what was found against the truth, m.
+/// Camera `index` of the result against the truth, m.
 double worst_on_the_ground(const PitchCalibration& found, const GroundView& truth, bool left_handed, std::size_t index = 0) {
   const GroundView detected(found.views[index].camera, found.fit.ground);
   double worst = 0;

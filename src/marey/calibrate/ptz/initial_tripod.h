@@ -1,4 +1,4 @@
-// Where a camera on a tripod may stand and look, from places of the pitch that were clicked in a few of its frames.
+// Where a camera on a tripod may stand and be aimed, from places of the pitch that were clicked in a few of its frames.
 //
 // For an assumed place of the tripod, upright, two clicks of a frame give the rest: their angle seen from there the focal length,
 // and then pan and tilt (Chen, Zhu & Little, "A two-point method for PTZ camera calibration in sports", WACV 2018). Places all

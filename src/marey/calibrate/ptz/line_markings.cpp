@@ -129,7 +129,7 @@ Paint find_paint(const cv::Mat& luma, const geometry::Tripod& tripod, const geom
       if (!crossing || crossing->width > 40) continue;
       if ((crossing->pixel - last).norm() < options.apart) continue;
       last = crossing->pixel;
-      // What is read to both sides has to lie within the image.
+      // The samples read to both sides have to lie within the image.
       const double read = options.reach + 2.2 * std::hypot(crossing->width, kOptics) + 2;
       const Vector<2> swing = read * crossing->normal.cwiseAbs();
       if (crossing->pixel.x() < swing.x() || crossing->pixel.y() < swing.y() || crossing->pixel.x() > luma.cols - 2 - swing.x() ||

@@ -15,7 +15,7 @@ namespace marey::calibrate::ptz {
 namespace {
 
 constexpr int kWindow = 15, kLevels = 3;
-constexpr double kMaxDistance = 110;      // m: what is seen above the ground stands so far away
+constexpr double kMaxDistance = 110;      // m: objects above the ground are this far away
 constexpr double kStillPixels = 0.35;     // shrunk px: what moved less on the image stands still
 constexpr double kMovingFraction = 0.35;  // of those that stand: so many that move together are the scene
 constexpr double kMaxTrajectory = 0.3;    // of the image's width: then there is a new reference
@@ -88,7 +88,7 @@ OdometryFit fit_heading(const geometry::Tripod& tripod, const Matches& matches, 
   const double px = size.width / 2.0;
   const auto numbers = tripod.as_numbers();
   OdometryFit result{start.as_vector()};
-  // The middle of all ways brings most of them near.
+  // The middle of all displacements brings most of them near.
   std::vector<double> across, down;
   {
     const geometry::TripodFrame<double> frame(numbers.data(), result.heading.data());

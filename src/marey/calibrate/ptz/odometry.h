@@ -36,7 +36,7 @@ class Odometry {
  public:
   Odometry(cv::Size size, const OdometryOptions& options = {});
 
-  /// `luma` CV_8UC1, the next frame; `last` is where the camera looked in the one before, as far as is known. Nothing at the first
+  /// `luma` CV_8UC1, the next frame; `last` is where the camera faced in the one before, as far as is known. Nothing at the first
   /// frame and where the image does not continue from the last (a cut).
   std::optional<Rotated> step(const cv::Mat& luma, const geometry::Tripod& tripod, const geometry::Heading& last);
 

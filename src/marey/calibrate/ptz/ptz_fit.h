@@ -1,4 +1,4 @@
-// Where a camera on a known tripod looks, from paint and from what was expected: three numbers and their covariance.
+// Where a camera on a known tripod is aimed, from paint and from the prediction: three numbers and their covariance.
 #pragma once
 
 #include <span>

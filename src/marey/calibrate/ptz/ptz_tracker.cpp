@@ -13,7 +13,7 @@ constexpr double kLineStep = 0.5;        // m between samples of the model's lin
 constexpr double kNarrowReach = 3.5;     // px at 1280: paint is searched for again where the first fit says
 constexpr std::size_t kMaxKept = 90;     // sightings of a frame
 constexpr int kMinExpected = 25;         // samples in view: with fewer, missing paint says nothing
-constexpr double kKeyframeAngle = 0.07;  // rad: so far apart look two keyframes,
+constexpr double kKeyframeAngle = 0.07;  // rad: the angle between two keyframes,
 constexpr double kKeyframeZoom = 0.2;    // or their ln f
 constexpr double kFlowLost = 0.004;  // rad and ln f: how unsure a frame is whose image did not continue, where it may be a flash
 constexpr std::size_t kMinForTripod = 40;  // sightings of a keyframe
@@ -98,7 +98,7 @@ bool PtzTracker::plausible(const Correction& detected) {
          unsure_px(detected.fit.aim.covariance, detected.fit.aim.heading.log_focal) < options_.unsure_px;
 }
 
-/// Where flow gave up and the image may be the next one all the same (a blurred pan, a flash): about where it looked last.
+/// Where flow gave up and the image may be the next one all the same (a blurred pan, a flash): about where it was aimed last.
 std::optional<Aim> PtzTracker::held(const cv::Mat& luma) const {
   if (!aim_) return std::nullopt;
   const Aim wide{aim_->heading, aim_->covariance + kFlowLost * kFlowLost * Matrix<3>::Identity()};
@@ -136,7 +136,7 @@ void PtzTracker::add(const Image& image, double time_s) {
   if (!record.rotated && !records_.empty()) ++result_.cuts;
   std::optional<Aim> expected = predicted(record.rotated);
   if (!expected) expected = held(image.luma());
-  if (!expected && aim_ && !records_.empty()) waited_ = 0;  // a cut: look at once
+  if (!expected && aim_ && !records_.empty()) waited_ = 0;  // a cut: search immediately
   if (!expected) expected = from_scratch(image);
   aim_.reset();
   if (expected) {
@@ -155,7 +155,7 @@ void PtzTracker::add(const Image& image, double time_s) {
   if (aim_) note_keyframe();
 }
 
-/// A frame that looks elsewhere than those before it is one more that the tripod is solved on.
+/// A frame that is aimed elsewhere than those before it is one more that the tripod is solved on.
 void PtzTracker::note_keyframe() {
   if (keyframes_.size() >= options_.max_keyframes || records_.back().paint.size() < kMinForTripod) return;
   for (const Keyframe& one : keyframes_) {

@@ -1,11 +1,11 @@
-// Follows where a camera on a tripod looks through a film: predicted by what moves in the image, corrected on the paint.
+// Tracks where a camera on a tripod is aimed in a video: predicted by what moves in the image, corrected on the paint.
 //
 // Every frame: the optical flow predicts pan, tilt and ln f (odometry.h); paint is searched for where the model's lines then lie,
 // as far about as the prediction is unsure; a robust fit with the prediction as prior gives the frame's aim and covariance, as an
 // extended Kalman filter would. Where the image does not continue (a cut), where the lines that ought to be seen are not there, or
-// where the aim has become too unsure, the camera is lost until one image alone tells where it looks (relocalise.h). What is seen
-// of frames that look to different sides sharpens the tripod as the video continues. At the end everything is solved again with the
-// final tripod from what was kept of each frame, forwards, and smoothed backwards (smooth_ptz.h). Cost: about 12 ms a frame of
+// where the aim has become too unsure, the camera is lost until one image alone gives its aim (relocalise.h). The content
+// of frames that face different sides sharpens the tripod as the video continues. At the end everything is solved again with the
+// final tripod from the record of each frame, forwards, and smoothed backwards (smooth_ptz.h). Cost: about 12 ms a frame of
 // 720p. Memory: about 2 kB a frame.
 #pragma once
 
@@ -35,7 +35,7 @@ struct TrackingOptions {
   double fraction = 0.3;           ///< of the paint that ought to be seen: with less,
   int patience = 8;                ///< for this many frames in a row, the camera is lost
   int inspect_again = 5;           ///< frames between attempts to find it again
-  double tripod_px = 0.4;          ///< px at 1280: what is left of the tripod's own error in every frame,
+  double tripod_px = 0.4;          ///< px at 1280: the remainder of the tripod's own error in every frame,
   double tripod_zoom = 4e-4;       ///< and in its ln f
   std::size_t max_keyframes = 24;  ///< that the tripod is solved on
 };
@@ -60,7 +60,7 @@ class PtzTracker {
   PtzResult finish();
 
   const geometry::Tripod& tripod() const { return tripod_; }
-  /// Where the camera looked in the last frame; nothing if it is lost.
+  /// Where the camera was aimed in the last frame; nothing if it is lost.
   std::optional<Aim> now() const { return aim_; }
 
  private:
@@ -97,7 +97,7 @@ class PtzTracker {
   std::vector<TurnRecord> records_;
   std::vector<Keyframe> keyframes_;
   std::optional<Aim> aim_;
-  geometry::Heading last_;  // where it looked when it was last known
+  geometry::Heading last_;  // where it was aimed when it was last known
   int ambiguous_ = 0, waited_ = 0;
   PtzResult result_;
   std::vector<float> medians_;

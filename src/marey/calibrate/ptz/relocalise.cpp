@@ -55,7 +55,7 @@ struct Candidate {
   double score = 0;
 };
 
-/// How well a heading explains the mask: what is there by its length, what is not there against it.
+/// How well a heading explains the mask: lines that are there by their length, others against it.
 double score_of(const cv::Mat& near, const geometry::Tripod& tripod, const geometry::Heading& heading,
                 std::span<const geometry::PitchLine> lines, std::size_t stride) {
   const auto numbers = tripod.as_numbers();

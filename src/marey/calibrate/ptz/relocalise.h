@@ -1,9 +1,9 @@
-// Where a camera on a known tripod looks, from one image alone: at the beginning, and after a cut.
+// Where a camera on a known tripod is aimed, from one image alone: at the beginning, and after a cut.
 //
 // Bright ridges on green are a mask of what may be paint. Headings all over the pitch are tried, coarse first: of each, the model's
 // lines are laid over the distances to the mask, and what lies near counts, by its length in the image, what lies far counts
 // against it. The best few are refined on the paint itself. A heading counts only where most of the lines that it promises are
-// there, and no other one explains the image nearly as well: who sees another place, or a goal mouth alone, gets nothing. Cost:
+// there, and no other one explains the image nearly as well: an image of another place, or a goal mouth alone, gives none. Cost:
 // some 50 ms. Reference: Thomas 2007 (a search over the possible views starts the tracker).
 #pragma once
 

@@ -13,7 +13,7 @@ Vector<3> step_of(const Rotated& rotated, double log_focal) {
   return {scale * rotated.by.x(), scale * rotated.by.y(), rotated.by.z()};
 }
 
-constexpr int kMaxBridge = 12;                        // frames before a piece's first known one that flow alone tells of
+constexpr int kMaxBridge = 12;                        // frames before a piece's first known one that flow alone gives
 constexpr double kWideAngle = 0.05, kWideZoom = 0.2;  // of a piece's first frame, before its paint: rad, ln f
 
 filter::Estimate<3> estimate_of(const Aim& aim) {
@@ -63,7 +63,7 @@ std::vector<std::optional<Aim>> smooth_ptz(const std::vector<TurnRecord>& record
                                            const SmoothOptions& options) {
   const std::vector<Filtered> forwards = filtered(records, tripod, size, options);
   std::vector<std::optional<Aim>> smooth(records.size());
-  int alone = 0;  // frames in a row that only what came after them tells of
+  int alone = 0;  // frames in a row that only later frames determine
   for (std::size_t k = records.size(); k-- > 0;) {
     smooth[k] = forwards[k].aim;
     if (smooth[k]) alone = 0;

@@ -1,6 +1,6 @@
-// The second pass over a camera's headings: every frame from what was seen before it and after it.
+// The second pass over a camera's headings: every frame from the observations before it and after it.
 //
-// Forwards an extended Kalman filter over what was kept of each frame (flow, paint), backwards the smoother of Rauch, Tung &
+// Forwards an extended Kalman filter over the record of each frame (flow, paint), backwards the smoother of Rauch, Tung &
 // Striebel (1965): in pan, tilt and ln f, where a PTZ camera is smooth, and not in the image. A frame whose image does not
 // continue from the one before begins a new piece.
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace marey::calibrate::ptz {
 
-/// What is kept of a frame.
+/// The record of a frame.
 struct TurnRecord {
   double time_s = 0;
   std::optional<Rotated> rotated;    ///< since the frame before; nothing if the image did not continue

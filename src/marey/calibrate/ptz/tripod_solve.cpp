@@ -142,7 +142,7 @@ void check_clicks(const std::vector<ClickedFrame>& frames) {
         all, frames.size(), frames.size() == 1 ? "frame" : "frames");
 }
 
-/// Whether one frame's clicks fit, with left and right exchanged or turned by half a turn, what the other frames tell.
+/// Whether one frame's clicks fit, with left and right exchanged or turned by half a turn, what the other frames show.
 void check_halves(const std::vector<ClickedFrame>& frames, cv::Size size, const geometry::PitchSize& pitch,
                   const TripodSolveOptions& options, double cost) {
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -1,5 +1,5 @@
 // What of a PTZ camera stays (place, lean, roll, nodal offset, bend), from several of its frames together: clicks, and paint
-// once it is found. One frame alone leaves place and focal length open against each other; frames that look to different sides
+// once it is found. One frame alone leaves place and focal length open against each other; frames that face different sides
 // hold the place. Priors are wide, what main cameras have in common (upright within half a degree, lens nearly straight).
 #pragma once
 

@@ -39,7 +39,7 @@ std::vector<std::size_t> spread_instants(const WandTable& table, std::size_t cam
     for (std::size_t i = 0; i < table.size(); ++i) {
       if (table[i][c] && count[i] >= 2) detected.push_back(i);
     }
-    // One of each stretch of time: that which most cameras see.
+    // One of each segment of time: that which most cameras see.
     const std::size_t segments = std::min(per_camera, detected.size());
     for (std::size_t s = 0; s < segments; ++s) {
       const auto begin = detected.begin() + static_cast<std::ptrdiff_t>(s * detected.size() / segments);

@@ -3,7 +3,7 @@
 //   1. find the wand in each view (wand_marks)
 //   2. compare the clocks (wand_offsets), relate the cameras by a few hundred instants (grow_rig); where lenses are not known, for
 //   several guesses of their focal length
-//   3. look again in every view for what the first step could not tell, now that it is known where the wand must be
+//   3. search again in every view for what the first step could not find, now that it is known where the wand must be
 //   4. adjust everything, time offsets too, outliers put out; on most of the frames first, to be evaluated on the others, then on
 //   all
 //   5. where the lenses as given explain less than refined ones would, free them and do 3 and 4 again
@@ -25,7 +25,7 @@ namespace marey::calibrate::wand {
 
 /// What happens to the lenses.
 enum class LensUse {
-  automatic,  ///< held where they explain what is seen as well as refined ones do, else refined; estimated where not given
+  automatic,  ///< held where they explain the observations as well as refined ones do, else refined; estimated where not given
   fixed,      ///< held; each camera's has to be given
   refined     ///< refined
 };

@@ -15,7 +15,7 @@ void check_wand_input(const WandInput& input, const WandOptions& options);
 /// That every camera saw the wand often enough.
 void check_tracks(const WandInput& input, const std::vector<MarkTrack>& tracks);
 
-/// That the wand's measured length, in order of time, is one length: m, measured by `scale` times what was seen.
+/// That the wand's measured length, in order of time, is one length: m, measured by `scale` times the observations.
 void check_lengths(const std::vector<double>& lengths, const WandShape& wand);
 
 /// That the cameras stand apart, and the wand was moved through a volume.

@@ -34,7 +34,7 @@ TEST(WandChecks, InputThatCannotBecomeARigIsRefused) {
   }
   WandInput sizeless = input_of(scene);
   sizeless.rig.cameras[2].size.reset();
-  EXPECT_TRUE(states(refusal_of(sizeless), "camera \"cam3\": its picture's size is not known"));
+  EXPECT_TRUE(states(refusal_of(sizeless), "camera \"cam3\": its image's size is not known"));
   WandInput lensless = input_of(scene);
   lensless.rig.cameras[1].lens.reset();
   EXPECT_EQ(refusal_of(lensless), "");

@@ -1,4 +1,4 @@
-// How much of a waved wand cameras have seen so far, while it is still waved: whether it is enough, and for whom it is not.
+// How much of a waved wand cameras have seen so far, while it is still waved: whether it is enough, and for which not.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace marey::calibrate::wand {
 
 class WandCoverage {
  public:
-  /// `lenses_known`: whether every camera's lens is given. Those that are not are estimated from what is seen, which takes more of
+  /// `lenses_known`: whether every camera's lens is given. The others are estimated from the observations, which takes more of
   /// it: with less than half of the image the cameras stood several times as far off as after a minute
   /// (bench/sweep/wand_enough.cpp).
   WandCoverage(WandShape wand, std::size_t cameras, bool lenses_known = true)
@@ -46,7 +46,7 @@ class WandCoverage {
   static constexpr int kPartsAcross = 10, kPartsDown = 8;
   /// Share of a camera's image that is wanted.
   static constexpr double required(bool lenses_known) { return lenses_known ? kWellCovered : kLensCovered; }
-  static constexpr double kLensCovered = 0.5;  ///< this much tells its lens too
+  static constexpr double kLensCovered = 0.5;  ///< this much determines its lens too
   static constexpr double kWellCovered = 0.3;  ///< a rig whose least covered camera has this much may be excellent,
   static constexpr double kCovered = 0.2;      ///< and good with this much
   static constexpr std::int64_t kNothingNew = 400, kNothingNewOfLens = 1200, kEnoughShared = 200;  ///< views

@@ -17,14 +17,14 @@ class WandFit {
   /// Holds the lenses that were given, or frees them; those that were not are always estimated.
   void free_lenses(bool given_too);
 
-  /// Looks where the wand must be, in every frame of every camera, and makes the bundle of it.
+  /// Searches where the wand must be, in every frame of every camera, and makes the bundle of it.
   void match_blobs();
 
   /// Adjusts by nine tenths of the instants, with the cameras' time offsets where `find_offsets`, and evaluates the others;
   /// where the wand is long enough known for that. Samples are taken again where an offset is found.
   void adjust_held_out(bool find_offsets, std::optional<HeldOutReport>& report);
 
-  /// px, each axis, by a part of what was seen.
+  /// px, each axis, by a part of the observations.
   struct Noise {
     double held = 0, refined = 0;
   };

@@ -13,7 +13,7 @@ geometry::Lens starting_lens(const RigCamera& camera, double guess);
 /// How far a lens that was guessed may move while the rig grows: its focal length, and a little of its barrel.
 bundle::LensFreedom growing_lens();
 
-/// What is found of a lens that is not known: focal length, principal point and barrel, with what all lenses have in common
+/// The estimate of a lens that is not known: focal length, principal point and barrel, with what all lenses have in common
 /// as knowledge beforehand (square pixels, a principal point near the middle).
 bundle::LensFreedom estimated_lens(cv::Size size);
 

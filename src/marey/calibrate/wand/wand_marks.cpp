@@ -15,10 +15,10 @@ namespace {
 /// Distances of a wand's two ends from the camera differ by no more than this factor where a view is used at first.
 constexpr double kDepthRatio = 1.35;
 constexpr double kMinGapPx = 3;          // of neighbouring markers: nearer, their blobs spoil one another
-constexpr double kSymmetric = 0.03;      // a middle marker this near to the middle, as a share of the length, tells no end
+constexpr double kSymmetric = 0.03;      // a middle marker this near to the middle, as a share of the length, distinguishes no end
 constexpr std::size_t kMaxBlobs = 40;    // of one view in which triples are tried
 constexpr double kStillFraction = 0.25;  // of the frames in which a blob at one place is not a wand
-constexpr std::size_t kFewFrames = 40;   // too few to tell what stands still
+constexpr std::size_t kFewFrames = 40;   // too few to detect what stands still
 constexpr double kCell = 3;              // px: "one place"
 
 using Cell = std::pair<int, int>;

@@ -2,9 +2,9 @@
 //
 // Three markers on a line stay on a line in every view (its lens undone), and the middle one divides it by a ratio that perspective
 // shifts only as far as the wand's ends differ in distance. Every three blobs are tried; a view counts where exactly one triple,
-// one way round, passes. Of a single light, or a wand of two markers, a view counts where it shows exactly this many. Blobs that
+// in one order, passes. Of a single light, or a wand of two markers, a view counts where it shows exactly this many. Blobs that
 // stay in one place through much of the recording are lamps and reflections, and are omitted first. Later, when the cameras are
-// known, `match_marks` finds what this missed: it looks where the wand must be.
+// known, `match_marks` finds what this missed: it searches where the wand must be.
 #pragma once
 
 #include <array>

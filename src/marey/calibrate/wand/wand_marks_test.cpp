@@ -82,7 +82,7 @@ TEST(WandShape, IsReversibleWhereItsMiddleIsInTheMiddle) {
   EXPECT_FALSE((WandShape{{0}}).reversible());
 }
 
-/// The slow twin: of all matches the nearest pair first, then the nearest of the rest, by looking at all of them each time.
+/// The slow twin: of all matches the nearest pair first, then the nearest of the rest, by inspecting all of them each time.
 Marks nearest_first(const BlobFrame& frame, const Marks& expected, double gate) {
   Marks marks;
   std::vector<bool> taken(frame.blobs.size(), false);

@@ -2,7 +2,7 @@
 //
 // Each pixel has a mean and the spread of its noise, and from them a band of levels that belong to the scene; chroma has the same
 // at half size. A frame is compared with the bands, a pixel stands by the vote of its 3 × 3 round, and a connected region counts
-// where parts of it lie far outside the bands (hysteresis). What is then explained by a cast shadow, or by what was seen at the
+// where parts of it lie far outside the bands (hysteresis). What is then explained by a cast shadow, or by the observations at the
 // pixel for long before, is taken out. Means follow background pixels by a recursive average, spreads by sigma-delta steps towards
 // a quantile.
 //
@@ -53,8 +53,8 @@ constexpr int kChromaFloor = 6;  // levels
 constexpr int kGate = 56;        // 3.5 spreads of 1.15 σ: 4 σ
 constexpr int kRotations = 8;    // frames until each row was taught once
 constexpr int kRowsATurn = 16;
-constexpr int kPatchRotations = 4;     // frames between two searches for parts in another light, while there are none
-constexpr double kPatchMarks = 0.005;  // of the image: with fewer pixels outside the bands there are none
+constexpr int kPatchRotations = 4;     // frames between two searches for parts in another light, while none exist
+constexpr double kPatchMarks = 0.005;  // of the image: with fewer pixels outside the bands none exist
 constexpr double kRestart_s = 2;
 constexpr double kTooMuch = 0.6;  // of the image
 

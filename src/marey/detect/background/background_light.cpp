@@ -16,7 +16,7 @@ namespace marey::detect::background {
 namespace {
 
 constexpr double kSamples = 2000;
-constexpr int kDarkest = 24;     // levels over black: darker ones tell little of a ratio
+constexpr int kDarkest = 24;     // levels over black: darker ones give little of a ratio
 constexpr int kBrightest = 235;  // brighter ones may be clipped
 constexpr float kNoticeable = 0.03F;
 constexpr float kMaxMagnitude = 2.5F;  // beyond, and below its inverse, something covers the camera or its scene is another

@@ -18,7 +18,7 @@ struct LightChange {
 /// Compares frames with the scene on a sparse grid.
 class LightMeter {
  public:
-  /// The gain of the light of `luma` over `scene`; nothing if there is none to speak of. Levels count from `black`.
+  /// The gain of the light of `luma` over `scene`; nothing if it is negligible. Levels count from `black`.
   std::optional<LightChange> measure(const cv::Mat& luma, const ScenePlane& scene, int black);
 
  private:

@@ -1,6 +1,6 @@
 // Over the cells of a grid the gain that best maps the scene to the frame is found by least squares from 8 × 8 pixels each. A cell
-// tells something only where it has texture, and the frame shows that texture: then it is the scene, however lit. Cells that
-// cannot tell (smooth ones, those that people cover) go by their neighbours that can. A person who happens to look like the scene
+// shows something only where it has texture, and the frame shows that texture: then it is the scene, however lit. Cells that
+// cannot decide (smooth ones, those that people cover) go by their neighbours that can. A person who happens to look like the scene
 // covers a few cells; a cloud's shadow or a lamp's cone covers many, or grows out of where it was. Cost: 192 pixels read in each of
 // some 300 cells.
 #include "marey/detect/background/background_patches.h"
@@ -16,19 +16,19 @@ namespace {
 constexpr int kCellsAcross = 20;
 constexpr int kMinCellCount = 12;         // px
 constexpr int kSamplesAcross = 8;         // of a cell
-constexpr double kMinTexture = 20;        // squared levels: the variance of the scene's part in a cell that tells something
+constexpr double kMinTexture = 20;        // squared levels: the variance of the scene's part in a cell that decides
 constexpr double kObservedThrough = 0.6;  // squared correlation
 constexpr double kUnevenLight = 0.1;      // of the level: how far a cell's pixels may lie off their common gain
 constexpr double kPatchNoise = 12;        // squared levels
 constexpr float kOtherLight = 0.04F;
 constexpr float kMaxLight = 2.0F;
-constexpr double kMinSteps = 10;     // squared levels: of the scene's steps between neighbours in a cell that tells something
+constexpr double kMinSteps = 10;     // squared levels: of the scene's steps between neighbours in a cell that decides
 constexpr double kSameSteps = 0.4;   // squared correlation of the steps
 constexpr double kStepsGain = 0.3;   // how far the steps' gain may be from the levels'
 constexpr double kManyCells = 0.04;  // of the grid: as many in another light are not people
 constexpr int kMinPart = 4;          // cells side by side
-constexpr int kLately = 30;          // looks
-constexpr int kAgreeing = 2;         // neighbours that a cell which cannot tell goes by, at least
+constexpr int kLately = 30;          // inspections
+constexpr int kAgreeing = 2;         // min. neighbours that a cell which cannot decide goes by
 
 }  // namespace
 

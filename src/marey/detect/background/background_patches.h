@@ -34,7 +34,7 @@ class LightPatches {
   bool drop_few();
   void sample(const cv::Mat& luma, const ScenePlane& scene, int black);
 
-  cv::Mat lately_;  ///< CV_8UC1: for how many looks to come a cell counts as one whose light has changed
+  cv::Mat lately_;  ///< CV_8UC1: for how many inspections to come a cell counts as one whose light has changed
   cv::Size grid_;
   std::vector<Cell> cells_;
   std::vector<Answer> answers_;

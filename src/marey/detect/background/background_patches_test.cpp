@@ -21,7 +21,7 @@ cv::Mat slabs(std::uint32_t seed) {
   return fine;
 }
 
-/// `picture` with `gain` times the light over black within `where`.
+/// `image` with `gain` times the light over black within `where`.
 cv::Mat lit(cv::Mat image, const cv::Rect& where, double gain) {
   image = image.clone();
   cv::Mat part = image(where);

@@ -32,7 +32,7 @@ class ScenePlane {
   /// Takes levels and spreads (1/8 levels), both CV_8UC1 of this plane's size, for the scene's where `where` is not 0.
   void replace(const cv::Mat& levels, const cv::Mat& spreads, const cv::Mat& where);
 
-  /// Learns rows [first, last) of `picture` at the rate 2^-shift; `frozen(row)` gives the row's pixels to leave alone.
+  /// Learns rows [first, last) of `image` at the rate 2^-shift; `frozen(row)` gives the row's pixels to leave alone.
   template <typename Frozen>
   void learn(const cv::Mat& image, int first, int last, int shift, Frozen&& frozen) {
     for (int row = first; row < last; ++row) {

@@ -145,7 +145,7 @@ class Correction {
 
   cv::Size size() const { return samples_.front().luma.size(); }
 
-  /// By what was seen at each pixel of a row alone.
+  /// By the observations at each pixel of a row alone.
   void inspect_at_row(int y) {
     count_agreeing(y);
     for (int x = 0; x < size().width; ++x) {

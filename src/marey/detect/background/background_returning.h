@@ -17,7 +17,7 @@ struct ScenePlanes {
 };
 
 /// Corrects a scene that was begun with the most frequent levels of `samples`, which are in the order of time and of one size:
-/// where none of the levels was there most of the time, the scene is what came back after another had been there once. Who stands
+/// where none of the levels was there most of the time, the scene is what came back after a temporary other. A person who stands
 /// at a place for a third of the time, and longer than it was seen empty, is not the scene.
 void trust_what_returns(std::span<const FramePlanes> samples, const ScenePlanes& scene);
 

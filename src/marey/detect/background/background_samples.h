@@ -15,7 +15,7 @@ class SceneSamples {
  public:
   void begin();
 
-  /// Keeps this frame's planes where it is time. True where they tell more than before: of the first ones four and eight do, then
+  /// Keeps this frame's planes where it is time. True if they show more than before: of the first ones four and eight do, then
   /// all sixteen. `thin` follows.
   bool keep(const FramePlanes& planes, double age_s);
   /// Where the samples are full, leaves every second one out; after the last time, all.

@@ -32,7 +32,7 @@ struct Conditions {
   double shake_x = 0, shake_y = 0;  ///< px, how far the camera has
 };
 
-/// Videos a textured ground, or a room with shelves: what is there is known to the pixel.
+/// Videos a textured ground, or a room with shelves: the content is known to the pixel.
 class SmallScene {
  public:
   explicit SmallScene(std::uint32_t seed, double noise = 2, bool shelves = false)

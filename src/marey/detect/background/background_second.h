@@ -10,7 +10,7 @@
 
 namespace marey::detect::background {
 
-/// What is seen in front of the scene and stays: each pixel's second mean, and for how long it was seen. What has stayed for long
+/// Observations in front of the scene that stay: each pixel's second mean, and for how long it was seen. What has stayed for long
 /// enough becomes the scene, and what was the scene is remembered in its place. Counts in ticks, a 200th of the time after which
 /// what stands still is absorbed.
 class SecondScene {
@@ -26,10 +26,10 @@ class SecondScene {
   /// Whether a pixel of this level was seen there for this long before that it is not news.
   bool knows(int row, int column, std::uint8_t level) const;
 
-  /// Where a row shows the scene, what was seen in front of it fades, and is noted (in the level's last bit) to be away.
+  /// Where a row shows the scene, the foreground seen before it fades, and is noted (in the level's last bit) to be away.
   void forget(int row, int ticks, const ForegroundRegions& regions);
 
-  /// Counts, for the foreground pixels of a row of a model of this age, how long they have looked the same; those that `held` marks
+  /// Counts, for the foreground pixels of a row of a model of this age, how long they have been the same; those that `held` marks
   /// are left alone, but for ghosts. `taken` gets the columns where the frame has become scene, whose means the caller then
   /// changes.
   void count(int row, const std::uint8_t* pixels, const std::uint8_t* held, const ForegroundRegions& regions, int ticks,

@@ -26,7 +26,7 @@ struct FramePlanes {
   cv::Mat luma, cb, cr;
 };
 
-/// Tells cast shadows from things, in cells of 4 × 4 pixels.
+/// Distinguishes cast shadows from objects, in cells of 4 × 4 pixels.
 class ShadowFinder {
  public:
   void begin(cv::Size size);
@@ -49,7 +49,7 @@ class ShadowFinder {
   enum class Label : std::uint8_t { none, unsure, thing, shadow };
   struct Cell {
     int count = 0, darker = 0;
-    int ratio = 0;  ///< the light left, in 1/1024, where the cell is shadow by its own looks
+    int ratio = 0;  ///< the light left, in 1/1024, where the cell is shadow by its own appearance
     int frame = 0, scene = 0, frame2 = 0, scene2 = 0, both = 0;  ///< sums over pixels, of levels over black
   };
 

@@ -10,7 +10,7 @@
 
 namespace marey::detect::background {
 
-/// By how many whole pixels a shaking camera shows the scene beside where it was learned. What is left, half a pixel, the
+/// By how many whole pixels a shaking camera shows the scene beside where it was learned. The remainder, half a pixel, the
 /// scene's bands allow for.
 class SwayMeter {
  public:

@@ -19,7 +19,7 @@ std::optional<cv::Mat> uncovered(const Image& scene, const Image& now, const Box
 /// Whether two such parts show the same within `mask`, but for a change of light.
 bool same_within(const Image& a, const Image& b, const cv::Mat& mask);
 
-/// `picture` with what `patch` shows where `mask` (CV_8UC1) is not 0, in the light of the image; both lie at `corner`, which is
+/// `image` with what `patch` shows where `mask` (CV_8UC1) is not 0, in the light of the image; both lie at `corner`, which is
 /// even.
 Image patched(const Image& image, const Image& patch, const cv::Mat& mask, cv::Point corner);
 

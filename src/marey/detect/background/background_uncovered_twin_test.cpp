@@ -1,4 +1,4 @@
-// The place that a person has left, against the slow way: every plane in floating point, medians by sorting.
+// The place that a person has left, against the slow method: every plane in floating point, medians by sorting.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

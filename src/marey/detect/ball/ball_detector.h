@@ -32,7 +32,7 @@ struct BallCandidate {
   Vector<2> centre = Vector<2>::Zero();  ///< px: of its light
   double sigma = 0.5;                    ///< px, of each coordinate
   double radius = 0;                     ///< px: of a white disc of as much light
-  double score = 0;                      ///< logarithm of how much likelier a ball looks so than anything else that is found
+  double score = 0;                      ///< logarithm of how much likelier a ball appears so than anything else that is found
   double local_clutter = 0;              ///< 0 … 1: of what is round it, up to some radii away, the share that is not the scene
 };
 

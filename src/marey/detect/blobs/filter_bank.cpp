@@ -12,7 +12,7 @@ namespace {
 constexpr double kHatRatio = 1.6;                        // of the two Gaussians of which the Mexican hat is the difference
 constexpr float kBlack = 16, kWhite = 235, kFull = 255;  // of luma in video
 
-/// Blurs a plane and writes what is found at the grid's points as channels `blurred` and `hat`. `scale`: the plane's px in one of
+/// Blurs a plane and writes the responses at the grid's points as channels `blurred` and `hat`. `scale`: the plane's px in one of
 /// the image.
 void filter_plane(const cv::Mat& plane, double scale, int step, int channel, float offset, float gain, cv::Mat& responses) {
   const double sigma = std::max(0.5 * step * scale, 0.4);

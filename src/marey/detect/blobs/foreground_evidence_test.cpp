@@ -9,7 +9,7 @@
 namespace marey::detect::blobs {
 namespace {
 
-/// A lawn with noise; who is on it wears white, grey or blue.
+/// A lawn with noise; a person on it wears white, grey or blue.
 Frame lawn(std::uint64_t seed, const std::vector<cv::Rect>& people, double brightness = 1) {
   filter::RandomStream random(seed);
   cv::Mat bgr(160, 240, CV_8UC3, cv::Scalar(50 * brightness, 115 * brightness, 80 * brightness));

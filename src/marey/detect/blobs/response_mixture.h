@@ -36,11 +36,11 @@ float log_density(std::span<const ResponseKind> mixture, const Response& respons
 /// there is.
 std::vector<ResponseKind> learn_foreground(std::span<const Response> responses, int kinds, std::uint64_t seed);
 
-/// What is seen at one point of the grid where no person stands.
+/// The responses at one point of the grid where no person stands.
 class PointBackground {
  public:
   PointBackground() = default;
-  /// From what was seen there in some frames, in any order. `noise`: the standard deviation of each response that a point of the
+  /// From the responses there in some frames, in any order. `noise`: the standard deviation of each response that a point of the
   /// image has at least.
   PointBackground(std::span<const Response> detected, const Response& noise);
 

@@ -3,7 +3,7 @@
 // four states: legs as the network has them or mirrored, arms likewise.
 //
 // A state costs a prior for each mirrored group (the network is right more often than not), and something where hips and shoulders
-// then face opposite ways. A step between states costs how far the points of a group moved against the trunk, over what their
+// then face opposite directions. A step between states costs how far the points of a group moved against the trunk, over what their
 // covariances and a person's speed allow, capped. Where limbs meet in the image a step costs nothing, so an error before it lasts
 // no longer than the prior lets it. Cost: 16 steps an image and person.
 #pragma once
@@ -20,7 +20,7 @@ namespace marey::detect::keypoints {
 
 struct SwapOptions {
   double prior = 1.5;     ///< nats that a mirrored group costs in each image
-  double facing = 1.5;    ///< nats where hips and shoulders face opposite ways
+  double facing = 1.5;    ///< nats if hips and shoulders face opposite directions
   double speed = 0.6;     ///< of a limb's point against the trunk, standard deviation, body heights a second
   double maximum = 4;     ///< nats that one point's step costs at most
   double together = 2.5;  ///< independent points that a group is worth: they move together

@@ -22,7 +22,7 @@ struct PersonRegion {
   Vector<2> in_image(const Vector<2>& in_crop) const;
 };
 
-/// Round a person who is taken to stand upright, or as far as the box tells.
+/// Round a person who is taken to stand upright, or as far as the box shows.
 PersonRegion region_of(const Box& box);
 
 /// Round a person whose hips' middle is at `hips`, with `rim` at the circle that holds the whole body, in the direction of the

@@ -22,7 +22,7 @@ class MarkerAutoMask {
   /// Takes in one frame's runs. Returns the mask with the first frame after the time is over, once.
   std::optional<MarkerMask> add(Timestamp time, cv::Size size, std::span<const MarkerRun> runs);
 
-  /// Ends at once; the mask of what was seen so far.
+  /// Ends at once; the mask of the observations so far.
   MarkerMask finish();
 
  private:

@@ -41,7 +41,7 @@ class MarkerClutter {
   const cv::Mat& plane(const cv::Mat& luma, double widest);
   /// Its thresholds: those of the image, but for the cluttered tiles.
   const MarkerThresholds& thresholds(const MarkerLevels& image);
-  /// Looks at all of the last plane once more: the light has changed.
+  /// Inspects all of the last plane once more: the light has changed.
   void relearn() { heights_levels_.learn(heights_, true); }
   /// Of the plane's heights over what is wide.
   MarkerLevels& levels() { return heights_levels_; }

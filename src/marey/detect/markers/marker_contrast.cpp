@@ -20,7 +20,7 @@ constexpr int kMinClutter = 10;     // blobs from which a tail is reported
 constexpr double kFalseAImage = 0.05;
 constexpr double kMaxFactorOfTypical = 0.5;
 
-/// Places round a blob's box, evenly spread over a frame this many px outside it: `look(x, y, inwards_x, inwards_y)` for those
+/// Places round a blob's box, evenly spread over a frame this many px outside it: `inspect(x, y, inwards_x, inwards_y)` for those
 /// within the image.
 template <typename Look>
 void walk_round(const cv::Rect& box, int margin, cv::Size size, Look&& inspect) {

@@ -41,7 +41,7 @@ class MarkerDetector final : public Detector {
   /// Learns the automatic mask at once where the samples lie within its time.
   void prime(std::span<const Frame> samples) override;
 
-  /// Looks by other options from the next frame on. What was learned of the image is learned again; the counts continue.
+  /// Searches by other options from the next frame on. The model of the image is learned again; the counts continue.
   void change(const MarkerOptions& options);
   /// Once the automatic mask is learned: the boxes of its parts, px, from top to bottom.
   std::optional<std::vector<cv::Rect>> learned_parts() const;

@@ -136,7 +136,7 @@ TEST(MarkerDetector, TouchingMarkersAreSplit) {
         SCOPED_TRACE(testing::Message() << "radius " << radius << ", " << apart << " radii apart, turned " << turn);
         const double angle = 0.3 + turn * 0.8;
         const double dx = apart * radius / 2 * std::cos(angle), dy = apart * radius / 2 * std::sin(angle);
-        // The blur fills the waist of two small ones that overlap far: only who knows of both can tell them from one that moves.
+        // The blur fills the waist of two small ones that overlap far: only prior tracks distinguish them from one that moves.
         std::vector<Expected> expected;
         if (radius < 3 && apart < 1.6) {
           expected = {{Box::from_centre({30.2 - dx, 29.7 - dy}, 4, 4)}, {Box::from_centre({30.2 + dx, 29.7 + dy}, 4, 4)}};
@@ -340,7 +340,7 @@ TEST(MarkerDetector, DarkMarkersOnAWhitePlateBeforeBlackAreFoundByAFixedThreshol
   }
 }
 
-/// Single lines of pixels along the borders: the address sanitizer sees what is read beyond them.
+/// Single lines of pixels along the borders: the address sanitizer sees reads beyond them.
 TEST(MarkerDetector, ReadsNothingOutsideThePicture) {
   for (const cv::Rect& line : {cv::Rect(30, 99, 4, 1), cv::Rect(60, 0, 4, 1), cv::Rect(0, 30, 1, 4), cv::Rect(99, 60, 1, 4)}) {
     cv::Mat image = scene({100, 100}, {}, 2, 3);

@@ -39,7 +39,7 @@ DiscsNormal linearised(const DiscsModel& model, const MarkerWindow& window, cons
                        const MarkerKernels& kernels = marker_kernels());
 
 /// Fits a model to the pixels `value` at the window's places by Levenberg-Marquardt. `stiffness` pulls the blur to where it began:
-/// two close discs barely tell it.
+/// two close discs barely determine it.
 DiscsSolution fit_discs(DiscsModel model, const MarkerWindow& window, const std::vector<float>& value, double stiffness);
 
 }  // namespace marey::detect::markers

@@ -25,7 +25,7 @@ struct MarkerShape {
   bool fitted = false;                           ///< false: the disc did not fit, and the centre is the weighted centroid
 };
 
-/// What is known round a blob before the fit.
+/// Prior knowledge around a blob before the fit.
 struct MarkerSurroundings {
   double background = 0;  ///< grey levels
   double noise = 1;       ///< grey levels

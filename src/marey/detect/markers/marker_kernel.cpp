@@ -331,7 +331,7 @@ struct Discs {
   }
 };
 
-/// Eight pixels that lie beyond every edge tell of contrast and background alone.
+/// Eight pixels that lie beyond every edge inform about contrast and background alone.
 template <int discs, bool swept>
 void linearise_many(const MarkerSamples& samples, const DiscsAt& at, DiscsSums& result) {
   const Discs<discs, swept> model{.p = at.parameters, .adds = at.adds, .maximum = at.maximum};

@@ -27,14 +27,14 @@ class MarkerLevels {
   MarkerLevels(bool dark, std::optional<double> fixed_threshold, bool smoothed = true)
       : dark_(dark), fixed_(fixed_threshold), smoothed_(smoothed) {}
 
-  /// Looks at a share of the tiles; at all of them the first time, after the image's size or depth changed, or where `afresh`.
+  /// Inspects a share of the tiles; all of them the first time, after the image's size or depth changed, or where `afresh`.
   void learn(const cv::Mat& image, bool afresh = false);
 
   /// What markers of a frame are like; nothing if there were none.
   void learn_contrast(const std::optional<TypicalMarker>& typical);
   /// The same at once, for all tiles.
   void set_contrast(const TypicalMarker& typical);
-  /// What is known of their contrast, grey levels; 0 where nothing is.
+  /// The estimate of their contrast, grey levels; 0 where nothing is.
   double contrast() const { return typical_.contrast; }
   /// How far a marker stands out from a ground of this grey level, at least: a share of what others do, but no more than would make
   /// it as bright as a faint one of them.

@@ -25,10 +25,10 @@ class MarkerLikeness {
     std::optional<double> blur;  ///< px
     double announce = 0;         ///< how much it counts
     double contrast = 0;         ///< grey levels
-    bool round = false;          ///< whether it may bear witness of a large kind
+    bool round = false;          ///< whether it may support a large kind
   };
 
-  /// Takes in what is seen in a frame.
+  /// Takes in the observations of a frame.
   void learn(std::span<const Witness> detected);
 
   std::optional<double> blur() const { return blur_; }  ///< px

@@ -18,7 +18,7 @@ namespace marey::detect::markers {
 
 /// Finds what stands out in an image: blobs, and by how much. The automatic threshold is more than one inspection at the first
 /// image, and at one in which something is new: what markers stand out by, and where the ground is not plain, is known only when
-/// blobs were seen. Later images take over what was learned.
+/// blobs were seen. Later images take over the learned values.
 class MarkerSearch {
  public:
   explicit MarkerSearch(const MarkerOptions& options);

@@ -187,14 +187,14 @@ DiscsSolution fit_several(const SplitTask& task, int count) {
     discs.p.segment<3>(kFirstDisc + 3 * i) << locations[static_cast<std::size_t>(i)].x(),
         locations[static_cast<std::size_t>(i)].y(), radius;
   DiscsSolution solution = fit_discs(discs, task.window, task.value, task.stiffness);
-  if (!task.overlap || count != 2) return solution;  // more discs that add up could tell any streak
+  if (!task.overlap || count != 2) return solution;  // more discs that add up could explain any streak
   discs.adds = true;
   discs.p[kDiscsContrast] = *task.overlap;
   DiscsSolution sum = fit_discs(discs, task.window, task.whole, task.stiffness);
   return sum.normal.squares < std::min(task.floor, solution.normal.squares) ? std::move(sum) : std::move(solution);
 }
 
-/// Two discs as far from each other and on such a way as begins a fit.
+/// Two discs as far from each other and on such a trajectory as begins a fit.
 DiscsModel moving_pair(const SplitTask& task, const Vector<2>& apart, const Vector<2>& path, double radius) {
   DiscsModel pair = several_discs(2, task.window, task.around, task.blur);
   pair.p.conservativeResize(kFirstDisc + 8);

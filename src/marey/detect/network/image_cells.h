@@ -26,7 +26,7 @@ ImageCells cells_of(const Image& image);
 bool is_unchanged(const ImageCells& before, const ImageCells& now, const Box& box);
 
 /// The parts, px, in which cells differ and lie in none of `explained`: one box for each set of cells that touch. The whole image
-/// where there is none before.
+/// if there is no previous one.
 std::vector<Box> changed_parts(const ImageCells& before, const ImageCells& now, std::span<const Box> explained);
 
 }  // namespace marey::detect::network

@@ -18,7 +18,7 @@ struct NetworkModel {
   std::string path;              ///< the TOML file, for messages
   std::string network;           ///< the ONNX file
   cv::Size input;                ///< px
-  std::optional<Layout> layout;  ///< else told by the outputs' shapes
+  std::optional<Layout> layout;  ///< else given by the outputs' shapes
   std::optional<Resize> resize;
   std::optional<bool> rgb;      ///< else blue first
   std::optional<double> scale;  ///< what reaches the network is (value · scale − mean) / deviation, values 0 to 255

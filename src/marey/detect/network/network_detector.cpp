@@ -170,7 +170,7 @@ bool NetworkDetector::stands(const Box& box) const {
                      [&](const Standing& one) { return geometry::iou(one.found.box, box) > kThere; });
 }
 
-/// Where the network may tell something new, one box for each person it may be, px.
+/// Where the network may find something new, one box for each person it may be, px.
 std::vector<Box> NetworkDetector::requested(const ImageCells& cells, std::span<const Expected> expected,
                                             std::span<const Detection> moving, cv::Size image) const {
   const Box whole{0, 0, static_cast<double>(image.width), static_cast<double>(image.height)};
@@ -204,7 +204,7 @@ std::vector<Box> NetworkDetector::requested(const ImageCells& cells, std::span<c
   return boxes;
 }
 
-/// Whom the network sees, or saw where nothing has changed since.
+/// The people that the network sees, or saw where nothing has changed since.
 std::vector<Detection> NetworkDetector::search(const Frame& frame, const ImageCells& cells, std::span<const Expected> expected,
                                                std::span<const Detection> moving) {
   const cv::Size image = frame.image.size();
@@ -238,7 +238,7 @@ std::vector<Detection> NetworkDetector::search(const Frame& frame, const ImageCe
   return standing();
 }
 
-/// Those whom the background model sees, corrected by those whom the network sees.
+/// The people that the background model sees, corrected by those that the network sees.
 std::vector<Detection> NetworkDetector::joined(const std::vector<Detection>& moving, const std::vector<Detection>& detected) const {
   std::vector<Detection> result;
   std::vector<char> used(detected.size(), 0);
@@ -249,7 +249,7 @@ std::vector<Detection> NetworkDetector::joined(const std::vector<Detection>& mov
       if (geometry::iou(detected[i].box, one.box) > kObservedByBoth) same.push_back(i);
       if (fraction_in(detected[i].box, one.box) > kInRegion) inside.push_back(i);
     }
-    if (one.group && inside.size() > 1) {  // people who share one region: those whom the network distinguishes
+    if (one.group && inside.size() > 1) {  // people who share one region: those that the network distinguishes
       for (const std::size_t i : inside) result.push_back(detected[i]), used[i] = 1;
       continue;
     }

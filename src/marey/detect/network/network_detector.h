@@ -11,11 +11,11 @@
 
 namespace marey::detect::network {
 
-/// People found by a network in tiles of each image, alone or beside a background model. Beside it a person whom both see is
-/// as the background model measured it, people who share one region are those whom the network sees in it, and who stands since
-/// the first frame, whom only the network sees, is added. Boxes end at the tip of the foot, as silhouettes do. The network runs
-/// where it may tell something new: all over the image now and then; in between where people share a region, where a person
-/// appears, or is expected and not found. Who stands there with the same pixels as when the network found them is found again
+/// People found by a network in tiles of each image, alone or beside a background model. Beside it a person that both see is
+/// as the background model measured it, people who share one region are those that the network sees in it, and one who stands since
+/// the first frame, that only the network sees, is added. Boxes end at the tip of the foot, as silhouettes do. The network runs
+/// where it may find something new: all over the image now and then; in between where people share a region, where a person
+/// appears, or is expected and not found. One who stands with the same pixels as when the network found them is found again
 /// without it.
 class NetworkDetector final : public Detector {
  public:
@@ -31,11 +31,11 @@ class NetworkDetector final : public Detector {
   /// Parts of images that the network was run on so far.
   std::int64_t tiles_searched() const { return tiles_; }
 
-  /// What the network alone sees in the image, looking everywhere. Learns nothing but the size of people.
+  /// What the network alone sees in the image, searching everywhere. Learns nothing but the size of people.
   std::vector<Detection> inspect(const Frame& frame);
 
  private:
-  /// Whom the network found, and the image in which it did.
+  /// The people that the network found, and the image in which it did.
   struct Standing {
     Detection found;
     ImageCells cells;

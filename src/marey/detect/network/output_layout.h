@@ -1,4 +1,4 @@
-// What a detection network's outputs mean, told by their shapes.
+// What a detection network's outputs mean, inferred from their shapes.
 //
 // Published detectors end in one of nine layouts (N candidates, C classes):
 //   ssd_raw    N×4 (dy, dx, ln dh, ln dw against anchors) and N×C logits: SSD-MobileNet before its post-processing

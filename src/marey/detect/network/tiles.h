@@ -1,5 +1,5 @@
-// Where a network looks: square parts of the image so large that people fill the share of them that networks find best,
-// overlapping by more than a person, so that every person lies whole in some part; and one list of people out of what is found in
+// Where a network searches: square parts of the image so large that people fill the share of them that networks find best,
+// overlapping by more than a person, so that every person lies whole in some part; and one list of people out of the detections in
 // all of them.
 #pragma once
 
@@ -27,7 +27,7 @@ struct TileOptions {
 using HeightAt = std::function<std::optional<double>(double, double)>;
 
 /// The tiles of an image, all square, of up to the image's longer side: they may reach beyond its right and lower edge. Without
-/// `height_at`, tiles of several sizes: for people of `usual` px, and larger ones up to the image's height.
+/// `height_at`, tiles of several sizes: for people of `typical` px, and larger ones up to the image's height.
 std::vector<cv::Rect> tiles_over(cv::Size image, const HeightAt& height_at, double typical, const TileOptions& options = {});
 
 /// Few tiles in which every person of `people` (px of the image) lies whole, or as far as the image allows; people of like size
@@ -43,11 +43,11 @@ struct TileFinds {
 struct JoinOptions {
   double same = 0.5;      ///< intersection over union from which on two finds are one person
   double within = 0.75;   ///< of the smaller one's area, that lies in the other: likewise
-  double border = 0.015;  ///< of the tile's side: who comes so near an inner edge is cut off by it
+  double border = 0.015;  ///< of the tile's side: a person so near an inner edge is cut off by it
   double spanned = 0.75;  ///< of its area that others' boxes cover together: it spans them
 };
 
-/// One find a person, of all tiles the surest that is shaped like one; a box that spans several people is not one of them; who is
+/// One find a person, of all tiles the surest that is shaped like one; a box that spans several people is not among them; one
 /// cut off by an inner edge is left to the tile that holds it whole. The surest first.
 std::vector<Candidate> join_finds(std::span<const TileFinds> tiles, cv::Size image, const JoinOptions& options = {});
 

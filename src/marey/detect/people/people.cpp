@@ -236,7 +236,7 @@ std::vector<PeopleDetector::Cluster> PeopleDetector::clusters_of(std::vector<Reg
 }
 
 /// How large people are is learned from regions that are joined by their own size, never by the one that was learned before, which
-/// would only find itself confirmed: who is taken for a heap of small people must be seen whole.
+/// would only find itself confirmed: a person who is taken for a heap of small people must be seen whole.
 void PeopleDetector::learn(const std::vector<Region>& regions, std::span<const Expected> expected, cv::Size image) {
   if (options_.sizes || std::ssize(regions) >= kManyRegions) return;  // there is nothing to learn, or all is noise
   assign::DisjointSets pieces = pieces_by_their_own_size(regions);
@@ -274,7 +274,7 @@ bool PeopleDetector::appearance_whole(const Cluster& cluster, cv::Size image, do
          box.width > kMinWidth * size->width && box.width < widest * size->width && cluster.area > kMinFilled * box.area();
 }
 
-/// While no size is known: of a person whom the image's border cuts off, and who is expected there, what is not seen any more is
+/// While no size is known: of a person that the image's border cuts off, and who is expected there, what is not seen any more is
 /// where it was; else who walks out of the image would leap as his parts do.
 Box PeopleDetector::completed(const Cluster& cluster, std::span<const Expected> expected, cv::Size image) {
   Box box = cluster.body;
@@ -293,7 +293,7 @@ Box PeopleDetector::completed(const Cluster& cluster, std::span<const Expected> 
   return box;
 }
 
-/// A silhouette runs on the halo of sharpening and on the shadow under the shoes; where the background model tells what is behind
+/// A silhouette runs on the halo of sharpening and on the shadow under the shoes; where the background model shows what is behind
 /// it, its ends are put where the body ends.
 Box PeopleDetector::without_halo(const Box& box, std::span<const PixelRun> runs) {
   if (image_.luma().depth() != CV_8U) return box;

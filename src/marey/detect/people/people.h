@@ -38,12 +38,12 @@ struct PeopleDetectorOptions {
 /// at the image's border.
 class PeopleDetector final : public Detector {
  public:
-  /// What was seen and not reported, or reported with doubt, since the beginning.
+  /// Observations that were not reported, or are uncertain, since the beginning.
   struct Counts {
     std::int64_t noise = 0;      ///< regions too small to be a part of a person
     std::int64_t misfits = 0;    ///< regions that no person-sized body explains: cars, swaying trees, lights
     std::int64_t shared = 0;     ///< people found in a region with others
-    std::int64_t completed = 0;  ///< people of whom a part was seen
+    std::int64_t completed = 0;  ///< people with one part seen
   };
 
   explicit PeopleDetector(std::unique_ptr<background::Background> background, const PeopleOptions& options = {});

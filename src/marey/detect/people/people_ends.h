@@ -23,7 +23,7 @@ struct BodyEnds {
   std::optional<double> bottom;  ///< as of Box::bottom()
 };
 
-/// The rows that must be seen to tell where the body in `box` ends, clipped to an image of this size, its corner on even pixels.
+/// The rows that must be seen to find where the body in `box` ends, clipped to an image of this size, its corner on even pixels.
 cv::Rect part_for_ends(const Box& box, cv::Size image);
 
 /// Where the body ends whose silhouette is `runs` (in order) within `box`: where its contrast with the empty scene falls below half

@@ -127,7 +127,7 @@ class Fit {
   void position_all(std::span<const Box> known) {
     std::vector<int> waiting(known.size());
     std::iota(waiting.begin(), waiting.end(), 0);
-    std::vector<std::optional<Location>> nearest(known.size());  // what was found near each, while no person is placed about there
+    std::vector<std::optional<Location>> nearest(known.size());  // the location near each, while no person is placed about there
     const auto place_one = [&](const Location& one, int identity) {
       location(one, identity);
       for (const int other : waiting) {
@@ -179,7 +179,7 @@ class Fit {
     bool stale = true;  ///< a person was placed about there since
   };
 
-  /// From the bottom up: of places equally good, the lowest, whose head is the top of what is seen.
+  /// From the bottom up: of places equally good, the lowest, whose head is the top of the silhouette.
   void list_candidates() {
     const double step = kCoarse * grid_.cell();
     for (double foot_y = grid_.bottom(); foot_y > grid_.top(); foot_y -= step) {

@@ -28,7 +28,7 @@ struct FitOptions {
   int cells_tall = 32;               ///< resolution: a person is this many cells tall
 };
 
-/// What is known of the scene where people are searched for.
+/// Prior knowledge of the scene where people are searched for.
 struct FitScene {
   cv::Size image;                                                    ///< px
   std::function<std::optional<PersonSize>(double, double)> size_at;  ///< of a person with feet at (x, y); nothing if none can be

@@ -10,7 +10,7 @@
 namespace marey::detect::people {
 
 /// Places of one camera's image that hide people: a pole, a sign, a parked car. People pass there, yet are never seen there.
-/// Learned from the boxes of people found, of whom other parts were seen.
+/// Learned from the boxes of people found, other parts of which were seen.
 class StaticOccluders {
  public:
   /// A person's whole body lies in `person`; `mask` (CV_8UC1) is where it was seen.

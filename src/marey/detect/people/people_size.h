@@ -19,14 +19,14 @@ struct PersonSize {
   Box box_at(double x, double y) const { return {x - (width - 1) / 2, y + 0.5 - height, width, height}; }
 };
 
-/// The size of people at each place of one camera's image, learned from what was seen.
+/// The size of people at each place of one camera's image, learned from observations.
 class PersonSizeModel {
  public:
   /// Takes in a region that may be one whole person, well apart from others and off the image's border. What is not shaped
   /// like a person at all is omitted. `image` is the size of the image, the same in every call.
   void observe_frame(const Box& region, cv::Size image);
 
-  /// Takes in a region that the image's upper or lower border cuts off: who is seen there is at least as tall.
+  /// Takes in a region that the image's upper or lower border cuts off: a person seen there is at least as tall.
   void observe_cut(const Box& region, cv::Size image);
 
   /// Learns from all that is remembered. Cheap enough for every few hundred regions, not for every frame.

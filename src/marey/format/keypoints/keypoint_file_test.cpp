@@ -152,7 +152,7 @@ TEST_F(KeypointFile, RefusesWhatIsMalformedInOneSentence) {
   EXPECT_NE(error_of(write("count.json", R"([{"image_id":0,"keypoints":)" + triples(19) + "}]")).find("19 points"),
             std::string::npos);
   EXPECT_NE(error_of(write("set.json", good), "body_25").find("body_25 has 25"), std::string::npos);
-  EXPECT_NE(error_of(write("far.json", R"([{"image_id":0,"keypoints":[1e300,1,1]}])")).find("no place"), std::string::npos);
+  EXPECT_NE(error_of(write("far.json", R"([{"image_id":0,"keypoints":[1e300,1,1]}])")).find("not a place"), std::string::npos);
   EXPECT_NE(error_of(write("other.json", R"({"cats":1})")).find("holds no keypoints"), std::string::npos);
   EXPECT_NE(error_of(write("kind.json", R"([{"image_id":0,"keypoints":"17"}])")).find("list of x, y"), std::string::npos);
   EXPECT_NE(error_of(write("number.json", R"([{"image_id":900000000000,"keypoints":)" + triples(17) +

@@ -32,7 +32,7 @@ json parse_keypoint_json(std::string_view text, const std::string& path) {
   } catch (const json::parse_error& error) {
     if (error.byte > 0 && text.substr(std::min(error.byte - 1, text.size()), 3) == "NaN")
       throw Error("{}: NaN at byte {} is no number of JSON; a missing point has null or the confidence 0", path, error.byte);
-    throw Error("{}: is not a JSON: it breaks off or is wrong at byte {}", path, error.byte);
+    throw Error("{}: is not JSON: it breaks off or is wrong at byte {}", path, error.byte);
   }
 }
 

@@ -37,7 +37,7 @@ std::vector<std::string> set_with(const std::vector<std::string>& names) {
   return best == nullptr ? names : best->points;
 }
 
-/// Gathers people whose points bear names, of whom each has only those that were found.
+/// Gathers people whose points have names; each person has only those that were found.
 class NamedPeople {
  public:
   explicit NamedPeople(const std::string& path) : builder_(path) {}

@@ -20,7 +20,7 @@ constexpr double kMaxPixel = 1e6;
 constexpr double kNoiseFraction = 0.012;
 constexpr double kMinNoise = 0.5;        // px
 constexpr double kMinConfidence = 0.05;  // below, the noise does not grow any more
-constexpr int kAppearance = 400;         // people by whom a set is distinguished from another one
+constexpr int kAppearance = 400;         // people by which a set is distinguished from another one
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';

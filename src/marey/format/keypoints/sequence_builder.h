@@ -49,7 +49,7 @@ class SequenceBuilder {
   std::int64_t last_frame_ = -1;
 };
 
-/// The number of a frame in its file's name: its longest run of digits, of several the last; −1 where there is none.
+/// The number of a frame in its file's name: its longest run of digits, of several the last; −1 if it has no digits.
 std::int64_t frame_number_in(std::string_view name);
 
 KeypointSequence read_openpose_folder(const std::string& path, std::string_view set);

@@ -17,7 +17,7 @@ constexpr double kMaxOnGround = 1e5;
 /// The last frame as files count that begin with 1.
 constexpr double kMaxFrame = 1e9;
 
-/// Gathers the people of a file that names them in its own way, in whatever order its rows come, and makes a recording of them.
+/// Gathers the people of a file that names them by its own method, in whatever order its rows come, and makes a recording of them.
 class GroundBuilder {
  public:
   /// Where a person was in one row of the file.
@@ -36,7 +36,7 @@ class GroundBuilder {
 
   explicit GroundBuilder(const std::string& name) : name_(name) {}
 
-  /// The index of whom the file calls `key`; who is new gets this label and team, and the wanted id where it is positive and free,
+  /// The index of the file's person `key`; a new one gets this label and team, and the wanted id where it is positive and free,
   /// else the next one that is.
   std::int32_t person(const std::string& key, int required, const std::string& label, const std::string& team);
   /// The index of the one with this id, which is positive; a label and a team that are still empty are filled in.

@@ -60,7 +60,7 @@ constexpr std::size_t kMaxCameras = 64;
 constexpr double kMaxVariance = 1e6, kRounded = 1e-3;  // m²
 constexpr double kDefault = 0.1;  // share by which a step may differ from the median one, for times are rounded
 
-/// Frames a second: the mean over the steps that are about the median one, to 1/1000 Hz; 25 where there are none.
+/// Frames a second: the mean over the steps that are about the median one, to 1/1000 Hz; 25 if there is no step.
 double rate_of(std::span<const Recording::TimeStep> time_steps) {
   const auto median = median_rate_hz(time_steps);
   if (!median) return 25;
@@ -236,7 +236,7 @@ class GroundFileReader {
   std::optional<bool> y_down_;
   bool has_boxes_ = false;
   bool moves_ = false;               // a velocity that is not 0 was read
-  double start_s_ = 0, step_s_ = 1;  // of frames that times alone tell
+  double start_s_ = 0, step_s_ = 1;  // of frames that only times give
   std::array<std::optional<std::size_t>, kColumns> where_;
   std::vector<std::string_view> fields_, names_;
 };

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that the partner of a file may bear: the same with another ending, or with a word of the name replaced.
+/// Names that the partner of a file may have: the same with another ending, or with a word of the name replaced.
 std::vector<std::string> partner_names(const std::string& path, const std::vector<std::string>& endings) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 8> words{{{"raw", "meta"},
                                                                                 {"tracking", "metadata"},

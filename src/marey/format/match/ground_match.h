@@ -20,11 +20,11 @@ struct GroundPeriod {
 /// Of people on the ground as a file's user has it, 25 frames a second until that is known.
 RecordingHeader ground_header(const std::string& name);
 
-/// A recording, with what formats of matches tell beyond it. Its time is its frame over the rate, where the file tells no other.
+/// A recording, with what match formats contain beyond it. Its time is its frame over the rate, if the file contains no other.
 struct GroundMatch {
   Recording recording{ground_header({})};  ///< an instant a frame
-  std::vector<TrackId> order;  ///< in which the file names its people, and line-ups list them; who is in it not, by id behind
-  geometry::PitchSize pitch;   ///< as the file says, or as was given to the reader
+  std::vector<TrackId> order;         ///< in which the file names its people, and line-ups list them; people not in it follow by id
+  geometry::PitchSize pitch;          ///< as the file says, or as was given to the reader
   std::vector<GroundPeriod> periods;  ///< in order; empty if the file does not know any
   std::string home, away;             ///< names of the teams; empty if the file does not know them
   std::vector<std::string> warnings;  ///< one sentence each

@@ -107,7 +107,7 @@ struct Case {
 const std::vector<Case> kWritten = {
     {"tracab", "m.dat", false, true, true}, {"metrica", "m_home.csv", false, true, true}, {"epts", "m.xml", false, true, true}};
 
-/// Without the referee, whom only some formats hold.
+/// Without the referee, which only some formats contain.
 std::map<Key, Vector<2>> players_of(const GroundMatch& match) {
   auto locations = positions_of(match);
   std::erase_if(locations,
@@ -324,7 +324,7 @@ TEST(GroundExchange, BadFilesAreNamed) {
   EXPECT_NE(stated("far.txt", "1,1,-1,-1,-1,-1,1,1e7,0,0\n").find("far.txt:1"), std::string::npos);
   EXPECT_NE(stated("twice.txt", "1,1,-1,-1,-1,-1,1,5,0,0\n1,1,-1,-1,-1,-1,1,6,0,0\n").find("twice"), std::string::npos);
   EXPECT_NE(stated("list.json", "{\"predictions\": {}}").find("list.json"), std::string::npos);
-  EXPECT_NE(stated("open.json", "{\"predictions\": [").find("no JSON"), std::string::npos);
+  EXPECT_NE(stated("open.json", "{\"predictions\": [").find("not JSON"), std::string::npos);
   EXPECT_THROW(read_match(folder / "missing.dat"), Error);
   EXPECT_THROW(read_match(folder.path()), Error);
 }
@@ -356,7 +356,7 @@ TEST(GroundExchange, PixelsAreRefusedByEveryFormat) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-/// Of the first person whom the file names, at the first instant.
+/// Of the first person that the file names, at the first instant.
 Vector<2> first_position(const GroundMatch& match) {
   InstantRows rows(match.recording);
   const InstantRows::Row row = rows.at(0).front();

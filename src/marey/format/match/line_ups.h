@@ -27,7 +27,7 @@ struct LineUps {
                        ///< what is free
     std::string name;  ///< the label, or "Player No.7"; never a bare number, which some readers choke on
   };
-  std::array<std::string, 2> teams;   ///< names of home and away, "Home" and "Away" where there are none
+  std::array<std::string, 2> teams;   ///< names of home and away, "Home" and "Away" if the file has no names
   std::vector<Member> members;        ///< one a track, in the recording's order
   std::vector<std::size_t> listed;    ///< indices of the tracks in the match's order
   std::optional<std::size_t> ball;    ///< index of its track, where there is one

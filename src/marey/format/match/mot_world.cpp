@@ -68,7 +68,7 @@ std::vector<std::string> write_mot_world(const GroundMatch& match, const std::st
   for (std::size_t instant = 0; instant < match.recording.instants().size(); ++instant) {
     for (const auto& [index, row] : rows.at(instant)) {
       const TrackColumns& track = match.recording.tracks()[index];
-      if (track.name.kind == TrackKind::ball) continue;  // nothing would tell it from people
+      if (track.name.kind == TrackKind::ball) continue;  // nothing would distinguish it from people
       fmt::format_to(std::back_inserter(text), "{},{},-1,-1,-1,-1,1,{:.3f},{:.3f},0\n",
                      match.recording.instants()[instant].index + 1, number(track.id()), track.x()[row], track.y()[row]);
     }

@@ -148,7 +148,7 @@ GroundMatch parse_soccernet(std::string_view text, const std::string& name, cons
     if (broken == nullptr)
       throw Error("{}: holds something else than SoccerNet's game state where a number or a text is wanted", name);
     const auto read = text.substr(0, broken->byte);
-    throw Error("{}:{}: is not a JSON from here on; the file may be cut off", name, std::count(read.begin(), read.end(), '\n') + 1);
+    throw Error("{}:{}: is not JSON from here on; the file may be cut off", name, std::count(read.begin(), read.end(), '\n') + 1);
   }
 }
 

@@ -27,7 +27,7 @@ std::string folded(std::string text) {
   return text;
 }
 
-/// A name as tracks may bear it: edits know no quotation marks within one.
+/// A name as tracks may have it: edits know no quotation marks within one.
 std::string name_from(const std::string& field, const std::string& where) {
   std::string name = plain_text(field);
   std::replace(name.begin(), name.end(), '"', '\'');

@@ -1,4 +1,4 @@
-// The lists that people keep beside a match, as CSV with a row of names on top: who plays (`number,name,team`, and if wanted
+// The lists that people keep beside a match, as CSV with a row of names on top: the players (`number,name,team`, and if wanted
 // `role,in,out`), and who was recognised where (`time,id,name`, and if wanted `team`).
 #pragma once
 
@@ -12,9 +12,9 @@ namespace marey::format::match {
 enum class SquadRole { player, keeper, referee };
 
 struct SquadMember {
-  std::string number;  ///< of the shirt; empty if there is none
+  std::string number;  ///< of the shirt; empty if absent
   std::string name;
-  std::string team;  ///< "Referees" for a referee of whom the list says nothing
+  std::string team;  ///< "Referees" for a referee that the list does not describe
   SquadRole role = SquadRole::player;
   std::optional<double> in_s, out_s;  ///< from the recording's beginning, where the list says so
 
@@ -36,7 +36,7 @@ struct SquadNaming {
 };
 
 /// The member that is meant: "Kane", "7 Kane", "7" where only one team has it, "7 Spurs" or "Spurs 7". Throws Error, which begins
-/// with `where`, where there is none, or several.
+/// with `where`, if it is absent or ambiguous.
 int member_called(const std::string& called, const std::string& team, const std::vector<SquadMember>& squads,
                   const std::string& where);
 

@@ -16,7 +16,7 @@ enum class C3dPoints { locations, all };
 /// Reads the points of a C3D file: PC, DEC and SGI, integer and real, and the matrices of its ROTATION group as bodies' poses. What
 /// stands beside them (`FileInfo::beside`) is reported, not read. A point's camera mask becomes CameraId 0 to 6, its residual
 /// `residual_m`. A point whose fourth word is 0 is `filled`, unless no point of the file has another one: then the file does not
-/// tell, and all are `measured`. Points at exactly (0, 0, 0) that cannot be positions (c3d_zeros.h) are missing. `up` is the axis
+/// state, and all are `measured`. Points at exactly (0, 0, 0) that cannot be positions (c3d_zeros.h) are missing. `up` is the axis
 /// that is up in the file, nothing: as it says; it is only noted for what stands beside. A file that is cut off is read as far as
 /// it goes, with a warning. Throws Error for what is not a C3D file, and for one that ends before its first frame does.
 std::unique_ptr<FileReader> open_c3d(const std::string& path, C3dPoints points = C3dPoints::locations,

@@ -33,7 +33,7 @@ class C3dAuxiliary {
   /// offsets hold. Of a frame that the file has not: what stands for 0.
   std::span<const float> frame(std::int64_t index);
 
-  /// A group's parameters by name, fit for a file whose points are in mm and whose world has `up` up; empty if there is none.
+  /// A group's parameters by name, fit for a file whose points are in mm and whose world has `up` up; empty if absent.
   /// Corners and origins of force plates follow the unit and the axes; all else is as it was.
   std::vector<C3dParameter> group(std::string_view name, UpAxis up) const;
   /// Of the first person in it; empty if it names none.

@@ -28,7 +28,7 @@ struct C3dLayout {
   std::int64_t first_index = 0;       ///< of the first frame; the file counts from 1
   std::vector<std::string> warnings;  ///< what disagreed, one sentence each
 
-  // Matrices of bodies behind the frames: 16 floats, column by column, and one that is negative where there is none.
+  // Matrices of bodies behind the frames: 16 floats, column by column, and one that is negative if it is absent.
   std::size_t bodies = 0;
   std::size_t bodies_begin = 0;  ///< bytes
   std::size_t bodies_ratio = 1;  ///< matrices of a body in a frame
@@ -40,7 +40,7 @@ struct C3dLayout {
 };
 
 /// Found from the head and from how long the file is; of one that is cut off, the frames that are there. Throws Error, with `name`
-/// for the file, where there is none.
+/// for the file, if it is absent.
 C3dLayout c3d_layout(const C3dHead& head, std::size_t size, const std::string& name);
 
 }  // namespace marey::format::motion

@@ -168,7 +168,7 @@ class C3dReader : public FileReader {
     }
   }
 
-  /// The first of a frame's matrices of this body; nothing if there is none, or it is not a rigid motion.
+  /// The first of a frame's matrices of this body; nothing if it is absent, or it is not a rigid motion.
   std::optional<BodyPose> pose_at(std::size_t frame, std::size_t i) const {
     constexpr double kStretched = 1e-3;
     const std::size_t at = layout_.bodies_begin + frame * layout_.bodies_bytes() + i * layout_.body_bytes();

@@ -34,7 +34,7 @@ struct MadeC3d {
   bool real = true;
   double step_mm = 0.1;
   std::string maker = "Another program";
-  // Analog channels: what is there, and what the first block and the rates make of it.
+  // Analog channels: the existing ones, and what the first block and the rates make of it.
   int channels = 0, samples = 1, header_samples = 1;
   double rate_hz = 100, analog_rate_hz = 100;
   std::vector<std::string> angles = {};

@@ -148,7 +148,7 @@ class C3dWriter : public PointSink {
     poses_->add(row_);
   }
 
-  /// 0 says "not measured", so that what was measured must say something else.
+  /// 0 says "not measured", so that measured values must say something else.
   int fourth_word(const Sample& point) const {
     if (!plan_.reports_measured || point.provenance != Provenance::measured) return 0;
     const double steps = point.residual_m.value_or(0) * 1000 / scale_mm_;

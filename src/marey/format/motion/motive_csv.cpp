@@ -1,5 +1,5 @@
 // Motive's export: one line of settings as pairs, then lines of headings over the columns (Type, Name, ID, sometimes Parent, and
-// what is measured), then "Frame,Time (Seconds),X,Y,Z,…" and the rows. Versions differ in how many headings there are and whether
+// the quantity), then "Frame,Time (Seconds),X,Y,Z,…" and the rows. Versions differ in how many headings there are and whether
 // their first cells are named, so each heading is known by what stands in it. Reference: OptiTrack, "Data Export: CSV".
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-// Rows are first looked over once, for which markers there are, for the rate, and for whether frames come in order; then they are
+// Rows are first scanned once, for which markers there are, for the rate, and for whether frames come in order; then they are
 // read again frame by frame. Where they do not come in order, their places are sorted: 24 bytes a row.
 #include <algorithm>
 #include <array>

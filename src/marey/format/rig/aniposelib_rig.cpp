@@ -140,7 +140,7 @@ void to_metres(Rig& rig) {
 std::string list(std::initializer_list<double> values) {
   std::string text;
   for (const double value : values) text += fmt::format("{}{:.17g}", text.empty() ? "" : ", ", value);
-  // TOML's arrays of older readers hold one type: no number may look whole.
+  // TOML's arrays of older readers hold one type: no number may be written as an integer.
   std::string result;
   std::size_t at = 0;
   while (at <= text.size()) {

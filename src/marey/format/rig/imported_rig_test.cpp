@@ -21,7 +21,7 @@
 namespace marey::format::rig {
 namespace {
 
-/// Two cameras that look at the origin from some metres.
+/// Two cameras that face the origin from some metres.
 const Format& of_rigs(const char* name) {
   return *format_named(name, Content::rig);
 }

@@ -1,6 +1,6 @@
-// OpenCV has a way to keep matrices (cv::FileStorage) and no agreed names. Read are the names that its own samples and most
+// OpenCV has a format for matrices (cv::FileStorage) and no agreed names. Read are the names that its own samples and most
 // programs write: one camera (camera_matrix, distortion_coefficients), a stereo pair (M1 D1 M2 D2 with R T, in the same file or in
-// extrinsics.yml beside it), and a list `cameras` of the former, which is what is written.
+// extrinsics.yml beside it), and a list `cameras` of the former, which is the output.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -6,7 +6,7 @@
 //   x' = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 x²) + 2 p2 x y,   y' likewise with p2, p1,   r² = x² + y²
 //   u = scx (x' − sin(she) y') / pix_x + imx / 2,   v = imy / 2 − scx cos(she) y' / pix_y,
 //
-// whose u of a pixel's centre is a whole number and a half. That both axes bear scx, and the half, is what its library does
+// whose u of a pixel's centre is a whole number and a half. That both axes have scx, and the half, is what its library does
 // (tests/clients/openptv_test.py asks it). Rays that glass and water bend are refused.
 #include <algorithm>
 #include <array>

@@ -13,7 +13,7 @@
 namespace marey::format::rig {
 namespace {
 
-/// What is said of the rig at `path`; nothing if it is read.
+/// The message about the rig at `path`; nothing if it is read.
 std::string stated_of(const std::string& path) {
   try {
     format_to_read(path, Content::rig).read_rig(path);

@@ -222,7 +222,7 @@ TEST(RigFile, RefusesWhatIsWrong) {
   reported("[0, 0.001, 1]", "[0, 0, 0]", "ground_from_image is singular");
   reported("[0, 0.001, 1]", "[0, 1]", "three rows of three");
   reported("[0, 0.001, 1]", "[0, nan, 1]", "finite");
-  reported("[0, 1, 0]", "[0, 1.1, 0]", "no rotation");
+  reported("[0, 1, 0]", "[0, 1.1, 0]", "not a rotation");
   reported("translation", "translatoin", "translation is missing");
   reported("\"brown\"", "\"browne\"", "model \"browne\" is unknown");
   reported("\"brown\"", "\"tsai\"", "distortion must be at most 1 finite numbers");

@@ -101,7 +101,7 @@ std::shared_ptr<const PtzCamera> ptz_in(const Section& section, const std::strin
   return camera;
 }
 
-/// The keys of a camera's table that tell how it turns.
+/// The keys of a camera's table that specify its rotation.
 std::string tripod_text(const geometry::Tripod& tripod, const std::string& rotations) {
   return fmt::format(
       "turns = \"{}\"  # where it looks, a row a frame\n"

@@ -29,7 +29,7 @@ class SelfCalFolder {
     std::int64_t frame = 0;  ///< a column of points.dat; where there are only camN.points4cal.dat, the rank of the point in space
     Vector<2> pixel = Vector<2>::Zero();
   };
-  /// What was seen, by frame and camera: `points.dat` with `IdMat.dat`, else `camN.points4cal.dat`, whose rows belong together
+  /// The observations, by frame and camera: `points.dat` with `IdMat.dat`, else `camN.points4cal.dat`, whose rows belong together
   /// where they name the same point in space.
   std::vector<Point> points() const;
   bool has_points() const;
@@ -39,7 +39,7 @@ class SelfCalFolder {
 
   /// px from the world's homogeneous coordinates, of undistorted pixels: `cameraN.Pmat.cal`, else `Pmatrices.dat`.
   std::optional<Eigen::Matrix<double, 3, 4>> projection(int camera) const;
-  /// Points in the frame of `projection`, one a column, where they are known: what they lie before tells a mirrored world.
+  /// Points in the frame of `projection`, one a column, where they are known: their side of the cameras shows a mirrored world.
   std::optional<Eigen::Matrix<double, 3, Eigen::Dynamic>> world_points(int camera) const;
   /// The world's unit in m: 0.001 where `calibration_units.txt` says millimeters, else 1.
   double unit() const;

@@ -60,7 +60,7 @@ class CameraReader {
     try {
       root_ = json::parse(text);
     } catch (const json::parse_error& error) {
-      throw Error("{}: is not a JSON: it breaks off or is wrong at byte {}", name, error.byte);
+      throw Error("{}: is not JSON: it breaks off or is wrong at byte {}", name, error.byte);
     }
     if (!root_.is_object()) throw Error("{}: is not a camera of SoccerNet: it must be an object", name);
   }

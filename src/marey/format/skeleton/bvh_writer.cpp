@@ -1,5 +1,5 @@
 // BVH, written: bodies that form a skeleton, as joints whose axes are parallel at rest. A joint's local rotation is taken apart
-// into three turns, of the two ways to do so the one nearest to the last frame's.
+// into three turns, of the two solutions the one nearest to the last frame's.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

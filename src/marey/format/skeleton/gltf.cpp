@@ -102,7 +102,7 @@ struct StickFigure {
   std::vector<std::uint16_t> joints;
   std::vector<std::uint32_t> indices;
 
-  /// An octahedron, thickest at a fifth of the bone; eight faces with corners of their own, so that they look flat.
+  /// An octahedron, thickest at a fifth of the bone; eight faces with corners of their own, so that they appear flat.
   void add_bone(const Vector<3>& from, const Vector<3>& to, std::size_t joint) {
     const Vector<3> along = to - from;
     const double length = along.norm();
@@ -328,7 +328,7 @@ std::vector<Fact> facts_of_glb(std::string_view bytes, const std::string& name) 
   const std::string_view description = bytes.substr(kGlbHead, size);
   check_nesting(description, Notation::json, name);
   const auto json = nlohmann::json::parse(description, nullptr, false);
-  if (!json.is_object()) throw Error("{}: its description is not a JSON", name);
+  if (!json.is_object()) throw Error("{}: its description is not JSON", name);
   const auto count = [&](const char* what) {
     const auto found = json.find(what);
     return found != json.end() && found->is_array() ? std::ssize(*found) : std::ptrdiff_t{0};

@@ -266,7 +266,7 @@ TEST(Osim, RefusesWhatItDoesNotKnow) {
             std::string::npos);
   EXPECT_NE(error(osim(joint("WeldJoint", "b", "a") + joint("WeldJoint", "a", "b"))).find("a circle"), std::string::npos);
   EXPECT_NE(error(osim(joint("PinJoint", "ground", "a"))).find("has 0 coordinates"), std::string::npos);
-  EXPECT_NE(error("<a><b></a>").find("is not a XML"), std::string::npos);
+  EXPECT_NE(error("<a><b></a>").find("is not XML"), std::string::npos);
   const SkeletonFile file =
       parse_osim(osim(joint("PinJoint", "ground", "a", "<Coordinate name=\"q\"><locked>true</locked></Coordinate>"),
                       "<ConstraintSet><objects><PointConstraint name=\"p\"/></objects></ConstraintSet>"),

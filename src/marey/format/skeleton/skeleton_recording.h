@@ -20,7 +20,7 @@ inline SkeletonOptions skeleton_options(const ReadOptions& how) {
 }
 
 /// The .asf that an .amc file's bones are in: beside it, of its name or its beginning (01_02.amc: 01.asf), or the only one there.
-/// Throws Error if there is none.
+/// Throws Error if it does not exist.
 std::string asf_next_to(const std::string& amc);
 
 }  // namespace marey::format::skeleton

@@ -131,7 +131,7 @@ class VskModel {
     return !segment.child("Segment") && !carrying_.contains(name) && (segment.child("JointDummy") || name.ends_with("_End"));
   }
 
-  /// It and all that hangs on it; XML is not nested deeper than the stack bears.
+  /// It and all that hangs on it; XML is not nested deeper than the stack supports.
   void add_segment(pugi::xml_node node, std::optional<int> parent) {
     const Vector<3> location = kMillimetre * parameters_.vector(node, "POSITION");
     if (parent && is_end(node)) {

@@ -24,7 +24,7 @@ class ChunkReader {
   std::vector<Row> rows();
   /// The first chunk that ends at this index or later.
   std::optional<Row> find(std::int64_t index);
-  /// These append to what is there; `at` continues counting from the instants that are there.
+  /// These append to the existing data; `at` continues counting from the instants that are there.
   void read(const Row& row, bool with_seen, Chunk& chunk);
   void read_time_steps(const Row& row, std::vector<Recording::TimeStep>& time_steps);
   /// False where the track has nothing there. `offset` is that of the chunk's first instant.

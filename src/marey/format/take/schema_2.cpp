@@ -199,7 +199,7 @@ class CursorOfSchema2 : public TakeCursor {
     at_ = 0;
   }
 
-  /// The chunk in which the next instant is; false where there is none yet.
+  /// The chunk in which the next instant is; false if it does not exist yet.
   bool fetch() {
     leave_chunk();
     const ReadTransaction transaction(*database_);

@@ -24,7 +24,7 @@ class Database {
   const std::string& path() const { return path_; }
   /// Statements without results, `;` between them.
   void run(const char* sql);
-  /// The first column of the first row; 0 where there is none.
+  /// The first column of the first row; 0 if no row exists.
   std::int64_t number(const std::string& sql);
   /// False where the lock that it needs stayed with another connection; to be tried again.
   bool commit();
@@ -43,7 +43,7 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
-/// While it lives, what is read is of one instant, whatever another program writes in the meantime.
+/// While it lives, all reads are of one instant, whatever another program writes in the meantime.
 class ReadTransaction {
  public:
   explicit ReadTransaction(Database& database) : database_(&database) { database.run("BEGIN"); }

@@ -1,4 +1,4 @@
-// A stretch of a take, in memory: what is gathered until it is written, what is read at once, and what short chunks are joined in.
+// A chunk of a take, in memory: rows gathered until they are written, rows read at once, and what short chunks are joined in.
 #pragma once
 
 #include <cstddef>

@@ -14,19 +14,19 @@
 
 namespace marey::format::take {
 
-/// Writes a take while it is recorded, into one SQLite file under its own name (docs/take.md has the schema). What was written
+/// Writes a take while it is recorded, into one SQLite file under its own name (docs/take.md has the schema). Written data
 /// reaches the file within half a second of the next `write`, so that a killed program loses less than a second; memory does not
 /// grow with the take. Others may read the file in the meantime. Positions and boxes come back as they were written, the rest with
 /// the precision of a float32; an outline's measurement lines are not kept.
 class TakeWriter : public Sink {
  public:
   explicit TakeWriter(std::string path);
-  /// Keeps what was written. Without `finish` before, the take is marked as cut off; where nothing was written at all none is made,
-  /// and one that bears the name already stays.
+  /// Keeps the output. Without `finish` before, the take is marked as cut off; where nothing was written at all none is made,
+  /// and one that has the name already stays.
   ~TakeWriter() override;
 
   std::string name() const override { return path_; }
-  /// Begins a new take, which is in its place from the first thing that is written on, or `flush`; one that bears the name already
+  /// Begins a new take, which is in its place from the first thing that is written on, or `flush`; one that has the name already
   /// is replaced then. Throws Error if the place cannot be written, where the name is another kind of file's, where another
   /// TakeWriter has it open, and where the header is not valid.
   SinkRequirements begin(const RecordingHeader& header) override;
@@ -86,7 +86,7 @@ class TakeReader : public RecordingReader {
 
   /// When there were instants: what `TrackColumns::at` counts.
   std::vector<Recording::TimeStep> time_steps() const;
-  /// One track over the whole take, read without the others. Without rows where there is none of that id.
+  /// One track over the whole take, read without the others. Without rows if that id does not exist.
   TrackColumns read_track(TrackId track) const;
 
  private:

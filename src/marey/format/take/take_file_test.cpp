@@ -329,7 +329,7 @@ TEST_F(TakeFile, StaysAsItWasWhereNothingIsWritten) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1);
 }
 
-// At 2,000 frames a second, so that several transactions end before the kill. What was written before is in the file.
+// At 2,000 frames a second, so that several transactions end before the kill. All data written before is in the file.
 TEST_F(TakeFile, SurvivesSigkillAndLosesLessThanASecond) {
   using namespace std::chrono_literals;
   for (const auto after : {0ms, 350ms, 600ms}) {

@@ -72,7 +72,7 @@ void require_whole_pages(Database& database) {
     throw Error("{}: is damaged (it is cut off); restore it from a copy", database.path());
 }
 
-/// One instant that is far from all others: who follows the take would walk through all between.
+/// One instant that is far from all others: a follower of the take would walk through all between.
 std::unique_ptr<TakeCursor> plausible(std::unique_ptr<TakeCursor> cursor, const std::string& path) {
   const RecordingSummary summary = cursor->summary();
   if (!summary.first_index || *summary.last_index - *summary.first_index < FrameNumbers::kMaxMissing) return cursor;

@@ -1,4 +1,4 @@
-// A take grows at its end only: what is recorded is gathered in columns for half a second, then written as one chunk in one
+// A take grows at its end only: new rows are gathered in columns for half a second, then written as one chunk in one
 // transaction, which adds pages and touches few. SQLite's rollback journal then holds next to nothing, the file is one and complete
 // after each transaction, and a program killed between two leaves a journal that the next reader rolls back. (A write-ahead log
 // would write everything twice, and leave two files more beside the take.) Short chunks are replaced by one of about a minute when

@@ -149,7 +149,7 @@ class BlobReader::Lines {
       }
       return line;
     } catch (const nlohmann::json::exception&) {
-      fail("is not a JSON of a blob: frame, x and y are wanted");
+      fail("is not JSON of a blob: frame, x and y are wanted");
     }
   }
 

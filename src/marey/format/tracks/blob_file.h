@@ -24,7 +24,7 @@ enum class BlobText { csv, jsonl };
 /// By the ending of `path`: JSON lines where that is .jsonl.
 BlobText blob_text_of(const std::string& path);
 
-/// Writes what was found in the images of one camera, as it comes; the file is there atomically.
+/// Writes the detections in the images of one camera, as they come; the file is there atomically.
 class BlobWriter {
  public:
   /// Throws Error if nothing can be written there.

@@ -105,7 +105,7 @@ MaskTable parse_coco_instances(std::string_view text, const std::string& path) {
     }
     if (!unnamed.empty()) table.warnings.push_back(path + ": annotations without track_id; their identities mean nothing");
   } catch (const json::exception&) {
-    throw Error("{}: is not a JSON of COCO instances; expected images (id, width, height) and annotations (image_id, segmentation)",
+    throw Error("{}: is not JSON of COCO instances; expected images (id, width, height) and annotations (image_id, segmentation)",
                 path);
   }
   for (auto* masks : {&table.masks, &table.ignored}) {

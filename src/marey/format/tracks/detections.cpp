@@ -114,7 +114,7 @@ class DetectionReader::Boxes {
  private:
   std::vector<LabelledBox> own_;
   std::optional<MotReader> reader_;
-  std::span<const LabelledBox> piece_;  // what is left of it
+  std::span<const LabelledBox> piece_;  // the rest of it
 };
 
 DetectionReader::DetectionReader(const std::string& path, std::optional<double> rate_hz) {

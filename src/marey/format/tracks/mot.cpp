@@ -254,7 +254,7 @@ struct MotReader::State {
     throw Error("{}: cannot be read ({})", name, std::generic_category().message(errno));
   }
 
-  /// More of the file behind what is left of `text`; false at its end.
+  /// More of the file behind the rest of `text`; false at its end.
   bool fill() {
     const std::size_t filled = text.size();
     text.resize(filled + kPiece);

@@ -27,7 +27,7 @@ struct MotTable {
   std::vector<std::string> warnings;  ///< one sentence each
 };
 
-/// Reads a file, or standard input for `-`. Throws Error, `path:line: what is wrong; what is expected`.
+/// Reads a file, or standard input for `-`. Throws Error, `path:line: what is wrong; the expected value`.
 MotTable read_mot(const std::string& path, MotKind kind);
 
 /// The same of text already in memory; `name` stands for the path in messages.

@@ -169,7 +169,7 @@ class JsonLines {
       try {
         add(nlohmann::json::parse(line));
       } catch (const nlohmann::json::exception&) {
-        throw Error("{}: is not a JSON of a track: frame, time, id, x and y are wanted", where);
+        throw Error("{}: is not JSON of a track: frame, time, id, x and y are wanted", where);
       }
     });
     match.order = builder_.finish(match.recording);

@@ -13,7 +13,7 @@ namespace marey::format::tracks {
 ///   mot    MOTChallenge text: frame,id,left,top,width,height,conf,-1,-1,-1; frames and pixels count from 1
 ///   csv    with a header: frame,time,id,label,x,y,vx,vy,left,top,width,height,state; frames and pixels count from 0, s, px, px/s
 ///          of a recording with keypoints: frame,time,id,point,x,y,sd,visibility,presence, a row for each point
-///   jsonl  one JSON object a line with the same names; what is missing is omitted; with "outline" where there is one
+///   jsonl  one JSON object a line with the same names; absent values are omitted; with "outline" where there is one
 ///          (outline_json.h) and "keypoints" where there are some (keypoints_json.h)
 enum class TrackText { mot, csv, jsonl };
 

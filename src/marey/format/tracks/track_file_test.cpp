@@ -39,7 +39,7 @@ Instant two_tracks() {
   return instant;
 }
 
-/// A person with a nose, of whom the left eye was not found.
+/// A person with a nose, whose left eye was not found.
 Instant any_person() {
   auto body = std::make_shared<Keypoints<2>>();
   body->presence = 0.875;

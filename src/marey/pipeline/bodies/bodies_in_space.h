@@ -13,7 +13,7 @@
 
 namespace marey::pipeline::bodies {
 
-/// Puts into each instant where the bodies are: a step of any stage that tells points in space, live too. A track is a body's
+/// Puts into each instant where the bodies are: a step of any stage that reports points in space, live too. A track is a body's
 /// marker where its label is "BODY:MARKER", or the marker's own and no other body has one of that name; other points are found by
 /// how they lie to each other.
 class BodiesInSpace {
@@ -21,7 +21,7 @@ class BodiesInSpace {
   BodiesInSpace(std::vector<Body> bodies, const solve::bodies::TrackingOptions& options = {});
 
   void name(const TrackName& track);
-  /// `instant.bodies` becomes what is known now. Of its samples those count that were measured or filled.
+  /// `instant.bodies` becomes the current state. Of its samples those count that were measured or filled.
   void add_to(Instant& instant);
   const solve::bodies::BodyTracker& tracker() const { return target_tracker_; }
 

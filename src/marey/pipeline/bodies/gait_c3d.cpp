@@ -20,7 +20,7 @@ struct Triple {
 };
 
 /// Our joints and the names of Plug-in Gait's outputs. Its spine, shoulders and wrists turn about other axes than the ISB's: those
-/// bear names of their own. Its ankle's second angle grows to the other side.
+/// have names of their own. Its ankle's second angle grows to the other side.
 constexpr std::array<Triple, 9> kTriples = {{{"pelvis", "PelvisAngles"},
                                              {"trunk", "ThoraxAngles"},
                                              {"spine", "SpineAnglesISB"},

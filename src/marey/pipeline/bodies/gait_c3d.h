@@ -1,4 +1,4 @@
-// What was measured of a walk, as C3D holds it: angles of joints among the points, strikes and offs as events.
+// Measurements of a walk, as C3D contains them: angles of joints among the points, strikes and offs as events.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace marey::pipeline::bodies {
 /// Angles three by three in degrees, called as Plug-in Gait calls them where they mean the same; strikes and offs by side.
 format::MotionFindings findings_of(const GaitMeasure& measure);
 
-/// The recording again, with what was measured of it. Axes stay as they are in the recording. Throws Error if it cannot be
+/// The recording again, with its measurements. Axes stay as they are in the recording. Throws Error if it cannot be
 /// written.
 void write_gait_c3d(const std::string& path, const std::string& recording, const std::optional<format::UpAxis>& up,
                     const GaitMeasure& measure);

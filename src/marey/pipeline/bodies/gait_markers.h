@@ -1,4 +1,4 @@
-// Plug-in Gait's markers of a recording, or another set's in their place, and what is known of the person.
+// Plug-in Gait's markers of a recording, or another set's in their place, and the person's measures.
 #pragma once
 
 #include <optional>

@@ -21,7 +21,7 @@ namespace {
 constexpr double kRegressionM = 0.020;
 constexpr double kVagueM = 0.035;  // a motion that says less than this says nothing beside the regression
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kNeckFraction = 0.3;                 // of the way from there to the head's middle
+constexpr double kNeckFraction = 0.3;                 // of the distance from there to the head's middle
 constexpr double kConventionalAxisRad = 8 * kDegree;  // assumed: how well markers on thighs and arms are put by eye
 constexpr double kSkinAxisRad = 5 * kDegree;          // assumed: what skin does that the jackknife does not see
 constexpr double kVagueAxisRad = 10 * kDegree;
@@ -140,7 +140,7 @@ gait::GaitPose pose_by_motion(const gait::MarkerPositions& standing, const gait:
   return pose;
 }
 
-/// What is wanted of a pelvis, in the set's own labels; throws Error if it is not there.
+/// The required markers of a pelvis, in the set's own labels; throws Error if it is not there.
 void need_a_pelvis(const gait::GaitPose& pose, const gait::MarkerPositions& standing, const gait::BodyMarkerSet& set,
                    const std::string& path) {
   if (pose[gait::SegmentId::pelvis]) return;
@@ -196,7 +196,7 @@ std::optional<Vector<3>> end_of(gait::SegmentId segment, const gait::MarkerPosit
   return std::nullopt;
 }
 
-/// What is to be said where neither the file nor markers on both sides tell how wide the legs' joints are.
+/// The message if neither the file nor markers on both sides specify how wide the legs' joints are.
 std::optional<std::string> widths_assumed(const gait::GaitSubject& subject, const std::string& path) {
   const auto known = [](const std::optional<double>& width) { return width.has_value(); };
   const auto all = [&](const auto& widths) { return std::all_of(widths.begin(), widths.end(), known); };

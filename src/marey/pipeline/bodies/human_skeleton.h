@@ -41,7 +41,7 @@ struct HumanSkeleton {
 /// are not set, the pelvis is not known, or who should stand still moves.
 HumanSkeleton human_from_static(const std::string& standing, const HumanOptions& options, const Hooks& hooks);
 
-/// The same without a static trial: of a person who moves, from the quietest moment of `motion` (gait_markers.h). Its first warning
+/// The same without a static trial: of a moving person, from the stillest instant of `motion` (gait_markers.h). Its first warning
 /// says so. What the moment's posture leaves open is for solve/skeleton/calibrate.h to find from the motion. Throws Error if the
 /// labels are not set, or the pelvis is not known.
 HumanSkeleton human_from_motion(const std::string& motion, const HumanOptions& options, const Hooks& hooks);

@@ -16,7 +16,7 @@ namespace marey::pipeline::bodies {
 struct GaitOptions {
   std::string static_trial = {};  ///< the same person, standing; empty: the feet's neutral position is not known
   std::optional<format::UpAxis> up = {};
-  analyse::gait::GaitSubject subject = {};  ///< what is given; a C3D file's own measures (PROCESSING) fill in the rest
+  analyse::gait::GaitSubject subject = {};  ///< given measures; a C3D file's own measures (PROCESSING) fill in the rest
   analyse::gait::GaitEventOptions events = {};
 };
 

@@ -114,7 +114,7 @@ class SolveCounts {
   std::int64_t starts_ = 0, empty_ = 0;
 };
 
-/// The frames together: which way limbs are bent, and where it is asked for the second pass. What is said of the motion is then of
+/// The frames together: the direction limbs bend, and where it is asked for the second pass. Statements on the motion are then of
 /// the new one.
 void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::ObservedMarkers>& detected,
                  const SolveOptions& options, SolveCounts& counts) {
@@ -135,7 +135,7 @@ void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::Obs
   }
 }
 
-/// What is said of the recording's up; nothing: as it says itself.
+/// The given up axis of the recording; nothing: as its file states.
 std::optional<UpAxis> up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
   if (!options.up && format.name == "trc" && skeleton.ends_with(".osim")) return UpAxis::y;
   return options.up;

@@ -26,7 +26,7 @@ struct ElementImage {
 struct ElementRun {
   std::vector<ElementImage> images;
   Rig rig;                            ///< a camera for each image that has one, by its name, in a world with the pitch's corner
-  double jaccard = 0;                 ///< JaC@5: the mean over the images with a camera; 0 where there is none
+  double jaccard = 0;                 ///< JaC@5: the mean over the images with a camera; 0 if no image has one
   std::vector<std::string> warnings;  ///< one sentence for each image without a camera, and for labels that do not fit
 };
 

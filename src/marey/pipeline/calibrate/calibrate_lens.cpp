@@ -9,7 +9,7 @@
 namespace marey::pipeline::calibrate {
 namespace {
 
-constexpr std::int64_t kFramesInspectedAt = 400;  // of a long film: neighbours show the board in nearly the same place
+constexpr std::int64_t kFramesInspectedAt = 400;  // of a long video: neighbours show the board in nearly the same place
 
 }  // namespace
 

@@ -21,7 +21,7 @@
 namespace marey::pipeline::calibrate {
 namespace {
 
-// The empty ground is the median of this many images, spread over this long a beginning: who moves is in few of them.
+// The empty ground is the median of this many images, spread over this long a beginning: people who move are in few of them.
 constexpr int kImages = 15;
 constexpr double kSeconds = 60;
 constexpr double kMargin = 2;  // m round the pitch, where people still count
@@ -172,7 +172,7 @@ bool others_stand_on_it(const Rig& rig, const std::map<std::string, std::string>
                      [&](const RigCamera& camera) { return !clicks.contains(camera.name) && camera.camera(); });
 }
 
-/// What was found, in the rig.
+/// The result, in the rig.
 void enter(PitchRun& run) {
   run.rig.ground_from_world = run.calibration.ground_from_world;
   run.rig.ground = run.calibration.fit.ground;

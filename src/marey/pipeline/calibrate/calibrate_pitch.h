@@ -11,7 +11,7 @@
 namespace marey::pipeline::calibrate {
 
 struct PitchRun {
-  Rig rig;                                                ///< what was given, with lenses, poses and `ground_from_world` found
+  Rig rig;                                                ///< the given one, with lenses, poses and `ground_from_world` found
   std::vector<std::string> cameras;                       ///< those calibrated, in the rig's order
   std::vector<marey::calibrate::pitch::PitchView> views;  ///< one for each: what it was calibrated from
   marey::calibrate::pitch::PitchCalibration calibration;  ///< one view for each

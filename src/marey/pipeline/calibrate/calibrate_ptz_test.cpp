@@ -26,7 +26,7 @@ struct TrackedPtz {
   std::vector<std::optional<geometry::Heading>> truth;
 };
 
-/// From the exact tripod, but a little of its place, without clicks: the first image has to tell where the camera looks.
+/// From the exact tripod, but a little of its place, without clicks: the first image has to give where the camera is aimed.
 TrackedPtz track_ptz(const PtzMatchOptions& options, int frames) {
   PtzMatch match(options, 2);
   geometry::Tripod tripod = match.tripod();

@@ -17,7 +17,7 @@ bool knows_lenses(const Rig& rig) {
 
 namespace {
 
-constexpr double kCountEvery = 2;  // s of waving that are looked through at a time
+constexpr double kCountEvery = 2;  // s of waving that are searched at a time
 
 /// Counts what cameras see of the wand while it is waved.
 class WavedWand {

@@ -27,7 +27,7 @@ struct WandObserved {
   struct Shared {
     std::size_t a = 0, b = 0;  ///< a < b, by `cameras`
     std::int64_t views = 0;
-    bool enough = false;  ///< to tell how they stand to each other
+    bool enough = false;  ///< to find their relative poses
   };
   double seconds = 0;
   std::vector<Camera> cameras;
@@ -50,7 +50,7 @@ struct CalibrateWandOptions {
   live::CameraSettings* camera_settings =
       nullptr;          ///< live cameras: by which they are set while the wand is waved, and the rig that is found too
   double wave_s = 600;  ///< live cameras: the wand is waved until it was seen enough, at most this long
-  /// Ten times a second while it is waved; false: what was seen will do. May be empty.
+  /// Ten times a second while it is waved; false: the observations suffice. May be empty.
   std::function<bool(const WandObserved& detected)> waving = {};
   /// It has been waved: the rest is computed. May be empty.
   std::function<void()> waved = {};

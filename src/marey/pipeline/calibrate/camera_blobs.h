@@ -26,7 +26,7 @@ CameraBlobs read_blobs(const std::string& observations, const Rig& rig);
 /// Stopped.
 CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const Hooks& hooks);
 
-/// The first of a file of observations, the second where there is none.
+/// The first of a file of observations, the second if no file is given.
 CameraBlobs blobs_of(Rig& rig, const std::string& observations, const detect::markers::MarkerOptions& options, const Hooks& hooks);
 
 }  // namespace marey::pipeline::calibrate

@@ -33,7 +33,7 @@ struct BoardSightings {
 };
 
 struct FindBoardsOptions {
-  std::int64_t every = 1;                        ///< look at every this many-th frame only
+  std::int64_t every = 1;                        ///< only every n-th frame is searched
   std::string step = "searching for the board";  ///< what its progress is called
 };
 

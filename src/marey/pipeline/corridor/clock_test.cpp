@@ -16,7 +16,7 @@
 namespace marey::pipeline::corridor {
 namespace {
 
-/// A camera whose detections lie in frames of these numbers, at `rate_hz`, started `offset_s` late. x of a box tells its frame.
+/// A camera whose detections lie in frames of these numbers, at `rate_hz`, started `offset_s` late. x of a box gives its frame.
 Feed camera(const test::TemporaryFolder& folder, int id, const std::vector<int>& frames, double rate_hz, double offset_s) {
   std::string text;
   for (const int frame : frames) text += std::to_string(frame + 1) + ",-1," + std::to_string(frame + 1) + ",40,20,50,0.9\n";

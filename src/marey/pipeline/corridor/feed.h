@@ -68,7 +68,7 @@ class Feed {
   /// The next frame; nothing at the end. Its time is by the rig's clock: the camera's with `offset_s` added.
   std::optional<CameraFrame> next();
   /// Of a live camera, what has come since the last call, in order; never waits for it. Searched at once, where the feed does that,
-  /// only with `all`: who falls behind drops most of them.
+  /// only with `all`: a feed that falls behind drops most of them.
   std::vector<CameraFrame> arrived(const source::LivePolicy& policy, bool all = true);
   /// Searches for things in a frame of this camera, where that has not been done.
   void search(CameraFrame& given);

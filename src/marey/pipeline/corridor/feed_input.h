@@ -27,7 +27,7 @@ class FeedInput {
   /// Frames that have arrived since the last call, in order, with the camera's own times. None of a file.
   virtual std::vector<CameraFrame> arrived(const source::LivePolicy& /*policy*/) { return {}; }
 
-  /// How a live camera is at this time; nothing of a file, whose state follows from what was read.
+  /// How a live camera is at this time; nothing of a file, whose state follows from the data read.
   virtual std::optional<FeedState> live_state(Timestamp /*begin*/, const source::LivePolicy& /*policy*/) const {
     return std::nullopt;
   }

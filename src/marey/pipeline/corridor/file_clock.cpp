@@ -106,7 +106,7 @@ class FileGrouping final : public FrameGrouping {
     }
   }
 
-  /// When the next instant is; nothing if there is none.
+  /// When the next instant is; nothing at the end.
   std::optional<Timestamp> next_time() {
     if (is_even()) {
       const Timestamp now = *start_ + duration_from_seconds(static_cast<double>(next_) / rate_hz_);

@@ -1,4 +1,4 @@
-// The clock of live cameras: which instants continue, and which are dropped (clock.h tells the policy).
+// The clock of live cameras: which instants continue, and which are dropped (clock.h defines the policy).
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,5 +1,5 @@
 // Live cameras by a time that the test keeps itself: what continues when one is late, stalls, is lost and comes back, and what is
-// let go.
+// dropped.
 #include <algorithm>
 #include <cmath>
 #include <deque>

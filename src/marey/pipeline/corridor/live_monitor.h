@@ -32,7 +32,7 @@ class LiveMonitor {
  public:
   using Notify = std::function<void(const LiveStatus&)>;
 
-  /// `tell` is called four times a second; it may be empty.
+  /// `notify` is called four times a second; it may be empty.
   LiveMonitor(std::shared_ptr<source::LiveTime> time, Notify notify);
 
   /// What is watched: it must outlive the monitor's use. Before the first call of `saw`.

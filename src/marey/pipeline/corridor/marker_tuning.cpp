@@ -67,7 +67,7 @@ TunedMarkers::TunedMarkers(const detect::markers::MarkerOptions& options, std::s
     : options_(options), tuning_(std::move(tuning)), version_(tuning_ != nullptr ? -1 : 0), detector_(options) {}
 
 void TunedMarkers::retune() {
-  version_ = tuning_->version();  // before the values: who changes them in the meantime is received next time
+  version_ = tuning_->version();  // before the values: a change in the meantime is received next time
   MarkerTuning::Values values = tuning_->values();
   detect::markers::MarkerOptions options = options_;
   options.threshold = values.threshold;

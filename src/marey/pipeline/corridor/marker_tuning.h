@@ -22,7 +22,7 @@ detect::markers::MarkerOptions markers_of(const RigCamera& camera, detect::marke
 /// Takes out what lies in one of the masks.
 void exclude_masked(std::vector<Detection>& detections, std::span<const Mask> masks);
 
-/// What is wanted of a camera's detector. From any thread.
+/// The requested settings of a camera's detector. From any thread.
 class MarkerTuning {
  public:
   static constexpr std::size_t kMaxMasks = 256;

@@ -161,7 +161,7 @@ void first_pass(Stage& stage, Clock& clock, Sinks& sinks, Counter& counter, cons
 }  // namespace
 
 Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks) {
-  const StopScope keeps_what_there_is{{}};  // what is known when it stops is written
+  const StopScope keeps_what_there_is{{}};  // the state when it stops is written
   Summary summary;
   Counter counter(summary);
   sinks.begin(signed_header(stage.header(), clock, hooks));

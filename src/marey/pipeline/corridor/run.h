@@ -1,4 +1,4 @@
-// The one corridor that every job walks: a clock gives what the cameras saw at one instant, a stage makes of it what is known of
+// The one corridor that every job walks: a clock gives what the cameras saw at one instant, a stage makes of it the state of
 // that instant, sinks take it where the user wants it. What a job does is its stage; where results go are its sinks; nothing else
 // differs.
 #pragma once
@@ -22,7 +22,7 @@
 
 namespace marey::pipeline::corridor {
 
-/// What results from a run: what is in its results, what was lost on the way and why.
+/// What results from a run: the content of its results, the losses and their causes.
 struct Summary {
   /// Its frames are those that were searched, its detections those that the tracker was given.
   struct Camera : CameraHealth {
@@ -52,7 +52,7 @@ struct Summary {
   std::map<std::string, double, std::less<>> figures;         ///< what a stage found out besides: "noise_px", …
   std::vector<Camera> cameras;
   std::vector<StepTime> steps;
-  std::vector<std::string> notes;     ///< what was found out beside, one sentence each
+  std::vector<std::string> notes;     ///< additional findings, one sentence each
   std::vector<std::string> warnings;  ///< what went wrong without stopping the run, one sentence each
   bool stopped = false;               ///< before the end, because a hook said so
   bool sink_failed = false;           ///< of a live run: a warning names it
@@ -66,7 +66,7 @@ class InstantSource {
   virtual std::optional<Instant> next() = 0;
 };
 
-/// One job's order of steps, from what the cameras saw at an instant to what is known of it.
+/// One job's order of steps, from what the cameras saw at an instant to the state at it.
 class Stage {
  public:
   virtual ~Stage() = default;
@@ -75,12 +75,12 @@ class Stage {
   virtual void need_boxes() {}
   /// Sinks want the foreground of each frame that is searched, in `step` and in `finish`: `give` takes it. Before the first step.
   virtual void need_foregrounds(std::function<void(FrameForeground)> /*give*/) {}
-  /// What is known after this instant, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
+  /// The results after this instant, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
   /// second pass keeps all for that.
   virtual std::span<const Instant> step(const FrameSet& frames) = 0;
   /// What a person who watches should know at once of what the steps since the last call found out, one sentence each.
   virtual std::vector<std::string> news() { return {}; }
-  /// What is known only now that the cameras have ended: instants that waited, or the whole recording after a second pass. Nothing
+  /// Results available only after the cameras have ended: instants that waited, or the whole recording after a second pass. Nothing
   /// where all was reported.
   virtual std::unique_ptr<InstantSource> finish(const Hooks& /*hooks*/) { return nullptr; }
   /// Puts in what it counted and what it found out.
@@ -129,7 +129,7 @@ class Sinks {
 };
 
 /// Runs a job from its cameras' first frame to its sinks' last. Where a second pass reports instants that are past and a sink wants
-/// their images, the clock is asked for them again. A run that is asked to stop writes what is known until then, but for sinks
+/// their images, the clock is asked for them again. A run that is asked to stop writes the results until then, but for sinks
 /// whose images would have to be asked for again: they leave nothing, and a warning names them. Throws Error if not one frame
 /// could be read, or a sink has failed; Stopped where nothing was tracked before it was asked to stop.
 Summary run(Stage& stage, Clock& clock, Sinks& sinks, const Hooks& hooks = {});

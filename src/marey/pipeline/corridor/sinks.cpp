@@ -2,6 +2,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -61,7 +62,7 @@ class Sinks::Lane {
   /// Only where there is room.
   void offer(const Work& work) { skipped_ += failed_ || queue_.try_push(work) ? 0 : 1; }
 
-  /// Nothing if there is none.
+  /// Nothing if it does not exist.
   std::string trouble() const {
     if (failed_) return message_of_failure();
     return skipped_ > 0 ? fmt::format("{}: too slow for {} instants, which it does not have", name_, skipped_) : "";
@@ -98,6 +99,8 @@ class Sinks::Lane {
   std::string message_of_failure() const {
     try {
       std::rethrow_exception(failure_);
+    } catch (const std::bad_alloc&) {
+      return name_ + ": there is not enough memory for it";
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -217,6 +220,8 @@ void Sinks::finish() {
     } catch (const Error&) {  // what a program's own sink throws reaches it as it is
       add_what_is_whole(lane);
     } catch (const cv::Exception&) {  // memory that OpenCV did not get
+      add_what_is_whole(lane);
+    } catch (const std::bad_alloc&) {
       add_what_is_whole(lane);
     }
   }

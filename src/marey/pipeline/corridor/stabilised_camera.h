@@ -25,7 +25,7 @@ class StabilisedCamera {
   bool steadies() const;
   /// What the camera's feed is opened with.
   FeedOptions feed_options() const;
-  /// How far the camera moved goes among the notes; what was lost, and whether it was turned permanently, among the warnings.
+  /// How far the camera moved goes among the notes; the losses, and whether it was turned permanently, among the warnings.
   void report(Summary& summary) const;
 
  private:

@@ -1,5 +1,5 @@
 // What answers to doubts mean. Rows speak of tracks as they were when the doubts were listed: where they have gone since is
-// followed through the edits that were made after that, those of answers before and others. That tells what was applied already,
+// followed through the edits that were made after that, those of answers before and others. That shows what was applied already,
 // too.
 
 #include <algorithm>
@@ -187,7 +187,7 @@ class Answerer {
                   format::shown(text), review_item.frame);
   }
 
-  /// Whether it is a person's, not what the colours of clothes told.
+  /// Whether it is a person's, not inferred from clothing colours.
   static bool is_name(const std::string& label) { return !label.empty() && label != "keeper" && label != "referee"; }
 
   void interchange(const ReviewItem& review_item) {

@@ -33,7 +33,7 @@ class Owners {
     for (auto& taken : taken_) taken.assign(recording.instants().size(), false);
   }
 
-  /// Of the tracks that were measured. What lies within a stretch comes first: no person is in two places at once.
+  /// Of the tracks that were measured. What lies within a segment comes first: no person is in two places at once.
   std::vector<OwnedRows> rows() {
     std::vector<OwnedRows> all;
     for (const auto& [id, segments] : segments_) {
@@ -59,7 +59,7 @@ class Owners {
     return path;
   }
 
-  /// The first stretch that begins after an instant.
+  /// The first segment that begins after an instant.
   std::vector<int>::const_iterator first_after(const std::vector<int>& segments, std::int32_t instant) const {
     return std::upper_bound(segments.begin(), segments.end(), instant,
                             [&](std::int32_t sought, int s) { return sought < segment(s).first; });
@@ -71,7 +71,7 @@ class Owners {
     return segment(*std::prev(after)).path;
   }
 
-  /// What lies between two stretches of one person's, or before the first or after the last of the track.
+  /// What lies between two segments of one person's, or before the first or after the last of the track.
   int between(const std::vector<int>& segments, std::int32_t instant) const {
     if (instant < segment(segments.front()).first) return segment(segments.front()).path;
     const auto after = first_after(segments, instant);
@@ -84,7 +84,7 @@ class Owners {
   const GroundIdentities& found_;
   const Recording& recording_;
   std::map<TrackId, std::vector<int>> segments_;  // of each track, by time
-  std::map<int, int> tracks_;                     // of stretches, within paths
+  std::map<int, int> tracks_;                     // of segments, within paths
   std::vector<std::vector<bool>> taken_;          // of each path, by instant
 };
 

@@ -1,4 +1,4 @@
-// The edits that give each person one track under one name, out of what was found of who is who.
+// The edits that give each person one track under one name, from the identities found.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace marey::pipeline::identify {
 struct NamedPaths {
   std::vector<take::EditRequest> edits;
   std::vector<std::optional<TrackId>> tracks;  ///< of each path the track it is once the edits are done; nothing: it has no place
-  std::int64_t excluded = 0;                   ///< places that the edits delete, since they are no person's
+  std::int64_t excluded = 0;                   ///< places that the edits delete, since they belong to no person
   std::vector<double> known_s;                 ///< for this long a person is reported to be of that path
 };
 

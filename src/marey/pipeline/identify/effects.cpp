@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMinChange = 0.5;  // s of person-time; unswept
 
-/// Who bears which name where: by instant and place.
+/// Which person has which name, by instant and place.
 using NamesOfPositions = std::map<std::tuple<std::int32_t, double, double>, std::string>;
 
 class TriedAnswer {

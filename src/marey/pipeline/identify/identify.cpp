@@ -33,7 +33,7 @@ EditedTake edited_take(const std::string& path) {
   return take;
 }
 
-/// Names of a run before would be in the way of those of this one.
+/// Names of a run before would conflict with those of this one.
 void require_unnamed(const EditedTake& take, const std::string& path, const std::vector<SquadMember>& squads) {
   for (const TrackColumns& track : take.recording.tracks()) {
     for (const SquadMember& member : squads) {

@@ -119,7 +119,7 @@ std::int32_t instant_at(double time_s, const TrackedPeople& people) {
   return static_cast<std::int32_t>((later ? after : before) - people.times.begin());
 }
 
-/// "#3, #7 and #9": who is there then, the nearest to where the track is nearest in time first.
+/// "#3, #7 and #9": the people there then, the nearest to where the track is nearest in time first.
 std::string those_near_by(const Recording& recording, const TrackColumns* missing, std::int32_t instant) {
   std::vector<std::pair<double, int>> near;
   for (const TrackColumns& track : recording.tracks()) {

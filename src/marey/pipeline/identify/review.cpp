@@ -18,7 +18,7 @@ namespace {
 using format::match::clock_of_seconds;
 using track::ground::offline::GroundIdentities;
 
-constexpr double kMinUnnamed = 2;  // s; who is there for less is not asked for
+constexpr double kMinUnnamed = 2;  // s; a person there for less is not asked for
 constexpr std::size_t kMaxCandidates = 3;
 constexpr double kMinCandidate = 0.05;
 

@@ -24,7 +24,7 @@ struct ReviewItem {
   std::int64_t frame = 0;  ///< from which on the answer counts
   double probability = 0;  ///< that what the take says is wrong: of "who", that it is a person of the roster
   std::int64_t edit = 0;   ///< the last one that counted when this was listed; 0: none
-  double changes_s = 0;    ///< s of person-time that bear another name after the answer that is not the take's; as told when listed
+  double changes_s = 0;    ///< s of person-time that have another name after the answer that is not the take's; as of listing
   std::string answer = {};
   std::string where = {};  ///< "doubts.csv:3", of a list that was read
 };

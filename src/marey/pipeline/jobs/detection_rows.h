@@ -20,7 +20,7 @@ struct PeopleDetection {
 void add_people_rows(Table& table, PeopleDetection& detection);
 
 /// `keypoints`: body points are searched too, which brings a detection network of its own. `needs_every_frame`: the option that
-/// needs detections in each frame, empty if there is none. Throws WrongOption for options that exclude each other.
+/// needs detections in each frame, empty if absent. Throws WrongOption for options that exclude each other.
 detect::DetectorOptions detector_of(const PeopleDetection& detection, bool keypoints, const std::string& needs_every_frame);
 
 /// --model: the network that finds body points.

@@ -78,13 +78,13 @@ class Table {
   Option& output_folder(std::string name, std::string& value, std::string help);
   Option& size(std::string name, std::string& value, std::string help);
   Option& corners(std::string name, std::string& value, std::string help);
-  /// One of `names`; the text itself is kept, a `resolved` function looks it up.
+  /// One of `names`; the text itself is kept, a `resolved` function resolves it.
   Option& choice(std::string name, std::string& value, std::vector<std::string> names, std::string help);
 
   /// A word that every recording of this job states in `made_by.options`: {"targets", "markers"}.
   void always(std::string name, std::string value) { always_.emplace(std::move(name), std::move(value)); }
 
-  /// Null if there is none.
+  /// Null if it does not exist.
   Option* find(const std::string& name);
   std::deque<Option>& options() { return options_; }
   /// Throws WrongOption if an option was set without the one that it needs.

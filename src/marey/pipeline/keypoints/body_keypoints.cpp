@@ -17,11 +17,11 @@ using detect::keypoints::PersonRegion;
 
 constexpr double kNearBox = 0.5;    // of a box's longer side: how far from its centre a region may lie that was found before
 constexpr double kMinSide = 0.6;    // of a region about the box, and ...
-constexpr double kMaxSide = 2;      // ... the most: outside them the box says where to look
+constexpr double kMaxSide = 2;      // ... the most: outside them the box gives where to search
 constexpr double kSameBody = 0.06;  // of its height: two whose points lie so near each other are one
 constexpr double kInBox = 0.15;     // intersection over union of points' hull and box, at least, of the person that is meant
 constexpr double kMaxBridge = 1;    // s between two images in which a point was found
-constexpr double kWander = 0.6;     // of a person's height a second: how far a point goes another way than straight
+constexpr double kWander = 0.6;     // of a person's height a second: how far a point departs from a straight path
 constexpr double kForgotten = 10;   // s
 
 /// Whether a person found before may still be meant by the box.
@@ -51,7 +51,7 @@ double apart(const Keypoints<2>& a, const Keypoints<2>& b) {
   return sum / static_cast<double>(a.points.size());
 }
 
-/// Points on the straight line through those of two times, at `share` of the way (more than 1: beyond).
+/// Points on the straight line through those of two times, at `fraction` of the distance (more than 1: beyond).
 std::shared_ptr<const Keypoints<2>> en_route(const Keypoints<2>& from, const Keypoints<2>& to, double fraction,
                                              double from_nearest_s) {
   auto result = std::make_shared<Keypoints<2>>(to);
@@ -94,7 +94,7 @@ void BodyKeypoints::inspect(const Instant& instant, const Image& image) {
   const auto begin = std::chrono::steady_clock::now();
   std::vector<const Sample*> samples;
   std::vector<PersonRegion> regions;
-  std::vector<std::size_t> new_ones;  // whose region a box says, and not what was found before
+  std::vector<std::size_t> new_ones;  // whose region a box gives, and not earlier points
   for (const Sample& sample : instant.samples) {
     if (!sample.box || sample.box->empty()) continue;
     const Person& person = people_.at(sample.track);
@@ -158,7 +158,7 @@ void BodyKeypoints::take_in(std::span<const Sample* const> samples, std::span<co
   }
 }
 
-/// What is known of a person's points at a time, which grows from call to call.
+/// The estimate of a person's points at a time, which grows from call to call.
 std::shared_ptr<const Keypoints<2>> BodyKeypoints::at(Person& person, Timestamp time, bool inspected) const {
   while (!person.waiting.empty() && (person.detected.empty() || person.detected.back().time < time)) {
     person.detected.push_back({person.waiting.front(), std::make_shared<Keypoints<2>>(person.swaps.take())});
@@ -191,7 +191,7 @@ std::optional<Instant> BodyKeypoints::next(bool ended) {
   if (!live_ && !ended) {
     if (seconds(waiting_.back().instant.time - time) < options_.lag_s) return std::nullopt;
     const bool later_look = std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& one) { return one.inspected; });
-    if (!later_look) return std::nullopt;  // what lies between two looks is known after the second
+    if (!later_look) return std::nullopt;  // what lies between two inferences is known after the second
   }
   Instant instant = std::move(waiting_.front().instant);
   const bool inspected = waiting_.front().inspected;

@@ -18,15 +18,15 @@ namespace marey::pipeline::keypoints {
 
 struct KeypointOptions {
   std::string model = "full";  ///< the landmark network: lite, full, heavy, or an ONNX file
-  int every = 1;               ///< it looks at every n-th frame
+  int every = 1;               ///< it processes every n-th frame
   double lag_s = 0.5;          ///< that later frames have a say in which side is left; none where `live`
   double sure = 0.5;           ///< presence from which on there is a person
-  double patience_s = 2;       ///< that a person is kept in whom the network sees no person
+  double patience_s = 2;       ///< that a person is kept after the network lost them
 };
 
-/// Keypoints of people who are tracked with boxes: a region for each from what was found before, else from the box, the network,
-/// left and right corrected over time. Between the frames that the network looks at points are interpolated, live carried on as
-/// they moved. Who is not seen by it for long is no person, and leaves the instants.
+/// Keypoints of people who are tracked with boxes: a region for each from earlier points, else from the box, the network,
+/// left and right corrected over time. Between the frames that the network processes points are interpolated, live carried on as
+/// they moved. One that it does not see for long is not a person, and leaves the instants.
 class BodyKeypoints {
  public:
   /// Throws Error if the network is not usable.

@@ -109,7 +109,7 @@ void CameraPeople::take(std::span<const Body> bodies, Timestamp now) {
   people_.clear();
   of_people_.clear();
   for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (known_[i].appearances < options_.min_looks) continue;
+    if (known_[i].appearances < options_.min_detector_runs) continue;
     people_.push_back(known_[i].body);
     of_people_.push_back(i);
   }

@@ -1,4 +1,4 @@
-// The people in one live camera's images: each is searched in the region that the frame before told, so that a person detector is
+// The people in one live camera's images: each is searched in the region that the frame before gave, so that a person detector is
 // needed only for those who are new.
 #pragma once
 
@@ -18,10 +18,10 @@ struct CameraPeopleOptions {
   double presence = 0.5;         ///< from which on there is a person, unswept
   double unplaced_s = 2;         ///< a region whose person no other camera confirms ends after this, unswept
   double search_s = 2;           ///< the detector runs at least this often while people may come, unswept
-  double retry_s = 0.5;          ///< and at most this often when a region has ended or there is none, unswept
+  double retry_s = 0.5;          ///< and at most this often when a region has ended or is absent, unswept
   double expect_s = 0.2;         ///< between two searches for people that only other cameras see, unswept
   std::size_t max_regions = 12;  ///< of an image; further people wait, unswept
-  int min_looks = 2;             ///< after which a person is reported: the first region is only a box, which makes points worse
+  int min_detector_runs = 2;     ///< after which a person is reported: the first region is only a box, which makes points worse
   double same_centre = 0.2;      ///< distance of the centres of regions of one person, of the larger side, unswept
   double same_points = 0.06;     ///< mean distance between the points of bodies that are the same, of the height
   double max_step = 0.5;         ///< of a region's centre from image to image, of its side, unswept
@@ -40,13 +40,13 @@ class CameraPeople {
   /// A person that other cameras see should be here. Searched at most every `expect_s` until they are seen.
   void expect(const detect::keypoints::PersonRegion& region, Timestamp now);
 
-  /// Where to look in the next image. Valid until the next call of anything.
+  /// Where to search in the next image. Valid until the next call of anything.
   std::span<const detect::keypoints::PersonRegion> regions();
   /// What the network saw in each of them.
   void take(std::span<const detect::keypoints::Body> bodies, Timestamp now);
 
-  /// The people of the last image, those that the network saw in `min_looks` images at least; `placed` says which of them other
-  /// cameras confirm.
+  /// The people of the last image, those that the network saw in `min_detector_runs` images at least; `placed` says which of them
+  /// other cameras confirm.
   const std::vector<Keypoints<2>>& people() const { return people_; }
   void located(std::size_t index, Timestamp now);
 

@@ -13,7 +13,7 @@ namespace {
 
 namespace rk = reconstruct::keypoints;
 
-void add_to_tracks(const rk::LocatedPerson& person, std::size_t instant, FollowedPeople& tracked) {
+void add_to_tracks(const rk::LocatedPerson& person, std::size_t instant, TrackedPeople& tracked) {
   rk::PersonTrack& track = tracked.tracks[person.id];
   if (track.instants.empty()) track = {.id = person.id, .first = instant, .instants = {}};
   track.instants.resize(instant - track.first + 1);
@@ -21,9 +21,9 @@ void add_to_tracks(const rk::LocatedPerson& person, std::size_t instant, Followe
 }
 
 /// The first `most` instants.
-FollowedPeople follow_some(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
-                           std::size_t maximum, const Hooks& hooks) {
-  FollowedPeople tracked;
+TrackedPeople track_some(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
+                         std::size_t maximum, const Hooks& hooks) {
+  TrackedPeople tracked;
   rk::PeopleInViews people(set, static_cast<int>(cameras.size()));
   std::vector<rk::PersonView> views;
   for (std::size_t t = 0; t < std::min(maximum, frames.size()); ++t) {
@@ -52,13 +52,13 @@ FollowedPeople follow_some(const CalibratedCameras& cameras, const KeypointFrame
 
 }  // namespace
 
-FollowedPeople follow_in_views(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
-                               const Hooks& hooks) {
-  return follow_some(cameras, frames, set, noise, frames.size(), hooks);
+TrackedPeople track_in_views(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
+                             const Hooks& hooks) {
+  return track_some(cameras, frames, set, noise, frames.size(), hooks);
 }
 
-FollowedPeople follow_on_floor(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set) {
-  FollowedPeople tracked;
+TrackedPeople track_on_floor(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set) {
+  TrackedPeople tracked;
   const auto only = std::find_if(cameras.begin(), cameras.end(), [](const auto& camera) { return camera.has_value(); });
   const auto c = static_cast<std::size_t>(only - cameras.begin());
   rk::PeopleBeforeCamera people(set, **only, static_cast<int>(c), static_cast<int>(cameras.size()));
@@ -78,7 +78,7 @@ double keypoint_noise(const CalibratedCameras& cameras, const KeypointFrames& fr
   constexpr double kMuchMore = 1.2;
   double best = 1, best_placed = 0;
   for (const double noise : {1.3, 2.6, 5.2}) {
-    FollowedPeople tracked = follow_some(cameras, frames, set, noise, std::min(kLearnsFrom, frames.size()), {});
+    TrackedPeople tracked = track_some(cameras, frames, set, noise, std::min(kLearnsFrom, frames.size()), {});
     const double located = static_cast<double>(tracked.located);
     if (located <= kMuchMore * best_placed) continue;
     best_placed = located;

@@ -14,7 +14,7 @@
 
 namespace marey::pipeline::keypoints {
 
-struct FollowedPeople {
+struct TrackedPeople {
   std::map<int, reconstruct::keypoints::PersonTrack> tracks;
   std::int64_t detected = 0, located = 0;  ///< people in images
   std::vector<double> squares;             ///< of the triangulated points, per degree of freedom
@@ -24,10 +24,10 @@ struct FollowedPeople {
 using CalibratedCameras = std::vector<std::optional<Camera>>;  ///< nothing: it has no keypoints
 
 /// By several cameras (people_in_views.h); `noise` times the deviations that the keypoints state.
-FollowedPeople follow_in_views(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
-                               const Hooks& hooks);
+TrackedPeople track_in_views(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set, double noise,
+                             const Hooks& hooks);
 /// By the only camera that there is (one_camera.h).
-FollowedPeople follow_on_floor(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set);
+TrackedPeople track_on_floor(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set);
 
 /// How many times the stated deviations the errors are, by how well rays meet: at the least noise with which most views are placed.
 double keypoint_noise(const CalibratedCameras& cameras, const KeypointFrames& frames, const KeypointSet& set);

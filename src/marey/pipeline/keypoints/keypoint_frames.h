@@ -20,9 +20,9 @@ struct KeypointCamera {
   double last_s() const { return offset_s + (static_cast<double>(sequence.frames.size()) - 1) / rate_hz; }
 };
 
-/// The keypoints of people in one image, brought to an instant between two frames: each point on the straight way between the two
+/// The keypoints of people in one image, brought to an instant between two frames: each point on the straight line between the two
 /// where both show it, else as the nearer one has it. People are the same whose points lie nearest to each other. `share` in [0, 1]
-/// of the way from the earlier to the later frame.
+/// of the distance from the earlier to the later frame.
 std::vector<Keypoints<2>> between_frames(const std::vector<Keypoints<2>>& earlier, const std::vector<Keypoints<2>>& later,
                                          double fraction);
 

@@ -19,11 +19,11 @@ namespace {
 using solve::skeleton::StandingMarker;
 using solve::skeleton::StandingSegment;
 
-constexpr double kSpineFraction = 0.15;  // of the way from hips to shoulders where the trunk bends
+constexpr double kSpineFraction = 0.15;  // of the distance from hips to shoulders where the trunk bends
 constexpr double kMinPositions = 5;      // instants at which something must be seen
 constexpr double kMinSine = 0.05;        // of the angle between directions that make a frame
 constexpr double kShinToFloor_m = 0.06;
-constexpr double kHeadAboveNeck = 0.3;  // of the way from the shoulders' middle to the ears' where the head turns
+constexpr double kHeadAboveNeck = 0.3;  // of the distance from the shoulders' middle to the ears' where the head turns
 
 /// BlazePose's hips: thighs of 377 to 397 mm where OpenPose has 416 on the same videos.
 constexpr double kBlazeHipInwards_m = 0.010, kBlazeHipDown_m = 0.018;
@@ -150,7 +150,7 @@ std::optional<Rigid3> foot_at(const KeypointTracks& tracks, const std::string& s
   return Rigid3{*axes, *ankle};
 }
 
-/// Takes a coordinate out: its joint does not turn that way.
+/// Takes a coordinate out: its joint does not rotate about that axis.
 void take_out_coordinate(Skeleton& skeleton, const std::string& name) {
   const auto index = skeleton.coordinate(name);
   if (!index) return;

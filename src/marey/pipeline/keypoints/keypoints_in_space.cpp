@@ -66,7 +66,7 @@ class KeypointJob {
                   Recording& recording);
   void count(const rk::PersonTrack& track, const rk::PersonPath* path);
   void count_cameras();
-  void report(const FollowedPeople& tracked);
+  void report(const TrackedPeople& tracked);
   void warn_of_misfit();
   RecordingHeader header() const;
 
@@ -223,7 +223,7 @@ KeypointsSummary::Person person_of(const rk::PersonTrack& track, std::string lab
   return stated;
 }
 
-void KeypointJob::report(const FollowedPeople& tracked) {
+void KeypointJob::report(const TrackedPeople& tracked) {
   summary_.set = set_.name;
   summary_.points = static_cast<int>(set_.points.size());
   summary_.frames = static_cast<std::int64_t>(frames_->size());
@@ -285,8 +285,8 @@ Recording KeypointJob::run() {
   residuals_.resize(cameras_.size());
   ratios_.resize(cameras_.size());
   const double noise = summary_.one_camera ? 1 : keypoint_noise(cameras_, *frames_, set_);
-  FollowedPeople tracked = summary_.one_camera ? follow_on_floor(cameras_, *frames_, set_)
-                                               : follow_in_views(cameras_, *frames_, set_, kGateSlack * noise, hooks_);
+  TrackedPeople tracked = summary_.one_camera ? track_on_floor(cameras_, *frames_, set_)
+                                              : track_in_views(cameras_, *frames_, set_, kGateSlack * noise, hooks_);
   std::vector<rk::PersonTrack> people = people_kept(std::move(tracked.tracks));
   if (people.empty() && summary_.one_camera)
     throw Error("no person is placed: of {} people in the images none stands on the floor; is z = 0 the floor in the rig?",

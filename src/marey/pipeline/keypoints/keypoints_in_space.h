@@ -1,4 +1,4 @@
-// The job from body keypoints in several calibrated cameras' images to the same keypoints in space: who is who in which camera
+// The job from body keypoints in several calibrated cameras' images to the same keypoints in space: identities across cameras
 // (reconstruct/keypoints/people_in_views.h), where each point is at each instant, and each point's path (…/person_path.h).
 #pragma once
 

@@ -26,7 +26,7 @@ using detect::keypoints::Body;
 using detect::keypoints::Look;
 using detect::keypoints::PersonRegion;
 
-constexpr double kFewestPlaced = 0.75;   // fraction of people in images below which the reasons are searched: as for recordings
+constexpr double kMinLocated = 0.75;     // fraction of people in images below which the reasons are searched: as for recordings
 constexpr double kWorstLiveNoise = 2.5;  // factor of the stated deviations, numerical: just below where learning begins and ends
 constexpr std::size_t kMaxKept = 120;    // numerical: instants that are kept for that
 
@@ -81,7 +81,7 @@ class KeypointsLive final : public corridor::Stage {
         options_(options) {
     for (const RigCamera& camera : rig.cameras) {
       cameras_.push_back(camera.camera());
-      counts_.push_back({.name = camera.name});
+      counts_.emplace_back().name = camera.name;
       in_images_.emplace_back(set_, options.cameras);
       auto& kept = kept_.emplace_back();
       if (!cameras_.back()) continue;
@@ -103,7 +103,7 @@ class KeypointsLive final : public corridor::Stage {
   void location(const FrameSet& frames, double step_s);
   void expect_in_other_cameras(const FrameSet& frames);
   std::optional<PersonRegion> region_in(const Camera& camera, std::span<const std::optional<Vector<3>>> points) const;
-  void tell_seen(Instant& instant) const;
+  void report_observed(Instant& instant) const;
   void keep();
   bool is_full(std::size_t camera) const;
 
@@ -121,15 +121,15 @@ class KeypointsLive final : public corridor::Stage {
   KeypointsLiveOptions options_;
   std::vector<rk::LocatedPerson> located_;
   std::vector<Look> appearances_;
-  std::vector<std::size_t> looked_in_;  // camera of each inspection
+  std::vector<std::size_t> detected_in_;  // camera of each inspection
   std::vector<char> has_frame_;
   std::optional<Timestamp> before_;
   Instant instant_;
   std::vector<corridor::Summary::Camera> counts_;
   std::vector<std::optional<KeypointCamera>> kept_;  // of the first instants in which two cameras saw people
-  StageTimes searching_, looking_, placing_;
-  std::int64_t searches_ = 0, looks_count_ = 0, with_people_ = 0;
-  bool told_misfit_ = false;
+  StageTimes searching_, detecting_, locating_;
+  std::int64_t searches_ = 0, detector_runs_ = 0, with_people_ = 0;
+  bool reported_misfit_ = false;
 };
 
 RecordingHeader KeypointsLive::header() const {
@@ -169,20 +169,20 @@ void KeypointsLive::search(const FrameSet& frames) {
 
 void KeypointsLive::inspect(const FrameSet& frames) {
   appearances_.clear();
-  looked_in_.clear();
+  detected_in_.clear();
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
     for (const PersonRegion& region : in_images_[c].regions()) {
       appearances_.push_back({frames.cameras[c]->frame.image, region});
-      looked_in_.push_back(c);
+      detected_in_.push_back(c);
     }
   }
   std::vector<Body> bodies;
   if (!appearances_.empty()) {
-    const Stopwatch watch(looking_);
+    const Stopwatch watch(detecting_);
     bodies = find_bodies_(appearances_);
   }
-  looks_count_ += std::ssize(appearances_);
+  detector_runs_ += std::ssize(appearances_);
   std::size_t begin = 0;
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
@@ -250,7 +250,7 @@ void KeypointsLive::expect_in_other_cameras(const FrameSet& frames) {
   }
 }
 
-void KeypointsLive::tell_seen(Instant& instant) const {
+void KeypointsLive::report_observed(Instant& instant) const {
   for (const rk::LocatedPerson& person : located_) {
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       if (person.views[c] < 0) continue;
@@ -293,20 +293,20 @@ std::span<const Instant> KeypointsLive::step(const FrameSet& frames) {
   instant_.index = frames.index;
   instant_.time = frames.time;
   {
-    const Stopwatch watch(placing_);
+    const Stopwatch watch(locating_);
     location(frames, step_s);
     people_.step(located_, step_s, instant_);
     expect_in_other_cameras(frames);
-    tell_seen(instant_);
+    report_observed(instant_);
   }
   return {&instant_, 1};
 }
 
 std::vector<std::string> KeypointsLive::news() {
   std::vector<std::string> news = people_.take_news();
-  if (!told_misfit_ && with_people_ >= static_cast<std::int64_t>(kMaxKept)) {
-    told_misfit_ = true;
-    if (static_cast<double>(views_.views_located()) < kFewestPlaced / 2 * static_cast<double>(views_.views_observed()))
+  if (!reported_misfit_ && with_people_ >= static_cast<std::int64_t>(kMaxKept)) {
+    reported_misfit_ = true;
+    if (static_cast<double>(views_.views_located()) < kMinLocated / 2 * static_cast<double>(views_.views_observed()))
       news.push_back(
           fmt::format("only {} of {} people in images are placed: two cameras must see the same person, and stand where "
                       "they were calibrated",
@@ -319,13 +319,13 @@ void KeypointsLive::report(corridor::Summary& summary) const {
   summary.cameras = counts_;
   for (const corridor::Summary::Camera& camera : counts_) summary.detections += camera.detections;
   for (const auto& [name, times] : {std::pair<const char*, const StageTimes*>{"person detector", &searching_},
-                                    {"keypoints", &looking_},
-                                    {"placing", &placing_}}) {
+                                    {"keypoints", &detecting_},
+                                    {"placing", &locating_}}) {
     if (times->count() > 0) summary.steps.push_back({name, times->count(), times->quantile(0.5), times->quantile(0.99)});
   }
   summary.figures["people"] = static_cast<double>(people_.numbers());
   summary.figures["person_searches"] = static_cast<double>(searches_);
-  summary.figures["regions"] = static_cast<double>(looks_count_);
+  summary.figures["regions"] = static_cast<double>(detector_runs_);
   summary.figures["people_in_images"] = static_cast<double>(views_.views_observed());
   summary.figures["people_placed"] = static_cast<double>(views_.views_located());
   summary.figures["noise"] = noise_.times_stated();
@@ -338,7 +338,7 @@ void KeypointsLive::report(corridor::Summary& summary) const {
     summary.warnings.push_back("no person was seen in any image");
     return;
   }
-  const bool few = located < kFewestPlaced * detected, noisy = noise_.is_learned() && noise_.times_stated() > kWorstLiveNoise;
+  const bool few = located < kMinLocated * detected, noisy = noise_.is_learned() && noise_.times_stated() > kWorstLiveNoise;
   if (few) summary.warnings.push_back(fmt::format("only {:.0f} of {:.0f} people in images are placed", located, detected));
   if (noisy)
     summary.warnings.push_back(

@@ -1,8 +1,8 @@
 // Body keypoints of several live cameras, in space, instant by instant: a stage of the corridor.
 //
-// Each camera's people are searched in the regions that its last image told (camera_people.h), all cameras' regions by one pool of
-// threads. Who is in which camera, and where their points are, say the parts that serve recordings too
-// (reconstruct/keypoints/people_in_views.h); a causal filter follows each point (placed_people.h). A person whom a camera has lost,
+// Each camera's people are searched in the regions that its last image gave (camera_people.h), all cameras' regions by one pool of
+// threads. The people in each camera, and where their points are, come from the parts that serve recordings too
+// (reconstruct/keypoints/people_in_views.h); a causal filter follows each point (placed_people.h). A person that a camera has lost,
 // or who enters its image, is searched for where the others place them; the person detector runs only when a region has ended, when
 // a camera sees no person, and every few seconds, in one image of an instant at most. Cost: one run of the landmark network for
 // each person and camera.
@@ -36,7 +36,7 @@ struct KeypointsLiveOptions {
   FindBodies find_bodies = {};  ///< in place of `model`
   KeypointSet set = keypoint_set_named("blazepose");  ///< of `find_bodies`
   CameraPeopleOptions cameras = {};
-  PlacedPeopleOptions people = {};
+  LocatedPeopleOptions people = {};
   double gate_slack = 1.3;               ///< factor of the noise for the association, as for recordings
   double min_visibility = 0.5;           ///< of a point that is reported as seen by a camera, unswept
   std::size_t min_points_in_image = 12;  ///< of a person that is searched in another camera's image, unswept

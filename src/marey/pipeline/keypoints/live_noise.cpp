@@ -7,7 +7,7 @@ namespace marey::pipeline::keypoints {
 namespace {
 
 constexpr std::size_t kBlock = 1000;  // points, numerical: enough for a median
-constexpr int kMostBlocks = 10;       // numerical: then the median is known
+constexpr int kMaxBlocks = 10;        // numerical: then the median is known
 // Numerical: never above the start, so that a rig that does not fit cannot widen the gates by its own errors.
 constexpr double kMinValue = 0.5, kMaxCount = 2.6;
 constexpr double kMedianOfMean = 0.9;  // by definition: the median of a sum of squares is a little below its mean
@@ -15,7 +15,7 @@ constexpr double kMedianOfMean = 0.9;  // by definition: the median of a sum of 
 }  // namespace
 
 void LiveNoise::learn(std::span<const reconstruct::keypoints::LocatedPerson> people, double slack) {
-  if (blocks_ >= kMostBlocks) return;
+  if (blocks_ >= kMaxBlocks) return;
   for (const auto& person : people) {
     for (const auto& point : person.points) {
       if (point) squares_.push_back(point->chi_square / (2 * point->rays - 3));

@@ -10,7 +10,7 @@ namespace {
 
 using reconstruct::keypoints::LocatedPerson;
 
-std::optional<Vector<3>> mean_place(const LocatedPerson& person) {
+std::optional<Vector<3>> mean_position(const LocatedPerson& person) {
   Vector<3> sum = Vector<3>::Zero();
   double count = 0;
   for (const auto& point : person.points) {
@@ -22,7 +22,7 @@ std::optional<Vector<3>> mean_place(const LocatedPerson& person) {
 
 }  // namespace
 
-LocatedPeople::LocatedPeople(const KeypointSet& set, const PlacedPeopleOptions& options) : set_(set), options_(options) {}
+LocatedPeople::LocatedPeople(const KeypointSet& set, const LocatedPeopleOptions& options) : set_(set), options_(options) {}
 
 const LocatedPeople::Slot* LocatedPeople::slot_of(int person) const {
   const auto found = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.person == person; });
@@ -38,7 +38,7 @@ LocatedPeople::Slot* LocatedPeople::give_slot(const LocatedPerson& person) {
   auto known = std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& one) { return one.person == person.id; });
   if (known == candidates_.end()) known = candidates_.insert(known, Candidate{person.id, 0});
   if (++known->instants < options_.settle) return nullptr;
-  const auto location = mean_place(person);
+  const auto location = mean_position(person);
   if (!location) return nullptr;
   Slot* given = nullptr;
   for (Slot& slot : slots_) {
@@ -110,7 +110,7 @@ void LocatedPeople::step(std::span<const LocatedPerson> people, double step_s, I
     if (slot == nullptr) continue;
     correct(*slot, person);
     slot->unobserved_s = 0;
-    slot->location = mean_place(person).value_or(slot->location);
+    slot->location = mean_position(person).value_or(slot->location);
   }
   for (std::size_t number = 0; number < slots_.size(); ++number) {
     Slot& slot = slots_[number];

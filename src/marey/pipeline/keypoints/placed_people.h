@@ -20,7 +20,7 @@
 
 namespace marey::pipeline::keypoints {
 
-struct PlacedPeopleOptions {
+struct LocatedPeopleOptions {
   int maximum = 0;            ///< people who get a number; 0: all
   int settle = 3;             ///< instants in which a person is placed before they get one, unswept
   int max_refused = 3;        ///< measurements outside the gate, one after the other, after which a point starts again, unswept
@@ -32,7 +32,7 @@ struct PlacedPeopleOptions {
 
 class LocatedPeople {
  public:
-  LocatedPeople(const KeypointSet& set, const PlacedPeopleOptions& options = {});
+  LocatedPeople(const KeypointSet& set, const LocatedPeopleOptions& options = {});
 
   /// Puts the tracks of an instant, `step_s` after the last one, into it: labels are "P1:left_knee", "P2:…".
   void step(std::span<const reconstruct::keypoints::LocatedPerson> people, double step_s, Instant& instant);
@@ -71,7 +71,7 @@ class LocatedPeople {
   void notify(const Slot& slot, std::size_t number, const reconstruct::keypoints::LocatedPerson* detected, Instant& instant) const;
 
   KeypointSet set_;
-  PlacedPeopleOptions options_;
+  LocatedPeopleOptions options_;
   std::vector<Slot> slots_;
   std::vector<Candidate> candidates_;
   std::vector<std::string> news_;

@@ -23,7 +23,7 @@ class CameraSettings {
 
   struct Camera {
     std::vector<source::live::ControlRange> controls;  ///< that it has
-    std::string refused;  ///< why it did not take what was asked for last, its name first; empty if it did
+    std::string refused;                               ///< why it did not take the last request, its name first; empty if it did
     corridor::MarkerTuning::Values markers;
   };
 

@@ -21,7 +21,7 @@ namespace marey::pipeline::live {
 
 enum class LiveTargets { markers, people, keypoints };
 
-/// What runs, by what is asked for and what is known of the rig.
+/// What runs, by the request and the known parts of the rig.
 enum class LiveJob { preview, markers_in_image, markers_in_space, people_in_image, people_on_ground, keypoints_in_space };
 
 /// "a preview", "markers in space", …
@@ -29,7 +29,7 @@ std::string_view to_string(LiveJob job);
 
 struct LiveOptions {
   LiveTargets targets = LiveTargets::markers;
-  bool ground = false;  ///< people are placed on the ground that the cameras look at
+  bool ground = false;  ///< people are placed on the ground that the cameras face
   markers::MarkersInSpaceOptions space;
   markers::ImageMarkerOptions markers;
   people::ImagePeopleOptions people;
@@ -41,7 +41,7 @@ struct LiveOptions {
   std::shared_ptr<markers::TrackNaming> naming = {};  ///< names that tracks are given by hand; null: none
   double patience_s = 3;                              ///< that is waited at the beginning for cameras that are not there
 
-  std::string take;                                   ///< what is recorded into, NAME.marey; empty: nothing
+  std::string take;                                   ///< the take recorded into, NAME.marey; empty: nothing
   std::string images;                                 ///< a folder for what each camera saw while it was recorded; empty: not kept
   std::shared_ptr<corridor::RecordSwitch> recording;  ///< null: all is recorded
   double preroll_s = 5;                               ///< of what came before recording was switched on
@@ -61,7 +61,7 @@ struct LiveSummary : corridor::Summary {
 /// a preview.
 LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground);
 
-/// Runs until `hooks.stop` says so, or all that is played has ended; what was recorded is whole then. Throws Error if a source
+/// Runs until `hooks.stop` says so, or all that is played has ended; the recording is complete then. Throws Error if a source
 /// cannot be meant, a camera's images do not fit the rig, no camera gave anything, or the take cannot be begun.
 LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks = {});
 

@@ -5,7 +5,7 @@
 
 namespace marey::pipeline::live {
 
-/// `films` plays videos; beside them the kind that is returned plays takes, NAME.marey, each camera that saw something one source.
+/// `videos` plays videos; beside them the kind that is returned plays takes, NAME.marey, each camera that saw something one source.
 source::live::Kind with_takes(source::live::Kind videos);
 
 }  // namespace marey::pipeline::live

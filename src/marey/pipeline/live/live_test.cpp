@@ -211,7 +211,7 @@ TEST(Live, RunningJobUsesKnownOptions) {
   EXPECT_EQ(live_job(rig_of_sources(two), LiveTargets::markers, false), LiveJob::preview);
 }
 
-/// A real run of half a second: who is away from the beginning is searched for, the others lose nothing by it.
+/// A real run of half a second: a camera away from the beginning is searched for, the others lose nothing by it.
 TEST(Live, MissingCameraAffectsOnlyItself) {
   const std::vector<std::string> given{"sim://room?cameras=4&rate=50&blobs&markers=10&away=2,-1,100"};
   std::stop_source end;

@@ -16,7 +16,7 @@
 namespace marey::pipeline::markers {
 namespace {
 
-/// Draws into the images as they come; the first alone where that is what was asked for.
+/// Draws into the images as they come; the first alone if that was requested.
 class BlobOverlay {
  public:
   BlobOverlay(const std::string& path, const SourceInfo& info) : path_(path) {

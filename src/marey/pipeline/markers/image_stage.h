@@ -20,7 +20,7 @@ struct ImageMarkerOptions {
   std::shared_ptr<corridor::MarkerTuning> tuning = {};  ///< how the detector is changed while it runs; null: it stays as it is
 };
 
-/// After the last frame (not where `live`) false points are dropped, what is known to be gone is cut, and gaps are filled from both
+/// After the last frame (not where `live`) false points are dropped, parts known to be gone are cut, and gaps are filled from both
 /// ends. Memory grows with the rows, 64 bytes each.
 std::unique_ptr<corridor::Stage> markers_in_image(const corridor::Feed& feed, const ImageMarkerOptions& options);
 

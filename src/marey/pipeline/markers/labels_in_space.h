@@ -30,9 +30,9 @@ struct LabelSummary {
   std::vector<solve::labels::Unnamed> unnamed;
   std::int64_t instants = 0, points = 0, named = 0;  ///< points that were measured or filled; of these with a name now
   std::int64_t accepted = 0;                         ///< pieces that got the name that fits them best all the same
-  std::int64_t renamed = 0;                          ///< stretches of tracks that had another name of the set
+  std::int64_t renamed = 0;                          ///< segments of tracks that had another name of the set
   double scale = 1;
-  double misfit = 0;  ///< how far rigid distances are off, against what is expected of the subject that taught: about 1
+  double misfit = 0;  ///< how far rigid distances are off, against the values of the subject that taught: about 1
   std::vector<std::string> warnings;
 };
 

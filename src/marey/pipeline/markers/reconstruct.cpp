@@ -26,7 +26,7 @@ struct ForAWhile {
   }
 };
 
-/// Most formats begin with what is known only at the end: the take is read twice.
+/// Most formats begin with values available only at the end: the take is read twice.
 void rewrite(const std::string& take, const std::string& out, const format::Format& format) {
   const format::WritePlan plan = format::plan_of(*format::open_recording(take), take);
   const auto reader = format::open_recording(take);

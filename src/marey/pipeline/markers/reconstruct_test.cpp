@@ -319,7 +319,7 @@ struct Spread {
 };
 
 /// The names and places of the wing's markers, m. Its layout is symmetric, but for its frame: in the world x and y run the other
-/// way.
+/// direction.
 MarkerSet set_of_wing(const std::string& data) {
   MarkerSet set;
   std::ifstream layout(data + "/marker_layout_mm.csv");

@@ -77,7 +77,7 @@ void LiveLabelling::note_points(const Instant& instant) {
       continue;
     points_now_.push_back({sample.track, sample.position, fixed_name(sample.track)});
   }
-  counts_.most_points = std::max(counts_.most_points, points_now_.size());
+  counts_.max_points = std::max(counts_.max_points, points_now_.size());
 }
 
 int LiveLabelling::fixed_name(TrackId track) const {
@@ -169,8 +169,8 @@ std::vector<std::string> LiveLabelling::news() {
 std::vector<std::string> LiveLabelling::warnings() const {
   const double size = static_cast<double>(set_->size());
   if (!counts_.found_at_s) {
-    if (static_cast<double>(counts_.most_points) < SetSearch::min_points(*set_))
-      return {fmt::format("nothing was named: never more than {} markers were seen at once, of the set's {}", counts_.most_points,
+    if (static_cast<double>(counts_.max_points) < SetSearch::min_points(*set_))
+      return {fmt::format("nothing was named: never more than {} markers were seen at once, of the set's {}", counts_.max_points,
                           set_->size())};
     const std::string& failure = search_.failure();
     return {"nothing was named: " + (failure.empty() ? std::string("the recording ended before names were found") : failure)};

@@ -2,16 +2,16 @@
 // is read.
 //
 // Names are found from nothing over the last half second and more, in a task of its own: frames go by in the meantime. Its answer
-// counts from half a second after it began; from then on a LabelTracker names every frame. Now and then the task looks again at the
+// counts from half a second after it began; from then on a LabelTracker names every frame. Now and then the task inspects again the
 // last seconds, and what it then finds otherwise is corrected.
 //
 // Each search ends with the check that a whole recording gets (solve/labels/check_names.h), over the last seconds. A name that
 // could as well be exchanged with another is tracked, but not reported, until a search decides it; a later
-// doubt, in a posture that tells less, takes no name away. How far the rigid
-// distances are off the learned ones tells whether the set is of another person.
+// doubt, in a posture that shows less, takes no name away. How far the rigid
+// distances are off the learned ones shows whether the set is of another person.
 //
 // A name is one track, whatever tracks its marker had: of the first track that gets a name the number becomes the name's, and all
-// later ones that bear it are reported under that. So what is recorded has each marker once, and who listens needs no list.
+// later ones that have it are reported under that. So the recording has each marker once, and a client needs no list.
 #pragma once
 
 #include <cstdint>
@@ -54,7 +54,7 @@ class LiveLabelling {
 
  private:
   struct Counts {
-    std::size_t most_points = 0;         // at an instant
+    std::size_t max_points = 0;          // at an instant
     std::int64_t points = 0, named = 0;  // since labels were found
     std::vector<std::int64_t> observed;  // by label
     std::optional<double> found_at_s;

@@ -1,4 +1,4 @@
-// A stage that tells points in space, with a learned set's names within the frame.
+// A stage that reports points in space, with a learned set's names within the frame.
 #pragma once
 
 #include <memory>

@@ -23,7 +23,7 @@ namespace marey::pipeline::markers {
 /// Which tracks of a recording are a skeleton's markers: by their labels. "Jane:LKNE" is LKNE of a subject Jane.
 class SkeletonMarkers {
  public:
-  /// The skeleton must outlive it. Markers of the labels in `exclude` are no person's.
+  /// The skeleton must outlive it. Markers of the labels in `exclude` belong to no person.
   explicit SkeletonMarkers(const Skeleton& skeleton, const std::vector<std::string>& exclude = {});
 
   /// A label counts as the skeleton has it, or with a subject's name before it ("Jane:LASI"): then that of the first subject, and
@@ -33,7 +33,7 @@ class SkeletonMarkers {
   /// nothing new, and some systems write 0, 0, 0 where a marker is missing.
   void take(const Instant& instant, solve::skeleton::ObservedMarkers& detected) const;
 
-  std::vector<std::string> not_recorded() const;  ///< the skeleton's labels that no track bears
+  std::vector<std::string> not_recorded() const;  ///< the skeleton's labels that no track has
   std::vector<std::string> unknown() const;       ///< labels that the skeleton has not
   bool any() const { return !recorded_.empty(); }
   /// "none of its labels is a marker of the skeleton NAME; it has …, the skeleton …"
@@ -43,7 +43,7 @@ class SkeletonMarkers {
   std::map<std::string, std::size_t, std::less<>> by_label_;
   std::map<TrackId, std::size_t> marker_of_;
   std::set<std::string, std::less<>> recorded_, unknown_, excluded_;
-  std::optional<std::string> subject_;  // "Jane:"; empty if labels bear none
+  std::optional<std::string> subject_;  // "Jane:"; empty if labels have none
   std::size_t count_;
 };
 
@@ -52,7 +52,7 @@ std::vector<BodyPose> segment_poses(const Skeleton& skeleton, std::span<const Bo
                                     std::span<const double> coordinates, const std::vector<bool>& observed, double residual_m);
 
 /// Puts into each instant where the skeleton's segments are, frame by frame as `marey solve` finds them. Before the first marker is
-/// seen there are none; while a segment is hidden it is reported where it is expected, as not tracked.
+/// seen none are reported; while a segment is hidden it is reported where it is expected, as not tracked.
 class SkeletonInSpace {
  public:
   /// Throws Error if the skeleton has no markers or nothing that moves.
@@ -90,7 +90,7 @@ class SkeletonInSpace {
   std::int64_t count_ = 0, starts_ = 0;
 };
 
-/// Of a live run: who does not fit its skeleton at all is sought again this often, and no oftener, for a search takes longer than a
+/// Of a live run: a body that does not fit its skeleton is sought again at most this often, for a search takes longer than a
 /// frame.
 solve::skeleton::PoseOptions live_pose_options();
 

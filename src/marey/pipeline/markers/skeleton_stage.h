@@ -1,4 +1,4 @@
-// A stage that tells points in space, and with each instant the pose of a skeleton whose markers are among them.
+// A stage that reports points in space, and with each instant the pose of a skeleton whose markers are among them.
 #pragma once
 
 #include <memory>

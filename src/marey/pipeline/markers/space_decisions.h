@@ -31,7 +31,7 @@ class SpaceDecisions {
   /// The oldest instant that waits, with the samples of `tracks`, which the tracker decided for it.
   Instant decided(std::span<const Track<3>> tracks);
 
-  /// px, root mean square over all points that belong to a track; nothing if there is none.
+  /// px, root mean square over all points that belong to a track; nothing if there is no such point.
   std::optional<double> residual() const;
 
  private:

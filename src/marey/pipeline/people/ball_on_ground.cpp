@@ -36,7 +36,7 @@ void add_people(const Recording& recording, const reconstruct::GroundArea& area,
   }
 }
 
-/// Where people are who were followed is no person's ball, though a camera's detector may have missed them.
+/// A detection where tracked people are is not a ball, though a camera's detector may have missed them.
 void add_boxes(const GroundViews& views, std::vector<BallObservations>& time_steps) {
   for (BallObservations& time_step : time_steps) {
     for (track::ball::BallView& view : time_step.views) {

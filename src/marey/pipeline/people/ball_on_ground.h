@@ -20,7 +20,7 @@ struct BallOptions {
   track::ball::BallTrajectoryOptions method;
 };
 
-/// Follows the ball through `moments`, whose people are those of `recording` (in the user's frame, an instant an instant), and puts
+/// Tracks the ball in `time_steps`, whose people are those of `recording` (in the user's frame, an instant an instant), and puts
 /// it into the recording, as a track of three dimensions that is called "ball". Returns its id; nothing if it was never found.
 std::optional<TrackId> track_ball(std::vector<track::ball::BallObservations> time_steps,
                                   const std::shared_ptr<const GroundViews>& views, const reconstruct::GroundArea& area,

@@ -9,7 +9,7 @@
 
 namespace marey::pipeline::people {
 
-/// As `people_on_ground`, with `options.bramble`; detector, tracker, what is learned and teams do not count. Throws Error if a
+/// As `people_on_ground`, with `options.bramble`; detector, tracker, learned models and teams do not count. Throws Error if a
 /// camera has no images, is not calibrated, or is a PTZ camera.
 std::unique_ptr<PeopleOnGround> bramble_on_ground(const std::vector<corridor::Feed>& feeds, const Rig& rig,
                                                   const PeopleOnGroundOptions& options);

@@ -14,7 +14,7 @@ const std::string& name_of(const Rig& rig, CameraId camera) {
   return rig.cameras[static_cast<std::size_t>(number(camera))].name;
 }
 
-/// Those that contradict all whom they were compared with, at least two, of whom some agree among themselves.
+/// Those that contradict all that they were compared with, at least two, some of which agree among themselves.
 std::set<CameraId> outvoted(std::span<const ComparedCameras> compared) {
   std::set<CameraId> agreeing, contradicting;
   for (const ComparedCameras& one : compared) {

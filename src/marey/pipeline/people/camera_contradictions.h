@@ -9,11 +9,11 @@
 
 namespace marey::pipeline::people {
 
-/// A sentence for each camera of the rig whose people are elsewhere than where the others that look there see them, and for each
+/// A sentence for each camera of the rig whose people are elsewhere than where the others that face there see them, and for each
 /// other pair of cameras that contradict each other.
 std::vector<std::string> contradicting_cameras(const Rig& rig, std::span<const track::ground::ComparedCameras> compared);
 
-/// A sentence for each camera of several whose people no other camera sees: nothing told whether it agrees with them.
+/// A sentence for each camera of several whose people no other camera sees: whether it agrees with them is unknown.
 std::vector<std::string> uncompared_cameras(const Rig& rig, std::span<const track::ground::ComparedCameras> compared);
 
 }  // namespace marey::pipeline::people

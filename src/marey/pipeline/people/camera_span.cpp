@@ -12,7 +12,7 @@ constexpr double kApart = 1;        // s between the frames that are compared
 constexpr std::size_t kPeople = 4;  // in both frames
 constexpr int kSeconds = 3;         // that must have been compared
 constexpr double kStanding = 0.05;  // heights: people who stand are not known to better than this
-/// What n people's mean displacement is worth beside their spread: 2 in the mean where every person goes his own way.
+/// What n people's mean displacement is worth beside their spread: 2 in the mean if all people move independently.
 constexpr double kTogether = 10;
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace marey::pipeline::people {
 
 /// Whether a camera moves, evaluated by tracks in its image alone: all people go likewise at once, time and again. Where the
-/// camera keeps up with people who go one way, nothing shows; where people stream past a static camera, it appears as if it
+/// camera keeps up with people who move as one, nothing shows; where people stream past a static camera, it appears as if it
 /// moved.
 class CameraSpan {
  public:

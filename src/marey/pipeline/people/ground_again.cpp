@@ -37,7 +37,7 @@ class GroundAgain final : public PeopleOnGround {
     if (may_inspect_again() && !hooks.stop.stop_requested()) {
       try {
         inspect_again(hooks);
-      } catch (const Stopped&) {  // what was found at first counts
+      } catch (const Stopped&) {  // the first result counts
       }
     }
     return stage_->finish(hooks);
@@ -60,7 +60,7 @@ class GroundAgain final : public PeopleOnGround {
   }
 
  private:
-  /// Not with a ball: in a scene that was corrected, what is left of people's borders was followed as one.
+  /// Not with a ball: in a scene that was corrected, the remainder of people's borders was followed as one.
   bool may_inspect_again() const {
     return !options_.ball && std::any_of(found_.begin(), found_.end(), [](const auto& one) {
       return one != nullptr && one->since_beginning() > 0;

@@ -13,7 +13,7 @@
 namespace marey::pipeline::people {
 namespace {
 
-/// A PTZ camera has no empty scene to learn: a network looks at every frame.
+/// A PTZ camera has no empty scene to learn: a network processes every frame.
 detect::DetectorOptions for_ptz(detect::DetectorOptions options, const std::string& name) {
   auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
   if (network == nullptr)

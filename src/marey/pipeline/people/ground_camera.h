@@ -1,4 +1,4 @@
-// One camera of several that look at one ground: where people are expected in its image, who is found there, where they stand.
+// One camera of several that face one ground: where people are expected in its image, who is found there, where they stand.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace marey::pipeline::people {
 
 struct GroundCameraOptions {
   detect::DetectorOptions detector = detect::people::PeopleDetectorOptions{};
-  bool prime = true;        ///< look at images of the beginning first, to learn the empty scene; a live camera cannot
+  bool prime = true;        ///< process images of the beginning first, to learn the empty scene; a live camera cannot
   bool stabilised = false;  ///< its images were brought to its rest
   std::shared_ptr<const PtzCamera> ptz = {};                   ///< how it turns; nothing if it stands
   std::shared_ptr<const StandingPeople> without = {};          ///< who is not to be taken for a part of the scene

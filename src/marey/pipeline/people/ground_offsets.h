@@ -43,7 +43,7 @@ struct RigOffsetsOptions {
   marey::calibrate::pitch::GroundOffsetOptions search;
 };
 
-/// What is known of when a rig's cameras were started.
+/// The start times of a rig's cameras.
 struct RigOffsets {
   struct Camera {
     std::string name;
@@ -58,7 +58,7 @@ struct RigOffsets {
 /// Whether a person should search for offsets: two cameras or more see the ground, and of one but the first the rig says none.
 bool lacks_offsets(const Rig& rig);
 
-/// Looks at the beginning of every camera, follows people in each alone, and finds when cameras were started that the rig does not
+/// Processes the beginning of every camera, follows people in each alone, and finds when cameras were started that the rig does not
 /// say it of. An offset that the rig says is kept; 0 is too where no other is plainly better. Throws Error if a camera cannot be
 /// read; Stopped.
 RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area, const RigOffsetsOptions& options = {},
@@ -67,7 +67,7 @@ RigOffsets find_rig_offsets(const Rig& rig, const reconstruct::GroundArea& area,
 /// Writes them into the rig where it says none; cameras for which none was found stay without.
 void enter_offsets(Rig& rig, const RigOffsets& offsets);
 
-/// A sentence for each camera whose given offset the people it saw contradict, where it is wrong by a few seconds at most: to look
+/// A sentence for each camera whose given offset the people it saw contradict, if it is wrong by a few seconds at most: to search
 /// farther would take longer than to follow every person.
 std::vector<std::string> contradicted_offsets(const Rig& rig, const GroundPathLog& log);
 

@@ -34,7 +34,7 @@ GroundPeople second_pass(track::ground::offline::GroundRecorder::Joined joined, 
                          std::vector<track::ball::BallObservations> ball_candidates, const PeopleOnGroundOptions& options,
                          const Hooks& hooks);
 
-/// The result, one instant for each of `moments` (by its header's clock), with boxes if they are wanted. All arguments must outlive
+/// The result, an instant for each of `time_steps` (by its header's clock), with boxes if requested. All arguments must outlive
 /// it.
 std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& people, const GroundScene& scene,
                                                          const GroundBoxes& boxes,

@@ -26,7 +26,7 @@ class ImageAmbiguities {
   void inspect_at_beginning(std::span<const Frame> samples) { view_.inspect_at_beginning(samples); }
   /// Each frame in order. May be at work while `add` is.
   void watch(const Frame& frame) { view_.add(frame); }
-  /// What was seen in each frame, in order.
+  /// The detections of each frame, in order.
   void add(const detect::Detections& detected);
 
   /// What the frames since the last call showed of the camera, one sentence each.

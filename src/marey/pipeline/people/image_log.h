@@ -1,4 +1,4 @@
-// What was tracked in one camera's frames, kept for the second pass.
+// The tracks of one camera's frames, kept for the second pass.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ class ImageLog {
 
   /// A frame in which no person was searched: its rows are interpolated.
   void add_unsearched(const Frame& frame) { time_steps_.push_back({frame.index, frame.time}); }
-  /// A frame that was searched; then `add` of what was tracked in it.
+  /// A frame that was searched; then `add` of its tracks.
   void add_searched(const Frame& frame);
   /// The tracks of searched frame `number`, which counts those.
   void add(std::int64_t number, std::span<const Track<2>> tracks, std::span<const track::image::Clothes> clothes,

@@ -1,4 +1,4 @@
-// What is left to write of people in one camera's images when the recording has ended.
+// The rest to write of people in one camera's images when the recording has ended.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace marey::pipeline::people {
 void exclude_unobserved(Instant& instant);
 
 /// What the second pass made of the recording, frame by frame: `rows` count `moments`. With outlines where there are some (null for
-/// none; they must outlive the result); without those whom no person saw in a frame where `seen_only`.
+/// none; they must outlive the result); without those not observed in a frame where `measured_only`.
 std::unique_ptr<corridor::InstantSource> instants_of(std::vector<track::offline::TrackRow> rows,
                                                      std::vector<Recording::TimeStep> time_steps,
                                                      track::offline::OutlineLog* outlines, bool observed_only);

@@ -232,7 +232,7 @@ class RecordedImage final : public ImageStage {
     return {};
   }
 
-  /// If this is stopped, what was found first counts.
+  /// If this is stopped, the first result counts.
   void search_again(const Hooks& hooks) {
     ImageLog::Tracked first = log_.begin_again();
     bool done = false;

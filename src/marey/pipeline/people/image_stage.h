@@ -25,8 +25,8 @@ struct ImagePeopleOptions {
   std::optional<track::contour::OutlineOptions> outlines;  ///< follow outlines too, with these; images are needed for it
   /// Every frame's tracks are reported as they come: nothing is read ahead and nothing improved by what came later.
   bool live = false;
-  double delay = 0;            ///< s that a live run uses later frames before it tells an instant
-  bool observed_only = false;  ///< rows of those whom no person saw at that instant are omitted
+  double delay = 0;            ///< s that a live run uses later frames before it reports an instant
+  bool observed_only = false;  ///< rows of those not observed at that instant are omitted
   std::string next_to;         ///< outlines that wait for the second pass lie in a nameless file beside this path
   bool stabilise = false;      ///< the camera shakes: images are stabilised first, and results are in the pixels of its rest
   bool with_lines = false;     ///< keep their measurement lines too, for an overlay

@@ -1,4 +1,4 @@
-// Teams while people are tracked live: what is known of the last minute is given to analyse::find_teams once per second. Only with
+// Teams while people are tracked live: the data of the last minute are given to analyse::find_teams once per second. Only with
 // teams that the user named, for a team named by its colour could change its name from second to second. Cost: 300 instants of
 // each person, about a millisecond per second.
 #pragma once

@@ -51,7 +51,7 @@ class DetectedGround : public GroundStage {
   GroundCameras cameras_;
 };
 
-/// The whole recording: tracked with what is learned of it, then linked, smoothed and divided into teams.
+/// The whole recording: tracked with the models learned from it, then linked, smoothed and divided into teams.
 class RecordedGround final : public DetectedGround {
  public:
   RecordedGround(const std::vector<corridor::Feed>& feeds, const Rig& rig, const PeopleOnGroundOptions& options)

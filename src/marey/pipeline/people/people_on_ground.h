@@ -1,4 +1,4 @@
-// Every person on the ground that a rig's cameras look at, under one identity across all of them: each camera's people are placed
+// Every person on the ground that a rig's cameras observe, under one identity across all of them: each camera's people are placed
 // on the ground, one tracker makes identities of all of them, in metres, and what it has decided is joined, smoothed and
 // distinguished by teams once the whole recording is known. Everything before the last step is in the rig's right-handed world.
 #pragma once
@@ -36,7 +36,7 @@ struct PeopleOnGroundOptions {
   PtzCameras ptz;                            ///< of the rig's cameras, those that turn
   std::optional<BallOptions> ball = {};      ///< the ball is followed too; not where `live`
   bool stabilise = false;                    ///< cameras shake: the images of each that stands are stabilised first
-  std::vector<std::shared_ptr<const StandingPeople>> without;  ///< by camera: who is not a part of its scene; may be empty
+  std::vector<std::shared_ptr<const StandingPeople>> without;  ///< by camera: people who are not a part of its scene; may be empty
   double margin = 2;                                           ///< m round the pitch or the area where people still count
   /// Every instant is reported as it comes: nothing is read ahead and nothing improved by what came later.
   bool live = false;

@@ -14,7 +14,7 @@ GroundView no_ground(const PtzCamera& ptz, cv::Size size) {
   return GroundView(geometry::camera_of(ptz.tripod, {0, -std::numbers::pi / 2, 1}, size));
 }
 
-/// The frame whose time is nearest; nothing if there is none.
+/// The frame whose time is nearest; nothing if there is no frame.
 const PtzCamera::Turn* turn_at(const PtzCamera& camera, double time_s) {
   const PtzCamera::Turn* nearest = nullptr;
   const auto later = std::lower_bound(camera.rotations.begin(), camera.rotations.end(), time_s,

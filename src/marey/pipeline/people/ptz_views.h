@@ -22,11 +22,11 @@ std::shared_ptr<const PtzCamera> ptz_of(const PtzCameras& all, CameraId camera);
 /// its images is not known.
 GroundView first_view(const RigCamera& camera, const PtzCamera& ptz, const geometry::GroundSurface& surface);
 
-/// Tells the views how a camera is turned over time. While it is lost its view sees no ground, so that no person has a place there.
+/// Gives the views a camera's orientation over time. While it is lost its view sees no ground, so that no person has a place there.
 void enter_ptz(GroundViews& views, CameraId id, const RigCamera& camera, const PtzCamera& ptz,
                const geometry::GroundSurface& surface);
 
-/// What of a place's covariance results from how unsure it is where the camera looks; `time` by the rig's clock, `pixel` where the
+/// The part of a place's covariance from the uncertainty of the camera's aim; `time` by the rig's clock, `pixel` where the
 /// foot is seen.
 Matrix<2> aim_covariance(const RigCamera& camera, const PtzCamera& ptz, Timestamp time, const Vector<2>& pixel);
 

@@ -18,7 +18,7 @@ constexpr double kSettles = 4;                          // s: a scene that nothi
 constexpr double kInspectedAt = 20;                     // s after a person began to move, in which their place is inspected
 constexpr double kNext = 1;                             // s in which a person who is lost at once is found again, and
 constexpr double kNextWithin = 2.5;                     // of the body's height, how far away
-constexpr double kInspectAgain = 0.2;                   // s between two looks
+constexpr double kInspectAgain = 0.2;                   // s between two inspections
 constexpr double kStays = 0.4;                          // s for which what has left must be the same
 constexpr double kSameRegion = 0.8;                     // overlap of two masks that are the same
 constexpr double kRoundAcross = 0.8, kRoundDown = 0.3;  // of the body's height, that are inspected beside, above and below it

@@ -25,8 +25,8 @@ class StandingPeople {
   /// work at once. Calls may be omitted; what results from `see` is the same.
   void inspect(const Frame& frame);
 
-  /// What the tracker made of a frame in which `detector` searched for people. Who is found now to have come out of the scene is
-  /// left out of it from now on. True where a person was who had been in it since the beginning.
+  /// The tracker's result of a frame that `detector` searched for people. A person found now to have come out of the scene is
+  /// removed from it from now on. True where a person was who had been in it since the beginning.
   bool observe_frame(const Frame& frame, std::span<const Track<2>> tracks, detect::Detector& detector);
 
   /// The image without those who had been there since the beginning, in its own light.
@@ -59,7 +59,7 @@ class StandingPeople {
     Timestamp at{};
     cv::Rect location;
     cv::Mat mask;  ///< of `place`: where they had stood
-    Image image;   ///< what is there
+    Image image;   ///< the image there
     bool since_beginning = false;
   };
 

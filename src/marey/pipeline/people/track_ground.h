@@ -24,7 +24,7 @@ struct GroundSummary : corridor::Summary {
   std::vector<analyse::Teams::Team> teams;
 };
 
-/// Follows every person on the ground that the rig's cameras look at and writes where they were in the coordinates of the rig's
+/// Follows every person on the ground that the rig's cameras observe and writes where they were in the coordinates of the rig's
 /// user. Where the rig does not specify when its cameras were started, that is found out first. The same input gives the same
 /// output, bit for bit. Throws Error if a camera cannot be read or is not calibrated, or an output not written; nothing
 /// half-written stays behind.

@@ -131,7 +131,7 @@ TEST(TrackGround, KeepsIdAcrossSeparateGrounds) {
   const test::TemporaryFolder folder;
   std::string left, right;
   for (int frame = 0; frame < 200; ++frame) {
-    const double x = 38 + 0.2 * frame;  // 2 m/s; from 49 to 52 no person looks
+    const double x = 38 + 0.2 * frame;  // 2 m/s; from 49 to 52 no camera sees it
     left += box_at(frame, x, 30, 0), right += box_at(frame, x, 30, 51);
     left += box_at(frame, 10, 50, 0);  // so that the first camera lasts
   }

@@ -38,7 +38,7 @@ std::string stated_of_turn(const source::stabilise::ViewReport::Turn& turn, bool
   return fmt::format(
       "the camera {} between {:.1f} and {:.1f} s: people cannot be distinguished from a scene that moves; of a pitch, marey "
       "calibrate "
-      "turning "
+      "ptz "
       "finds out where it looked, and a detection network finds the people (docs/ptz.md)",
       what, turn.from_s, turn.to_s);
 }

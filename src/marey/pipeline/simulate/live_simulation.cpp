@@ -133,7 +133,7 @@ struct DrawnRoom {
   const marey::simulate::room::RoomSpots::Drawn& frame(std::int64_t number) const;
 };
 
-/// The frames of one way, or of both where the camera's offset from the turns makes them differ.
+/// The frames of one direction, or of both where the camera's offset from the turns makes them differ.
 DrawnRoom::DrawnRoom(const SharedRoom& room, int camera) : spots(room.scene, static_cast<std::size_t>(camera)) {
   const auto one_way = std::max<std::int64_t>(2, std::llround(room.behaviour.drawn_s * room.rate_hz()));
   const double offset = room.scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);

@@ -28,7 +28,7 @@ struct MatchFilesOptions {
 ///   CAM_truth.txt   MOTChallenge truth for each camera: the box of each whole person, cut at the image's border; ids as in
 ///                   truth.csv; the ninth column is the share of it that can be seen
 ///   CAM.txt         with `boxes`: MOTChallenge detections for each camera; with videos too, boxes.toml is the rig that names them
-///   CAM.mp4         with `films`: what each camera videos, H.264
+///   CAM.mp4         with `films`: what each camera records, H.264
 ///   ball.csv        with a ball in the videos, where it is at the first camera's frames: frame,time,x,y,z,vx,vy,vz,state,holder;
 ///                   z is that of its centre above the ground; state is held, rolling, flying or dead; holder is an id of
 ///                   truth.csv; no row while a person fetches it

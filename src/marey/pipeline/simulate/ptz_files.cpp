@@ -26,7 +26,7 @@ constexpr double kClickedApart = 0.15;  // rad between frames that are clicked
 constexpr std::size_t kClickedFrames = 4;
 constexpr std::size_t kMinClicks = 4;  // that a user would search for in a frame
 
-/// The rows of clicks, from frames that look elsewhere than those clicked before.
+/// The rows of clicks, from frames that face elsewhere than those clicked before.
 class ClickedFrames {
  public:
   void inspect_at(const marey::simulate::match::PtzMatch& match, double noise) {

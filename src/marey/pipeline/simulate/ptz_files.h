@@ -19,7 +19,7 @@ struct PtzFilesOptions {
 /// Videos a match with a main PTZ camera, into a folder, which must exist:
 ///   main.mp4        what it videos, H.264
 ///   rig.toml        the exact camera, its turns beside it, with the video as source
-///   clicks.csv      frame,x,y,u,v: what a user would click in four frames that look to different sides
+///   clicks.csv      frame,x,y,u,v: what a user would click in four frames that face different sides
 ///   boxes.txt       MOTChallenge detections: what a detector says of the main camera's frames
 ///   truth.csv       where every person is at each frame (format/match/ground_file.h)
 /// Throws Error if an option is out of its domain or a file cannot be written; Stopped.

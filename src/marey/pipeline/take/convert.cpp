@@ -152,7 +152,7 @@ format::AuxiliaryData analog_of(const std::string& path, const std::string& from
   return next_to;
 }
 
-/// Instant by instant, so that memory does not grow with its length. Read twice: most formats begin with what is known only at the
+/// Instant by instant, so that memory does not grow with its length. Read twice: most formats begin with data known only at the
 /// end.
 ConvertSummary convert_stream(const std::string& from, const std::string& to, const Format& in, const Format& out,
                               const ConvertOptions& options, const Hooks& hooks) {
@@ -214,7 +214,7 @@ ConvertSummary convert(const std::string& from, const std::string& to, const Con
   const Content content = format::content_of(format::open_recording(from, in, how.read)->header().frame);
   if (content != Content::space) refuse_axes(from, options, "holds no points in space");
   const Format& out = format::format_to_write(to, options.format, content);
-  // A copy of a take keeps what was recorded and its edits; what the edits make of it is for the others.
+  // A copy of a take keeps the recorded data and its edits; the edited result is for the others.
   how.read.as_recorded = options.read.as_recorded || (in.name == out.name && !options.labelled && !options.frames);
   if (out.create != nullptr) return convert_stream(from, to, in, out, how, hooks);
   return convert_match(format::read_whole(from, in, how.read), to, in, out, how);

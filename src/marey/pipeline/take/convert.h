@@ -1,4 +1,4 @@
-// One file into another, of whatever format: what is read is known by its content, what is written by its ending or by name.
+// One file into another, of whatever format: the input is identified by its content, the output by its ending or by name.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct ConvertOptions {
 };
 
 struct ConvertSummary {
-  std::string format;   ///< what was written
+  std::string format;   ///< the format written
   std::string counted;  ///< "frames", "places", "cameras"
   std::int64_t count = 0;
   std::vector<std::string> warnings;  ///< one sentence each: what is doubtful in the one, what the other cannot hold

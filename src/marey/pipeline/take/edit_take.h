@@ -49,7 +49,7 @@ EditHistory edit_history(const std::string& path);
 std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditRequest>& requests, const Hooks& hooks = {},
                                 const std::optional<EditState>& on = {}, std::vector<std::string>* notes = nullptr);
 
-/// Goes back (steps < 0) or on along the branch that was taken last, and returns the head then; nothing: what was recorded.
+/// Goes back (steps < 0) or on along the branch that was taken last, and returns the head then; nothing: the recorded data.
 std::optional<std::int64_t> move_head(const std::string& path, std::int64_t steps, const std::optional<EditState>& on = {});
 /// Lets the edits up to this one count; 0: none. Throws Error if there is no such edit.
 void set_head(const std::string& path, std::int64_t id, const std::optional<EditState>& on = {});

@@ -14,7 +14,7 @@
 namespace marey::pipeline::take {
 namespace {
 
-constexpr double kSlowest = 0.25;  // s between instants up to which a way between them is known
+constexpr double kSlowest = 0.25;  // s between instants up to which a path between them is known
 
 /// On the ground: they have paths that are smoothed and added up.
 bool of_people(const Recording& recording) {

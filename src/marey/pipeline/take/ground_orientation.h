@@ -1,4 +1,4 @@
-// Which way up the ground of a file is drawn; see core/ground_transform.h.
+// The orientation in which the ground of a file is drawn; see core/ground_transform.h.
 #pragma once
 
 #include <optional>

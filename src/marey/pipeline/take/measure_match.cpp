@@ -100,7 +100,7 @@ void add_impossible(const analyse::Measurement& measured, draw::MatchReport& rep
   if (!table.rows.empty()) report.tables.push_back(std::move(table));
 }
 
-/// The halves, as the file tells them.
+/// The halves, as the file specifies them.
 std::vector<draw::MatchReport::Period> periods_of(const format::match::GroundMatch& match) {
   std::vector<draw::MatchReport::Period> periods;
   const auto time_of = [&](std::int32_t frame) {

@@ -13,7 +13,7 @@ namespace {
 
 using Stabilise = std::chrono::steady_clock;
 
-/// Waits until then, and looks at the token now and then; false where it is to stop.
+/// Waits until then, and checks the token now and then; false if it is to stop.
 bool wait_until(Stabilise::time_point due, const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const auto now = Stabilise::now();

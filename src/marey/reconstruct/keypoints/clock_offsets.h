@@ -36,7 +36,7 @@ struct ClockOptions {
   double farthest_s = 0.5;  ///< from the offset that the camera has
   int samples = 200;        ///< frames of a camera that are compared
   double vertex_s = 0.07;   ///< half the width of the parabola, at least two frames
-  double max_sigma = 1;     ///< frames: what is known no better is not known
+  double max_sigma = 1;     ///< frames: an offset less certain than that is unknown
 };
 
 /// Of each camera whose offset is not known, against those that are known, or else the first one. Nothing for the others, and for

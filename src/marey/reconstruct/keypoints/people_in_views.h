@@ -2,7 +2,7 @@
 //
 // People that are supported: expected where they were heading. In each camera the people of the image are given to those expected
 // by the least sum of squared reprojection errors over all keypoints, each in standard deviations and bounded, so that a few wrong
-// points decide nothing; no person is given two, and no person twice. What is left in two cameras or more begins a new person: of
+// points decide nothing; no person is given two, and no person twice. Points left in two cameras or more begin a new person: of
 // all pairs whose half-lines meet over most keypoints, and whose bones then have a body's lengths, the one that the most other
 // cameras agree with, then the next. A camera in which a limb fits better with left and right exchanged, by what all cameras
 // together know, is read so; where most cameras would have to be, none is.
@@ -34,7 +34,7 @@ struct PeopleOptions {
   double gate = 3;            ///< standard deviations, root mean square of bounded errors: farther off, a view is of another person
   double pair_gate = 2.2;     ///< the same of the rays of two views that begin a person
   double swap_gain = 4;       ///< standard deviations that a limb must fit better exchanged
-  double lost_s = 1;          ///< a person whom two cameras have not seen for this long is gone
+  double lost_s = 1;          ///< a person not seen by two cameras for this long is gone
   double settle_s = 0.04;     ///< over which places and speeds are averaged
   int min_points = 4;         ///< of a view and a person in common
   TriangulateOptions triangulate{.false_alarm = 1e-3};

@@ -1,4 +1,4 @@
-// One person's whole motion: each keypoint's path (trajectory.h), which limbs of which view bear the other side's names, and how
+// One person's whole motion: each keypoint's path (trajectory.h), which limbs of which view have the other side's names, and how
 // far off each camera's points lie for a while.
 //
 // A network puts a point beside its joint, by about as much as long as it sees the body from about the same side, and a calibration

@@ -26,7 +26,7 @@ enum class Limb { arms, legs };
 /// Of each point of a set; nothing for points in the middle and those of the trunk and the head.
 std::vector<std::optional<Limb>> limbs_of(const KeypointSet& set);
 
-/// Which limbs of a view bear the other side's names.
+/// Which limbs of a view have the other side's names.
 struct Mirrored {
   bool arms = false, legs = false;
 

@@ -42,7 +42,7 @@ Evidence evidence_of(std::span<const SightLine> lines, const Vector<3>& at, doub
   return evidence;
 }
 
-/// Between known places on a straight way, before and after them at rest.
+/// Between known places on a straight line, before and after them at rest.
 std::vector<Vector<3>> filled(std::span<const std::optional<Vector<3>>> start) {
   std::vector<Vector<3>> path(start.size());
   std::optional<std::size_t> last;

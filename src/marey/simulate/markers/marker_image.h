@@ -39,12 +39,11 @@ struct MarkerImage {
   cv::Mat image;                   ///< CV_8UC1, or CV_16UC1 with `bits` of them used
   int bits = 8;                    ///< 8, 12 or 16
   std::vector<Vector<2>> markers;  ///< px, their centres; of one in motion the middle of its path
-  std::vector<Vector<2>>
-      specks;           ///< px: what is as bright as markers and smaller, where it is not for an image to tell which it is
-  double radius = 0;    ///< px, the mean over the markers
-  double shade = 0.3;   ///< radii by which what is seen of a marker may lie off its centre
-  double noise = 0;     ///< standard deviation of a pixel, as a share of white times 255
-  double contrast = 0;  ///< of the faintest marker over what is around it, likewise
+  std::vector<Vector<2>> specks;   ///< px: regions as bright as markers and smaller, which one image cannot distinguish from them
+  double radius = 0;               ///< px, the mean over the markers
+  double shade = 0.3;              ///< radii by which the visible part of a marker may lie off its centre
+  double noise = 0;                ///< standard deviation of a pixel, as a share of white times 255
+  double contrast = 0;             ///< of the faintest marker over what is around it, likewise
 };
 
 /// Draws one image from `seed`: the same one on every machine. Radii, levels, noise, blur and depth are drawn with it; every

@@ -118,7 +118,7 @@ Path through(const Vector<2>& crossing, double course, double speed, double bend
   return path;
 }
 
-/// The longest stretch of frames around the meeting in which the whole path keeps inside the image.
+/// The longest segment of frames around the encounter in which the whole path keeps inside the image.
 bool stays_inside(const Path& path, const cv::Size& size) {
   for (const Vector<2>& location : path) {
     if (!inside(location, size)) return false;

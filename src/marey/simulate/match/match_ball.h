@@ -1,6 +1,6 @@
 // The ball of a simulated match in three dimensions: it goes where the play (match_play.h) sends it, by the physics of a ball. A
 // pass rolls over the grass or flies, with gravity, drag of the air, a curl, and bounces; it is launched so that it is where the
-// play wants it when the play wants it there. Who holds it dribbles: it is touched ahead and run after. Out of play it flies over
+// play wants it when the play wants it there. Its holder dribbles: it is touched ahead and run after. Out of play it flies over
 // the line, is fetched, and lies where play continues. The play does not know of all that: people move as they do without it.
 #pragma once
 

@@ -51,14 +51,14 @@ class MatchCamera {
 
   std::int64_t frame() const { return frame_; }
   double time() const;                                                    ///< s, by its own clock
-  std::span<const ObservedPerson> detected() const { return detected_; }  ///< the truth: who is seen
+  std::span<const ObservedPerson> detected() const { return detected_; }  ///< the truth: the people seen
   /// What a detector says of this frame; errs again at each call.
   std::vector<LabelledBox> detect();
   Image image() const;
   /// A ball in the match as this camera sees it, halfway through the exposure.
   struct Shot {
     Image image;
-    std::optional<people::TrueBall> ball;  ///< nothing if there is none, or it lies behind the camera
+    std::optional<people::TrueBall> ball;  ///< nothing if there is no ball, or it lies behind the camera
   };
   /// The image with the ball, where the video has one.
   Shot shoot() const;
@@ -95,7 +95,7 @@ class MatchTruth {
 
   const std::vector<TrackName>& people() const { return people_; }
   /// The next frame, in the pitch's own frame of reference, its samples in the order of `people`. `cameras`, all of the scene's,
-  /// stand at the same frame: those that were started with the first one need not look again.
+  /// stand at the same frame: those that were started with the first one need not search again.
   Instant next(std::span<const MatchCamera> cameras);
 
  private:

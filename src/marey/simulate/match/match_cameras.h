@@ -18,7 +18,7 @@ enum class MatchStand {
              ///< overlap
   corners,   ///< two behind opposite corners, 15 m up
   apart,     ///< as `football`, but each stands at its own quarter of the touchline
-  sides,     ///< half of them behind each touchline, 12 m up, each looking at its own part of the pitch: few places are seen by
+  sides,     ///< half of them behind each touchline, 12 m up, each facing its own part of the pitch: few places are seen by
              ///< more than two or three
 };
 

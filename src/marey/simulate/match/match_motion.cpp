@@ -104,7 +104,7 @@ void MatchMotion::exert(std::size_t i, const Vector<2>& required) {
   bodies_[i].effort += kStep / kEffortTime * (requested - bodies_[i].effort);
 }
 
-/// No one approaches another faster than both can brake within what is left between them.
+/// No one approaches another faster than both can brake within the distance between them.
 void MatchMotion::keep_apart(Velocities& next) const {
   for (int round = 0; round < kRounds; ++round) {
     bool calm = true;

@@ -56,7 +56,7 @@ struct MatchClick {
 };
 
 /// What a user would click in a camera's image: every such place that it sees, `noise` px off in each axis. Of these `wrong`
-/// lie elsewhere or bear another place's name.
+/// lie elsewhere or have another place's name.
 std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch,
                                      double noise, int wrong, std::uint64_t seed);
 

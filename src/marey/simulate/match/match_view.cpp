@@ -1,5 +1,5 @@
 // A person's box is that of its figure's limbs, each seen as two discs and what lies between them, so that it breathes with the
-// gait as real boxes do. What hides whom is counted on a coarse raster of each box: a cell is hidden where the box of a person
+// gait as real boxes do. Occlusion is counted on a coarse raster of each box: a cell is hidden where the box of a person
 // nearer covers it. Cost: two projections a limb, some fifty a person and camera.
 #include "marey/simulate/match/match_view.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kColumns = 8, kRows = 16;  // of the raster of a box
 constexpr double kBodyFraction = 0.75;   // of the width of a box that its person fills: people see past each other's elbows
-constexpr double kMinValue = 4;          // px; a box lower than this is no person's
+constexpr double kMinValue = 4;          // px; a box lower than this is not a person's
 
 struct Located {
   ObservedPerson detected;

@@ -33,18 +33,18 @@ struct ObservedPerson {
   double visible_fraction = 0;  ///< of the box `whole`: within the image and not behind boxes of nearer people
 };
 
-/// Each person of whom something lies within the image, in the order of their numbers.
+/// Each person who is partly within the image, in the order of their numbers.
 std::vector<ObservedPerson> people_in_view(const GroundView& view, std::span<const people::Figure, kMatchPeople> figures,
                                            std::span<const people::Stance, kMatchPeople> stances);
 
-/// A person of whom less is to be seen is barely ever detected.
+/// A person with a smaller visible part is barely ever detected.
 inline constexpr double kHiddenFraction = 0.35;
 
 /// How a detector errs, from frame to frame independently but for `foot_error`.
 struct MatchDetectorOptions {
   double missed = 0.1;         ///< share of people in plain view that are not detected, in [0, 1]
   double size_noise = 0.05;    ///< standard deviation of widths and heights, as a share of them; each edge errs on its own
-  double false_alarms = 0.5;   ///< a frame, on average; boxes of people where there is none
+  double false_alarms = 0.5;   ///< a frame, on average; boxes where there is no person
   double hidden_found = 0.05;  ///< of people who are hidden, the share that is detected all the same
   double foot_error = 0;       ///< m on the ground, standard deviation per axis, by which boxes end beside the feet for a while
                                ///< (foot_errors.h); unlike the rest it is not a frame's own

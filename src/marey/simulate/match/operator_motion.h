@@ -1,6 +1,6 @@
 // How an operator of a main camera pans, tilts and zooms while a match is played.
 //
-// The operator follows the ball with a delay and smoothly, looks a little ahead towards the middle of the play, leaves small
+// The operator follows the ball with a delay and smoothly, aims a little ahead towards the middle of the play, leaves small
 // motions alone until the play has gone on by some degrees (so that there are still spans, broken by starts), keeps as much of the
 // pitch in view as the play needs, and has a hand that trembles. Pan and tilt answer as a critically damped spring, zoom slower.
 // Rates agree with a real operator's (330 frames of a television camera: pan to 15°/s, zoom to 20 % a second).

@@ -66,7 +66,7 @@ void PtzMatch::advance() {
   detected_ = people_in_view(GroundView(*camera_), figures_, stances_);
 }
 
-/// Every frame is smeared by the way its middle moves while it is exposed.
+/// Every frame is smeared by the motion of its middle while it is exposed.
 cv::Mat PtzMatch::blurred(const cv::Mat& sharp) const {
   if (!heading() || options_.exposure <= 0) return sharp;
   const double px = std::exp(now_.log_focal) * options_.size.width / 2 * options_.exposure * options_.rate_hz;

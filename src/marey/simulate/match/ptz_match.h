@@ -50,7 +50,7 @@ class PtzMatch {
 
   std::int64_t frame() const { return frame_; }
   double time() const { return static_cast<double>(frame_) / options_.rate_hz; }
-  /// Where the main camera looks; nothing while another is shown.
+  /// The aim of the main camera; nothing while another is shown.
   std::optional<geometry::Heading> heading() const;
   /// Whichever camera is shown.
   const Camera& camera() const { return *camera_; }

@@ -1,6 +1,6 @@
 // In the order in which light meets them: the lens blurs, the camera sharpens (an unsharp mask, whose overshoot is the halo),
 // chroma is filtered harder than luma and comes late, and the codec rounds the cosine coefficients of each block, more coarsely the
-// faster they change. Cost: five separable filters and a cosine transform each way.
+// faster they change. Cost: five separable filters and a cosine transform in each direction.
 #include "marey/simulate/people/camera_look.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ void blur_plane(cv::Mat& plane, double sigma) {
   if (sigma > 0) cv::GaussianBlur(plane, plane, {}, sigma);
 }
 
-/// Rounds the coefficients of whole blocks; what is left at the right and below stays as it is.
+/// Rounds the coefficients of whole blocks; the rest at the right and below stays as it is.
 void quantize_blocks(cv::Mat& plane, double step) {
   constexpr int kBlock = 8;
   cv::Mat block, coefficients;

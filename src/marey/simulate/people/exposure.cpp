@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kGrid = 16;  // px; between its points a map is as good as linear
 
-/// Where the pixels of a plane of `size` look, for cv::remap. A plane of chroma is half as large: `scale` 2.
+/// The directions of the pixels of a plane of `size`, for cv::remap. A plane of chroma is half as large: `scale` 2.
 cv::Mat lookup(const PixelMap& map, cv::Size size, int margin, int scale) {
   const cv::Size grid(size.width / kGrid + 2, size.height / kGrid + 2);
   cv::Mat_<cv::Vec2f> coarse(grid);

@@ -250,7 +250,7 @@ Vector<2> Director::anywhere(bool outside) {
   return ground(random_.chance(0.5) ? -height_at(row) : width + height_at(row), row);
 }
 
-/// A step of a person who goes from goal to goal; who leaves the image is replaced by another person.
+/// A step of a person who goes from goal to goal; a person who leaves the image is replaced by another person.
 void Director::walk_anywhere(Walker& walker, double now, int& team) {
   if (!walker.walk(now, dt_, stature(walker.id), false)) return;
   const double column = camera_(Vector<3>(walker.stance.location.x(), walker.stance.location.y(), 0))->at.x();

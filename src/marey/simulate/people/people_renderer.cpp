@@ -210,7 +210,7 @@ std::optional<Sprite> PeopleRenderer::sprite_of(const PosedFigure& person, const
   for (const Detected& limb : limbs) {
     fill(sprite.shape, limb.cone, static_cast<std::uint8_t>(1 + kShades * static_cast<int>(limb.part)), kShades);
   }
-  // The sun's side of the image: which way a step towards it goes.
+  // The sun's side of the image: the direction of a step towards it.
   const Vector<2> lit = location + 0.1 * options_.sun.head<2>();
   const auto next_to = projection_({lit.x(), lit.y(), 0});
   const double side = next_to && next_to->at.x() < foot->at.x() ? -1 : 1;

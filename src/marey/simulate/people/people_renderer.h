@@ -19,7 +19,7 @@ namespace marey::simulate::people {
 struct Sighting {
   Vector<2> at = Vector<2>::Zero();  ///< px
   double scale = 0;                  ///< px that a metre across the line of sight takes there
-  double depth = 0;                  ///< m from the camera, for who hides whom
+  double depth = 0;                  ///< m from the camera, for occlusion
 };
 
 /// The camera: nothing for a point that it cannot see. Any camera model fits; it is asked some fifty times a figure.
@@ -72,7 +72,7 @@ struct TrueFigure {
   Vector<2> ground = Vector<2>::Zero();  ///< m, below the hips
   Vector<2> foot = Vector<2>::Zero();    ///< px; `ground` as the camera sees it
   Silhouette whole;                      ///< hidden parts included; reaches outside the image where the person does
-  Silhouette visible;                    ///< what is left in front of posts and nearer people, within the image
+  Silhouette visible;                    ///< the part in front of posts and nearer people, within the image
   double visible_fraction = 0;           ///< of the area of `whole`
 };
 
@@ -85,7 +85,7 @@ struct TrueBall {
 
 struct RenderedFrame {
   Image image;                     ///< colour, limited range
-  std::vector<TrueFigure> people;  ///< in the order given, those of whom a part of `whole` lies within the image
+  std::vector<TrueFigure> people;  ///< in the order given, those with a part of `whole` within the image
   std::vector<TrueBall> balls;     ///< those given that lie before the camera
 };
 

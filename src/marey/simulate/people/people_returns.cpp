@@ -16,7 +16,7 @@ namespace {
 constexpr double kMinAway = 1.5, kMaxAway = 9;  // s, outside with the whole body
 constexpr double kStaysAway = 1.0 / 6;          // of those who leave
 constexpr double kLeaves = 0.75;                // of those who have reached a goal in the image
-constexpr double kExitPath = 0.45;              // of the way that time and pace allow, at most
+constexpr double kExitPath = 0.45;              // of the path that time and pace allow, at most
 
 class ReturningPeople {
  public:

@@ -4,7 +4,7 @@
 
 namespace marey::simulate::people {
 
-/// PeopleSituation::returns. Who leaves at a side walks about outside, at paces of their own, and comes back where that has led
+/// PeopleSituation::returns. A person who leaves walks about outside, at paces of their own, and comes back where that has led
 /// them.
 PeopleMotion move_returning(const LevelCamera& camera, const PeopleVideoOptions& options, Random& random);
 

@@ -9,7 +9,7 @@
 
 namespace marey::simulate::people {
 
-/// A street seen by a camera at eye height or above: who walks there, and how the camera moves.
+/// A street seen by a camera at eye height or above: the people who walk there, and how the camera moves.
 struct PeopleSceneOptions {
   int frames = 300;
   double rate_hz = 15;
@@ -43,7 +43,7 @@ struct DetectorModel {
   double position_noise = 0.025;  ///< standard deviation of a centre, in heights of the person
   double size_noise = 0.045;      ///< standard deviation of the logarithm of width and height
   double noise_memory = 0.1;      ///< s over which an error persists
-  double hidden_from = 0.35;      ///< people of whom a smaller share is visible are not seen
+  double hidden_from = 0.35;      ///< people with a smaller visible share are not seen
   double clip_chance = 0.5;       ///< that a box of a person partly hidden spans the visible part only
   double false_alarms = 0.15;     ///< a frame, anywhere
   int haunted_positions = 2;      ///< that look like a person, half of the time

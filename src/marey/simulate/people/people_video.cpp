@@ -87,7 +87,7 @@ Image widened(const Image& image, int margin) {
   return Image::from_bgr(bgr);
 }
 
-/// Where the camera looks while the shutter of frame `index` is open: as many instants as make a blur of it.
+/// The camera's aim while the shutter of frame `index` is open: as many instants as make a blur of it.
 std::vector<PixelMap> time_steps_of(const CameraShake& shake, const LevelCamera& camera, const PeopleVideoOptions& options,
                                     int index) {
   const double time = index / options.rate_hz, half = PeopleVideo::kExposure / 2;

@@ -83,7 +83,7 @@ class PeopleVideo {
 
   /// Frame 0 ≤ `index` < frames(): image and truth, which is that of the camera at rest. Safe to call from several threads.
   RenderedFrame render(int index) const;
-  /// What the camera saw before the video began, in the light of the film: other people who keep apart, instants apart. To learn
+  /// What the camera saw before the video began, in the light of the video: other people who keep apart, instants apart. To learn
   /// the scene from. 0 ≤ `index` < kEarlier.
   Image render_earlier(int index) const;
   static constexpr int kEarlier = 20;

@@ -1,5 +1,5 @@
 // Everything happens in the order of the world: leaves move over the ground, people are drawn before them, cloud, lamp and exposure
-// multiply what is seen, rain falls before it, the camera moves, blurs, codes and adds its noise. The image is drawn with a
+// multiply the image, rain falls before it, the camera moves, blurs, codes and adds its noise. The image is drawn with a
 // margin that covers the camera's movement.
 #include "marey/simulate/people/restless_video.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kStatureShown = 1.78;                      // m
 constexpr double kFocalWidths = 3;                          // focal length in widths of the image
-constexpr double kBranch = 34, kTwig = 7;                   // px: how far apart leaves go their own ways
+constexpr double kBranch = 34, kTwig = 7;                   // px: how far apart leaves move independently
 constexpr double kCloudWide = 130;                          // px
 constexpr double kCloudSpeed = 55;                          // px/s
 constexpr double kExposureEvery = 2, kExposureTakes = 0.2;  // s

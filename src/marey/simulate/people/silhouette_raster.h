@@ -46,7 +46,7 @@ Silhouette blank_silhouette(const Box& box, int samples);
 Box bounds(const RoundCone2& shape);
 Box bounds(std::span<const Vector<2>> polygon);
 
-/// Marks the lattice points in a shape. What is written is `value` + a shade 0 … `shades` − 1 that grows with the distance from the
+/// Marks the lattice points in a shape. The value is `value` + a shade 0 … `shades` − 1 that grows with the distance from the
 /// left edge of the shape's row to its right edge; shades = 1 writes `value` itself. `value` is not zero.
 void fill(Silhouette& silhouette, const RoundCone2& shape, std::uint8_t value, int shades = 1);
 void fill_convex(Silhouette& silhouette, std::span<const Vector<2>> polygon, std::uint8_t value, int shades = 1);

@@ -43,7 +43,7 @@ struct Sprite {
   bool covers(const Vector<2>& at) const;
 };
 
-/// A ball that is played with: a disc, smeared along its way while the shutter is open.
+/// A ball that is played with: a disc, smeared along its path while the shutter is open.
 struct BallSprite {
   double depth = 0;
   Vector<2> from = Vector<2>::Zero(), to = Vector<2>::Zero();  ///< px

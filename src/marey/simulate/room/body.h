@@ -38,7 +38,7 @@ Skeleton body_skeleton(std::span<const BodyMarker> markers);
 /// What the skeleton's coordinates are in a pose: m of the pelvis, rad of each joint.
 std::vector<double> body_coordinates(const BodyPose& pose);
 
-/// Where a marker is, m, with the skin that bears it: a thigh's slides by `skin_m` at a bend of 90° or more (other limbs' less),
+/// Where a marker is, m, with the skin that it is on: a thigh's slides by `skin_m` at a bend of 90° or more (other limbs' less),
 /// towards the joint that the limb hangs on and a little round the limb.
 Vector<3> on_skin(const BodyPose& pose, const BodyMarker& marker, double skin_m);
 

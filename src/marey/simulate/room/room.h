@@ -109,7 +109,7 @@ class RoomScene {
 
   /// People with markers on them.
   int actors() const;
-  /// The body of one of them; nothing if there is none.
+  /// The body of one of them; nothing if there is no body.
   std::optional<Skeleton> skeleton(int actor = 0) const;
   /// Where its segments truly are at a time by the rig's clock: world_from_segment, m. Only where there is a body.
   std::vector<Rigid3> segments(double time_s, int actor = 0) const;

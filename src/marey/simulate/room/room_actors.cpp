@@ -13,7 +13,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kPropMarkers = 5;
 constexpr double kPropReach = 0.12, kPropApart = 0.04;  // m, from its middle and between its markers
 
-/// An ellipse whose axes turn slowly, at this many m/s; who follows is as far behind as all are apart.
+/// An ellipse whose axes turn slowly, at this many m/s; a follower is as far behind as all are apart.
 BodyStance round_the_room(const RoomActor& actor, const RoomOptions& options, double t, double speed) {
   const double a = 0.33 * options.volume.x(), b = 0.23 * options.volume.y();
   const double round = speed * t / ((a + b) / 2) + kTurn * actor.number / actor.of, rotated = 0.05 * t + actor.first_angle;

@@ -28,7 +28,7 @@ const KeypointSet& room_keypoint_set();
 /// Where the people's points truly are at a time by the rig's clock, by actor. The scene has people.
 std::vector<std::vector<Vector<3>>> true_keypoints(const RoomScene& scene, double time_s);
 
-/// What a camera's network finds at a time by the rig's clock: those of the people of whom at least half of the points are in the
+/// What a camera's network finds at a time by the rig's clock: those of the people with at least half of their points in the
 /// image, in an order that says nothing. `draw` is that of the noise: the frame's number.
 std::vector<Keypoints<2>> keypoints_observed(const RoomScene& scene, int camera, double time_s, std::uint64_t draw,
                                              const KeypointErrors& errors = {});

@@ -5,7 +5,7 @@
 
 namespace marey::simulate::room {
 
-/// The cameras of a simulated room: evenly round the volume, by turns high and lower, each looking at its middle, each a little
+/// The cameras of a simulated room: evenly round the volume, by turns high and lower, each facing its middle, each a little
 /// different from the others as the seed says.
 Rig room_rig(const RoomOptions& options);
 

@@ -83,7 +83,7 @@ TEST(Room, TheBodyHidesWhatIsBehindIt) {
         }
       }
     }
-    if (std::abs(depth) < 0.004) continue;  // closer than the twin's steps tell
+    if (std::abs(depth) < 0.004) continue;  // closer than the twin's steps resolve
     EXPECT_EQ(hidden_by_body(pose, from, to), depth < 0) << i;
     hidden += depth < 0;
   }

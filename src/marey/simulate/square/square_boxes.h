@@ -15,11 +15,11 @@ namespace marey::simulate::square {
 struct SquareDetectorOptions {
   double missed = 0.1;         ///< share of people in view that are not detected
   double size_noise = 0.03;    ///< of each edge, as a share of the box's height and width
-  double hidden_missed = 0.1;  ///< share of those that are missed of whom nearer boxes cover more than two thirds
+  double hidden_missed = 0.1;  ///< share missed of those that nearer boxes cover by more than two thirds
   double false_alarms = 0;     ///< a frame, on average
 };
 
-/// What a detector says of one frame of one camera of the people in the square, from left to right. Who is cut by the image's
+/// A detector's output for one frame of one camera of the people in the square, from left to right. A person cut by the image's
 /// border is omitted where less than half of it is within.
 std::vector<LabelledBox> square_boxes(std::span<const SquarePerson> people, const SquareMotion& square, const Camera& camera,
                                       std::int32_t frame, const SquareDetectorOptions& options, Random& random);

@@ -16,7 +16,7 @@ struct SquareOptions {
   double around = 4;               ///< m beyond it, where people come from and go to
   double arrivals = 1.1;           ///< groups a second
   double runners = 0.04;           ///< share of groups that run
-  double stopping = 0.35;          ///< share of groups that stand or sit for a while on their way
+  double stopping = 0.35;          ///< share of groups that stand or sit for a while on their path
   double stop_s = 30;              ///< how long on average
   int benches = 3;
 };

@@ -161,7 +161,7 @@ void BodyTracker::inspect_near(std::span<const BodyTrackPoint> points) {
     const Tracked& one = tracked_[static_cast<std::size_t>(body)];
     if (!one.motion || !one.present || one.measured) continue;
     const double widest = gate(one, 0) + kGate * std::sqrt(one.motion->turn.value) * one.reach;
-    // What may be anywhere within half an edge is no person's by place alone.
+    // A point that may be anywhere within half an edge is not assigned by place alone.
     if (widest > std::max(one.shortest_edge / 2, 2 * options_.tolerance)) continue;
     first_row[static_cast<std::size_t>(body)] = rows;
     rows += static_cast<int>(one.locations.size());

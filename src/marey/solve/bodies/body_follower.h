@@ -46,7 +46,7 @@ struct BodyTrackPoint {
 struct Correction {
   BodyId body{};
   Timestamp since{};
-  Rigid3 reported_from_body;  ///< the true pose is the told one times this
+  Rigid3 reported_from_body;  ///< the true pose is the reported one times this
 };
 
 /// What results from following one body.
@@ -88,7 +88,7 @@ class BodyTracker {
     Timestamp observed_at{};              ///< three markers or more
     Rigid3 observed_pose;
     Vector<3> observed_rate = Vector<3>::Zero();
-    bool present = false;        ///< told at the last instant
+    bool present = false;        ///< reported at the last instant
     std::vector<int> point_of;   ///< by marker, this instant; or kNoIndex
     std::optional<PoseFit> fit;  ///< this instant's
     bool measured = false;

@@ -20,7 +20,7 @@ struct Scene {
   double rate = 100;
 };
 
-/// What is seen at an instant, in no order; `visible` says of a body's marker whether it can be.
+/// The points seen at an instant, in no order; `visible` says of a body's marker whether it can be.
 template <typename Visible>
 std::vector<BodyTrackPoint> observed_at(const Scene& scene, double time, moving::Random& random, const Visible& visible) {
   std::vector<BodyTrackPoint> points;

@@ -1,4 +1,4 @@
-// How a body moves on between two looks: with constant velocity and constant turning rate, but for accelerations that are white
+// How a body moves between two observations: with constant velocity and constant turning rate, but for accelerations that are white
 // noise. Turn and place are followed apart, each as if it were alike in all directions, so that a step costs a few dozen operations
 // instead of those of a filter of twelve states: these beliefs gate and predict; what is reported of a body that is seen is what
 // was seen at that instant alone.

@@ -45,7 +45,7 @@ void BodyTracker::turn_body(int body, const Symmetry& turn, Timestamp since) {
   std::fill(one.evidence.begin(), one.evidence.end(), 0.0);
 }
 
-/// Where a symmetry is not perfect, the markers themselves tell in the long run.
+/// Where a symmetry is not perfect, the markers themselves decide in the long run.
 void BodyTracker::weigh_rotations(int body, Timestamp now, std::span<const BodyTrackPoint> points) {
   Tracked& one = tracked_[static_cast<std::size_t>(body)];
   for (std::size_t t = 0; t < one.rotations.size(); ++t) {

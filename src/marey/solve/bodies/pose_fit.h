@@ -4,7 +4,7 @@
 // which for noise that is alike in all directions is the most probable one and reaches the Cramér-Rao bound. Its covariance is that
 // bound: about the centroid of the markers turn and shift are independent, cov(shift) = σ² / N and cov(turn) = σ² (Σ |q|² I − q
 // qᵀ)⁻¹ with q from the centroid; moved to the body's origin they are not. From fewer markers, or from some in a line: what was
-// predicted, corrected by what is seen (Gauss-Newton on the most probable pose), with the covariance that is left.
+// predicted, corrected by the observations (Gauss-Newton on the most probable pose), with the covariance that is left.
 #pragma once
 
 #include <optional>
@@ -27,7 +27,7 @@ struct PoseFit {
 std::optional<PoseFit> fit_pose(std::span<const Vector<3>> locations, std::span<const Vector<3>> detected, double sigma,
                                 double loosest_turn = 0.2);
 
-/// What is known of a pose before it is seen: the same in all directions.
+/// The prior of a pose before it is seen: the same in all directions.
 struct PoseBelief {
   Rigid3 world_from_body;
   double turn_variance = 1;      ///< rad², about each axis

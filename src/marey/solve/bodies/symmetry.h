@@ -1,4 +1,4 @@
-// In which ways a set of markers appears the same after it was turned: who sees the points alone cannot tell these poses apart.
+// The turns after which a set of markers appears the same: from the points alone these poses cannot be distinguished.
 #pragma once
 
 #include <span>

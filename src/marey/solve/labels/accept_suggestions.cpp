@@ -41,7 +41,7 @@ const TrackColumns* track_called(const Recording& recording, const std::string& 
   return found == recording.tracks().end() ? nullptr : &*found;
 }
 
-/// False where another point bears the name at the time.
+/// False if another point has the name at the time.
 bool give_name(Labelled& labelled, const Unnamed& piece) {
   const TrackColumns* const named = track_called(labelled.recording, piece.best);
   const TrackColumns* const from = labelled.recording.find(piece.track);

@@ -118,7 +118,7 @@ class Check {
     return sides_.empty() ? 0 : sum / static_cast<double>(sides_.size());
   }
 
-  /// What is lost if each of `moved` gets the points of the next, and the last those of the first; or, if the first has none, the
+  /// The loss if each of `moved` gets the points of the next, and the last those of the first; or, if the first has none, the
   /// last gets none.
   void try_ring(std::span<const std::size_t> moved) {
     try_change([&](Holders& holders) { turn(holders, moved); }, moved);

@@ -5,7 +5,7 @@
 // together with what a search that moves one name at a time does not reach: two names exchanged, two pairs of a cluster exchanged
 // at once (a flat cluster turned over, which keeps its inner distances), three names in a ring, and a row of names along a limb
 // shifted by one into a name that no person has. Of a name the tightest distances count whole, and all others a share, because they
-// tell of one posture again and again. An alternative that is better is taken; one that is barely worse leaves its names undecided.
+// repeat one posture. An alternative that is better is taken; one that is barely worse leaves its names undecided.
 #pragma once
 
 #include <cstddef>
@@ -23,13 +23,13 @@ struct CheckedNames {
   std::vector<int> undecided;  ///< by name: which other name it could as well be exchanged with, or assign::kNoIndex
 };
 
-/// `learned_model`: of what was learned alone. `margin`: log-likelihood by which an alternative must be worse.
+/// `learned_model`: of the learned distances alone. `margin`: log-likelihood by which an alternative must be worse.
 CheckedNames check_names(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& learned_model,
                          const LabelInitOptions& options, std::size_t neighbours, double margin);
 
 /// How far distances that the set knows as rigid are from the learned ones.
 struct Misfit {
-  double ratio = 0;  ///< against what is expected of the subject that taught: about 1
+  double ratio = 0;  ///< against the distances expected of the training subject: about 1
   double off_m = 0;  ///< median
 };
 

@@ -22,7 +22,7 @@ struct DistanceOptions {
   double still_fraction = 0.02;
   double still_spread = 0.15;  ///< of a distance: how much another posture changes it
   double still_joint = 0.05;   ///< m, besides
-  double posture = 0.2;        ///< what such a distance counts: all distances across a joint tell the same, again and again
+  double posture = 0.2;        ///< what such a distance counts: all distances across a joint carry the same information
   double same_segment = 0.9;   ///< how probable it is that two markers close to each other are on one segment, which the distance
   double segment = 0.3;        ///< m: makes less so, by e
   double floor = -4;           ///< of a log-likelihood ratio
@@ -52,12 +52,12 @@ class DistanceModel {
   /// Standard deviation of a distance that was seen, if it is rigid: nothing if it was not learned, and varies here.
   std::optional<double> rigid_deviation(std::size_t a, std::size_t b, const DistanceObserved& detected) const;
   double mean(std::size_t a, std::size_t b) const { return terms_[LearnedMarkers::index_of(a, b)].mean; }
-  /// The others by how much their distances tell, the most first.
+  /// The others by the information in their distances, the most first.
   const std::vector<std::size_t>& partners(std::size_t label) const { return partners_[label]; }
   /// Labels in an order in which each is as well tied to those before it as may be.
   const std::vector<std::size_t>& order() const { return order_; }
 
-  /// What was found in the recording at hand: replaces what was learned elsewhere, as far as it was seen often enough.
+  /// The result from the recording at hand: replaces the distances learned elsewhere, as far as it was seen often enough.
   void adopt(std::size_t a, std::size_t b, const DistanceObserved& detected);
   /// Only for the order in which names are asked for, where what is rigid was not learned: how much two of them vary, m.
   void set_rank(std::size_t a, std::size_t b, double deviation) { terms_[LearnedMarkers::index_of(a, b)].deviation = deviation; }

@@ -73,7 +73,7 @@ FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, co
         found.name_of[track.id()] = static_cast<int>(name);
     }
   }
-  // Two pieces of one marker have its name, each in its time: the one that is there last bears it.
+  // Two pieces of one marker have its name, each in its time: the one that is there last has it.
   std::map<int, std::pair<std::int32_t, TrackId>> latest;
   for (const auto& [track, name] : found.name_of) {
     const std::pair its(recent.find(track)->at().back(), track);

@@ -141,7 +141,7 @@ class Beam {
     }
   }
 
-  /// How well the ways from its neighbours fit the learned posture.
+  /// How well the vectors from its neighbours fit the learned posture.
   double direction_gain(const LabelHypothesis& answer, std::size_t name, std::size_t point) const {
     double sum = 0;
     for (const std::size_t other : nearest_[name]) {

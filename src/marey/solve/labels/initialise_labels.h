@@ -21,11 +21,11 @@ namespace marey::solve::labels {
 struct LabelInitOptions {
   int answers = 400;        ///< that are kept
   double wrong_side = 12;   ///< log-likelihood that a point on the wrong side costs
-  double direction = 0.35;  ///< of the distance: by how much the way from a neighbour differs between two like postures
+  double direction = 0.35;  ///< of the distance: by how much the vector from a neighbour differs between two like postures
   double height = 0.012;    ///< m: of a marker above three others: less has no side
 };
 
-/// What is known of the points of one instant.
+/// The known data of the points of one instant.
 struct InitialiseScene {
   std::vector<Vector<3>> locations;        ///< m
   std::vector<DistanceObserved> detected;  ///< of each two, as LearnedMarkers has its distances

@@ -19,7 +19,7 @@ constexpr double kNever = -1e6;               // nats: no name for this track
 constexpr std::size_t kMinRequested = 3;      // neighbours, below which nothing is said
 constexpr double kMaxLack = 8;                // nats that one distance is off by, at most
 constexpr double kStationary = 0.008;         // m: what varies less is rigid, and has a side
-constexpr double kStationaryLearned = 0.012;  // m, of what is learned on the way where a moving subject taught
+constexpr double kStationaryLearned = 0.012;  // m, of the distances learned meanwhile if a moving subject taught
 constexpr double kWrongSide = 6;              // nats
 constexpr std::size_t kMaxSides = 6;
 constexpr std::size_t kSideNeighboursRequested = 6;
@@ -158,7 +158,7 @@ double LabelTracker::lack(std::size_t name, const Vector<3>& location) const {
   return (sum + side_cost(name, location, name)) / static_cast<double>(requested);
 }
 
-/// What is open: tracks without a name, and those uncertain. Who is uncertain says nothing of others.
+/// What is open: tracks without a name, and those uncertain. An uncertain track is not evidence of others.
 void LabelTracker::find_review_items(Timestamp now, std::span<const TrackedPoint> points) {
   open_.clear();
   std::size_t there = 0, sure = 0;
@@ -211,7 +211,7 @@ void LabelTracker::expect_lost(Timestamp now) {
   }
 }
 
-/// By how much the likelier a point there bears the name that was lost than any point of a cubic metre.
+/// By how much the likelier a point there has the name that was lost than any point of a cubic metre.
 double LabelTracker::lost_gain(std::size_t name, const Vector<3>& location) const {
   if (!lost_[name] || !lost_[name]->expected) return 0;
   const double deviation = lost_[name]->deviation, squares = (location - *lost_[name]->expected).squaredNorm();
@@ -235,7 +235,7 @@ double LabelTracker::side_cost(std::size_t name, const Vector<3>& location, std:
   return std::min(cost, 3 * kWrongSide);
 }
 
-/// `self`: the name that the point bears, whose place is its own.
+/// `self`: the name that the point has, whose place is its own.
 double LabelTracker::fit(std::size_t name, const Vector<3>& location, std::size_t self) const {
   double sum = 0;
   std::size_t requested = 0;
@@ -327,7 +327,7 @@ void LabelTracker::distribute(Timestamp now) {
 void LabelTracker::give(std::size_t point, int name) {
   Known& bearer = *of_point_[point];
   if (bearer.name == name) return;
-  for (auto& [track, known] : known_) {  // who bore it before is not there
+  for (auto& [track, known] : known_) {  // the track that had it before is not there
     if (known.name == name) known.name = kNoIndex;
   }
   bearer.name = name;

@@ -2,13 +2,13 @@
 //
 // A track keeps its name while its distances to its steadiest named neighbours are about the learned ones, and while it lies on the
 // learned side of those that are rigid with it. A track without a name, and one uncertain, are open; so are the names that no
-// person bears for certain. How well open names fit open tracks is the mean, since a track is open, of
+// person has for certain. How well open names fit open tracks is the mean, since a track is open, of
 //   - the distances to the neighbours, as DistanceModel has it,
 //   - the side (four_points.h),
 //   - where the name was lost: how far it lies from where its neighbours carried it since.
-// Names are then shared out so that each is given once; who fits badly, or barely better than something else could, stays open, and
-// a margin is the lower the longer a track was inspected. Two that bear each other's names are both uncertain, and both are right a
-// frame later. Distances that are steady are learned on the way, one name's at a frame.
+// Names are then assigned, each once; a name that fits badly, or barely better than something else could, stays open, and
+// a margin is the lower the longer a track was inspected. Two that have each other's names are both uncertain, and both are right a
+// frame later. Distances that are steady are learned in the process, one name's per frame.
 // Cost: names × neighbours a frame, and open tracks × open names × neighbours.
 #pragma once
 
@@ -52,9 +52,9 @@ class LabelTracker {
   LabelTracker(const LearnedMarkers& learned, double scale, std::span<const DistanceObserved> detected,
                const LabelTrackerOptions& options = {});
 
-  /// Names that were found for tracks, by name: they replace what these bear, and a name is taken from who bore it.
+  /// Names that were found for tracks, by name: they replace the names these have, and a name is taken from its previous track.
   void take(const std::map<TrackId, int>& found);
-  /// The names that tracks bear, also those that are not there now.
+  /// The names that tracks have, also those that are not there now.
   std::map<TrackId, int> borne() const;
   /// For every point its name or assign::kNoIndex; no name twice. Times grow. Valid until the next call.
   std::span<const int> step(Timestamp now, std::span<const TrackedPoint> points);
@@ -106,7 +106,7 @@ class LabelTracker {
 
   const LearnedMarkers* learned_;
   LabelTrackerOptions options_;
-  DistanceModel first_, model_;  // as learned; with what was seen since
+  DistanceModel first_, model_;  // as learned; with the observations since
   std::vector<DistanceObserved> detected_;
   std::vector<std::vector<Side>> sides_;
   std::map<TrackId, Known> known_;

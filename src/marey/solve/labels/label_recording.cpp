@@ -29,7 +29,7 @@ std::pair<double, double> extent_of(std::vector<double> heights) {
   return {heights[heights.size() / 20], heights[heights.size() - 1 - heights.size() / 20]};
 }
 
-/// The whole way of one recording.
+/// The whole processing of one recording.
 class Labelling {
  public:
   Labelling(const Recording& recording, const LearnedMarkers& learned, const LabelOptions& options, const Hooks& hooks)
@@ -66,10 +66,10 @@ class Labelling {
       hooks_.advance({.step = "naming", .done = round + 1, .total = options_.rounds + 1});
       chains_.gather();
       if (round > 0) {
-        cut_untrusted();  // before they spoil what is learned
+        cut_untrusted();  // before they spoil the learned distances
         chains_.gather();
       }
-      if (round > 0 || !learned_.moves) refine();  // who stood still told nothing of what is rigid: the first names do
+      if (round > 0 || !learned_.moves) refine();  // a subject who stood still gave no rigid distances: the first names do
       distribute();
     }
     chains_.gather();
@@ -142,8 +142,8 @@ std::vector<double> Labelling::scales(std::size_t instant) const {
   return {ratio, 0.95 * ratio, 1.05 * ratio, 0.9 * ratio, 1.1 * ratio};
 }
 
-/// Where what was learned stems from others, their posture tells left from right: how that lies to the subject as it was named
-/// first. (One's own posture, standing still, tells less than one's own distances.)
+/// If the learned model stems from others, their posture distinguishes left and right: how that lies to the subject as it was named
+/// first. (One's own posture, standing still, is less informative than one's own distances.)
 std::optional<Matrix<3>> Labelling::turn_to_learned(const InitialiseScene& scene, const LabelHypothesis& answer) const {
   if (!learned_.scaled) return std::nullopt;
   std::vector<Vector<3>> from, to;
@@ -261,7 +261,7 @@ void Labelling::distribute() {
   settle(votes);
 }
 
-/// Those with most votes first; who is there at the same time as one that bears the name takes its next.
+/// Those with most votes first; one there at the same time as another that has the name takes its next.
 void Labelling::settle(const std::vector<std::vector<int>>& votes) {
   struct Claim {
     int count, chain, name;
@@ -301,7 +301,7 @@ void Labelling::cut_untrusted() {
   }
 }
 
-/// By how much a chain's name is better than any other it could bear: one that is free in its time, or one that it could exchange.
+/// By how much a chain's name is better than any other it could have: one that is free in its time, or one that it could exchange.
 double Labelling::margin(int chain, int name, const std::vector<NamedChains::Fits>& fits, int& next) const {
   const auto& own = fits[static_cast<std::size_t>(chain)];
   double minimum = own[static_cast<std::size_t>(name)];

@@ -5,7 +5,7 @@
 //    answer that fits best is the seed.
 // 3. Every chain is asked how well each name fits it over its whole life: by its distances to the markers that are named already,
 //    of which the tightest count. At each instant names are then shared out so that each is given once; instants vote, and a chain
-//    bears the name that most gave it, as long as no person who is there at the same time bears it. What was found refines what
+//    has the name that most gave it, as long as no other there at the same time has it. The result refines which
 //    distances are expected, and the round begins again. A tracklet that fits another name much better than its chain's is cut off.
 // 4. What fits badly, or barely better than another name that was free, stays without a name, and its two best names are reported.
 // Cost: points × names × neighbours a round.
@@ -58,10 +58,10 @@ struct Labelled {
   std::vector<MarkerHealth> health;
   std::vector<Unnamed> unnamed;
   double scale = 1;          ///< of the subject against the learned set
-  std::int64_t renamed = 0;  ///< stretches of tracks that had another name of the set before
+  std::int64_t renamed = 0;  ///< segments of tracks that had another name of the set before
   /// By name of the set: not 0 if the final check found an exchange with another name that fits as well. No track has such a name.
   std::vector<char> undecided;
-  double misfit = 0;    ///< how far rigid distances are off, against what is expected of the subject that taught: about 1
+  double misfit = 0;    ///< how far rigid distances are off, against those expected of the subject that taught: about 1
   double misfit_m = 0;  ///< the same as a median, m
 };
 

@@ -36,7 +36,7 @@ class Figure {
       }
     }
   }
-  /// The last segment becomes a forearm whose two wrist markers have like distances to the rest of it: only their side tells them.
+  /// The last segment becomes a forearm whose two wrist markers have like distances to the rest of it: their side alone differs.
   void make_forearm() {
     locations_[15] = {0.035, 0, -0.05};
     locations_[16] = {-0.035, 0, -0.05};
@@ -104,7 +104,7 @@ Stripped strip(const Recording& recording, std::uint64_t seed) {
     for (std::size_t row = 0; row < track.size(); ++row) {
       if (hidden == 0 && random.uniform() < 0.005) hidden = static_cast<int>(between(random, 1, 20));
       if (hidden > 0) {
-        --max - occlusion;
+        --hidden;
         if (!piece.empty())
           stripped.recording.put(std::exchange(piece, TrackColumns({.id = TrackId{++id}, .label = {}, .team = {}}, 3)));
         continue;
@@ -174,7 +174,7 @@ TEST(LabelRecording, PutsExchangedNamesRight) {
   Recording wrong(swapped.header);
   InstantsOf instants(swapped);
   for (auto instant = instants.next(); instant; instant = instants.next()) {
-    if (instant->index >= 120) {  // from here on 3 and 11 bear each other's names
+    if (instant->index >= 120) {  // from here on 3 and 11 have each other's names
       for (Sample& sample : instant->samples) {
         if (sample.track == TrackId{4})
           sample.track = TrackId{12};

@@ -46,7 +46,7 @@ class Result {
  private:
   const Tracklet& tracklet(int index) const { return chains_.tracklets()[static_cast<std::size_t>(index)]; }
 
-  /// The name of the set that a track bore before; a prefix "Subject:" is skipped.
+  /// The name of the set that a track had before; a prefix "Subject:" is skipped.
   int name_before(TrackId track) const {
     std::string label = recording_.find(track)->name.label;
     if (!index_.contains(label) && label.find(':') != std::string::npos) label = label.substr(label.find(':') + 1);

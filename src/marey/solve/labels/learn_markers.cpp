@@ -176,7 +176,7 @@ void require_all(const std::vector<std::vector<const TrackColumns*>>& tracks, co
   if (labels.size() < 4) throw Error("{}: {} markers with names; a set takes four or more", name, labels.size());
 }
 
-/// The instant at which most are seen, as a posture; who is hidden then is where the nearest of its distances put it, no matter.
+/// The instant at which most are seen, as a posture; one hidden then is where the nearest of its distances put it.
 std::vector<Vector<3>> fullest_posture(const std::vector<const TrackColumns*>& tracks, std::size_t instants) {
   Posture best(tracks.size());
   std::ptrdiff_t maximum = -1;
@@ -195,7 +195,7 @@ std::vector<Vector<3>> fullest_posture(const std::vector<const TrackColumns*>& t
   return locations;
 }
 
-/// How far the markers of a posture reach, RMS in m, along its three axes; the least first. Who has no place says nothing.
+/// How far the markers of a posture reach, RMS in m, along its three axes; the least first. One without a place is ignored.
 Vector<3> extents_of(const std::vector<Vector<3>>& locations) {
   Vector<3> mean = Vector<3>::Zero();
   double count = 0;

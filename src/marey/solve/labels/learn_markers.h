@@ -1,4 +1,4 @@
-// A marker set out of recordings in which its markers bear their names.
+// A marker set out of recordings in which its markers have their names.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ struct LearnOptions {
 };
 
 /// All recordings count alike, however long. A prefix "SUBJECT:" that all labels of a recording share is omitted. Throws Error
-/// where a label is missing in all of them, two tracks of a recording bear one, fewer than four markers are there, or barely any
+/// where a label is missing in all of them, two tracks of a recording have one, fewer than four markers are there, or barely any
 /// two are seen together, or all lie in one line.
 LearnedMarkers learn_markers(std::span<const Recording> recordings, const LearnOptions& options);
 

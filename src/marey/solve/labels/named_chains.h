@@ -1,4 +1,4 @@
-// The state between the rounds: chains of tracklets, which of them bears which name, and where the named ones are.
+// The state between the rounds: chains of tracklets, which of them has which name, and where the named ones are.
 #pragma once
 
 #include <optional>
@@ -38,14 +38,14 @@ class NamedChains {
   void set_name(int chain, int name) { chains_[static_cast<std::size_t>(chain)].name = name; }
   /// Puts the named chains' places where `fits` finds them; of two with one name at one instant the longer counts.
   void gather();
-  /// The chain that bears a name at an instant, and where.
+  /// The chain that has a name at an instant, and where.
   struct Holder {
     int chain = assign::kNoIndex;
     Vector<3> location = Vector<3>::Zero();
   };
   const Holder& holder(std::size_t instant, std::size_t name) const { return holders_[instant * names_ + name]; }
 
-  /// By the chain's, or one tracklet's, points, against those who bear names now; itself omitted.
+  /// By the chain's, or one tracklet's, points, against those that have names now; itself omitted.
   Fits fits_of_chain(int chain, const DistanceModel& model, std::size_t neighbours) const;
   Fits fits_of_tracklet(int tracklet, const DistanceModel& model, std::size_t neighbours) const;
 

@@ -13,7 +13,7 @@
 
 namespace marey::solve::labels {
 
-/// A stretch of one track without a gap: rows `first_row` to `last_row`, instants `first` to `last`.
+/// A segment of one track without a gap: rows `first_row` to `last_row`, instants `first` to `last`.
 struct Tracklet {
   TrackId track{};
   std::size_t first_row = 0, last_row = 0;

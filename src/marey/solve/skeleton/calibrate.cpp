@@ -156,7 +156,7 @@ class Calibrator {
     return step.cwiseAbs().maxCoeff() > 1e-5;
   }
 
-  /// Segments of whose size the frames say less than the prior did: the distance to one of the joints (or the end) that it bears
+  /// Segments of whose size the frames say less than the prior did: the distance to one of the joints (or the end) on it
   /// keeps more than half of its variance; without any, each of its three axes does.
   std::vector<std::string> undetermined() const {
     const NormalEquations equations = normal_equations();

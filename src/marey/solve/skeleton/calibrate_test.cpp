@@ -102,7 +102,7 @@ TEST(Calibrate, FindsSizesAndPlacesOfMarkers) {
   }
 }
 
-/// A thigh whose shank may only bend one way, and a person whose knee goes 12° beyond that.
+/// A thigh whose shank may only bend in one direction, and a person whose knee goes 12° beyond that.
 Skeleton leg(double lowest) {
   Skeleton skeleton{.name = "leg", .coordinates = {}, .segments = {}, .markers = {}};
   Segment thigh{.name = "thigh", .parent = {}, .joint = {}, .end = {}};

@@ -25,7 +25,7 @@ double next_random(std::uint64_t& state) {
 
 }  // namespace
 
-/// A rigid motion of the resting skeleton onto what is seen: of the root's own markers, or of all.
+/// A rigid motion of the resting skeleton onto the observations: of the root's own markers, or of all.
 std::optional<Rigid3> PoseSolver::root_from(Detected detected, bool root_alone, const SkeletonState& rest) {
   articulation_.location(rest);
   const auto& markers = articulation_.skeleton().markers;

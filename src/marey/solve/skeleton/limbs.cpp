@@ -13,8 +13,8 @@ namespace marey::solve::skeleton {
 namespace {
 
 constexpr double kAtLimitRad = 0.035;  // 2°
-constexpr double kOneDirection = 0.2;  // of a range: how lopsided a hinge's is that bends one way
-constexpr double kBentRad = 0.7;       // 40°: the way a hinge may bend
+constexpr double kOneDirection = 0.2;  // of a range: how lopsided a hinge's is that bends in one direction
+constexpr double kBentRad = 0.7;       // 40°: the direction in which a hinge may bend
 constexpr double kRotatedRad = 0.4;    // assumed: one σ of an arm's or thigh's turn about itself
 constexpr double kBackRad = 0.1;       // assumed: one σ of what an elbow or knee bends backwards
 constexpr double kBetter = 1;          // σ² of a marker: less is not a reason to turn a limb about
@@ -60,7 +60,7 @@ bool PoseSolver::at_limit(int coordinate) const {
   return x < *hinge.lowest + kAtLimitRad || x > *hinge.highest - kAtLimitRad;
 }
 
-/// How unlike a person's a limb is: turned about itself away from rest, and bent the way that it barely bends.
+/// How unlike a person's a limb is: turned about itself away from rest, and bent in the direction in which it barely bends.
 double PoseSolver::oddness(const Limb& limb) const {
   const Coordinate& hinge = articulation_.skeleton().coordinates[static_cast<std::size_t>(limb.hinge)];
   const Eigen::Quaterniond rotated(Matrix<3>(limb.rest.transpose() * state_.balls[limb.ball]));
@@ -76,7 +76,7 @@ double PoseSolver::cost_of_pose(const Limb& limb, Detected detected) {
   return gather_markers(detected) + limit_cost(state_) + oddness(limb);
 }
 
-/// The state with a limb's upper segment turned about its length and its hinge bent the way that it may.
+/// The state with a limb's upper segment turned about its length and its hinge bent as it may.
 std::vector<SkeletonState> PoseSolver::rotated_about(const Limb& limb) const {
   const Coordinate& hinge = articulation_.skeleton().coordinates[static_cast<std::size_t>(limb.hinge)];
   const bool positive = *hinge.lowest + *hinge.highest >= 0;
@@ -95,7 +95,7 @@ std::vector<SkeletonState> PoseSolver::rotated_about(const Limb& limb) const {
   return all;
 }
 
-/// A limb may be turned about itself, its hinge bent backwards as far as the limit lets it: markers on its length barely tell.
+/// A limb may be turned about itself, its hinge bent backwards as far as the limit lets it: markers on its length barely show it.
 /// Tries the other poses of the limbs that are asked, and takes what fits better. Says whether it did.
 bool PoseSolver::turn_limbs(Detected detected) {
   bool rotated = false;

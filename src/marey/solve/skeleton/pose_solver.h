@@ -118,7 +118,7 @@ class PoseSolver {
   };
 
   /// A segment that turns freely, and the hinge with limits at its end: turned by half a turn about itself, with the hinge bent the
-  /// other way, it lies nearly as before.
+  /// other direction, it lies nearly as before.
   struct Limb {
     std::size_t ball = 0;
     int hinge = 0;             ///< coordinate

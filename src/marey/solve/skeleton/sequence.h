@@ -12,7 +12,7 @@ namespace marey::solve::skeleton {
 
 struct SequenceOptions {
   PoseOptions pose;
-  bool whole = false;   ///< the recording as a whole decides which way limbs are bent
+  bool whole = false;   ///< the recording as a whole decides the direction in which limbs are bent
   bool smooth = false;  ///< and a second pass over all frames at once
 };
 

@@ -144,7 +144,7 @@ TEST(Sequence, BearsThreeInTenMarkersHidden) {
   }
 }
 
-/// What is seen stays where its markers have it, however fast it moves.
+/// An observed segment stays where its markers have it, however fast it moves.
 TEST(Sequence, SmoothingDoesNotBiasWhatIsSeen) {
   const Skeleton skeleton = walker();
   std::mt19937 random(5);

@@ -134,7 +134,7 @@ class Smoother {
     }
   }
 
-  /// In a gap, every joint on the way from its pose before to that after; from there the frame's markers have their say.
+  /// In a gap, every joint interpolated from its pose before to that after; from there the frame's markers have their say.
   void guide() {
     const Articulation& articulation = solver_.articulation();
     const std::vector<SkeletonState> found = states_;

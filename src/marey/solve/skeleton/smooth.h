@@ -3,7 +3,7 @@
 //
 // Where markers are hidden, those left say something else than all did together, for none fits exactly (skin, the model): the pose
 // would step when they go and when they return. So each marker near a hidden one is taken to sit where it was found at both ends,
-// on the mean in between, and angles that no marker shows start on the way from one end to the other.
+// on the mean in between, and angles that no marker shows start on the line from one end to the other.
 //
 // Minimises Σ_t markers(x_t) + Σ_t d_tᵀ W_t d_t, d_t = x_{t+1} − 2 x_t + x_{t−1}, by Gauss–Newton. W is (a Δt²)⁻² in the directions
 // that no marker shows and falls with what the markers say, as the prediction of the PoseSolver does: both terms grow alike with

@@ -81,7 +81,7 @@ class FoldSettler {
     return maximum;
   }
 
-  /// From a pose at frame `from` on, one way, until it meets what was found: appends rows and what they cost less.
+  /// From a pose at frame `from` on, in one direction, until it meets the solution: appends rows and what they cost less.
   void run_tracker(std::vector<double> pose, std::size_t from, int method, std::vector<std::vector<double>>& rows, double& gain) {
     tracker_.start_from(std::move(pose));
     for (auto f = static_cast<std::ptrdiff_t>(from) + method; f >= 0 && f < std::ssize(rows_); f += method) {

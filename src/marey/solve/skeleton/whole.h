@@ -1,9 +1,9 @@
 // A recording as a whole decides how its limbs are bent. Frame by frame a limb may come into another fold than the one it is in (an
-// elbow bent backwards with the upper arm turned about itself), and stay there, for few markers barely tell the two apart in one
+// elbow bent backwards with the upper arm turned about itself), and stay there, for few markers barely distinguish the two in one
 // frame; over a recording they do.
 //
 // Two sources of other motions: the recording solved from its end to its beginning, and limbs turned about where that fits better,
-// followed both ways from there until they meet what was found. Over the frames in which two motions differ, the one whose markers,
+// followed both ways from there until they meet the solution. Over the frames in which two motions differ, the one whose markers,
 // limits and folds cost less in sum is taken.
 #pragma once
 

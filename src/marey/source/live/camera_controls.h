@@ -32,11 +32,11 @@ class CameraControls {
 
   // From any thread.
   void request(Control control, double value);
-  /// Whether what was asked for is not set yet.
+  /// Whether a requested value is not set yet.
   bool waits() const;
   /// None where the camera has none, or was not there yet.
   std::vector<ControlRange> has() const;
-  /// What was asked for and taken.
+  /// The values requested and accepted.
   Values taken() const;
   /// Why the last that was asked for was not taken, without the camera's name; empty if it was.
   std::string refused() const;
@@ -44,7 +44,7 @@ class CameraControls {
   // From the thread that reads the camera.
   /// It is connected.
   void begin(Connection& camera);
-  /// Sets what was asked for since the last call.
+  /// Sets the values requested since the last call.
   void apply(Connection& camera);
 
  private:
@@ -54,7 +54,7 @@ class CameraControls {
   Values required_, fresh_, taken_;
   std::vector<ControlRange> has_;
   std::string refused_;
-  bool setting_ = false;  // what was fresh a moment ago
+  bool setting_ = false;  // fresh until just now
 };
 
 }  // namespace marey::source::live

@@ -21,7 +21,7 @@ struct Shot {
   CameraFrame given;                          ///< its image or its detections; index and time are not inspected
   std::optional<Timestamp> taken = {};        ///< by the run's clock
   std::optional<Duration> device_time = {};   ///< by the camera's own clock, from any origin
-  std::optional<std::int64_t> sequence = {};  ///< by the camera's own count: what it omits was lost on the way
+  std::optional<std::int64_t> sequence = {};  ///< by the camera's own count: what it omits was lost in transit
 };
 
 enum class Came {
@@ -36,7 +36,7 @@ class Connection {
  public:
   virtual ~Connection() = default;
 
-  /// Valid until the next call of `next`; an empty size where only images will tell it.
+  /// Valid until the next call of `next`; an empty size if only images will show it.
   virtual const SourceInfo& info() const = 0;
   /// Waits for the next frame, a tenth of a second at most (kStopSlice). Throws Error if the camera is gone.
   virtual Came next(Shot& shot) = 0;

@@ -25,7 +25,7 @@ struct Unref {
 template <typename T>
 using Owned = std::unique_ptr<T, Unref>;
 
-/// Aravis tells what failed through one of these.
+/// Aravis reports failures through one of these.
 class Failure {
  public:
   ~Failure() { g_clear_error(&error_); }
@@ -162,7 +162,7 @@ class GigeCamera final : public Connection {
  private:
   static void on_lost(ArvDevice*, std::atomic<bool>* lost) { *lost = true; }
 
-  /// Throws Error if the camera refuses what was asked for.
+  /// Throws Error if the camera refuses the requested values.
   template <typename Set>
   void demand(const char* what, const Set& set) {
     Failure failure;

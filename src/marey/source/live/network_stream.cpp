@@ -131,7 +131,7 @@ class NetworkStream final : public Connection {
     return false;
   }
 
-  /// The sender's clock, µs, where RTCP has told it: since the first sender report each packet brings it.
+  /// The sender's clock, µs, if RTCP has reported it: since the first sender report each packet brings it.
   void read_clock() {
     std::size_t size = 0;
     const std::uint8_t* data = av_packet_get_side_data(packet_.get(), AV_PKT_DATA_PRFT, &size);

@@ -1,4 +1,4 @@
-// Cameras on a network that send a coded film: RTSP, and HTTP (MJPEG and whatever else FFmpeg reads).
+// Cameras on a network that send a coded video: RTSP, and HTTP (MJPEG and whatever else FFmpeg reads).
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ struct NetworkOptions {
   bool udp = false;     ///< RTSP's images by UDP: later frames do not wait for a lost one, which is damaged instead. Else by TCP.
 };
 
-/// FFmpeg at its least delay: nothing is kept back, one thread decodes, and what cannot be decoded without what was lost is left
-/// out until the next key frame. Where the sender tells its clock (RTCP) a frame's time is when it was taken, by that clock; else
+/// FFmpeg at its least delay: nothing is kept back, one thread decodes, and frames not decodable without the lost ones are left
+/// out until the next key frame. If the sender reports its clock (RTCP) a frame's time is when it was taken, by that clock; else
 /// it is when the frame came.
 Connect connect_network(const NetworkOptions& options);
 

@@ -31,7 +31,7 @@ struct NodeAddress {
 /// Throws Error if no host is named, or the port is not one.
 NodeAddress node_address(const Address& address);
 
-/// A camera of a node. Its frames bear times by the run's clock: the node's clock is asked now and then.
+/// A camera of a node. Its frames have times by the run's clock: the node's clock is asked now and then.
 Connect connect_node(const NodeAddress& location);
 
 /// The rig of a node, as text of a rig file. Throws Error if it does not answer within two seconds; Stopped.

@@ -167,7 +167,7 @@ class NodeCamera final : public Connection {
       const auto stated = request({.camera = location_.camera, .request = {}});
       return stated ? stated->has : std::vector<ControlRange>();
     } catch (const Error&) {
-      return {};  // it has gone, which its frames tell
+      return {};  // it has gone, which its frames report
     }
   }
 

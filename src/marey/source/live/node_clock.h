@@ -1,5 +1,5 @@
 // Another host's clock by round trips. An answer was given between question and arrival, so that half the round trip is what it can
-// be off; clocks of two hosts drift apart in the meantime. Of the last few round trips the one with the least of both tells the
+// be off; clocks of two hosts drift apart in the meantime. Of the last few round trips the one with the least of both gives the
 // time (F. Cristian, "Probabilistic clock synchronization", Distributed Computing 3, 1989).
 #pragma once
 

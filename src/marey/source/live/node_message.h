@@ -29,7 +29,7 @@
 
 namespace marey::source::live {
 
-/// One camera's frame on its way: its image or what was found in it.
+/// One camera's frame in transit: its image or the detections in it.
 struct NodeFrame {
   std::uint64_t session = 0;                              ///< of the node's start: another one counts and times again
   std::int64_t sequence = 0;                              ///< of this camera's frames; what a host does not get is missing
@@ -53,7 +53,7 @@ struct NodeAnswer {
 struct NodeControls {
   std::uint64_t session = 0;
   bool allowed = false;           ///< whether hosts may set it
-  bool waits = false;             ///< what was asked for is not set yet
+  bool waits = false;             ///< the requested values are not set yet
   std::vector<ControlRange> has;  ///< threshold: where the node finds the markers
   std::string refused;            ///< why the last that was asked for was not taken; empty if it was
 };

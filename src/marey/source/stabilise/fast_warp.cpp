@@ -52,7 +52,7 @@ void warp_row(const cv::Mat& image, const Matrix<3>& h, int y, Level* out) {
       const double fx = dx - whole_x, fy = dy - whole_y;
       const int count = std::min(steps_within(fx, sx, end - x), steps_within(fy, sy, end - x));
       const int row = y + whole_y, from = x + whole_x;
-      // Of what is read the last column is `from + count`.
+      // Of the columns read the last is `from + count`.
       const int skip = std::clamp(-from, 0, count), keep = std::clamp(image.cols - 1 - from, skip, count);
       if (row >= 0 && row + 1 < image.rows && keep > skip) {
         const auto* above = image.ptr<Level>(row) + from + skip;

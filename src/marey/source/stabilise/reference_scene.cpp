@@ -23,7 +23,7 @@ constexpr std::size_t kMaxKinds = 6;
 constexpr int kSearchAgain = 5;  // images: one that is lost for longer is searched for everywhere this often
 constexpr int kCoarse = 2;
 constexpr double kStillThere = 0.6;    // of an image's corners: with fewer, the next ones are reported against a newer image
-constexpr int kBeforeMinimum = 10;     // images that only the one before tells, after which new corners are taken
+constexpr int kBeforeMinimum = 10;     // images located only by the one before, after which new corners are taken
 constexpr int kAllPixelsAtFirst = 25;  // images lost in turn, after which all pixels are asked as rarely as everything else
 
 /// The best few corners of each cell of a grid.
@@ -202,7 +202,7 @@ void StandingScene::settle_focal(const std::vector<std::vector<TrackedPosition>>
   if (best) view_.focal = *best;
 }
 
-/// While images come one by one: as soon as there are enough that tell it. Whether it has changed.
+/// While images come one by one: as soon as there are enough to determine it. Whether it has changed.
 bool StandingScene::learn_focal(const std::vector<TrackedPosition>& locations, const SceneMotion& motion) {
   if (focal_known_ || motion.turn.head<2>().norm() * view_.focal < options_.reports_focal) return false;
   for_focal_.push_back(locations);

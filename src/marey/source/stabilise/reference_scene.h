@@ -1,4 +1,4 @@
-// The scene that a fixed camera looks at, as corners of it that stand, and where an image looks against it. An image is compared
+// The scene that a fixed camera faces, as corners of it that stand, and an image's aim relative to it. An image is compared
 // with the scene itself, never with the image before, so that nothing adds up: images of the beginning are laid over each
 // other and their median, in which no person walks, is what corners are taken from. Each is followed into the new image by its
 // gradient (Lucas & Kanade 1981, on pyramids, Bouguet 2001), from where the camera was last; if that fails, from where phase
@@ -48,7 +48,7 @@ class StandingScene {
   /// nothing.
   bool learn(std::span<const Image> samples);
 
-  /// Where the camera looks; nothing if that cannot be reported, or the image has another size. Images come in order. The first
+  /// The camera's aim; nothing if that cannot be reported, or the image has another size. Images come in order. The first
   /// one with corners is the rest where nothing was learned.
   std::optional<SceneMotion> find(const Image& image);
 
@@ -105,7 +105,7 @@ class StandingScene {
   Corners before_;        // of an image of late whose motion was known
   cv::Mat before_image_;  // that image, until its corners are wanted
   SceneMotion before_motion_;
-  int by_before_ = 0;  // images in turn whose motion only that one told
+  int by_before_ = 0;  // images in turn whose motion came only from that one
   cv::Mat mean_;       // CV_32F, at rest, of recent images
   int in_mean_ = 0, since_mean_ = 0, lost_run_ = 0;
   double agreed_ = 0;  // share of corners, of late

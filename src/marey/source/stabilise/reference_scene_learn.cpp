@@ -1,5 +1,5 @@
 // How a scene is learned from images of the beginning: each is brought to one of them, by corners, or by all pixels where those
-// tell of too few; their median, in which no person walks, is the scene.
+// report too few; their median, in which no person walks, is the scene.
 #include <algorithm>
 #include <array>
 
@@ -81,7 +81,7 @@ cv::Mat StandingScene::laid_over(const std::vector<Sampled>& samples, const Scen
   return median_image(back);
 }
 
-/// By corners; where those tell of too few samples, by all pixels if they tell of more. Whether a third is reported of.
+/// By corners; if those report too few samples, by all pixels if they report more. Whether a third is reported of.
 bool StandingScene::begin(std::vector<Sampled>& samples) {
   if (samples.empty()) return false;
   std::vector<Sampled> best;

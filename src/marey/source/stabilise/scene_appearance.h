@@ -1,4 +1,4 @@
-// Where an image looks against a scene, told by all of its pixels: for images in which too few corners stand, because they are
+// An image's aim relative to a scene, from all of its pixels: for images in which too few corners stand, because they are
 // small and dull, or cars and people fill much of them. Each image is brought to its local contrast, so that a kerb counts as
 // much as a white car, on a few sizes. On the smallest every shift is tried, and the best few are followed through the larger ones
 // (Gauss-Newton, Geman & McClure's weights). What is hidden in either image agrees with nothing and counts little: the shift
@@ -37,7 +37,7 @@ class SceneAppearance {
   /// Whether there is enough in it to hold on to.
   bool can_be_found() const;
 
-  /// Where `now`, of the same size, looks against this, if that can be reported: with which more is alike than with any other
+  /// The aim of `now`, of the same size, relative to this, if that can be reported: with which more is alike than with any other
   /// motion, by a share of `plainly`. Not further off than `farthest` px.
   std::optional<Found> find(const SceneAppearance& now, const PinholeView& view, double farthest, double plainly = 0.06) const;
 

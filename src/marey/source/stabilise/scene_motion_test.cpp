@@ -18,7 +18,7 @@ std::vector<TrackedPosition> locations(const SceneMotion& motion, int count, dou
   for (int i = 0; i < count; ++i) {
     const Vector<2> rest(640 * unit(random), 360 * unit(random));
     Vector<2> detected = (moved * rest.homogeneous()).hnormalized() + Vector<2>(normal(random), normal(random));
-    if (unit(random) < walking) detected += Vector<2>(6, -1);  // a crowd that walks one way
+    if (unit(random) < walking) detected += Vector<2>(6, -1);  // a crowd that walks in one direction
     all.push_back({rest, detected});
   }
   return all;

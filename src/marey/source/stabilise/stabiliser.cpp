@@ -16,7 +16,7 @@ constexpr double kLostForGood = 10;         // s
 constexpr double kMinBump = 3;              // px
 constexpr std::ptrdiff_t kBumpSeconds = 3;  // s that it must have stood before and after
 constexpr double kBumpDeviations = 3;       // of a second's mean, on either side
-constexpr double kEnough = 0.7;             // share of samples whose motion must be known to tell of it
+constexpr double kEnough = 0.7;             // share of samples whose motion must be known to report it
 
 Vector<2> moved(const Matrix<3>& homography, const Vector<2>& pixel) {
   return (homography * pixel.homogeneous()).hnormalized();

@@ -28,7 +28,7 @@ cv::Mat scene_of(unsigned seed) {
   return scene;
 }
 
-/// From pixels at rest to those of the camera that looks `by` px aside, of its focal length.
+/// From pixels at rest to those of the camera that is aimed `by` px aside, of its focal length.
 Matrix<3> rotated(const Vector<2>& by) {
   constexpr double kFocal = 1150;
   Matrix<3> lens;
@@ -39,7 +39,7 @@ Matrix<3> rotated(const Vector<2>& by) {
   return lens * rotation * lens.inverse();
 }
 
-/// The scene as the camera sees it that looks `by` px aside, with a bright box that walks and noise.
+/// The scene as a camera aimed `by` px aside sees it, with a bright box that walks and noise.
 Image detected(const cv::Mat& scene, const Vector<2>& by, int walked, unsigned seed) {
   Matrix<3> of_scene = rotated(by).inverse();
   of_scene.topRows<2>() += kMargin * Vector<2>(1, 1) * of_scene.row(2);
@@ -207,7 +207,7 @@ TEST(Stabiliser, GivesThePictureOfTheRest) {
     cv::Mat off;
     cv::absdiff(frame.image.luma(), rest.luma(), off);
     EXPECT_LT(cv::mean(off(cv::Rect(30, 30, 420, 260)))[0], 4) << i;
-    EXPECT_LT(cv::mean(off)[0], 5) << i;  // what lay outside is what was seen there before
+    EXPECT_LT(cv::mean(off)[0], 5) << i;  // what lay outside shows the earlier image there
   }
   const StabilisationLog::Report report = log->report();
   EXPECT_EQ(report.images, 30);

@@ -36,7 +36,7 @@ constexpr double kLost_s = 2;         // s without a motion, after which the wat
 constexpr double kStood_s = 2;        // s over which the place of a shaking camera is the mean
 constexpr double kRotated = 0.05;     // of the image's width
 constexpr double kZoomed = 0.05;      // ln of the scale
-constexpr double kPtz = 0.01;         // of the width a second, or of the scale: it moves
+constexpr double kPanSpeed = 0.01;    // of the width a second, or of the scale: it moves
 constexpr double kMaxMoving = 0.25;   // of the time, in one piece: more is not a single turn
 constexpr int kMinScrolling = 12;     // corners that move, and as many that stand
 constexpr double kStands = 0.25, kScrolls = 1.0, kAside = 0.3;  // px
@@ -123,6 +123,35 @@ double change_between(const cv::Mat& a, const cv::Mat& b) {
   a.convertTo(x, CV_32F, 1, -mean_a[0]);
   b.convertTo(y, CV_32F, 1, -mean_b[0]);
   return std::clamp(1 - x.dot(y) / (static_cast<double>(a.total()) * spread_a[0] * spread_b[0]), 0.0, 1.0);
+}
+
+/// Where the camera stood about an instant: the mean of two seconds, of one segment.
+struct Stood {
+  double time;
+  Vector<2> middle;
+  double log_scale;
+  int segment;
+};
+
+/// One for each of `locations` (of ViewWatch), which are in order of time.
+template <typename Locations>
+std::vector<Stood> mean_stands(const Locations& locations) {
+  std::vector<Stood> stood;
+  std::size_t first = 0, end = 0;
+  for (const auto& location : locations) {
+    while (locations[first].segment != location.segment || locations[first].time < location.time - kStood_s / 2) ++first;
+    while (end < locations.size() && locations[end].segment == location.segment &&
+           locations[end].time <= location.time + kStood_s / 2)
+      ++end;
+    if (end < first) end = first;
+    Stood mean{location.time, Vector<2>::Zero(), 0, location.segment};
+    for (std::size_t i = first; i < end; ++i) {
+      mean.middle += locations[i].at.middle / static_cast<double>(end - first);
+      mean.log_scale += locations[i].at.log_scale / static_cast<double>(end - first);
+    }
+    stood.push_back(mean);
+  }
+  return stood;
 }
 
 }  // namespace
@@ -268,30 +297,9 @@ ViewReport ViewWatch::report() const {
   report.inspected_at = std::ssize(locations_);
   if (locations_.empty() || size_.empty()) return report;
   report.scrolling = static_cast<double>(scrolled_) / static_cast<double>(locations_.size());
-  // Where the camera stood about each instant: the mean of two seconds, of one segment.
-  struct Stood {
-    double time;
-    Vector<2> middle;
-    double log_scale;
-    int segment;
-  };
-  std::vector<Stood> stood;
+  const std::vector<Stood> stood = mean_stands(locations_);
   double squares = 0;
-  std::size_t first = 0, end = 0;
-  for (const Location& location : locations_) {
-    while (locations_[first].segment != location.segment || locations_[first].time < location.time - kStood_s / 2) ++first;
-    while (end < locations_.size() && locations_[end].segment == location.segment &&
-           locations_[end].time <= location.time + kStood_s / 2)
-      ++end;
-    if (end < first) end = first;
-    Stood mean{location.time, Vector<2>::Zero(), 0, location.segment};
-    for (std::size_t i = first; i < end; ++i) {
-      mean.middle += locations_[i].at.middle / static_cast<double>(end - first);
-      mean.log_scale += locations_[i].at.log_scale / static_cast<double>(end - first);
-    }
-    squares += (location.at.middle - mean.middle).squaredNorm();
-    stood.push_back(mean);
-  }
+  for (std::size_t i = 0; i < stood.size(); ++i) squares += (locations_[i].at.middle - stood[i].middle).squaredNorm();
   report.shake_px = shrink_ * std::sqrt(squares / static_cast<double>(locations_.size()));
   const double width = size_.width / shrink_;
   ViewReport::Turn turn;
@@ -310,7 +318,7 @@ ViewReport ViewWatch::report() const {
     all_s += step_s;
     const double speed =
         (stood[i].middle - stood[i - 1].middle).norm() / width + std::abs(stood[i].log_scale - stood[i - 1].log_scale);
-    const bool now = speed > kPtz * step_s;
+    const bool now = speed > kPanSpeed * step_s;
     if (now) {
       moving_s += step_s;
       pieces += moves ? 0 : 1;

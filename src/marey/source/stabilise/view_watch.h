@@ -1,5 +1,5 @@
 // Whether a camera that ought to stand does, found out from its images as they pass: that it shakes, is turned or zooms, that the
-// video is cut, that it shows a screen that is scrolled. Cheap enough to look at every recording, live ones too: images are
+// video is cut, that it shows a screen that is scrolled. Cheap enough to check every recording, live ones too: images are
 // shrunk to a few hundred pixels across, corners are followed three times a second, and what a cut changes is asked of each image
 // at 32 pixels across.
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace marey::source::stabilise {
 
-/// What a camera did, as far as its images tell.
+/// What a camera did, as far as its images show.
 struct ViewReport {
   /// A camera that was turned, or zoomed.
   struct Turn {

@@ -10,12 +10,12 @@
 namespace marey::track::ball {
 namespace {
 
-/// What is seen at the same place for seconds begins nothing.
+/// An object seen at the same place for seconds begins nothing.
 constexpr double kPaint = -5;  // logarithm of 1/px²
 
 struct Detected {
   int view, index;
-  double weight;  // logarithm: of its look, over how densely false things are seen there
+  double weight;  // logarithm: of its appearance, over how densely false things are seen there
   Ray ray;
   double metres_a_pixel;  // across the ray, at 1 m
 };

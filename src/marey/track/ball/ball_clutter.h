@@ -19,7 +19,7 @@ struct BallClutterOptions {
 
 /// Sets `false_density` and `on_person` of everything seen, by what all the instants show. Densities are those of four zones, on
 /// people, close to them, beyond the lines (pixels whose rays meet the ground outside `pitch`, or not at all: stands) and
-/// elsewhere, each counted over all instants, and of what was seen at the place itself. The ball is counted too, which makes little
+/// elsewhere, each counted over all instants, and of observations at that place. The ball is counted too, which makes little
 /// of a difference where it moves. Boxes of people may overlap: their areas are added up.
 void weigh_sightings(std::span<BallObservations> time_steps, const GroundViews& views, const BallClutterOptions& options,
                      const GroundRegion& pitch = {});

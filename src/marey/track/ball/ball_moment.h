@@ -1,4 +1,4 @@
-// What is known of one instant before the ball is followed: what each camera saw that might be it, and where people are.
+// The data of one instant before the ball is tracked: what each camera saw that might be it, and where people are.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace marey::track::ball {
 struct BallSighting {
   Vector<2> pixel = Vector<2>::Zero();
   double sigma = 0.6;        ///< px, of each coordinate
-  double score = 0;          ///< logarithm of how much likelier a ball looks so than anything else that is found
+  double score = 0;          ///< logarithm of how much likelier this appearance is for a ball than for any other detection
   double local_clutter = 0;  ///< 0 … 1: of what is round it, the share that is not the empty scene
   /// By weigh_sightings(); nothing: as many false things as the view has, all over its image.
   std::optional<double> false_density;  ///< 1/px²: how densely things are seen here that are not ball

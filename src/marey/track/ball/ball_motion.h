@@ -1,6 +1,6 @@
 // How a ball moves, as Gaussian beliefs of place and velocity: it rolls over the ground, flies, or is at a person's feet. Heights
-// count from the ground below. What is known besides (a ball that rolls is 0.11 m up, one at a person's feet is near that person)
-// is a measurement like those of cameras, so that a second pass carries it back: where an arc ends tells how far away it was.
+// count from the ground below. Other prior knowledge (a ball that rolls is 0.11 m up, one at a person's feet is near that person)
+// is a measurement like those of cameras, so that a second pass carries it back: the end of an arc shows how far away it was.
 #pragma once
 
 #include <cstdint>

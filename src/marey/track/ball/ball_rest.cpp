@@ -1,4 +1,4 @@
-// Cost: for each beginning and end of a way, the things seen near it in some seconds, against each other.
+// Cost: for each beginning and end of a path, the things seen near it in some seconds, against each other.
 #include "marey/track/ball/ball_rest.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace {
 
 using Trajectory = std::vector<std::optional<BallState>>;
 
-/// An instant seen from the end of a way: forwards in time or backwards.
+/// An instant seen from the end of a path: forwards in time or backwards.
 struct Walk {
   std::ptrdiff_t from, step, count;  // the first moment, ±1, and how many there are
 
@@ -85,7 +85,7 @@ std::optional<Vector<3>> lay_at(const Vector<3>& end, const Walk& rest, const Wa
     };
     const auto detected = fraction(rest, options.inspect, LocalClutter::any);
     if (!detected || *detected < options.detected) continue;
-    constexpr double kLong = 4, kAlone = 0.25;  // s, and of them: who stands there is a part of a person all the while
+    constexpr double kLong = 4, kAlone = 0.25;  // s, and of them: such an object is a part of a person all the while
     if (fraction(rest, kLong, LocalClutter::alone).value_or(0) < kAlone) continue;
     const auto later = fraction(play, options.inspect, LocalClutter::any);
     if (!later || *later > options.gone || *detected - *later <= maximum) continue;
@@ -95,9 +95,9 @@ std::optional<Vector<3>> lay_at(const Vector<3>& end, const Walk& rest, const Wa
   return best;
 }
 
-/// The first moment, from `end` of a way into it, at which the ball was away from there.
+/// The first instant, from `end` of a path into it, at which the ball was away from there.
 std::ptrdiff_t gone_from(const Trajectory& reported, std::ptrdiff_t end, std::ptrdiff_t step) {
-  constexpr std::ptrdiff_t kHiddenSteps = 12;  // instants at the way's end that may belong to either
+  constexpr std::ptrdiff_t kHiddenSteps = 12;  // instants at the path's end that may belong to either
   constexpr double kAway = 1.5;                // m
   const Vector<3> location = reported[static_cast<std::size_t>(end)]->belief.location();
   std::ptrdiff_t at = end;

@@ -1,4 +1,4 @@
-// A ball that lies still looks like a bit of paint, until it is played or after it has come to rest: where a sure way begins, what
+// A ball that lies still looks like a bit of paint, until it is played or after it has come to rest: where a sure path begins, what
 // lay there before and is gone afterwards was the ball; and where one ends, vice versa.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace marey::track::ball {
 
 struct BallRestOptions {
-  double reach = 2.5;       ///< m, between a way's end and where the ball lay: its first steps are often hidden
+  double reach = 2.5;       ///< m, between a path's end and where the ball lay: its first steps are often hidden
   double within = 2;        ///< px, of where it lies, that it is seen
   double inspect = 1.5;     ///< s before and after, in which it must have been seen,
   double detected = 0.6;    ///< in this share of instants on the one side,

@@ -1,6 +1,6 @@
-// The score is a likelihood ratio against all being false: what is seen and taken for the ball counts by its density where the ball
-// is expected, over that of false things all over the image, and by its look; a ball that is expected and not seen costs. Nothing
-// may be one's ball for nothing: a ball that is lost has ratio 1. Hypotheses that came to the same (mode, holder, what was seen
+// The score is a likelihood ratio against all being false: an observation taken for the ball counts by its density where the ball
+// is expected, over that of false things all over the image, and by its appearance; an expected ball not seen costs. Nothing
+// may be one's ball for nothing: a ball that is lost has ratio 1. Hypotheses that came to the same (mode, holder, observation
 // last, nearly the same place and velocity) are one: the better one. That is Viterbi's step; the beam is what it omits. Reid
 // 1979, "An algorithm for tracking multiple targets"; here with one target, whose motion switches. Cost: beam × 6 × views × things
 // seen an instant.
@@ -128,7 +128,7 @@ std::vector<int> gated(const BallView& view, const BallProjection& at, const Bal
   return indices;
 }
 
-/// Each way in which one more camera may have seen it.
+/// Each case in which one more camera may have seen it.
 void inspect(const std::vector<BallNode>& all, const BallView& view, const GroundView& ground, const BallSearchOptions& options,
              std::vector<BallNode>& out) {
   for (const BallNode& node : all) {

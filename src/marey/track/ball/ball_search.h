@@ -23,7 +23,7 @@ struct BallSearchOptions {
   int branches = 4;            ///< of things within the gate, how many are tried
   double found = 0.95;         ///< share of frames in which a ball in plain view is found
   double found_held = 0.5;     ///< the same of one at a person's feet
-  double found_hidden = 0.15;  ///< the same where a person's limbs are, and what is found there decides little
+  double found_hidden = 0.15;  ///< the same where a person's limbs are, and a detection there decides little
   double reach = 1.6;          ///< m from a person within which that person may play the ball
   double p_kick = 0.02;        ///< of frames near a person: the ball is kicked
   double p_kick_alone = 1e-4;  ///< of frames with no person near: a post, a bump
@@ -42,7 +42,7 @@ struct BallStep {
   std::optional<TrackId> holder;  ///< who has it, where it is held
   std::vector<int> used;          ///< of each view, the index of what was the ball; −1 where it was not seen
   bool initiated = false;         ///< nothing was known of it before
-  double evidence = 0;            ///< what was seen well, away from people, adds to the hypothesis' score
+  double evidence = 0;            ///< clear observations, away from people, add to the hypothesis' score
   BallBelief belief;              ///< after this instant, by what came until then
 };
 

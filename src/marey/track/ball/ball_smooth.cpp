@@ -32,7 +32,7 @@ Known regular(const BallBelief& belief) {
   return {belief.mean, belief.covariance + 1e-9 * Matrix<6>::Identity()};
 }
 
-/// A stretch without a gap, from what was known at its first moment. Where a belief was wide, cameras do not see it in proportion
+/// A segment without a gap, from the state at its first instant. Where a belief was wide, cameras do not see it in proportion
 /// to its place: each further pass takes what they see of the places that the pass before came to (an iterated smoother: Bell
 /// 1994, "The iterated Kalman smoother as a Gauss-Newton method").
 void smooth_segment(std::span<const BallObservations> time_steps, std::span<const BallStep> steps, const GroundViews& views,

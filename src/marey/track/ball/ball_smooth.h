@@ -1,5 +1,5 @@
 // The second pass over the ball's trajectory: what was decided (modes, events, what each camera saw) is filtered once more, and
-// smoothed backwards (Rauch, Tung, Striebel), so that a whole arc tells each of its places.
+// smoothed backwards (Rauch, Tung, Striebel), so that a whole arc determines each of its places.
 #pragma once
 
 #include <optional>

@@ -19,7 +19,7 @@ bool free_mode(BallMode mode) {
   return mode == BallMode::rolling || mode == BallMode::flying;
 }
 
-/// Stretches without a hold; bounces and landings are within them, kicks between two.
+/// Segments without a hold; bounces and landings are within them, kicks between two.
 std::vector<Piece> free_pieces(const std::vector<BallStep>& steps) {
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -84,7 +84,7 @@ bool one_had_it(std::span<const BallStep> between) {
   return holder.has_value();
 }
 
-/// What lies between two sure instants of one way, if they are near each other in time, or one person had the ball.
+/// What lies between two sure instants of one path, if they are near each other in time, or one person had the ball.
 std::vector<bool> reported(const std::vector<BallObservations>& time_steps, const std::vector<BallStep>& steps,
                            const std::vector<bool>& sure, const BallTrajectoryOptions& options) {
   std::vector<bool> known = sure;

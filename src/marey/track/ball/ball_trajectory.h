@@ -1,4 +1,4 @@
-// What is reported of the ball's trajectory: what was seen well enough that it was the ball, and what lies between.
+// What is reported of the ball's trajectory: clear observations of the ball, and the positions between.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct BallTrajectoryOptions {
   BallRestOptions rest;
   double min_evidence = 30;     ///< logarithm: of how much likelier the ball than false things a roll or a flight must be,
   double min_trajectory = 1.5;  ///< and m that it must get
-  double as_people = 4;         ///< m/s; what is no faster, or mostly beyond the lines, may be a person whom no person detected,
+  double as_people = 4;         ///< m/s; what is no faster, or mostly beyond the lines, may be a person not detected,
   double min_slow = 120;        ///< and needs that much evidence
   double unobserved = 1.5;      ///< s without any person having seen it well, after which no person knows where it is,
   double unobserved_held = 4;   ///< but where the same person has it all the while

@@ -14,7 +14,7 @@ constexpr double kCell = 0.5;         // m
 constexpr double kApart = 0.8;        // m
 constexpr std::size_t kMaxCount = 6;  // candidates at an instant
 constexpr std::size_t kMaxCells = 60'000;
-constexpr int kMinRows = 3;            // of the grid: who is seen smaller has no shape
+constexpr int kMinRows = 3;            // of the grid: a person seen smaller has no shape
 constexpr double kEnoughInGrid = 0.6;  // of a person, that a camera must see
 
 GridShape shape_at(const EvidenceView& detected, const Vector<2>& location) {

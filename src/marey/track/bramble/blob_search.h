@@ -2,7 +2,7 @@
 // see.
 //
 // Ours: newcomers of BraMBLe, as remembered, are proposed blindly over the whole ground, which is as good as never on a pitch. A
-// proposal that looks at the image is importance sampling (Isard, Blake, "ICONDENSATION", ECCV 1998): who uses it weighs what it
+// proposal that uses the image is importance sampling (Isard, Blake, "ICONDENSATION", ECCV 1998): its user weighs what it
 // proposes by what was likely beforehand over what was proposed.
 #pragma once
 

@@ -257,7 +257,7 @@ class BrambleTracker::Impl {
     track.score = estimate.fraction;
   }
 
-  /// Which cameras see whom: in front of whom too little of the person is left is not seen.
+  /// The cameras that see each person: a person with too small a visible part is not seen.
   void note_observed(const std::vector<std::vector<GridShape>>& shapes) {
     observations_.assign(detected_.size(), {});
     matches_.clear();

@@ -9,7 +9,7 @@
 //   - people as generalised cylinders on the ground before a calibrated camera (person_cylinder.h);
 //   - CONDENSATION over configurations whose number of people varies: they arrive and depart with given probabilities, keep an
 //     identity, move with noise; two cannot stand in the same place;
-//   - told is the mean of who is in most of the particles.
+//   - the output is the mean of the people in most of the particles.
 // Ours: several cameras (their log ratios add up); people sampled one after the other with a selection after each (MacCormick,
 // Isard, "Partitioned sampling", ECCV 2000), without which the particles needed grow exponentially with people; arrivals proposed
 // where evidence is left unexplained (blob_search.h), departures more often than they happen, both weighed accordingly; a share of

@@ -55,7 +55,7 @@ std::shared_ptr<const BlobEvidence> evidence_of(const GroundView& view, const st
 using People = std::map<int, Vector<2>>;
 using Detected = std::map<int, Vector<2>>;
 
-/// Runs `frames` instants of what `people` says; `look` is handed those told of, confirmed, by id.
+/// Runs `frames` instants of what `people` says; `look` is passed those reported, confirmed, by id.
 void run(int frames, int cameras, const BrambleOptions& options, const std::function<std::vector<Vector<2>>(double)>& people,
          const std::function<void(int, const std::vector<Vector<2>>&, const Detected&)>& inspect) {
   std::vector<GroundView> views{view_from(false)};

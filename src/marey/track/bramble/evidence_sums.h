@@ -1,5 +1,5 @@
 // Sums of evidence over what people cover: a row's part is a difference of two numbers, so that a person costs as many look-ups as
-// the grid's rows it spans, not as its points; who stands before another is counted once.
+// the grid's rows it spans, not as its points; a person who occludes another is counted once.
 #pragma once
 
 #include <span>

@@ -12,7 +12,7 @@
 namespace marey::track::bramble {
 namespace {
 
-/// Above (0, −12, 5), looking at the origin.
+/// Above (0, −12, 5), aimed at the origin.
 Camera camera_above() {
   geometry::BrownLens lens;
   lens.focal = {700, 700};

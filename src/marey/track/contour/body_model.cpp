@@ -1,5 +1,5 @@
 // Colours are histograms of luma and chroma, one for each of six bands from head to foot: a shirt, its number, arms and shorts are
-// several colours at once, which one Gaussian cannot tell. A sample is shared among the bins about it.
+// several colours at once, which one Gaussian cannot model. A sample is shared among the bins about it.
 #include "marey/track/contour/body_model.h"
 
 #include <algorithm>

@@ -10,13 +10,13 @@
 
 namespace marey::track::contour {
 
-/// How a target looks, learned while no person hides it: the colours of its body from head to foot, and what places about its
+/// A target's appearance, learned while no person hides it: the colours of its body from head to foot, and what places about its
 /// centre it covers how often. Places are in heights of the target from its centre of area.
 class BodyModel {
  public:
   BodyModel();
 
-  /// `share` of each cell of the patch shows the target (CV_32FC1); `rate` in (0, 1] is what this counts against what was known.
+  /// `share` of each cell of the patch shows the target (CV_32FC1); `rate` in (0, 1] is its weight against the earlier data.
   void learn_colours(const ColourPatch& patch, const cv::Mat& fraction, const Vector<2>& centre, double height, double rate);
   void learn_coverage(const ColourPatch& patch, const cv::Mat& fraction, const Vector<2>& centre, double height, double rate);
 

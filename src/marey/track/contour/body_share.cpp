@@ -1,7 +1,7 @@
-// A cell is a mixture of body and ground: its share of body is how far its colour is from the ground's on the way to the body's.
+// A cell is a mixture of body and ground: its share of body is how far its colour is from the ground's on the line to the body's.
 // The ground is read beside the silhouette; the body in the middle of the limb that the cell belongs to, because skin between two
 // white garments is not a half of white. A halo is ground that is too bright or too dark: it lies beyond the ground, or a small
-// part of the way to the body; blur and smeared colour are symmetric, so that one half of the way is where the body ends. How much
+// part of the line to the body; blur and smeared colour are symmetric, so that the body ends halfway. How much
 // too wide the silhouette is, is measured where body and ground differ clearly; deeper than that, a cell belongs to the body
 // whatever its colour, unless it plainly is ground and leads outside (between legs, below an arm). Without that measurement,
 // limbs whose colour is near to the ground's are cut off. Cost: some ten box filters, and a few dozen reads per cell at the edge.
@@ -19,8 +19,8 @@ namespace {
 constexpr double kGroundReach = 0.15;                    // heights: the neighbourhood that the ground is read from
 constexpr double kAway = 0.025;                          // heights: the ground is read this far from everything
 constexpr double kRim = 0.07, kMinRim = 5, kMaxRim = 8;  // heights; px: how deep a silhouette's rim may be ground
-constexpr float kMinContrast = 16;                       // levels between body and ground, from which on colour tells
-constexpr float kClearContrast = 32;                     // from which on it tells how much too wide a silhouette is
+constexpr float kMinContrast = 16;                       // levels between body and ground, from which on colour is reliable
+constexpr float kClearContrast = 32;                     // from which on it shows how much too wide a silhouette is
 constexpr double kSpread = 0.5;                          // cells by which that varies along the edge
 constexpr float kPlainGround = 12;                       // levels from the ground below which a cell deep inside is ground
 constexpr float kHalo = 0.25F;                           // square of a halo's strength, of the step from ground to body
@@ -38,7 +38,7 @@ cv::Mat dilated(const cv::Mat& mask, double radius) {
   return result;
 }
 
-/// Mean of the colours about each cell with these weights; where there are none, `otherwise`.
+/// Mean of the colours about each cell with these weights; if there are no weights, `otherwise`.
 cv::Mat weighted_mean(const cv::Mat& colour, const cv::Mat& weights, int size, const cv::Scalar& otherwise) {
   cv::Mat sums(colour.size(), CV_32FC4);
   const auto fallback =
@@ -150,7 +150,7 @@ class Overwidth {
  public:
   explicit Overwidth(float rim) : rings_(static_cast<std::size_t>(std::ceil(rim)) + 1) {}
 
-  /// A cell `depth` > 0 cells below the edge, whose colour tells clearly.
+  /// A cell `depth` > 0 cells below the edge, whose colour is decisive.
   void add(float depth, bool ground) {
     Ring& ring = rings_[std::min(rings_.size() - 1, static_cast<std::size_t>(std::max(0.0F, depth - 0.5F)))];
     ring.cells += 1;
@@ -169,7 +169,7 @@ class Overwidth {
   std::vector<Ring> rings_;
 };
 
-/// What the colours tell of the cells near a body.
+/// What the colours show of the cells near a body.
 struct ColourFractions {
   cv::Mat covered;  ///< CV_32FC1: share of body; −1 where colour does not specify
   cv::Mat away;     ///< CV_32FC1: square of the difference from the ground, levels²

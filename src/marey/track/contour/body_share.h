@@ -6,7 +6,7 @@
 
 namespace marey::track::contour {
 
-/// The colour of the ground about a thing, from what is seen beside it, at each cell: CV_32FC3. `taken` (CV_32FC1) is not zero
+/// The colour of the ground about an object, from the pixels next to it, at each cell: CV_32FC3. `taken` (CV_32FC1) is not zero
 /// where anything is that is not ground. `height` of the thing in px.
 cv::Mat ground_next_to(const ColourPatch& patch, const cv::Mat& taken, double height);
 

@@ -1,4 +1,4 @@
-// The level curve is that of marching squares: each cell between four samples holds the piece of the curve that its corners tell,
+// The level curve is that of marching squares: each cell between four samples holds the piece of the curve that its corners give,
 // directed so that what is covered lies at its right hand; pieces are then followed from edge to edge. Where two corners across are
 // covered and two are not, the covered ones are kept apart.
 #include "marey/track/contour/colour_patch.h"

@@ -43,7 +43,7 @@ ColourPatch cut_patch(const Image& image, const cv::Mat& mask, const Box& box, i
 cv::Mat cells_within(std::span<const Vector<2>> polygon, const ColourPatch& patch);
 
 /// The closed curve (px, clockwise on the screen) along which `share` (CV_32FC1, of the patch's size) passes one half: the one that
-/// holds the largest area. Beyond the patch nothing is covered. Empty if there is none.
+/// holds the largest area. Beyond the patch nothing is covered. Empty if there is no area.
 std::vector<Vector<2>> half_level_curve(const cv::Mat& fraction, const ColourPatch& patch);
 
 }  // namespace marey::track::contour

@@ -42,7 +42,7 @@ struct LineScene {
   std::span<const Footprint* const> others;  ///< targets that may own pixels near this one
 };
 
-/// Faces along one line for the place where the foreground ends, going outward. Fills in what was found, where, and how surely;
+/// Faces along one line for the place where the foreground ends, going outward. Fills in the edge found, where, and how surely;
 /// `deviation` is how well the place is predicted, px. `line.foot`, `normal` and `reach` are given.
 void search_line(MeasurementLine& line, const LineScene& scene, double deviation);
 

@@ -1,5 +1,5 @@
 // A silhouette runs on the halo of sharpening and on smeared colour: its edge is put where its body ends (body_fraction.h), and
-// where colour cannot tell, at the edge of intensity. A target's motion begins again where its silhouette lies far from where it
+// where colour cannot decide, at the edge of intensity. A target's motion begins again where its silhouette lies far from where it
 // was predicted.
 #include "marey/track/contour/lone_silhouette.h"
 
@@ -19,8 +19,8 @@ constexpr double kMaxUnlike = 1.35;       // factor of a silhouette's size over 
 constexpr double kLeft = 0.5;             // heights from where the centre is predicted: the motion begins again
 constexpr int kRounds = 3;                // of the fit, in every frame
 constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
-constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot tell
-constexpr double kLearn = 0.1;            // what a frame alone counts in how a target looks
+constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
+constexpr double kLearn = 0.1;            // weight of one frame in a target's appearance
 constexpr int kLearnEvery = 3;            // frames: its colours change little
 
 Box bounds(std::span<const Vector<2>> polygon) {
@@ -87,7 +87,7 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   return true;
 }
 
-/// How the target looks, from what was just seen of it alone.
+/// The target's appearance, from the last observation of it alone.
 void LoneSilhouettes::learn(ContourTarget& target, const Vector<2>& centre, const Track<2>& track) {
   if (track.box) {
     const Vector<2> off = (centre - track.box->centre()) / target.height;

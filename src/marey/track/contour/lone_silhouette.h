@@ -13,7 +13,7 @@
 
 namespace marey::track::contour {
 
-/// Takes outlines from silhouettes that no person shares, and learns from them how their targets look.
+/// Takes outlines from silhouettes that no person shares, and learns from them their targets' appearance.
 class LoneSilhouettes {
  public:
   /// `fit` says how the first silhouette of a target is fitted; later ones get as many control points or more.
@@ -22,12 +22,12 @@ class LoneSilhouettes {
   /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
   /// `scene` stays with its owner; it may be null.
   void inspect_at(const Image& image, const cv::Mat& mask, const SceneImage* scene = nullptr);
-  bool has_colours() const;  ///< whether the frame's image can tell where a body ends
+  bool has_colours() const;  ///< whether the frame's image shows where a body ends
 
   /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
   std::optional<geometry::ClosedSpline> fitted(const Detection& detected, const geometry::SplineFitOptions& options);
 
-  /// The tracker says that `seen` is this target: its whole edge tells more than the lines, which a leg that swings leaves behind.
+  /// The tracker says that `seen` is this target: its whole edge shows more than the lines, which a leg that swings leaves behind.
   /// False, and nothing is changed, where the silhouette is unlike the target (cut, or grown by something else).
   bool take(ContourTarget& target, const Detection& detected, const Track<2>& track);
 

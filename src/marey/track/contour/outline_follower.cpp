@@ -158,7 +158,7 @@ class ContourTracker::Implementation {
           members.push_back(j);
         }
       }
-      if (members.size() == 1 && !shared_[i].in_group) continue;  // hidden by the scene, or missed: the lines tell
+      if (members.size() == 1 && !shared_[i].in_group) continue;  // hidden by the scene, or missed: the lines decide
       std::sort(members.begin(), members.end());
       std::vector<SharedTarget> targets;
       for (const std::size_t k : members) targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed});

@@ -23,7 +23,7 @@ struct OutlineOptions {
   double min_height = 8;              ///< px; smaller targets get no outline
 };
 
-/// Follows the outlines of the targets of another tracker: who is who stays that tracker's affair. A frame takes two calls:
+/// Follows the outlines of the targets of another tracker: identities stay that tracker's task. A frame takes two calls:
 ///
 ///   const auto hints = outlines.observe(frame, seen.foreground, seen.detections);    // predict, search, correct
 ///   auto observations = observations_of(seen.detections);                         // detections first, hints after them

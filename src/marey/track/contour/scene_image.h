@@ -6,7 +6,7 @@
 
 namespace marey::track::contour {
 
-/// The image of the scene without the targets, learned from the pixels that are not foreground: what a contour's outside looks
+/// The image of the scene without the targets, learned from the pixels that are not foreground: what a contour's outside is
 /// like.
 class SceneImage {
  public:

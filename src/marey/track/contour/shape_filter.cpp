@@ -1,4 +1,4 @@
-// The Kalman filter of the control points. A measurement line tells one number, where the curve lies along the line's direction n;
+// The Kalman filter of the control points. A measurement line gives one number, where the curve lies along the line's direction n;
 // the curve there is a weighted mean of k control points, so h has 2k entries that are not zero, and each line is taken in by
 // itself: no matrix is inverted. Cost a line: 2k columns of P and one update of rank 1, (2M)² products.
 // References: Arnaut & Costa 2009, section 3 (prediction); Blake & Isard, "Active Contours", 1998, ch. 6 and 10 (a spline corrected

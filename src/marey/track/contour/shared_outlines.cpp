@@ -73,7 +73,7 @@ RegionMember member_of(const SharedTarget& shared) {
   return member;
 }
 
-/// Colours of a target that was never alone: what is seen where it is expected and no other is.
+/// Colours of a target that was never alone: the pixels where it is expected and no other is.
 void guess_colours(const ColourPatch& patch, std::span<const RegionMember> members, std::size_t own, BodyModel& body) {
   cv::Mat alone = cells_within(members[own].polygon, patch).mul(patch.mask);
   for (std::size_t k = 0; k < members.size(); ++k) {

@@ -16,7 +16,7 @@ struct SharedTarget {
 };
 
 /// Divides the region that `targets` share among them by their colours and predicted shapes, and gives each the outline of its own
-/// part, the rest of it shaped as it was; of one of whom too little is seen the whole shape is held. `mask` is CV_8UC1.
+/// part, the rest of it shaped as it was; if too little of a target is seen, its whole shape is kept. `mask` is CV_8UC1.
 /// `scene` may be null.
 void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets);
 

@@ -27,7 +27,7 @@ std::vector<Vector<2>> body_about(const Vector<2>& centre, double factor) {
   return polygon;
 }
 
-/// One who is bright on a grey lawn, and what is known of it from before.
+/// A bright person on a grey lawn, and the earlier data of them.
 struct Scene {
   Image image;
   cv::Mat mask = cv::Mat::zeros(100, 120, CV_8UC1);

@@ -1,7 +1,7 @@
 // Each pixel shows the nearest member that covers it, or the ground. The prior that it shows member k is p_k ∏ (1 − p_j) over all
 // nearer j, with p the chance that k covers it: a sigmoid of the distance to its predicted outline, mixed with how often it covers
 // the place. The likelihood of the pixel's colour comes from each member's own histograms by height on its body, and for the ground
-// from what is seen beside the region; the foreground mask counts as weak evidence, for it runs on halos. Places are found first,
+// from the pixels next to the region; the foreground mask counts as weak evidence, for it runs on halos. Places are found first,
 // by trying shifts of one member after the other for the largest likelihood of the whole patch, and with them the order of two
 // whose feet are about equally low. The division is then made smooth by mean field in a Potts model (Blake, Kohli & Rother, "Markov
 // Random Fields for Vision and Image Processing", 2011, ch. 5), where each pixel's neighbours vote. Cost: cells × members × (tries
@@ -157,7 +157,7 @@ class RegionDivision {
     std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return members_[a].foot > members_[b].foot; });
   }
 
-  /// Of the whole patch, every second cell each way, in nats.
+  /// Of the whole patch, every second cell in each direction, in nats.
   double log_likelihood() const {
     double sum = 0;
     for (int y = 0; y < patch_.size().height; y += 2) {

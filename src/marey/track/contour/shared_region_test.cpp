@@ -96,7 +96,7 @@ TEST(BodyShare, ASilhouetteThatRunsOnTheHaloIsCutBackToTheBody) {
   EXPECT_LT(iou(cells_within(halo, patch), cells_within(body, patch)), 0.7) << "what the silhouette alone says";
 }
 
-/// Two of whom one stands before the other; each knows its colours from before.
+/// Two people, one in front of the other; the colours of each are known from before.
 struct Pair {
   ColourPatch patch = lawn();
   std::vector<Vector<2>> front = ellipse({68, 54}, 12, 30), back = ellipse({54, 48}, 12, 30);

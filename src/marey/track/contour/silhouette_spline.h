@@ -17,7 +17,7 @@ void check(const OutlineOptions& options);
 /// How the options want a target's first silhouette fitted.
 geometry::SplineFitOptions fit_options(const OutlineOptions& options);
 
-/// Whether the curve has a loop: then it turns by more, or less, than once on its way round.
+/// Whether the curve has a loop: then it turns by more, or less, than once in one circuit.
 bool is_knotted(const geometry::ClosedSpline& spline);
 
 /// The outline of a silhouette, its edge made exact by `luma` (light_edge.h; may be empty); nothing if it is not a simple curve, or
@@ -34,7 +34,7 @@ std::optional<geometry::ClosedSpline> standing_body(const Box& box, const geomet
 /// Whether the curve does not cross itself.
 bool is_simple(const geometry::ClosedSpline& spline);
 
-/// Whether what is written of a target in `box` (px) may be this curve: simple, and at most twice as wide and 1.6 times as high.
+/// Whether the outline of a target in `box` (px) may be this curve: simple, and at most twice as wide and 1.6 times as high.
 /// With `picture`, what lies outside an image of that size does not count.
 bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* image = nullptr);
 

@@ -21,7 +21,7 @@ constexpr double kDistinctly = 1.6;                  // times the nearest's dist
 constexpr double kFirstGate = 2.2;                   // m
 constexpr double kLastGate = 1.0;                    // m, of fields; what lasts is measured within the first
 constexpr double kCell = 1;                          // m
-constexpr std::array<double, 3> kFinest{5, 10, 18};  // fields vary over such a part of what is seen, but
+constexpr std::array<double, 3> kFinest{5, 10, 18};  // fields vary over such a part of the view, but
 constexpr double kMinWidth = 2.5;                    // m at least
 constexpr double kPriorPairs = 12;                   // with which a field holds to 0
 constexpr int kRounds = 12;
@@ -233,7 +233,7 @@ class Agreeing {
     }
   }
 
-  /// Each camera of a pair comes half of the way to the other.
+  /// Each camera of a pair comes half of the distance to the other.
   void improve(const std::vector<Pair>& pairs, double sigma) {
     std::vector<std::array<std::vector<double>, 3>> sums(cameras_);
     for (auto& of : sums) of.fill(std::vector<double>(grid_.size(), 0));

@@ -6,10 +6,10 @@
 // person's; the smooth errors that make all such pairs agree best are found by turns: pair, take half of each difference over into
 // either camera's field, pair again with a smaller gate, from one shift of the whole image down to a field (iterated closest
 // points, Besl & McKay 1992, with smooth displacements). Fields shrink to zero where nothing was seen. They are kept only if they
-// explain pairs of stretches of time that they were not learned from. What then remains is of two kinds. What is still there a
+// explain pairs of time intervals that they were not learned from. What then remains is of two kinds. What is still there a
 // tenth of a second later, of gait, posture, the detector's habit or the calibration, no filter may average away: the covariance of
 // two cameras' difference about one person at the two instants, from medians of their sum and difference, so that neither wrong
-// pairs nor the gate's edge bias it. The rest is noise, and tells how far each camera's covariances are to be trusted. Where all
+// pairs nor the gate's edge bias it. The rest is noise, and shows how far each camera's covariances are to be trusted. Where all
 // cameras err alike nothing can be seen of it here. Cost: pairs of cameras times observations² for each of some hundred instants, a
 // dozen times.
 #pragma once

@@ -120,7 +120,7 @@ std::vector<GroundInstant> walked(std::uint64_t seed, const Errors& errors) {
   return instants;
 }
 
-/// What is left of an error's standard deviation a tenth of a second later, m.
+/// The remainder of an error's standard deviation a tenth of a second later, m.
 double what_lasts(const Errors& errors) {
   return errors.lasting * std::exp(-0.1 / errors.constant_s / 2);
 }

@@ -13,8 +13,8 @@ constexpr std::size_t kMaxCompared = 200;  // instants, evenly over the recordin
 constexpr double kEncounter = 1;           // m
 constexpr double kWatchedCell = 3;         // m, of the ground that a camera is known to see
 constexpr int kWatched = 3;                // people in it, over all instants: this many are not false alarms
-constexpr int kMinAppearance = 100;        // of people of the one where the other looks
-constexpr double kMinFreeCount = 0.3;      // of them must be where no person of another time was, or chance tells nothing
+constexpr int kMinAppearance = 100;        // of people of the one within the other's view
+constexpr double kMinFreeCount = 0.3;      // of them must be where no person of another time was, or chance shows nothing
 constexpr double kBriefest = 4;            // s of a recording: in half of it people have gone elsewhere
 
 using Locations = std::vector<Vector<2>>;
@@ -58,7 +58,7 @@ bool holds(const Locations& locations, const Vector<2>& location) {
                      [&](const Vector<2>& one) { return (one - location).norm() <= kEncounter; });
 }
 
-/// How often people of the one stand where the other looks, sees a person, and would have half of the recording later.
+/// How often people of the one stand where the other watches, sees a person, and would have half of the recording later.
 struct Appearances {
   int all = 0, now = 0, then = 0;
 

@@ -10,7 +10,7 @@
 namespace marey::track::ground {
 namespace {
 
-/// Where camera `camera` has who stands at a place, m; nothing if it does not look.
+/// Where camera `camera` has a person who stands at a place, m; nothing if it does not see it.
 using LocatedBy = std::function<std::optional<Vector<2>>(int camera, const Vector<2>& location)>;
 
 /// 20 s of 20 people who walk to and fro over 60 m × 40 m, seen by three cameras, two times a second.

@@ -6,7 +6,7 @@
 // A filter here can only be corrected by one measurement z with covariance R. With β the probability that any is its own, z their
 // weighted mean and S the innovation's covariance, R' = S / β − P makes the gain β K and leaves (1 − β) P + β P⁺: the mean and
 // covariance of the paper but for the spread of the observations about their mean, which goes into S before. Two targets that
-// stay closer than their observations can tell are drawn together, as is known of the method (coalescence, Blom & Bloem 2000); it
+// stay closer than their observations resolve are drawn together, as is known of the method (coalescence, Blom & Bloem 2000); it
 // is not worked against: where identities matter there, mht is the choice.
 // Which target an observation is matched with is the assignment of greatest total probability.
 #include "marey/track/ground/ground_jpda.h"

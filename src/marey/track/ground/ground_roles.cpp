@@ -9,7 +9,7 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr double kIndependent = 15;   // s, after which a place tells something new
+constexpr double kIndependent = 15;   // s, after which a place is new information
 constexpr double kDefaultSpread = 9;  // m per axis, of one person's places
 constexpr double kSpreadKnown = 4;    // instants that this is worth
 constexpr double kMeanKnown = 0.1;    // likewise of the middle: a person may be anywhere on a pitch

@@ -1,8 +1,8 @@
 // Where a person usually is among the others: a back stays behind and beside the middle of every person, a winger ahead and out, a
 // keeper far behind. A person's places relative to that middle are taken for a normal distribution of unknown mean and covariance,
-// of which only sums are kept; how well stretches of paths fit together as one person's is the evidence for one such distribution
+// of which only sums are kept; how well segments of paths fit together as one person's is the evidence for one such distribution
 // behind them all (normal-inverse-Wishart, Gelman et al., "Bayesian Data Analysis", 3rd ed., §3.6). Places persist for some
-// seconds, so that a quarter of a minute counts as one. Assumes that roles last: who changes position, or ends at half-time, looks
+// seconds, so a quarter of a minute counts as one. Assumes that roles last: one who changes position, or ends at half-time, seems
 // like another person. Team colours, where a track has them, are counted likewise.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace marey::track::ground {
 
-/// What is kept of some stretches of paths. Sums of stretches are the stretches together.
+/// The record of some segments of paths. Sums of segments are the segments together.
 struct RoleSum {
   double count = 0;                       ///< of independent instants
   Vector<2> sum = Vector<2>::Zero();      ///< m, of places relative to the middle

@@ -17,16 +17,16 @@ constexpr double kSlowest = 1, kFastest = 20;   // s in which velocities settle
 constexpr double kOfTwo = std::numbers::sqrt2;  // a target that one camera has placed is seen by another: both err
 constexpr double kAgreeing = 0.15;              // m, of disagreement that is left: what gnn takes
 constexpr double kOften = 0.2;                  // s between instants, likewise
-constexpr double kCalm = 0.25;                  // of the tracker's accelerations: walkers, of whom more is learned than it knows
-constexpr double kPace = 1.5;                   // of people's speed: of those of whom nothing is known yet
+constexpr double kCalm = 0.25;                  // of the tracker's accelerations: walkers; more is learned of them than it knows
+constexpr double kPace = 1.5;                   // of people's speed: of those without data yet
 
-/// A quick one, for what is learned from and expected in the meantime.
+/// A quick one, for learning and prediction in the meantime.
 GroundTrackerOptions ahead(GroundTrackerOptions options) {
   options.associate = GroundAssociation::gnn;
   return options;
 }
 
-/// What the two teams wear, by what was seen of people who share their region with no person.
+/// What the two teams wear, by the observations of people who share their region with no other.
 std::optional<GroundTeams> teams_in(const std::deque<GroundInstant>& instants) {
   std::vector<Appearance> colours;
   for (const GroundInstant& instant : instants) {
@@ -73,7 +73,7 @@ void GroundRun::learn() {
   if (learn_.agreement) {
     agreement_ = GroundAgreement::learn(all, views_->cameras());
     compared_ =
-        compare_cameras(all, {}, views_->cameras());  // as they are: what is learned may hide that a camera is off by metres
+        compare_cameras(all, {}, views_->cameras());  // as they are: the learned fields may hide that a camera is off by metres
   }
   if (const auto lasting = agreement_.disagreement()) options_.disagreement = kOfTwo * *lasting;
   for (GroundInstant& instant : all) {
@@ -93,14 +93,14 @@ void GroundRun::learn() {
   }
 }
 
-/// Hypotheses cost ten times as much, and tell more only where cameras disagree or people go far between two instants.
+/// Hypotheses cost ten times as much, and give more only where cameras disagree or people go far between two instants.
 bool GroundRun::is_plain() const {
   if (kept_.size() < 2) return true;
   const double between = seconds(kept_.back().time - kept_.front().time) / static_cast<double>(kept_.size() - 1);
   return between <= kOften && (!agreement_.learned() || agreement_.disagreement().value_or(options_.disagreement) <= kAgreeing);
 }
 
-/// From what a quick tracker makes of what was kept.
+/// From a quick tracker's result on the stored instants.
 void GroundRun::learn_motion() {
   const auto quick = make_ground_tracker(ahead(options_), views_);
   offline::GroundRecorder recorder;

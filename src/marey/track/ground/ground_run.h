@@ -1,9 +1,9 @@
-// Following people over a whole recording: what is learned from its beginning serves all of it.
+// Following people over a whole recording: the models learned from its beginning serve all of it.
 //
 // How cameras disagree (ground_agreement.h) and how people move (ground_walk.h) differ from rig to rig and from square to pitch.
 // Until there is enough to learn from, or the recording ends, instants are kept and a quick tracker goes ahead, for who asks where
-// people are expected; then what was kept is followed again by the tracker that was asked for, corrected by what was learned, and
-// so on to the end. Memory: what is kept, 200 bytes an observation; later what the tracker has not decided yet, and 48 bytes a
+// people are expected; then the stored instants are tracked again by the requested tracker, corrected by the learned models, and
+// so on to the end. Memory: 200 bytes per stored observation; later what the tracker has not decided yet, and 48 bytes a
 // person and instant.
 #pragma once
 
@@ -34,7 +34,7 @@ struct GroundLearnOptions {
 
 class GroundRun {
  public:
-  /// Called once an instant, in order, with what was seen of it and whose that is.
+  /// Called once an instant, in order, with its observations and their tracks.
   using OnDecided = std::function<void(const GroundInstant&, std::span<const ObservationMatch>)>;
 
   GroundRun(const GroundTrackerOptions& tracker, const offline::GroundJoinOptions& join, const GroundLearnOptions& learn,

@@ -15,7 +15,7 @@ namespace {
 constexpr double kVelocityError = 1;      // m/s by which a target's velocity may be wrong within a frame's time
 constexpr double kLowScoreCost = 2;       // log-likelihood that a detector's doubt costs, at most
 constexpr double kOutOfViewLimit = 3;     // s out of all images, after which a person that comes in is another
-constexpr float kAppearanceRate = 0.05F;  // of a new colour in what is learned
+constexpr float kAppearanceRate = 0.05F;  // of a new colour in the learned one
 constexpr double kLightSpread = 6;        // of perceived colour: what sun, shade and another camera make of one
 constexpr double kPeopleSpread = 20;      // of perceived colour: spread over people
 constexpr double kMaxOfColour = 4;        // colours alone decide no more than this

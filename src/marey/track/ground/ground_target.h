@@ -1,9 +1,9 @@
-// What all ways of following people on the ground share: one target, what an observation is worth to it, how it begins, continues
+// What all trackers of people on the ground share: one target, what an observation is worth to it, how it begins, continues
 // and ends. Which observation a target is given is the business of gnn, jpda and mht.
 //
 // A pair of target and observation is gated by chi-square distance and by speed, and worth the logarithm of its likelihood against
 // that of clutter: place, appearance, score. Cameras disagree about places, permanently, by what their calibrations are wrong; that
-// is no noise that a filter may average away, so it widens gates (`disagreement`) and is not learned from. An observation of
+// is not noise that a filter may average away, so it widens gates (`disagreement`) and is not learned from. An observation of
 // another time is brought to the instant at the target's own velocity.
 #pragma once
 

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxColours = 20000;
 constexpr int kTeamRounds = 20;
 constexpr double kUnlikeBoth = 9;    // squared deviations: a keeper, a referee
 constexpr double kMinApart = 4.5;    // deviations; two halves of one round cloud are 2.7 apart, of an even one 3.5
-constexpr double kMinTeam = 0.2;     // of what is seen
+constexpr double kMinTeam = 0.2;     // of the observations
 constexpr double kMinOfBoth = 0.75;  // likewise, both together
 constexpr double kMinSpread = 4;     // squared L*a*b*: what compression leaves uncertain
 constexpr double kAnyPerson = 0.02;  // likelihood of a colour that is neither's, of that of a shirt in the middle of its own,
@@ -49,7 +49,7 @@ class TwoShirts {
 
   std::array<Vector<3>, 2> means;
   Matrix<3> precision = Matrix<3>::Identity();
-  std::array<double, 2> fraction{};  ///< of all points: who wears each
+  std::array<double, 2> fraction{};  ///< of all points: the wearers of each
 
  private:
   void turn(bool all) {

@@ -18,7 +18,7 @@ namespace marey::track::ground {
 
 class GroundTeams {
  public:
-  /// From what was seen of every person, some hundreds of colours and more. Nothing if they are not of two kinds.
+  /// From the observations of every person, some hundreds of colours and more. Nothing if they are not of two kinds.
   static std::optional<GroundTeams> learn(std::span<const Appearance> detected);
 
   /// Logarithm of how much likelier one of the second team is seen in this colour than one of the first; near 0 where it is
@@ -26,7 +26,7 @@ class GroundTeams {
   double log_odds(const Appearance& colour) const;
 
   /// Logarithm of how much likelier a person known by the one colour is seen in the other than any person is: at most log 2, which
-  /// teams of equal number allow, and barely less than −3: what was seen once may have been read off another person.
+  /// teams of equal number allow, and barely less than −3: a single observation may show another person.
   double same(const Appearance& known, const Appearance& detected) const;
 
   /// The same of two colours that were seen for a while each: barely less than −6.

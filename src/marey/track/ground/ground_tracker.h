@@ -1,4 +1,4 @@
-// Following people on the ground: the same loop as in the image, D = 2 in metres, fed by every camera that looks at the ground.
+// Following people on the ground: the same loop as in the image, D = 2 in metres, fed by every camera that observes the ground.
 //
 // An instant brings a view of each camera that has a frame for it. Views are taken in turn: in one view an observation is of one
 // target at most and a target is seen once at most; between views a target may be matched again, by the other cameras. So one

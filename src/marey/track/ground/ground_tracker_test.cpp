@@ -271,7 +271,7 @@ int people_taken_by_hidden_tracks(const GroundTrackerOptions& options, int cases
         });
     for (const GroundDecision& decision : tracker->decide_all()) note(decision.matches, decided++);
     const auto& before = given[static_cast<std::size_t>(hidden_from - 5)];
-    if (before.size() != 1) continue;  // cameras' twins: not what is asked here
+    if (before.size() != 1) continue;  // cameras' twins: not tested here
     bool wrong = false;
     for (int frame = hidden_from; frame < hidden_until; ++frame) {
       for (const auto& [track, count] : given[static_cast<std::size_t>(frame)]) wrong = wrong || track != before.begin()->first;

@@ -41,7 +41,7 @@ class GroundVisibility {
   std::vector<Box> boxes_;  // of this view
 };
 
-/// The views' numbers, those first whose places are surest: who stands close together is distinguished by them, and what they say
+/// The views' numbers, the most certain places first: people who stand close together are distinguished by them, and they
 /// guides what the others are taken for.
 std::vector<int> surest_first(std::span<const CameraObservations> views);
 

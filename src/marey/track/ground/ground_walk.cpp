@@ -11,7 +11,7 @@
 namespace marey::track::ground {
 namespace {
 
-constexpr double kSpacing = 0.2;  // s: nearer samples err alike, and tell little of the motion
+constexpr double kSpacing = 0.2;  // s: nearer samples err alike, and show little of the motion
 constexpr std::size_t kMaxSamples = 20'000, kMinSamples = 200;
 constexpr std::size_t kMinLength = 5;  // samples of a path
 constexpr double kTails = 4;           // degrees of freedom of Student's distribution

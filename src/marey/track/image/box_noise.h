@@ -30,7 +30,7 @@ class BoxTrail {
  public:
   static constexpr std::size_t kLength = 33;  ///< frames
 
-  /// Takes in what was seen of it in the next frame: a box in px, or nothing (an empty one).
+  /// Takes in the observation of it in the next frame: a box in px, or nothing (an empty one).
   void add(const Box& box);
 
   struct Entry {
@@ -102,7 +102,7 @@ struct LastingFractions {
 };
 LastingFractions lasting_fractions(const BoxNoise& noise);
 
-/// The box to write of a target that filters have at `filtered` and that was `seen`: as much nearer to what was seen as errors
+/// The box to write of a target that filters have at `filtered` and that was `seen`: as much nearer to the observation as errors
 /// last.
 Box written_box(const Box& filtered, const Box& detected, const LastingFractions& fractions);
 

@@ -9,7 +9,7 @@
 namespace marey::track::image {
 namespace {
 
-/// What is learned of `people` whose boxes behave as `truth` says, one in ten missed, over `frames` at `rate` Hz.
+/// The noise learned from `people` whose boxes behave as `truth` says, one in ten missed, over `frames` at `rate` Hz.
 BoxNoise learned(const BoxNoiseLevels& truth, double rate, int people, int frames, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -67,7 +67,7 @@ TEST(BoxNoise, KeepsTheFirstLevelsUntilMoreIsKnown) {
   noise.observe_frame(trail, 0.04);
   EXPECT_NEAR(noise.levels().location, first.location, 1e-9);
   EXPECT_NEAR(noise.levels().acceleration, first.acceleration, 1e-9);
-  noise.observe_frame(trail, 0);  // a frame of the same time tells nothing
+  noise.observe_frame(trail, 0);  // a frame of the same time has no information
   EXPECT_NEAR(noise.levels().size, first.size, 1e-9);
 }
 

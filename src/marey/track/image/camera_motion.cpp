@@ -58,7 +58,7 @@ Similarity2 CameraMotion::view_from_scene(double dt) const {
   return Similarity2::about(middle_, std::exp(dt * rate_.zoom), dt * rate_.roll, dt * rate_.shift) * view_from_scene_;
 }
 
-/// Whom each expected person would be under this shift: the best of those seen, where there is one.
+/// The match of each expected person under this shift: the best of those seen, where there is one.
 std::vector<CameraMotion::Pair> CameraMotion::pairs_under(const Vector<2>& shift, std::span<const Sighting> expected,
                                                           std::span<const Sighting> detected) const {
   std::vector<Pair> pairs;
@@ -161,7 +161,7 @@ CameraMotion::Fit CameraMotion::fitted(std::span<const Pair> pairs, const Vector
           .turn_variance = (variance[2] + variance[3]) / 2};
 }
 
-/// The variance of what the camera does beside what was predicted: the mean, over the last second, of the square of what was found
+/// The variance of what the camera does beside what was predicted: the mean, over the last second, of the square of the result
 /// and of that one's own variance (expectation-maximisation). Its speed is a mean over fewer frames.
 void CameraMotion::learn(const Fit& fit) {
   const Increment& found = fit.increment;

@@ -28,7 +28,7 @@ class CameraMotion {
   /// Continues for `dt` s as the camera did; then `view_from_scene` says where the scene is expected.
   void predict(double dt);
 
-  /// Puts right what was predicted, by where people were expected under it and what was seen, px of the image. Fewer than three
+  /// Corrects the prediction, by where people were expected under it and observed, px of the image. Fewer than three
   /// people change nothing.
   void correct(std::span<const Sighting> expected, std::span<const Sighting> detected);
 

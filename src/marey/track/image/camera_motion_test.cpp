@@ -10,7 +10,7 @@ namespace {
 constexpr double kStep = 0.04;   // s
 constexpr double kNoise = 0.03;  // of a person's height
 
-/// People who stand in the scene, and what is seen of them through `view_from_scene`.
+/// People who stand in the scene, and the observations of them through `view_from_scene`.
 class Stand {
  public:
   Stand(int people, unsigned seed) : random_(seed) {

@@ -41,7 +41,7 @@ class PackedClothes {
   Colour upper_, lower_, shanks_;
 };
 
-/// The mean of what was seen one instant after another, sure ones before unsure ones.
+/// The mean of the observations, one instant after another, sure ones before unsure ones.
 Clothes mean_clothes(std::span<const Clothes> detected);
 
 class ClothesLikelihood {

@@ -12,7 +12,7 @@ Clothes worn(float lightness, float a, float b, float deviation = 3) {
   return {colour, colour};
 }
 
-/// What is seen of ten people of different colours for five seconds each; light and pose change them by `noise`.
+/// The observations of ten people of different colours for five seconds each; light and pose change them by `noise`.
 std::vector<std::vector<Clothes>> ten_people(float noise) {
   std::mt19937 random(7);
   std::normal_distribution<float> change(0, noise);

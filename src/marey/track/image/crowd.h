@@ -30,7 +30,7 @@ class Crowd {
   /// A target that is not seen is hidden where another target, or the region that one was seen in, covers it.
   void mark_hidden(std::span<Target> targets, std::span<const Observation<2>> detected) const;
 
-  /// The largest unit of a target with a size; 0 where there is none.
+  /// The largest unit of a target with a size; 0 if there is no such target.
   double widest() const { return widest_; }
 
  private:

@@ -88,7 +88,7 @@ void FilterTracker::predict_to(Timestamp now) {
   }
 }
 
-/// What was seen, in coordinates that stand still while the camera pans, zooms and shakes: all that follows is in these.
+/// The observations, in coordinates that stand still while the camera pans, zooms and shakes: all that follows is in these.
 FilterTracker::Detected FilterTracker::in_scene(Detected detected) {
   if (options_.stabilised_camera) return detected;
   expected_.clear();

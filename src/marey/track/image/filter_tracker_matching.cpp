@@ -61,7 +61,7 @@ bool FilterTracker::was_observed_recently(const Target& target) const {
   return seconds(*now_ - target.last_observed) < std::max(kRecently, kNextFrame * dt_);
 }
 
-/// The part of its unseen time that tells against a target: where frames are far apart, no person could have been seen between
+/// The part of its unseen time that counts against a target: where frames are far apart, no person could have been seen between
 /// them.
 double FilterTracker::missed_for(const Target& target) const {
   return seconds(*now_ - target.last_observed) - std::max(0.0, dt_ - kDefaultStep);

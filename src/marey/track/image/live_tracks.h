@@ -7,7 +7,7 @@
 // still there: an estimate of survival by counts, with a prior of a few gaps. That it is where it is predicted is read off the
 // filter's covariance: a box that is off by more than a third of its side overlaps the person by less than half.
 //
-// A `delay` looks that far ahead: a target is distinguished from its first observation on if it is confirmed by then, gaps that
+// A `delay` is a lookahead: a target is distinguished from its first observation on if it is confirmed by then, gaps that
 // close within it are filled from both sides, and the odds are those of the later instant. Cost: linear in the tracks; memory:
 // those of `delay` seconds.
 #pragma once
@@ -50,7 +50,7 @@ class LiveTracks {
   void add(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames = {});
   /// The same of a frame in which no person was searched for: `tracks` are predicted, and say nothing of who is still there.
   void add_unsearched(std::int64_t index, Timestamp time, std::span<const Track<2>> tracks, std::vector<Frame> frames = {});
-  /// The next instant that is `delay` old, or at the end of the recording, with `all`, any; nothing if there is none.
+  /// The next instant that is `delay` old, or at the end of the recording, with `all`, any; nothing if there is no such instant.
   std::optional<Instant> next(bool all = false);
   /// Whether no instant waits to be reported.
   bool empty() const { return time_steps_.empty(); }

@@ -11,7 +11,7 @@
 namespace marey::track::image {
 
 /// Re-identification before a static camera still, where no target vanishes but behind something: an observation of its size
-/// that appears where it may have gone by now, and that matches no other target, is it. So is one that was seen a moment ago, and
+/// that appears where it may have gone by now, and that matches no other target, is it. So is one that was seen just before, and
 /// turned so sharply that it left its gate.
 class Reidentification {
  public:

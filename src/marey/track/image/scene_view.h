@@ -9,14 +9,14 @@
 
 namespace marey::track::image {
 
-/// Follows the camera by the people in the image, and puts what is seen into coordinates that stand still.
+/// Follows the camera by the people in the image, and puts the observations into coordinates that stand still.
 class SceneView {
  public:
   /// Continues by `dt` s. `expected`: people as they are expected in the scene; of those seen, in the image, the ones with a box
   /// and a score of at least `min_score` count.
   void track_camera(double dt, std::span<const Sighting> expected, std::span<const Observation<2>> detected, double min_score);
 
-  /// What is seen in the image, in coordinates of the scene. Valid until the next call.
+  /// The observations in the image, in coordinates of the scene. Valid until the next call.
   std::span<const Observation<2>> in_scene(std::span<const Observation<2>> detected);
 
   /// Those seen who counted, px of the image. Valid until the next call of track_camera.

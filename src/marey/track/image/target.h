@@ -36,7 +36,7 @@ struct Target {
   bool crowded = false;                 ///< its box meets another target's
   bool hidden = false;                  ///< not seen, and another target or a shared region explains why
   UnoccludedMotion unoccluded_motion = {};
-  std::optional<Box> shown = {};  ///< what is written of it in this frame, where that is not `size` about the filter's place
+  std::optional<Box> shown = {};  ///< its output in this frame, where that is not `size` about the filter's place
   BoxTrail trail = {};            ///< where the boxes' noise is learned
 
   bool confirmed() const { return evidence.confirmed(); }

@@ -10,7 +10,7 @@
 
 namespace marey::track::image {
 
-/// Takes in boxes, and tells the image's border on those sides where boxes of people in several places ended at one coordinate.
+/// Takes in boxes, and finds the image's border on those sides where boxes of people in several places ended at one coordinate.
 class ViewBorder {
  public:
   void observe_frame(const Box& box) {

@@ -17,7 +17,7 @@ Box box_of(const TrackRow& row) {
   return {row.left, row.top, row.width, row.height};
 }
 
-/// A stretch of rows of one tracklet uncertain, both ends included.
+/// A segment of rows of one tracklet uncertain, both ends included.
 struct ReviewItem {
   int first = 0, last = 0;
   int strongest = 0;    ///< the row in which others were nearest
@@ -127,7 +127,7 @@ class AmbiguityFinder {
     }
   }
 
-  /// The rows uncertain of a tracklet, as stretches with enough that is sure between them.
+  /// The rows uncertain of a tracklet, as segments with enough that is sure between them.
   void list_review_items(int t) {
     const Tracklet& rows = tracklets_[t];
     first_ambiguity_.push_back(static_cast<int>(review_items_.size()));

@@ -11,12 +11,12 @@
 namespace marey::track::offline {
 
 /// Rows between two measured ones, whose provenance is `filled`.
-///   straight  every value on the straight way between both ends: people
+///   straight  every value on the straight line between both ends: people
 ///   cubic     places on the cubic through the places and velocities of both ends, the rest as it was guessed: points
 enum class GapInterpolation { straight, cubic };
 
 /// Rows between two observed ones are put between them where that lasts at most `longest` seconds; where it lasts longer, before
-/// the first and after the last observation there are none. `rows` are one target's, in the order of frames; frames may be missing.
+/// the first and after the last observation it has no rows. `rows` are one target's, in the order of frames; frames may be missing.
 void fill_gaps(TrackletLog::Tracklet& rows, const TrackletLog& log, double longest, GapInterpolation method);
 
 /// What a second pass can say of points that were followed by themselves: the tracklets without gaps of up to `longest` seconds.

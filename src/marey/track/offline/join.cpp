@@ -1,7 +1,7 @@
 // The second pass. Tracklets that end and begin at short notice are joined first. What that gives is cut wherever identity is in
 // doubt (ambiguous_intervals.h), and all pieces of the recording are linked again in one assignment, by motion, size and clothes
 // together (tracklet_linker.h). Where no clothes were seen, motion alone decides no better than the tracker did: nothing is cut.
-// What is left is evaluated as a whole: false alarms go, gaps are filled, paths smoothed; at last, who left the image and came back
+// The rest is evaluated as a whole: false alarms go, gaps are filled, paths smoothed; at last, one who left the image and came back
 // gets the number from before (returns.h). Cost: near linear in tracklets, by the
 // number that begin while a gap may last; the rows are skipped a few times.
 #include "marey/track/offline/join.h"

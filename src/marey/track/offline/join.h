@@ -13,16 +13,16 @@ namespace marey::track::offline {
 
 /// Lengths in body heights where targets have boxes, else in px.
 struct JoinOptions {
-  double longest_gap = 4;        ///< s; who reappears later is a person new
+  double longest_gap = 4;        ///< s; a person who reappears later is a new one
   double longest_filled = 2.5;   ///< s; a longer gap is joined, but nothing is said of where the target was in the meantime
   double position_noise = 0.12;  ///< standard deviation of an end of a tracklet
   double speed_noise = 0.35;     ///< by how much the mean speed in a gap differs from that at its ends, 1/s
   double size_noise = 0.15;      ///< of the logarithm of the height
-  double shortest = 0.35;        ///< s; what is seen for less is taken for a false alarm
+  double shortest = 0.35;        ///< s; a tracklet seen for less is taken for a false alarm
   int lowest_count = 3;          ///< observations; likewise
-  double rarest = 0.35;          ///< share of its frames; what is seen in fewer likewise
+  double rarest = 0.35;          ///< share of its frames; one seen in fewer likewise
   double weaker = 0.15;          ///< what scores this much below the typical must last longer and be seen more often
-  /// The image, px. Who ends at its border has left, and who begins there has come: they are joined on strong evidence alone.
+  /// The image, px. One that ends at its border has left, one that begins there has come: they are joined on strong evidence alone.
   std::optional<Box> view = {};
   Smoothing smoothing = {};
   ReturnOptions returns = {};  ///< who left the image and came back; asked for only where `view` is known

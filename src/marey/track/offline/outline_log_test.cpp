@@ -13,7 +13,7 @@
 namespace marey::track::offline {
 namespace {
 
-/// Numbers that single precision holds exactly, so that what is read must equal what was written.
+/// Numbers that single precision holds exactly, so that the numbers read must equal those written.
 Track<2> track_with_outline(int id, int seed) {
   auto outline = std::make_shared<Outline>();
   outline->order = 3;

@@ -18,10 +18,10 @@ namespace {
 
 using Tracklet = TrackletLog::Tracklet;
 
-constexpr double kClothesFor = 5;                      // s of a tracklet that tell what it wears at an end
+constexpr double kClothesFor = 5;                      // s of a tracklet that show what it wears at an end
 constexpr int kMinTimeSteps = 8;                       // of a tracklet whose clothes are learned from
-constexpr double kMotionFor = 0.8;                     // s that tell where an end goes
-constexpr double kNearBorder = 0.2, kSoonThere = 1;    // heights, s: who is that near or there so soon leaves, or has come
+constexpr double kMotionFor = 0.8;                     // s that show where an end goes
+constexpr double kNearBorder = 0.2, kSoonThere = 1;    // heights, s: one that near or there so soon leaves, or has come
 constexpr double kPositionUnsure = 0.25;               // heights along the border, however short the time away
 constexpr double kFastest = 5;                         // heights/s
 constexpr double kMaxGrown = 0.5;                      // of the logarithm of the height

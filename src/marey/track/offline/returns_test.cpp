@@ -213,7 +213,7 @@ TEST(Returns, TheSecondPassGivesOneNumberAndFillsNothingBetween) {
   EXPECT_TRUE(gap);
 }
 
-/// Every way to give each of a few ends at most one beginning: the assignment that decides is the best of them.
+/// All options to give each of a few ends at most one beginning: the assignment that decides is the best of them.
 TEST(Returns, TheAssignmentIsTheBestOfAll) {
   std::mt19937 random(3);
   for (int round = 0; round < 200; ++round) {

@@ -10,7 +10,7 @@ struct Smoothing {
   double velocity = 0.12;  ///< the same for velocities
 };
 
-/// Replaces places, sizes, velocities and the centres of outlines by local straight-line fits under a Gaussian kernel that looks
+/// Replaces places, sizes, velocities and the centres of outlines by local straight-line fits under a Gaussian kernel that reaches
 /// both ways, so that nothing lags. Observed rows weigh more than predicted ones.
 void smooth(TrackletLog::Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing);
 

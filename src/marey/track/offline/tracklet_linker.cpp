@@ -13,25 +13,25 @@ namespace {
 using Tracklet = TrackletLog::Tracklet;
 
 constexpr double fit_span = 0.8;        // s of a tracklet that its end is fitted to
-constexpr double clothes_span = 5;      // s of a tracklet that tell what it wears at its end
-constexpr double prior_speed = 0.6;     // sizes/s; what is known before two observations are
+constexpr double clothes_span = 5;      // s of a tracklet that show what it wears at its end
+constexpr double prior_speed = 0.6;     // sizes/s; the prior before two observations
 constexpr double score_of_joining = 9;  // how many log-likelihoods a newcomer at just this place and time is behind
 constexpr double gate = 16;             // chi-square, place and size: 4 degrees of freedom
 // docs/tuning.md has the sweep of those that follow.
 constexpr double kOutOfEncounter = 0.5;  // gain, at least, of one who went into a meeting and may be the one who comes out
-constexpr double kAsTracked = 1;         // gain of whom the tracker said
+constexpr double kAsTracked = 1;         // gain of the tracker's choice
 constexpr double kStands = 0.1;         // the same at least, where no other piece claims either: the light changes clothes; unswept
 constexpr double kMaxEncounter = 20;    // s
-constexpr double kStep = 1, kPace = 1;  // heights, heights/s: who comes out no farther from where it went in may be the same
+constexpr double kStep = 1, kPace = 1;  // heights, heights/s: one that comes out no farther from where it went in may be the same
 constexpr double kAtBorder = 0.1;       // heights from the image's border
-constexpr double kHasLeft = 3;          // gain that each end at the border costs: who was there has left, or has just come
+constexpr double kHasLeft = 3;          // gain that each end at the border costs: a person there has left, or has just come
 constexpr double kUnobservedAtBorder = 0.6;  // s from which on that counts
 
 bool is_sure(const TrackRow& row) {
   return row.observed() && !row.ambiguous;
 }
 
-/// What was seen of each row's clothes while it was sure who it is.
+/// The observations of each row's clothes while it was sure who it is.
 std::vector<image::Clothes> clothes_of(std::span<const TrackRow> rows) {
   std::vector<image::Clothes> detected;
   for (const TrackRow& row : rows) {

@@ -3,7 +3,7 @@
 // A piece that ends and one that begins are one target's where they fit as one walking person's would: the mean velocity over the
 // gap fits the velocities before and after it, the size is the same, and so are the clothes, where they were seen. Every end and
 // every beginning takes part in one assignment that maximises the sum of log-likelihood ratios against one who left and another who
-// came. Out of a meeting any of those who went in may come; that it is the one whom the tracker said has something for it.
+// came. Out of a meeting any of those who went in may come; the one that the tracker chose has some prior weight.
 #pragma once
 
 #include <span>
@@ -24,7 +24,7 @@ class TrackletLinker {
   /// Joins tracklets over gaps of at most this many seconds.
   std::vector<TrackletLog::Tracklet> join(std::vector<TrackletLog::Tracklet> tracklets, double longest_gap) const;
 
-  /// Whether clothes were seen for long enough, of enough people, to tell anything.
+  /// Whether clothes were seen for long enough, of enough people, to be informative.
   bool knows_clothes() const { return clothes_.learned(); }
 
   /// Cuts tracklets wherever their identity is uncertain, and links the pieces again.

@@ -47,7 +47,7 @@ TrackletLog record(int frames, ShownAt&& shown_at) {
   return log;
 }
 
-/// The number that a row near x bears in a frame; 0 where there is none.
+/// The number that a row near x has in a frame; 0 if there is no row.
 int number_at(const std::vector<TrackRow>& rows, int frame, double x) {
   for (const TrackRow& row : rows) {
     if (row.frame == frame && std::abs(row.x - x) < 20) return row.id;

@@ -22,7 +22,7 @@ struct TrackRow {
   float centre_x = 0, centre_y = 0;                ///< of the outline, where `has_centre`
   float score = 1;
   Provenance provenance = Provenance::measured;
-  image::PackedClothes clothes;  ///< of what was seen of it
+  image::PackedClothes clothes;  ///< of the observations of it
   bool ambiguous = false;        ///< others were so near that it may be one of them: set by the second pass (ambiguous_intervals.h)
   bool has_centre = false;       ///< an outline was found; after smoothing, also where one was found shortly before and after
 

@@ -48,7 +48,7 @@ class RigidNeighbours {
   /// where both were seen at once.
   std::optional<double> difference(int a, int b) const;
 
-  /// `number` turned out to be `other`: what was learned of it becomes other's, and the number is free for another marker.
+  /// `number` turned out to be `other`: the data learned of it become other's, and the number is free for another marker.
   void merge(int number, int other);
   /// No person needs the number any more.
   void release(int number);

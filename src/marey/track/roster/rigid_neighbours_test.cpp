@@ -13,7 +13,7 @@
 namespace marey::track::roster {
 namespace {
 
-/// Two bones of five markers that swing against each other, and one marker that goes its own way.
+/// Two bones of five markers that swing against each other, and one marker that moves independently.
 std::vector<Vector<3>> body_at(double t) {
   std::vector<Vector<3>> locations;
   for (int bone = 0; bone < 2; ++bone) {

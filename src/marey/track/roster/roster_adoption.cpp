@@ -68,7 +68,7 @@ void RosterAdoption<D>::notice_jolt(std::span<const Target> targets) {
   }
 }
 
-/// Whether a target in space that was just seen would be at a place had it turned: one alone only on the way that it came, for what
+/// Whether a target in space that was just seen would be at a place had it turned: one alone only on the path it came, for what
 /// appears elsewhere may be another.
 template <int D>
 bool RosterAdoption<D>::rotated_to(const Target& target, const Vector<D>& location) const {

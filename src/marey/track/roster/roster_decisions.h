@@ -1,5 +1,5 @@
 // What the roster tracker said of the last seconds, held back until names are sure: a marker that came back under a new name, and
-// whose distances to its neighbours then prove that it is an old one, bears the old name from its return on.
+// whose distances to its neighbours then prove that it is an old one, has the old name from its return on.
 // Cost: targets × frames held, for each name that is corrected.
 #pragma once
 

@@ -40,7 +40,7 @@ class RosterRigidNeighbours {
   /// predicts those that are not seen.
   void learn(std::vector<Target>& targets, double dt);
 
-  /// A newcomer proved to be a target that was lost, which takes its place: what is known of both is one marker's.
+  /// A newcomer proved to be a target that was lost, which takes its place: the data of both are one marker's.
   void adopt(Target& lost, Target& newcomer);
   /// A newcomer proved to be a target of its own.
   void confirm(const Target& target);

@@ -52,7 +52,7 @@ struct RosterTarget {
     double dt = 0;      ///< s, since the one before
     bool whole = true;  ///< not smaller than the marker
   };
-  /// What it was before it took a point that may as well be a false one; given back where the next frame does not bear that out.
+  /// What it was before it took a point that may as well be a false one; given back where the next frame does not confirm it.
   struct ReviewItem {
     filter::AnyFilter<D> filter;
     Vector<D> last_position;

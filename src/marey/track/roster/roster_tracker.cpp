@@ -207,7 +207,7 @@ class RosterTracker final : public Tracker<D> {
     return target.travel <= kKnownWithin * target.width && in_image(target.filter.position());
   }
 
-  /// A target that vanished behind an edge was seen in part before: its filter is begun again from what was seen of it whole.
+  /// A target that vanished behind an edge was seen in part before: its filter is begun again from the whole observations of it.
   void forget_parts() {
     for (Target& target : targets_) {
       auto& measured = target.measured;

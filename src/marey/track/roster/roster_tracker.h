@@ -24,7 +24,7 @@ struct RosterTrackerOptions {
   double confirm = 10;              ///< log-likelihood ratio against clutter that proves a newcomer
 };
 
-/// Follows named points that are few or many, alike, and always the same: markers on a body. What is seen in the first frame
+/// Follows named points that are few or many, alike, and always the same: markers on a body. A point seen in the first frame
 /// is on the roster and never given up: a target that vanishes is waited for, and what then appears unexplained is taken to be it.
 /// Throws Error if there are more labels than points in the first frame, or a label occurs twice.
 template <int D>

@@ -175,7 +175,7 @@ TEST(RosterTracker, KeepsIdsInSpaceWhenEveryMotionTurnsBack) {
     for (int i = 0; i < frames; ++i) {
       const double t = (i / turn % 2 == 0 ? i % turn : turn - i % turn) / rate;
       std::vector<Observation<3>> detected;
-      for (int m = 0; m < 12; ++m) {  // up to 1.1 m/s, each its own way
+      for (int m = 0; m < 12; ++m) {  // up to 1.1 m/s, each on its own path
         auto& point = detected.emplace_back();
         const double method = 2.4 * m;
         point.value = Vector<3>(0.4 * (m % 4), 0.4 * (m / 4), 1) + 0.1 * m * t * Vector<3>(std::cos(method), std::sin(method), 0.3);

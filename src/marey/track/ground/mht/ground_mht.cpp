@@ -307,7 +307,7 @@ class GroundMht final : public GroundTracker {
 
   static constexpr double touch = 0.5;         // m: people nearer than this may be seen as one
   static constexpr double between = 0.25;      // m: how far from the middle of two each of them is then
-  static constexpr double first_interval = 1;  // s: who stands there at the first instant has come before
+  static constexpr double first_interval = 1;  // s: a person there at the first instant has come before
   static constexpr double same_sigmas = 0.5;
   static constexpr double a_while = 0.5;  // s
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double bin_seconds = 0.5;
 constexpr double border_seconds = 1;  // at the recording's own beginning and end tracks begin and end of themselves
 
-/// What was seen of the colour in half a second.
+/// The observed colour in half a second.
 struct Bin {
   std::size_t first = 0, last = 0;       // samples, the second not included
   Vector<3> colour = Vector<3>::Zero();  // as perceived
@@ -141,7 +141,7 @@ void cut(GroundTracklet tracklet, const std::vector<std::size_t>& cuts, std::vec
   std::move(later.rbegin(), later.rend(), std::back_inserter(pieces));
 }
 
-/// Where to cut these samples at `instant`, if whom they show stands near `end` then.
+/// Where to cut these samples at `instant`, if the person they show stands near `end` then.
 void cut_near(const std::vector<GroundSample>& samples, const GroundSample& end, std::int32_t instant, double near,
               std::vector<std::size_t>& cuts) {
   if (samples.front().instant >= instant || samples.back().instant < instant) return;

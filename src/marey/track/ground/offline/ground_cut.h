@@ -24,9 +24,9 @@ namespace marey::track::ground::offline {
 struct GroundCutOptions {
   double shortest = 1;    ///< s; a piece whose colour is trusted lasts at least this long
   double minimum = 12;    ///< by how much the colours of two pieces differ, as perceived
-  double certainly = 40;  ///< and how much better two colours explain what was seen than one: twice a logarithm of likelihoods
+  double certainly = 40;  ///< and how much better two colours explain the observations than one: twice a logarithm of likelihoods
   double deviation = 6;   ///< of one person's colour from one half second to another
-  double near = 4;        ///< m, besides what is uncertain: who is nearer than this to where a track ends may have taken it over
+  double near = 4;        ///< m, besides what is uncertain: a person nearer than this to a track's end may have taken it over
   double overlap = 0.25;  ///< s; for this long two tracks may show one person while one goes over into the other,
   double together = 1;    ///< m, besides what is uncertain: so near to each other
 };
@@ -39,7 +39,7 @@ std::vector<GroundTracklet> cut_at_appearance_changes(std::vector<GroundTracklet
 /// people.
 std::vector<GroundTracklet> cut_where_impossible(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times);
 
-/// The same tracklets; who begins while another ends, near it and never seen by one camera with it, is there alone from then on.
+/// The same tracklets; one beginning while another ends, near it and never seen by one camera with it, is there alone from then on.
 std::vector<GroundTracklet> end_before_successors(std::vector<GroundTracklet> tracklets, std::span<const Timestamp> times,
                                                   const GroundCutOptions& options = {});
 

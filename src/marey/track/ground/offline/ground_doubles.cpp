@@ -57,10 +57,10 @@ class Walker {
   std::size_t next_;
 };
 
-/// What is found of two tracklets while both are there.
+/// Statistics of two tracklets while both are there.
 struct Overlap {
   int compared = 0, together = 0;  // instants
-  int alone_a = 0, alone_b = 0;    // looks of a camera at the one without the other
+  int alone_a = 0, alone_b = 0;    // observations by a camera of the one without the other
   int both = 0;                    // frames of a camera in which it sees both
 };
 

@@ -10,7 +10,7 @@ namespace marey::track::ground::offline {
 namespace {
 
 constexpr double min_seconds = 0.3;                                   // of each one before and after: else nothing can be evaluated
-constexpr double apart = 0.4;                                         // s: who comes near again sooner has not parted
+constexpr double apart = 0.4;                                         // s: a person who comes near again sooner has not parted
 constexpr double colour_seconds = 10;                                 // before and after, over which clothes are inspected
 constexpr EndpointError in_the_open{.location = 0.25, .speed = 0.6};  // before and after a meeting people are in full view
 

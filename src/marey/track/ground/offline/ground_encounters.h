@@ -16,7 +16,7 @@
 namespace marey::track::ground::offline {
 
 struct CloseEncounterOptions {
-  double near = 1.2;        ///< m, besides what is uncertain of the places: who is nearer than this meets
+  double near = 1.2;        ///< m, besides what is uncertain of the places: people nearer than this meet
   double evaluated_by = 3;  ///< s before and after
   double max_speed = 12;    ///< m/s
   GroundMotion motion;
@@ -34,7 +34,7 @@ std::vector<CloseGroundEncounter> find_encounters(std::span<const GroundTracklet
                                                   double near);
 
 /// Logarithm of how much likelier it is, by place, velocity and clothes before and after, that the two were exchanged in the
-/// meeting than that they were not. Nothing if either was seen too briefly to tell, or would have had to be too fast.
+/// meeting than that they were not. Nothing if either was seen too briefly to decide, or would have had to be too fast.
 std::optional<double> gain_of_swap(std::span<const GroundSample> a, std::span<const GroundSample> b,
                                    const CloseGroundEncounter& close_encounter, std::span<const Timestamp> times,
                                    const GroundColours& colours, const CloseEncounterOptions& options);

@@ -16,8 +16,8 @@ using assign::kNoIndex;
 constexpr int kMaxRounds = 2000;
 constexpr double kMinAlternative = -12;  // gain of moves that still count against a decision
 constexpr double kCaution =
-    1.5;  // by which gains are divided before they are taken for logarithms of odds: roles tell less than they seem to
-constexpr double kUntrustedSource = 0;  // logarithm of odds that an unnamed path is no person's who was named
+    1.5;  // by which gains are divided before they are taken for logarithms of odds: roles are weaker evidence than they seem
+constexpr double kUntrustedSource = 0;  // logarithm of odds that an unnamed path is not that of a named person
 
 double seconds_between(std::int32_t from, std::int32_t until, std::span<const Timestamp> times) {
   return seconds(times[static_cast<std::size_t>(until)] - times[static_cast<std::size_t>(from)]);

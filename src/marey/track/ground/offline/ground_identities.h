@@ -1,16 +1,16 @@
 // Who is who over a whole recording, once people were named: which paths the names go along.
 //
 // A tracker's tracks are cut wherever it may have been wrong: where two met (ground_encounters.h) and where one was lost. Each
-// stretch between is one person's. How stretches follow each other is then decided over the recording at once, so that the sum of
+// segment between is one person's. How segments follow each other is then decided over the recording at once, so that the sum of
 // logarithms of likelihoods is the greatest that is found:
 //   meetings   two continue as they were tracked, or exchanged: by place, velocity and clothes right before and after;
 //   gaps       an end is followed by a beginning, or none (ground_join.h);
-//   roles      all stretches of a path have their places among the others as one person has (ground_roles.h): minutes after two
+//   roles      all segments of a path have their places among the others as one person has (ground_roles.h): minutes after two
 //              were exchanged, the back is found where the winger was. This settles what the moment itself leaves open;
 //   names      no person is two people: a path that was given two names is cut between them.
 // From what the tracker thought, the search continues by the best of all moves that exchange what two paths have from some point
 // on, or between two points, until none gains: Markov-chain data association's moves (Oh, Russell & Sastry, "Markov chain Monte
-// Carlo data association for multi-target tracking", IEEE Trans. AC 54, 2009), taken greedily. How much the second-best way would
+// Carlo data association for multi-target tracking", IEEE Trans. AC 54, 2009), taken greedily. How much the second-best move would
 // lose is how sure each decision is. Assumes that most meetings are tracked rightly, and that roles last. Cost: for each move made
 // the meetings and pairs of ends and beginnings, each in constant time, as sums along paths are kept.
 #pragma once
@@ -37,7 +37,7 @@ struct GroundIdentityOptions {
   CloseEncounterOptions close_encounter{.near = 2, .motion = {}};
   GroundChainOptions join;
   double swapped = -3;   ///< logarithm of the odds that a meeting was tracked exchanged, before anything else is known
-  double trusted = 0.3;  ///< share of what place and velocity tell of a meeting that is trusted: tracks were smoothed through it
+  double trusted = 0.3;  ///< trusted share of the evidence of place and velocity about a meeting: tracks were smoothed through it
   double coming = 1e-6;  ///< people who come into a match, per m² and s
 };
 
@@ -48,7 +48,7 @@ struct GroundIdentities {
     std::int32_t first = 0, last = 0;  ///< instants, both included
     int path = 0;
   };
-  /// One person's stretches, in the order of time.
+  /// One person's segments, in the order of time.
   struct Path {
     int name = -1;  ///< −1: no person named it
     std::vector<int> segments;
@@ -56,13 +56,13 @@ struct GroundIdentities {
   /// Two met. `probability`: that `paths` should have been exchanged from there on.
   struct CloseEncounter {
     std::int32_t instant = 0;
-    int before_a = 0, before_b = 0;  ///< stretches
+    int before_a = 0, before_b = 0;  ///< segments
     bool swapped = false;            ///< against how they were tracked
     double probability = 0;
   };
   /// `after` was taken for the one of `before`. `probability`: that it is another person.
   struct Link {
-    int before = 0, after = 0;  ///< stretches
+    int before = 0, after = 0;  ///< segments
     double probability = 0;
   };
   /// Who an unnamed path may be; the rest of the probability is another person's.

@@ -111,7 +111,7 @@ TEST(GroundIdentities, ReacquiredPersonKeepsName) {
 }
 
 TEST(GroundIdentities, SwapsDoublyNamedTrackAtEncounter) {
-  // Too little is seen for roles to tell: what was said decides.
+  // Too little is seen for roles to decide: the given identities decide.
   const int instants = static_cast<int>(80 * kSceneRate);
   std::vector<GroundNaming> namings = named_at_once(6);
   namings.push_back({0, instants - 10, 1});

@@ -24,7 +24,7 @@ constexpr double end_span = 3;  // s of a tracklet that its end is evaluated by
 constexpr double tracker_knows = 2;  // what the tracker thought of a piece that was cut off, as a logarithm of likelihoods
 constexpr double stands = 0.1;       // gain, at least, of continuing as the tracker said: less than any other claim; unswept
 constexpr double unambiguously_others = -4;  // of colours: the tracker went over to another person; unswept
-constexpr double clothes_vary = 5;  // as perceived, one person's colour from one stretch to another: sun, shade, another camera
+constexpr double clothes_vary = 5;  // as perceived, one person's colour from one segment to another: sun, shade, another camera
 constexpr double thinned = 0.6;     // deviation as perceived, of one in L*a*b*
 constexpr double surest_apart = -9, surest_same = 3;  // however colours differ or agree, they may be another person's
 constexpr std::size_t kMaxKinds = 300;
@@ -52,7 +52,7 @@ double colour_log_normal(const Appearance& a, const Appearance& b) {
   return -0.5 * ((perceived(a) - perceived(b)).squaredNorm() / variance + 3 * std::log(2 * std::numbers::pi * variance));
 }
 
-/// Whether a person there may be about to be out of sight: some place a second's way around is.
+/// Whether a person there may be about to be out of sight: some place within a second's walk is.
 bool near_border(const GroundState& state, Timestamp time, double direction, const InSight& in_sight) {
   if (!in_sight) return false;
   const Vector<2> ahead = state.location() + direction * 0.7 * state.velocity();

@@ -38,7 +38,7 @@ struct GroundChainOptions {
   std::optional<GroundTeams> teams = {};
 };
 
-/// What an end of a tracklet, or its beginning, tells of joining it.
+/// What an end of a tracklet, or its beginning, shows about joining it.
 struct GroundEnd {
   Timestamp time{};
   GroundState state;
@@ -69,7 +69,7 @@ class GroundColours {
 
 /// What an end may be off by beyond what its covariance says: standard deviations per axis.
 struct EndpointError {
-  double location = 0.4;  ///< m; who is about to be lost is half hidden already
+  double location = 0.4;  ///< m; a person about to be lost is half hidden already
   double speed = 0.9;     ///< m/s
 };
 
@@ -77,7 +77,7 @@ struct EndpointError {
 double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
                       const EndpointError& stray = {});
 
-/// Every tracklet's beginning and its end, by their indices, as each one's first and last seconds tell of them.
+/// Every tracklet's beginning and its end, by their indices, from each one's first and last seconds.
 std::pair<std::vector<GroundEnd>, std::vector<GroundEnd>> ends_of(std::span<const GroundTracklet> tracklets,
                                                                   std::span<const Timestamp> times, const GroundMotion& motion);
 

@@ -117,7 +117,7 @@ TEST(GroundJoin, AtTheBorderOfSightPeopleLeaveAndOthersCome) {
   EXPECT_EQ(chains_of(tracklets, [](const Vector<2>& location, Timestamp) { return location.x() < 101; }), (Chains{{0}, {1}}));
 }
 
-/// The best of all ways to give ends their beginnings.
+/// The best of all assignments of beginnings to ends.
 double best_of_all(std::size_t tail, std::vector<char>& taken, const std::vector<GroundEnd>& tails,
                    const std::vector<GroundEnd>& heads, const GroundColours& colours) {
   if (tail == tails.size()) return 0;

@@ -1,4 +1,4 @@
-// Paths through a graph of stretches, one a person, and what moves from one set of paths to another gain.
+// Paths through a graph of segments, one per person, and what moves from one set of paths to another gain.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ class GroundPaths {
   /// As the tracker had it; gaps bridged where that is worth it.
   explicit GroundPaths(const SegmentGraph& graph);
 
-  /// New successors for some nodes, or assign::kNoIndex, and what that gains. `crossings` are settled the other way by it.
+  /// New successors for some nodes, or assign::kNoIndex, and what that gains. `crossings` are settled conversely by it.
   struct Move {
     struct Arc {
       int node = 0, next = 0;
@@ -26,7 +26,7 @@ class GroundPaths {
 
   /// All moves that gain more than `least`.
   std::vector<Move> moves(double minimum) const;
-  /// Takes moves of positive gain, the best first, until there is none; or `most` times.
+  /// Takes moves of positive gain, the best first, until no such move is left; or `most` times.
   void search(int maximum);
 
   const std::vector<std::vector<int>>& paths() const { return paths_; }
@@ -36,7 +36,7 @@ class GroundPaths {
   RoleSum role_of_path(int path) const { return sums_[static_cast<std::size_t>(path)].back(); }
 
  private:
-  /// A stretch of a path: its nodes from one position up to another.
+  /// A segment of a path: its nodes from one position up to another.
   struct Part {
     int path = 0, from = 0, to = 0;
   };

@@ -18,7 +18,7 @@ struct GroundInstants {
 };
 
 /// People from chains of tracklets (ground_join.h): false alarms dropped, paths smoothed, gaps filled, ids given from 1 in the
-/// order of chains. Who is seen from the first frame of a camera that was started late was there before: that is predicted.
+/// order of chains. A person seen from the first frame of a camera that was started late was there before: that is predicted.
 /// Tracklets are used up, chain by chain, so that memory holds either them or what is made of them. Cost: linear in the samples.
 GroundRecorder::Joined people_from_chains(std::vector<GroundTracklet> tracklets, const std::vector<GroundChain>& chains,
                                           const GroundInstants& instants, const GroundJoinOptions& options);

@@ -21,8 +21,7 @@ static_assert(sizeof(GroundSample) <= 48, "25 people for 90 minutes at 25 frames
 constexpr double kUnobservedPush =
     1.6;  // times the typical: an unseen target may have done anything; a wrong join costs an identity
 
-constexpr double kNear =
-    4 / 1.5;  // m: who was nearer than this, for each m/s^1.5 of how hastily people move, may have been taken over
+constexpr double kNear = 4 / 1.5;  // m: one nearer than this, for each m/s^1.5 of how hastily people move, may have been taken over
 
 std::int8_t rounded(double value) {
   return static_cast<std::int8_t>(std::lround(std::clamp(value, -127.0, 127.0)));

@@ -27,7 +27,7 @@ struct GroundJoinOptions {
   std::optional<GroundTeams> teams = {};  ///< what two teams wear, where that is known
 };
 
-/// What was seen of people on the ground, instant by instant, kept for a second pass that may use later frames: 48 bytes a person
+/// Observations of people on the ground, instant by instant, kept for a second pass that may use later frames: 48 bytes a person
 /// and instant. Tracks that are never confirmed are forgotten as they end.
 class GroundRecorder {
  public:
@@ -58,7 +58,7 @@ class GroundRecorder {
   };
 
   /// Joins what is one person's (by place, speed and what they wear), drops false alarms, fills gaps, smooths. Ids are given again
-  /// from 1 in the order of first appearance. `in_sight` tells where people are seen and reported: at its border they are likely to
+  /// from 1 in the order of first appearance. `in_sight` gives where people are seen and reported: at its border they are likely to
   /// come and go; without it, nowhere. Used up afterwards.
   Joined join(const GroundJoinOptions& options = {}, const InSight& in_sight = {}) &&;
 

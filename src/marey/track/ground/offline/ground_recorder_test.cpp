@@ -24,7 +24,7 @@ struct Sighting {
   double sigma = 0.1;
 };
 
-/// Records instants as a tracker would tell them, one inspection a camera.
+/// Records instants as a tracker would report them, one inspection a camera.
 class Story {
  public:
   explicit Story(double rate = 25) : rate_(rate) {}
@@ -229,13 +229,13 @@ Vector<2> runs_left(double t) {
 }
 
 /// The story of two who run past each other at t = 0; from then on with their names exchanged, or not.
-GroundRecorder::Joined two_pass(bool swapped) {
+GroundRecorder::Joined two_pass(bool ids_swap) {
   Story story;
   std::mt19937_64 engine(8);
   std::normal_distribution<double> normal;
   for (int k = 0; k < 150; ++k) {
     const double t = 0.04 * k - 3;
-    const bool swapped = swapped && t >= 0;
+    const bool swapped = ids_swap && t >= 0;
     const Vector<2> first = swapped ? runs_left(t) : runs_right(t);
     const Vector<2> second = swapped ? runs_right(t) : runs_left(t);
     const auto noise = [&] { return 0.1 * normal(engine); };
@@ -292,7 +292,7 @@ struct Runner {
   }
 };
 
-/// What two cameras see of a runner: a tenth of the looks is missed.
+/// What two cameras see of a runner: a tenth of the observations is missed.
 void inspect(const Runner& runner, int track, std::mt19937_64& engine, std::vector<Sighting>& detected) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> unit(0, 1);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double student_degrees = 4;  // of the distribution that errors of places are taken to have
 constexpr int default_passes = 3;
-constexpr double round_time_step = 0.5;  // s before and after within which pushes tell how strong they are
+constexpr double round_time_step = 0.5;  // s before and after within which the strength of pushes is measured
 constexpr double strongest = 3;          // in units of the pushes' typical power
 constexpr double shared_memory = 0.5;    // s for which errors persist of who is seen in one region with others
 
@@ -23,7 +23,7 @@ Matrix<2> settled(const GroundMotion& motion) {
   return (Matrix<2>() << a * motion.settling * both, a * both, a * both, a).finished();
 }
 
-using PathSmoother = filter::PlaceSmoother<GroundMotion, 2>;
+using PathSmoother = filter::PositionSmoother<GroundMotion, 2>;
 
 /// One who is first seen at z, before that is taken in.
 GroundState unknown(const Vector<2>& z, const Matrix<2>& R, const GroundMotion& motion) {
@@ -44,7 +44,7 @@ double weight_of(const GroundSample& sample, const Vector<2>& location) {
   return (student_degrees + 2) / (student_degrees + distance);
 }
 
-/// Samples with what is made of them: each one's weight is its moment's fit, less for errors that it shares with its neighbours.
+/// Samples with what is made of them: each one's weight is its instant's fit, less for errors that it shares with its neighbours.
 struct SmoothingPass {
   std::span<const GroundSample> samples;
   std::span<const Timestamp> times;
@@ -57,7 +57,7 @@ struct SmoothingPass {
   SmoothingPass(std::span<const GroundSample> s, std::span<const Timestamp> t, const GroundMotion& m)
       : samples(s), times(t), motion(m), time_steps(s.size()), echoes(s.size(), 1.0), pushes(s.size(), 1.0) {
     if (!(motion.error_memory > 0) || samples.size() < 2) return;
-    // Samples of an autoregressive process of the first order, ρ from one to the next: n of them tell as much of its mean as
+    // Samples of an autoregressive process of the first order, ρ from one to the next: n of them show as much of its mean as
     // n (1 − ρ) / (1 + ρ) that err on their own.
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double before = i > 0 ? seconds_to(i) : seconds_to(1);
@@ -99,7 +99,7 @@ struct SmoothingPass {
   double seconds_to(std::size_t i) const { return seconds(times[samples[i].instant] - times[samples[i - 1].instant]); }
 };
 
-/// The power of the pushes round each moment, from the accelerations found there.
+/// The power of the pushes round each instant, from the accelerations found there.
 void weigh_pushes(SmoothingPass& detected) {
   const std::size_t n = detected.samples.size();
   const double typical = 2 * settled(detected.motion)(1, 1);
@@ -143,9 +143,9 @@ void find_spreads(SmoothingPass& detected, const PathSmoother& last) {
   if (shared && detected.samples.size() > 1) {
     SmoothingPass doubting = detected;
     doubting.ambiguity_shared();
-    spreads = path_of(doubting).place_covariances();
+    spreads = path_of(doubting).position_covariances();
   } else {
-    spreads = last.place_covariances();
+    spreads = last.position_covariances();
   }
   for (std::size_t i = 0; i < spreads.size(); ++i) detected.time_steps[i].spread = spreads[i];
 }

@@ -3,11 +3,11 @@
 // People push for some tenths of a second in one direction and then in another, and what velocity they have settles towards rest
 // within some seconds where nothing keeps it up: acceleration is an Ornstein-Uhlenbeck process (Singer 1970), and velocity is
 // damped. So what is faster than a push is taken for noise and not for motion, while a track that runs on blindly slows down and
-// its uncertainty of place grows as time does, not as its cube: gaps of twenty seconds can be evaluated. Who stands or strolls
+// its uncertainty of place grows as time does, not as its cube: gaps of twenty seconds can be evaluated. One who stands or strolls
 // pushes less than who plays: after each pass the strength of the pushes is taken from those found round each instant, so that the
 // jitter of places does not make people walk who stand. Neighbouring observations err alike (the same foot ahead, the same shadow),
 // and count as this much less. Observations that do not fit (half a body hidden, the wrong foot) count for less: after each pass
-// the covariance of each grows by its distance from the path, as Student's distribution would have it. The way back is taken in the
+// the covariance of each grows by its distance from the path, as in Student's distribution. The backward pass is taken in the
 // form of Bryson & Frazier (Bierman 1973): an adjoint of six numbers instead of a covariance to invert. Cost: about 15 products of
 // 2 × 2 matrices a sample and pass, and a few of 6 × 6 in the last one, for the covariance of places; 180 bytes a sample of one
 // person while that one is smoothed. References: Rauch, Tung & Striebel, "Maximum likelihood estimates of linear dynamic systems",
@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "marey/core/time.h"
-#include "marey/filter/place_smoother.h"
+#include "marey/filter/position_smoother.h"
 #include "marey/track/ground/offline/ground_tracklet.h"
 
 namespace marey::track::ground::offline {
@@ -44,13 +44,13 @@ struct GroundState : filter::MovingState<GroundMotion::order, 2> {
   Matrix<4> covariance() const { return (Matrix<4>() << P[0], P[1], P[1].transpose(), P[3]).finished(); }
 };
 
-/// Variance of the velocity of people of whom nothing is known, per axis, (m/s)².
+/// Variance of the velocity of people without observations, per axis, (m/s)².
 double speed_variance(const GroundMotion& motion);
 
 /// The state `dt` ≥ 0 seconds on.
 GroundState predicted(const GroundState& state, double dt, const GroundMotion& motion);
 
-/// What is known of one person at one instant.
+/// The state of one person at one instant.
 struct GroundTimeStep {
   Vector<2> location = Vector<2>::Zero();
   Vector<2> velocity = Vector<2>::Zero();

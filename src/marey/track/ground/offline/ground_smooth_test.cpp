@@ -24,7 +24,7 @@ GroundSample sample(int instant, const Vector<2>& location, double xx, double xy
   return sample;
 }
 
-/// A way with instants at uneven times, not all of them seen, each with another covariance.
+/// A path with instants at uneven times, not all of them seen, each with another covariance.
 Scene random_scene(std::uint64_t seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> unit(0, 1);

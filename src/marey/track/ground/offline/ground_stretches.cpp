@@ -12,8 +12,8 @@ namespace {
 constexpr double kStep = 0.2;      // s between places that are counted
 constexpr double kMaxStep = 1;     // s that one place counts for
 constexpr double kMinGain = -12;   // of pairs of an end and a beginning that come into question
-constexpr double kMaxTrusted = 3;  // either way, of what place and velocity tell of a meeting
-constexpr double kTouching = 0.8;  // m: who keep farther apart than this are less often exchanged,
+constexpr double kMaxTrusted = 3;  // in either direction, of the evidence of place and velocity
+constexpr double kTouching = 0.8;  // m: people farther apart than this are less often exchanged,
 constexpr double kPassing = -3;    // for each metre more, as a logarithm of odds
 
 class GraphOfSegments {

@@ -60,7 +60,7 @@ class Swapper {
   std::span<const Timestamp> times_;
   const SwapRepairOptions& options_;
   GroundColours colours_;
-  std::vector<int> holder_;  // where what was recorded as a tracklet continues now
+  std::vector<int> holder_;  // where a recorded tracklet continues now
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Who went which way after two had met.
+// The assignment of two people after they have met.
 //
 // Where two people come so near to each other that a camera cannot well distinguish them, a tracker has to guess who is who, from
 // what came before. Here what comes after is known too: both ways of continuing, straight and exchanged, are evaluated by how well

@@ -19,7 +19,7 @@ struct GroundSample {
   std::array<float, 3> covariance{};  ///< of `place`, m²: xx, xy, yy
   float score = 1;                    ///< of the surest observation
   CameraMask cameras = 0;
-  std::array<std::int8_t, 3> colour{};   ///< L*a*b*, of what was seen
+  std::array<std::int8_t, 3> colour{};   ///< L*a*b*, of the observations
   std::uint8_t colour_deviation = none;  ///< `none` where the colour is not known
   bool shared = false;                   ///< each camera that saw it saw it within a region that others share
 

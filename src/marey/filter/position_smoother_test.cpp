@@ -1,4 +1,4 @@
-#include "marey/filter/place_smoother.h"
+#include "marey/filter/position_smoother.h"
 
 #include <limits>
 #include <random>
@@ -74,20 +74,20 @@ struct Joint {
   }
 };
 
-TEST(PlaceSmoother, EqualsConditionedJointDistribution) {
+TEST(PositionSmoother, EqualsConditionedJointDistribution) {
   for (unsigned seed = 1; seed < 6; ++seed) {
     const Scene scene = scene_of(seed);
     const Joint joint(scene);
-    const auto states = smoothed_places<WhiteAcceleration, 2>(kMotion, scene.times, scene.locations, scene.variances, kUnknown);
+    const auto states = smoothed_positions<WhiteAcceleration, 2>(kMotion, scene.times, scene.locations, scene.variances, kUnknown);
     for (std::size_t i = 0; i < states.size(); ++i)
       EXPECT_TRUE(states[i].isApprox(joint.mean.middleRows(2 * static_cast<Eigen::Index>(i), 2), 1e-8)) << i;
   }
 }
 
-TEST(PlaceSmoother, CovariancesAndCoupledCoordinatesToo) {
+TEST(PositionSmoother, CovariancesAndCoupledCoordinatesToo) {
   const Scene scene = scene_of(7);
   const Joint joint(scene);
-  using Coupled = PlaceSmoother<WhiteAcceleration, 2>;
+  using Coupled = PositionSmoother<WhiteAcceleration, 2>;
   Coupled::State first;
   first.x[0] = scene.locations[0].transpose();
   first.P[0] = scene.variances[0] * Matrix<2>::Identity();
@@ -100,11 +100,11 @@ TEST(PlaceSmoother, CovariancesAndCoupledCoordinatesToo) {
   const WhiteAcceleration still{.noise = 0};
   Coupled smoother(still, first);
   smoother.add_unobserved(0);
-  PlaceSmoother<WhiteAcceleration, 1, 2>::State plain_first;
+  PositionSmoother<WhiteAcceleration, 1, 2>::State plain_first;
   plain_first.x[0] = scene.locations[0];
   plain_first.P[0].setConstant(scene.variances[0]);
   plain_first.P[2].setConstant(kUnknown);
-  PlaceSmoother<WhiteAcceleration, 1, 2> plain(still, plain_first);
+  PositionSmoother<WhiteAcceleration, 1, 2> plain(still, plain_first);
   plain.add_unobserved(0);
   for (std::size_t i = 1; i < scene.times.size(); ++i) {
     const double dt = scene.times[i] - scene.times[i - 1];
@@ -118,8 +118,8 @@ TEST(PlaceSmoother, CovariancesAndCoupledCoordinatesToo) {
   }
   const auto coupled = smoother.smoothed();
   const auto alone = plain.smoothed();
-  const auto covariances = smoother.place_covariances();
-  const auto variances = plain.place_covariances();
+  const auto covariances = smoother.position_covariances();
+  const auto variances = plain.position_covariances();
   for (std::size_t i = 0; i < coupled.size(); ++i) {
     EXPECT_TRUE(coupled[i][0].isApprox(turn * alone[i][0].transpose(), 1e-9));
     EXPECT_TRUE(coupled[i][1].isApprox(turn * alone[i][1].transpose(), 1e-9));
@@ -127,7 +127,7 @@ TEST(PlaceSmoother, CovariancesAndCoupledCoordinatesToo) {
   }
 }
 
-/// Both forms of the way back give the same, covariances included.
+/// Both forms of the backward pass give the same, covariances included.
 TEST(Smoother, EqualsTheAdjointsForm) {
   const Scene scene = scene_of(3);
   const Joint joint(scene);

@@ -3,7 +3,7 @@
 //
 // B coordinates whose errors go together (a place on the ground with its 2 × 2 covariance), and C of these that are observed alike
 // (the axes of a point with one variance). The state is the place and its derivatives; each coordinate moves as the motion says, so
-// the covariance is kept by B × B blocks and the transition is a number for each block. The way back is taken in the form of Bryson
+// the covariance is kept by B × B blocks and the transition is a number for each block. The backward pass has the form of Bryson
 // & Frazier: an adjoint of the state's size instead of a covariance to invert. References: Rauch, Tung & Striebel, "Maximum
 // likelihood estimates of linear dynamic systems", AIAA Journal 3 (1965); Bierman, "Fixed interval smoothing with discrete
 // measurements", Int. J. Control 18 (1973). Cost: about 15 products of B × B an instant with three derivatives; covariances a few
@@ -111,17 +111,17 @@ void correct(MovingState<Order, B, C>& state, const Eigen::Matrix<double, B, C>&
   }
 }
 
-/// A path: instants in order, then what all of them tell of each.
+/// A path: instants in order, then the state of each, given all of them.
 template <typename Motion, int B, int C = 1>
-class PlaceSmoother {
+class PositionSmoother {
  public:
   static constexpr int N = Motion::order;
   using State = MovingState<N, B, C>;
   using Value = typename State::Value;
   using Values = std::array<Value, N>;
 
-  /// `first`: what is known at the first instant, before its observation.
-  PlaceSmoother(const Motion& motion, const State& first) : motion_(motion), state_(first) {}
+  /// `first`: the prior of the first instant, before its observation.
+  PositionSmoother(const Motion& motion, const State& first) : motion_(motion), state_(first) {}
 
   void reserve(std::size_t instants) { instants_.reserve(instants); }
 
@@ -169,9 +169,9 @@ class PlaceSmoother {
     return all;
   }
 
-  /// The covariance of the place at each instant: that of the state before its observation, less what this one and all later ones
-  /// tell of it (the adjoint's information, Bierman 1973).
-  std::vector<Matrix<B>> place_covariances() const {
+  /// The covariance of the place at each instant: that of the state before its observation, less the information of this one
+  /// and all later ones (the adjoint's information, Bierman 1973).
+  std::vector<Matrix<B>> position_covariances() const {
     std::vector<Matrix<B>> all(instants_.size());
     Matrix<N * B> reported = Matrix<N * B>::Zero();
     for (std::size_t i = instants_.size(); i-- > 0;) {
@@ -226,10 +226,10 @@ class PlaceSmoother {
 /// coordinate of `places`, infinite where nothing was observed; the first is finite. `unknown`: variance of each derivative of the
 /// place before anything is known.
 template <typename Motion, int C>
-std::vector<Eigen::Matrix<double, Motion::order, C>> smoothed_places(const Motion& motion, std::span<const double> times_s,
+std::vector<Eigen::Matrix<double, Motion::order, C>> smoothed_positions(const Motion& motion, std::span<const double> times_s,
                                                                      std::span<const Eigen::Matrix<double, 1, C>> locations,
                                                                      std::span<const double> variances, double unknown) {
-  using Smoother = PlaceSmoother<Motion, 1, C>;
+  using Smoother = PositionSmoother<Motion, 1, C>;
   typename Smoother::State first;  // with its place, of which nothing else was known
   first.x[0] = locations.front();
   for (int i = 0; i < Motion::order; ++i) first.P[Smoother::State::upper(i, i)].setConstant(i == 0 ? variances.front() : unknown);
