@@ -141,7 +141,7 @@ void rauch_tung_striebel(Path& path, double position_noise, double acceleration)
   }
   const std::vector<double> variances(locations.size(), position_noise * position_noise);
   const auto states = filter::smoothed_positions<filter::WhiteAcceleration, 2>({.noise = acceleration}, times, locations, variances,
-                                                                            unknown_speed * unknown_speed);
+                                                                               unknown_speed * unknown_speed);
   path.velocity.resize(path.location.size());
   for (std::size_t i = 0; i < states.size(); ++i) {
     path.location[i] = states[i].row(0);

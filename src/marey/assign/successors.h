@@ -56,8 +56,8 @@ std::vector<int> best_successors(int pieces, std::span<const GatedPair> pairs);
 
 /// When a pair is beyond doubt, in units of what an end and its continuation may be off.
 struct ClearPair {
-  double max_off = 1;     ///< of the pair
-  double clearer = 2.5;    ///< times as far off any other that either of both may be paired with must be,
+  double max_off = 1;          ///< of the pair
+  double clearer = 2.5;        ///< times as far off any other that either of both may be paired with must be,
   double min_clearance = 0.4;  ///< and so far at least
 };
 

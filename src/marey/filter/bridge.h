@@ -4,10 +4,10 @@
 // between them, given both:
 //   x = F₁ a + C (b − F₂ F₁ a),   C = Q₁ F₂ᵀ (F₂ Q₁ F₂ᵀ + Q₂)⁻¹
 // With a random walk that is the straight line, with white acceleration Hermite's cubic through places and velocities, with
-// people's motion on the ground (track/ground/offline/ground_smooth.h) their likeliest motion. Where something else predicts the gap (a
-// tracker, companions, a polynomial), the bridge spreads the errors of that prediction at both ends over the gap.
-// Source: the smoother's equations for one unobserved instant (Rauch, Tung & Striebel 1965). Cost: a product and an inverse of
-// order × order matrices for each time that is asked for.
+// people's motion on the ground (track/ground/offline/ground_smooth.h) their likeliest motion. Where something else predicts the
+// gap (a tracker, companions, a polynomial), the bridge spreads the errors of that prediction at both ends over the gap. Source:
+// the smoother's equations for one unobserved instant (Rauch, Tung & Striebel 1965). Cost: a product and an inverse of order ×
+// order matrices for each time that is asked for.
 #pragma once
 
 #include <cmath>

@@ -227,8 +227,8 @@ class PositionSmoother {
 /// place before anything is known.
 template <typename Motion, int C>
 std::vector<Eigen::Matrix<double, Motion::order, C>> smoothed_positions(const Motion& motion, std::span<const double> times_s,
-                                                                     std::span<const Eigen::Matrix<double, 1, C>> locations,
-                                                                     std::span<const double> variances, double unknown) {
+                                                                        std::span<const Eigen::Matrix<double, 1, C>> locations,
+                                                                        std::span<const double> variances, double unknown) {
   using Smoother = PositionSmoother<Motion, 1, C>;
   typename Smoother::State first;  // with its place, of which nothing else was known
   first.x[0] = locations.front();
