@@ -11,6 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/filter/human_motion.h"
+#include "marey/filter/position_smoother.h"
 #include "marey/geometry/butterworth.h"
 #include "marey/geometry/decompositions.h"
 #include "marey/geometry/median.h"
@@ -130,43 +131,21 @@ void savitzky_golay(Path& path, double window_s) {
 
 // --- Kalman, from both ends -----------------------------------------------------------------------------------------------------
 
-/// Position and velocity of one axis; both axes share their covariance.
-struct TimeStep {
-  Eigen::Matrix2d mean;  // rows: position, velocity; columns: x, y
-  Matrix<2> P;
-};
-
 void rauch_tung_striebel(Path& path, double position_noise, double acceleration) {
-  const double dt = path.step_s, q = acceleration * acceleration;
-  Matrix<2> A, Q;
-  A << 1, dt, 0, 1;
-  Q << q * dt * dt * dt / 3, q * dt * dt / 2, q * dt * dt / 2, q * dt;
-  const double R = position_noise * position_noise;
   constexpr double unknown_speed = 5;  // m/s
-  std::vector<TimeStep> ahead(path.location.size()), corrected(path.location.size());
-  TimeStep now;
-  now.mean.row(0) = path.location.front();
-  now.mean.row(1).setZero();
-  now.P = Vector<2>(R, unknown_speed * unknown_speed).asDiagonal();
-  ahead[0] = corrected[0] = now;
-  for (std::size_t i = 1; i < path.location.size(); ++i) {
-    now.mean = A * now.mean;
-    now.P = A * now.P * A.transpose() + Q;
-    ahead[i] = now;
-    const Vector<2> K = now.P.col(0) / (now.P(0, 0) + R);
-    now.mean += K * (path.location[i].transpose() - now.mean.row(0));
-    now.P -= K * now.P.row(0);
-    corrected[i] = now;
+  std::vector<double> times;
+  std::vector<Eigen::Matrix<double, 1, 2>> locations;
+  for (const Vector<2>& location : path.location) {
+    times.push_back(path.step_s * static_cast<double>(times.size()));
+    locations.emplace_back(location.transpose());
   }
+  const std::vector<double> variances(locations.size(), position_noise * position_noise);
+  const auto states = filter::smoothed_positions<filter::WhiteAcceleration, 2>({.noise = acceleration}, times, locations, variances,
+                                                                               unknown_speed * unknown_speed);
   path.velocity.resize(path.location.size());
-  for (std::size_t i = path.location.size(); i-- > 0;) {
-    if (i + 1 < path.location.size()) {
-      const Matrix<2> G = corrected[i].P * A.transpose() * ahead[i + 1].P.inverse();
-      corrected[i].mean += G * (corrected[i + 1].mean - ahead[i + 1].mean);
-      corrected[i].P += G * (corrected[i + 1].P - ahead[i + 1].P) * G.transpose();
-    }
-    path.location[i] = corrected[i].mean.row(0);
-    path.velocity[i] = corrected[i].mean.row(1);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    path.location[i] = states[i].row(0);
+    path.velocity[i] = states[i].row(1);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "marey/edit/fill_trials.h"
 #include "marey/edit/gap_methods.h"
 #include "marey/edit/lowpass.h"
+#include "marey/filter/bridge.h"
 
 namespace marey::edit {
 namespace {
@@ -154,9 +155,11 @@ Tracks::Rows rows_in_gap(Tracks& tracks, const FilledGap& gap) {
   if (!kept && !gap.locations.empty()) fail_to_fill(tracks, gap);
   const Path path = kept ? gap.locations : found_again(tracks, gap, at);
   Tracks::Rows rows;
+  const double end = static_cast<double>(path.size() + 1);
+  const filter::Bridge<filter::RandomWalk, 1> known_ends(Vector<1>::Zero(), 0, Vector<1>::Zero(), end);
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const double fraction = static_cast<double>(i + 1) / static_cast<double>(path.size() + 1);
-    const double variance = gap.expected_m * gap.expected_m * 4 * fraction * (1 - fraction) / 3;  // of each coordinate
+    const double shape = 4 * known_ends.covariance(static_cast<double>(i + 1))(0) / end;  // 1 in the middle
+    const double variance = gap.expected_m * gap.expected_m * shape / 3;                  // of each coordinate
     Sample sample;
     sample.track = gap.track;
     sample.position = path[i];

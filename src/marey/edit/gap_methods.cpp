@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "marey/filter/bridge.h"
 #include "marey/geometry/decompositions.h"
 #include "marey/geometry/rigid.h"
 
@@ -21,11 +22,9 @@ constexpr double kWeightFloor = 1e-3;    // m: donors more rigid than this count
 
 /// Adds to each place what makes the ends meet: `at_first` before the first place, `at_last` behind the last, straight between.
 void bend(Path& path, const Vector<3>& at_first, const Vector<3>& at_last) {
-  const double steps = static_cast<double>(path.size()) + 1;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const double fraction = static_cast<double>(i + 1) / steps;
-    path[i] += (1 - fraction) * at_first + fraction * at_last;
-  }
+  const filter::Bridge<filter::RandomWalk, 3> missed(at_first.transpose(), 0, at_last.transpose(),
+                                                     static_cast<double>(path.size() + 1));
+  for (std::size_t i = 0; i < path.size(); ++i) path[i] += missed.at(static_cast<double>(i + 1)).transpose();
 }
 
 bool has_ends(const Locations& locations, std::size_t marker, const Hole& hole) {

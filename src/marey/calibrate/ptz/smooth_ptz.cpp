@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "marey/filter/smoother.h"
 
 namespace marey::calibrate::ptz {
 namespace {
@@ -16,6 +15,10 @@ Vector<3> step_of(const Rotated& rotated, double log_focal) {
 
 constexpr int kMaxBridge = 12;                        // frames before a piece's first known one that flow alone gives
 constexpr double kWideAngle = 0.05, kWideZoom = 0.2;  // of a piece's first frame, before its paint: rad, ln f
+
+filter::Estimate<3> estimate_of(const Aim& aim) {
+  return {aim.heading.as_vector(), aim.covariance};
+}
 
 struct Filtered {
   std::optional<Aim> expected;  // before its paint
@@ -80,10 +83,9 @@ std::vector<std::optional<Aim>> smooth_ptz(const std::vector<TurnRecord>& record
     if (!forwards[k + 1].expected) continue;  // after a loss: nothing leads from here to there
     const Aim& here = *forwards[k].aim;
     const Aim& expected = *forwards[k + 1].expected;
-    const Matrix<3> gain = here.covariance * expected.covariance.inverse();
-    const Vector<3> off = smooth[k + 1]->heading.as_vector() - expected.heading.as_vector();
-    smooth[k]->heading = geometry::Heading::of(here.heading.as_vector() + gain * off);
-    smooth[k]->covariance = here.covariance + gain * (smooth[k + 1]->covariance - expected.covariance) * gain.transpose();
+    const auto smoothed =
+        filter::smoothed_back<3, 1>(estimate_of(here), Matrix<3>::Identity(), estimate_of(expected), estimate_of(*smooth[k + 1]));
+    smooth[k] = Aim{geometry::Heading::of(smoothed.mean), smoothed.covariance};
   }
   return smooth;
 }

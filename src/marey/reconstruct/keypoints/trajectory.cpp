@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
+
+#include "marey/filter/bridge.h"
+#include "marey/filter/smoother.h"
 
 namespace marey::reconstruct::keypoints {
 namespace {
@@ -57,36 +59,31 @@ std::vector<Vector<3>> filled(std::span<const std::optional<Vector<3>>> start) {
   return path;
 }
 
-struct Step {
-  StateMatrix F = StateMatrix::Identity(), Q = StateMatrix::Zero();
-
-  Step(double seconds, double agility) {
-    F.topRightCorner<3, 3>() = seconds * Matrix<3>::Identity();
-    const Matrix<3> q = agility * Matrix<3>::Identity();
-    Q.topLeftCorner<3, 3>() = seconds * seconds * seconds / 3 * q;
-    Q.topRightCorner<3, 3>() = Q.bottomLeftCorner<3, 3>() = seconds * seconds / 2 * q;
-    Q.bottomRightCorner<3, 3>() = seconds * q;
+/// Places and velocities along three axes.
+filter::Transition<6> step_of(double seconds, double agility) {
+  const filter::Transition<2> axis = filter::WhiteAcceleration{.noise = std::sqrt(agility)}.over(seconds);
+  filter::Transition<6> step;
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 2; ++column) {
+      step.F.block<3, 3>(3 * row, 3 * column) = axis.F(row, column) * Matrix<3>::Identity();
+      step.Q.block<3, 3>(3 * row, 3 * column) = axis.Q(row, column) * Matrix<3>::Identity();
+    }
   }
-};
+  return step;
+}
 
-class Smoother {
+class TrajectorySmoother {
  public:
-  Smoother(const PointLines& lines, double step_s, const TrajectoryOptions& options)
-      : lines_(lines),
-        step_(step_s, options.agility_m2_s3),
-        bound_(options.bound),
-        states_(lines.instants()),
-        P_(lines.instants()),
-        expected_(lines.instants()),
-        expected_P_(lines.instants()) {}
+  TrajectorySmoother(const PointLines& lines, double step_s, const TrajectoryOptions& options)
+      : lines_(lines), step_(step_of(step_s, options.agility_m2_s3)), bound_(options.bound) {}
 
   /// One step of Gauss and Newton from a path.
   void solve(std::span<const Vector<3>> path) {
     forward(path);
-    backward();
+    states_ = smoother_.smoothed();
   }
-  const State& state(std::size_t i) const { return states_[i]; }
-  const StateMatrix& P(std::size_t i) const { return P_[i]; }
+  const State& state(std::size_t i) const { return states_[i].mean; }
+  const StateMatrix& P(std::size_t i) const { return states_[i].covariance; }
 
  private:
   void forward(std::span<const Vector<3>> path) {
@@ -99,8 +96,7 @@ class Smoother {
         state = step_.F * state;
         P = step_.F * P * step_.F.transpose() + step_.Q;
       }
-      expected_[i] = state;
-      expected_P_[i] = P;
+      const filter::Estimate<6> expected{state, P};
       const Evidence evidence = evidence_of(lines_.at(i), path[i], bound_);
       const Matrix<3> inner = (Matrix<3>::Identity() + evidence.information * P.topLeftCorner<3, 3>()).inverse();
       const Vector<3> pull = evidence.information * (path[i] - state.head<3>()) - evidence.gradient;
@@ -108,26 +104,15 @@ class Smoother {
       state += across * (inner * pull);
       const StateMatrix less = across * (inner * evidence.information) * across.transpose();
       P -= 0.5 * (less + less.transpose());
-      states_[i] = state;
-      P_[i] = P;
-    }
-  }
-
-  void backward() {
-    for (std::size_t i = states_.size() - 1; i-- > 0;) {
-      const StateMatrix gain = expected_P_[i + 1].llt().solve(step_.F * P_[i]).transpose();
-      states_[i] += gain * (states_[i + 1] - expected_[i + 1]);
-      P_[i] += gain * (P_[i + 1] - expected_P_[i + 1]) * gain.transpose();
+      smoother_.add(step_.F, expected, {state, P});
     }
   }
 
   const PointLines& lines_;
-  Step step_;
+  filter::Transition<6> step_;
   double bound_;
-  std::vector<State> states_;
-  std::vector<StateMatrix> P_;
-  std::vector<State> expected_;
-  std::vector<StateMatrix> expected_P_;
+  filter::Smoother<6> smoother_;
+  std::vector<filter::Estimate<6>> states_;
 };
 
 void count_rays(std::span<const SightLine> lines, double bound, TrajectoryPoint& point) {
@@ -150,7 +135,7 @@ std::vector<TrajectoryPoint> smooth_trajectory(const PointLines& lines, std::spa
   const bool known = std::any_of(start.begin(), start.end(), [](const auto& location) { return location.has_value(); });
   if (!known || lines.instants() == 0) return {};
   std::vector<Vector<3>> path = filled(start);
-  Smoother smoother(lines, step_s, options);
+  TrajectorySmoother smoother(lines, step_s, options);
   for (int round = 0; round < options.rounds; ++round) {
     smoother.solve(path);
     for (std::size_t i = 0; i < path.size(); ++i) path[i] = smoother.state(i).head<3>();

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <optional>
+#include <tuple>
 
-#include "marey/assign/disjoint_sets.h"
+#include "marey/assign/successors.h"
 
 namespace marey::solve::labels {
 namespace {
@@ -14,7 +12,6 @@ namespace {
 constexpr std::int32_t kFit = 4;          // instants from which a velocity is taken at an end
 constexpr double kTied = 0.012;           // m: what two ends may be off in the middle of their gap, and by this much more
 constexpr double kTiedAcceleration = 60;  // m/s² the longer it is
-constexpr double kClearer = 2.5;          // times as far off the next best must be
 
 bool counts(Provenance provenance) {
   return provenance == Provenance::measured || provenance == Provenance::filled;
@@ -53,6 +50,7 @@ void cut(const TrackColumns& track, std::size_t begin, std::size_t end, double l
 
 /// Where a tracklet's end, or its beginning, leads: place and velocity an instant.
 struct Lead {
+  std::int32_t time = 0;  // instants
   Vector<3> location = Vector<3>::Zero(), velocity = Vector<3>::Zero();
   bool moving = false;  // its velocity is known
 };
@@ -61,6 +59,7 @@ Lead lead_of(const Tracklet& tracklet, bool end) {
   const auto& locations = tracklet.locations;
   const std::int32_t span = std::min(kFit, tracklet.length()) - 1;
   Lead lead;
+  lead.time = end ? tracklet.last : tracklet.first;
   lead.location = end ? locations.back() : locations.front();
   lead.moving = span > 0;
   if (!lead.moving) return lead;
@@ -102,48 +101,24 @@ std::vector<Tracklet> tracklets_of(const Recording& recording, const TrackletOpt
 }
 
 std::vector<int> chains_of(const std::vector<Tracklet>& tracklets, double rate_hz, const TrackletOptions& options) {
-  struct Best {
-    int tracklet = -1;
-    double off = std::numeric_limits<double>::max(), next = std::numeric_limits<double>::max();
-    void offer(int candidate, double its) {
-      if (its < off) {
-        next = off, off = its, tracklet = candidate;
-      } else {
-        next = std::min(next, its);
-      }
-    }
+  std::vector<Lead> ends, begins;
+  for (const Tracklet& tracklet : tracklets) {
+    ends.push_back(lead_of(tracklet, true));
+    begins.push_back(lead_of(tracklet, false));
+  }
+  const auto off = [&](int end, int begin) {
+    const Lead &from = ends[static_cast<std::size_t>(end)], &to = begins[static_cast<std::size_t>(begin)];
+    const double gap = to.time - from.time, gap_s = gap / rate_hz;
+    return off_between(from, to, gap) / (kTied + kTiedAcceleration * gap_s * gap_s / 2);
   };
   const auto longest = static_cast<std::int32_t>(std::max(1.0, std::round(options.longest_tied * rate_hz)));
-  std::map<std::int32_t, std::vector<int>> ends;
-  for (int t = 0; t < std::ssize(tracklets); ++t) ends[tracklets[static_cast<std::size_t>(t)].last].push_back(t);
-  std::vector<Best> before(tracklets.size()), after(tracklets.size());
-  const auto limit_of = [&](double gap) { return kTied + kTiedAcceleration * (gap / rate_hz) * (gap / rate_hz) / 2; };
-  for (int t = 0; t < std::ssize(tracklets); ++t) {
-    const Tracklet& later = tracklets[static_cast<std::size_t>(t)];
-    const Lead begin = lead_of(later, false);
-    for (auto end = ends.lower_bound(later.first - longest); end != ends.end() && end->first < later.first; ++end) {
-      const double gap = later.first - end->first;
-      for (const int e : end->second) {
-        const double off = off_between(lead_of(tracklets[static_cast<std::size_t>(e)], true), begin, gap) / limit_of(gap);
-        if (off > kClearer) continue;
-        before[static_cast<std::size_t>(t)].offer(e, off);
-        after[static_cast<std::size_t>(e)].offer(t, off);
-      }
-    }
+  std::vector<int> chain_of(tracklets.size());
+  int number = 0;
+  for (const std::vector<int>& chain : assign::chains_of(assign::clear_successors(ends, begins, longest, off))) {
+    for (const int tracklet : chain) chain_of[static_cast<std::size_t>(tracklet)] = number;
+    ++number;
   }
-  std::vector<int> chain(tracklets.size());
-  std::vector<int> previous(tracklets.size(), -1);
-  for (int t = 0; t < std::ssize(tracklets); ++t) {
-    const Best& best = before[static_cast<std::size_t>(t)];
-    if (best.tracklet < 0 || best.off > 1) continue;
-    const Best& back = after[static_cast<std::size_t>(best.tracklet)];
-    const double clear = std::max(kClearer * best.off, 0.4);
-    if (back.tracklet == t && best.next > clear && back.next > clear) previous[static_cast<std::size_t>(t)] = best.tracklet;
-  }
-  int chains = 0;
-  for (std::size_t t = 0; t < tracklets.size(); ++t)
-    chain[t] = previous[t] < 0 ? chains++ : chain[static_cast<std::size_t>(previous[t])];
-  return chain;
+  return chain_of;
 }
 
 }  // namespace marey::solve::labels

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
+#include "marey/filter/smoother.h"
 
 namespace marey::track::ball {
 namespace {
 
-struct Pass {
-  BallPrediction predicted;  // from the instant before
-  BallBelief filtered;
-};
+using Known = filter::Estimate<6>;
 
 const BallPerson* holder_of(const BallStep& step, const BallObservations& time_step) {
   const auto is = [&](const BallPerson& person) { return step.holder == person.id; };
@@ -30,20 +27,9 @@ BallBelief detected(BallBelief belief, const BallStep& step, const BallObservati
   return belief;
 }
 
-/// Backwards from the end of a segment without a gap.
-void smooth_back(std::span<const Pass> passes, std::span<BallState> states) {
-  states.back().belief = passes.back().filtered;
-  for (std::size_t i = passes.size() - 1; i-- > 0;) {
-    const BallBelief& filtered = passes[i].filtered;
-    const BallPrediction& next = passes[i + 1].predicted;
-    const Matrix<6> regular = next.belief.covariance + 1e-9 * Matrix<6>::Identity();
-    const Matrix<6> gain = regular.ldlt().solve(next.F * filtered.covariance).transpose();
-    BallBelief& smoothed = states[i].belief;
-    const BallBelief& after = states[i + 1].belief;
-    smoothed.mean = filtered.mean + gain * (after.mean - next.belief.mean);
-    smoothed.covariance = filtered.covariance + gain * (after.covariance - next.belief.covariance) * gain.transpose();
-    smoothed.covariance = 0.5 * (smoothed.covariance + smoothed.covariance.transpose().eval());
-  }
+/// Modes that hold the ball leave its covariance without some directions: a trifle makes it one that can be inverted.
+Known regular(const BallBelief& belief) {
+  return {belief.mean, belief.covariance + 1e-9 * Matrix<6>::Identity()};
 }
 
 /// A segment without a gap, from the state at its first instant. Where a belief was wide, cameras do not see it in proportion
@@ -56,22 +42,20 @@ void smooth_segment(std::span<const BallObservations> time_steps, std::span<cons
     const auto around = [&](std::size_t i) {
       return pass == 0 ? std::nullopt : std::optional<Vector<3>>(states[i].belief.location());
     };
-    std::vector<Pass> passes;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      Pass& one = passes.emplace_back();
-      if (i == 0) {
-        one.predicted = {steps[0].belief, Matrix<6>::Identity()};
-        one.filtered = steps[0].belief;
-        continue;
-      }
+    filter::Smoother<6> smoother;
+    BallBelief filtered = steps[0].belief;
+    smoother.add(Matrix<6>::Identity(), regular(filtered), {filtered.mean, filtered.covariance});
+    for (std::size_t i = 1; i < steps.size(); ++i) {
       const BallPerson* holder = holder_of(steps[i], time_steps[i]);
       const double later = seconds(time_steps[i].time - time_steps[i - 1].time);
-      one.predicted = predict(passes[i - 1].filtered, steps[i].mode, steps[i].event, later, holder, options);
-      one.filtered = one.predicted.belief;
-      settle(one.filtered, steps[i].mode, steps[i].event, later, holder, options);
-      one.filtered = detected(one.filtered, steps[i], time_steps[i], views, around(i));
+      const BallPrediction predicted = predict(filtered, steps[i].mode, steps[i].event, later, holder, options);
+      filtered = predicted.belief;
+      settle(filtered, steps[i].mode, steps[i].event, later, holder, options);
+      filtered = detected(filtered, steps[i], time_steps[i], views, around(i));
+      smoother.add(predicted.F, regular(predicted.belief), {filtered.mean, filtered.covariance});
     }
-    smooth_back(passes, states);
+    const std::vector<Known> smoothed = smoother.smoothed();
+    for (std::size_t i = 0; i < smoothed.size(); ++i) states[i].belief = {smoothed[i].mean, smoothed[i].covariance};
   }
 }
 

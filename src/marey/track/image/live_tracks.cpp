@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "marey/core/track_sample.h"
+#include "marey/filter/bridge.h"
 
 namespace marey::track::image {
 namespace {
@@ -27,13 +28,12 @@ double overlaps(const Track<2>& track) {
   return within(kOffBy * track.box->width, track.covariance(0, 0)) * within(kOffBy * track.box->height, track.covariance(1, 1));
 }
 
-double between_values(double a, double b, double fraction) {
-  return a + fraction * (b - a);
-}
+/// Place and box of a target.
+using PlaceAndBox = Eigen::Matrix<double, 1, 6>;
 
-Box between_boxes(const Box& a, const Box& b, double fraction) {
-  return {between_values(a.left, b.left, fraction), between_values(a.top, b.top, fraction),
-          between_values(a.width, b.width, fraction), between_values(a.height, b.height, fraction)};
+PlaceAndBox place_and_box(const Vector<2>& location, const std::optional<Box>& box) {
+  const Box known = box.value_or(Box{});
+  return (PlaceAndBox() << location.x(), location.y(), known.left, known.top, known.width, known.height).finished();
 }
 
 const Track<2>* find_track(std::span<const Track<2>> tracks, TrackId id) {
@@ -130,12 +130,14 @@ std::optional<Sample> LiveTracks::filled(const TimeStep& time_step, const Track<
   for (const TimeStep& later : time_steps_) {
     const Track<2>* again = find_track(later.tracks, track.id);
     if (again == nullptr || !again->measured()) continue;
-    const double fraction = seconds(time_step.time - detected.reported_time) / seconds(later.time - detected.reported_time);
+    const filter::Bridge<filter::RandomWalk, 6> gap(place_and_box(detected.reported->position.head<2>(), detected.reported->box), 0,
+                                                    place_and_box(again->position, again->box),
+                                                    seconds(later.time - detected.reported_time));
+    const PlaceAndBox here = gap.at(seconds(time_step.time - detected.reported_time));
     Sample sample = sample_of(track);
     sample.provenance = Provenance::filled;
-    sample.position.head<2>() =
-        detected.reported->position.head<2>() + fraction * (again->position - detected.reported->position.head<2>());
-    if (detected.reported->box && again->box) sample.box = between_boxes(*detected.reported->box, *again->box, fraction);
+    sample.position.head<2>() = here.head<2>();
+    if (detected.reported->box && again->box) sample.box = Box{here[2], here[3], here[4], here[5]};
     return sample;
   }
   return std::nullopt;

@@ -1,58 +1,80 @@
 #include "marey/track/offline/fill_gaps.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <span>
 #include <utility>
+
+#include "marey/filter/bridge.h"
 
 namespace marey::track::offline {
 namespace {
 
 using Tracklet = TrackletLog::Tracklet;
 
-float on_line(float a, float b, double fraction) {
-  return static_cast<float>(a + fraction * (static_cast<double>(b) - a));
+/// What changes evenly in a gap.
+constexpr std::array kEven = {&TrackRow::x,   &TrackRow::y,     &TrackRow::vx,     &TrackRow::vy,   &TrackRow::left,
+                              &TrackRow::top, &TrackRow::width, &TrackRow::height, &TrackRow::score};
+using EvenValues = Eigen::Matrix<double, 1, kEven.size()>;
+
+EvenValues values_of(const TrackRow& row) {
+  EvenValues values;
+  for (std::size_t i = 0; i < kEven.size(); ++i) values[static_cast<Eigen::Index>(i)] = row.*kEven[i];
+  return values;
 }
 
-TrackRow straight_row(const TrackRow& a, const TrackRow& b, std::int32_t frame, double fraction) {
-  TrackRow row = a;
-  row.frame = frame;
-  row.x = on_line(a.x, b.x, fraction);
-  row.y = on_line(a.y, b.y, fraction);
-  row.vx = on_line(a.vx, b.vx, fraction);
-  row.vy = on_line(a.vy, b.vy, fraction);
-  row.left = on_line(a.left, b.left, fraction);
-  row.top = on_line(a.top, b.top, fraction);
-  row.width = on_line(a.width, b.width, fraction);
-  row.height = on_line(a.height, b.height, fraction);
-  row.score = on_line(a.score, b.score, fraction);
-  row.provenance = Provenance::filled;
-  row.has_centre = false;
-  return row;
-}
+/// A gap of one target, by a motion model.
+class RowGap {
+ public:
+  RowGap(const TrackRow& from, double begin, const TrackRow& to, double end)
+      : from_(from),
+        to_(to),
+        span_(end - begin),
+        straight_(values_of(from), begin, values_of(to), end),
+        cubic_(state_of(from), begin, state_of(to), end) {}
 
-/// Hermite's cubic from `a` to `b`, which are `span` seconds apart, at a share `u` of the span. Velocities at the ends are
-/// means over the gap where they would throw the curve wide: a target that turned unseen has left with another velocity.
-float on_cubic(float a, float va, float b, float vb, double span, double u) {
-  const double rise = b - a;
-  const double maximum = 3 * std::abs(rise);  // Fritsch & Carlson 1980: no overshoot
-  const double ta = std::clamp(va * span, -maximum, maximum), tb = std::clamp(vb * span, -maximum, maximum);
-  const double u2 = u * u, u3 = u2 * u;
-  return static_cast<float>((2 * u3 - 3 * u2 + 1) * a + (u3 - 2 * u2 + u) * ta + (-2 * u3 + 3 * u2) * b + (u3 - u2) * tb);
-}
+  TrackRow straight(std::int32_t frame, double time) const {
+    TrackRow row = from_;
+    row.frame = frame;
+    row.provenance = Provenance::filled;
+    row.has_centre = false;
+    const EvenValues values = straight_.at(time);
+    for (std::size_t i = 0; i < kEven.size(); ++i) row.*kEven[i] = static_cast<float>(values[static_cast<Eigen::Index>(i)]);
+    return row;
+  }
 
-TrackRow cubic_row(const TrackRow& from, const TrackRow& to, const TrackRow& guess, double span, double u) {
-  TrackRow row = guess;
-  row.x = on_cubic(from.x, from.vx, to.x, to.vx, span, u);
-  row.y = on_cubic(from.y, from.vy, to.y, to.vy, span, u);
-  row.vx = static_cast<float>((to.x - from.x) / span);
-  row.vy = static_cast<float>((to.y - from.y) / span);
-  row.provenance = Provenance::filled;
-  row.left = row.x - (row.width - 1) / 2;
-  row.top = row.y - (row.height - 1) / 2;
-  return row;
-}
+  /// The rest as it was guessed.
+  TrackRow cubic(const TrackRow& guess, double time) const {
+    TrackRow row = guess;
+    const auto state = cubic_.at(time);
+    row.x = static_cast<float>(state(0, 0));
+    row.y = static_cast<float>(state(0, 1));
+    row.vx = static_cast<float>((to_.x - from_.x) / span_);
+    row.vy = static_cast<float>((to_.y - from_.y) / span_);
+    row.provenance = Provenance::filled;
+    row.left = row.x - (row.width - 1) / 2;
+    row.top = row.y - (row.height - 1) / 2;
+    return row;
+  }
+
+ private:
+  /// Velocities at the ends are held to what keeps the curve between both places: a target that turned unseen has left with another
+  /// velocity.
+  Matrix<2> state_of(const TrackRow& row) const {
+    const auto held = [&](float velocity, float rise) {
+      const double maximum = 3 * std::abs(rise / span_);  // Fritsch & Carlson 1980: no overshoot
+      return std::clamp<double>(velocity, -maximum, maximum);
+    };
+    return (Matrix<2>() << row.x, row.y, held(row.vx, to_.x - from_.x), held(row.vy, to_.y - from_.y)).finished();
+  }
+
+  const TrackRow &from_, &to_;
+  double span_;
+  filter::Bridge<filter::RandomWalk, kEven.size()> straight_;
+  filter::Bridge<filter::WhiteAcceleration, 2> cubic_;
+};
 
 void sort_by_frame(std::vector<TrackRow>& rows) {
   std::sort(rows.begin(), rows.end(),
@@ -64,18 +86,18 @@ void append_between(std::span<const TrackRow> rows, const TrackletLog& log, doub
                     Tracklet& filled) {
   const TrackRow &from = rows.front(), &to = rows.back();
   const Timestamp begin = log.time_of(from.frame);
-  const double span = seconds(log.time_of(to.frame) - begin);
-  if (span > longest) return;
+  const auto time_of = [&](std::int32_t frame) { return seconds(log.time_of(frame) - begin); };
+  if (time_of(to.frame) > longest) return;
+  const RowGap gap(from, 0, to, time_of(to.frame));
   auto guess = rows.begin();
   for (std::int32_t frame = from.frame + 1; frame < to.frame; ++frame) {
-    const double fraction = seconds(log.time_of(frame) - begin) / span;
-    const TrackRow straight = straight_row(from, to, frame, fraction);
+    const TrackRow straight = gap.straight(frame, time_of(frame));
     if (method == GapInterpolation::straight) {
       filled.push_back(straight);
       continue;
     }
     while (guess->frame < frame) ++guess;
-    filled.push_back(cubic_row(from, to, guess->frame == frame ? *guess : straight, span, fraction));
+    filled.push_back(gap.cubic(guess->frame == frame ? *guess : straight, time_of(frame)));
   }
 }
 
@@ -103,11 +125,13 @@ std::vector<TrackRow> fill_between_searches(std::span<const TrackRow> rows, std:
     const auto before = last.find(row.id);
     if (before != last.end() && before->second.frame == row.frame - 1) {
       const std::int32_t begin = searched[static_cast<std::size_t>(row.frame) - 1];
-      const auto time = [&](std::int32_t at) { return times[static_cast<std::size_t>(at)]; };
-      const double span = seconds(time(frame) - time(begin));
+      const auto time_of = [&](std::int32_t at) {
+        return seconds(times[static_cast<std::size_t>(at)] - times[static_cast<std::size_t>(begin)]);
+      };
+      const RowGap gap(before->second, 0, row, time_of(frame));
       const bool extrapolated = before->second.provenance == Provenance::predicted || row.provenance == Provenance::predicted;
       for (std::int32_t between = begin + 1; between < frame; ++between) {
-        filled.push_back(straight_row(before->second, row, between, seconds(time(between) - time(begin)) / span));
+        filled.push_back(gap.straight(between, time_of(between)));
         if (extrapolated) filled.back().provenance = Provenance::predicted;
       }
     }

@@ -9,10 +9,9 @@
 #include <utility>
 
 #include "marey/assign/association_beliefs.h"
-#include "marey/assign/sparse_assignment.h"
+#include "marey/assign/successors.h"
 #include "marey/geometry/median.h"
 #include "marey/track/image/wardrobe.h"
-#include "marey/track/offline/tracklet_chains.h"
 
 namespace marey::track::offline {
 namespace {
@@ -176,7 +175,7 @@ class Returns {
     const int count = static_cast<int>(heads_.size());
     const std::vector<assign::GatedPair> weighed = weighed_pairs();
     const std::vector<double> beliefs = assign::association_beliefs(count, count, weighed);
-    const std::vector<int> next = assign::sparse_assignment(count, count, weighed);
+    const std::vector<int> next = assign::best_successors(count, weighed);
     for (std::size_t k = 0; k < weighed.size(); ++k) {
       const assign::GatedPair& pair = weighed[k];
       if (next[static_cast<std::size_t>(pair.row)] != pair.column || beliefs[k] < options_.min_probability) continue;
@@ -219,7 +218,7 @@ class Returns {
 
   /// Pairs that may be, with what clothes, place and time say but for how often people come and come back.
   void find_pairs(const image::Wardrobe& wardrobe) {
-    for_each_successor(tails_, heads_, options_.longest_away, [&](int row, int column) {
+    assign::for_each_successor(tails_, heads_, options_.longest_away, [&](int row, int column) {
       const Crossing &out = tails_[static_cast<std::size_t>(row)], &in = heads_[static_cast<std::size_t>(column)];
       const double away = in.time - out.time;
       if (!out.of_border || !in.of_border || out.of_recording || in.of_recording || away < options_.shortest_away) return;
@@ -299,7 +298,7 @@ void join_returned(std::vector<Tracklet>& tracklets, std::span<const Returned> r
   std::vector<int> next(tracklets.size(), assign::kNoIndex);
   for (const Returned& pair : returned) next[static_cast<std::size_t>(pair.before)] = pair.after;
   std::vector<Tracklet> joined;
-  for (const std::vector<int>& chain : chains_of(next)) {
+  for (const std::vector<int>& chain : assign::chains_of(next)) {
     Tracklet& whole = joined.emplace_back(std::move(tracklets[static_cast<std::size_t>(chain.front())]));
     for (const int piece : std::span(chain).subspan(1)) {
       const Tracklet& rows = tracklets[static_cast<std::size_t>(piece)];

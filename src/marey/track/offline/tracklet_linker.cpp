@@ -5,8 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "marey/assign/sparse_assignment.h"
-#include "marey/track/offline/tracklet_chains.h"
+#include "marey/assign/successors.h"
 
 namespace marey::track::offline {
 namespace {
@@ -96,9 +95,9 @@ std::vector<Tracklet> TrackletLinker::decide_again(std::vector<Tracklet> trackle
 
 std::vector<Tracklet> TrackletLinker::link(std::vector<TrackletPiece> pieces, double longest_gap) const {
   const int count = static_cast<int>(pieces.size());
-  const std::vector<int> next = assign::sparse_assignment(count, count, candidates(pieces, longest_gap));
+  const std::vector<int> next = assign::best_successors(count, candidates(pieces, longest_gap));
   std::vector<Tracklet> joined;
-  for (const std::vector<int>& chain : chains_of(next)) {
+  for (const std::vector<int>& chain : assign::chains_of(next)) {
     Tracklet& whole = joined.emplace_back(std::move(pieces[chain.front()].rows));
     std::size_t rows = whole.size();
     for (const int piece : std::span(chain).subspan(1)) rows += pieces[piece].rows.size();
@@ -171,20 +170,18 @@ std::vector<assign::GatedPair> TrackletLinker::candidates(std::span<const Trackl
     heads.push_back(end_of(piece, false));
     tails.push_back(end_of(piece, true));
   }
-  std::vector<assign::GatedPair> pairs;
-  const auto consider = [&](int tail, int head, Passage passage) {
-    const double merit = score_of(tails[tail], heads[head], passage);
-    if (merit > 0) pairs.push_back({tail, head, merit});
-  };
   const double longest = std::max(longest_gap, kMaxEncounter);
   const auto gap = [&](int tail, int head) { return heads[head].time - tails[tail].time; };
-  for_each_successor(tails, heads, longest, [&](int tail, int head) {
+  std::vector<assign::GatedPair> pairs = assign::successor_pairs(tails, heads, longest, [&](int tail, int head) {
     const Passage passage = passage_of(pieces, tail, head);
-    if (passage != Passage::apart || gap(tail, head) <= longest_gap) consider(tail, head, passage);
+    const bool possible = passage != Passage::apart || gap(tail, head) <= longest_gap;
+    return possible ? std::optional(score_of(tails[tail], heads[head], passage)) : std::nullopt;
   });
   for (int tail = 0; tail + 1 < static_cast<int>(pieces.size()); ++tail) {  // who walked together for long
     const bool as_tracked = passage_of(pieces, tail, tail + 1) == Passage::as_tracked;
-    if (as_tracked && gap(tail, tail + 1) > longest) consider(tail, tail + 1, Passage::as_tracked);
+    if (!as_tracked || gap(tail, tail + 1) <= longest) continue;
+    const double merit = score_of(tails[tail], heads[tail + 1], Passage::as_tracked);
+    if (merit > 0) pairs.push_back({tail, tail + 1, merit});
   }
   return pairs;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "marey/filter/bridge.h"
+
 namespace marey::track::roster {
 
 Instant* GapFiller::frame_at(std::int64_t number) {
@@ -40,20 +42,21 @@ void GapFiller::add(Instant frame, std::span<const Track<3>> tracks) {
   }
 }
 
-/// With s from 0 to 1 through the gap, the miss at the end is made up for as 3 s² − 2 s³ of it, that of the velocity as s³ − s².
+/// What the guesses miss the end by is bridged from nothing at the beginning.
 void GapFiller::close(Gap& gap, const Guess& end, TrackId track) {
   const auto length = std::ssize(gap.guesses);
   if (length == 0 || length > longest_) return;
   const double duration = seconds(end.time - gap.detected);
   const Guess& last = gap.guesses.back();
   const Vector<3> miss = end.position - (last.position + last.velocity * seconds(end.time - last.time));
-  const Vector<3> miss_of_velocity = end.velocity - last.velocity;
+  Eigen::Matrix<double, 2, 3> missed;
+  missed << miss.transpose(), (end.velocity - last.velocity).transpose();
+  const filter::Bridge<filter::WhiteAcceleration, 3> bridge(Eigen::Matrix<double, 2, 3>::Zero(), 0, missed, duration);
   for (std::int64_t i = 0; i < length; ++i) {
     Instant* frame = frame_at(gap.first + i);
     if (frame == nullptr) continue;
     const Guess& guess = gap.guesses[static_cast<std::size_t>(i)];
-    const double s = seconds(guess.time - gap.detected) / duration;
-    const Vector<3> position = guess.position + s * s * (3 - 2 * s) * miss + s * s * (s - 1) * duration * miss_of_velocity;
+    const Vector<3> position = guess.position + bridge.at(seconds(guess.time - gap.detected)).row(0).transpose();
     std::erase_if(frame->samples, [&](const Sample& point) { return point.track == track; });
     Sample point;
     point.track = track;

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "marey/assign/association_beliefs.h"
-#include "marey/assign/sparse_assignment.h"
+#include "marey/assign/successors.h"
 #include "marey/core/colour.h"
 #include "marey/geometry/median.h"
 #include "marey/track/ground/offline/ground_openness.h"
-#include "marey/track/offline/tracklet_chains.h"
 
 namespace marey::track::ground::offline {
 namespace {
@@ -66,12 +66,9 @@ bool near_border(const GroundState& state, Timestamp time, double direction, con
 /// Pairs within the longest gap that gain more than `least`.
 std::vector<assign::GatedPair> gated_pairs(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads,
                                            const GroundColours& colours, const GroundChainOptions& options, double minimum) {
-  std::vector<assign::GatedPair> pairs;
-  track::offline::for_each_successor(tails, heads, duration_from_seconds(options.longest_gap), [&](int tail, int head) {
-    const std::optional<double> gain = gain_of_joining(tails[tail], heads[head], colours, options);
-    if (gain && *gain > minimum) pairs.push_back({tail, head, *gain});
-  });
-  return pairs;
+  return assign::successor_pairs(
+      tails, heads, duration_from_seconds(options.longest_gap),
+      [&](int tail, int head) { return gain_of_joining(tails[tail], heads[head], colours, options); }, minimum);
 }
 
 class Chainer {
@@ -79,20 +76,9 @@ class Chainer {
   Chainer(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, const InSight& in_sight,
           const GroundChainOptions& options)
       : tracklets_(tracklets), times_(times), options_(options) {
-    for (const GroundTracklet& tracklet : tracklets) {
-      GroundEnd head, tail;
-      head.piece = tail.piece = static_cast<int>(heads_.size());
-      tail.goes_on = tracklet.goes_on;
-      const std::vector<GroundSample>& samples = tracklet.samples;
-      head.time = times[samples.front().instant];
-      tail.time = times[samples.back().instant];
-      head.state = first_state(samples, times, options.motion, end_span);
-      tail.state = last_state(samples, times, options.motion, end_span);
-      head_at_border_.push_back(near_border(head.state, head.time, -1, in_sight));
-      tail_at_border_.push_back(near_border(tail.state, tail.time, 1, in_sight));
-      heads_.push_back(head);
-      tails_.push_back(tail);
-    }
+    std::tie(heads_, tails_) = ends_of(tracklets, times, options.motion);
+    for (const GroundEnd& head : heads_) head_at_border_.push_back(near_border(head.state, head.time, -1, in_sight));
+    for (const GroundEnd& tail : tails_) tail_at_border_.push_back(near_border(tail.state, tail.time, 1, in_sight));
     learn_openness();
   }
 
@@ -203,7 +189,7 @@ class Chainer {
 
   static void merge(std::vector<std::vector<int>>& chains, std::span<const int> next) {
     std::vector<std::vector<int>> joined;
-    for (const std::vector<int>& parts : track::offline::chains_of(next)) {
+    for (const std::vector<int>& parts : assign::chains_of(next)) {
       std::vector<int>& whole = joined.emplace_back();
       for (const int part : parts) whole.insert(whole.end(), chains[part].begin(), chains[part].end());
     }
@@ -240,6 +226,24 @@ double GroundColours::same(const std::optional<Appearance>& a, const std::option
   return std::clamp(colour_log_normal(*a, *b) - newcomer + team, surest_apart, surest_same);
 }
 
+std::pair<std::vector<GroundEnd>, std::vector<GroundEnd>> ends_of(std::span<const GroundTracklet> tracklets,
+                                                                  std::span<const Timestamp> times, const GroundMotion& motion) {
+  std::vector<GroundEnd> heads, tails;
+  for (const GroundTracklet& tracklet : tracklets) {
+    GroundEnd head, tail;
+    head.piece = tail.piece = static_cast<int>(heads.size());
+    tail.goes_on = tracklet.goes_on;
+    const std::vector<GroundSample>& samples = tracklet.samples;
+    head.time = times[static_cast<std::size_t>(samples.front().instant)];
+    tail.time = times[static_cast<std::size_t>(samples.back().instant)];
+    head.state = first_state(samples, times, motion, end_span);
+    tail.state = last_state(samples, times, motion, end_span);
+    heads.push_back(head);
+    tails.push_back(tail);
+  }
+  return {std::move(heads), std::move(tails)};
+}
+
 double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
                       const EndpointError& stray) {
   const GroundState expected = predicted(tail.state, seconds(head.time - tail.time), motion);
@@ -270,8 +274,7 @@ std::optional<double> gain_of_joining(const GroundEnd& tail, const GroundEnd& he
 
 std::vector<int> run_tracker(std::span<const GroundEnd> tails, std::span<const GroundEnd> heads, const GroundColours& colours,
                              const GroundChainOptions& options) {
-  const std::vector<assign::GatedPair> pairs = gated_pairs(tails, heads, colours, options, 0);
-  return assign::sparse_assignment(static_cast<int>(tails.size()), static_cast<int>(heads.size()), pairs);
+  return assign::best_successors(static_cast<int>(tails.size()), gated_pairs(tails, heads, colours, options, 0));
 }
 
 std::vector<GroundChain> chain(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, const InSight& in_sight,

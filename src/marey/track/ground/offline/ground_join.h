@@ -18,6 +18,7 @@
 
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "marey/core/time.h"
@@ -75,6 +76,10 @@ struct EndpointError {
 /// Logarithm of how likely the one who made `tail` is to be found as `head` is: place, velocity and clothes. `tail` is the earlier.
 double log_continuity(const GroundEnd& tail, const GroundEnd& head, const GroundColours& colours, const GroundMotion& motion,
                       const EndpointError& stray = {});
+
+/// Every tracklet's beginning and its end, by their indices, from each one's first and last seconds.
+std::pair<std::vector<GroundEnd>, std::vector<GroundEnd>> ends_of(std::span<const GroundTracklet> tracklets,
+                                                                  std::span<const Timestamp> times, const GroundMotion& motion);
 
 /// Logarithm of how much likelier it is that one person made both ends than that one left and another came; nothing if one
 /// person cannot have.

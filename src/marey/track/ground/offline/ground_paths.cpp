@@ -5,8 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "marey/assign/no_index.h"
-#include "marey/assign/sparse_assignment.h"
+#include "marey/assign/successors.h"
 
 namespace marey::track::ground::offline {
 namespace {
@@ -23,7 +22,7 @@ GroundPaths::GroundPaths(const SegmentGraph& graph) : graph_(graph), next_(graph
   const int nodes = static_cast<int>(graph.nodes.size());
   std::vector<assign::GatedPair> pairs;
   for (const SegmentGraph::Gap& gap : graph.gaps) pairs.push_back({gap.before, gap.after, gap.gain});
-  const std::vector<int> bridged = assign::sparse_assignment(nodes, nodes, pairs);
+  const std::vector<int> bridged = assign::best_successors(nodes, pairs);
   for (int node = 0; node < nodes; ++node) {
     if (bridged[static_cast<std::size_t>(node)] != kNoIndex)
       next_[static_cast<std::size_t>(node)] = bridged[static_cast<std::size_t>(node)];

@@ -10,6 +10,14 @@
 namespace marey::track::ground::offline {
 namespace {
 
+using GroundBridge = filter::Bridge<GroundMotion, 2>;
+
+GroundBridge::State state_of(const GroundTimeStep& time_step) {
+  GroundBridge::State state;
+  state << time_step.location.transpose(), time_step.velocity.transpose(), time_step.acceleration.transpose();
+  return state;
+}
+
 class Writer {
  public:
   Writer(const GroundInstants& instants, const GroundJoinOptions& options)
@@ -86,9 +94,11 @@ class Writer {
   void fill(const std::vector<GroundSample>& samples, const std::vector<GroundTimeStep>& time_steps, std::size_t i,
             TrackColumns& track) const {
     const Timestamp before = times_[samples[i - 1].instant];
-    const Timestamp after = times_[samples[i].instant];
+    const auto time_of = [&](std::int32_t instant) { return seconds(times_[instant] - before); };
+    const GroundBridge gap(state_of(time_steps[i - 1]), 0, state_of(time_steps[i]), time_of(samples[i].instant), motion_);
     for (std::int32_t k = samples[i - 1].instant + 1; k < samples[i].instant; ++k) {
-      add(k, between(time_steps[i - 1], seconds(times_[k] - before), time_steps[i], seconds(after - times_[k]), motion_), 0, track);
+      const GroundBridge::State state = gap.at(time_of(k));
+      add(k, {.location = state.row(0), .velocity = state.row(1), .acceleration = state.row(2)}, 0, track);
     }
   }
 

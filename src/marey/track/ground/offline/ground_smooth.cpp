@@ -1,9 +1,9 @@
 #include "marey/track/ground/offline/ground_smooth.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <optional>
 
 #include <Eigen/LU>
 
@@ -16,17 +16,6 @@ constexpr double round_time_step = 0.5;  // s before and after within which the 
 constexpr double strongest = 3;          // in units of the pushes' typical power
 constexpr double shared_memory = 0.5;    // s for which errors persist of who is seen in one region with others
 
-constexpr int upper(int i, int j) {
-  constexpr std::array<std::array<int, 3>, 3> at = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
-  return at[i][j];
-}
-
-/// What a step of time does to each axis: x becomes F x, and Q is added. F is upper triangular.
-struct Step {
-  Matrix<3> F = Matrix<3>::Identity();
-  Matrix<3> Q = Matrix<3>::Zero();
-};
-
 /// Covariance of velocity and acceleration that the motion tends to, per axis.
 Matrix<2> settled(const GroundMotion& motion) {
   const double a = motion.acceleration * motion.acceleration / (2 * motion.push);
@@ -34,105 +23,7 @@ Matrix<2> settled(const GroundMotion& motion) {
   return (Matrix<2>() << a * motion.settling * both, a * both, a * both, a).finished();
 }
 
-/// A step so short that a few terms of its series are exact, by quadrature; doubled until it is as long as asked for.
-Step step_of(double dt, const GroundMotion& motion) {
-  const int doublings =
-      std::max(0, static_cast<int>(std::ceil(std::log2(dt / (0.1 * std::min(motion.push, motion.settling)) + 1e-9))));
-  const double h = std::ldexp(dt, -doublings);
-  Matrix<3> A = Matrix<3>::Zero();
-  A(0, 1) = A(1, 2) = 1;
-  A(1, 1) = -1 / motion.settling;
-  A(2, 2) = -1 / motion.push;
-  const auto flow = [&](double t) {
-    Matrix<3> sum = Matrix<3>::Identity(), term = Matrix<3>::Identity();
-    for (int k = 1; k < 10; ++k) {
-      term = (term * A * (t / k)).eval();
-      sum += term;
-    }
-    return sum;
-  };
-  Step step;
-  step.F = flow(h);
-  const double density = motion.acceleration * motion.acceleration / (motion.push * motion.push);
-  constexpr std::array<std::array<double, 2>, 4> gauss = {{{0.0694318442029737, 0.1739274225687269},
-                                                           {0.3300094782075719, 0.3260725774312731},
-                                                           {0.6699905217924281, 0.3260725774312731},
-                                                           {0.9305681557970263, 0.1739274225687269}}};
-  for (const auto& [location, weight] : gauss) {
-    const Vector<3> reached = flow(h * location).col(2);
-    step.Q += density * h * weight * reached * reached.transpose();
-  }
-  for (int k = 0; k < doublings; ++k) {
-    step.Q = (step.F * step.Q * step.F.transpose() + step.Q).eval();
-    step.F = (step.F * step.F).eval();
-  }
-  return step;
-}
-
-/// Steps, of which most are as long as the one before.
-class Steps {
- public:
-  explicit Steps(const GroundMotion& motion) : motion_(motion) {}
-  const Step& operator()(double dt) {
-    if (!last_ || std::abs(dt - *last_) > 1e-7) {
-      last_ = dt;
-      step_ = step_of(dt, motion_);
-    }
-    return step_;
-  }
-
- private:
-  const GroundMotion& motion_;
-  std::optional<double> last_;
-  Step step_;
-};
-
-/// `push`: the power of the pushes in units of the typical.
-void advance(GroundState& state, const Step& step, double push = 1) {
-  const Matrix<3>& F = step.F;
-  std::array<Matrix<2>, 6> P;
-  // Rows of F P, then times Fᵀ: sums over what lies on or right of the diagonal.
-  std::array<std::array<Matrix<2>, 3>, 3> FP;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      FP[i][j].setZero();
-      for (int k = i; k < 3; ++k) {
-        if (k <= j) {
-          FP[i][j] += F(i, k) * state.P[upper(k, j)];
-        } else {
-          FP[i][j] += F(i, k) * state.P[upper(j, k)].transpose();
-        }
-      }
-    }
-  }
-  for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) {
-      Matrix<2>& block = P[upper(i, j)];
-      block = F(j, j) * FP[i][j];
-      for (int k = j + 1; k < 3; ++k) block += F(j, k) * FP[i][k];
-      block.diagonal().array() += push * step.Q(i, j);
-    }
-  }
-  state.P = P;
-  state.x[0] += F(0, 1) * state.x[1] + F(0, 2) * state.x[2];
-  state.x[1] = (F(1, 1) * state.x[1] + F(1, 2) * state.x[2]).eval();
-  state.x[2] *= F(2, 2);
-}
-
-void correct(GroundState& state, const Vector<2>& z, const Matrix<2>& R) {
-  const Matrix<2> S_inverse = (state.P[0] + R).inverse();
-  const Vector<2> residual = z - state.x[0];
-  const std::array<Matrix<2>, 3> K = {state.P[0] * S_inverse, state.P[1].transpose() * S_inverse,
-                                      state.P[2].transpose() * S_inverse};
-  for (int i = 0; i < 3; ++i) state.x[i] += K[i] * residual;
-  // P − K S Kᵀ; the blocks of the place as R S⁻¹ P, which loses no digits where P is far larger than R.
-  for (int i = 1; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) state.P[upper(i, j)] -= K[i] * state.P[j];
-  }
-  const Matrix<2> left = R * S_inverse;
-  for (int j = 0; j < 3; ++j) state.P[j] = (left * state.P[j]).eval();
-  for (const int i : {0, 3, 5}) state.P[i] = (0.5 * (state.P[i] + state.P[i].transpose())).eval();
-}
+using PathSmoother = filter::PositionSmoother<GroundMotion, 2>;
 
 /// One who is first seen at z, before that is taken in.
 GroundState unknown(const Vector<2>& z, const Matrix<2>& R, const GroundMotion& motion) {
@@ -224,89 +115,51 @@ void weigh_pushes(SmoothingPass& detected) {
   }
 }
 
-Matrix<6> whole_covariance(const GroundState& state) {
-  Matrix<6> P;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) {
-      P.block<2, 2>(2 * i, 2 * j) = state.P[upper(i, j)];
-      P.block<2, 2>(2 * j, 2 * i) = state.P[upper(i, j)].transpose();
-    }
-  }
-  return P;
+/// Forwards over all samples.
+PathSmoother path_of(const SmoothingPass& detected) {
+  PathSmoother path(detected.motion, unknown(detected.samples[0].at(), detected.spread(0), detected.motion));
+  path.reserve(detected.samples.size());
+  for (std::size_t i = 0; i < detected.samples.size(); ++i)
+    path.add(i > 0 ? detected.seconds_to(i) : 0, detected.pushes[i], detected.samples[i].at(), detected.spread(i));
+  return path;
 }
 
-/// The covariance of places, given all samples: that of each state before its observation, less what this one and all later ones
-/// show of it (the adjoint's information, Bierman 1973).
-void spread_positions(SmoothingPass& detected, const std::vector<GroundState>& before) {
-  Steps steps(detected.motion);
-  Matrix<6> reported = Matrix<6>::Zero();
-  for (std::size_t i = detected.samples.size(); i-- > 0;) {
-    const Matrix<6> P = whole_covariance(before[i]);
-    const Matrix<2> S_inverse = (P.topLeftCorner<2, 2>() + detected.spread(i)).inverse();
-    Matrix<6> left = Matrix<6>::Identity();
-    left.leftCols<2>() -= P.leftCols<2>() * S_inverse;
-    reported = (left.transpose() * reported * left).eval();
-    reported.topLeftCorner<2, 2>() += S_inverse;
-    detected.time_steps[i].spread = P.topLeftCorner<2, 2>() - P.topRows<2>() * reported * P.leftCols<2>();
-    if (i == 0) break;
-    const Matrix<3>& F = steps(detected.seconds_to(i)).F;
-    Matrix<6> forward = Matrix<6>::Zero();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = row; column < 3; ++column) forward.block<2, 2>(2 * row, 2 * column).diagonal().setConstant(F(row, column));
-    }
-    reported = (forward.transpose() * reported * forward).eval();
+PathSmoother smooth_once(SmoothingPass& detected) {
+  PathSmoother path = path_of(detected);
+  const std::vector<PathSmoother::Values> states = path.smoothed();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    detected.time_steps[i].location = states[i][0];
+    detected.time_steps[i].velocity = states[i][1];
+    detected.time_steps[i].acceleration = states[i][2];
   }
+  return path;
 }
 
-/// Forwards, keeping each state before its observation; then back with the adjoint.
-void smooth_once(SmoothingPass& detected, std::vector<GroundState>& before) {
-  const std::span<const GroundSample> samples = detected.samples;
-  std::vector<GroundTimeStep>& time_steps = detected.time_steps;
-  Steps steps(detected.motion);
-  GroundState state = unknown(samples[0].at(), detected.spread(0), detected.motion);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (i > 0) advance(state, steps(detected.seconds_to(i)), detected.pushes[i]);
-    before[i] = state;
-    correct(state, samples[i].at(), detected.spread(i));
-  }
-  std::array<Vector<2>, 3> l{Vector<2>::Zero(), Vector<2>::Zero(), Vector<2>::Zero()};  // the adjoint
-  for (std::size_t i = samples.size(); i-- > 0;) {
-    const GroundState& b = before[i];
-    const std::array<Matrix<2>, 6>& P = b.P;
-    l[0] -= (P[0] + detected.spread(i)).inverse() * (samples[i].at() - b.x[0] + P[0] * l[0] + P[1] * l[1] + P[2] * l[2]);
-    time_steps[i].location = b.x[0] - P[0] * l[0] - P[1] * l[1] - P[2] * l[2];
-    time_steps[i].velocity = b.x[1] - P[1].transpose() * l[0] - P[3] * l[1] - P[4] * l[2];
-    time_steps[i].acceleration = b.x[2] - P[2].transpose() * l[0] - P[4].transpose() * l[1] - P[5] * l[2];
-    if (i == 0) break;
-    const Matrix<3>& F = steps(detected.seconds_to(i)).F;
-    l[2] = (F(0, 2) * l[0] + F(1, 2) * l[1] + F(2, 2) * l[2]).eval();
-    l[1] = (F(0, 1) * l[0] + F(1, 1) * l[1]).eval();
-  }
-}
-
-/// How sure the places of the last pass are; `before` are its states.
-void find_spreads(SmoothingPass& detected, std::vector<GroundState>& before) {
+/// How sure the places of the last pass are, whose path is `last`.
+void find_spreads(SmoothingPass& detected, const PathSmoother& last) {
   const bool shared =
       std::any_of(detected.samples.begin(), detected.samples.end(), [](const GroundSample& one) { return one.shared; });
-  if (!shared || detected.samples.size() < 2) return spread_positions(detected, before);
-  SmoothingPass doubting = detected;
-  doubting.ambiguity_shared();
-  smooth_once(doubting, before);
-  spread_positions(doubting, before);
-  for (std::size_t i = 0; i < detected.time_steps.size(); ++i) detected.time_steps[i].spread = doubting.time_steps[i].spread;
+  std::vector<Matrix<2>> spreads;
+  if (shared && detected.samples.size() > 1) {
+    SmoothingPass doubting = detected;
+    doubting.ambiguity_shared();
+    spreads = path_of(doubting).position_covariances();
+  } else {
+    spreads = last.position_covariances();
+  }
+  for (std::size_t i = 0; i < spreads.size(); ++i) detected.time_steps[i].spread = spreads[i];
 }
 
 SmoothingPass smoothed(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
                        int passes, bool with_spread) {
   SmoothingPass detected(samples, times, motion);
-  std::vector<GroundState> before(samples.size());
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t i = 0; pass > 0 && i < samples.size(); ++i)
       detected.time_steps[i].fit = weight_of(samples[i], detected.time_steps[i].location);
     if (pass > 0 && motion.calm < 1) weigh_pushes(detected);
-    smooth_once(detected, before);
+    const PathSmoother path = smooth_once(detected);
+    if (with_spread && pass + 1 == passes) find_spreads(detected, path);
   }
-  if (with_spread) find_spreads(detected, before);
   return detected;
 }
 
@@ -316,16 +169,47 @@ GroundState filtered(std::span<const GroundSample> samples, std::span<const Time
   const SmoothingPass detected = smoothed(samples, times, motion, default_passes, false);
   const std::size_t n = detected.samples.size();
   const auto at = [&](std::size_t k) { return forwards ? k : n - 1 - k; };
-  Steps steps(detected.motion);
-  GroundState state = unknown(detected.samples[at(0)].at(), detected.spread(at(0)), detected.motion);
-  for (std::size_t k = 0; k < n; ++k) {
-    if (k > 0) advance(state, steps(detected.seconds_to(std::max(at(k), at(k - 1)))));
-    correct(state, detected.samples[at(k)].at(), detected.spread(at(k)));
-  }
-  return state;
+  PathSmoother path(detected.motion, unknown(detected.samples[at(0)].at(), detected.spread(at(0)), detected.motion));
+  for (std::size_t k = 0; k < n; ++k)
+    path.add(k > 0 ? detected.seconds_to(std::max(at(k), at(k - 1))) : 0, 1, detected.samples[at(k)].at(), detected.spread(at(k)));
+  return {path.state()};
 }
 
 }  // namespace
+
+/// A step so short that a few terms of its series are exact, by quadrature; doubled until it is as long as asked for.
+filter::Transition<3> GroundMotion::over(double dt) const {
+  const int doublings = std::max(0, static_cast<int>(std::ceil(std::log2(dt / (0.1 * std::min(push, settling)) + 1e-9))));
+  const double h = std::ldexp(dt, -doublings);
+  Matrix<3> A = Matrix<3>::Zero();
+  A(0, 1) = A(1, 2) = 1;
+  A(1, 1) = -1 / settling;
+  A(2, 2) = -1 / push;
+  const auto flow = [&](double t) {
+    Matrix<3> sum = Matrix<3>::Identity(), term = Matrix<3>::Identity();
+    for (int k = 1; k < 10; ++k) {
+      term = (term * A * (t / k)).eval();
+      sum += term;
+    }
+    return sum;
+  };
+  filter::Transition<3> step;
+  step.F = flow(h);
+  const double density = acceleration * acceleration / (push * push);
+  constexpr std::array<std::array<double, 2>, 4> gauss = {{{0.0694318442029737, 0.1739274225687269},
+                                                           {0.3300094782075719, 0.3260725774312731},
+                                                           {0.6699905217924281, 0.3260725774312731},
+                                                           {0.9305681557970263, 0.1739274225687269}}};
+  for (const auto& [location, weight] : gauss) {
+    const Vector<3> reached = flow(h * location).col(2);
+    step.Q += density * h * weight * reached * reached.transpose();
+  }
+  for (int k = 0; k < doublings; ++k) {
+    step.Q = (step.F * step.Q * step.F.transpose() + step.Q).eval();
+    step.F = (step.F * step.F).eval();
+  }
+  return step;
+}
 
 double speed_variance(const GroundMotion& motion) {
   return settled(motion)(0, 0);
@@ -333,7 +217,7 @@ double speed_variance(const GroundMotion& motion) {
 
 GroundState predicted(const GroundState& state, double dt, const GroundMotion& motion) {
   GroundState later = state;
-  advance(later, step_of(dt, motion));
+  filter::advance<3, 2, 1>(later, motion.over(dt));
   return later;
 }
 
@@ -366,24 +250,6 @@ GroundState last_state(std::span<const GroundSample> samples, std::span<const Ti
       std::find_if(samples.rbegin(), samples.rend(), [&](const GroundSample& s) { return times[s.instant] < first; });
   const auto some = samples.last(static_cast<std::size_t>(some_rev - samples.rbegin()));
   return filtered(some, times, motion, true);
-}
-
-GroundTimeStep between(const GroundTimeStep& earlier, double since, const GroundTimeStep& later, double until,
-                       const GroundMotion& motion) {
-  const Step one = step_of(since, motion);
-  const Step two = step_of(until, motion);
-  // Per axis: x = F₁ a + C (b − F₂ F₁ a), C = Q₁ F₂ᵀ (F₂ Q₁ F₂ᵀ + Q₂)⁻¹.
-  const Matrix<3> C = one.Q * two.F.transpose() * (two.F * one.Q * two.F.transpose() + two.Q).inverse();
-  GroundTimeStep time_step;
-  for (int axis = 0; axis < 2; ++axis) {
-    const Vector<3> a = one.F * Vector<3>(earlier.location[axis], earlier.velocity[axis], earlier.acceleration[axis]);
-    const Vector<3> b(later.location[axis], later.velocity[axis], later.acceleration[axis]);
-    const Vector<3> x = a + C * (b - two.F * a);
-    time_step.location[axis] = x[0];
-    time_step.velocity[axis] = x[1];
-    time_step.acceleration[axis] = x[2];
-  }
-  return time_step;
 }
 
 }  // namespace marey::track::ground::offline

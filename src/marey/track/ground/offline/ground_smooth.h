@@ -15,11 +15,11 @@
 // Taylor, "Robust statistical modeling using the t distribution", JASA 84 (1989).
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
 #include "marey/core/time.h"
+#include "marey/filter/position_smoother.h"
 #include "marey/track/ground/offline/ground_tracklet.h"
 
 namespace marey::track::ground::offline {
@@ -30,17 +30,16 @@ struct GroundMotion {
   double settling = 3;         ///< time in which velocity falls to 1/e where nothing keeps it up, s
   double calm = 0.1;           ///< share of the pushes' typical power that who stands is still granted; 1: all push alike
   double error_memory = 0.05;  ///< for this long errors of places persist, s; 0: each errs on its own
+
+  static constexpr int order = 3;
+  /// What it does to place, velocity and acceleration of each axis in `dt` ≥ 0 seconds, where people push as normal.
+  filter::Transition<3> over(double dt) const;
 };
 
 /// Place, velocity and acceleration with their covariance, by blocks: m, m/s, m/s².
-struct GroundState {
-  std::array<Vector<2>, 3> x{Vector<2>::Zero(), Vector<2>::Zero(), Vector<2>::Zero()};
-  /// Place and place, place and velocity, place and acceleration; velocity and velocity, … : the upper triangle by rows.
-  std::array<Matrix<2>, 6> P{Matrix<2>::Zero(), Matrix<2>::Zero(), Matrix<2>::Zero(),
-                             Matrix<2>::Zero(), Matrix<2>::Zero(), Matrix<2>::Zero()};
-
-  const Vector<2>& location() const { return x[0]; }
-  const Vector<2>& velocity() const { return x[1]; }
+struct GroundState : filter::MovingState<GroundMotion::order, 2> {
+  Vector<2> location() const { return x[0]; }
+  Vector<2> velocity() const { return x[1]; }
   /// Of place and velocity.
   Matrix<4> covariance() const { return (Matrix<4>() << P[0], P[1], P[1].transpose(), P[3]).finished(); }
 };
@@ -71,10 +70,5 @@ GroundState first_state(std::span<const GroundSample> samples, std::span<const T
                         double span);
 GroundState last_state(std::span<const GroundSample> samples, std::span<const Timestamp> times, const GroundMotion& motion,
                        double span);
-
-/// The likeliest state `since` seconds after `earlier` and `until` seconds before `later`, where nothing was seen;
-/// both positive.
-GroundTimeStep between(const GroundTimeStep& earlier, double since, const GroundTimeStep& later, double until,
-                       const GroundMotion& motion);
 
 }  // namespace marey::track::ground::offline

@@ -128,10 +128,17 @@ TEST(GroundSmooth, BetweenTwoMomentsIsWhereTheSmootherPutsWhatIsHardlySeen) {
   scene.samples[middle].covariance = {1e6F, 0, 1e6F};
   const auto path = smooth_ground(scene.samples, scene.times, motion, 1);
   const auto time = [&](std::size_t i) { return scene.times[scene.samples[i].instant]; };
-  const GroundTimeStep time_step = between(path[middle - 1], seconds(time(middle) - time(middle - 1)), path[middle + 1],
-                                           seconds(time(middle + 1) - time(middle)), motion);
-  EXPECT_NEAR((time_step.location - path[middle].location).norm(), 0, 1e-3);
-  EXPECT_NEAR((time_step.velocity - path[middle].velocity).norm(), 0, 1e-3);
+  using Bridge = filter::Bridge<GroundMotion, 2>;
+  const auto state = [&](std::size_t i) {
+    Bridge::State all;
+    all << path[i].location.transpose(), path[i].velocity.transpose(), path[i].acceleration.transpose();
+    return all;
+  };
+  const auto since = [&](std::size_t i) { return seconds(time(i) - time(middle - 1)); };
+  const Bridge gap(state(middle - 1), 0, state(middle + 1), since(middle + 1), motion);
+  const Bridge::State filled = gap.at(since(middle));
+  EXPECT_NEAR((filled.row(0).transpose() - path[middle].location).norm(), 0, 1e-3);
+  EXPECT_NEAR((filled.row(1).transpose() - path[middle].velocity).norm(), 0, 1e-3);
 }
 
 TEST(GroundSmooth, EndsAreWhatTheSmootherSaysOfThem) {

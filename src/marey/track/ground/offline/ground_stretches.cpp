@@ -4,19 +4,17 @@
 #include <cmath>
 #include <utility>
 
-#include "marey/assign/no_index.h"
-#include "marey/track/offline/tracklet_chains.h"
+#include "marey/assign/successors.h"
 
 namespace marey::track::ground::offline {
 namespace {
 
-constexpr double kStep = 0.2;         // s between places that are counted
-constexpr double kMaxStep = 1;        // s that one place counts for
-constexpr double kEvaluatedSpan = 3;  // s of a tracklet that its end is evaluated by
-constexpr double kMinGain = -12;      // of pairs of an end and a beginning that come into question
-constexpr double kMaxTrusted = 3;     // in either direction, of the evidence of place and velocity
-constexpr double kTouching = 0.8;     // m: people farther apart than this are less often exchanged,
-constexpr double kPassing = -3;       // for each metre more, as a logarithm of odds
+constexpr double kStep = 0.2;      // s between places that are counted
+constexpr double kMaxStep = 1;     // s that one place counts for
+constexpr double kMinGain = -12;   // of pairs of an end and a beginning that come into question
+constexpr double kMaxTrusted = 3;  // in either direction, of the evidence of place and velocity
+constexpr double kTouching = 0.8;  // m: people farther apart than this are less often exchanged,
+constexpr double kPassing = -3;    // for each metre more, as a logarithm of odds
 
 class GraphOfSegments {
  public:
@@ -139,28 +137,18 @@ class GraphOfSegments {
   }
 
   void find_gaps() {
-    std::vector<GroundEnd> heads, tails;
-    for (std::size_t t = 0; t < tracklets_.size(); ++t) {
-      const std::vector<GroundSample>& samples = tracklets_[t].samples;
-      GroundEnd head, tail;
-      head.piece = tail.piece = static_cast<int>(t);
-      head.time = times_[static_cast<std::size_t>(samples.front().instant)];
-      tail.time = times_[static_cast<std::size_t>(samples.back().instant)];
-      head.state = first_state(samples, times_, options_.join.motion, kEvaluatedSpan);
-      tail.state = last_state(samples, times_, options_.join.motion, kEvaluatedSpan);
-      head.coming = options_.coming;
-      tail.goes_on = tracklets_[t].goes_on;
-      heads.push_back(head);
-      tails.push_back(tail);
-    }
-    track::offline::for_each_successor(tails, heads, duration_from_seconds(options_.join.longest_gap), [&](int tail, int head) {
-      const auto gain =
-          gain_of_joining(tails[static_cast<std::size_t>(tail)], heads[static_cast<std::size_t>(head)], colours_, options_.join);
-      if (!gain || *gain < kMinGain) return;
-      const SegmentGraph::Gap gap{last_[static_cast<std::size_t>(tail)], first_[static_cast<std::size_t>(head)], *gain};
+    auto [heads, tails] = ends_of(tracklets_, times_, options_.join.motion);
+    for (GroundEnd& head : heads) head.coming = options_.coming;
+    const auto gain = [&](int tail, int head) {
+      return gain_of_joining(tails[static_cast<std::size_t>(tail)], heads[static_cast<std::size_t>(head)], colours_, options_.join);
+    };
+    for (const assign::GatedPair& pair :
+         assign::successor_pairs(tails, heads, duration_from_seconds(options_.join.longest_gap), gain, kMinGain)) {
+      const SegmentGraph::Gap gap{last_[static_cast<std::size_t>(pair.row)], first_[static_cast<std::size_t>(pair.column)],
+                                  pair.gain};
       graph_.gaps.push_back(gap);
       graph_.gain_of_gap[{gap.before, gap.after}] = gap.gain;
-    });
+    }
   }
 
   std::span<const GroundTracklet> tracklets_;
