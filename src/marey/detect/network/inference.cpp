@@ -1,6 +1,7 @@
 #include "marey/detect/network/inference.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <fstream>
 #include <iterator>
@@ -128,9 +129,10 @@ void Inference::each(std::size_t count, const std::function<void(Engine&, std::s
   const auto threads = std::min<std::size_t>(count, static_cast<std::size_t>(std::clamp(cv::getNumThreads(), 1, kMaxThreads)));
   while (engines_.size() < threads) engines_.push_back(load());
   std::vector<std::exception_ptr> failed(threads);
+  std::atomic<std::size_t> next = 0;
   const auto fraction_of = [&](std::size_t thread) {
     try {
-      for (std::size_t i = thread; i < count; i += threads) work(*engines_[thread], i);
+      for (std::size_t i = next++; i < count; i = next++) work(*engines_[thread], i);
     } catch (...) {
       failed[thread] = std::current_exception();
     }

@@ -300,17 +300,19 @@ bool Planner::reshape(const OnnxNode& node) {
 bool Planner::join(const OnnxNode& node) {
   std::vector<std::size_t> from;
   LayerValue made;
-  const double axis = numbers_of(node, "axis", {-9}).front();
   for (std::size_t i = 0; i < node.inputs.size(); ++i) {
     const auto one = value(node, i);
-    if (!one || plan_.values[*one].shape.size() != 3 || plan_.values[*one].shape[0] != 1) return false;
-    const std::vector<int>& shape = plan_.values[*one].shape;
-    if (i > 0 && shape[2] != made.shape[2]) return false;
-    if (i == 0) made.shape = {1, 0, shape[2]};
-    made.shape[1] += shape[1];
+    if (!one || plan_.values[*one].shape.size() < 2) return false;
+    std::vector<int> shape = plan_.values[*one].shape;
+    if (i > 0) shape[1] += made.shape[1];
+    std::vector<int> but_rows = made.shape;
+    if (i > 0) but_rows[1] = shape[1];
+    if (shape[0] != 1 || (i > 0 && shape != but_rows)) return false;
+    made.shape = std::move(shape);
     from.push_back(*one);
   }
-  if (axis != 1 && axis != -2) return false;
+  const double axis = numbers_of(node, "axis", {0}).front(), rank = static_cast<double>(made.shape.size());
+  if (axis != 1 && axis + rank != 1) return false;
   new_layer(node, Layer::Kind::join, std::move(from), made);
   return true;
 }

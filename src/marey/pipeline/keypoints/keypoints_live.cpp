@@ -12,6 +12,7 @@
 #include "marey/core/keypoint_sets.h"
 #include "marey/core/stage_times.h"
 #include "marey/detect/keypoints/model_folder.h"
+#include "marey/detect/network/halved_image.h"
 #include "marey/detect/network/run_network.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
@@ -46,9 +47,15 @@ FindPeople detector_of(const std::string& file) {
   const auto network = std::make_shared<detect::network::LoadedNetwork>(
       detect::network::read_network_model(file.empty() ? detect::keypoints::model_file("person.toml") : file));
   return [network](const Image& image) {
+    // Not more pixels are converted than the network looks at.
+    const cv::Size input = network->model().input;
+    Image small = image;
+    double scale = 1;
+    for (; small.size().width >= 2 * input.width && small.size().height >= 2 * input.height; scale *= 2)
+      small = detect::network::halved(small);
     std::vector<Box> boxes;
-    for (const detect::network::Candidate& one : network->find(image.bgr()))
-      boxes.push_back({one.left, one.top, one.right - one.left, one.bottom - one.top});
+    for (const detect::network::Candidate& one : network->find(small.bgr()))
+      boxes.push_back({scale * one.left, scale * one.top, scale * (one.right - one.left), scale * (one.bottom - one.top)});
     return boxes;
   };
 }
@@ -106,6 +113,7 @@ class KeypointsLive final : public corridor::Stage {
   void report_observed(Instant& instant) const;
   void keep();
   bool is_full(std::size_t camera) const;
+  bool is_wanted(const rk::LocatedPerson& person) const;
 
   Rig rig_;
   double rate_hz_;
@@ -152,6 +160,12 @@ bool KeypointsLive::is_full(std::size_t camera) const {
   return here >= options_.people.maximum;
 }
 
+/// A person who has a number, or can still get one.
+bool KeypointsLive::is_wanted(const rk::LocatedPerson& person) const {
+  const int maximum = options_.people.maximum;
+  return maximum == 0 || people_.track_of(person.id, 0) || people_.present() < static_cast<std::size_t>(maximum);
+}
+
 /// The person detector, in the image that has waited for it longest.
 void KeypointsLive::search(const FrameSet& frames) {
   std::optional<std::size_t> chosen;
@@ -187,7 +201,7 @@ void KeypointsLive::inspect(const FrameSet& frames) {
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
     const std::size_t count = in_images_[c].size();
-    in_images_[c].take(std::span(bodies).subspan(begin, count), frames.time);
+    in_images_[c].take(std::span(bodies).subspan(begin, count), frames.time, is_full(c));
     begin += count;
     counts_[c].detections += std::ssize(in_images_[c].people());
   }
@@ -206,6 +220,7 @@ void KeypointsLive::location(const FrameSet& frames, double step_s) {
   located_ = views_.step(step_s, views);
   noise_.learn(located_, options_.gate_slack);
   for (const rk::LocatedPerson& person : located_) {
+    if (!is_wanted(person)) continue;
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       if (person.views[c] >= 0) in_images_[c].located(static_cast<std::size_t>(person.views[c]), frames.time);
     }
