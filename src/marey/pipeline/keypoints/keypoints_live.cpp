@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -113,7 +114,7 @@ class KeypointsLive final : public corridor::Stage {
   void report_observed(Instant& instant) const;
   void keep();
   bool is_full(std::size_t camera) const;
-  bool is_wanted(const rk::LocatedPerson& person) const;
+  bool fits(const rk::LocatedPerson& person, std::size_t camera) const;
 
   Rig rig_;
   double rate_hz_;
@@ -152,18 +153,30 @@ RecordingHeader KeypointsLive::header() const {
   return header;
 }
 
-/// All people that are wanted are known in this camera: no detector is needed.
+/// Whether a camera's view of a person is of who the other cameras see.
+bool KeypointsLive::fits(const rk::LocatedPerson& person, std::size_t camera) const {
+  const Keypoints<2>& body = in_images_[camera].people()[static_cast<std::size_t>(person.views[camera])];
+  Vector<2> low = Vector<2>::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const auto& point : body.points) {
+    if (point) low = low.cwiseMin(point->position), high = high.cwiseMax(point->position);
+  }
+  std::vector<double> residuals;
+  for (const auto& point : person.points) {
+    if (point) residuals.push_back(point->residual_px);
+  }
+  if (residuals.empty()) return false;
+  const auto middle = residuals.begin() + std::ssize(residuals) / 2;
+  std::nth_element(residuals.begin(), middle, residuals.end());
+  return *middle < options_.max_residual * (high - low).maxCoeff();
+}
+
+/// All people that are wanted are known in this camera: no detector is needed, and no search for others.
 bool KeypointsLive::is_full(std::size_t camera) const {
   if (options_.people.maximum == 0) return false;
   std::int64_t here = 0;
-  for (const rk::LocatedPerson& person : located_) here += person.views[camera] >= 0 && people_.track_of(person.id, 0) ? 1 : 0;
+  for (const rk::LocatedPerson& person : located_)
+    here += person.views[camera] >= 0 && people_.track_of(person.id, 0) && fits(person, camera) ? 1 : 0;
   return here >= options_.people.maximum;
-}
-
-/// A person who has a number, or can still get one.
-bool KeypointsLive::is_wanted(const rk::LocatedPerson& person) const {
-  const int maximum = options_.people.maximum;
-  return maximum == 0 || people_.track_of(person.id, 0) || people_.present() < static_cast<std::size_t>(maximum);
 }
 
 /// The person detector, in the image that has waited for it longest.
@@ -220,9 +233,10 @@ void KeypointsLive::location(const FrameSet& frames, double step_s) {
   located_ = views_.step(step_s, views);
   noise_.learn(located_, options_.gate_slack);
   for (const rk::LocatedPerson& person : located_) {
-    if (!is_wanted(person)) continue;
+    const bool numbered = people_.track_of(person.id, 0).has_value();
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
-      if (person.views[c] >= 0) in_images_[c].located(static_cast<std::size_t>(person.views[c]), frames.time);
+      if (person.views[c] >= 0 && (numbered || !is_full(c)))
+        in_images_[c].located(static_cast<std::size_t>(person.views[c]), frames.time);
     }
   }
 }
