@@ -21,6 +21,7 @@ using LayerFloats = hn::CappedTag<float, LayerKernels::kLane>;
 using LayerVector = hn::Vec<LayerFloats>;
 using Limits = LayerKernels::Limits;
 
+// numerical: by the registers of the processor
 constexpr int kLane = LayerKernels::kLane, kStep = static_cast<int>(hn::MaxLanes(LayerFloats()));
 constexpr int kTogether = kStep == kLane ? 1 : 2;  // vectors of output channels
 constexpr int kPixels = kStep == kLane ? 12 : 6;   // with which their sums fill the registers
@@ -71,7 +72,7 @@ HWY_INLINE void product_of(const Product& p, Limits limits) {
   }
 }
 
-/// All output channels of `count` pixels, which stay in the cache meanwhile.
+/// All output channels of `count` pixels, which stay in the cache.
 template <int count>
 void pixels_of(Product p, int lanes, Limits limits) {
   for (int lane = 0; lane < lanes; ++lane) {
@@ -109,7 +110,7 @@ HWY_INLINE void outputs_of(const LayerKernels::Taps& taps, const float* values, 
   for (int k = 0; k < count; ++k) sums[k] = first;
   for (int r = 0; r < taps.rows; ++r) {
     const float *row = values + r * taps.down, *weight = weights + r * taps.weights_down;
-    for (int c = 0; c < taps.columns; ++c, row += taps.beside, weight += taps.beside) {
+    for (int c = 0; c < taps.columns; ++c, row += taps.across, weight += taps.across) {
       const auto w = hn::LoadU(d, weight);
 #pragma GCC unroll 4
       for (int k = 0; k < count; ++k) sums[k] = hn::MulAdd(hn::LoadU(d, row + k * taps.next), w, sums[k]);

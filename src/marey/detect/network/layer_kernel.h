@@ -7,7 +7,7 @@ namespace marey::detect::network {
 /// The inner loops of own_network.h. Images lie pixel by pixel, all channels of one together, filled up with zeros to a multiple of
 /// kLane. Results are held in [low, high]. Steps are counted in floats.
 struct LayerKernels {
-  static constexpr int kLane = 16;  ///< channels that are computed together
+  static constexpr int kLane = 16;  ///< numerical: channels that are computed together
 
   struct Limits {
     float low, high;
@@ -26,11 +26,11 @@ struct LayerKernels {
   void (*product)(const Pixels& pixels, int count, const float* weights, const float* bias, int lanes, Limits limits,
                   const float* added, float* out, std::ptrdiff_t out_step);
 
-  /// Where a convolution by channel reads: the first tap of the first output, the steps from a tap to the one below and beside, and
-  /// from output to output. Weights are by row, column, channel.
+  /// Where a convolution by channel reads: the first tap of the first output, the steps from a tap to the next one down and across,
+  /// and from output to output. Weights are by row, column, channel.
   struct Taps {
     const float* values;
-    std::ptrdiff_t down, beside, next;
+    std::ptrdiff_t down, across, next;
     const float* weights;
     std::ptrdiff_t weights_down;
     int rows, columns;

@@ -41,13 +41,13 @@ std::vector<float> weights_by_channel(const OnnxTensor& weights) {
   return packed;
 }
 
-void share_buffers(LayerPlan& plan) {
-  constexpr std::size_t kAlways = static_cast<std::size_t>(-1);
+void assign_buffers(LayerPlan& plan) {
+  constexpr std::size_t kAlways = static_cast<std::size_t>(-1);  // numerical
   std::vector<std::size_t> last(plan.values.size(), 0);
   for (std::size_t i = 0; i < plan.layers.size(); ++i) {
     for (const std::size_t from : plan.layers[i].from) last[from] = i;
   }
-  for (const std::size_t value : plan.wanted) last[value] = kAlways;
+  for (const std::size_t value : plan.required) last[value] = kAlways;
   std::vector<std::size_t> free;
   const auto place = [&](LayerValue& value) {
     const std::size_t needed = value.floats();

@@ -18,6 +18,6 @@ std::vector<float> dense_weights(const OnnxTensor& weights, int step);
 std::vector<float> weights_by_channel(const OnnxTensor& weights);
 
 /// Values that are not needed at the same time share memory.
-void share_buffers(LayerPlan& plan);
+void assign_buffers(LayerPlan& plan);
 
 }  // namespace marey::detect::network

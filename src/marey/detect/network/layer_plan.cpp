@@ -11,7 +11,7 @@ namespace marey::detect::network {
 namespace {
 
 constexpr int kLane = LayerKernels::kLane;
-constexpr std::int64_t kMaxSide = 1 << 14;  // px or channels of a layer
+constexpr std::int64_t kMaxSide = 1 << 14;  // numerical: px or channels of a layer
 
 std::vector<double> numbers_of(const OnnxNode& node, const std::string& name, std::vector<double> otherwise) {
   const auto found = node.numbers.find(name);
@@ -23,8 +23,8 @@ bool all_are(const std::vector<double>& values, double value) {
 }
 
 /// The nodes that an output needs, in the file's order.
-std::vector<const OnnxNode*> nodes_for(const OnnxGraph& graph, std::span<const std::string> wanted) {
-  std::set<std::string> needed(wanted.begin(), wanted.end());
+std::vector<const OnnxNode*> nodes_for(const OnnxGraph& graph, std::span<const std::string> required) {
+  std::set<std::string> needed(required.begin(), required.end());
   std::vector<const OnnxNode*> nodes;
   for (auto node = graph.nodes.rbegin(); node != graph.nodes.rend(); ++node) {
     if (std::none_of(node->outputs.begin(), node->outputs.end(), [&](const auto& name) { return needed.contains(name); })) continue;
@@ -37,26 +37,26 @@ std::vector<const OnnxNode*> nodes_for(const OnnxGraph& graph, std::span<const s
 
 class Planner {
  public:
-  Planner(const OnnxGraph& graph, std::span<const int> input, std::span<const std::string> wanted)
-      : nodes_(nodes_for(graph, wanted)) {
+  Planner(const OnnxGraph& graph, std::span<const int> input, std::span<const std::string> required)
+      : nodes_(nodes_for(graph, required)) {
     for (const auto& [name, tensor] : graph.weights) weights_[name] = &tensor;
     for (const OnnxNode* node : nodes_) {
       for (const std::string& name : node->inputs) ++uses_[name];
     }
-    for (const std::string& name : wanted) ++uses_[name];
+    for (const std::string& name : required) ++uses_[name];
     plan_.values.push_back({input[2], input[3], input[1], input[1], {}, 0});
     made_by_.emplace_back();
     values_[graph.inputs.front()] = 0;
   }
 
-  std::optional<LayerPlan> plan(std::span<const std::string> wanted) {
+  std::optional<LayerPlan> plan(std::span<const std::string> required) {
     for (const OnnxNode* node : nodes_) {
       if (!add(*node)) return std::nullopt;
     }
-    for (const std::string& name : wanted) {
+    for (const std::string& name : required) {
       if (!values_.contains(name)) return std::nullopt;
       plan_.outputs.push_back(name);
-      plan_.wanted.push_back(values_.at(name));
+      plan_.required.push_back(values_.at(name));
     }
     return std::move(plan_);
   }
@@ -64,10 +64,10 @@ class Planner {
   using Add = bool (Planner::*)(const OnnxNode&);
   static const std::map<std::string, Add>& kinds() {
     static const std::map<std::string, Add> all{
-        {"Conv", &Planner::convolution}, {"Clip", &Planner::clip},      {"Add", &Planner::sum},
-        {"Pad", &Planner::pad},          {"Resize", &Planner::enlarge}, {"MaxPool", &Planner::pool},
-        {"Sigmoid", &Planner::logistic}, {"Transpose", &Planner::turn}, {"Reshape", &Planner::reshape},
-        {"Concat", &Planner::join},      {"Identity", &Planner::same},  {"Cast", &Planner::cast},
+        {"Conv", &Planner::convolution}, {"Clip", &Planner::clip},           {"Add", &Planner::sum},
+        {"Pad", &Planner::pad},          {"Resize", &Planner::enlarge},      {"MaxPool", &Planner::pool},
+        {"Sigmoid", &Planner::logistic}, {"Transpose", &Planner::transpose}, {"Reshape", &Planner::reshape},
+        {"Concat", &Planner::join},      {"Identity", &Planner::same},       {"Cast", &Planner::convert},
     };
     return all;
   }
@@ -114,12 +114,12 @@ class Planner {
   bool enlarge(const OnnxNode& node);
   bool pool(const OnnxNode& node);
   bool logistic(const OnnxNode& node);
-  bool turn(const OnnxNode& node);
+  bool transpose(const OnnxNode& node);
   bool reshape(const OnnxNode& node);
   bool join(const OnnxNode& node);
   bool same(const OnnxNode& node);
-  bool cast(const OnnxNode& node);
-  /// The layer that makes the only use of what is read by `input` possible as a part of it.
+  bool convert(const OnnxNode& node);
+  /// The layer that makes this input, where no other node reads it.
   Layer* only_for(const OnnxNode& node, std::size_t input);
 
   std::vector<const OnnxNode*> nodes_;
@@ -263,7 +263,7 @@ bool Planner::logistic(const OnnxNode& node) {
 }
 
 /// Channels last, which is how images lie here.
-bool Planner::turn(const OnnxNode& node) {
+bool Planner::transpose(const OnnxNode& node) {
   const auto from = image(node, 0);
   if (!from || numbers_of(node, "perm", {}) != std::vector<double>{0, 2, 3, 1}) return false;
   LayerValue made = plan_.values[*from];
@@ -326,7 +326,7 @@ bool Planner::same(const OnnxNode& node) {
 }
 
 /// Weights of 16 bits are floats already.
-bool Planner::cast(const OnnxNode& node) {
+bool Planner::convert(const OnnxNode& node) {
   const OnnxTensor* from = weight(node, 0);
   if (from == nullptr || from->floats.empty() || !all_are(numbers_of(node, "to", {0}), 1)) return false;
   weights_[node.outputs.front()] = from;
@@ -347,11 +347,11 @@ bool has_known_layers(const OnnxGraph& graph) {
                      [](const OnnxNode& node) { return Planner::kinds().contains(node.kind); });
 }
 
-std::optional<LayerPlan> layer_plan(const OnnxGraph& graph, std::span<const int> input, std::span<const std::string> wanted) {
+std::optional<LayerPlan> layer_plan(const OnnxGraph& graph, std::span<const int> input, std::span<const std::string> required) {
   if (graph.inputs.size() != 1 || input.size() != 4 || input[0] != 1) return std::nullopt;
   if (std::any_of(input.begin(), input.end(), [](int size) { return size < 1 || size > kMaxSide; })) return std::nullopt;
-  auto plan = Planner(graph, input, wanted).plan(wanted);
-  if (plan) share_buffers(*plan);
+  auto plan = Planner(graph, input, required).plan(required);
+  if (plan) assign_buffers(*plan);
   return plan;
 }
 

@@ -53,14 +53,14 @@ struct LayerPlan {
   std::vector<LayerValue> values;  ///< the first is the input, without gaps between its pixels
   std::vector<Layer> layers;
   std::vector<std::string> outputs;
-  std::vector<std::size_t> wanted;        ///< values, of `outputs`
+  std::vector<std::size_t> required;      ///< values, of `outputs`
   std::vector<std::size_t> buffer_sizes;  ///< floats
 };
 
 /// Whether all nodes are of the kinds that layers exist for.
 bool has_known_layers(const OnnxGraph& graph);
 
-/// For an input of 1 × channels × rows × columns. Nothing if what is wanted needs a layer of another kind.
-std::optional<LayerPlan> layer_plan(const OnnxGraph& graph, std::span<const int> input, std::span<const std::string> wanted);
+/// For an input of 1 × channels × rows × columns. Nothing if an output needs a layer of another kind.
+std::optional<LayerPlan> layer_plan(const OnnxGraph& graph, std::span<const int> input, std::span<const std::string> required);
 
 }  // namespace marey::detect::network

@@ -11,8 +11,8 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr std::uint64_t kOfFloats = 1, kOfIntegers = 7;   // TensorProto.DataType
-constexpr std::size_t kMaxValues = std::size_t{1} << 28;  // of one tensor
+constexpr std::uint64_t kOfFloats = 1, kOfIntegers = 7;   // format: TensorProto.DataType
+constexpr std::size_t kMaxValues = std::size_t{1} << 28;  // numerical: of one tensor
 
 float float_of(std::string_view four_bytes) {
   float value = 0;
@@ -145,7 +145,7 @@ std::optional<OnnxGraph> onnx_graph(std::string_view file) {
     if (!read_graph(graph, field->content)) return std::nullopt;
   }
   if (!found || !fields.sound()) return std::nullopt;
-  // What exporters list as inputs although it is weights is none.
+  // Exporters list weights as inputs too.
   std::erase_if(graph.inputs, [&](const std::string& name) { return graph.weights.contains(name); });
   return graph;
 }

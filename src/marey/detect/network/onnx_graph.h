@@ -29,8 +29,8 @@ struct OnnxGraph {
   std::vector<std::string> inputs, outputs;
 };
 
-/// `file`: the whole content, with weights of 32 bits (half_weights.h). Nothing if it is none, is cut off, or has weights of other
-/// types than 32-bit floats and 64-bit integers.
+/// `file`: the whole content, with weights of 32 bits (half_weights.h). Nothing if it is another file, is cut off, or has weights
+/// of other types than 32-bit floats and 64-bit integers.
 std::optional<OnnxGraph> onnx_graph(std::string_view file);
 
 }  // namespace marey::detect::network

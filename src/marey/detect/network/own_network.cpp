@@ -8,7 +8,7 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr int kTurned = 64;  // pixels of which all channels are written together: they stay in the cache
+constexpr int kBlockPixels = 64;  // numerical: pixels of which all channels are written together: they stay in the cache
 constexpr LayerKernels::Limits kUnlimited{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
 
 /// The first and the one behind the last output of which all taps lie within `length` values.
@@ -73,7 +73,7 @@ void OwnNetwork::by_channel(const Layer& layer) {
       const int before = x * stride - layer.left, first = std::max(0, -before);
       const int last = std::min(layer.size_x, from.columns - before);
       LayerKernels::Taps taps{};
-      taps.down = from.row_step(), taps.beside = from.step, taps.next = static_cast<std::ptrdiff_t>(stride) * from.step;
+      taps.down = from.row_step(), taps.across = from.step, taps.next = static_cast<std::ptrdiff_t>(stride) * from.step;
       taps.weights_down = static_cast<std::ptrdiff_t>(layer.size_x) * from.step;
       taps.rows = std::max(0, last_row - first_row), taps.columns = std::max(0, last - first);
       taps.values =
@@ -114,9 +114,9 @@ void OwnNetwork::enlarge(const Layer& layer) {
     kernels_->sum(at(layer.from[0]) + near * from.row_step(), 0.75F, at(layer.from[0]) + far * from.row_step(), 0.25F, row,
                   kUnlimited, line_.data());
     for (int x = 0; x < to.columns; ++x) {
-      const int beside = std::clamp(x % 2 == 0 ? x / 2 - 1 : x / 2 + 1, 0, from.columns - 1);
+      const int across = std::clamp(x % 2 == 0 ? x / 2 - 1 : x / 2 + 1, 0, from.columns - 1);
       kernels_->sum(line_.data() + static_cast<std::size_t>(x / 2) * step, 0.75F,
-                    line_.data() + static_cast<std::size_t>(beside) * step, 0.25F, step, kUnlimited,
+                    line_.data() + static_cast<std::size_t>(across) * step, 0.25F, step, kUnlimited,
                     at(layer.to) + y * to.row_step() + static_cast<std::ptrdiff_t>(x) * to.step);
     }
   }
@@ -148,8 +148,8 @@ void OwnNetwork::compute(const Layer& layer) {
 }
 
 Tensor OwnNetwork::tensor(std::size_t output) {
-  const LayerValue& value = plan_.values[plan_.wanted[output]];
-  const float* from = at(plan_.wanted[output]);
+  const LayerValue& value = plan_.values[plan_.required[output]];
+  const float* from = at(plan_.required[output]);
   Tensor tensor;
   tensor.name = plan_.outputs[output];
   tensor.shape = value.shape;
@@ -160,8 +160,8 @@ Tensor OwnNetwork::tensor(std::size_t output) {
   tensor.shape = {1, value.channels, value.rows, value.columns};
   const int pixels = value.rows * value.columns;
   tensor.values.resize(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(value.channels));
-  for (int begin = 0; begin < pixels; begin += kTurned) {
-    const int end = std::min(pixels, begin + kTurned);
+  for (int begin = 0; begin < pixels; begin += kBlockPixels) {
+    const int end = std::min(pixels, begin + kBlockPixels);
     for (int c = 0; c < value.channels; ++c) {
       float* to = tensor.values.data() + static_cast<std::ptrdiff_t>(c) * pixels;
       for (int i = begin; i < end; ++i) to[i] = from[static_cast<std::ptrdiff_t>(i) * value.step + c];
@@ -174,7 +174,7 @@ std::vector<Tensor> OwnNetwork::run(const float* planes) {
   take(planes);
   for (const Layer& layer : plan_.layers) compute(layer);
   std::vector<Tensor> tensors;
-  for (std::size_t i = 0; i < plan_.wanted.size(); ++i) tensors.push_back(tensor(i));
+  for (std::size_t i = 0; i < plan_.required.size(); ++i) tensors.push_back(tensor(i));
   return tensors;
 }
 

@@ -171,13 +171,13 @@ class PlainNetwork {
   std::mt19937 random_{3};
 };
 
-void expect_agreement(PlainNetwork& plain, const std::vector<std::string>& wanted) {
-  auto plan = layer_plan(plain.graph(), plain.sizes(), wanted);
-  ASSERT_TRUE(plan) << "of " << wanted.front();
+void expect_agreement(PlainNetwork& plain, const std::vector<std::string>& required) {
+  auto plan = layer_plan(plain.graph(), plain.sizes(), required);
+  ASSERT_TRUE(plan) << "of " << required.front();
   OwnNetwork network(std::move(*plan));
   for (int again = 0; again < 2; ++again) {  // what the first run leaves behind changes nothing
     const std::vector<Tensor> outputs = network.run(plain.value("image").floats.data());
-    ASSERT_EQ(outputs.size(), wanted.size());
+    ASSERT_EQ(outputs.size(), required.size());
     for (const Tensor& output : outputs) {
       const OnnxTensor& due = plain.value(output.name);
       ASSERT_EQ(output.shape, due.shape) << output.name;
@@ -235,10 +235,10 @@ TEST(OwnNetwork, SameOnEveryLevelOfTheProcessor) {
   const auto all = kernels_of_every_target(layer_kernels);
   ASSERT_FALSE(all.empty());
   PlainNetwork plain = small_network();
-  const std::vector<std::string> wanted{"certain rows"};
+  const std::vector<std::string> required{"certain rows"};
   std::vector<float> first;
   for (const auto& [name, table] : all) {
-    auto plan = layer_plan(plain.graph(), plain.sizes(), wanted);
+    auto plan = layer_plan(plain.graph(), plain.sizes(), required);
     ASSERT_TRUE(plan);
     const std::vector<Tensor> outputs = OwnNetwork(std::move(*plan), *table).run(plain.value("image").floats.data());
     if (first.empty()) first = outputs[0].values;
@@ -251,8 +251,8 @@ TEST(LayerPlan, HasNoneForOtherLayers) {
     PlainNetwork plain(16, 8, 8);
     plain.convolve("image", "a", 16, 1, 3, 1, {1, 1, 1, 1});
     change(plain.graph());
-    const std::vector<std::string> wanted{"a"};
-    return layer_plan(plain.graph(), plain.sizes(), wanted).has_value();
+    const std::vector<std::string> required{"a"};
+    return layer_plan(plain.graph(), plain.sizes(), required).has_value();
   };
   EXPECT_TRUE(has_plan([](OnnxGraph&) {}));
   EXPECT_FALSE(has_plan([](OnnxGraph& graph) { graph.nodes[0].kind = "ConvTranspose"; }));

@@ -48,7 +48,7 @@ FindPeople detector_of(const std::string& file) {
   const auto network = std::make_shared<detect::network::LoadedNetwork>(
       detect::network::read_network_model(file.empty() ? detect::keypoints::model_file("person.toml") : file));
   return [network](const Image& image) {
-    // Not more pixels are converted than the network looks at.
+    // Not more pixels are converted than the network receives.
     const cv::Size input = network->model().input;
     Image small = image;
     double scale = 1;
