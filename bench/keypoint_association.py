@@ -1,21 +1,23 @@
 #!/usr/bin/env python3
 """Who is who across cameras: simulated people a metre apart, four cameras, as `marey reconstruct --targets keypoints` and Pose2Sim place them from the same points.
 
-A swap: a person's nearest true person is another one than in the frame before. A wrong limb: an elbow, wrist, knee or ankle more than 0.2 m from where the person's own truly is.
+Joint error: the median distance of hips, knees, ankles, shoulders, elbows and wrists from where the nearest true person's are. A swap: a person's nearest true person is another one than in the frame before. A wrong limb: an elbow, wrist, knee or ankle more than 0.2 m from where the person's own truly is.
 Without PYTHON, which imports Pose2Sim (BSD-3), only Marey runs: pip install --no-deps pose2sim rtoml anytree c3d, and its requirements.
 
-Usage: bench/keypoint_association.py MAREY [PYTHON]
+Usage: bench/keypoint_association.py MAREY [PYTHON [FRAMES]]
 """
 import csv
 import json
 import math
 import os
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
 
 CAMERAS, RATE, FRAMES, SIZE = 4, 50, 600, (1080, 1920)
+JOINTS = ("hip", "knee", "ankle", "shoulder", "elbow", "wrist")
 LIMBS = ("elbow", "wrist", "knee", "ankle")
 WRONG_M = 0.2
 PEER = """
@@ -47,6 +49,7 @@ def rows_of(path):
 
 def evaluated(placed, truth):
     swaps = wrong = limbs = there = 0
+    apart = []
     for frames in placed.values():
         before = None
         for frame in sorted(frames):
@@ -64,11 +67,12 @@ def evaluated(placed, truth):
             there += 1
             swaps += before is not None and nearest != before
             before = nearest
+            apart += [math.dist(place, truth[nearest][frame][point]) for point, place in points.items() if point.endswith(JOINTS) and point in truth[nearest][frame]]
             for point, place in points.items():
                 if point.endswith(LIMBS) and point in truth[nearest][frame]:
                     limbs += 1
                     wrong += math.dist(place, truth[nearest][frame][point]) > WRONG_M
-    return swaps, wrong, limbs, there
+    return swaps, wrong, limbs, there, apart
 
 
 def marey(*arguments):
@@ -89,6 +93,7 @@ def write_for_peer(folder):
             frames[one["image_id"]].append({"person_id": [-1], "pose_keypoints_2d": one["keypoints"]})
         for frame, people in frames.items():
             (pose / f"cam{c}_{frame:012}_keypoints.json").write_text(json.dumps({"version": 1.3, "people": people}))
+    (folder / "peer" / "Config.toml").write_text("")  # by which it knows its folder
     (folder / "peer" / "calibration").mkdir()
     marey("convert", folder / "rig.toml", folder / "peer" / "calibration" / "Calib.toml", "--format", "aniposelib")
 
@@ -143,7 +148,7 @@ def with_peer(folder):
 
 
 def main():
-    print("| people | nearest two, m | program | tracks | swaps a minute | wrong limbs, % | of the true people, % | placing, ms a frame |\n| --- " + "| --- " * 7 + "|")
+    print("| people | nearest two, m | program | tracks | swaps a minute | wrong limbs, % | joint error, mm | of the true people, % | placing, ms a frame |\n| --- " + "| --- " * 8 + "|")
     for people in (2, 3, 4, 6):
         sums, apart, times = {}, math.inf, []
         for seed in (1, 2):
@@ -157,18 +162,19 @@ def main():
                 for program, found in results.items():
                     if found is None:
                         continue
-                    entry = sums.setdefault(program, [0] * 5)
+                    entry = sums.setdefault(program, [0, 0, 0, 0, [], 0])
                     for i, value in enumerate((*evaluated(found, truth), len(found))):
                         entry[i] += value
         minutes = 2 * FRAMES / RATE / 60
-        for program, (swaps, wrong, limbs, there, tracks) in sums.items():
+        for program, (swaps, wrong, limbs, there, distances, tracks) in sums.items():
             ms = f"{sum(times) / len(times):.2f}" if program == "marey" else ""
-            print(f"| {people} | {apart:.2f} | {program} | {tracks / 2:g} | {swaps / minutes:.1f} | {100 * wrong / max(1, limbs):.2f} | "
+            print(f"| {people} | {apart:.2f} | {program} | {tracks / 2:g} | {swaps / minutes:.1f} | {100 * wrong / max(1, limbs):.2f} | {1000 * statistics.median(distances or [math.nan]):.1f} | "
                   f"{100 * there / (2 * people * FRAMES):.1f} | {ms} |", flush=True)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
+    if len(sys.argv) not in (2, 3, 4):
         sys.exit(__doc__)
-    MAREY, PYTHON = sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else None
+    MAREY, PYTHON = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else None
+    FRAMES = int(sys.argv[3]) if len(sys.argv) > 3 else FRAMES
     main()

@@ -53,6 +53,7 @@ class Notebooks(unittest.TestCase):
         environment = dict(os.environ)
         self.addCleanup(lambda: (os.environ.clear(), os.environ.update(environment)))
         os.environ.pop("MAREY_FILM", None)
+        os.environ.pop("MAREY_FILMS", None)
         jupyter = {name: str(self.folder / name.lower()) for name in ("IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_RUNTIME_DIR")}
         os.environ.update(jupyter, PATH=f"{self.folder / 'bin'}:{os.environ['PATH']}")
 
@@ -75,7 +76,7 @@ class Notebooks(unittest.TestCase):
 
     def test_kept_without_outputs(self):
         books = sorted((ROOT / "examples").glob("*.ipynb"))
-        self.assertEqual([book.stem for book in books], ["match", "street_video", "wand_to_c3d"])
+        self.assertEqual([book.stem for book in books], ["match", "street_video", "videos_to_bvh", "wand_to_c3d"])
         for path in books:
             book = nbformat.read(path, as_version=4)
             nbformat.validate(book)
@@ -121,6 +122,37 @@ class Notebooks(unittest.TestCase):
             true = truth[truth.label == name].sort_values("frame")[["x", "y", "z"]].to_numpy()
             self.assertLess(np.nanmedian(np.linalg.norm(places - true, axis=1)), 0.002, name)
         self.assert_picture("walk.png")
+
+    def assert_skeleton_of(self, text, frames, spread):
+        for bone, least, most in (("thigh", 330, 520), ("shank", 330, 500), ("forearm", 180, 320)):
+            for side in ("left", "right"):
+                length = self.number(text, rf"{side} {bone}: (\d+) mm")
+                self.assertTrue(least < length < most, f"{side} {bone}: {length} mm")
+                self.assertLess(self.number(text, rf"{side} {bone}: \d+ mm, spread (\d+) mm"), spread)
+        joints = self.number(text, r"(\d+) joints")
+        self.assertEqual(self.number(text, r"joints, (\d+) frames"), frames)
+        lines = (self.folder / "dance.bvh").read_text().splitlines()
+        rows = lines[next(i for i, line in enumerate(lines) if line.startswith("Frame Time")) + 1 :]
+        self.assertEqual(len(rows), frames)
+        self.assertGreaterEqual(len(rows[0].split()), 3 * joints)
+        self.assertGreater((self.folder / "person.toml").stat().st_size, 0)
+        self.assert_picture("dance.png")
+
+    def test_videos_to_bvh(self):
+        self.assert_skeleton_of(self.run_notebook("videos_to_bvh"), 300, 25)
+
+    def test_videos_to_bvh_of_ones_own(self):
+        data = pathlib.Path(os.environ.get("MAREY_DATA", ROOT.parent / "shared/data")) / "markerless"
+        models = pathlib.Path(os.environ.get("MAREY_MODELS", ROOT / "build/models"))
+        if not data.is_dir() or not (models / "pose_landmark_full.onnx").is_file():
+            self.skipTest(f"{data} or {models} is not here")
+        films = self.folder / "films"
+        films.mkdir()
+        for number in (1, 2, 3, 4):
+            (films / f"cam0{number}.mp4").symlink_to(data / f"videos/cam0{number}.mp4")
+        subprocess.run([MAREY, "convert", data / "calibration/Calib.qca.txt", films / "rig.toml", "--quiet"], check=True)
+        os.environ.update(MAREY_FILMS=str(films), MAREY_MODELS=str(models))
+        self.assert_skeleton_of(self.run_notebook("videos_to_bvh"), 100, 80)
 
     def test_match(self):
         text = self.run_notebook("match")

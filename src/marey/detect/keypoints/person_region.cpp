@@ -5,6 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/detect/network/halved_image.h"
+
 namespace marey::detect::keypoints {
 namespace {
 
@@ -76,7 +78,13 @@ cv::Mat crop_of(const Image& image, const PersonRegion& region) {
   part = cv::Rect(corner, part.br());
   PersonRegion in_part = region;
   in_part.centre -= Vector<2>(corner.x, corner.y);
-  return crop_of(image.part(part).bgr(), in_part);
+  Image from = image.part(part);
+  while (in_part.scale() > kCoarse && std::min(from.size().width, from.size().height) > 1) {
+    from = network::halved(from);
+    in_part.centre = (in_part.centre - Vector<2>::Constant(0.5)) / 2;
+    in_part.side /= 2;
+  }
+  return crop_of(from.bgr(), in_part);
 }
 
 }  // namespace marey::detect::keypoints

@@ -31,7 +31,8 @@ PersonRegion region_of(const Vector<2>& hips, const Vector<2>& rim);
 
 /// What a landmark network is shown: CV_8UC3 like `bgr`, kCrop × kCrop. Beyond the image's border its last pixels continue.
 cv::Mat crop_of(const cv::Mat& bgr, const PersonRegion& region);
-/// The same of an image as cameras deliver it: only the part that is needed is converted to colours.
+/// The same of an image as cameras deliver it: only the part that is needed is converted to colours, after it was halved as often
+/// as the crop permits.
 cv::Mat crop_of(const Image& image, const PersonRegion& region);
 
 }  // namespace marey::detect::keypoints

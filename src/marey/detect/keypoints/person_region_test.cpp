@@ -59,6 +59,23 @@ TEST(PersonRegion, ALargeRegionIsAveragedAtItsPlaceToo) {
   EXPECT_LT((region.in_image(sum / weight) - Vector<2>(919.5, 1219.5)).norm(), 0.5);
 }
 
+TEST(PersonRegion, OfACamerasImageIsAtItsPlaceHowEverLarge) {
+  cv::Mat bgr = cv::Mat::zeros(2001, 1603, CV_8UC3);
+  bgr(cv::Rect(900, 1200, 41, 41)).setTo(cv::Scalar::all(255));
+  const Image image = Image::from_bgr(bgr);
+  for (const double side : {300.0, 600.0, 900.0, 1900.0}) {
+    const PersonRegion region{.centre = {903.7, 1201.2}, .side = side, .angle = 0.3};
+    const cv::Mat crop = crop_of(image, region);
+    Vector<2> sum = Vector<2>::Zero();
+    double weight = 0;
+    for (int y = 0; y < 256; ++y) {
+      for (int x = 0; x < 256; ++x)
+        sum += crop.at<cv::Vec3b>(y, x)[0] * Vector<2>(x + 0.5, y + 0.5), weight += crop.at<cv::Vec3b>(y, x)[0];
+    }
+    EXPECT_LT((region.in_image(sum / weight) - Vector<2>(920, 1220)).norm(), 0.4) << side;
+  }
+}
+
 TEST(PersonRegion, BeyondThePictureIsNoCrash) {
   const cv::Mat image = locations({240, 240});
   EXPECT_EQ(crop_of(image, {.centre = {-500, 100}, .side = 50, .angle = 0}).size(), cv::Size(256, 256));

@@ -1,9 +1,11 @@
 #include "marey/detect/network/inference.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include <opencv2/core/utils/logger.hpp>
@@ -12,6 +14,8 @@
 #include "marey/core/error.h"
 #include "marey/detect/network/convolution_layer.h"
 #include "marey/detect/network/half_weights.h"
+#include "marey/detect/network/onnx_graph.h"
+#include "marey/detect/network/own_network.h"
 
 namespace marey::detect::network {
 namespace {
@@ -48,17 +52,45 @@ std::string content_of(const std::string& path) {
 
 }  // namespace
 
+/// Own loops where they have all of the network's layers, else OpenCV's.
 struct Inference::Engine::Net {
-  cv::dnn::Net net;
+  std::string content;
+  std::optional<OnnxGraph> graph;
+  std::optional<OwnNetwork> own;
+  std::vector<int> sizes;             // of the input that `own` is for, and ...
+  std::vector<std::string> required;  // ... its outputs
+  std::optional<cv::dnn::Net> net;
   std::vector<std::string> outputs;
+
+  void load() {
+    use_own_convolutions();
+    net = cv::dnn::readNetFromONNX(content.data(), content.size());
+    net->setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+    outputs = net->getUnconnectedOutLayersNames();
+  }
+
+  /// Whether own loops do it.
+  bool prepare(const cv::Mat& blob, std::span<const std::string> names) {
+    if (!graph || names.empty()) return false;
+    const std::vector<int> now(blob.size.p, blob.size.p + blob.dims);
+    if (own && now == sizes && std::equal(names.begin(), names.end(), required.begin(), required.end())) return true;
+    auto plan = layer_plan(*graph, now, names);
+    if (!plan) return false;
+    own.emplace(std::move(*plan));
+    sizes = now;
+    required.assign(names.begin(), names.end());
+    return true;
+  }
 };
 
 Inference::Engine::Engine(const std::string& onnx) : net_(std::make_unique<Net>()) {
-  use_own_convolutions();
-  const std::string content = with_full_weights(content_of(onnx));
-  net_->net = cv::dnn::readNetFromONNX(content.data(), content.size());
-  net_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-  net_->outputs = net_->net.getUnconnectedOutLayersNames();
+  net_->content = with_full_weights(content_of(onnx));
+  net_->graph = onnx_graph(net_->content);
+  if (net_->graph && has_known_layers(*net_->graph)) {
+    net_->outputs = net_->graph->outputs;
+  } else {
+    net_->load();
+  }
 }
 
 Inference::Engine::~Engine() = default;
@@ -66,9 +98,11 @@ Inference::Engine::~Engine() = default;
 std::vector<Tensor> Inference::Engine::run(const cv::Mat& blob, std::span<const std::string> required) {
   const std::vector<std::string> names =
       required.empty() ? net_->outputs : std::vector<std::string>(required.begin(), required.end());
-  net_->net.setInput(blob);
+  if (net_->prepare(blob, names)) return net_->own->run(blob.ptr<float>());
+  if (!net_->net) net_->load();
+  net_->net->setInput(blob);
   std::vector<cv::Mat> outputs;
-  net_->net.forward(outputs, names);
+  net_->net->forward(outputs, required.empty() ? net_->outputs : names);
   std::vector<Tensor> tensors;
   for (std::size_t i = 0; i < outputs.size(); ++i) tensors.push_back(tensor_of(outputs[i], names[i]));
   return tensors;
@@ -95,9 +129,10 @@ void Inference::each(std::size_t count, const std::function<void(Engine&, std::s
   const auto threads = std::min<std::size_t>(count, static_cast<std::size_t>(std::clamp(cv::getNumThreads(), 1, kMaxThreads)));
   while (engines_.size() < threads) engines_.push_back(load());
   std::vector<std::exception_ptr> failed(threads);
+  std::atomic<std::size_t> next = 0;
   const auto fraction_of = [&](std::size_t thread) {
     try {
-      for (std::size_t i = thread; i < count; i += threads) work(*engines_[thread], i);
+      for (std::size_t i = next++; i < count; i = next++) work(*engines_[thread], i);
     } catch (...) {
       failed[thread] = std::current_exception();
     }

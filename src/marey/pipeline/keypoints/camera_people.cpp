@@ -83,7 +83,7 @@ std::span<const PersonRegion> CameraPeople::regions() {
   return regions_;
 }
 
-void CameraPeople::take(std::span<const Body> bodies, Timestamp now) {
+void CameraPeople::take(std::span<const Body> bodies, Timestamp now, bool full) {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     Known& known = known_[i];
     const Body& body = bodies[i];
@@ -100,7 +100,7 @@ void CameraPeople::take(std::span<const Body> bodies, Timestamp now) {
     }
     known.detected = now;
     known.region = body.next;
-    known.ended = seconds(now - known.confirmed) > options_.unplaced_s;
+    known.ended = seconds(now - known.confirmed) > (full ? options_.surplus_s : options_.unplaced_s);
   }
   end_doubles();
   const auto gone = std::erase_if(known_, [](const Known& known) { return known.ended; });

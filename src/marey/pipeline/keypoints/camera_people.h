@@ -17,6 +17,7 @@ namespace marey::pipeline::keypoints {
 struct CameraPeopleOptions {
   double presence = 0.5;         ///< from which on there is a person, unswept
   double unplaced_s = 2;         ///< a region whose person no other camera confirms ends after this, unswept
+  double surplus_s = 0.5;        ///< and where all people who are wanted are in the image, that of another one after this, unswept
   double search_s = 2;           ///< the detector runs at least this often while people may come, unswept
   double retry_s = 0.5;          ///< and at most this often when a region has ended or is absent, unswept
   double expect_s = 0.2;         ///< between two searches for people that only other cameras see, unswept
@@ -42,8 +43,8 @@ class CameraPeople {
 
   /// Where to search in the next image. Valid until the next call of anything.
   std::span<const detect::keypoints::PersonRegion> regions();
-  /// What the network saw in each of them.
-  void take(std::span<const detect::keypoints::Body> bodies, Timestamp now);
+  /// What the network saw in each of them. `full`: all people that are wanted are in the image.
+  void take(std::span<const detect::keypoints::Body> bodies, Timestamp now, bool full = false);
 
   /// The people of the last image, those that the network saw in `min_detector_runs` images at least; `placed` says which of them
   /// other cameras confirm.

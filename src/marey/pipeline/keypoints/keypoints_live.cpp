@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "marey/core/keypoint_sets.h"
 #include "marey/core/stage_times.h"
 #include "marey/detect/keypoints/model_folder.h"
+#include "marey/detect/network/halved_image.h"
 #include "marey/detect/network/run_network.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
@@ -46,9 +48,15 @@ FindPeople detector_of(const std::string& file) {
   const auto network = std::make_shared<detect::network::LoadedNetwork>(
       detect::network::read_network_model(file.empty() ? detect::keypoints::model_file("person.toml") : file));
   return [network](const Image& image) {
+    // Not more pixels are converted than the network receives.
+    const cv::Size input = network->model().input;
+    Image small = image;
+    double scale = 1;
+    for (; small.size().width >= 2 * input.width && small.size().height >= 2 * input.height; scale *= 2)
+      small = detect::network::halved(small);
     std::vector<Box> boxes;
-    for (const detect::network::Candidate& one : network->find(image.bgr()))
-      boxes.push_back({one.left, one.top, one.right - one.left, one.bottom - one.top});
+    for (const detect::network::Candidate& one : network->find(small.bgr()))
+      boxes.push_back({scale * one.left, scale * one.top, scale * (one.right - one.left), scale * (one.bottom - one.top)});
     return boxes;
   };
 }
@@ -106,6 +114,7 @@ class KeypointsLive final : public corridor::Stage {
   void report_observed(Instant& instant) const;
   void keep();
   bool is_full(std::size_t camera) const;
+  bool fits(const rk::LocatedPerson& person, std::size_t camera) const;
 
   Rig rig_;
   double rate_hz_;
@@ -144,11 +153,29 @@ RecordingHeader KeypointsLive::header() const {
   return header;
 }
 
-/// All people that are wanted are known in this camera: no detector is needed.
+/// Whether a camera's view of a person is of who the other cameras see.
+bool KeypointsLive::fits(const rk::LocatedPerson& person, std::size_t camera) const {
+  const Keypoints<2>& body = in_images_[camera].people()[static_cast<std::size_t>(person.views[camera])];
+  Vector<2> low = Vector<2>::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const auto& point : body.points) {
+    if (point) low = low.cwiseMin(point->position), high = high.cwiseMax(point->position);
+  }
+  std::vector<double> residuals;
+  for (const auto& point : person.points) {
+    if (point) residuals.push_back(point->residual_px);
+  }
+  if (residuals.empty()) return false;
+  const auto middle = residuals.begin() + std::ssize(residuals) / 2;
+  std::nth_element(residuals.begin(), middle, residuals.end());
+  return *middle < options_.max_residual * (high - low).maxCoeff();
+}
+
+/// All people that are wanted are known in this camera: no detector is needed, and no search for others.
 bool KeypointsLive::is_full(std::size_t camera) const {
   if (options_.people.maximum == 0) return false;
   std::int64_t here = 0;
-  for (const rk::LocatedPerson& person : located_) here += person.views[camera] >= 0 && people_.track_of(person.id, 0) ? 1 : 0;
+  for (const rk::LocatedPerson& person : located_)
+    here += person.views[camera] >= 0 && people_.track_of(person.id, 0) && fits(person, camera) ? 1 : 0;
   return here >= options_.people.maximum;
 }
 
@@ -187,7 +214,7 @@ void KeypointsLive::inspect(const FrameSet& frames) {
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
     const std::size_t count = in_images_[c].size();
-    in_images_[c].take(std::span(bodies).subspan(begin, count), frames.time);
+    in_images_[c].take(std::span(bodies).subspan(begin, count), frames.time, is_full(c));
     begin += count;
     counts_[c].detections += std::ssize(in_images_[c].people());
   }
@@ -206,8 +233,10 @@ void KeypointsLive::location(const FrameSet& frames, double step_s) {
   located_ = views_.step(step_s, views);
   noise_.learn(located_, options_.gate_slack);
   for (const rk::LocatedPerson& person : located_) {
+    const bool numbered = people_.track_of(person.id, 0).has_value();
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
-      if (person.views[c] >= 0) in_images_[c].located(static_cast<std::size_t>(person.views[c]), frames.time);
+      if (person.views[c] >= 0 && (numbered || !is_full(c)))
+        in_images_[c].located(static_cast<std::size_t>(person.views[c]), frames.time);
     }
   }
 }

@@ -39,6 +39,7 @@ struct KeypointsLiveOptions {
   LocatedPeopleOptions people = {};
   double gate_slack = 1.3;               ///< factor of the noise for the association, as for recordings
   double min_visibility = 0.5;           ///< of a point that is reported as seen by a camera, unswept
+  double max_residual = 0.1;             ///< of a person on whose points all cameras agree: median, of their extent, unswept
   std::size_t min_points_in_image = 12;  ///< of a person that is searched in another camera's image, unswept
 };
 

@@ -287,5 +287,29 @@ TEST(KeypointsLive, TracksAtMostSoManyPeople) {
   }
 }
 
+TEST(KeypointsLive, DoesNotSearchThoseWhoAreNotWanted) {
+  LiveRoom room(small_room(3, 100, 8), {});
+  KeypointsLiveOptions options = room.options();
+  options.people.maximum = 1;
+  std::size_t regions = 0;
+  const FindBodies find = options.find_bodies;
+  options.find_bodies = [&](std::span<const detect::keypoints::Look> appearances) {
+    regions += appearances.size();
+    return find(appearances);
+  };
+  const auto stage = keypoints_live(room.scene.rig(), kRate, options);
+  std::map<TrackId, std::string> labels;
+  std::size_t settled = 0;
+  for (std::int64_t k = 0; k < 100; ++k) {
+    if (k == 50) settled = regions;
+    const auto people = people_of(stage->step(room.frames(k))[0], labels);
+    if (k > 20) {
+      EXPECT_EQ(people.size(), 1U) << k;
+    }
+  }
+  EXPECT_GT(settled, 50U * 4) << "three people at the beginning";
+  EXPECT_LT(regions - settled, 50U * 4 + 10) << "then one in each camera";
+}
+
 }  // namespace
 }  // namespace marey::pipeline::keypoints

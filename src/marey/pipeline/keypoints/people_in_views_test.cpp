@@ -79,6 +79,24 @@ TEST(PeopleInViews, KeepsPeopleApartWhoStandAMetreFromEachOther) {
   }
 }
 
+TEST(PeopleInViews, PlacesACrowd) {
+  RoomOptions options = people_room(60, 5, 8, 5);
+  options.volume = {14, 14, 2.5};
+  ObservedRoom room(options, {});
+  room.run_tracker();
+  std::vector<int> placed(60, 0);
+  int instants = 0;
+  for (const auto& [id, track] : room.tracks) {
+    for (std::size_t k = 0; k < track.instants.size(); ++k) {
+      if (track.instants[k].points.empty()) continue;
+      ++instants;
+      ++placed[static_cast<std::size_t>(room.actor_of(track.instants[k], track.first + k))];
+    }
+  }
+  EXPECT_GT(std::count_if(placed.begin(), placed.end(), [](int count) { return count >= 7; }), 54);
+  EXPECT_LT(instants, 8 * 60 * 1.1) << "few who are put together of two people's views";
+}
+
 TEST(PeopleInViews, TakesNobodyTwiceInACamera) {
   ObservedRoom room(people_room(6, 5, 40, 3), {});
   room.run_tracker();
