@@ -15,6 +15,7 @@ constexpr std::size_t kMaxSharedPoints = 240;  // unswept: of two views, that ar
 constexpr std::size_t kMinSharedPoints = 40;   // unswept
 constexpr int kDraws = 400;                    // unswept: of RANSAC
 constexpr double kFits = 0.5;                  // unswept: share of points that fit when it is one person at the right shift
+constexpr double kSameTime = 2;                // unswept: frames by which shifts of a pair may differ from what other pairs say
 constexpr std::size_t kMaxPeople = 6;          // unswept: of a camera, the longest seen, that are compared
 constexpr double kRelatedNoise = 0.5;          // unswept: times what the points state
 
@@ -45,6 +46,8 @@ class PeopleMatcher {
   Fit fit(const PairEdge& edge, double shift_s) const;
   std::optional<PairEdge> relate_people(PairEdge edge) const;
   std::vector<PairEdge> edges() const;
+  bool may_be_one(const PeopleMatch& match, int a, int b) const;
+  static void count_shared(PeopleMatch& match);
 
   const std::vector<CameraPeople>& cameras_;
   double max_offset_s_;
@@ -129,31 +132,38 @@ std::vector<PairEdge> PeopleMatcher::edges() const {
   return found;
 }
 
+/// Whether two identities can be one: none of their people are in one camera at the same time.
+bool PeopleMatcher::may_be_one(const PeopleMatch& match, int a, int b) const {
+  for (std::size_t c = 0; c < cameras_.size(); ++c) {
+    for (std::size_t i = 0; i < match.identity[c].size(); ++i) {
+      for (std::size_t k = 0; match.identity[c][i] == a && k < match.identity[c].size(); ++k) {
+        const ImagePerson &x = cameras_[c].people[i], &y = cameras_[c].people[k];
+        if (match.identity[c][k] == b && x.first < y.end() && y.first < x.end()) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// The most surely related people are one first, and put their cameras on one clock; what contradicts them is not taken.
 PeopleMatch PeopleMatcher::run() {
   const std::size_t n = cameras_.size();
   PeopleMatch match;
   match.agreement.assign(n, std::vector<double>(n, 0));
-  for (const CameraPeople& camera : cameras_) match.identity.emplace_back(camera.people.size(), -1);
+  for (const CameraPeople& camera : cameras_) {
+    auto& own = match.identity.emplace_back(camera.people.size());  // each their own at first
+    std::iota(own.begin(), own.end(), match.people);
+    match.people += static_cast<int>(own.size());
+  }
   std::vector<std::size_t> group(n);
   std::iota(group.begin(), group.end(), std::size_t{0});
   std::vector<double> shift(n, 0);
-  const auto taken = [&](std::size_t camera, int identity, std::size_t person) {  // by another who is there at the same time
-    for (std::size_t p = 0; p < match.identity[camera].size(); ++p) {
-      if (p == person || match.identity[camera][p] != identity) continue;
-      const ImagePerson &x = cameras_[camera].people[p], &y = cameras_[camera].people[person];
-      if (x.first < y.end() && y.first < x.end()) return true;
-    }
-    return false;
-  };
   for (const PairEdge& edge : edges()) {
     const std::size_t a = edge.camera_a, b = edge.camera_b;
-    if (group[a] == group[b] && std::abs(edge.shift_s - (shift[b] - shift[a])) > 2 / grid_hz_) continue;  // another time
-    int &at_a = match.identity[a][edge.person_a], &at_b = match.identity[b][edge.person_b];
-    if (at_a >= 0 && at_b >= 0 && at_a != at_b) continue;
-    const int identity = at_a >= 0 ? at_a : at_b >= 0 ? at_b : match.people;
-    if (taken(a, identity, edge.person_a) || taken(b, identity, edge.person_b)) continue;
-    if (identity == match.people) ++match.people;
-    at_a = at_b = identity;
+    if (group[a] == group[b] && std::abs(edge.shift_s - (shift[b] - shift[a])) > kSameTime / grid_hz_) continue;
+    const int kept = match.identity[a][edge.person_a], joined_person = match.identity[b][edge.person_b];
+    if (kept != joined_person && !may_be_one(match, kept, joined_person)) continue;
+    for (auto& own : match.identity) std::replace(own.begin(), own.end(), joined_person, kept);
     match.agreement[a][b] = match.agreement[b][a] = std::max(match.agreement[a][b], edge.fraction);
     if (group[a] == group[b]) continue;
     const double by = edge.shift_s + shift[a] - shift[b];  // all of b's group moves so that b fits to a
@@ -164,7 +174,27 @@ PeopleMatch PeopleMatcher::run() {
   }
   for (std::size_t c = 0; c < n; ++c)
     match.offsets_s.push_back(cameras_[c].offset_s + (group[c] == group[0] ? shift[c] - shift[0] : 0));
+  count_shared(match);
   return match;
+}
+
+/// Numbers those who are in several cameras from 0; the others get −1.
+void PeopleMatcher::count_shared(PeopleMatch& match) {
+  std::vector<int> number(static_cast<std::size_t>(match.people), -1), seen_by(number.size(), 0);
+  for (const auto& own : match.identity) {
+    std::vector<int> distinct = own;
+    std::sort(distinct.begin(), distinct.end());
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    for (const int identity : distinct) ++seen_by[static_cast<std::size_t>(identity)];
+  }
+  match.people = 0;
+  for (auto& own : match.identity) {
+    for (int& identity : own) {
+      const auto i = static_cast<std::size_t>(identity);
+      if (seen_by[i] >= 2 && number[i] < 0) number[i] = match.people++;
+      identity = number[i];
+    }
+  }
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ constexpr double kFocalPrior = 0.5;                            // unswept: relat
 constexpr double kFocalOfTwo = 0.1;                            // unswept: the same where two cameras alone see it
 constexpr double kEqualLenses = 0.01;                          // unswept: relative, between cameras of one make
 constexpr double kNotWorse = 1.1;                              // unswept: noise, times that of free lenses
-constexpr double kDistortionPrior = 0.02;                      // unswept: of the first radial term
+constexpr double kDistortionPrior = 0.05;                      // unswept: of the first radial term
 constexpr std::size_t kGrownPoints = 160;                      // unswept: a camera, by which the rig grows
 constexpr std::size_t kMaxPoints = 6000;                       // unswept: in the last adjustment
 constexpr std::size_t kOffsetPoints = 1200;                    // unswept: while offsets are found
@@ -205,7 +205,6 @@ void PeopleCalibration::grow() {
           names[c]);
   }
   double best = std::numeric_limits<double>::infinity();
-  std::string cause;
   const bool any_unknown = std::any_of(in_.rig.cameras.begin(), in_.rig.cameras.end(), [](const RigCamera& c) { return !c.lens; });
   for (const double guess : kFocalGuesses) {
     if (!any_unknown && guess != kFocalGuesses.front()) break;
@@ -230,15 +229,15 @@ void PeopleCalibration::grow() {
       for (const auto& error : errors) cost += error ? std::min(cap, error->squaredNorm()) : cap;
       cost += cap * static_cast<double>(required - std::min(required, errors.size()));
       if (cost < best) best = cost, growth_ = std::move(growth);
-    } catch (const Error& error) {
-      if (cause.empty()) cause = error.what();
+    } catch (const Error&) {
+      continue;  // another guess may do
     }
   }
   if (!std::isfinite(best))
     throw Error(
-        "the cameras' views of people do not make one geometry: let one person walk through the whole volume, near and far, "
-        "in another place than a line ({})",
-        cause);
+        "{}",
+        "the cameras' views of people do not make one geometry: let one person walk through the whole volume, near and far, in "
+        "another place than a line; check the lenses that the rig gives");
 }
 
 void PeopleCalibration::fill(bundle::Bundle& bundle) {
