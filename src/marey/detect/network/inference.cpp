@@ -73,13 +73,12 @@ struct Inference::Engine::Net {
   bool prepare(const cv::Mat& blob, std::span<const std::string> names) {
     if (!graph || names.empty()) return false;
     const std::vector<int> now(blob.size.p, blob.size.p + blob.dims);
-    if (own && now == sizes && std::equal(names.begin(), names.end(), required.begin(), required.end())) return true;
-    auto plan = layer_plan(*graph, now, names);
-    if (!plan) return false;
-    own.emplace(std::move(*plan));
+    if (now == sizes && std::equal(names.begin(), names.end(), required.begin(), required.end())) return own.has_value();
     sizes = now;
     required.assign(names.begin(), names.end());
-    return true;
+    own.reset();
+    if (auto plan = layer_plan(*graph, now, names)) own.emplace(std::move(*plan));
+    return own.has_value();
   }
 };
 

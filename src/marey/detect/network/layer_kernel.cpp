@@ -4,6 +4,8 @@
 // clang-format off
 #include "marey/detect/network/layer_kernel.h"
 
+#include <algorithm>
+
 #include "marey/detect/kernel_targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -25,7 +27,8 @@ using Limits = LayerKernels::Limits;
 constexpr int kLane = LayerKernels::kLane, kStep = static_cast<int>(hn::MaxLanes(LayerFloats()));
 constexpr int kTogether = kStep == kLane ? 1 : 2;  // vectors of output channels
 constexpr int kPixels = kStep == kLane ? 12 : 6;   // with which their sums fill the registers
-constexpr int kPart = kStep * kTogether;           // output channels
+constexpr std::ptrdiff_t kBlockFloats = 48 * 1024;
+constexpr int kPart = kStep * kTogether;  // output channels
 
 struct Product {
   LayerKernels::Pixels pixels;
@@ -72,32 +75,45 @@ HWY_INLINE void product_of(const Product& p, Limits limits) {
   }
 }
 
-/// All output channels of `count` pixels, which stay in the cache.
+/// kLane output channels of `count` pixels.
 template <int count>
-void pixels_of(Product p, int lanes, Limits limits) {
-  for (int lane = 0; lane < lanes; ++lane) {
-    for (int part = 0; part < kLane; part += kPart) {
-      Product one = p;
-      one.weights += part, one.bias += part, one.out += part;
-      if (one.added != nullptr) one.added += part;
-      product_of<count>(one, limits);
-    }
-    p.weights += static_cast<std::ptrdiff_t>(p.pixels.inputs) * p.pixels.segments * kLane, p.bias += kLane, p.out += kLane;
-    if (p.added != nullptr) p.added += kLane;
+HWY_INLINE void lane_of(const Product& p, Limits limits) {
+  for (int part = 0; part < kLane; part += kPart) {
+    Product one = p;
+    one.weights += part, one.bias += part, one.out += part;
+    if (one.added != nullptr) one.added += part;
+    product_of<count>(one, limits);
   }
 }
 
-void product(const LayerKernels::Pixels& pixels, int count, const float* weights, const float* bias, int lanes, Limits limits,
-             const float* added, float* out, std::ptrdiff_t out_step) {
-  Product p{pixels, weights, bias, added, out, out_step};
+/// kLane output channels of a block of pixels.
+void block_of(Product p, int count, Limits limits) {
   const auto advance = [&](int by) {
-    p.pixels.values += by * pixels.step, p.out += by * out_step;
-    if (p.added != nullptr) p.added += by * out_step;
+    p.pixels.values += by * p.pixels.step, p.out += by * p.out_step;
+    if (p.added != nullptr) p.added += by * p.out_step;
     count -= by;
   };
-  while (count >= kPixels) pixels_of<kPixels>(p, lanes, limits), advance(kPixels);
-  while (count >= 4) pixels_of<4>(p, lanes, limits), advance(4);
-  while (count > 0) pixels_of<1>(p, lanes, limits), advance(1);
+  while (count >= kPixels) lane_of<kPixels>(p, limits), advance(kPixels);
+  while (count >= 4) lane_of<4>(p, limits), advance(4);
+  while (count > 0) lane_of<1>(p, limits), advance(1);
+}
+
+/// Block by block: its pixels stay in the second cache while all output channels are computed of them, and a lane's weights in the
+/// first one while all of its pixels are.
+void product(const LayerKernels::Pixels& pixels, int count, const float* weights, const float* bias, int lanes, Limits limits,
+             const float* added, float* out, std::ptrdiff_t out_step) {
+  const std::ptrdiff_t inputs = static_cast<std::ptrdiff_t>(pixels.inputs) * pixels.segments;
+  const int block = kPixels * std::max(1, static_cast<int>(kBlockFloats / (inputs * kPixels)));
+  for (int begin = 0; begin < count; begin += block) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      const std::ptrdiff_t first = begin * out_step + static_cast<std::ptrdiff_t>(lane) * kLane;
+      Product p{
+          pixels,  weights + lane * inputs * kLane, bias + lane * kLane, added == nullptr ? nullptr : added + first, out + first,
+          out_step};
+      p.pixels.values += begin * pixels.step;
+      block_of(p, std::min(block, count - begin), limits);
+    }
+  }
 }
 
 template <int count>

@@ -220,8 +220,17 @@ bool Planner::pad(const OnnxNode& node) {
   if (!from || by == nullptr || by->integers.size() != 8) return false;
   if (with != nullptr && !(with->floats.size() == 1 && with->floats[0] == 0)) return false;
   const std::vector<std::int64_t>& n = by->integers;
-  if (n[0] != 0 || n[1] != 0 || n[4] != 0 || n[5] != 0) return false;
   if (std::any_of(n.begin(), n.end(), [](std::int64_t one) { return one < 0 || one > kMaxSide; })) return false;
+  if (n[0] != 0 || n[1] != 0 || n[4] != 0) return false;
+  if (n[5] > 0) {  // channels behind the others
+    const auto image = this->image(node, 0);
+    if (!image || n[2] + n[3] + n[6] + n[7] > 0) return false;
+    LayerValue made = plan_.values[*image];
+    made.channels += static_cast<int>(n[5]);
+    made.step = in_lanes(made.channels);
+    new_layer(node, Layer::Kind::widen, {*image}, made);
+    return true;
+  }
   padded_[node.outputs.front()] = {*from, static_cast<int>(n[2]), static_cast<int>(n[3]), static_cast<int>(n[6]),
                                    static_cast<int>(n[7])};
   return true;

@@ -32,6 +32,7 @@ struct Layer {
     pool,        ///< the largest of 2 × 2 pixels
     enlarge,     ///< twice the size, bilinear
     logistic,
+    widen,    ///< more channels, of zeros
     numbers,  ///< an image as rows of numbers: row, column, channel
     join,     ///< rows of numbers one after the other
   };

@@ -122,6 +122,15 @@ void OwnNetwork::enlarge(const Layer& layer) {
   }
 }
 
+void OwnNetwork::widen(const Layer& layer) {
+  const LayerValue &from = plan_.values[layer.from[0]], &to = plan_.values[layer.to];
+  const std::ptrdiff_t pixels = static_cast<std::ptrdiff_t>(from.rows) * from.columns;
+  for (std::ptrdiff_t i = 0; i < pixels; ++i) {
+    float* zeros = std::copy_n(at(layer.from[0]) + i * from.step, from.channels, at(layer.to) + i * to.step);
+    std::fill_n(zeros, to.step - from.channels, 0.0F);
+  }
+}
+
 void OwnNetwork::numbers(const Layer& layer) {
   const LayerValue& from = plan_.values[layer.from[0]];
   const std::ptrdiff_t pixels = static_cast<std::ptrdiff_t>(from.rows) * from.columns;
@@ -136,6 +145,7 @@ void OwnNetwork::compute(const Layer& layer) {
   if (layer.kind == Kind::by_channel) return by_channel(layer);
   if (layer.kind == Kind::pool) return pool(layer);
   if (layer.kind == Kind::enlarge) return enlarge(layer);
+  if (layer.kind == Kind::widen) return widen(layer);
   if (layer.kind == Kind::numbers) return numbers(layer);
   if (layer.kind == Kind::sum)
     return kernels_->sum(at(layer.from[0]), 1, at(layer.from[1]), 1, plan_.values[layer.to].floats(), layer.limits, out);

@@ -29,6 +29,7 @@ class OwnNetwork {
   void by_channel(const Layer& layer);
   void pool(const Layer& layer);
   void enlarge(const Layer& layer);
+  void widen(const Layer& layer);
   void numbers(const Layer& layer);
   Tensor tensor(std::size_t output);
 

@@ -100,6 +100,16 @@ class PlainNetwork {
     made_[to] = std::move(made);
   }
 
+  /// More channels, of zeros.
+  void widen(const std::string& from, const std::string& to, int by) {
+    graph_.weights[to + " p"] = {{8}, {}, {0, 0, 0, 0, 0, by, 0, 0}};
+    node("Pad", {from, to + " p"}, to);
+    OnnxTensor made = made_.at(from);
+    made.floats.resize(made.floats.size() + static_cast<std::size_t>(by * made.shape[2] * made.shape[3]), 0);
+    made.shape[1] += by;
+    made_[to] = std::move(made);
+  }
+
   void enlarge(const std::string& from, const std::string& to) {
     graph_.weights[to + " s"] = {{4}, {1, 1, 2, 2}, {}};
     node("Resize", {from, "", to + " s"}, to).texts = {{"mode", "linear"}, {"coordinate_transformation_mode", "half_pixel"}};
@@ -205,6 +215,9 @@ PlainNetwork small_network() {
   plain.enlarge("half", "double");
   plain.pool("double", "half again");
   plain.add("half", "half again", "both");
+  plain.widen("both", "more", 21);
+  plain.convolve("more", "of more", 45, 1, 1, 1, {0, 0, 0, 0});
+  plain.add("of more", "more", "sum of more");
   plain.convolve("both", "end", 7, 1, 2, 1, {0, 1, 0, 1});
   plain.logistic("end", "certain");
   plain.rows_of("certain", "certain rows", 7);
@@ -214,8 +227,8 @@ PlainNetwork small_network() {
 
 TEST(OwnNetwork, MakesWhatTheDefinitionSays) {
   PlainNetwork plain = small_network();
-  for (const char* name :
-       {"first", "wide", "channels", "narrow", "block", "half", "double", "half again", "both", "end", "certain", "certain rows"})
+  for (const char* name : {"first", "wide", "channels", "narrow", "block", "half", "double", "half again", "both", "more",
+                           "sum of more", "end", "certain", "certain rows"})
     expect_agreement(plain, {name});
   expect_agreement(plain, {"certain rows", "block", "both"});
   expect_agreement(plain, {"narrow", "block"});

@@ -1,0 +1,20 @@
+# Packs the networks of MODELS as the Debian package marey-models, out of the build in BUILD, under WORK: what is in it.
+find_program(dpkg_deb dpkg-deb)
+if(NOT EXISTS ${MODELS}/pose_landmark_lite.onnx OR NOT dpkg_deb)
+  message("skipped: script/model has not made the networks, or dpkg-deb is not here")
+  return()
+endif()
+file(REMOVE_RECURSE ${WORK})
+execute_process(COMMAND ${CPACK} -G DEB --config ${BUILD}/CPackConfig.cmake -D CPACK_COMPONENTS_ALL=models -D CPACK_PACKAGE_DIRECTORY=${WORK}
+                RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+file(GLOB package ${WORK}/marey-models_*_all.deb)
+if(NOT result EQUAL 0 OR NOT package)
+  message(FATAL_ERROR "no package:\n${output}")
+endif()
+execute_process(COMMAND ${dpkg_deb} -c ${package} OUTPUT_VARIABLE content COMMAND_ERROR_IS_FATAL ANY)
+foreach(file share/marey/models/person.onnx share/marey/models/person.toml share/marey/models/pose_landmark_lite.onnx
+             share/marey/models/pose_landmark_full.onnx share/doc/marey-models/copyright)
+  if(NOT content MATCHES "\\./usr/${file}\n")
+    message(FATAL_ERROR "${file} is not in ${package}:\n${content}")
+  endif()
+endforeach()
