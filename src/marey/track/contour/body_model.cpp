@@ -5,13 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include <opencv2/imgproc.hpp>
+
 namespace marey::track::contour {
 namespace {
 
-constexpr double kLumaBin = 20, kChromaBin = 9;         // levels
-constexpr double kTopOfBands = -0.5, kBottom = 0.5;     // heights
-constexpr double kHalfAcross = 0.48, kHalfDown = 0.72;  // heights that the coverage spans to either side
-constexpr double kFloor = 2e-8;                         // per level³: any colour may come
+constexpr double kLumaBin = 20, kChromaBin = 9;          // levels
+constexpr double kTopOfBands = -0.5, kBottom = 0.5;      // heights
+constexpr double kHalfAcross = 0.48, kHalfDown = 0.72;   // heights that the coverage spans to either side
+constexpr float kMixedRim = 1.6F, kMixedWeight = 0.15F;  // cells below the edge where colours mix with the ground's; weight there
+constexpr double kLeastCells = 3;                        // of a band
+constexpr double kFloor = 2e-8;                          // per level³: any colour may come
 
 /// Where a value lies among bins: the first of two neighbours, and the second one's share.
 struct BinPosition {
@@ -66,13 +70,16 @@ void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& fraction,
   std::vector<Histogram> now(kBands);
   std::array<double, kBands> weight{};
   for (Histogram& one : now) one.fill(0);
+  cv::Mat depth;
+  cv::distanceTransform(fraction > 0.5F, depth, cv::DIST_L2, 3);
   for (int y = 0; y < fraction.rows; ++y) {
     const int band = band_of((patch.pixel({0, y}).y() - centre.y()) / height, kBands);
     for (int x = 0; x < fraction.cols; ++x) {
       const float covered = fraction.at<float>(y, x);
       if (covered < 0.7F) continue;
-      for_bins<kLuma, kChroma>(patch.colour.at<cv::Vec3f>(y, x), [&](int bin, float part) { now[band][bin] += part; });
-      weight[band] += 1;
+      const float own = depth.at<float>(y, x) > kMixedRim ? 1 : kMixedWeight;
+      for_bins<kLuma, kChroma>(patch.colour.at<cv::Vec3f>(y, x), [&](int bin, float part) { now[band][bin] += own * part; });
+      weight[band] += own;
     }
   }
   if (colours_.empty()) {
@@ -80,7 +87,7 @@ void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& fraction,
     for (Histogram& one : colours_) one.fill(0);
   }
   for (int band = 0; band < kBands; ++band) {
-    if (weight[band] < 4) continue;
+    if (weight[band] < kLeastCells) continue;
     const auto old = static_cast<float>(known_ ? 1 - rate : 0), fresh = static_cast<float>((known_ ? rate : 1) / weight[band]);
     for (std::size_t bin = 0; bin < now[band].size(); ++bin)
       colours_[band][bin] = old * colours_[band][bin] + fresh * now[band][bin];

@@ -26,6 +26,15 @@ cv::Mat in_cells(const cv::Mat& plane, const cv::Size& cells) {
   return result;
 }
 
+/// A plane moved to the left by this many cells.
+cv::Mat moved_left(const cv::Mat& plane, double by) {
+  constexpr double kLittle = 0.05;
+  if (std::abs(by) < kLittle) return plane;
+  cv::Mat moved;
+  cv::warpAffine(plane, moved, cv::Matx23d(1, 0, -by, 0, 1, 0), plane.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return moved;
+}
+
 enum Edge { top, right, bottom, left, none };
 struct Piece {
   Edge from, to;
@@ -121,15 +130,16 @@ ColourPatch cut_patch(const Image& image, const cv::Mat& mask, const Box& box, i
   const cv::Size cells(area.width / step, area.height / step);
   std::array<cv::Mat, 3> planes{in_cells(image.luma()(area), cells), {}, {}};
   const cv::Rect half(area.x / 2, area.y / 2, area.width / 2, area.height / 2);
+  const double shift = scene != nullptr ? scene->chroma_shift() / step : 0;
   for (int i = 1; i < 3; ++i) {
-    planes[i] =
-        image.is_colour() ? in_cells((i == 1 ? image.cb() : image.cr())(half), cells) : cv::Mat(cells, CV_32FC1, cv::Scalar(128));
+    planes[i] = image.is_colour() ? moved_left(in_cells((i == 1 ? image.cb() : image.cr())(half), cells), shift)
+                                  : cv::Mat(cells, CV_32FC1, cv::Scalar(128));
   }
   cv::merge(planes.data(), planes.size(), patch.colour);
   patch.mask = in_cells(mask(area), cells) / 255;
   if (scene != nullptr && scene->has(image.size())) {
     std::array<cv::Mat, 3> empty{in_cells(scene->luma(area), cells), {}, {}};
-    for (int i = 1; i < 3; ++i) empty[i] = in_cells(scene->chroma(i - 1, half), cells);
+    for (int i = 1; i < 3; ++i) empty[i] = moved_left(in_cells(scene->chroma(i - 1, half), cells), shift);
     cv::merge(empty.data(), empty.size(), patch.scene);
     patch.known = in_cells(scene->known(area), cells);
   }

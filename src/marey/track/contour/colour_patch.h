@@ -36,7 +36,7 @@ inline Box grown(const Box& box, double by) {
 }
 
 /// The part of the image (8 bits) within `box`, px; empty if they do not meet. `mask` is CV_8UC1, of the image's size.
-/// `scene`, if given and of that size too, is cut along.
+/// `scene`, if given and of that size too, is cut along, and chroma is moved to where its luma is.
 ColourPatch cut_patch(const Image& image, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene = nullptr);
 
 /// The cells whose centre lies within a polygon (px, even-odd): CV_32FC1, 1 or 0, of the patch's size.

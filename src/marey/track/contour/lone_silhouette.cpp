@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "marey/track/contour/body_share.h"
+#include "marey/track/contour/edge_matting.h"
 #include "marey/track/contour/shared_outlines.h"
+#include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
 
 namespace marey::track::contour {
@@ -20,6 +22,12 @@ constexpr double kLeft = 0.5;             // heights from where the centre is pr
 constexpr int kRounds = 3;                // of the fit, in every frame
 constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
+constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
+constexpr double kMinWidth = 0.4;         // heights: nobody counts as narrower
+constexpr double kSmeared = 0.015;        // heights; at crf 18, 35 and recorded, 60 px: 0.006, 0.025, 0.035; 120 px: 0.016
+constexpr int kKnown = 10;                // frames that a target's colours were learned from, from which on they decide; unswept
+constexpr double kTypical = 0.35;         // weight of the typical coverage in what is expected
+constexpr double kSame = 0.5;             // of a box that the outline's must share
 constexpr double kLearn = 0.1;            // weight of one frame in a target's appearance
 constexpr int kLearnEvery = 3;            // frames: its colours change little
 
@@ -30,6 +38,12 @@ Box bounds(std::span<const Vector<2>> polygon) {
     maximum = maximum.cwiseMax(corner);
   }
   return {minimum.x(), minimum.y(), maximum.x() - minimum.x(), maximum.y() - minimum.y()};
+}
+
+/// A body does not grow by half from one frame to the next: a shadow, or a neighbour, came with it.
+bool is_of_size(const Box& box, const ContourTarget& target) {
+  const Box before = target.predicted.box();
+  return box.height < kMaxGrowth * before.height && box.width < kMaxGrowth * std::max(before.width, kMinWidth * target.height);
 }
 
 }  // namespace
@@ -44,22 +58,45 @@ bool LoneSilhouettes::has_colours() const {
   return image_.luma().type() == CV_8UC1 && image_.size() == mask_.size() && !mask_.empty();
 }
 
-std::optional<geometry::ClosedSpline> LoneSilhouettes::fitted(const Detection& detected,
-                                                              const geometry::SplineFitOptions& options) {
+std::optional<geometry::ClosedSpline> LoneSilhouettes::fitted(const Detection& detected, const geometry::SplineFitOptions& options,
+                                                              const ContourTarget* target) {
   fraction_.release();
   if (!has_colours() || detected.outline.size() < 4) return fit_silhouette(detected, image_.luma(), options);
   const double height = detected.box.height;
-  patch_ = cut_patch(image_, mask_, grown(bounds(detected.outline), 2 + kNextTo * height), cell_step(height), scene_);
+  const bool known = target != nullptr && target->learned >= kKnown && target->held < kHeldTooLong && is_smeared(height);
+  Box about = bounds(detected.outline);
+  if (known) about = geometry::hull(about, target->predicted.box());
+  patch_ = cut_patch(image_, mask_, grown(about, 2 + kNextTo * height), cell_step(height), scene_);
   if (patch_.colour.empty()) return fit_silhouette(detected, image_.luma(), options);
-  fraction_ = body_fraction(patch_, cells_within(detected.outline, patch_), height);
+  fraction_ = known ? known_fraction(*target, detected) : body_fraction(patch_, cells_within(detected.outline, patch_), height);
   const std::vector<Vector<2>> edge = half_level_curve(fraction_, patch_);
-  if (geometry::polygon_area(edge) < kMinOfSilhouette * geometry::polygon_area(detected.outline)) {
+  const double typical = known ? target->default_area : geometry::polygon_area(detected.outline);
+  if (geometry::polygon_area(edge) < kMinOfSilhouette * typical) {
     fraction_.release();
     return fit_silhouette(detected, image_.luma(), options);
   }
   auto spline = fit_curve(edge, options);
-  if (!spline || geometry::intersection(spline->box(), detected.box).area() < 0.5 * detected.box.area()) return std::nullopt;
+  const Box same = known ? target->predicted.box() : detected.box;
+  if (!spline || geometry::intersection(spline->box(), same).area() < kSame * same.area()) return std::nullopt;
   return spline;
+}
+
+/// Whether colours run over limbs, so that a cell's own colour says little of what it shows.
+bool LoneSilhouettes::is_smeared(double height) const {
+  return scene_ != nullptr && scene_->smear() > kSmeared * height;
+}
+
+cv::Mat LoneSilhouettes::known_fraction(const ContourTarget& target, const Detection& detected) const {
+  RegionMember member;
+  member.body = &target.body;
+  member.polygon = target.predicted.polygon(4);
+  member.centre = target.predicted.centroid();
+  member.height = target.height;
+  member.foot = detected.box.bottom();
+  member.shifts = {Vector<2>::Zero()};
+  member.typical = kTypical;
+  const cv::Mat ground = divide_region(patch_, {&member, 1});
+  return matted_edge(patch_, member.whole, {}, ground, target.height);
 }
 
 bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, const Track<2>& track) {
@@ -68,11 +105,12 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   options.minimum = count;
   options.maximum = std::max(count, options.maximum);
   options.rounds = kRounds;
-  const auto spline = fitted(detected, options);
+  const auto spline = fitted(detected, options, &target);
   if (!spline || spline->count() < count) return false;
   const double growth = std::sqrt(spline->area() / target.default_area);
   const bool known = target.state == Outline::State::detected || target.learned > 0;
   if (known && target.held < kHeldTooLong && (growth < 1 / kMaxUnlike || growth > kMaxUnlike)) return false;
+  if (known && !is_of_size(spline->box(), target)) return false;
   const Vector<2> centre = spline->centroid();
   if ((centre - target.motion.centre()).norm() > kLeft * target.height) {
     target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthAmbiguity);

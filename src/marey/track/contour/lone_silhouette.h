@@ -25,13 +25,18 @@ class LoneSilhouettes {
   bool has_colours() const;  ///< whether the frame's image shows where a body ends
 
   /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
-  std::optional<geometry::ClosedSpline> fitted(const Detection& detected, const geometry::SplineFitOptions& options);
+  /// `target`, if its colours are known, says what to look for.
+  std::optional<geometry::ClosedSpline> fitted(const Detection& detected, const geometry::SplineFitOptions& options,
+                                               const ContourTarget* target = nullptr);
 
   /// The tracker says that `seen` is this target: its whole edge shows more than the lines, which a leg that swings leaves behind.
   /// False, and nothing is changed, where the silhouette is unlike the target (cut, or grown by something else).
   bool take(ContourTarget& target, const Detection& detected, const Track<2>& track);
 
  private:
+  bool is_smeared(double height) const;
+  /// What share of each of the patch's cells shows the target, by its learned colours and the scene's.
+  cv::Mat known_fraction(const ContourTarget& target, const Detection& detected) const;
   void learn(ContourTarget& target, const Vector<2>& centre, const Track<2>& track);
 
   geometry::SplineFitOptions fit_;

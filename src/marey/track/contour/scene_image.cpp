@@ -42,6 +42,7 @@ void SceneImage::observe(const Image& image, const cv::Mat& foreground) {
     cr_ = cb_.clone();
     next_ = -1;
   }
+  shift_.observe(image, foreground);
   for (int row = std::max(0, next_); row < frames_.rows; row += next_ < 0 ? 1 : kInterleave) learn_row(image, foreground, row);
   next_ = (next_ + 1) % kInterleave;
 }

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/image.h"
+#include "marey/track/contour/chroma_shift.h"
 
 namespace marey::track::contour {
 
@@ -23,9 +24,15 @@ class SceneImage {
   cv::Mat chroma(int which, const cv::Rect& half_area) const;
   cv::Mat known(const cv::Rect& area) const;
 
+  /// px by which this camera's chroma lies to the right of its luma.
+  double chroma_shift() const { return shift_.px(); }
+  /// px, standard deviation, by which it smears the colour of an edge; 0 while that is not known.
+  double smear() const { return shift_.smear(); }
+
  private:
   void learn_row(const Image& image, const cv::Mat& foreground, int row);
 
+  ChromaShift shift_;
   int next_ = -1;           // rows of this remainder are learned next; −1: all
   cv::Mat frames_;          // CV_8UC1: frames that a pixel was learned from, at most 255
   cv::Mat luma_, cb_, cr_;  // CV_16UC1: levels × 128

@@ -10,22 +10,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <opencv2/imgproc.hpp>
 
 #include "marey/track/contour/body_share.h"
+#include "marey/track/contour/ground_likelihood.h"
+#include "marey/track/contour/neighbour_votes.h"
 
 namespace marey::track::contour {
 namespace {
 
-constexpr double kEdgeSoftness = 0.03;                      // heights, of a predicted outline
-constexpr float kMinChance = 0.004F;                        // that a member covers a pixel, or does not
-constexpr double kGroundLuma = 11, kGroundChroma = 4;       // levels, standard deviation of the ground beside people
-constexpr double kGroundFloor = 2e-7;                       // per level³
-constexpr float kMaskOnGround = 0.2F, kMaskOnBody = 0.92F;  // chance of foreground
-constexpr double kTempered = 0.5;                           // exponent of likelihoods: neighbouring pixels err alike
-constexpr float kVote = 5;                                  // of all neighbours together, in log-odds
+constexpr double kEdgeSoftness = 0.03;  // heights, of a predicted outline
+constexpr float kMinChance = 0.004F;    // that a member covers a pixel, or does not
+constexpr double kTempered = 0.5;       // exponent of likelihoods: neighbouring pixels err alike
+constexpr float kVote = 8;              // of all neighbours together, in log-odds
 constexpr int kVotingRounds = 5;
 constexpr double kLargeStep = 0.1, kMiddleStep = 0.05, kSmallStep = 0.02;  // heights, of the search for a place
 constexpr int kSteps = 3;                                                  // of each size, at most
@@ -36,7 +34,7 @@ constexpr double kUndecided = 0.1;                                         // he
 class RegionDivision {
  public:
   RegionDivision(const ColourPatch& patch, std::span<RegionMember> members) : patch_(patch), members_(members) {
-    ground_likelihood();
+    inspect_ground();
     chances_.resize(members.size());
     likelihoods_.resize(members.size());
     for (std::size_t k = 0; k < members.size(); ++k) {
@@ -73,6 +71,7 @@ class RegionDivision {
         odds.back().at<float>(y, x) = std::log(left) + log_likelihood(ground_.at<float>(y, x));
       }
     }
+    const NeighbourVotes neighbours(patch_, ground_colours_);
     for (int round = 0; round <= kVotingRounds; ++round) {
       cv::Mat sum = cv::Mat::zeros(patch_.size(), CV_32FC1), maximum = odds[0].clone();
       for (std::size_t l = 0; l < labels; ++l) {
@@ -86,7 +85,7 @@ class RegionDivision {
       }
       for (std::size_t l = 0; l < labels; ++l) {
         fractions[l] /= sum;
-        if (round < kVotingRounds) cv::blur(fractions[l], votes[l], {3, 3});
+        if (round < kVotingRounds) votes[l] = neighbours.of(fractions[l]);
       }
     }
     hand_out(fractions);
@@ -97,26 +96,15 @@ class RegionDivision {
  private:
   static float log_likelihood(float value) { return static_cast<float>(kTempered) * std::log(value); }
 
-  void ground_likelihood() {
+  void inspect_ground() {
     cv::Mat taken = patch_.mask.clone();
     double height = 0;
     for (const RegionMember& member : members_) {
       cv::max(taken, cells_within(member.polygon, patch_), taken);
       height = std::max(height, member.height);
     }
-    const cv::Mat ground = ground_colours_ = ground_next_to(patch_, taken, height);
-    ground_.create(patch_.size(), CV_32FC1);
-    const double scale = std::pow(2 * std::numbers::pi, -1.5) / (kGroundLuma * kGroundChroma * kGroundChroma);
-    for (int y = 0; y < ground.rows; ++y) {
-      for (int x = 0; x < ground.cols; ++x) {
-        const cv::Vec3f off = patch_.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
-        const double square =
-            std::pow(off[0] / kGroundLuma, 2) + (off[1] * off[1] + off[2] * off[2]) / (kGroundChroma * kGroundChroma);
-        const float mask = patch_.mask.at<float>(y, x);
-        ground_.at<float>(y, x) = static_cast<float>((scale * std::exp(-0.5 * square) + kGroundFloor) *
-                                                     (mask * kMaskOnGround + (1 - mask) * (1 - kMaskOnGround)));
-      }
-    }
+    ground_colours_ = ground_next_to(patch_, taken, height);
+    ground_ = marey::track::contour::ground_likelihood(patch_, ground_colours_);
   }
 
   /// The chance that member k covers each cell, where it is now; and the likelihood of each cell's colour if so.
@@ -145,8 +133,8 @@ class RegionDivision {
         chance.at<float>(y, x) =
             std::clamp(static_cast<float>((1 - member.typical) * shape + member.typical * typical), kMinChance, 1 - kMinChance);
         const float mask = patch_.mask.at<float>(y, x);
-        likelihood.at<float>(y, x) = static_cast<float>(member.body->density(location.y(), patch_.colour.at<cv::Vec3f>(y, x))) *
-                                     (mask * kMaskOnBody + (1 - mask) * (1 - kMaskOnBody));
+        likelihood.at<float>(y, x) =
+            static_cast<float>(member.body->density(location.y(), patch_.colour.at<cv::Vec3f>(y, x))) * mask_chance_on_body(mask);
       }
     }
   }

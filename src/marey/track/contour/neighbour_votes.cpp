@@ -1,0 +1,61 @@
+#include "marey/track/contour/neighbour_votes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace marey::track::contour {
+namespace {
+
+constexpr float kEdge = 12;          // levels between neighbours, from which on they say little of each other
+constexpr float kEdgeChroma = 0.1F;  // weight of squared differences of chroma, whose edges are blurred; unswept
+constexpr float kSceneEdge = 5;      // levels between neighbours in the scene, from which on an edge is the scene's; unswept
+constexpr float kShare = 1.0F / 9;   // of one cell among nine
+constexpr std::array<std::array<int, 2>, 4> kBeside{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
+
+float step_of(const cv::Vec3f& a, const cv::Vec3f& b) {
+  const cv::Vec3f step = a - b;
+  return step[0] * step[0] + kEdgeChroma * (step[1] * step[1] + step[2] * step[2]);
+}
+
+}  // namespace
+
+NeighbourVotes::NeighbourVotes(const ColourPatch& patch, const cv::Mat& ground) {
+  const cv::Size size = patch.size();
+  for (std::size_t i = 0; i < kBeside.size(); ++i) {
+    const auto [right, below] = kBeside[i];
+    weights_[i] = cv::Mat::zeros(size, CV_32FC1);
+    for (int y = 0; y + below < size.height; ++y) {
+      const auto* here = patch.colour.ptr<cv::Vec3f>(y);
+      const auto* there = patch.colour.ptr<cv::Vec3f>(y + below);
+      const auto* scene_here = ground.ptr<cv::Vec3f>(y);
+      const auto* scene_there = ground.ptr<cv::Vec3f>(y + below);
+      auto* weight = weights_[i].ptr<float>(y);
+      for (int x = std::max(0, -right); x < std::min(size.width, size.width - right); ++x) {
+        const float scene = step_of(scene_here[x], scene_there[x + right]);
+        const float step = step_of(here[x], there[x + right]) / (1 + scene / (kSceneEdge * kSceneEdge));
+        weight[x] = kShare * std::exp(-step / (2 * kEdge * kEdge));
+      }
+    }
+  }
+}
+
+cv::Mat NeighbourVotes::of(const cv::Mat& chance) const {
+  cv::Mat sum = kShare * chance;
+  for (std::size_t i = 0; i < kBeside.size(); ++i) {
+    const auto [right, below] = kBeside[i];
+    for (int y = 0; y + below < chance.rows; ++y) {
+      const auto* weight = weights_[i].ptr<float>(y);
+      const auto* here = chance.ptr<float>(y);
+      const auto* there = chance.ptr<float>(y + below);
+      auto* sum_here = sum.ptr<float>(y);
+      auto* sum_there = sum.ptr<float>(y + below);
+      for (int x = std::max(0, -right); x < std::min(chance.cols, chance.cols - right); ++x) {
+        sum_here[x] += weight[x] * there[x + right];
+        sum_there[x + right] += weight[x] * here[x];
+      }
+    }
+  }
+  return sum;
+}
+
+}  // namespace marey::track::contour
