@@ -26,7 +26,7 @@ struct AimOptions {
 /// How well paint fits an aim.
 struct AimFit {
   Aim aim;
-  int agreeing = 0;      ///< sightings within the cut-off
+  int agreeing = 0;      ///< pieces of paint within the cut-off
   int lines = 0;         ///< with three of them or more
   double median_px = 0;  ///< distance of the agreeing ones
 };

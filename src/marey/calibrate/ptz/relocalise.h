@@ -2,9 +2,9 @@
 //
 // Bright ridges on green are a mask of what may be paint. Headings all over the pitch are tried, coarse first: of each, the model's
 // lines are laid over the distances to the mask, and what lies near counts, by its length in the image, what lies far counts
-// against it. The best few are refined on the paint itself. A heading counts only where most of the lines that it promises are
-// there, and no other one explains the image nearly as well: an image of another place, or a goal mouth alone, gives none. Cost:
-// some 50 ms. Reference: Thomas 2007 (a search over the possible views starts the tracker).
+// against it. The best few are refined on the paint itself and judged both ways: by the lines that they promise and are there, and by
+// the paint that lies on no line of theirs. A heading counts only where no other one explains the image nearly as well: an image of
+// another place, or a goal mouth alone, gives none. Headings about the last known one come first. Cost: some 50 ms. Reference: Thomas 2007 (a search over the possible views starts the tracker).
 #pragma once
 
 #include <optional>
@@ -17,11 +17,20 @@
 
 namespace marey::calibrate::ptz {
 
+/// Where the camera was aimed when it was last known, carried on by the flow, and how many frames ago that was.
+struct NearHeading {
+  geometry::Heading heading;
+  int frames = 0;
+};
+
 struct FindAgainOptions {
+  std::optional<NearHeading> near;  ///< headings about it are tried first, and preferred
   double min_log_focal = 0.3, max_log_focal = 2.4;
   double fraction = 0.55;  ///< of the samples of the lines in view that have to be paint,
   int lowest_count = 35;   ///< and this many of them,
   int lines = 3;           ///< on this many lines
+  double both = 0.4;       ///< √(share of the lines that is paint · share of the paint that is lines), at least
+  bool everywhere = true;  ///< not about the last heading alone
   double rival = 0.8;      ///< another heading may agree with at most this share of as many
 };
 

@@ -32,6 +32,13 @@ struct SmoothOptions {
 /// How unsure the flow's step is, at a focal length.
 Matrix<3> flow_covariance(const Rotated& rotated, double log_focal, const SmoothOptions& options);
 
+/// An aim after a step of the flow, and before one.
+Aim turned(const Aim& before, const Rotated& rotated, const SmoothOptions& options);
+Aim turned_back(const Aim& after, const Rotated& rotated, const SmoothOptions& options);
+
+/// Whether two aims of one frame, found independently, say the same.
+bool same_aim(const Aim& a, const Aim& b);
+
 /// The aim of every frame; nothing if the camera was lost, but for a few frames before it was found.
 std::vector<std::optional<Aim>> smooth_ptz(const std::vector<TurnRecord>& records, const geometry::Tripod& tripod, cv::Size size,
                                            const SmoothOptions& options);

@@ -36,6 +36,7 @@ struct TripodSolution {
   geometry::Tripod tripod;
   std::vector<geometry::Heading> headings;  ///< one a frame
   double cost = 0;
+  Matrix<geometry::Tripod::numbers> covariance;  ///< of the tripod's numbers, the headings left free
 };
 
 /// Refines a tripod and the headings of its frames on all that is seen in them, with a robust loss.
@@ -47,6 +48,7 @@ struct ClickedTripod {
   geometry::Tripod tripod;
   std::vector<geometry::Heading> headings;
   bool reflected = false;                     ///< the clicks' frame is left-handed: the world's y is the pitch's width less theirs
+  Matrix<geometry::Tripod::numbers> covariance;  ///< of the tripod's numbers
   std::vector<std::vector<double>> error_px;  ///< for each frame and click
   double median_px = 0;
 };

@@ -128,7 +128,7 @@ void write_ptz_match(const PtzFilesOptions& options, const std::string& folder, 
     movie.write(draw::Canvas(match.image()).take(), timestamp_from_seconds(match.time()));
     truth.write(truth_of(match));
     if (match.heading()) boxes.write(box_rows(match.detect(options.detector)));
-    ptz.rotations.push_back({match.time(), match.heading(), Matrix<3>::Zero()});
+    ptz.rotations.push_back({match.time(), match.heading(), Matrix<3>::Zero(), {}});
     clicks.inspect_at(match);
     hooks.advance({"frames", i + 1, frames});
   }
