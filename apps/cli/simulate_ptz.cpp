@@ -64,8 +64,10 @@ void add_simulate_ptz(Command& simulate) {
   command.seed(options->files.seed, "which of the endlessly many matches");
   command.wholes("--size", options->size, "px", 64, 8192, "of the images: width and height");
   command.number("--rate", options->files.match.rate_hz, "Hz", closed(0.1, 1000), "frames a second");
-  command.number("--exposure", options->exposure, "s", closed(0, 0.1), "of each frame: how long motion smears (default: the scene's)");
-  command.number("--noise", options->noise, "grey levels", closed(0, 50), "standard deviation of the pixels (default: the scene's)");
+  command.number("--exposure", options->exposure, "s", closed(0, 0.1),
+                 "of each frame: how long motion smears (default: the scene's)");
+  command.number("--noise", options->noise, "grey levels", closed(0, 50),
+                 "standard deviation of the pixels (default: the scene's)");
   command.number("--cut", options->cut_at, "s", closed(0, 10800),
                  "at this time another camera is shown, for two seconds (default: never)");
   command.number("--graphics", options->graphics_at, "s", closed(0, 10800),

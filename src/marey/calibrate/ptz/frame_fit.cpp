@@ -8,10 +8,10 @@
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr double kNarrowReach = 3.5;                    // px at 1280: paint is searched for again where the first fit says
-constexpr double kMostAgree = 0.6;                      // of the samples in view: with less, the expectation is doubted
-constexpr double kDoubt = 8, kDoubtReach = 20;          // px at 1280: by so much
-constexpr double kBetter = 1.15;                        // of the merit: so much more has to speak for another aim
+constexpr double kNarrowReach = 3.5;                     // px at 1280: paint is searched for again where the first fit says
+constexpr double kMostAgree = 0.6;                       // of the samples in view: with less, the expectation is doubted
+constexpr double kDoubt = 8, kDoubtReach = 20;           // px at 1280: by so much
+constexpr double kBetter = 1.15;                         // of the merit: so much more has to speak for another aim
 constexpr double kAboutClicks = 0.1, kZoomClicks = 0.3;  // rad, ln f: how far about a start clicks are believed
 
 }  // namespace

@@ -10,15 +10,15 @@
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr double kLineStep = 0.5;           // m between samples of the model's lines
-constexpr std::size_t kMaxKept = 90;        // sightings of a frame
-constexpr int kMinExpected = 25;            // samples in view: with fewer, missing paint says nothing
-constexpr double kKeyframeAngle = 0.07;     // rad: the angle between two keyframes,
-constexpr double kKeyframeZoom = 0.2;       // or their ln f
-constexpr double kFlowLost = 0.004;         // rad and ln f: how unsure a frame is whose image did not continue, where it may be a flash
-constexpr std::size_t kMinForTripod = 40;   // sightings of a keyframe
-constexpr double kClicksBefore = 0.8;       // what is walked back from clicks needs this share of the merit of what it replaces,
-constexpr double kImageBefore = 1.2;        // from one image alone this
+constexpr double kLineStep = 0.5;        // m between samples of the model's lines
+constexpr std::size_t kMaxKept = 90;     // sightings of a frame
+constexpr int kMinExpected = 25;         // samples in view: with fewer, missing paint says nothing
+constexpr double kKeyframeAngle = 0.07;  // rad: the angle between two keyframes,
+constexpr double kKeyframeZoom = 0.2;    // or their ln f
+constexpr double kFlowLost = 0.004;  // rad and ln f: how unsure a frame is whose image did not continue, where it may be a flash
+constexpr std::size_t kMinForTripod = 40;  // sightings of a keyframe
+constexpr double kClicksBefore = 0.8;      // what is walked back from clicks needs this share of the merit of what it replaces,
+constexpr double kImageBefore = 1.2;       // from one image alone this
 
 SmoothOptions smooth_options(const TrackingOptions& options) {
   return {options.aim, options.flow_px, options.flow_zoom, options.moving_fraction};
@@ -57,8 +57,8 @@ void PtzTracker::prepare(std::int64_t frame, const cv::Mat& luma) {
 }
 
 const PtzTracker::Known* PtzTracker::known_at(std::size_t frame) const {
-  const auto known = std::find_if(known_.begin(), known_.end(),
-                                  [&](const Known& one) { return one.frame == static_cast<std::int64_t>(frame); });
+  const auto known =
+      std::find_if(known_.begin(), known_.end(), [&](const Known& one) { return one.frame == static_cast<std::int64_t>(frame); });
   return known == known_.end() ? nullptr : &*known;
 }
 
@@ -107,8 +107,11 @@ void PtzTracker::forget_ambiguous() {
 
 /// From the image alone, which is not tried for every frame.
 std::optional<Aim> PtzTracker::found_in(const Image& image) {
-  if (waited_++ % options_.inspect_again != 0) return std::nullopt;
+  constexpr int kEverywhere = 3;  // one of so many attempts is not about the last heading alone
+  const int waited = waited_++;
+  if (waited % options_.inspect_again != 0) return std::nullopt;
   FindAgainOptions how = options_.again;
+  how.everywhere = !lost_for_ || waited / options_.inspect_again % kEverywhere == 0;
   if (lost_for_) how.near = NearHeading{last_, *lost_for_};
   const auto found = find_again(image, tripod_, options_.pitch, lines_, how);
   if (!found) return std::nullopt;
@@ -119,6 +122,7 @@ std::optional<Aim> PtzTracker::found_in(const Image& image) {
 /// A clicked frame's aim: its clicks and, where that does not contradict them, what is expected. Nothing where no camera on this
 /// tripod sees the clicks where they are.
 std::optional<Correction> PtzTracker::clicked(const cv::Mat& luma, const std::optional<Aim>& expected, bool& contradicts) const {
+  constexpr double kImageSays = 2;  // the merit of clicks: with so much more the image is believed, and the clicks are reported
   const Known* known = known_at(records_.size());
   const double limit = options_.click_agrees * options_.tripod.click_px * size_.width / 1280.0;
   const Aim by_clicks = aim_of_clicks(clicks_at(records_.size()), tripod_, known->heading, size_, options_.aim);
@@ -127,6 +131,9 @@ std::optional<Correction> PtzTracker::clicked(const cv::Mat& luma, const std::op
     const Correction alone = correct_aim(luma, tripod_, lines_, *expected, {}, options_.aim);
     contradicts = distance_from_clicks(known->clicks, tripod_, alone.fit.aim.heading, size_) > limit;
     if (!contradicts) return corrected(luma, *expected, records_.size());
+    const Correction other = corrected(luma, by_clicks, records_.size());
+    contradicts = missing(alone) || alone.merit() < kImageSays * other.merit();
+    return contradicts ? other : alone;
   }
   return corrected(luma, by_clicks, records_.size());
 }
@@ -203,7 +210,8 @@ void PtzTracker::walk_back(double advantage) {
     const Correction detected = corrected(luma, turned_back(after, *records_[k + 1].rotated, smooth_options(options_)), k);
     missed = missing(detected) ? missed + 1 : 0;
     if (missed >= options_.patience || unsure_px(detected.fit.aim) > options_.unsure_px) {
-      for (std::size_t i = k + 1; i < k + static_cast<std::size_t>(missed); ++i) records_[i].found.reset(), records_[i].paint.clear();
+      for (std::size_t i = k + 1; i < k + static_cast<std::size_t>(missed); ++i)
+        records_[i].found.reset(), records_[i].paint.clear();
       return;
     }
     if (record.found) {

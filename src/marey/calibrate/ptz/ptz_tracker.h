@@ -124,7 +124,7 @@ class PtzTracker {
   std::deque<cv::Mat> images_;  // of the last frames
   std::vector<Keyframe> keyframes_;
   std::optional<Aim> aim_;
-  geometry::Heading last_;  // where it was aimed when it was last known, and how the image has moved since
+  geometry::Heading last_;       // where it was aimed when it was last known, and how the image has moved since
   std::optional<int> lost_for_;  // frames since it was last known; nothing if it never was, or the image did not continue
   int ambiguous_ = 0, waited_ = 0;
   PtzResult result_;

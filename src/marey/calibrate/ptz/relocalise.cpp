@@ -15,27 +15,29 @@
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr int kWidth = 480;         // px: images are shrunk to this
-constexpr double kFar = 12;         // shrunk px: beyond, a line is not there
-constexpr double kCoarse = 9;       // shrunk px between headings that are tried
-constexpr double kZoomStep = 0.13;  // of ln f
-constexpr int kRefined = 8;         // headings that are inspected closely,
-constexpr int kNearRefined = 3;     // and about the last heading
-constexpr double kMissing = 0.55;   // what a piece of line that is not there counts against
-constexpr int kLowestRidge = 5, kHighestRidge = 14;  // grey levels: what stands out of the grass may be paint,
-constexpr double kPaintShare = 0.06;                 // if no more of the ground does
-constexpr std::size_t kPositions = 400;              // pieces of paint that a heading has to explain
-constexpr double kExplained = 3.5;                   // shrunk px from a line
-constexpr double kBeyond = 1.5;                      // m beyond the lines: paint there belongs to no pitch,
-constexpr double kStray = 0.3;                       // and counts so much less than on it
-constexpr double kNearAngle = 0.06, kNearZoom = 0.15;           // rad, ln f about the last heading,
-constexpr double kNearGrows = 0.008, kNearZoomGrows = 0.02;     // and more for every frame since
+constexpr int kWidth = 480;               // px: images are shrunk to this
+constexpr double kFar = 12;               // shrunk px: beyond, a line is not there
+constexpr double kCoarse = 9;             // shrunk px between headings that are tried about the best, twice as much elsewhere
+constexpr double kZoomStep = 0.13;        // of ln f
+constexpr std::size_t kFollowedUp = 250;  // of the coarse headings
+constexpr int kRefined = 8;               // headings that are inspected closely,
+constexpr int kNearRefined = 3;           // and about the last heading
+constexpr double kMissing = 0.55;         // what a piece of line that is not there counts against
+constexpr int kLowestRidge = 5, kHighestRidge = 14;          // grey levels: what stands out of the grass may be paint,
+constexpr double kPaintShare = 0.06;                         // if no more of the ground does
+constexpr std::size_t kPositions = 400;                      // pieces of paint that a heading has to explain
+constexpr double kExplained = 3.5;                           // shrunk px from a line
+constexpr double kBeyond = 1.5;                              // m beyond the lines: paint there belongs to no pitch,
+constexpr double kStray = 0.3;                               // and counts so much less than on it
+constexpr double kNearAngle = 0.06, kNearZoom = 0.15;        // rad, ln f about the last heading,
+constexpr double kNearGrows = 0.008, kNearZoomGrows = 0.02;  // and more for every frame since
 constexpr double kMaxNear = 0.35, kMaxNearZoom = 0.6;
 
 /// What may be paint in a shrunk image.
 struct SeenPaint {
-  cv::Mat near;                     ///< for each pixel how near the next piece is: 1 on it … 0 beyond kFar, CV_32F
-  std::vector<Vector<2>> positions; ///< some of the pieces, shrunk px
+  cv::Mat near;                      ///< for each pixel how near the next piece is: 1 on it … 0 beyond kFar, CV_32F
+  cv::Mat about;                     ///< the same, 0 beyond twice as much
+  std::vector<Vector<2>> positions;  ///< some of the pieces, shrunk px
 };
 
 /// The threshold over which a ridge stands out: as low as the grass allows.
@@ -83,6 +85,8 @@ SeenPaint seen_paint(const Image& image) {
   cv::distanceTransform(bare, far, cv::DIST_L2, 3);
   result.near = 1 - far / kFar;
   cv::max(result.near, 0, result.near);
+  result.about = 1 - far / (2 * kFar);
+  cv::max(result.about, 0, result.about);
   std::vector<cv::Point> painted;
   cv::findNonZero(shrunk >= 40, painted);
   const std::size_t step = std::max<std::size_t>(1, painted.size() / kPositions);
@@ -170,16 +174,46 @@ std::vector<geometry::Heading> headings_over(const HeadingRange& range, double a
   return headings;
 }
 
-std::vector<Candidate> best_of(const cv::Mat& near, const geometry::Tripod& tripod, std::span<const geometry::PitchLine> lines,
-                               const std::vector<geometry::Heading>& headings, int count) {
+std::vector<Candidate> rated(const cv::Mat& near, const geometry::Tripod& tripod, std::span<const geometry::PitchLine> lines,
+                             const std::vector<geometry::Heading>& headings, std::size_t stride) {
   std::vector<Candidate> all(headings.size());
   cv::parallel_for_(cv::Range(0, static_cast<int>(headings.size())), [&](const cv::Range& range) {
     for (int i = range.start; i < range.end; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      all[at] = {headings[at], score_of(near, tripod, headings[at], lines, 5)};
+      all[at] = {headings[at], score_of(near, tripod, headings[at], lines, stride)};
     }
   });
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  return all;
+}
+
+void best_first(std::vector<Candidate>& all, std::size_t count) {
+  const auto better = [](const Candidate& a, const Candidate& b) {
+    return a.score != b.score ? a.score > b.score : a.heading.as_vector().sum() < b.heading.as_vector().sum();
+  };
+  count = std::min(count, all.size());
+  std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end(), better);
+  all.resize(count);
+}
+
+/// Headings between the coarse ones, about each of the best of them.
+std::vector<geometry::Heading> headings_about(const std::vector<Candidate>& best) {
+  std::vector<geometry::Heading> headings;
+  for (const Candidate& one : best) {
+    const double step = kCoarse / (std::exp(one.heading.log_focal) * kWidth / 2);
+    for (int code = 0; code < 27; ++code)
+      headings.push_back({one.heading.pan + (code % 3 - 1) * step, one.heading.tilt + (code / 3 % 3 - 1) * step,
+                          one.heading.log_focal + (code / 9 - 1) * kZoomStep / 2});
+  }
+  return headings;
+}
+
+/// The best headings of a range that differ: all over it coarsely, then finer about the best.
+std::vector<Candidate> best_of(const SeenPaint& seen, const geometry::Tripod& tripod, std::span<const geometry::PitchLine> lines,
+                               const std::vector<geometry::Heading>& headings, int count) {
+  std::vector<Candidate> all = rated(seen.about, tripod, lines, headings, 7);
+  best_first(all, kFollowedUp);
+  all = rated(seen.near, tripod, lines, headings_about(all), 5);
+  best_first(all, all.size());
   std::vector<Candidate> best;
   for (const Candidate& one : all) {
     const bool apart = std::all_of(best.begin(), best.end(), [&](const Candidate& other) {
@@ -217,12 +251,8 @@ struct Close {
   AimFit fit;
   int expected = 0;
   double explained = 0;  ///< share of the paint seen that lies on a line
-  double merit() const {
-    return explained * fit.agreeing * fit.agreeing / std::max(1.0, 1.0 * expected);
-  }
-  double both() const {
-    return std::sqrt(explained * std::min(1.0, fit.agreeing / std::max(1.0, 1.0 * expected)));
-  }
+  double merit() const { return explained * fit.agreeing * fit.agreeing / std::max(1.0, 1.0 * expected); }
+  double both() const { return std::sqrt(explained * std::min(1.0, fit.agreeing / std::max(1.0, 1.0 * expected))); }
 };
 
 /// The share of the seen paint that a heading explains; what it puts beside the pitch counts little, for or against.
@@ -234,8 +264,8 @@ double explained_by(const SeenPaint& seen, const geometry::Tripod& tripod, const
     const auto location = view.location(position);
     if (!location) continue;
     const Vector<2>& ground = location->ground;
-    const bool beside = ground.x() < -kBeyond || ground.y() < -kBeyond || ground.x() > pitch.length + kBeyond ||
-                        ground.y() > pitch.width + kBeyond;
+    const bool beside =
+        ground.x() < -kBeyond || ground.y() < -kBeyond || ground.x() > pitch.length + kBeyond || ground.y() > pitch.width + kBeyond;
     const double metres = geometry::distance_to_line(pitch, ground);
     // Across a line a pixel is between these two lengths of ground.
     const Eigen::JacobiSVD<Matrix<2>> extent(location->by_pixel);
@@ -278,7 +308,7 @@ std::vector<Close> closest_of(const Image& image, const SeenPaint& seen, const g
                               const geometry::PitchSize& pitch, std::span<const geometry::PitchLine> lines,
                               const std::vector<geometry::Heading>& headings, int count) {
   std::vector<Close> all;
-  for (const Candidate& one : best_of(seen.near, tripod, lines, headings, count))
+  for (const Candidate& one : best_of(seen, tripod, lines, headings, count))
     all.push_back(refined(image, seen, tripod, pitch, lines, climbed(seen.near, tripod, lines, one).heading));
   std::stable_sort(all.begin(), all.end(), [](const Close& a, const Close& b) { return a.merit() > b.merit(); });
   return all;
@@ -300,11 +330,11 @@ std::optional<AimFit> find_again(const Image& image, const geometry::Tripod& tri
   const SeenPaint seen = seen_paint(image);
   const double aspect = static_cast<double>(seen.near.rows) / seen.near.cols;
   if (options.near) {
-    const auto headings = headings_over(about(*options.near, options), aspect, kCoarse, kZoomStep, false);
+    const auto headings = headings_over(about(*options.near, options), aspect, 2 * kCoarse, 1.5 * kZoomStep, false);
     if (const auto found = decided(closest_of(image, seen, tripod, pitch, lines, headings, kNearRefined), options)) return found;
   }
   if (!options.everywhere) return std::nullopt;
-  const auto headings = headings_over(over_pitch(tripod, pitch, options), aspect, kCoarse, kZoomStep, true);
+  const auto headings = headings_over(over_pitch(tripod, pitch, options), aspect, 2 * kCoarse, 1.5 * kZoomStep, true);
   return decided(closest_of(image, seen, tripod, pitch, lines, headings, kRefined), options);
 }
 

@@ -109,7 +109,8 @@ Matrix<kStill> covariance_of(ceres::Problem& problem, const std::vector<double*>
     const auto begin = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row)]),
                end = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row) + 1]);
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t k = begin; k < end; ++k) information(jacobian.cols[i], jacobian.cols[k]) += jacobian.values[i] * jacobian.values[k];
+      for (std::size_t k = begin; k < end; ++k)
+        information(jacobian.cols[i], jacobian.cols[k]) += jacobian.values[i] * jacobian.values[k];
     }
   }
   const Eigen::Index free = information.cols() - kStill;

@@ -47,9 +47,9 @@ TripodSolution solve_tripod(const geometry::Tripod& start, std::span<const Tripo
 struct ClickedTripod {
   geometry::Tripod tripod;
   std::vector<geometry::Heading> headings;
-  bool reflected = false;                     ///< the clicks' frame is left-handed: the world's y is the pitch's width less theirs
+  bool reflected = false;  ///< the clicks' frame is left-handed: the world's y is the pitch's width less theirs
   Matrix<geometry::Tripod::numbers> covariance;  ///< of the tripod's numbers
-  std::vector<std::vector<double>> error_px;  ///< for each frame and click
+  std::vector<std::vector<double>> error_px;     ///< for each frame and click
   double median_px = 0;
 };
 

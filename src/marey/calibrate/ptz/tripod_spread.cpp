@@ -32,7 +32,8 @@ std::vector<ShiftedTripod> errors_of_tripod(const geometry::Tripod& tripod, cons
   for (int i = 0; i < kNumbers; ++i) {
     if (!(modes.eigenvalues()(i) > 1e-4)) continue;
     const Vector<kNumbers> step = unit.cwiseProduct(modes.eigenvectors().col(i)) * std::sqrt(modes.eigenvalues()(i));
-    const double part = std::min({1.0, kMaxShift / std::max(1e-9, step.head<3>().norm()), 0.02 / std::max(1e-9, step.segment<3>(3).norm())});
+    const double part =
+        std::min({1.0, kMaxShift / std::max(1e-9, step.head<3>().norm()), 0.02 / std::max(1e-9, step.segment<3>(3).norm())});
     std::array<double, kNumbers> numbers = tripod.as_numbers();
     for (int k = 0; k < kNumbers; ++k) numbers[static_cast<std::size_t>(k)] += part * step(k);
     result.push_back({geometry::Tripod::of(numbers), 1 / part});
@@ -70,8 +71,7 @@ void add_error(const geometry::Tripod& tripod, const geometry::Heading& heading,
   Vector<3> slope = Vector<3>::Zero();
   double all = 0, count = 0;
   for (const Vector<3>& location : ground_in_view(tripod, heading, size)) {
-    const Vector<2> off =
-        other.scale * (seen_at(other.tripod, with, location, size) - seen_at(tripod, heading, location, size));
+    const Vector<2> off = other.scale * (seen_at(other.tripod, with, location, size) - seen_at(tripod, heading, location, size));
     const auto by = pixel_by_heading(tripod, heading, size, location);
     information += by.transpose() * by, slope += by.transpose() * off;
     all += off.squaredNorm(), count += 2;

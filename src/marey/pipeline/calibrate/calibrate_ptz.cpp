@@ -145,12 +145,12 @@ void check_result(PtzRun& run, const std::string& video) {
         video, found, frames);
   for (const auto& click : run.result.clicks) {
     if (click.contradicts)
-      run.warnings.push_back(fmt::format("frame {}: {:.0f} px from its clicks; that frame and those about it are lost", click.frame,
-                                         *click.off_px));
+      run.warnings.push_back(
+          fmt::format("frame {}: {:.0f} px from its clicks; that frame and those about it are lost", click.frame, *click.off_px));
   }
   if (run.result.doubted > 0)
-    run.warnings.push_back(fmt::format("in {} frames two ways to follow the camera contradict each other; they are lost",
-                                       run.result.doubted));
+    run.warnings.push_back(
+        fmt::format("in {} frames two ways to follow the camera contradict each other; they are lost", run.result.doubted));
   if (run.result.lost > kMinReported * frames)
     run.warnings.push_back(fmt::format(
         "in {} of {:.0f} frames it is not known where the camera looked; no person has a place there", run.result.lost, frames));

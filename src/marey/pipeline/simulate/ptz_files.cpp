@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kMaxVideo = 3 * 3600;  // s
 constexpr double kClickedApart = 0.15;  // rad between frames that are clicked
-constexpr std::size_t kMinClicks = 4;  // that a user would search for in a frame
+constexpr std::size_t kMinClicks = 4;   // that a user would search for in a frame
 
 /// The rows of clicks, from frames that face elsewhere than those clicked before.
 class ClickedFrames {

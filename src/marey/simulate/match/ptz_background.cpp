@@ -74,7 +74,8 @@ void wet_grass(cv::Mat ground, double wet, std::uint64_t seed) {
 
 /// Straight lines that are of no football pitch: another sport's, a training ground's.
 geometry::PitchLine other_paint(const geometry::PitchSize& pitch, Random& random) {
-  const double length = random.uniform(8, 30), angle = random.chance(0.7) ? M_PI / 2 * random.integer(0, 1) : random.uniform(0, M_PI);
+  const double length = random.uniform(8, 30),
+               angle = random.chance(0.7) ? M_PI / 2 * random.integer(0, 1) : random.uniform(0, M_PI);
   const Vector<2> along(std::cos(angle), std::sin(angle)), middle(random.uniform(0, pitch.length), random.uniform(0, pitch.width));
   geometry::PitchLine line;
   line.name = "other";
