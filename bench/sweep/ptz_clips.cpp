@@ -39,16 +39,16 @@ constexpr int kSaturated = 100;  // m: a place that is not seen at all is off by
 
 struct Score {
   std::vector<double> off, median_off;  // m
-  double axis_square = 0, place_square = 0;
+  double axis_square = 0, position_square = 0;
   int axes = 0, positions = 0;
-  int frames = 0, lost = 0, wrong = 0, unsaid = 0, failed = 0;
+  int frames = 0, lost = 0, wrong = 0, unreported = 0, failed = 0;
   double seconds = 0;
 
   void add(const Score& other) {
     off.insert(off.end(), other.off.begin(), other.off.end());
     median_off.insert(median_off.end(), other.median_off.begin(), other.median_off.end());
-    axis_square += other.axis_square, place_square += other.place_square, axes += other.axes, positions += other.positions;
-    frames += other.frames, lost += other.lost, wrong += other.wrong, unsaid += other.unsaid, failed += other.failed;
+    axis_square += other.axis_square, position_square += other.position_square, axes += other.axes, positions += other.positions;
+    frames += other.frames, lost += other.lost, wrong += other.wrong, unreported += other.unreported, failed += other.failed;
     seconds += other.seconds;
   }
 };
@@ -98,7 +98,7 @@ Score assessed(const PtzCamera& truth, const PtzRun& run) {
     ++score.frames;
     const bool known = i < run.result.camera.rotations.size() && run.result.camera.rotations[i].heading;
     if (!truth.rotations[i].heading) {
-      score.wrong += known ? 1 : 0, score.unsaid += known ? 1 : 0;
+      score.wrong += known ? 1 : 0, score.unreported += known ? 1 : 0;
       continue;
     }
     if (!known) {
@@ -111,8 +111,8 @@ Score assessed(const PtzCamera& truth, const PtzRun& run) {
     const double middle = at(off.metres, 0.5);
     score.off.insert(score.off.end(), off.metres.begin(), off.metres.end());
     score.wrong += middle > kWrong ? 1 : 0;
-    score.unsaid += middle > kWrong && off.in_deviations > kPromise * kPromise ? 1 : 0;
-    score.place_square += std::min(off.in_deviations, 1e6), ++score.positions;
+    score.unreported += middle > kWrong && off.in_deviations > kPromise * kPromise ? 1 : 0;
+    score.position_square += std::min(off.in_deviations, 1e6), ++score.positions;
     Vector<3> error;
     error << axis_of(run.result.camera.tripod, *turn.heading, *camera.size) -
                  axis_of(truth.tripod, *truth.rotations[i].heading, *camera.size),
@@ -124,12 +124,13 @@ Score assessed(const PtzCamera& truth, const PtzRun& run) {
 
 void print_row(const std::string& name, const Score& score) {
   const auto percent = [&](int part) { return fmt::format("{:.1f}", 100.0 * part / std::max(1, score.frames)); };
-  std::printf("%s", experiments::markdown_row({name, percent(score.lost), percent(score.wrong), percent(score.unsaid),
-                                               fmt::format("{:.3f}, {:.3f}", at(score.off, 0.5), at(score.off, 0.95)),
-                                               fmt::format("{:.2f}", std::sqrt(score.axis_square / std::max(1, score.axes))),
-                                               fmt::format("{:.2f}", std::sqrt(score.place_square / std::max(1, score.positions))),
-                                               fmt::format("{:.0f}", score.frames / std::max(1e-9, score.seconds))})
-                        .c_str());
+  std::printf("%s",
+              experiments::markdown_row({name, percent(score.lost), percent(score.wrong), percent(score.unreported),
+                                         fmt::format("{:.3f}, {:.3f}", at(score.off, 0.5), at(score.off, 0.95)),
+                                         fmt::format("{:.2f}", std::sqrt(score.axis_square / std::max(1, score.axes))),
+                                         fmt::format("{:.2f}", std::sqrt(score.position_square / std::max(1, score.positions))),
+                                         fmt::format("{:.0f}", score.frames / std::max(1e-9, score.seconds))})
+                  .c_str());
   std::fflush(stdout);
 }
 

@@ -139,21 +139,21 @@ class Identify(unittest.TestCase):
         first = next(i for i in exchanges if "Adams" in asked[i]["question"])
         answers = ["yes" if i == first else "" for i in range(len(asked))]
         self.assertIn("1 answered, ", self.answer(answers).stdout)
-        done = self.places()
+        done = self.converted()
         said = self.answer(answers).stdout
         self.assertIn("1 answered (1 applied before)", said)
         self.assertIn("0 edits", said)
-        self.assertEqual(self.places(), done)
+        self.assertEqual(self.converted(), done)
         marey("edit", self.take, "--undo", "-q")
         self.assertIn("1 edit\n", self.answer(answers).stdout, "what was undone is applied again")
-        self.assertEqual(self.places(), done)
+        self.assertEqual(self.converted(), done)
 
         marey("edit", self.take, "--undo", "-q")
         a, b = (asked[first][column].split(" ")[0] for column in "ab")
         marey("edit", self.take, f"swap {a} {b} {int(asked[first]['frame']) + 5}:", "-q")
-        by_hand = self.places()
+        by_hand = self.converted()
         self.assertIn("(1 applied before)", self.answer(answers).stdout)
-        self.assertEqual(self.places(), by_hand)
+        self.assertEqual(self.converted(), by_hand)
 
     def test_a_row_given_twice_is_applied_once(self):
         self.who("--min-probability", "0", "-q")
@@ -167,7 +167,7 @@ class Identify(unittest.TestCase):
         said = marey("identify", self.take, "--answers", self.folder / "answers.csv").stdout
         self.assertIn("2 answered (1 applied before), 0 left open; 1 edit\n", said)
 
-    def places(self):
+    def converted(self):
         marey("convert", self.take, self.folder / "now.csv", "-q")
         return (self.folder / "now.csv").read_text()
 
@@ -284,10 +284,10 @@ class Identify(unittest.TestCase):
             rows += f"{frame},{frame / RATE:.4f},7,,,{x + 0.3:.3f},{y:.3f},,,observed,cam1\n"
         path.write_text(rows)
         marey("convert", path, self.take, "-q")
-        before = self.places().count("\n")
+        before = self.converted().count("\n")
         left_out = json.loads(self.who("--json", "-q").stdout)["left_out"]
         self.assertGreater(left_out, 0)
-        self.assertEqual(left_out, before - self.places().count("\n"))
+        self.assertEqual(left_out, before - self.converted().count("\n"))
 
     def test_names_are_given_once(self):
         self.who("-q")

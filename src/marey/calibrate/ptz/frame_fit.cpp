@@ -8,11 +8,7 @@
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr double kNarrowReach = 3.5;                     // px at 1280: paint is searched for again where the first fit says
-constexpr double kMostAgree = 0.6;                       // of the samples in view: with less, the expectation is doubted
-constexpr double kDoubt = 8, kDoubtReach = 20;           // px at 1280: by so much
-constexpr double kBetter = 1.15;                         // of the merit: so much more has to speak for another aim
-constexpr double kAboutClicks = 0.1, kZoomClicks = 0.3;  // rad, ln f: how far about a start clicks are believed
+constexpr double kNarrowReach = 3.5;  // px at 1280: paint is searched for again where the first fit says
 
 }  // namespace
 
@@ -46,13 +42,13 @@ Correction correct_aim(const cv::Mat& luma, const geometry::Tripod& tripod, std:
     return result;
   };
   Correction result = within(std::clamp(4 + 3 * unsure_px(expected), 5.0, 16.0), expected);
-  if (result.fit.agreeing >= kMostAgree * result.paint.expected) return result;
+  if (result.fit.agreeing >= options.enough * result.paint.expected) return result;
   // Much is not where it ought to be: perhaps the expectation is surer than it should be.
-  const double angle = kDoubt / 640 * std::exp(-expected.heading.log_focal), zoom = kDoubt / 450;
+  const double angle = options.loose_px / 640 * std::exp(-expected.heading.log_focal), zoom = options.loose_px / 450;
   Aim loose = expected;
   loose.covariance += Vector<3>(angle * angle, angle * angle, zoom * zoom).asDiagonal().toDenseMatrix();
-  const Correction other = within(kDoubtReach, loose);
-  return other.merit() > kBetter * result.merit() ? other : result;
+  const Correction other = within(options.loose_reach, loose);
+  return other.merit() > options.better * result.merit() ? other : result;
 }
 
 std::vector<PaintSighting> agreeing_paint(const std::vector<PaintSighting>& paint, const geometry::Tripod& tripod, const Aim& aim,
@@ -83,7 +79,8 @@ std::vector<PaintSighting> click_sightings(std::span<const ClickedPosition> clic
 
 Aim aim_of_clicks(std::span<const PaintSighting> clicks, const geometry::Tripod& tripod, const geometry::Heading& start,
                   cv::Size size, const AimOptions& options) {
-  const Vector<3> wide(kAboutClicks * kAboutClicks, kAboutClicks * kAboutClicks, kZoomClicks * kZoomClicks);
+  const Vector<3> wide(options.click_angle * options.click_angle, options.click_angle * options.click_angle,
+                       options.click_zoom * options.click_zoom);
   return solve_aim(tripod, size, clicks, Aim{start, wide.asDiagonal().toDenseMatrix()}, options).aim;
 }
 

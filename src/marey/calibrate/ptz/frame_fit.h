@@ -1,4 +1,4 @@
-// One frame against what is known of it: paint where the model's lines are expected, and clicks.
+// One frame against expectations: paint where the model's lines are expected, and clicks.
 #pragma once
 
 #include <span>

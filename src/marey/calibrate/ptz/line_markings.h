@@ -27,7 +27,7 @@ struct PaintSighting {
   std::int16_t line = 0;                             ///< which line of the model, or from kFirstClick on which axis of which click
 };
 
-inline constexpr std::int16_t kFirstClick = 1000;
+inline constexpr std::int16_t kFirstClick = 1000;  // by definition
 
 struct PaintOptions {
   double reach = 8;            ///< px to both sides of where a line is expected

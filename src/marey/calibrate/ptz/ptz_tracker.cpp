@@ -17,11 +17,12 @@ constexpr double kKeyframeAngle = 0.07;  // rad: the angle between two keyframes
 constexpr double kKeyframeZoom = 0.2;    // or their ln f
 constexpr double kFlowLost = 0.004;  // rad and ln f: how unsure a frame is whose image did not continue, where it may be a flash
 constexpr std::size_t kMinForTripod = 40;  // sightings of a keyframe
-constexpr double kClicksBefore = 0.8;      // what is walked back from clicks needs this share of the merit of what it replaces,
-constexpr double kImageBefore = 1.2;       // from one image alone this
 
 SmoothOptions smooth_options(const TrackingOptions& options) {
-  return {options.aim, options.flow_px, options.flow_zoom, options.moving_fraction};
+  SmoothOptions smooth;
+  smooth.aim = options.aim;
+  smooth.flow_px = options.flow_px, smooth.flow_zoom = options.flow_zoom, smooth.moving_fraction = options.moving_fraction;
+  return smooth;
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ void PtzTracker::know(std::int64_t frame, const geometry::Heading& heading, cons
 }
 
 void PtzTracker::prepare(std::int64_t frame, const cv::Mat& luma) {
-  constexpr int kRounds = 3;  // the tripod by clicks alone leaves lines some pixels off
+  constexpr int kRounds = 3;  // numerical: the tripod by clicks alone leaves lines some pixels off
   for (int round = 0; round < kRounds; ++round) {
     for (Known& known : known_) {
       if (known.frame != frame) continue;
@@ -74,7 +75,7 @@ Correction PtzTracker::corrected(const cv::Mat& luma, const Aim& expected, std::
 
 std::optional<Aim> PtzTracker::predicted(const std::optional<Rotated>& rotated) const {
   if (!aim_ || !rotated) return std::nullopt;
-  return turned(*aim_, *rotated, smooth_options(options_));
+  return next_aim(*aim_, *rotated, smooth_options(options_));
 }
 
 bool PtzTracker::missing(const Correction& detected) const {
@@ -107,11 +108,10 @@ void PtzTracker::forget_ambiguous() {
 
 /// From the image alone, which is not tried for every frame.
 std::optional<Aim> PtzTracker::found_in(const Image& image) {
-  constexpr int kEverywhere = 3;  // one of so many attempts is not about the last heading alone
   const int waited = waited_++;
   if (waited % options_.inspect_again != 0) return std::nullopt;
   FindAgainOptions how = options_.again;
-  how.everywhere = !lost_for_ || waited / options_.inspect_again % kEverywhere == 0;
+  how.everywhere = !lost_for_ || waited / options_.inspect_again % options_.inspect_everywhere == 0;
   if (lost_for_) how.near = NearHeading{last_, *lost_for_};
   const auto found = find_again(image, tripod_, options_.pitch, lines_, how);
   if (!found) return std::nullopt;
@@ -119,10 +119,9 @@ std::optional<Aim> PtzTracker::found_in(const Image& image) {
   return Aim{found->aim.heading, Vector<3>(4e-6, 4e-6, 1e-4).asDiagonal().toDenseMatrix()};
 }
 
-/// A clicked frame's aim: its clicks and, where that does not contradict them, what is expected. Nothing where no camera on this
+/// A clicked frame's aim: its clicks and, where it does not contradict them, the expectation. Nothing if no camera on this
 /// tripod sees the clicks where they are.
 std::optional<Correction> PtzTracker::clicked(const cv::Mat& luma, const std::optional<Aim>& expected, bool& contradicts) const {
-  constexpr double kImageSays = 2;  // the merit of clicks: with so much more the image is believed, and the clicks are reported
   const Known* known = known_at(records_.size());
   const double limit = options_.click_agrees * options_.tripod.click_px * size_.width / 1280.0;
   const Aim by_clicks = aim_of_clicks(clicks_at(records_.size()), tripod_, known->heading, size_, options_.aim);
@@ -132,7 +131,7 @@ std::optional<Correction> PtzTracker::clicked(const cv::Mat& luma, const std::op
     contradicts = distance_from_clicks(known->clicks, tripod_, alone.fit.aim.heading, size_) > limit;
     if (!contradicts) return corrected(luma, *expected, records_.size());
     const Correction other = corrected(luma, by_clicks, records_.size());
-    contradicts = missing(alone) || alone.merit() < kImageSays * other.merit();
+    contradicts = missing(alone) || alone.merit() < options_.image_over_clicks * other.merit();
     return contradicts ? other : alone;
   }
   return corrected(luma, by_clicks, records_.size());
@@ -187,18 +186,18 @@ void PtzTracker::add(const Image& image, double time_s) {
     forget_ambiguous();
   }
   records_.push_back(std::move(record));
-  if (aim_ && (contradicts || !was_known)) walk_back(alone ? kImageBefore : kClicksBefore);
+  if (aim_ && (contradicts || !was_known)) walk_back(alone ? options_.image_advantage : options_.click_advantage);
   if (aim_) note_keyframe(records_.size() - 1);
 }
 
-void PtzTracker::doubt(std::size_t from, std::size_t to) {
+void PtzTracker::set_ambiguous(std::size_t from, std::size_t to) {
   for (std::size_t i = from; i < to; ++i) {
-    result_.doubted += records_[i].found ? 1 : 0;
+    result_.ambiguous_frames += records_[i].found ? 1 : 0;
     records_[i].found.reset(), records_[i].paint.clear();
   }
 }
 
-/// From the last frame to those before it, until what was found there already says the same.
+/// From the last frame to those before it, until it meets the same aim there.
 void PtzTracker::walk_back(double advantage) {
   const std::size_t kept_from = records_.size() - images_.size();
   Aim after = *records_.back().found;
@@ -207,7 +206,7 @@ void PtzTracker::walk_back(double advantage) {
     TurnRecord& record = records_[k];
     if (!records_[k + 1].rotated) return;
     const cv::Mat& luma = images_[k - kept_from];
-    const Correction detected = corrected(luma, turned_back(after, *records_[k + 1].rotated, smooth_options(options_)), k);
+    const Correction detected = corrected(luma, previous_aim(after, *records_[k + 1].rotated, smooth_options(options_)), k);
     missed = missing(detected) ? missed + 1 : 0;
     if (missed >= options_.patience || unsure_px(detected.fit.aim) > options_.unsure_px) {
       for (std::size_t i = k + 1; i < k + static_cast<std::size_t>(missed); ++i)
@@ -215,12 +214,12 @@ void PtzTracker::walk_back(double advantage) {
       return;
     }
     if (record.found) {
-      if (same_aim(*record.found, detected.fit.aim)) return;
+      if (same_aim(*record.found, detected.fit.aim, smooth_options(options_))) return;
       const Correction other = corrected(luma, *record.found, k);
       if (detected.merit() < advantage * other.merit()) {
-        constexpr std::size_t kAbout = 6;  // frames
+        const auto about = static_cast<std::size_t>(options_.contact_about);
         records_[k + 1].rotated.reset();
-        doubt(k > kAbout ? k - kAbout : 0, std::min(records_.size() - 1, k + kAbout));
+        set_ambiguous(k > about ? k - about : 0, std::min(records_.size() - 1, k + about));
         return;
       }
       std::erase_if(keyframes_, [&](const Keyframe& one) { return one.record == k; });
@@ -262,7 +261,7 @@ void PtzTracker::refine_tripod(int rounds) {
 
 /// Every clicked frame beside the result; what contradicts its clicks is lost, and what hangs together with it.
 void PtzTracker::check_clicks(std::vector<std::optional<Aim>>& smooth) {
-  constexpr std::size_t kAbout = 50;  // frames
+  const auto about = static_cast<std::size_t>(options_.click_about);
   const double limit = options_.click_agrees * options_.tripod.click_px * size_.width / 1280.0;
   for (const Known& known : known_) {
     ClickCheck& check = result_.clicks.emplace_back();
@@ -280,9 +279,9 @@ void PtzTracker::check_clicks(std::vector<std::optional<Aim>>& smooth) {
         return other.frame == static_cast<std::int64_t>(frame) && other.off_px && !other.contradicts;
       });
     };
-    const auto drop = [&](std::size_t frame) { result_.doubted += smooth[frame] ? 1 : 0, smooth[frame].reset(); };
-    for (std::size_t k = at; k > 0 && k + kAbout > at && !agrees(k - 1) && records_[k].rotated; --k) drop(k - 1);
-    for (std::size_t k = at + 1; k < smooth.size() && k < at + kAbout && !agrees(k) && records_[k].rotated; ++k) drop(k);
+    const auto drop = [&](std::size_t frame) { result_.ambiguous_frames += smooth[frame] ? 1 : 0, smooth[frame].reset(); };
+    for (std::size_t k = at; k > 0 && k + about > at && !agrees(k - 1) && records_[k].rotated; --k) drop(k - 1);
+    for (std::size_t k = at + 1; k < smooth.size() && k < at + about && !agrees(k) && records_[k].rotated; ++k) drop(k);
     drop(at);
   }
 }

@@ -9,9 +9,9 @@
 //
 // Clicks are measurements of their frame. Wherever the camera is found from clicks or one image alone, the frames before are walked
 // back as well, as far as their images are kept: those that were lost get an aim, those that were followed to another place are
-// taken over where more speaks for it, and where neither is better they are in doubt, which is lost. At the end the result is
-// compared with every click, and what contradicts one is lost. Cost: about 12 ms a frame of 720p. Memory: about 2 kB a frame, and
-// the last images.
+// taken over where more speaks for it, and where neither is better they are in set_ambiguous, which is lost. At the end the result
+// is compared with every click, and what contradicts one is lost. Cost: about 12 ms a frame of 720p. Memory: about 2 kB a frame,
+// and the last images.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct TrackingOptions {
   FindAgainOptions again;
   double flow_px = 0.25;           ///< standard deviation of the odometry's pan and tilt, px of the image at 1280 px across,
   double flow_zoom = 3e-4;         ///< and of its ln f, a frame
-  double moving_fraction = 0.02;   ///< and this much of how far it turned
+  double moving_fraction = 0.02;   ///< and this much of how far it next_aim
   double unsure_px = 8;            ///< standard deviation of the aim, px at 1280: beyond, the camera is lost
   double fraction = 0.3;           ///< of the paint that ought to be seen: with less,
   int patience = 8;                ///< for this many frames in a row, the camera is lost
@@ -45,7 +45,13 @@ struct TrackingOptions {
   double model_px = 0.4;           ///< px at 1280: what no such camera explains (a lens that breathes), in every frame,
   double model_zoom = 4e-4;        ///< and in its ln f
   double click_agrees = 4;         ///< deviations of a click: a frame half of whose clicks lie farther off contradicts them
-  double kept_mb = 160;            ///< of images, for the way back
+  int click_about = 50;            ///< frames to both sides of one that contradicts its clicks, which are lost with it,
+  int contact_about = 6;           ///< and of one where two directions meet and contradict each other
+  double click_advantage = 0.8;    ///< ratio of merits from which frames before clicks replace earlier aims,
+  double image_advantage = 1.2;    ///< and frames before one that was found from its image alone
+  double image_over_clicks = 2;    ///< ratio of merits from which an image overrules its clicks, which are reported
+  int inspect_everywhere = 3;      ///< attempts to find it again of which one is not about the last heading alone
+  double kept_mb = 160;            ///< of images, for walking back
   std::size_t max_keyframes = 24;  ///< that the tripod is solved on
 };
 
@@ -57,12 +63,12 @@ struct ClickCheck {
 };
 
 struct PtzResult {
-  PtzCamera camera;      ///< a turn a frame; times as given
-  int found_again = 0;   ///< how often the camera was found from one image alone
-  int cuts = 0;          ///< where the image did not continue
-  int lost = 0;          ///< frames
-  int doubted = 0;       ///< of the lost ones: two ways through the video, or a result and clicks, contradict each other there
-  double median_px = 0;  ///< of the distances of agreeing paint, over all frames
+  PtzCamera camera;          ///< a turn a frame; times as given
+  int found_again = 0;       ///< how often the camera was found from one image alone
+  int cuts = 0;              ///< where the image did not continue
+  int lost = 0;              ///< frames
+  int ambiguous_frames = 0;  ///< of the lost ones: two directions, or a result and clicks, contradict each other there
+  double median_px = 0;      ///< of the distances of agreeing paint, over all frames
   std::vector<ClickCheck> clicks;
 };
 
@@ -107,7 +113,7 @@ class PtzTracker {
   void keep(const cv::Mat& luma);
   void enter(TurnRecord& record, const Correction& detected, std::size_t frame) const;
   void walk_back(double advantage);
-  void doubt(std::size_t from, std::size_t to);
+  void set_ambiguous(std::size_t from, std::size_t to);
   void forget_ambiguous();
   void note_keyframe(std::size_t index);
   void refine_tripod(int rounds);

@@ -15,33 +15,24 @@
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr int kWidth = 480;               // px: images are shrunk to this
-constexpr double kFar = 12;               // shrunk px: beyond, a line is not there
-constexpr double kCoarse = 9;             // shrunk px between headings that are tried about the best, twice as much elsewhere
-constexpr double kZoomStep = 0.13;        // of ln f
-constexpr std::size_t kFollowedUp = 250;  // of the coarse headings
-constexpr int kRefined = 8;               // headings that are inspected closely,
-constexpr int kNearRefined = 3;           // and about the last heading
-constexpr double kMissing = 0.55;         // what a piece of line that is not there counts against
-constexpr int kLowestRidge = 5, kHighestRidge = 14;          // grey levels: what stands out of the grass may be paint,
-constexpr double kPaintShare = 0.06;                         // if no more of the ground does
-constexpr std::size_t kPositions = 400;                      // pieces of paint that a heading has to explain
-constexpr double kExplained = 3.5;                           // shrunk px from a line
-constexpr double kBeyond = 1.5;                              // m beyond the lines: paint there belongs to no pitch,
-constexpr double kStray = 0.3;                               // and counts so much less than on it
-constexpr double kNearAngle = 0.06, kNearZoom = 0.15;        // rad, ln f about the last heading,
-constexpr double kNearGrows = 0.008, kNearZoomGrows = 0.02;  // and more for every frame since
-constexpr double kMaxNear = 0.35, kMaxNearZoom = 0.6;
+constexpr int kWidth = 480;                  // px: images are shrunk to this
+constexpr double kFar = 12;                  // shrunk px: beyond, a line is not there
+constexpr double kCoarse = 9;                // shrunk px between headings that are tried about the best, twice as much elsewhere
+constexpr double kZoomStep = 0.13;           // of ln f
+constexpr std::size_t kRefinedStarts = 250;  // of the coarse headings; numerical: cost alone
+constexpr int kRefined = 8;                  // headings that are inspected closely,
+constexpr double kMissing = 0.55;            // what a piece of line that is not there counts against
+constexpr std::size_t kPositions = 400;      // pieces of paint that a heading has to explain; numerical: cost alone
 
 /// What may be paint in a shrunk image.
-struct SeenPaint {
+struct PaintMask {
   cv::Mat near;                      ///< for each pixel how near the next piece is: 1 on it … 0 beyond kFar, CV_32F
   cv::Mat about;                     ///< the same, 0 beyond twice as much
   std::vector<Vector<2>> positions;  ///< some of the pieces, shrunk px
 };
 
 /// The threshold over which a ridge stands out: as low as the grass allows.
-double ridge_threshold(const cv::Mat& ridges, const cv::Mat& ground) {
+double ridge_threshold(const cv::Mat& ridges, const cv::Mat& ground, const FindAgainOptions& options) {
   constexpr std::array<float, 2> kLevels{0, 64};
   const float* levels = kLevels.data();
   const int channel = 0, bins = 64;
@@ -51,12 +42,12 @@ double ridge_threshold(const cv::Mat& ridges, const cv::Mat& ground) {
   double above = all;
   for (int level = 0; level < bins; ++level) {
     above -= counts.at<float>(level);
-    if (level >= kLowestRidge && above < kPaintShare * all) return std::min<double>(level, kHighestRidge);
+    if (level >= options.min_ridge && above < options.paint_fraction * all) return std::min<double>(level, options.max_ridge);
   }
-  return kHighestRidge;
+  return options.max_ridge;
 }
 
-SeenPaint seen_paint(const Image& image) {
+PaintMask paint_mask(const Image& image, const FindAgainOptions& options) {
   const double factor = static_cast<double>(kWidth) / image.size().width;
   const cv::Size size(kWidth, cvRound(image.size().height * factor));
   const cv::Mat& luma = image.luma();
@@ -76,10 +67,10 @@ SeenPaint seen_paint(const Image& image) {
     cv::erode(green, green, cv::Mat::ones(5, 5, CV_8U));
     cv::resize(green, ground, luma.size(), 0, 0, cv::INTER_NEAREST);
   }
-  cv::threshold(ridges, mask, ridge_threshold(ridges, ground), 255, cv::THRESH_BINARY);
+  cv::threshold(ridges, mask, ridge_threshold(ridges, ground, options), 255, cv::THRESH_BINARY);
   mask &= ground;
   cv::resize(mask, shrunk, size, 0, 0, cv::INTER_AREA);
-  SeenPaint result;
+  PaintMask result;
   const cv::Mat bare = shrunk < 40;  // 0 where there is paint
   cv::Mat far;
   cv::distanceTransform(bare, far, cv::DIST_L2, 3);
@@ -151,8 +142,8 @@ HeadingRange over_pitch(const geometry::Tripod& tripod, const geometry::PitchSiz
 }
 
 HeadingRange about(const NearHeading& near, const FindAgainOptions& options) {
-  const double angle = std::min(kMaxNear, kNearAngle + kNearGrows * near.frames),
-               zoom = std::min(kMaxNearZoom, kNearZoom + kNearZoomGrows * near.frames);
+  const double angle = std::min(options.max_near_angle, options.near_angle + options.near_angle_rate * near.frames),
+               zoom = std::min(options.max_near_zoom, options.near_zoom + options.near_zoom_rate * near.frames);
   const Vector<3> middle = near.heading.as_vector(), half(angle, angle / 2, zoom);
   HeadingRange range{middle - half, middle + half};
   range.minimum.z() = std::max(range.minimum.z(), options.min_log_focal);
@@ -208,10 +199,10 @@ std::vector<geometry::Heading> headings_about(const std::vector<Candidate>& best
 }
 
 /// The best headings of a range that differ: all over it coarsely, then finer about the best.
-std::vector<Candidate> best_of(const SeenPaint& seen, const geometry::Tripod& tripod, std::span<const geometry::PitchLine> lines,
+std::vector<Candidate> best_of(const PaintMask& seen, const geometry::Tripod& tripod, std::span<const geometry::PitchLine> lines,
                                const std::vector<geometry::Heading>& headings, int count) {
   std::vector<Candidate> all = rated(seen.about, tripod, lines, headings, 7);
-  best_first(all, kFollowedUp);
+  best_first(all, kRefinedStarts);
   all = rated(seen.near, tripod, lines, headings_about(all), 5);
   best_first(all, all.size());
   std::vector<Candidate> best;
@@ -250,34 +241,34 @@ Candidate climbed(const cv::Mat& near, const geometry::Tripod& tripod, std::span
 struct Close {
   AimFit fit;
   int expected = 0;
-  double explained = 0;  ///< share of the paint seen that lies on a line
+  double explained = 0;  ///< fraction of the paint mask that lies on a line
   double merit() const { return explained * fit.agreeing * fit.agreeing / std::max(1.0, 1.0 * expected); }
   double both() const { return std::sqrt(explained * std::min(1.0, fit.agreeing / std::max(1.0, 1.0 * expected))); }
 };
 
-/// The share of the seen paint that a heading explains; what it puts beside the pitch counts little, for or against.
-double explained_by(const SeenPaint& seen, const geometry::Tripod& tripod, const geometry::Heading& heading,
-                    const geometry::PitchSize& pitch) {
+/// The fraction of the paint mask that a heading explains; what it puts beside the pitch counts little, for or against.
+double explained_by(const PaintMask& seen, const geometry::Tripod& tripod, const geometry::Heading& heading,
+                    const geometry::PitchSize& pitch, const FindAgainOptions& options) {
   const GroundView view(geometry::camera_of(tripod, heading, seen.near.size()));
   double on = 0, all = 1e-9;
   for (const Vector<2>& position : seen.positions) {
     const auto location = view.location(position);
     if (!location) continue;
     const Vector<2>& ground = location->ground;
-    const bool beside =
-        ground.x() < -kBeyond || ground.y() < -kBeyond || ground.x() > pitch.length + kBeyond || ground.y() > pitch.width + kBeyond;
+    const bool beside = ground.x() < -options.beyond || ground.y() < -options.beyond ||
+                        ground.x() > pitch.length + options.beyond || ground.y() > pitch.width + options.beyond;
     const double metres = geometry::distance_to_line(pitch, ground);
     // Across a line a pixel is between these two lengths of ground.
     const Eigen::JacobiSVD<Matrix<2>> extent(location->by_pixel);
-    const bool there = metres < kExplained * std::sqrt(extent.singularValues()(0) * extent.singularValues()(1));
-    all += beside ? kStray : 1;
+    const bool there = metres < options.explained_px * std::sqrt(extent.singularValues()(0) * extent.singularValues()(1));
+    all += beside ? options.off_pitch_weight : 1;
     on += beside ? 0 : there ? 1 : 0;
   }
   return on / all;
 }
 
-Close refined(const Image& image, const SeenPaint& seen, const geometry::Tripod& tripod, const geometry::PitchSize& pitch,
-              std::span<const geometry::PitchLine> lines, const geometry::Heading& start) {
+Close refined(const Image& image, const PaintMask& seen, const geometry::Tripod& tripod, const geometry::PitchSize& pitch,
+              std::span<const geometry::PitchLine> lines, const geometry::Heading& start, const FindAgainOptions& options) {
   const cv::Mat& luma = image.luma();
   Close close;
   close.fit.aim.heading = start;
@@ -289,7 +280,7 @@ Close refined(const Image& image, const SeenPaint& seen, const geometry::Tripod&
     close.fit = solve_aim(tripod, luma.size(), paint.detected, expected);
     close.expected = paint.expected;
   }
-  close.explained = explained_by(seen, tripod, close.fit.aim.heading, pitch);
+  close.explained = explained_by(seen, tripod, close.fit.aim.heading, pitch, options);
   return close;
 }
 
@@ -304,12 +295,12 @@ bool alike(const Close& a, const Close& b) {
 }
 
 /// The closest of the best headings, those that explain more first.
-std::vector<Close> closest_of(const Image& image, const SeenPaint& seen, const geometry::Tripod& tripod,
+std::vector<Close> closest_of(const Image& image, const PaintMask& seen, const geometry::Tripod& tripod,
                               const geometry::PitchSize& pitch, std::span<const geometry::PitchLine> lines,
-                              const std::vector<geometry::Heading>& headings, int count) {
+                              const std::vector<geometry::Heading>& headings, int count, const FindAgainOptions& options) {
   std::vector<Close> all;
   for (const Candidate& one : best_of(seen, tripod, lines, headings, count))
-    all.push_back(refined(image, seen, tripod, pitch, lines, climbed(seen.near, tripod, lines, one).heading));
+    all.push_back(refined(image, seen, tripod, pitch, lines, climbed(seen.near, tripod, lines, one).heading, options));
   std::stable_sort(all.begin(), all.end(), [](const Close& a, const Close& b) { return a.merit() > b.merit(); });
   return all;
 }
@@ -327,15 +318,16 @@ std::optional<AimFit> decided(const std::vector<Close>& all, const FindAgainOpti
 
 std::optional<AimFit> find_again(const Image& image, const geometry::Tripod& tripod, const geometry::PitchSize& pitch,
                                  std::span<const geometry::PitchLine> lines, const FindAgainOptions& options) {
-  const SeenPaint seen = seen_paint(image);
+  const PaintMask seen = paint_mask(image, options);
   const double aspect = static_cast<double>(seen.near.rows) / seen.near.cols;
   if (options.near) {
     const auto headings = headings_over(about(*options.near, options), aspect, 2 * kCoarse, 1.5 * kZoomStep, false);
-    if (const auto found = decided(closest_of(image, seen, tripod, pitch, lines, headings, kNearRefined), options)) return found;
+    if (const auto found = decided(closest_of(image, seen, tripod, pitch, lines, headings, options.near_count, options), options))
+      return found;
   }
   if (!options.everywhere) return std::nullopt;
   const auto headings = headings_over(over_pitch(tripod, pitch, options), aspect, 2 * kCoarse, 1.5 * kZoomStep, true);
-  return decided(closest_of(image, seen, tripod, pitch, lines, headings, kRefined), options);
+  return decided(closest_of(image, seen, tripod, pitch, lines, headings, kRefined, options), options);
 }
 
 }  // namespace marey::calibrate::ptz

@@ -30,9 +30,18 @@ struct FindAgainOptions {
   double fraction = 0.55;  ///< of the samples of the lines in view that have to be paint,
   int lowest_count = 35;   ///< and this many of them,
   int lines = 3;           ///< on this many lines
-  double both = 0.4;       ///< √(share of the lines that is paint · share of the paint that is lines), at least
+  double both = 0.4;       ///< √(fraction of the lines that is paint · fraction of the paint that is lines), at least
   bool everywhere = true;  ///< not about the last heading alone
-  double rival = 0.8;      ///< another heading may agree with at most this share of as many
+  int near_count = 3;      ///< headings about the last one that are refined
+  double near_angle = 0.06, near_zoom = 0.15;             ///< rad, ln f about the last heading,
+  double near_angle_rate = 0.008, near_zoom_rate = 0.02;  ///< and as much more for every frame since,
+  double max_near_angle = 0.35, max_near_zoom = 0.6;      ///< but no more than this
+  int min_ridge = 5, max_ridge = 14;                      ///< grey levels above the grass of what may be paint: the lowest level
+  double paint_fraction = 0.06;                           ///< that no more of the ground exceeds
+  double explained_px = 3.5;                              ///< of the shrunk image: paint so near a line belongs to it
+  double beyond = 1.5;                                    ///< m beyond the lines paint belongs to no pitch,
+  double off_pitch_weight = 0.3;                          ///< and weighs as much there
+  double rival = 0.8;                                     ///< another heading may agree with at most this share of as many
 };
 
 /// `lines` in the world. The covariance is that of the paint alone.

@@ -11,10 +11,10 @@ namespace marey::calibrate::ptz {
 namespace {
 
 constexpr int kNumbers = geometry::Tripod::numbers;
-constexpr double kMaxShift = 1;      // m: an error is followed by so much at most, and scaled up from there
-constexpr double kMinEffect = 0.02;  // px at 1280, of an error: what does less is omitted
-constexpr double kLoose = 12;        // of the cut-off, where outliers have gone already
-constexpr double kMaxRange = 150;    // m: farther places do not count
+constexpr double kMaxShift = 1;      // m: larger errors are scaled from this; numerical
+constexpr double kMinEffect = 0.02;  // px at 1280, of an error: smaller effects are omitted; numerical
+constexpr double kLoose = 12;        // of the cut-off, with outliers removed before; numerical
+constexpr double kMaxRange = 150;    // m: farther ground is not used; numerical
 
 struct ShiftedTripod {
   geometry::Tripod tripod;
@@ -56,7 +56,7 @@ std::vector<Vector<3>> ground_in_view(const geometry::Tripod& tripod, const geom
   return ground;
 }
 
-Vector<2> seen_at(const geometry::Tripod& tripod, const geometry::Heading& heading, const Vector<3>& location, cv::Size size) {
+Vector<2> pixel_at(const geometry::Tripod& tripod, const geometry::Heading& heading, const Vector<3>& location, cv::Size size) {
   const auto numbers = tripod.as_numbers();
   const Vector<3> turned = heading.as_vector();
   return geometry::to_pixel(geometry::TripodFrame<double>(numbers.data(), turned.data()).detected(location), size);
@@ -71,7 +71,7 @@ void add_error(const geometry::Tripod& tripod, const geometry::Heading& heading,
   Vector<3> slope = Vector<3>::Zero();
   double all = 0, count = 0;
   for (const Vector<3>& location : ground_in_view(tripod, heading, size)) {
-    const Vector<2> off = other.scale * (seen_at(other.tripod, with, location, size) - seen_at(tripod, heading, location, size));
+    const Vector<2> off = other.scale * (pixel_at(other.tripod, with, location, size) - pixel_at(tripod, heading, location, size));
     const auto by = pixel_by_heading(tripod, heading, size, location);
     information += by.transpose() * by, slope += by.transpose() * off;
     all += off.squaredNorm(), count += 2;

@@ -21,9 +21,9 @@ namespace marey::format::rig {
 namespace {
 
 constexpr std::string_view kPtzHeader = "time,pan,tilt,focal,pan_sd,tilt_sd,focal_sd,pan_tilt,pan_focal,tilt_focal";
-constexpr std::string_view kPlaceHeader =
-    ",place_pan_sd,place_tilt_sd,place_focal_sd,place_pan_tilt,place_pan_focal,place_tilt_focal";
-constexpr std::size_t kPtzColumns = 10, kWithPlaces = 16;
+constexpr std::string_view kPositionHeader =
+    ",position_pan_sd,position_tilt_sd,position_focal_sd,position_pan_tilt,position_pan_focal,position_tilt_focal";
+constexpr std::size_t kPtzColumns = 10, kAllColumns = 16;
 constexpr double kTurnDegree = std::numbers::pi / 180;
 constexpr double kMaxDegrees = 1e4;
 
@@ -61,7 +61,7 @@ PtzCamera::Turn turn_of(const std::vector<double>& row, cv::Size size) {
   turn.time_s = row[0];
   turn.heading = geometry::Heading{row[1] * kTurnDegree, row[2] * kTurnDegree, std::log(row[3] / (size.width / 2.0))};
   turn.covariance = covariance_in(row, 4);
-  if (row.size() == kWithPlaces) turn.place_covariance = covariance_in(row, kPtzColumns);
+  if (row.size() == kAllColumns) turn.place_covariance = covariance_in(row, kPtzColumns);
   return turn;
 }
 
@@ -140,10 +140,10 @@ std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string&
   TextLines lines(text);
   std::string_view line;
   std::vector<std::string_view> fields;
-  const std::string with_places = std::string(kPtzHeader) + std::string(kPlaceHeader);
+  const std::string with_positions = std::string(kPtzHeader) + std::string(kPositionHeader);
   const bool any = lines.next(line);
-  if (!any || (line != kPtzHeader && line != with_places)) throw Error("{}:1: its first line must read {}", name, kPtzHeader);
-  const std::size_t columns = line == kPtzHeader ? kPtzColumns : kWithPlaces;
+  if (!any || (line != kPtzHeader && line != with_positions)) throw Error("{}:1: its first line must read {}", name, kPtzHeader);
+  const std::size_t columns = line == kPtzHeader ? kPtzColumns : kAllColumns;
   while (lines.next(line)) {
     if (line.empty()) continue;
     split_fields(line, ',', fields);
@@ -169,21 +169,21 @@ std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string&
 }
 
 std::string ptz_text(const PtzCamera& camera, cv::Size size) {
-  const bool places = std::any_of(camera.rotations.begin(), camera.rotations.end(),
-                                  [](const PtzCamera::Turn& turn) { return turn.place_covariance.has_value(); });
+  const bool positions = std::any_of(camera.rotations.begin(), camera.rotations.end(),
+                                     [](const PtzCamera::Turn& turn) { return turn.place_covariance.has_value(); });
   std::string text(kPtzHeader);
-  if (places) text += kPlaceHeader;
+  if (positions) text += kPositionHeader;
   text += '\n';
   for (const PtzCamera::Turn& turn : camera.rotations) {
     fmt::format_to(std::back_inserter(text), "{:.6f}", turn.time_s);
     if (!turn.heading) {
-      text.append((places ? kWithPlaces : kPtzColumns) - 1, ',');
+      text.append((positions ? kAllColumns : kPtzColumns) - 1, ',');
     } else {
       const double focal = std::exp(turn.heading->log_focal) * size.width / 2;
       fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f},{:.3f}", turn.heading->pan / kTurnDegree,
                      turn.heading->tilt / kTurnDegree, focal);
       add_covariance(text, turn.covariance, focal);
-      if (places) add_covariance(text, turn.place_covariance.value_or(turn.covariance), focal);
+      if (positions) add_covariance(text, turn.place_covariance.value_or(turn.covariance), focal);
     }
     text += '\n';
   }

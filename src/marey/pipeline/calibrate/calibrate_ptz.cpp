@@ -106,7 +106,7 @@ void prepare(marey::calibrate::ptz::PtzTracker& tracker, const corridor::Feed& f
       if (!given) return;
       if (index == frame.frame) tracker.prepare(frame.frame, in_bytes(given->frame.image).luma());
     }
-    hooks.advance({"looking at the clicked frames", index, clicks.back().frame + 1});
+    hooks.advance({"reading the clicked frames", index, clicks.back().frame + 1});
   }
 }
 
@@ -148,9 +148,9 @@ void check_result(PtzRun& run, const std::string& video) {
       run.warnings.push_back(
           fmt::format("frame {}: {:.0f} px from its clicks; that frame and those about it are lost", click.frame, *click.off_px));
   }
-  if (run.result.doubted > 0)
+  if (run.result.ambiguous_frames > 0)
     run.warnings.push_back(
-        fmt::format("in {} frames two ways to follow the camera contradict each other; they are lost", run.result.doubted));
+        fmt::format("in {} frames the camera's track contradicts itself or clicks; they are lost", run.result.ambiguous_frames));
   if (run.result.lost > kMinReported * frames)
     run.warnings.push_back(fmt::format(
         "in {} of {:.0f} frames it is not known where the camera looked; no person has a place there", run.result.lost, frames));

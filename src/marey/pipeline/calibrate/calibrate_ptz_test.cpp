@@ -127,7 +127,7 @@ TEST(CalibratePtz, ClicksThatTheImageContradictsAreReportedAndTheirFrameIsLost) 
   EXPECT_GT(*tracked.result.clicks[0].off_px, 60);
   EXPECT_FALSE(tracked.result.camera.rotations[25].heading.has_value());
   EXPECT_FALSE(tracked.result.camera.rotations[35].heading.has_value());
-  EXPECT_GT(tracked.result.doubted, 20);
+  EXPECT_GT(tracked.result.ambiguous_frames, 20);
 }
 
 }  // namespace

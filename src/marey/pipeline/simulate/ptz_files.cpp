@@ -29,7 +29,7 @@ constexpr std::size_t kMinClicks = 4;   // that a user would search for in a fra
 class ClickedFrames {
  public:
   explicit ClickedFrames(const PtzFilesOptions& options)
-      : noise_(options.click_noise), from_(options.clicked_from), frames_(options.clicked_frames), most_(options.clicks) {}
+      : noise_(options.click_noise), from_(options.clicked_from), frames_(options.clicked_frames), max_clicks_(options.clicks) {}
 
   void inspect_at(const marey::simulate::match::PtzMatch& match) {
     const auto heading = match.heading();
@@ -38,7 +38,7 @@ class ClickedFrames {
     auto clicks = match.clicks(noise_);
     if (clicks.size() < kMinClicks) return;
     pans_.push_back(heading->pan);
-    while (std::ssize(clicks) > most_) clicks.erase(clicks.begin() + std::ssize(clicks) / 2);
+    while (std::ssize(clicks) > max_clicks_) clicks.erase(clicks.begin() + std::ssize(clicks) / 2);
     for (const marey::simulate::match::MatchClick& click : clicks)
       fmt::format_to(std::back_inserter(rows_), "{},{:g},{:g},{:.2f},{:.2f}\n", match.frame(), click.ground.x(), click.ground.y(),
                      click.pixel.x(), click.pixel.y());
@@ -47,7 +47,7 @@ class ClickedFrames {
 
  private:
   double noise_, from_;
-  std::ptrdiff_t frames_, most_;
+  std::ptrdiff_t frames_, max_clicks_;
   std::vector<double> pans_;
   std::string rows_ = "frame,x,y,u,v\n";
 };

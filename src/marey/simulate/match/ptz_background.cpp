@@ -151,7 +151,7 @@ struct Lookup {
 }  // namespace
 
 PtzBackground::PtzBackground(const geometry::PitchSize& pitch, std::uint64_t seed, const PtzPaint& paint)
-    : pitch_(pitch), look_(paint), seed_(seed), lines_(geometry::pitch_lines(pitch, 0.5)) {
+    : pitch_(pitch), appearance_(paint), seed_(seed), lines_(geometry::pitch_lines(pitch, 0.5)) {
   const Extent extent(pitch);
   Random random(seed * 2654435761u + 81), painter(seed * 2654435761u + 82);
   for (int i = 0; i < paint.extra; ++i) lines_.push_back(other_paint(pitch, painter));
@@ -210,14 +210,14 @@ cv::Mat PtzBackground::paint(const Camera& camera) const {
     const Vector<2> there = ((pixel->array() + 0.5) * kSuper - 0.5) * (1 << kFixed);
     return cv::Point(cvRound(there.x()), cvRound(there.y()));
   };
-  const double worn_level = 2 * look_.missing - 1;  // of value_noise, roughly even in −1 … 1
+  const double worn_level = 2 * appearance_.missing - 1;  // of value_noise, roughly even in −1 … 1
   for (const geometry::PitchLine& line : lines_) {
     for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
       constexpr double kWorn = 3;  // m
-      if (look_.missing > 0 && value_noise(line.points[i] / kWorn, seed_ + 21) < worn_level) continue;
+      if (appearance_.missing > 0 && value_noise(line.points[i] / kWorn, seed_ + 21) < worn_level) continue;
       const auto next_to = [&](std::size_t k, double side) {
         const Vector<2>& along = line.tangents[k];
-        return corner(line.points[k] + side * look_.width / 2 * Vector<2>(-along.y(), along.x()));
+        return corner(line.points[k] + side * appearance_.width / 2 * Vector<2>(-along.y(), along.x()));
       };
       const auto a = next_to(i, 1), b = next_to(i + 1, 1), c = next_to(i + 1, -1), d = next_to(i, -1);
       if (!a || !b || !c || !d) continue;
@@ -237,7 +237,7 @@ cv::Mat PtzBackground::draw(const Camera& camera) const {
     const auto* cover = fraction.ptr<std::uint8_t>(y);
     for (int x = 0; x < image.cols; ++x) {
       if (cover[x] == 0) continue;
-      const double part = look_.contrast * cover[x] / 255.0, bright = 0.6 + 0.4 * row[x][1] / 100.0;
+      const double part = appearance_.contrast * cover[x] / 255.0, bright = 0.6 + 0.4 * row[x][1] / 100.0;
       const cv::Vec3b white = shaded(206, 213, 208, bright);
       for (int i = 0; i < 3; ++i) row[x][i] = cv::saturate_cast<std::uint8_t>((1 - part) * row[x][i] + part * white[i]);
     }

@@ -38,7 +38,7 @@ class PtzBackground {
   cv::Mat paint(const Camera& camera) const;
 
   geometry::PitchSize pitch_;
-  PtzPaint look_;
+  PtzPaint appearance_;
   std::uint64_t seed_;
   std::vector<geometry::PitchLine> lines_;
   cv::Mat texture_;  // ground above, wall below, blue first

@@ -39,7 +39,7 @@ PtzMatchOptions ptz_scene(std::string_view name) {
     options.paint = {0.09, 0.5, 0.25, 6, 0.5};
     options.operates.whips = 0.3, options.exposure = 0.015;
   } else {
-    throw Error("{} is no scene; they are {}", name, fmt::join(kPtzScenes, ", "));
+    throw Error("{} is not a scene; scenes are {}", name, fmt::join(kPtzScenes, ", "));
   }
   return options;
 }

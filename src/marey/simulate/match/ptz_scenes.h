@@ -12,7 +12,7 @@ namespace marey::simulate::match {
 /// lines), low (television of few bits: blurred and noisy), all (a little of everything).
 std::span<const std::string_view> ptz_scene_names();
 
-/// Throws Error, with the names, for a name that is none.
+/// Throws Error, with the names, if there is no scene of that name.
 PtzMatchOptions ptz_scene(std::string_view name);
 
 }  // namespace marey::simulate::match
