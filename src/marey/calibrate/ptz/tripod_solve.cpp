@@ -253,7 +253,7 @@ ClickedTripod tripod_from_clicks(const std::vector<ClickedFrame>& clicks, cv::Si
   if (worst > 2 * options.click_px * size.width / 1280.0) check_halves(clicks, size, pitch, options, found.cost);
   if (worst > kWorstMedian * size.width)
     throw Error(
-        "no camera on one tripod sees the clicked places within {:.0f} px of their clicks; clicks are on the wrong spot or bear "
+        "no camera on one tripod sees the clicked places within {:.0f} px of their clicks; clicks are on the wrong spot or have "
         "another place's name",
         worst);
   return result;
