@@ -51,7 +51,12 @@ Json as_json(const pipeline::calibrate::PtzRun& run) {
     Json locations = Json::array();
     for (std::size_t k = 0; k < run.clicks[i].locations.size(); ++k)
       locations.push_back({{"name", run.clicks[i].locations[k].name}, {"error_px", run.clicked.error_px[i][k]}});
-    frames.push_back({{"frame", run.clicks[i].frame}, {"clicks", locations}});
+    Json off = nullptr;
+    bool contradicts = false;
+    for (const auto& check : run.result.clicks) {
+      if (check.frame == run.clicks[i].frame && check.off_px) off = *check.off_px, contradicts = check.contradicts;
+    }
+    frames.push_back({{"frame", run.clicks[i].frame}, {"clicks", locations}, {"result_px", off}, {"contradicts", contradicts}});
   }
   return {{"frames", run.result.camera.rotations.size()},
           {"lost", run.result.lost},

@@ -114,14 +114,14 @@ class Identify(unittest.TestCase):
     def test_review_lists_of_earlier_versions_are_read(self):
         self.who("--min-probability", "0", "-q")
         self.answer(["yes" if row["kind"] == "swap" else "" for row in self.doubts()])
-        wanted = self.places()
+        wanted = self.converted()
         marey("edit", self.take, "--undo", "-q")
         text = (self.folder / "answers.csv").read_text()
         for today, before in (("track_a,track_b", "a,b"), ("base_edit", "edit"), (",swap,", ",exchange,"), (",continuity,", ",same,"), (",identity,", ",who,")):
             text = text.replace(today, before)
         (self.folder / "answers.csv").write_text(text)
         marey("identify", self.take, "--answers", self.folder / "answers.csv")
-        self.assertEqual(self.places(), wanted)
+        self.assertEqual(self.converted(), wanted)
 
     def test_names_go_over_gaps(self):
         self.record(lambda who, t: who, left_out=lambda track, t: track == 5 and 100 < t < 106,
@@ -151,21 +151,21 @@ class Identify(unittest.TestCase):
         first = next(i for i in exchanges if "Adams" in asked[i]["question"])
         answers = ["yes" if i == first else "" for i in range(len(asked))]
         self.assertIn("1 answered, ", self.answer(answers).stdout)
-        done = self.places()
+        done = self.converted()
         said = self.answer(answers).stdout
         self.assertIn("1 answered (1 applied before)", said)
         self.assertIn("0 edits", said)
-        self.assertEqual(self.places(), done)
+        self.assertEqual(self.converted(), done)
         marey("edit", self.take, "--undo", "-q")
         self.assertIn("1 edit\n", self.answer(answers).stdout, "what was undone is applied again")
-        self.assertEqual(self.places(), done)
+        self.assertEqual(self.converted(), done)
 
         marey("edit", self.take, "--undo", "-q")
         a, b = (asked[first][column].split(" ")[0] for column in ("track_a", "track_b"))
         marey("edit", self.take, f"swap {a} {b} {int(asked[first]['frame']) + 5}:", "-q")
-        by_hand = self.places()
+        by_hand = self.converted()
         self.assertIn("(1 applied before)", self.answer(answers).stdout)
-        self.assertEqual(self.places(), by_hand)
+        self.assertEqual(self.converted(), by_hand)
 
     def test_a_row_given_twice_is_applied_once(self):
         self.who("--min-probability", "0", "-q")
@@ -179,7 +179,7 @@ class Identify(unittest.TestCase):
         said = marey("identify", self.take, "--answers", self.folder / "answers.csv").stdout
         self.assertIn("2 answered (1 applied before), 0 left open; 1 edit\n", said)
 
-    def places(self):
+    def converted(self):
         marey("convert", self.take, self.folder / "now.csv", "-q")
         return (self.folder / "now.csv").read_text()
 
@@ -296,10 +296,10 @@ class Identify(unittest.TestCase):
             rows += f"{frame},{frame / RATE:.4f},7,,,{x + 0.3:.3f},{y:.3f},,,observed,cam1\n"
         path.write_text(rows)
         marey("convert", path, self.take, "-q")
-        before = self.places().count("\n")
+        before = self.converted().count("\n")
         excluded = json.loads(self.who("--json", "-q").stdout)["excluded"]
         self.assertGreater(excluded, 0)
-        self.assertEqual(excluded, before - self.places().count("\n"))
+        self.assertEqual(excluded, before - self.converted().count("\n"))
 
     def test_names_are_given_once(self):
         self.who("-q")

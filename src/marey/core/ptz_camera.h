@@ -14,6 +14,9 @@ struct PtzCamera {
     double time_s = 0;                         ///< by the camera's own clock: the frame's
     std::optional<geometry::Heading> heading;  ///< nothing: it is not known where the camera was aimed (a cut, a replay)
     Matrix<3> covariance = Matrix<3>::Zero();  ///< of pan, tilt, rad, and ln of the focal length
+    /// The same for a camera on an exact tripod that errs as much on the pitch in view: by it the places seen are judged. The
+    /// tripod's error turns pan and tilt along with it, so `covariance` would say too much of them. Nothing: `covariance`.
+    std::optional<Matrix<3>> place_covariance;
   };
 
   geometry::Tripod tripod;

@@ -24,8 +24,10 @@ struct PaintSighting {
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();   ///< where paint is seen, px
   Eigen::Vector2f normal = Eigen::Vector2f::Zero();  ///< length 1, in the image, across the line
   float sigma = 1;                                   ///< px across the line
-  std::int16_t line = 0;                             ///< which line of the model
+  std::int16_t line = 0;                             ///< which line of the model, or from kFirstClick on which axis of which click
 };
+
+inline constexpr std::int16_t kFirstClick = 1000;  // by definition
 
 struct PaintOptions {
   double reach = 8;            ///< px to both sides of where a line is expected

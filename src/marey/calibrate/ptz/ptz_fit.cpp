@@ -36,14 +36,17 @@ Residual residual_of(const geometry::TripodFrame<Jet>& frame, cv::Size size, con
           size.width / 2.0 * (normal.x() * detected.x().v + normal.y() * detected.y().v)};
 }
 
+/// Of each sighting.
 std::vector<double> line_weights(std::span<const PaintSighting> paint, double per_line) {
   std::vector<int> count;
   for (const PaintSighting& one : paint) {
+    if (one.line >= kFirstClick) continue;
     if (one.line >= static_cast<int>(count.size())) count.resize(one.line + 1, 0);
     ++count[one.line];
   }
   std::vector<double> weights;
-  for (const int n : count) weights.push_back(std::min(1.0, per_line / std::max(1, n)));
+  for (const PaintSighting& one : paint)
+    weights.push_back(one.line >= kFirstClick ? 1 : std::min(1.0, per_line / std::max(1, count[one.line])));
   return weights;
 }
 
@@ -52,6 +55,7 @@ void assess(std::span<const PaintSighting> paint, const geometry::TripodFrame<Je
   std::vector<double> near;
   std::vector<int> of_line;
   for (const PaintSighting& one : paint) {
+    if (one.line >= kFirstClick) continue;
     const double off = std::abs(residual_of(frame, size, one).off);
     if (off > cut_off * one.sigma) continue;
     near.push_back(off);
@@ -77,11 +81,12 @@ AimFit solve_aim(const geometry::Tripod& tripod, cv::Size size, std::span<const 
     const auto frame = jet_frame(tripod, geometry::Heading::of(at));
     information = prior;
     Vector<3> slope = prior * (at - expected.heading.as_vector());
-    for (const PaintSighting& one : paint) {
+    for (std::size_t k = 0; k < paint.size(); ++k) {
+      const PaintSighting& one = paint[k];
       const Residual residual = residual_of(frame, size, one);
       const double scaled = residual.off / (loose * options.cut_off * one.sigma);
       const double robust = 1 / std::pow(1 + scaled * scaled, 2);  // Geman and McClure's
-      const double weight = robust * weights[one.line] / (one.sigma * one.sigma);
+      const double weight = robust * weights[k] / (one.sigma * one.sigma);
       information += weight * residual.by_heading * residual.by_heading.transpose();
       slope += weight * residual.off * residual.by_heading;
     }

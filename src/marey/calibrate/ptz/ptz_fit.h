@@ -21,12 +21,16 @@ struct AimOptions {
   double per_line = 8;   ///< samples of one line err together: a line weighs at most as much as this many
   double cut_off = 2.5;  ///< standard deviations: a sample that lies farther off counts little
   int iterations = 8;
+  double enough = 0.6;                         ///< fraction of the samples in view: with less, the expectation is tried looser
+  double loose_px = 8, loose_reach = 20;       ///< px at 1280: by this deviation, with paint from this far about
+  double better = 1.15;                        ///< ratio of merits from which the looser fit is taken
+  double click_angle = 0.1, click_zoom = 0.3;  ///< rad, ln f: deviation of a heading that clicks correct
 };
 
 /// How well paint fits an aim.
 struct AimFit {
   Aim aim;
-  int agreeing = 0;      ///< sightings within the cut-off
+  int agreeing = 0;      ///< pieces of paint within the cut-off
   int lines = 0;         ///< with three of them or more
   double median_px = 0;  ///< distance of the agreeing ones
 };

@@ -2,9 +2,10 @@
 //
 // Bright ridges on green are a mask of what may be paint. Headings all over the pitch are tried, coarse first: of each, the model's
 // lines are laid over the distances to the mask, and what lies near counts, by its length in the image, what lies far counts
-// against it. The best few are refined on the paint itself. A heading counts only where most of the lines that it promises are
-// there, and no other one explains the image nearly as well: an image of another place, or a goal mouth alone, gives none. Cost:
-// some 50 ms. Reference: Thomas 2007 (a search over the possible views starts the tracker).
+// against it. The best few are refined on the paint itself and evaluated both ways: by the lines that they promise and are there, and
+// by the paint that lies on no line of theirs. A heading counts only where no other one explains the image nearly as well: an image
+// of another place, or a goal mouth alone, gives none. Headings about the last known one come first. Cost: some 50 ms. Reference:
+// Thomas 2007 (a search over the possible views starts the tracker).
 #pragma once
 
 #include <optional>
@@ -17,12 +18,30 @@
 
 namespace marey::calibrate::ptz {
 
+/// Where the camera was aimed when it was last known, carried on by the flow, and how many frames ago that was.
+struct NearHeading {
+  geometry::Heading heading;
+  int frames = 0;
+};
+
 struct FindAgainOptions {
+  std::optional<NearHeading> near;  ///< headings about it are tried first, and preferred
   double min_log_focal = 0.3, max_log_focal = 2.4;
   double fraction = 0.55;  ///< of the samples of the lines in view that have to be paint,
   int lowest_count = 35;   ///< and this many of them,
   int lines = 3;           ///< on this many lines
-  double rival = 0.8;      ///< another heading may agree with at most this share of as many
+  double both = 0.4;       ///< √(fraction of the lines that is paint · fraction of the paint that is lines), at least
+  bool everywhere = true;  ///< not about the last heading alone
+  int near_count = 3;      ///< headings about the last one that are refined
+  double near_angle = 0.06, near_zoom = 0.15;             ///< rad, ln f about the last heading,
+  double near_angle_rate = 0.008, near_zoom_rate = 0.02;  ///< and as much more for every frame since,
+  double max_near_angle = 0.35, max_near_zoom = 0.6;      ///< but no more than this
+  int min_ridge = 5, max_ridge = 14;                      ///< grey levels above the grass of what may be paint: the lowest level
+  double paint_fraction = 0.06;                           ///< that no more of the ground exceeds
+  double explained_px = 3.5;                              ///< of the shrunk image: paint so near a line belongs to it
+  double beyond = 1.5;                                    ///< m beyond the lines paint belongs to no pitch,
+  double off_pitch_weight = 0.3;                          ///< and weighs as much there
+  double rival = 0.8;                                     ///< another heading may agree with at most this share of as many
 };
 
 /// `lines` in the world. The covariance is that of the paint alone.

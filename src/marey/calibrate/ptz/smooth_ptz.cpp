@@ -1,8 +1,11 @@
 #include "marey/calibrate/ptz/smooth_ptz.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "marey/filter/smoother.h"
+
+#include "marey/calibrate/ptz/frame_fit.h"
 
 namespace marey::calibrate::ptz {
 namespace {
@@ -33,9 +36,7 @@ std::vector<Filtered> filtered(const std::vector<TurnRecord>& records, const geo
     Filtered& here = all[i];
     if (!record.found) continue;
     if (i > 0 && all[i - 1].aim && record.rotated) {
-      const Aim& before = *all[i - 1].aim;
-      here.expected = Aim{geometry::Heading::of(before.heading.as_vector() + step_of(*record.rotated, before.heading.log_focal)),
-                          before.covariance + flow_covariance(*record.rotated, before.heading.log_focal, options)};
+      here.expected = next_aim(*all[i - 1].aim, *record.rotated, options);
     } else if (record.found && !record.paint.empty()) {
       here.expected =
           Aim{record.found->heading,
@@ -59,6 +60,23 @@ Matrix<3> flow_covariance(const Rotated& rotated, double log_focal, const Smooth
       .toDenseMatrix();
 }
 
+Aim next_aim(const Aim& before, const Rotated& rotated, const SmoothOptions& options) {
+  return {geometry::Heading::of(before.heading.as_vector() + step_of(rotated, before.heading.log_focal)),
+          before.covariance + flow_covariance(rotated, before.heading.log_focal, options)};
+}
+
+Aim previous_aim(const Aim& after, const Rotated& rotated, const SmoothOptions& options) {
+  return {geometry::Heading::of(after.heading.as_vector() - step_of(rotated, after.heading.log_focal)),
+          after.covariance + flow_covariance(rotated, after.heading.log_focal, options)};
+}
+
+bool same_aim(const Aim& a, const Aim& b, const SmoothOptions& options) {
+  const Aim off{a.heading, a.covariance + b.covariance};
+  const Vector<3> by = a.heading.as_vector() - b.heading.as_vector();
+  const double px = 640 * std::max(std::exp(a.heading.log_focal) * by.head<2>().norm(), 0.7 * std::abs(by.z()));
+  return px < options.same_px + options.same_deviations * unsure_px(off);
+}
+
 std::vector<std::optional<Aim>> smooth_ptz(const std::vector<TurnRecord>& records, const geometry::Tripod& tripod, cv::Size size,
                                            const SmoothOptions& options) {
   const std::vector<Filtered> forwards = filtered(records, tripod, size, options);
@@ -75,9 +93,7 @@ std::vector<std::optional<Aim>> smooth_ptz(const std::vector<TurnRecord>& record
         continue;
       }
       // Before the first known frame of a piece there is only what came after it.
-      const Aim& after = *smooth[k + 1];
-      smooth[k] = Aim{geometry::Heading::of(after.heading.as_vector() - step_of(rotated, after.heading.log_focal)),
-                      after.covariance + flow_covariance(rotated, after.heading.log_focal, options)};
+      smooth[k] = previous_aim(*smooth[k + 1], rotated, options);
       continue;
     }
     if (!forwards[k + 1].expected) continue;  // after a loss: nothing leads from here to there

@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <ceres/ceres.h>
 
 #include "marey/calibrate/solve.h"
@@ -73,6 +75,7 @@ struct StillPrior {
 std::vector<int> counts_by_line(std::span<const PaintSighting> paint) {
   std::vector<int> counts;
   for (const PaintSighting& one : paint) {
+    if (one.line >= kFirstClick) continue;
     if (one.line >= static_cast<int>(counts.size())) counts.resize(static_cast<std::size_t>(one.line) + 1, 0);
     ++counts[static_cast<std::size_t>(one.line)];
   }
@@ -88,10 +91,36 @@ void add_frame(ceres::Problem& problem, const TripodFrameSight& frame, double* s
   }
   const std::vector<int> counts = counts_by_line(frame.paint);
   for (const PaintSighting& one : frame.paint) {
+    if (one.line >= kFirstClick) continue;  // a frame's clicks are given as such
     const double weight = std::min(1.0, options.per_line / counts[static_cast<std::size_t>(one.line)]);
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PaintOff, 1, kStill, 3>(new PaintOff{one, size}),
                              new ceres::ScaledLoss(new ceres::CauchyLoss(1.5), weight, ceres::TAKE_OWNERSHIP), still, ptz);
   }
+}
+
+/// The inverse of JᵀJ, the headings left free; `blocks` begins with the tripod's.
+Matrix<kStill> covariance_of(ceres::Problem& problem, const std::vector<double*>& blocks) {
+  ceres::Problem::EvaluateOptions how;
+  how.parameter_blocks = blocks;
+  ceres::CRSMatrix jacobian;
+  problem.Evaluate(how, nullptr, nullptr, nullptr, &jacobian);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(jacobian.num_cols, jacobian.num_cols);
+  for (int row = 0; row < jacobian.num_rows; ++row) {
+    const auto begin = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row)]),
+               end = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row) + 1]);
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t k = begin; k < end; ++k)
+        information(jacobian.cols[i], jacobian.cols[k]) += jacobian.values[i] * jacobian.values[k];
+    }
+  }
+  const Eigen::Index free = information.cols() - kStill;
+  const Eigen::MatrixXd across = information.topRightCorner(kStill, free);
+  Eigen::MatrixXd own = information.bottomRightCorner(free, free);
+  own.diagonal().array() += 1e-6;  // a heading that nothing determines
+  Matrix<kStill> left = information.topLeftCorner(kStill, kStill);
+  left -= across * own.ldlt().solve(across.transpose());
+  left.diagonal().array() += 1e-9;
+  return left.inverse();
 }
 
 std::vector<double> errors_of(const geometry::Tripod& tripod, const geometry::Heading& heading, const ClickedFrame& frame,
@@ -192,6 +221,11 @@ TripodSolution solve_tripod(const geometry::Tripod& start, std::span<const Tripo
   solution.tripod = geometry::Tripod::of(still);
   for (const Vector<3>& heading : ptz) solution.headings.push_back(geometry::Heading::of(heading));
   solution.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
+  std::vector<double*> blocks{still.data()};
+  for (Vector<3>& heading : ptz) {
+    if (problem.HasParameterBlock(heading.data())) blocks.push_back(heading.data());
+  }
+  solution.covariance = covariance_of(problem, blocks);
   return solution;
 }
 
@@ -207,6 +241,7 @@ ClickedTripod tripod_from_clicks(const std::vector<ClickedFrame>& clicks, cv::Si
   const std::vector<ClickedFrame>& used = result.reflected ? mirrored : clicks;
   result.tripod = found.tripod;
   result.headings = found.headings;
+  result.covariance = found.covariance;
   std::vector<double> all;
   double worst = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -218,7 +253,7 @@ ClickedTripod tripod_from_clicks(const std::vector<ClickedFrame>& clicks, cv::Si
   if (worst > 2 * options.click_px * size.width / 1280.0) check_halves(clicks, size, pitch, options, found.cost);
   if (worst > kWorstMedian * size.width)
     throw Error(
-        "no camera on one tripod sees the clicked places within {:.0f} px of their clicks; clicks are on the wrong spot or bear "
+        "no camera on one tripod sees the clicked places within {:.0f} px of their clicks; clicks are on the wrong spot or have "
         "another place's name",
         worst);
   return result;

@@ -36,6 +36,7 @@ struct TripodSolution {
   geometry::Tripod tripod;
   std::vector<geometry::Heading> headings;  ///< one a frame
   double cost = 0;
+  Matrix<geometry::Tripod::numbers> covariance;  ///< of the tripod's numbers, the headings left free
 };
 
 /// Refines a tripod and the headings of its frames on all that is seen in them, with a robust loss.
@@ -46,8 +47,9 @@ TripodSolution solve_tripod(const geometry::Tripod& start, std::span<const Tripo
 struct ClickedTripod {
   geometry::Tripod tripod;
   std::vector<geometry::Heading> headings;
-  bool reflected = false;                     ///< the clicks' frame is left-handed: the world's y is the pitch's width less theirs
-  std::vector<std::vector<double>> error_px;  ///< for each frame and click
+  bool reflected = false;  ///< the clicks' frame is left-handed: the world's y is the pitch's width less theirs
+  Matrix<geometry::Tripod::numbers> covariance;  ///< of the tripod's numbers
+  std::vector<std::vector<double>> error_px;     ///< for each frame and click
   double median_px = 0;
 };
 

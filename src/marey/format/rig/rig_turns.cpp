@@ -1,7 +1,6 @@
 #include "marey/format/rig/rig_turns.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -22,18 +21,20 @@ namespace marey::format::rig {
 namespace {
 
 constexpr std::string_view kPtzHeader = "time,pan,tilt,focal,pan_sd,tilt_sd,focal_sd,pan_tilt,pan_focal,tilt_focal";
-constexpr std::size_t kPtzColumns = 10;
+constexpr std::string_view kPositionHeader =
+    ",position_pan_sd,position_tilt_sd,position_focal_sd,position_pan_tilt,position_pan_focal,position_tilt_focal";
+constexpr std::size_t kPtzColumns = 10, kAllColumns = 16;
 constexpr double kTurnDegree = std::numbers::pi / 180;
 constexpr double kMaxDegrees = 1e4;
 
 /// One row's numbers; nothing if one is missing or none.
-std::optional<std::array<double, kPtzColumns>> numbers_in_row(const std::vector<std::string_view>& fields) {
-  std::array<double, kPtzColumns> values{};
-  if (fields.size() != kPtzColumns) return std::nullopt;
-  for (std::size_t i = 0; i < kPtzColumns; ++i) {
-    const auto value = number_of(fields[i]);
+std::optional<std::vector<double>> numbers_in_row(const std::vector<std::string_view>& fields, std::size_t columns) {
+  std::vector<double> values;
+  if (fields.size() != columns) return std::nullopt;
+  for (const std::string_view& field : fields) {
+    const auto value = number_of(field);
     if (!value) return std::nullopt;
-    values[i] = *value;
+    values.push_back(*value);
   }
   return values;
 }
@@ -45,24 +46,43 @@ bool is_lost(const std::vector<std::string_view>& fields) {
   return true;
 }
 
-PtzCamera::Turn turn_of(const std::array<double, kPtzColumns>& row, cv::Size size) {
+/// From standard deviations (degrees, px) and correlations, six numbers from `first` on.
+Matrix<3> covariance_in(const std::vector<double>& row, std::size_t first) {
+  const Vector<3> sd(row[first] * kTurnDegree, row[first + 1] * kTurnDegree, row[first + 2] / row[3]);
+  Matrix<3> together = Matrix<3>::Identity();
+  together(0, 1) = together(1, 0) = row[first + 3];
+  together(0, 2) = together(2, 0) = row[first + 4];
+  together(1, 2) = together(2, 1) = row[first + 5];
+  return sd.asDiagonal() * together * sd.asDiagonal();
+}
+
+PtzCamera::Turn turn_of(const std::vector<double>& row, cv::Size size) {
   PtzCamera::Turn turn;
   turn.time_s = row[0];
   turn.heading = geometry::Heading{row[1] * kTurnDegree, row[2] * kTurnDegree, std::log(row[3] / (size.width / 2.0))};
-  const Vector<3> sd(row[4] * kTurnDegree, row[5] * kTurnDegree, row[6] / row[3]);
-  Matrix<3> together = Matrix<3>::Identity();
-  together(0, 1) = together(1, 0) = row[7];
-  together(0, 2) = together(2, 0) = row[8];
-  together(1, 2) = together(2, 1) = row[9];
-  turn.covariance = sd.asDiagonal() * together * sd.asDiagonal();
+  turn.covariance = covariance_in(row, 4);
+  if (row.size() == kAllColumns) turn.place_covariance = covariance_in(row, kPtzColumns);
   return turn;
 }
 
-bool in_domain(const std::array<double, kPtzColumns>& row) {
+bool in_domain(const std::vector<double>& row) {
   bool good = std::abs(row[1]) < kMaxDegrees && std::abs(row[2]) < kMaxDegrees && row[3] > 1 && row[3] < 1e7;
-  for (std::size_t i = 4; i < 7; ++i) good = good && row[i] >= 0 && row[i] < 1e6;
-  for (std::size_t i = 7; i < kPtzColumns; ++i) good = good && std::abs(row[i]) <= 1;
+  for (std::size_t first = 4; first < row.size(); first += 6) {
+    for (std::size_t i = first; i < first + 3; ++i) good = good && row[i] >= 0 && row[i] < 1e6;
+    for (std::size_t i = first + 3; i < first + 6; ++i) good = good && std::abs(row[i]) <= 1;
+  }
   return good;
+}
+
+/// Standard deviations and correlations, each with a comma before it.
+void add_covariance(std::string& text, const Matrix<3>& covariance, double focal) {
+  const Vector<3> sd = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  const auto together = [&](int i, int k) {
+    const double both = sd(i) * sd(k);
+    return both > 0 ? std::clamp(covariance(i, k) / both, -1.0, 1.0) : 0.0;
+  };
+  fmt::format_to(std::back_inserter(text), ",{:.3g},{:.3g},{:.3g},{:.4f},{:.4f},{:.4f}", sd(0) / kTurnDegree, sd(1) / kTurnDegree,
+                 sd(2) * focal, together(0, 1), together(0, 2), together(1, 2));
 }
 
 /// What a camera's table says of how it turns; nothing if it stands.
@@ -120,7 +140,10 @@ std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string&
   TextLines lines(text);
   std::string_view line;
   std::vector<std::string_view> fields;
-  if (!lines.next(line) || line != kPtzHeader) throw Error("{}:1: its first line must read {}", name, kPtzHeader);
+  const std::string with_positions = std::string(kPtzHeader) + std::string(kPositionHeader);
+  const bool any = lines.next(line);
+  if (!any || (line != kPtzHeader && line != with_positions)) throw Error("{}:1: its first line must read {}", name, kPtzHeader);
+  const std::size_t columns = line == kPtzHeader ? kPtzColumns : kAllColumns;
   while (lines.next(line)) {
     if (line.empty()) continue;
     split_fields(line, ',', fields);
@@ -129,7 +152,7 @@ std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string&
     if (!time) throw Error("{}:{}: a row begins with its frame's time in s", name, lines.number());
     turn.time_s = *time;
     if (!is_lost(fields)) {
-      const auto row = numbers_in_row(fields);
+      const auto row = numbers_in_row(fields, columns);
       if (!row || !in_domain(*row))
         throw Error(
             "{}:{}: {} is not a row of a PTZ file: time in s, pan and tilt in degrees, a positive focal length in px, three "
@@ -147,23 +170,23 @@ std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string&
 }
 
 std::string ptz_text(const PtzCamera& camera, cv::Size size) {
+  const bool positions = std::any_of(camera.rotations.begin(), camera.rotations.end(),
+                                     [](const PtzCamera::Turn& turn) { return turn.place_covariance.has_value(); });
   std::string text(kPtzHeader);
+  if (positions) text += kPositionHeader;
   text += '\n';
-  const auto add = std::back_inserter(text);
   for (const PtzCamera::Turn& turn : camera.rotations) {
+    fmt::format_to(std::back_inserter(text), "{:.6f}", turn.time_s);
     if (!turn.heading) {
-      fmt::format_to(add, "{:.6f},,,,,,,,,\n", turn.time_s);
-      continue;
+      text.append((positions ? kAllColumns : kPtzColumns) - 1, ',');
+    } else {
+      const double focal = std::exp(turn.heading->log_focal) * size.width / 2;
+      fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f},{:.3f}", turn.heading->pan / kTurnDegree,
+                     turn.heading->tilt / kTurnDegree, focal);
+      add_covariance(text, turn.covariance, focal);
+      if (positions) add_covariance(text, turn.place_covariance.value_or(turn.covariance), focal);
     }
-    const Vector<3> sd = turn.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-    const auto together = [&](int i, int k) {
-      const double both = sd(i) * sd(k);
-      return both > 0 ? std::clamp(turn.covariance(i, k) / both, -1.0, 1.0) : 0.0;
-    };
-    const double focal = std::exp(turn.heading->log_focal) * size.width / 2;
-    fmt::format_to(add, "{:.6f},{:.5f},{:.5f},{:.3f},{:.3g},{:.3g},{:.3g},{:.3f},{:.3f},{:.3f}\n", turn.time_s,
-                   turn.heading->pan / kTurnDegree, turn.heading->tilt / kTurnDegree, focal, sd(0) / kTurnDegree,
-                   sd(1) / kTurnDegree, sd(2) * focal, together(0, 1), together(0, 2), together(1, 2));
+    text += '\n';
   }
   return text;
 }

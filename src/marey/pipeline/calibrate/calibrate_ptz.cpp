@@ -94,6 +94,22 @@ Matrix<3> ground_from_pitch(const Vector<2>& corner, bool reflected, const geome
   return ground;
 }
 
+/// The clicked frames' images first: the tripod by clicks alone leaves lines some pixels off.
+void prepare(marey::calibrate::ptz::PtzTracker& tracker, const corridor::Feed& feed, const std::vector<ClickedFrame>& clicks,
+             const Hooks& hooks) {
+  corridor::Feed ahead = feed.again();
+  std::int64_t index = 0;
+  for (const ClickedFrame& frame : clicks) {
+    for (; index <= frame.frame; ++index) {
+      stop_point();
+      const auto given = ahead.next();
+      if (!given) return;
+      if (index == frame.frame) tracker.prepare(frame.frame, in_bytes(given->frame.image).luma());
+    }
+    hooks.advance({"reading the clicked frames", index, clicks.back().frame + 1});
+  }
+}
+
 marey::calibrate::ptz::PtzResult run_tracker(corridor::Feed& feed, const PtzRun& run, const PtzRunOptions& options,
                                              const Hooks& hooks) {
   marey::calibrate::ptz::PtzTracker tracker(run.clicked.tripod, feed.info().size, options.tracking);
@@ -104,6 +120,7 @@ marey::calibrate::ptz::PtzResult run_tracker(corridor::Feed& feed, const PtzRun&
     }
     tracker.know(run.clicks[i].frame, run.clicked.headings[i], locations);
   }
+  prepare(tracker, feed, run.clicks, hooks);
   std::int64_t frames = 0;
   while (const auto given = feed.next()) {
     stop_point();
@@ -126,6 +143,14 @@ void check_result(PtzRun& run, const std::string& video) {
         "football "
         "pitch, are the clicks right, and is --size the pitch's?",
         video, found, frames);
+  for (const auto& click : run.result.clicks) {
+    if (click.contradicts)
+      run.warnings.push_back(
+          fmt::format("frame {}: {:.0f} px from its clicks; that frame and those about it are lost", click.frame, *click.off_px));
+  }
+  if (run.result.ambiguous_frames > 0)
+    run.warnings.push_back(
+        fmt::format("in {} frames the camera's track contradicts itself or clicks; they are lost", run.result.ambiguous_frames));
   if (run.result.lost > kMinReported * frames)
     run.warnings.push_back(fmt::format(
         "in {} of {:.0f} frames it is not known where the camera looked; no person has a place there", run.result.lost, frames));

@@ -80,5 +80,55 @@ TEST(CalibratePtz, IsLostWhileAnotherCameraIsShownAndComesBack) {
   EXPECT_LE(late, 5);
 }
 
+/// Clicks of a frame, all moved by `slip`.
+std::vector<marey::calibrate::ptz::ClickedPosition> clicks_in(const PtzMatch& match, const Vector<2>& slip) {
+  std::vector<marey::calibrate::ptz::ClickedPosition> clicks;
+  for (const auto& click : match.clicks(0.5)) clicks.push_back({click.ground, click.pixel + slip, ""});
+  return clicks;
+}
+
+/// No image alone gives the camera: clicks in one frame are all there is.
+TrackedPtz track_from_clicks(int clicked, const Vector<2>& slip, int frames, bool by_image) {
+  const PtzMatchOptions options = ptz_video();
+  PtzMatch ahead(options, 2);
+  for (int i = 0; i <= clicked; ++i) ahead.advance();
+  marey::calibrate::ptz::TrackingOptions tracking;
+  if (!by_image) tracking.again.lowest_count = 1'000'000;
+  PtzTracker tracker(ahead.tripod(), options.size, tracking);
+  tracker.know(clicked, *ahead.heading(), clicks_in(ahead, slip));
+  PtzMatch match(options, 2);
+  TrackedPtz tracked;
+  for (int i = 0; i < frames; ++i) {
+    match.advance();
+    tracker.add(match.image(), match.time());
+    tracked.truth.push_back(match.heading());
+  }
+  tracked.result = tracker.finish();
+  return tracked;
+}
+
+TEST(CalibratePtz, ClicksAreCarriedBackToTheBeginning) {
+  const TrackedPtz tracked = track_from_clicks(25, Vector<2>::Zero(), 40, false);
+  const PtzMatch match(ptz_video(), 2);
+  EXPECT_EQ(tracked.result.lost, 0);
+  for (std::size_t i = 0; i < tracked.truth.size(); ++i) {
+    ASSERT_TRUE(tracked.result.camera.rotations[i].heading.has_value()) << i;
+    EXPECT_LT(rotated_off_px(tracked, i, match.tripod(), ptz_video().size), 1.5) << i;
+  }
+  ASSERT_EQ(tracked.result.clicks.size(), 1u);
+  EXPECT_FALSE(tracked.result.clicks[0].contradicts);
+}
+
+TEST(CalibratePtz, ClicksThatTheImageContradictsAreReportedAndTheirFrameIsLost) {
+  const TrackedPtz tracked = track_from_clicks(25, Vector<2>(90, 25), 90, true);
+  ASSERT_EQ(tracked.result.clicks.size(), 1u);
+  ASSERT_TRUE(tracked.result.clicks[0].off_px.has_value());
+  EXPECT_TRUE(tracked.result.clicks[0].contradicts);
+  EXPECT_GT(*tracked.result.clicks[0].off_px, 60);
+  EXPECT_FALSE(tracked.result.camera.rotations[25].heading.has_value());
+  EXPECT_FALSE(tracked.result.camera.rotations[35].heading.has_value());
+  EXPECT_GT(tracked.result.ambiguous_frames, 20);
+}
+
 }  // namespace
 }  // namespace marey::pipeline::calibrate

@@ -23,19 +23,22 @@ namespace {
 
 constexpr double kMaxVideo = 3 * 3600;  // s
 constexpr double kClickedApart = 0.15;  // rad between frames that are clicked
-constexpr std::size_t kClickedFrames = 4;
-constexpr std::size_t kMinClicks = 4;  // that a user would search for in a frame
+constexpr std::size_t kMinClicks = 4;   // that a user would search for in a frame
 
 /// The rows of clicks, from frames that face elsewhere than those clicked before.
 class ClickedFrames {
  public:
-  void inspect_at(const marey::simulate::match::PtzMatch& match, double noise) {
+  explicit ClickedFrames(const PtzFilesOptions& options)
+      : noise_(options.click_noise), from_(options.clicked_from), frames_(options.clicked_frames), max_clicks_(options.clicks) {}
+
+  void inspect_at(const marey::simulate::match::PtzMatch& match) {
     const auto heading = match.heading();
-    if (!heading || pans_.size() == kClickedFrames) return;
+    if (!heading || std::ssize(pans_) >= frames_ || match.time() < from_) return;
     if (std::any_of(pans_.begin(), pans_.end(), [&](double pan) { return std::abs(pan - heading->pan) < kClickedApart; })) return;
-    const auto clicks = match.clicks(noise);
+    auto clicks = match.clicks(noise_);
     if (clicks.size() < kMinClicks) return;
     pans_.push_back(heading->pan);
+    while (std::ssize(clicks) > max_clicks_) clicks.erase(clicks.begin() + std::ssize(clicks) / 2);
     for (const marey::simulate::match::MatchClick& click : clicks)
       fmt::format_to(std::back_inserter(rows_), "{},{:g},{:g},{:.2f},{:.2f}\n", match.frame(), click.ground.x(), click.ground.y(),
                      click.pixel.x(), click.pixel.y());
@@ -43,6 +46,8 @@ class ClickedFrames {
   const std::string& rows() const { return rows_; }
 
  private:
+  double noise_, from_;
+  std::ptrdiff_t frames_, max_clicks_;
   std::vector<double> pans_;
   std::string rows_ = "frame,x,y,u,v\n";
 };
@@ -114,7 +119,7 @@ void write_ptz_match(const PtzFilesOptions& options, const std::string& folder, 
   header.rig = rig;
   truth.begin(header);
   PtzCamera ptz{match.tripod(), {}};
-  ClickedFrames clicks;
+  ClickedFrames clicks(options);
   WholeFile boxes((location / "boxes.txt").string());
   const auto frames = std::max<std::int64_t>(1, std::llround(options.seconds * options.match.rate_hz));
   for (std::int64_t i = 0; i < frames; ++i) {
@@ -123,8 +128,8 @@ void write_ptz_match(const PtzFilesOptions& options, const std::string& folder, 
     movie.write(draw::Canvas(match.image()).take(), timestamp_from_seconds(match.time()));
     truth.write(truth_of(match));
     if (match.heading()) boxes.write(box_rows(match.detect(options.detector)));
-    ptz.rotations.push_back({match.time(), match.heading(), Matrix<3>::Zero()});
-    clicks.inspect_at(match, options.click_noise);
+    ptz.rotations.push_back({match.time(), match.heading(), Matrix<3>::Zero(), {}});
+    clicks.inspect_at(match);
     hooks.advance({"frames", i + 1, frames});
   }
   movie.finish();

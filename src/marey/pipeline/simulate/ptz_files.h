@@ -14,6 +14,9 @@ struct PtzFilesOptions {
   std::uint64_t seed = 1;
   double seconds = 20;       ///< positive
   double click_noise = 1.5;  ///< px, standard deviation in each axis
+  double clicked_from = 0;   ///< s: no frame before is clicked
+  int clicked_frames = 4;    ///< at most, that face different sides
+  int clicks = 100;          ///< in a frame, at most
 };
 
 /// Videos a match with a main PTZ camera, into a folder, which must exist:

@@ -10,6 +10,7 @@ constexpr double kOperatorStep = 0.02;     // s, of the simulation
 constexpr double kTrembleFrequency = 12;   // rad/s
 constexpr double kClosenessTime = 6;       // s: how long the operator keeps a size of image
 constexpr double kClosenessSpread = 0.22;  // of ln f
+constexpr double kWhipAnswer = 7;          // rad/s
 constexpr double kMinLogFocal = 0.4, kMaxLogFocal = 2.3;
 
 }  // namespace
@@ -42,7 +43,14 @@ void OperatorMotion::advance(const geometry::Heading& aim, double step) {
   if (off < 0.2 * options_.patience) tracking_ = false;
   closeness_ +=
       step * (-closeness_ / kClosenessTime) + kClosenessSpread * std::sqrt(2 * step / kClosenessTime) * random_.gaussian();
-  pan_.pull(tracking_ ? aim.pan : pan_.value, options_.answer, step);
+  if (options_.whips > 0 && whip_.left_s <= -1 && random_.chance(options_.whips * step))
+    whip_ = {random_.uniform(0.5, 1.2), (random_.chance(0.5) ? 1 : -1) * random_.uniform(0.25, 0.5)};
+  whip_.left_s -= step;
+  const bool whips = options_.whips > 0 && whip_.left_s > 0;
+  if (whips)
+    pan_.pull(std::clamp(aim.pan + whip_.pan, -0.95, 0.95), kWhipAnswer, step);
+  else
+    pan_.pull(tracking_ ? aim.pan : pan_.value, options_.answer, step);
   tilt_.pull(tracking_ ? aim.tilt : tilt_.value, options_.answer, step);
   log_focal_.pull(tracking_ ? aim.log_focal : log_focal_.value, options_.zoom, step);
   // White noise through a critically damped spring of frequency w has the variance w S / 4 for a density S.

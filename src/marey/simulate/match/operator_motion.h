@@ -21,6 +21,7 @@ struct OperatorOptions {
   double patience = 0.05;  ///< rad: the play may be so far off the middle of the image before the operator follows
   double width = 38;       ///< m of the pitch that the image shows across, on average
   double tremble = 2e-4;   ///< rad, standard deviation, slower than 3 Hz
+  double whips = 0;        ///< a second: how often the operator throws the camera to another part of the pitch, and back
 };
 
 class OperatorMotion {
@@ -43,6 +44,10 @@ class OperatorMotion {
   geometry::PitchSize pitch_;
   OperatorOptions options_;
   Random random_;
+  struct Whip {
+    double left_s = 0, pan = 0;
+  };
+  Whip whip_;
   bool begun_ = false, tracking_ = false;
   double closeness_ = 0;  // ln of how much nearer than normal the operator shows the play
   Spring pan_, tilt_, log_focal_, shake_[2];

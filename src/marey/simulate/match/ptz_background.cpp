@@ -53,6 +53,39 @@ void draw_grass(cv::Mat ground, const geometry::PitchSize& pitch, std::uint64_t 
   });
 }
 
+/// Lights on wet grass: streaks towards the camera, as bright as paint where they are brightest.
+void wet_grass(cv::Mat ground, double wet, std::uint64_t seed) {
+  constexpr double kStreakAcross = 0.35, kStreakAlong = 7, kPool = 9;  // m
+  cv::parallel_for_(cv::Range(0, ground.rows), [&](const cv::Range& rows) {
+    for (int row = rows.start; row < rows.end; ++row) {
+      for (int column = 0; column < ground.cols; ++column) {
+        const Vector<2> at((column + 0.5) * kTexel, (row + 0.5) * kTexel);
+        const double streak = value_noise(at.cwiseQuotient(Vector<2>(kStreakAcross, kStreakAlong)), seed + 11);
+        const double pool = 0.5 + 0.5 * value_noise(at / kPool, seed + 12);
+        const double light = 70 * wet * pool * std::max(0.0, streak);
+        for (int i = 0; i < 3; ++i) {
+          std::uint8_t& level = ground.at<cv::Vec3b>(row, column)[i];
+          level = cv::saturate_cast<std::uint8_t>(level + light);
+        }
+      }
+    }
+  });
+}
+
+/// Straight lines that are of no football pitch: another sport's, a training ground's.
+geometry::PitchLine other_paint(const geometry::PitchSize& pitch, Random& random) {
+  const double length = random.uniform(8, 30),
+               angle = random.chance(0.7) ? M_PI / 2 * random.integer(0, 1) : random.uniform(0, M_PI);
+  const Vector<2> along(std::cos(angle), std::sin(angle)), middle(random.uniform(0, pitch.length), random.uniform(0, pitch.width));
+  geometry::PitchLine line;
+  line.name = "other";
+  for (double at = 0; at <= length; at += 0.5) {
+    line.points.push_back(middle + (at - length / 2) * along);
+    line.tangents.push_back(along);
+  }
+  return line;
+}
+
 void draw_boards(cv::Mat wall, Random& random) {
   const int top = wall.rows - static_cast<int>(kBoardHigh / kWallTexel);
   for (int x = 0; x < wall.cols;) {
@@ -117,14 +150,16 @@ struct Lookup {
 
 }  // namespace
 
-PtzBackground::PtzBackground(const geometry::PitchSize& pitch, std::uint64_t seed)
-    : pitch_(pitch), lines_(geometry::pitch_lines(pitch, 0.5)) {
+PtzBackground::PtzBackground(const geometry::PitchSize& pitch, std::uint64_t seed, const PtzPaint& paint)
+    : pitch_(pitch), appearance_(paint), seed_(seed), lines_(geometry::pitch_lines(pitch, 0.5)) {
   const Extent extent(pitch);
-  Random random(seed * 2654435761u + 81);
+  Random random(seed * 2654435761u + 81), painter(seed * 2654435761u + 82);
+  for (int i = 0; i < paint.extra; ++i) lines_.push_back(other_paint(pitch, painter));
   texture_.create(extent.ground.height + extent.wall.height, std::max(extent.ground.width, extent.wall.width), CV_8UC3);
   texture_ = cv::Scalar::all(0);
   cv::Mat ground = texture_(cv::Rect({}, extent.ground));
   draw_grass(ground, pitch, seed);
+  if (paint.wet > 0) wet_grass(ground, paint.wet, seed);
   // A pixel is some decimetres deep on the ground: what it would alias is blurred away.
   cv::GaussianBlur(ground.clone(), ground, {1, 5}, 0.01, 1.1);
   cv::Mat wall = texture_(cv::Rect({0, extent.ground.height}, extent.wall));
@@ -175,11 +210,14 @@ cv::Mat PtzBackground::paint(const Camera& camera) const {
     const Vector<2> there = ((pixel->array() + 0.5) * kSuper - 0.5) * (1 << kFixed);
     return cv::Point(cvRound(there.x()), cvRound(there.y()));
   };
+  const double worn_level = 2 * appearance_.missing - 1;  // of value_noise, roughly even in −1 … 1
   for (const geometry::PitchLine& line : lines_) {
     for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
+      constexpr double kWorn = 3;  // m
+      if (appearance_.missing > 0 && value_noise(line.points[i] / kWorn, seed_ + 21) < worn_level) continue;
       const auto next_to = [&](std::size_t k, double side) {
         const Vector<2>& along = line.tangents[k];
-        return corner(line.points[k] + side * geometry::kPitchLineWidth / 2 * Vector<2>(-along.y(), along.x()));
+        return corner(line.points[k] + side * appearance_.width / 2 * Vector<2>(-along.y(), along.x()));
       };
       const auto a = next_to(i, 1), b = next_to(i + 1, 1), c = next_to(i + 1, -1), d = next_to(i, -1);
       if (!a || !b || !c || !d) continue;
@@ -199,7 +237,7 @@ cv::Mat PtzBackground::draw(const Camera& camera) const {
     const auto* cover = fraction.ptr<std::uint8_t>(y);
     for (int x = 0; x < image.cols; ++x) {
       if (cover[x] == 0) continue;
-      const double part = cover[x] / 255.0, bright = 0.6 + 0.4 * row[x][1] / 100.0;
+      const double part = appearance_.contrast * cover[x] / 255.0, bright = 0.6 + 0.4 * row[x][1] / 100.0;
       const cv::Vec3b white = shaded(206, 213, 208, bright);
       for (int i = 0; i < 3; ++i) row[x][i] = cv::saturate_cast<std::uint8_t>((1 - part) * row[x][i] + part * white[i]);
     }

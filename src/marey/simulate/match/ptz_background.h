@@ -16,10 +16,19 @@
 
 namespace marey::simulate::match {
 
+/// What of the paint makes it hard to follow.
+struct PtzPaint {
+  double width = geometry::kPitchLineWidth;  ///< m
+  double contrast = 1;                       ///< share of what white paint adds to the grass
+  double missing = 0;                        ///< share of the lines' length that is worn away, in pieces of some metres
+  int extra = 0;                             ///< straight pieces of paint, 8 to 30 m long, that belong to no football pitch
+  double wet = 0;                            ///< 0 dry … 1: the lights shine in streaks on the grass
+};
+
 class PtzBackground {
  public:
   /// The pitch's own frame is the world: x along the near touchline, y away from the camera, z up.
-  PtzBackground(const geometry::PitchSize& pitch, std::uint64_t seed);
+  PtzBackground(const geometry::PitchSize& pitch, std::uint64_t seed, const PtzPaint& paint = {});
 
   /// CV_8UC3, blue first. The camera stands before y = 0.
   cv::Mat draw(const Camera& camera) const;
@@ -29,6 +38,8 @@ class PtzBackground {
   cv::Mat paint(const Camera& camera) const;
 
   geometry::PitchSize pitch_;
+  PtzPaint appearance_;
+  std::uint64_t seed_;
   std::vector<geometry::PitchLine> lines_;
   cv::Mat texture_;  // ground above, wall below, blue first
 };

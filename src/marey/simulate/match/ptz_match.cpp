@@ -34,7 +34,7 @@ PtzMatch::PtzMatch(const PtzMatchOptions& options, std::uint64_t seed)
       random_(seed * 2654435761u + 91),
       detections_(seed * 2654435761u + 92),
       tripod_(drawn_tripod(options.pitch, random_)),
-      ground_(options.pitch, seed),
+      ground_(options.pitch, seed, options.paint),
       motion_(seed, options.pitch),
       operator_(tripod_, options.pitch, options.operates, seed),
       figures_(match_figures(seed)) {

@@ -29,6 +29,7 @@ struct PtzMatchOptions {
   double rate_hz = 25;
   geometry::PitchSize pitch;
   OperatorOptions operates;
+  PtzPaint paint;
   double exposure = 0.01;  ///< s that each frame is exposed: how long motion smears
   double noise = 1.5;      ///< grey levels
   people::ImageDegradation degradation{0.7, 0.2, 2, 1.2, 0, 8};

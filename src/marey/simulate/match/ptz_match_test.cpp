@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "marey/core/error.h"
+#include "marey/simulate/match/ptz_scenes.h"
+
 namespace marey::simulate::match {
 namespace {
 
@@ -86,6 +89,47 @@ TEST(PtzMatch, ACutShowsAnotherCamera) {
     known.push_back(match.heading().has_value());
   }
   EXPECT_EQ(known, (std::vector<bool>{true, false, false, true, true}));
+}
+
+TEST(PtzScenes, EachNameHasOneAndAWrongNameIsSaidWithAll) {
+  for (const std::string_view name : ptz_scene_names()) EXPECT_NO_THROW(ptz_scene(name)) << name;
+  try {
+    ptz_scene("fog");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("whip"), std::string::npos);
+  }
+}
+
+TEST(PtzScenes, PaleAndWornPaintIsLessBright) {
+  const auto brightness = [](const PtzPaint& paint) {
+    PtzMatchOptions options = plain();
+    options.paint = paint;
+    PtzMatch match(options, 3);
+    match.advance();
+    return cv::mean(match.image().luma())[0];
+  };
+  PtzPaint pale, worn, wet;
+  pale.contrast = 0.3, worn.missing = 0.5, wet.wet = 1;
+  EXPECT_LT(brightness(pale), brightness({}) - 0.1);
+  EXPECT_LT(brightness(worn), brightness({}) - 0.05);
+  EXPECT_GT(brightness(wet), brightness({}) + 1);
+}
+
+TEST(PtzScenes, AnOperatorWhoWhipsTurnsFaster) {
+  const auto fastest = [](double whips) {
+    PtzMatchOptions options = plain();
+    options.operates.whips = whips;
+    PtzMatch match(options, 5);
+    double most = 0, last = 0;
+    for (int i = 0; i < 500; ++i) {
+      match.advance();
+      if (i > 0) most = std::max(most, std::abs(match.heading()->pan - last));
+      last = match.heading()->pan;
+    }
+    return most;
+  };
+  EXPECT_GT(fastest(0.5), 1.5 * fastest(0));
 }
 
 TEST(PtzMatch, TheSameSeedGivesTheSamePicture) {
