@@ -1,4 +1,4 @@
-"""`marey calibrate people` as docs/calibrate.md tells it, on simulated people's keypoints, and on input that cannot be used.
+"""`marey calibrate people` as docs/calibrate.md has it, on simulated people's keypoints, and on input that cannot be used.
 
 Usage: calibrate_people_test.py MAREY [unittest options]. Nothing else is needed.
 """

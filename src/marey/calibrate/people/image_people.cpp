@@ -11,7 +11,7 @@
 namespace marey::calibrate::people {
 namespace {
 
-constexpr double kMinVisible = 0.5;    // fixed: more likely seen than not
+constexpr double kMinVisible = 0.5;    // by definition: more likely seen than not
 constexpr double kMinLasting_s = 0.5;  // unswept: of a person that counts
 constexpr double kMaxAbsent_s = 0.25;  // unswept: between frames of one person
 constexpr double kMaxMoved = 0.35;     // unswept: of the body's size between two frames

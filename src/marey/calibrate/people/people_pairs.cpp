@@ -11,13 +11,13 @@
 namespace marey::calibrate::people {
 namespace {
 
-constexpr std::size_t kMaxSharedPoints = 240;  // unswept: of two views, that are related
+constexpr std::size_t kMaxSharedPoints = 240;  // numerical, time against precision: of two views, that are related
 constexpr std::size_t kMinSharedPoints = 40;   // unswept
-constexpr int kDraws = 400;                    // unswept: of RANSAC
+constexpr int kDraws = 400;                    // numerical, time against precision: of RANSAC
 constexpr double kFits = 0.5;                  // unswept: share of points that fit when it is one person at the right shift
 constexpr double kSameTime = 2;                // unswept: frames by which shifts of a pair may differ from what other pairs say
-constexpr std::size_t kMaxPeople = 6;          // unswept: of a camera, the longest seen, that are compared
-constexpr double kRelatedNoise = 0.5;          // unswept: times what the points state
+constexpr std::size_t kMaxPeople = 6;  // numerical, time against precision: of a camera, the longest seen, that are compared
+constexpr double kRelatedNoise = 0.5;  // unswept: times what the points state
 
 struct PairEdge {
   std::size_t camera_a = 0, person_a = 0, camera_b = 0, person_b = 0;

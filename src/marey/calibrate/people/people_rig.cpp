@@ -31,16 +31,16 @@ constexpr double kFocalOfTwo = 0.1;                            // unswept: the s
 constexpr double kEqualLenses = 0.01;                          // unswept: relative, between cameras of one make
 constexpr double kNotWorse = 1.1;                              // unswept: noise, times that of free lenses
 constexpr double kDistortionPrior = 0.05;                      // unswept: of the first radial term
-constexpr std::size_t kGrownPoints = 160;                      // unswept: a camera, by which the rig grows
-constexpr std::size_t kMaxPoints = 6000;                       // unswept: in the last adjustment
-constexpr std::size_t kOffsetPoints = 1200;                    // unswept: while offsets are found
-constexpr double kMaxGrid_hz = 30;                             // unswept
-constexpr int kOffsetRounds = 12;                              // unswept: at most
-constexpr double kOffsetFound = 0.02;                          // unswept: frames by which none moves any more
-constexpr double kNoiseFactor = 1.5;                           // unswept: times what the points state
-constexpr double kAssumedHeight = 1.75;                        // fixed: m, where neither height nor distance is given
-constexpr int kMinShared = 40;                                 // unswept: points that link two cameras
-constexpr double kPoorlyKnown = 0.02;                          // unswept: of the distances, a camera's deviation that is said
+constexpr std::size_t kGrownPoints = 160;    // numerical, time against precision: a camera, by which the rig grows
+constexpr std::size_t kMaxPoints = 6000;     // numerical, time against precision: in the last adjustment
+constexpr std::size_t kOffsetPoints = 1200;  // numerical, time against precision: while offsets are found
+constexpr double kMaxGrid_hz = 30;           // numerical, time against precision
+constexpr int kOffsetRounds = 12;            // numerical, time against precision: at most
+constexpr double kOffsetFound = 0.02;        // numerical, time against precision: frames by which none moves any more
+constexpr double kNoiseFactor = 1.5;         // unswept: times what the points state
+constexpr double kAssumedHeight = 1.75;      // by definition: m, where neither height nor distance is given
+constexpr int kMinShared = 40;               // unswept: points that link two cameras
+constexpr double kPoorlyKnown = 0.02;        // by definition: of the distances, a camera's deviation that is said
 
 /// A point of a person at an instant.
 struct PointRow {
@@ -61,7 +61,7 @@ class PeopleCalibration {
     match();
     grow();
     fit();
-    place();
+    put_into_world();
     store();
     return std::move(result_);
   }
@@ -80,7 +80,7 @@ class PeopleCalibration {
   void fit();
   bundle::BundleResult adjust_until_still(const bundle::BundleOptions& how);
   void prefer_equal_lenses(bundle::BundleOptions how);
-  void place();
+  void put_into_world();
   void store();
   void report_cameras();
 
@@ -172,7 +172,7 @@ std::vector<PointRow> PeopleCalibration::rows() const {
   return found;
 }
 
-/// Every so many, in an order that takes times and points in turn.
+/// At most `maximum` of them, evenly spread, in an order that takes times and points in turn.
 std::vector<PointRow> some_of(const std::vector<PointRow>& rows, std::size_t maximum) {
   if (rows.size() <= maximum) return rows;
   std::vector<PointRow> some;
@@ -200,7 +200,7 @@ void PeopleCalibration::grow() {
     for (std::size_t other = 0; other < cameras(); ++other) most = std::max(most, other == c ? 0 : shared[c][other]);
     if (most < kMinShared)
       throw Error(
-          "camera \"{}\" shows nobody whom another camera shows at the same time: let people walk where both see them, or check "
+          "camera \"{}\" shows no person whom another camera shows at the same time: let people walk where both see them, or check "
           "that it recorded at the same time",
           names[c]);
   }
@@ -356,7 +356,7 @@ void PeopleCalibration::prefer_equal_lenses(bundle::BundleOptions how) {
   offsets_ = offsets;
 }
 
-void PeopleCalibration::place() {
+void PeopleCalibration::put_into_world() {
   std::map<std::pair<int, double>, Body3> bodies;
   const std::size_t points = in_.cameras.front().sequence.set.points.size();
   for (std::size_t i = 0; i < bundle_.observations.size(); ++i) {
@@ -371,7 +371,7 @@ void PeopleCalibration::place() {
   const auto world = world_of(in_order, in_.cameras.front().sequence.set);
   if (!world)
     throw Error("{}",
-                "no person's shoulders, ankles and eyes are seen by two cameras together: which way is up and how large all is "
+                "no person's shoulders, ankles and eyes are seen by two cameras together: the vertical and the scale "
                 "cannot be known");
   double scale = kAssumedHeight / world->height;
   if (options_.distance) {

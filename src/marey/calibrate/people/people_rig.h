@@ -46,7 +46,7 @@ struct PeopleOptions {
 struct PeopleRig {
   Rig rig;  ///< z = 0 is the floor, the origin below the middle of where people were
   RigReport report;
-  int people = 0;                  ///< whom two cameras saw
+  int people = 0;                  ///< seen by two cameras
   double height = 0;               ///< of the one most seen, by the scale that was taken, m
   std::vector<std::string> notes;  ///< what was decided, and what the user should know
 };

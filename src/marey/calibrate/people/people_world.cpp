@@ -13,12 +13,12 @@
 namespace marey::calibrate::people {
 namespace {
 
-constexpr double kEyeHeight = 0.936, kAnkleHeight = 0.039;  // fixed: of the stature (Drillis & Contini, 1966)
-constexpr double kShoulderHeight = 0.818;                   // fixed: the same
+constexpr double kEyeHeight = 0.936, kAnkleHeight = 0.039;  // physical: of the stature (Drillis & Contini, 1966)
+constexpr double kShoulderHeight = 0.818;                   // physical: the same
 constexpr double kTallest = 0.8;        // unswept: quantile of the heights: people bend, and stand upright often
 constexpr double kFootSigma = 0.02;     // unswept: statures, of a standing foot's height
 constexpr double kUprightSigma = 0.04;  // unswept: rad, of the mean body's direction
-constexpr int kRounds = 5;              // unswept: of the floor's robust fit
+constexpr int kRounds = 5;              // numerical, time against precision: of the floor's robust fit
 
 /// The mean of those of these points that a body has.
 std::optional<Vector<3>> middle(const Body3& body, const KeypointSet& set, std::initializer_list<std::string_view> names) {
