@@ -24,7 +24,7 @@ using simulate::room::RoomScene;
 
 constexpr double kNoise = 1.4;   // times what is stated, as it is learned of these errors with the slack of the job
 constexpr double kSeconds = 6;   // of each scene
-constexpr double kWrongM = 0.3;  // mean distance of a person's points from which on they are nobody's
+constexpr double kWrongM = 0.3;  // mean distance of a person's points from which on they are of no true person
 
 /// A scene's people as the cameras' networks see them, and where they truly are.
 struct Scene {
@@ -36,7 +36,7 @@ struct Scene {
 };
 
 struct Score {
-  long people = 0, placed = 0, changes = 0, phantoms = 0, points = 0;
+  long people = 0, located = 0, changes = 0, phantoms = 0, points = 0;
   double error_m = 0;
 };
 
@@ -91,7 +91,7 @@ void run(const Scene& scene, const rk::PeopleOptions& options, Score& score) {
         ++score.phantoms;
         continue;
       }
-      ++score.placed;
+      ++score.located;
       score.error_m += distance;
       const auto [before, is_new] = actor_of.try_emplace(person.id, nearest);
       score.changes += !is_new && before->second != nearest;
@@ -109,8 +109,8 @@ void print_row(const char* name, double value, const std::vector<Scene>& scenes,
   Score score;
   for (const Scene& scene : scenes) run(scene, options, score);
   fmt::print("| `{}` | {:.3g} | {:.2f} | {} | {} | {:.1f} |\n", name, value,
-             100.0 * static_cast<double>(score.placed) / static_cast<double>(score.people), score.changes, score.phantoms,
-             1000 * score.error_m / static_cast<double>(std::max(1L, score.placed)));
+             100.0 * static_cast<double>(score.located) / static_cast<double>(score.people), score.changes, score.phantoms,
+             1000 * score.error_m / static_cast<double>(std::max(1L, score.located)));
 }
 
 int keypoint_people(int seeds) {
@@ -127,7 +127,8 @@ int keypoint_people(int seeds) {
     }
   }
   fmt::print(
-      "| constant | value | placed, % | other person's number | nobody | distance, mm |\n| --- | --- | --- | --- | --- | --- |\n");
+      "| constant | value | placed, % | other person's number | of no person | distance, mm |\n| --- | --- | --- | --- | --- | --- "
+      "|\n");
   const Varied all[] = {{"position_m", &rk::PeopleOptions::position_m}, {"position_m_s", &rk::PeopleOptions::position_m_s},
                         {"bound", &rk::PeopleOptions::bound},           {"gate", &rk::PeopleOptions::gate},
                         {"pair_gate", &rk::PeopleOptions::pair_gate},   {"swap_gain", &rk::PeopleOptions::swap_gain},

@@ -1,4 +1,4 @@
-// What is said where cameras and keypoints do not belong together.
+// The messages where cameras and keypoints do not belong together.
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
 
 #include <string>
