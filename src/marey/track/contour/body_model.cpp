@@ -10,12 +10,13 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kLumaBin = 20, kChromaBin = 9;          // levels
-constexpr double kTopOfBands = -0.5, kBottom = 0.5;      // heights
-constexpr double kHalfAcross = 0.48, kHalfDown = 0.72;   // heights that the coverage spans to either side
-constexpr float kMixedRim = 1.6F, kMixedWeight = 0.15F;  // cells below the edge where colours mix with the ground's; weight there
-constexpr double kLeastCells = 3;                        // of a band
-constexpr double kFloor = 2e-8;                          // per level³: any colour may come
+constexpr double kLumaBin = 20, kChromaBin = 9;         // levels
+constexpr double kTopOfBands = -0.5, kBottom = 0.5;     // heights
+constexpr double kHalfAcross = 0.48, kHalfDown = 0.72;  // heights that the coverage spans to either side
+constexpr float kMixedRim = 1.6F,
+                kMixedWeight = 0.15F;  // cells below the edge where colours mix with the ground's; weight there; unswept
+constexpr double kMinCells = 3;        // of a band; numerical
+constexpr double kFloor = 2e-8;        // per level³: any colour may come
 
 /// Where a value lies among bins: the first of two neighbours, and the second one's share.
 struct BinPosition {
@@ -87,7 +88,7 @@ void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& fraction,
     for (Histogram& one : colours_) one.fill(0);
   }
   for (int band = 0; band < kBands; ++band) {
-    if (weight[band] < kLeastCells) continue;
+    if (weight[band] < kMinCells) continue;
     const auto old = static_cast<float>(known_ ? 1 - rate : 0), fresh = static_cast<float>((known_ ? rate : 1) / weight[band]);
     for (std::size_t bin = 0; bin < now[band].size(); ++bin)
       colours_[band][bin] = old * colours_[band][bin] + fresh * now[band][bin];

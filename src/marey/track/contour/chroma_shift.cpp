@@ -10,18 +10,18 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr int kEveryRow = 4;         // rows of chroma
+constexpr int kEveryRow = 4;         // rows of chroma; numerical: cost against delay
 constexpr double kFading = 0.98;     // of a frame's weight after the next; unswept
 constexpr double kEnough = 600;      // pixels of foreground; unswept
 constexpr double kMinPeak = 1.02;    // times the mean over all shifts; unswept
-constexpr double kResolution = 2.1;  // px, standard deviation: what chroma of half the resolution shows of a sharp edge
-constexpr double kMaxShift = 4;      // px
+constexpr double kResolution = 2.1;  // px, standard deviation; physical: what chroma of half the resolution shows of a sharp edge
+constexpr double kMaxShift = 4;      // px; physical: the reach of the correlation
 
 }  // namespace
 
 void ChromaShift::observe(const Image& image, const cv::Mat& foreground) {
   if (!image.is_colour() || image.luma().type() != CV_8UC1 || foreground.size() != image.size()) return;
-  seen_ *= kFading;
+  pixels_ *= kFading;
   for (double& one : together_) one *= kFading;
   const int rows = std::min(image.cb().rows, foreground.rows / 2);
   for (int row = next_; row < rows; row += kEveryRow) observe_row(image, foreground, row);
@@ -43,21 +43,21 @@ void ChromaShift::observe_row(const Image& image, const cv::Mat& foreground, int
       together_[static_cast<std::size_t>(shift + kReach)] +=
           step * (std::abs(cb[at + 1] - cb[at - 1]) + std::abs(cr[at + 1] - cr[at - 1]));
     }
-    seen_ += 1;
+    pixels_ += 1;
   }
 }
 
 std::optional<ChromaShift::Peak> ChromaShift::peak() const {
-  if (seen_ < kEnough) return std::nullopt;
+  if (pixels_ < kEnough) return std::nullopt;
   const auto peak = std::max_element(together_.begin(), together_.end());
-  const double least = *std::min_element(together_.begin(), together_.end());
+  const double lowest = *std::min_element(together_.begin(), together_.end());
   double mean = 0;
   for (const double one : together_) mean += one / static_cast<double>(together_.size());
   if (peak == together_.begin() || peak + 1 == together_.end() || *peak < kMinPeak * mean) return std::nullopt;
   const double bend = peak[-1] - 2 * peak[0] + peak[1];
   if (!(bend < 0)) return std::nullopt;
   return Peak{static_cast<double>(peak - together_.begin()) - kReach + (peak[-1] - peak[1]) / (2 * bend),
-              std::sqrt((*peak - least) / -bend)};
+              std::sqrt((*peak - lowest) / -bend)};
 }
 
 double ChromaShift::px() const {

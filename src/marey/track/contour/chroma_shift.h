@@ -17,7 +17,7 @@ class ChromaShift {
   /// chroma in a frame. Grey images and other sizes are ignored.
   void observe(const Image& image, const cv::Mat& foreground);
 
-  /// px of luma, in [−4, 4]; 0 until enough was seen, or where nothing decides.
+  /// px of luma, in [−4, 4]; 0 without enough foreground, or where nothing decides.
   double px() const;
   /// px of luma, standard deviation: how far the colour of an edge is smeared beyond what its resolution does; 0 where `px` has
   /// nothing to say.
@@ -34,7 +34,7 @@ class ChromaShift {
   std::optional<Peak> peak() const;
 
   int next_ = 0;
-  double seen_ = 0;                                // pixels of foreground, of late
+  double pixels_ = 0;                              // pixels of foreground, of late
   std::array<double, 2 * kReach + 1> together_{};  // changes of luma times those of chroma so far to the right, of late
 };
 

@@ -19,7 +19,7 @@ constexpr double kShadowed = 0.1;                                // share of the
 constexpr std::array<double, 4> kLights{0.45, 0.6, 0.75, 0.88};  // that a shadow leaves; unswept
 constexpr double kGroundFloor = 2e-7;                            // per level³
 constexpr float kMaskOnGround = 0.2F, kMaskOnBody = 0.92F;       // chance of foreground
-constexpr float kBlack = 16, kGrey = 128;                        // levels
+constexpr float kBlack = 16, kGrey = 128;                        // levels; format
 
 struct GroundSlopes {
   float luma = 0, chroma = 0;  ///< levels a cell

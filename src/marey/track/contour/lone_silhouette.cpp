@@ -23,11 +23,11 @@ constexpr int kRounds = 3;                // of the fit, in every frame
 constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
 constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
-constexpr double kMinWidth = 0.4;         // heights: nobody counts as narrower
+constexpr double kMinWidth = 0.4;         // heights: what counts as narrow; unswept
 constexpr double kSmeared = 0.015;        // heights; at crf 18, 35 and recorded, 60 px: 0.006, 0.025, 0.035; 120 px: 0.016
 constexpr int kKnown = 10;                // frames that a target's colours were learned from, from which on they decide; unswept
-constexpr double kTypical = 0.35;         // weight of the typical coverage in what is expected
-constexpr double kSame = 0.5;             // of a box that the outline's must share
+constexpr double kTypical = 0.35;         // weight of the typical coverage in the prior
+constexpr double kSame = 0.5;             // of a box that the outline's must share; unswept
 constexpr double kLearn = 0.1;            // weight of one frame in a target's appearance
 constexpr int kLearnEvery = 3;            // frames: its colours change little
 

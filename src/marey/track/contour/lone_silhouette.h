@@ -25,7 +25,7 @@ class LoneSilhouettes {
   bool has_colours() const;  ///< whether the frame's image shows where a body ends
 
   /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
-  /// `target`, if its colours are known, says what to look for.
+  /// `target`, if its colours are known, says what to expect.
   std::optional<geometry::ClosedSpline> fitted(const Detection& detected, const geometry::SplineFitOptions& options,
                                                const ContourTarget* target = nullptr);
 

@@ -58,7 +58,7 @@ TEST(ChromaShift, TellsSmearedColourFromSharp) {
   EXPECT_GT(shift_of(0, 2.2).smear(), shift_of(0, 0).smear() + 0.8);
 }
 
-TEST(ChromaShift, SaysNothingBeforeAnythingWasSeen) {
+TEST(ChromaShift, SaysNothingWithoutForeground) {
   EXPECT_EQ(ChromaShift().px(), 0);
   ChromaShift empty;
   empty.observe(post(2, 0), cv::Mat::zeros(120, 160, CV_8UC1));
@@ -98,7 +98,7 @@ TEST(NeighbourVotes, EndAtEdgesThatTheSceneDoesNotHave) {
   left(cv::Rect(0, 0, 5, 7)).setTo(1);
   const cv::Mat lawn(size, CV_32FC3, kGrass);
   EXPECT_LT(NeighbourVotes(patch, lawn).of(left).at<float>(3, 5), 0.02F);
-  // A white line of the pitch is no edge of a body.
+  // A white line of the pitch does not end a body.
   EXPECT_GT(NeighbourVotes(patch, patch.colour).of(left).at<float>(3, 5), 0.2F);
   EXPECT_NEAR(NeighbourVotes(patch, lawn).of(left).at<float>(3, 2), 1, 1e-5);
 }

@@ -6,11 +6,11 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr float kEdge = 12;          // levels between neighbours, from which on they say little of each other
-constexpr float kEdgeChroma = 0.1F;  // weight of squared differences of chroma, whose edges are blurred; unswept
-constexpr float kSceneEdge = 5;      // levels between neighbours in the scene, from which on an edge is the scene's; unswept
-constexpr float kShare = 1.0F / 9;   // of one cell among nine
-constexpr std::array<std::array<int, 2>, 4> kBeside{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
+constexpr float kEdge = 12;             // levels between neighbours, from which on they say little of each other; unswept
+constexpr float kEdgeChroma = 0.1F;     // weight of squared differences of chroma, whose edges are blurred; unswept
+constexpr float kSceneEdge = 5;         // levels between neighbours in the scene, from which on an edge is the scene's; unswept
+constexpr float kOneOfNine = 1.0F / 9;  // of one cell among nine; by definition
+constexpr std::array<std::array<int, 2>, 4> kToNeighbour{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
 
 float step_of(const cv::Vec3f& a, const cv::Vec3f& b) {
   const cv::Vec3f step = a - b;
@@ -21,8 +21,8 @@ float step_of(const cv::Vec3f& a, const cv::Vec3f& b) {
 
 NeighbourVotes::NeighbourVotes(const ColourPatch& patch, const cv::Mat& ground) {
   const cv::Size size = patch.size();
-  for (std::size_t i = 0; i < kBeside.size(); ++i) {
-    const auto [right, below] = kBeside[i];
+  for (std::size_t i = 0; i < kToNeighbour.size(); ++i) {
+    const auto [right, below] = kToNeighbour[i];
     weights_[i] = cv::Mat::zeros(size, CV_32FC1);
     for (int y = 0; y + below < size.height; ++y) {
       const auto* here = patch.colour.ptr<cv::Vec3f>(y);
@@ -33,16 +33,16 @@ NeighbourVotes::NeighbourVotes(const ColourPatch& patch, const cv::Mat& ground) 
       for (int x = std::max(0, -right); x < std::min(size.width, size.width - right); ++x) {
         const float scene = step_of(scene_here[x], scene_there[x + right]);
         const float step = step_of(here[x], there[x + right]) / (1 + scene / (kSceneEdge * kSceneEdge));
-        weight[x] = kShare * std::exp(-step / (2 * kEdge * kEdge));
+        weight[x] = kOneOfNine * std::exp(-step / (2 * kEdge * kEdge));
       }
     }
   }
 }
 
 cv::Mat NeighbourVotes::of(const cv::Mat& chance) const {
-  cv::Mat sum = kShare * chance;
-  for (std::size_t i = 0; i < kBeside.size(); ++i) {
-    const auto [right, below] = kBeside[i];
+  cv::Mat sum = kOneOfNine * chance;
+  for (std::size_t i = 0; i < kToNeighbour.size(); ++i) {
+    const auto [right, below] = kToNeighbour[i];
     for (int y = 0; y + below < chance.rows; ++y) {
       const auto* weight = weights_[i].ptr<float>(y);
       const auto* here = chance.ptr<float>(y);

@@ -9,7 +9,7 @@
 namespace marey::track::contour {
 
 /// What the eight neighbours of a cell say of its label: one who lies beyond an edge of the image that the scene does not have says
-/// less (Boykov & Jolly, "Interactive graph cuts", 2001; the scene's own edges are left out as in Sun et al., "Background cut",
+/// less (Boykov & Jolly, "Interactive graph cuts", 2001; the scene's own edges do not count, as in Sun et al., "Background cut",
 /// 2006).
 class NeighbourVotes {
  public:
