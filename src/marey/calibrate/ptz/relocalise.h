@@ -2,10 +2,10 @@
 //
 // Bright ridges on green are a mask of what may be paint. Headings all over the pitch are tried, coarse first: of each, the model's
 // lines are laid over the distances to the mask, and what lies near counts, by its length in the image, what lies far counts
-// against it. The best few are refined on the paint itself and evaluated both ways: by the lines that they promise and are there, and
-// by the paint that lies on no line of theirs. A heading counts only where no other one explains the image nearly as well: an image
-// of another place, or a goal mouth alone, gives none. Headings about the last known one come first. Cost: some 50 ms. Reference:
-// Thomas 2007 (a search over the possible views starts the tracker).
+// against it. The best few are refined on the paint itself and evaluated both ways: by the lines that they promise and are there,
+// and by the paint that lies on no line of theirs. A heading counts only where no other one explains the image nearly as well: an
+// image of another place, or a goal mouth alone, gives none. Headings about the last known one come first. Cost: some 50 ms.
+// Reference: Thomas 2007 (a search over the possible views starts the tracker).
 #pragma once
 
 #include <optional>
