@@ -200,7 +200,7 @@ void PeopleCalibration::grow() {
     for (std::size_t other = 0; other < cameras(); ++other) most = std::max(most, other == c ? 0 : shared[c][other]);
     if (most < kMinShared)
       throw Error(
-          "camera \"{}\" shows no person whom another camera shows at the same time: let people walk where both see them, or check "
+          "camera \"{}\" and another camera never show one person at the same time: let people walk where both see them, or check "
           "that it recorded at the same time",
           names[c]);
   }

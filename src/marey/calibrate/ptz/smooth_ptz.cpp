@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "marey/filter/smoother.h"
-
 #include "marey/calibrate/ptz/frame_fit.h"
+#include "marey/filter/smoother.h"
 
 namespace marey::calibrate::ptz {
 namespace {

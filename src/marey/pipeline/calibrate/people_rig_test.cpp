@@ -7,12 +7,14 @@
 #include "marey/core/error.h"
 #include "marey/simulate/room/room_keypoints.h"
 
-namespace marey::calibrate::people {
+namespace marey::pipeline::calibrate {
 namespace {
 
-using simulate::room::KeypointErrors;
-using simulate::room::RoomOptions;
-using simulate::room::RoomScene;
+using namespace marey::calibrate::people;
+
+using marey::simulate::room::KeypointErrors;
+using marey::simulate::room::RoomOptions;
+using marey::simulate::room::RoomScene;
 
 /// What a room's cameras see, and nothing of how they stand.
 PeopleInput input_of(const RoomScene& scene, const KeypointErrors& errors) {
@@ -67,7 +69,7 @@ RigErrors errors_of(const Rig& found, const Rig& truth) {
 
 PeopleOptions by_distance(const Rig& truth) {
   PeopleOptions options;
-  options.distance = wand::KnownDistance{truth.cameras[0].name, truth.cameras[1].name, apart(truth, 0, 1)};
+  options.distance = marey::calibrate::wand::KnownDistance{truth.cameras[0].name, truth.cameras[1].name, apart(truth, 0, 1)};
   return options;
 }
 
@@ -123,4 +125,4 @@ TEST(PeopleRig, StatesWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace marey::calibrate::people
+}  // namespace marey::pipeline::calibrate

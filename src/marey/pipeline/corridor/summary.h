@@ -60,7 +60,7 @@ struct KeypointFigures {
   std::int64_t person_searches = 0;        ///< runs of the person detector
   std::int64_t regions = 0;                ///< runs of the landmark network
   std::int64_t people_in_images = 0;       ///< of all views
-  std::int64_t people_located = 0;          ///< of these, used for a person in space
+  std::int64_t people_located = 0;         ///< of these, used for a person in space
   std::optional<double> residual_px = {};  ///< root mean square of the reprojections, of videos
   double noise = 0;                        ///< residuals, in units of what the network states
 };

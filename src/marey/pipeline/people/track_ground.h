@@ -14,10 +14,11 @@ namespace marey::pipeline::people {
 
 /// Where the results go; what is empty is not made.
 struct GroundOutput {
-  std::string tracks = {};    ///< a recording that is written as it is made: in `format`, else that of its ending, else CSV
-  std::string format = {};    ///< a name of the register
-  std::string boxes_of = {};  ///< a camera: `tracks` then is MOT text whatever `format` is, the boxes in that view by that camera's own frames
-  std::string overlays = {};  ///< a folder: <camera>.mp4, a video of each camera that has images
+  std::string tracks = {};  ///< a recording that is written as it is made: in `format`, else that of its ending, else CSV
+  std::string format = {};  ///< a name of the register
+  std::string boxes_of =
+      {};  ///< a camera: `tracks` then is MOT text whatever `format` is, the boxes in that view by that camera's own frames
+  std::string overlays = {};    ///< a folder: <camera>.mp4, a video of each camera that has images
   std::string pitch_view = {};  ///< a video of the ground from above
 };
 
