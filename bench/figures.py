@@ -14,7 +14,7 @@ the same table at each run: times of a machine are not measured tables. It conta
 test data; where the variable is not set, or a program is not built, the table is skipped with a message. The comment is how long the command takes.
 
 Usage: figures.py [PAGE ...] [--write] [--only WORDS] [--within SECONDS] [--list] [--marey PROGRAM] [--root FOLDER]
-  PAGE      pages (default: all of docs/)
+  PAGE      pages (default: all of docs/ and bench/)
   --write   writes the new tables into the pages
   --only    repeats only tables whose command contains this
   --within  repeats only tables whose command takes at most that time by its comment
@@ -163,7 +163,7 @@ def main() -> int:
     options = parser.parse_args()
     options.root = options.root.resolve()
     options.marey = (options.marey or options.root / "build/release/marey").resolve()
-    pages = options.pages or sorted((options.root / "docs").rglob("*.md"))
+    pages = options.pages or [*sorted((options.root / "docs").rglob("*.md")), *sorted((options.root / "bench").glob("*.md"))]
     for page in pages:
         if not page.is_file():
             parser.error(f"{page}: there is no such page")

@@ -80,7 +80,7 @@ class FootballVideo(unittest.TestCase):
     def everybody_is_followed(self):
         """22 players, a referee, and his two assistants, who stand at the touchlines and are hard to see.
 
-        With the right camera's clock moved by up to 8 ms, 21 to 24 people stay (docs/tuning.md): the bounds are of the clock
+        With the right camera's clock moved by up to 8 ms, 21 to 24 people stay (bench/tuning.md): the bounds are of the clock
         that is found, and of tracks without doubles.
         """
         with open(self.folder / "match.csv", newline="") as file:

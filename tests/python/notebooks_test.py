@@ -94,7 +94,7 @@ class Notebooks(unittest.TestCase):
     def test_street_video(self):
         text = self.run_notebook("street_video")
         self.assertGreater(self.number(text, r"found ([\d.]+)%"), 80)
-        # The sanitizers' build is another compiler's: docs/tuning.md tells what small things do to numbers.
+        # The sanitizers' build is another compiler's: bench/tuning.md tells what small things do to numbers.
         self.assertGreater(self.number(text, r"IDF1 ([\d.]+)%"), 70 if "ASAN_OPTIONS" in os.environ else 80)
         people = marey.read(self.folder / "street.marey")
         self.assertTrue(5 <= len(people.tracks) <= 8, people)

@@ -63,7 +63,7 @@ class Checks(unittest.TestCase):
     def test_unswept_constants_may_only_become_fewer(self):
         for folder in ("filter", "assign", "edit", "source/stabilise", "detect", "reconstruct", "calibrate", "solve", "analyse", "pipeline"):
             (self.root / "src/marey" / folder).mkdir(parents=True, exist_ok=True)
-        self.plant("docs/tuning.md", "`kGate` was chosen among five.\n`kReach` is not swept.\n")
+        self.plant("bench/tuning.md", "`kGate` was chosen among five.\n`kReach` is not swept.\n")
         self.plant("script/constants.txt", "# per folder\nfixed kPi\ntrack 2\n")
         self.plant("src/marey/track/gate.h", "constexpr double kGate = 3;\nconstexpr double kReach = 2;  // m\n"
                    "constexpr int kAxes = 3;  // by definition\nconstexpr double kPi = 3.14, kShare = 0.5;\n")

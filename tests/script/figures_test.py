@@ -98,7 +98,7 @@ class Script(unittest.TestCase):
 
 class Docs(unittest.TestCase):
     def setUp(self):
-        self.tables = [table for page in sorted((ROOT / "docs").rglob("*.md")) for table in figures.measured_tables(page)]
+        self.tables = [table for page in [*sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "bench").glob("*.md"))] for table in figures.measured_tables(page)]
 
     def test_every_command_exists(self):
         self.assertTrue(self.tables)

@@ -14,7 +14,7 @@ struct DefaultMotion {
   double acceleration_noise = 0;  ///< white acceleration, square root of its density: 1/s^1.5
 };
 
-/// People, in heights of theirs: as TrackerOptions::filter has it (track/tracker.h), whose sweep is in docs/tuning.md.
+/// People, in heights of theirs: as TrackerOptions::filter has it (track/tracker.h), whose sweep is in bench/tuning.md.
 inline constexpr DefaultMotion kPeopleInHeights{.speed = 0.8, .acceleration_noise = 0.45};
 /// People and athletes on the ground, in m: as GroundTrackerOptions::filter has it (track/ground/ground_tracker.h).
 inline constexpr DefaultMotion kPeopleInMetres{.speed = 3, .acceleration_noise = 2};

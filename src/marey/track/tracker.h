@@ -105,7 +105,7 @@ struct TrackerOptions {
 };
 
 /// The same for boxes of another program's detector, which errs more, and misses a target for longer, than silhouettes do; what
-/// was set to other than its default stays. Sweep: docs/tuning.md.
+/// was set to other than its default stays. Sweep: bench/tuning.md.
 TrackerOptions box_tracker_options(TrackerOptions options = {});
 
 /// What fits points without an extent, such as markers: lengths in px.

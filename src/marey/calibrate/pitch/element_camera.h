@@ -20,7 +20,7 @@
 
 namespace marey::calibrate::pitch {
 
-/// Prior knowledge of main cameras before a label is seen, and how people label. Each was swept: docs/tuning.md.
+/// Prior knowledge of main cameras before a label is seen, and how people label. Each was swept: bench/tuning.md.
 struct ElementCameraOptions {
   geometry::PitchSize pitch;
   Vector<3> location = {0, -31, 15};          ///< m, z up, from the middle of the near touchline

@@ -19,7 +19,7 @@ namespace {
 
 using geometry::GroundSurface;
 
-// What clicks and paint usually err by (docs/tuning.md): of both, how much is learned from the recording.
+// What clicks and paint usually err by (bench/tuning.md): of both, how much is learned from the recording.
 constexpr double kClickPixels = 2, kClickMetres = 0.05;
 constexpr double kPaintPixels = 0.3, kPaintMetres = 0.02;
 constexpr double kMinScale = 0.2;  // of what is typical: no person clicks, and no codec leaves paint, better

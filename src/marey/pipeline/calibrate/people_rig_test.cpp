@@ -17,7 +17,7 @@ using marey::simulate::room::RoomOptions;
 using marey::simulate::room::RoomScene;
 
 /// What a room's cameras see, and nothing of how they stand.
-PeopleInput input_of(const RoomScene& scene, const KeypointErrors& errors) {
+PeopleInput seen_in(const RoomScene& scene, const KeypointErrors& errors) {
   PeopleInput input;
   for (std::size_t c = 0; c < scene.rig().cameras.size(); ++c) {
     const RigCamera& camera = scene.rig().cameras[c];
@@ -28,7 +28,7 @@ PeopleInput input_of(const RoomScene& scene, const KeypointErrors& errors) {
   return input;
 }
 
-RoomOptions walking(int actors, double seconds) {
+RoomOptions room_of_walkers(int actors, double seconds) {
   RoomOptions options;
   options.cameras = 4;
   options.actors = actors;
@@ -38,7 +38,7 @@ RoomOptions walking(int actors, double seconds) {
   return options;
 }
 
-double apart(const Rig& rig, std::size_t a, std::size_t b) {
+double distance_between(const Rig& rig, std::size_t a, std::size_t b) {
   return (rig.cameras[a].camera_from_world->inverse().translation - rig.cameras[b].camera_from_world->inverse().translation).norm();
 }
 
@@ -49,11 +49,11 @@ struct RigErrors {
   double offset_s = 0;  ///< against the first camera's, the worst
 };
 
-RigErrors errors_of(const Rig& found, const Rig& truth) {
+RigErrors rig_errors(const Rig& found, const Rig& truth) {
   RigErrors errors;
   for (std::size_t a = 0; a < truth.cameras.size(); ++a) {
     for (std::size_t b = a + 1; b < truth.cameras.size(); ++b)
-      errors.distance = std::max(errors.distance, std::abs(apart(found, a, b) / apart(truth, a, b) - 1));
+      errors.distance = std::max(errors.distance, std::abs(distance_between(found, a, b) / distance_between(truth, a, b) - 1));
     const auto turn = [&](const Rig& rig) {
       return Matrix<3>(rig.cameras[a].camera_from_world->rotation * rig.cameras[0].camera_from_world->rotation.transpose());
     };
@@ -67,17 +67,18 @@ RigErrors errors_of(const Rig& found, const Rig& truth) {
   return errors;
 }
 
-PeopleOptions by_distance(const Rig& truth) {
+PeopleOptions with_distance(const Rig& truth) {
   PeopleOptions options;
-  options.distance = marey::calibrate::wand::KnownDistance{truth.cameras[0].name, truth.cameras[1].name, apart(truth, 0, 1)};
+  options.distance =
+      marey::calibrate::wand::KnownDistance{truth.cameras[0].name, truth.cameras[1].name, distance_between(truth, 0, 1)};
   return options;
 }
 
 TEST(PeopleRig, CalibratesFourCamerasByOnePersonWhoWalks) {
-  const RoomScene scene(walking(1, 15));
-  const PeopleRig found = calibrate_people(input_of(scene, {}), by_distance(scene.rig()));
+  const RoomScene scene(room_of_walkers(1, 15));
+  const PeopleRig found = calibrate_people(seen_in(scene, {}), with_distance(scene.rig()));
   EXPECT_EQ(found.people, 1);
-  const RigErrors errors = errors_of(found.rig, scene.rig());
+  const RigErrors errors = rig_errors(found.rig, scene.rig());
   EXPECT_LT(errors.distance, 0.02);
   EXPECT_LT(errors.rotation, 0.02);
   EXPECT_LT(errors.focal, 0.03);
@@ -90,31 +91,31 @@ TEST(PeopleRig, CalibratesFourCamerasByOnePersonWhoWalks) {
 }
 
 TEST(PeopleRig, FindsWhenCamerasWereStarted) {
-  RoomOptions options = walking(1, 15);
+  RoomOptions options = room_of_walkers(1, 15);
   options.offset_s = 0.2;
   const RoomScene scene(options);
-  const PeopleRig found = calibrate_people(input_of(scene, {}), by_distance(scene.rig()));
-  EXPECT_LT(errors_of(found.rig, scene.rig()).offset_s, 0.5 / 25) << "half a frame";
+  const PeopleRig found = calibrate_people(seen_in(scene, {}), with_distance(scene.rig()));
+  EXPECT_LT(rig_errors(found.rig, scene.rig()).offset_s, 0.5 / 25) << "half a frame";
 }
 
 TEST(PeopleRig, KnowsPeopleApart) {
-  const RoomScene scene(walking(2, 12));
-  const PeopleRig found = calibrate_people(input_of(scene, {}), by_distance(scene.rig()));
+  const RoomScene scene(room_of_walkers(2, 12));
+  const PeopleRig found = calibrate_people(seen_in(scene, {}), with_distance(scene.rig()));
   EXPECT_GE(found.people, 1);
-  const RigErrors errors = errors_of(found.rig, scene.rig());
+  const RigErrors errors = rig_errors(found.rig, scene.rig());
   EXPECT_LT(errors.distance, 0.02);
   EXPECT_LT(errors.rotation, 0.02);
 }
 
 TEST(PeopleRig, StatesWhyThereIsNone) {
-  const RoomScene scene(walking(1, 4));
-  PeopleInput input = input_of(scene, {});
+  const RoomScene scene(room_of_walkers(1, 4));
+  PeopleInput input = seen_in(scene, {});
   input.cameras[1].sequence.frames.clear();
   EXPECT_THROW(calibrate_people(input), Error);
-  input = input_of(scene, {});
+  input = seen_in(scene, {});
   input.rig.cameras[0].size.reset();
   EXPECT_THROW(calibrate_people(input), Error);
-  input = input_of(scene, {});
+  input = seen_in(scene, {});
   for (auto& frame : input.cameras[2].sequence.frames) frame.clear();
   try {
     calibrate_people(input);

@@ -36,7 +36,7 @@ class StabilisedCamera {
   bool opens_again_;
 };
 
-/// px root mean square, from which on people are lost to a camera's shaking (docs/tuning.md).
+/// px root mean square, from which on people are lost to a camera's shaking (bench/tuning.md).
 inline constexpr double kShakes = 1.5;
 /// What the user should know of a shaking camera this much.
 std::string shaking_warning(double px);

@@ -19,7 +19,7 @@ namespace marey::pipeline::markers {
 namespace {
 
 constexpr double kMaxPredictionSigma = 0.06;  // m; a prediction that is less certain is not matched with blobs
-constexpr double kDecideAfterS = 5;           // after which labels of a file are not corrected any more; sweep: docs/tuning.md
+constexpr double kDecideAfterS = 5;           // after which labels of a file are not corrected any more; sweep: bench/tuning.md
 
 int frames_in(double duration, double rate_hz) {
   return static_cast<int>(std::lround(duration * rate_hz));

@@ -6,7 +6,7 @@
 namespace marey::track::image {
 namespace {
 
-// docs/tuning.md has the sweep of those that follow.
+// bench/tuning.md has the sweep of those that follow.
 constexpr double kNearSpan = 0.2, kFarSpan = 0.48;  // s
 constexpr double kFirstCount = 300;                 // differences that the first levels count for
 constexpr double kMaxCounted = 4000;                // differences that are remembered

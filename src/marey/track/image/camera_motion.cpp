@@ -11,7 +11,7 @@ namespace marey::track::image {
 namespace {
 using geometry::Similarity2;
 
-// Of these kRateLasts alone was tried at another value (docs/tuning.md); the others are unswept.
+// Of these kRateLasts alone was tried at another value (bench/tuning.md); the others are unswept.
 constexpr std::size_t kMaxPeople = 40;
 constexpr std::size_t kMinPeople = 3;
 constexpr double kMaxShift = 0.7;     // sizes; a camera does not turn more between two frames than it was expected to

@@ -25,7 +25,7 @@ constexpr double weak_fraction = 0.6;  // and of the frames, the share they must
 
 constexpr double kShortNotice = 1;  // s
 
-// Of recordings whose boxes' noise was learned; docs/tuning.md has the sweep.
+// Of recordings whose boxes' noise was learned; bench/tuning.md has the sweep.
 constexpr double kPositionKernel = 0.5;  // beside the time over which an optimal smoother of places averages
 constexpr double kSizeKernel = 0.7;      // the same for sizes
 constexpr double kStraying = 1;          // speed_noise for each unit of acceleration noise

@@ -17,7 +17,7 @@ constexpr double clothes_span = 5;      // s of a tracklet that show what it wea
 constexpr double prior_speed = 0.6;     // sizes/s; the prior before two observations
 constexpr double score_of_joining = 9;  // how many log-likelihoods a newcomer at just this place and time is behind
 constexpr double gate = 16;             // chi-square, place and size: 4 degrees of freedom
-// docs/tuning.md has the sweep of those that follow.
+// bench/tuning.md has the sweep of those that follow.
 constexpr double kOutOfEncounter = 0.5;  // gain, at least, of one who went into a meeting and may be the one who comes out
 constexpr double kAsTracked = 1;         // gain of the tracker's choice
 constexpr double kStands = 0.1;         // the same at least, where no other piece claims either: the light changes clothes; unswept
