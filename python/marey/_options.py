@@ -57,11 +57,11 @@ class TrackOptions(TypedDict, total=False):
     max_area: float | None
     r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
     min_roundness: float | None
-    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    r"""fraction in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
     colour: str | None
     r"""markers of this hue, in degrees: 0 red, 60 yellow, 120 green, 180 cyan, 240 blue, 300 magenta; 120+-15 sets the tolerance"""
     saturation: float | None
-    r"""share in [0.001, 0.999]: with --colour: minimum of (largest - smallest of red, green, blue), as a share of white (default: 0.2)"""
+    r"""fraction in [0.001, 0.999]: with --colour: minimum of (largest - smallest of red, green, blue), as a fraction of white (default: 0.2)"""
     mask: Path | None
     r"""an image of the video's size; what is not black in it is omitted"""
     auto_mask: float | None
@@ -137,7 +137,7 @@ class ReconstructOptions(TypedDict, total=False):
     max_area: float | None
     r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
     min_roundness: float | None
-    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    r"""fraction in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
     keypoint_set: str | None
     r"""the keypoint set of files that do not name their points: body_25, body_25b, coco_18, coco, halpe_26, blazepose (default: by the points)"""
     people: int | None
@@ -196,7 +196,7 @@ class LiveOptions(TypedDict, total=False):
     max_area: float | None
     r"""px^2 in [0, 1e8]: largest marker, likewise (default: 10000)"""
     min_roundness: float | None
-    r"""share in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
+    r"""fraction in [0, 1]: area over that of the circle as long as the blob: 1 is a disc, an ellipse has the ratio of its axes (default: 0.25)"""
     background: Literal["marey", "mog2", "knn"] | None
     r"""model of the static background: marey, mog2, knn (default: marey)"""
     detector: Path | None
