@@ -17,7 +17,7 @@ using marey::simulate::room::RoomOptions;
 using marey::simulate::room::RoomScene;
 
 /// What a room's cameras see, and nothing of how they stand.
-PeopleInput seen_in(const RoomScene& scene, const KeypointErrors& errors) {
+PeopleInput observations_of_room(const RoomScene& scene, const KeypointErrors& errors) {
   PeopleInput input;
   for (std::size_t c = 0; c < scene.rig().cameras.size(); ++c) {
     const RigCamera& camera = scene.rig().cameras[c];
@@ -76,7 +76,7 @@ PeopleOptions with_distance(const Rig& truth) {
 
 TEST(PeopleRig, CalibratesFourCamerasByOnePersonWhoWalks) {
   const RoomScene scene(room_of_walkers(1, 15));
-  const PeopleRig found = calibrate_people(seen_in(scene, {}), with_distance(scene.rig()));
+  const PeopleRig found = calibrate_people(observations_of_room(scene, {}), with_distance(scene.rig()));
   EXPECT_EQ(found.people, 1);
   const RigErrors errors = rig_errors(found.rig, scene.rig());
   EXPECT_LT(errors.distance, 0.02);
@@ -94,13 +94,13 @@ TEST(PeopleRig, FindsWhenCamerasWereStarted) {
   RoomOptions options = room_of_walkers(1, 15);
   options.offset_s = 0.2;
   const RoomScene scene(options);
-  const PeopleRig found = calibrate_people(seen_in(scene, {}), with_distance(scene.rig()));
+  const PeopleRig found = calibrate_people(observations_of_room(scene, {}), with_distance(scene.rig()));
   EXPECT_LT(rig_errors(found.rig, scene.rig()).offset_s, 0.5 / 25) << "half a frame";
 }
 
 TEST(PeopleRig, KnowsPeopleApart) {
   const RoomScene scene(room_of_walkers(2, 12));
-  const PeopleRig found = calibrate_people(seen_in(scene, {}), with_distance(scene.rig()));
+  const PeopleRig found = calibrate_people(observations_of_room(scene, {}), with_distance(scene.rig()));
   EXPECT_GE(found.people, 1);
   const RigErrors errors = rig_errors(found.rig, scene.rig());
   EXPECT_LT(errors.distance, 0.02);
@@ -109,13 +109,13 @@ TEST(PeopleRig, KnowsPeopleApart) {
 
 TEST(PeopleRig, StatesWhyThereIsNone) {
   const RoomScene scene(room_of_walkers(1, 4));
-  PeopleInput input = seen_in(scene, {});
+  PeopleInput input = observations_of_room(scene, {});
   input.cameras[1].sequence.frames.clear();
   EXPECT_THROW(calibrate_people(input), Error);
-  input = seen_in(scene, {});
+  input = observations_of_room(scene, {});
   input.rig.cameras[0].size.reset();
   EXPECT_THROW(calibrate_people(input), Error);
-  input = seen_in(scene, {});
+  input = observations_of_room(scene, {});
   for (auto& frame : input.cameras[2].sequence.frames) frame.clear();
   try {
     calibrate_people(input);
