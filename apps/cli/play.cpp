@@ -49,7 +49,7 @@ void report(const PlayCommand& command, const pipeline::take::PlaySummary& done,
            {"streams", json_of(streams)}});
   } else if (!command.quiet) {
     fmt::print(stderr, "{}: {} instants in {:.1f} s", command.recording, done.instants, done.seconds);
-    if (command.how.loop) fmt::print(stderr, ", {} rounds", done.rounds);
+    if (command.how.loop) fmt::print(stderr, ", {} loop{}", done.rounds, done.rounds == 1 ? "" : "s");
     if (done.excluded > 0) fmt::print(stderr, ", {} omitted by --rate", done.excluded);
     if (done.skipped > 0) fmt::print(stderr, ", {} skipped because this machine was late", done.skipped);
     fmt::print(stderr, "\n");

@@ -20,7 +20,7 @@ class Calibration:
 
     rig: Rig
     grade: str
-    meaning: str
+    grade_text: str
     mean_px: float
     rms_px: float
     cameras: dict[str, dict[str, Any]]
@@ -32,7 +32,7 @@ class Calibration:
             for name, fit in self.cameras.items()
         )
         head = "<tr><th>camera</th><th>mean, px</th><th>rms, px</th><th>seen</th></tr>"
-        return f"<p>{escape(self.grade)}: {escape(self.meaning)}</p><table>{head}{rows}</table>"
+        return f"<p>{escape(self.grade)}: {escape(self.grade_text)}</p><table>{head}{rows}</table>"
 
 
 def wand(

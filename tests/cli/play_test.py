@@ -87,7 +87,7 @@ class Play(unittest.TestCase):
         process, _ = self.start("points.csv", "--loop", "--stream", "json::0")
         code, _, said = self.end(process)
         self.assertEqual(code, 0, said)
-        self.assertIn("loops", said)
+        self.assertIn(" loop", said)
         process, _ = self.start("points.csv", "--speed", "0.01", "--stream", "json::0")
         self.assertEqual(self.end(process)[0], 130)
 
