@@ -12,7 +12,9 @@
 
 #include "marey/calibrate/grow_rig.h"
 #include "marey/calibrate/people/image_people.h"
+#include "marey/calibrate/people/people_growth.h"
 #include "marey/calibrate/people/people_pairs.h"
+#include "marey/calibrate/people/people_views.h"
 #include "marey/calibrate/people/people_world.h"
 #include "marey/calibrate/rays.h"
 #include "marey/calibrate/wand/wand_lens.h"
@@ -24,42 +26,32 @@
 namespace marey::calibrate::people {
 namespace {
 
-constexpr std::array kFocalGuesses = {0.65, 0.9, 1.25, 1.75};  // unswept: of the longer side
-constexpr double kLikelyFocal = 0.9;                           // unswept: the same, where people are compared
-constexpr double kFocalPrior = 0.5;                            // unswept: relative, of the last adjustment
-constexpr double kFocalOfTwo = 0.1;                            // unswept: the same where two cameras alone see it
-constexpr double kEqualLenses = 0.01;                          // unswept: relative, between cameras of one make
-constexpr double kNotWorse = 1.1;                              // unswept: noise, times that of free lenses
-constexpr double kDistortionPrior = 0.05;                      // unswept: of the first radial term
-constexpr std::size_t kGrownPoints = 160;    // numerical, time against precision: a camera, by which the rig grows
+constexpr double kLikelyFocal = 0.9;         // unswept: the same, where people are compared
+constexpr double kFocalPrior = 0.5;          // unswept: relative, of the last adjustment
+constexpr double kFocalOfTwo = 0.1;          // unswept: the same where two cameras alone see it
+constexpr double kEqualLenses = 0.01;        // unswept: relative, between cameras of one make
+constexpr double kNotWorse = 1.1;            // unswept: noise, times that of free lenses
+constexpr double kDistortionPrior = 0.05;    // unswept: of the first radial term
 constexpr std::size_t kMaxPoints = 6000;     // numerical, time against precision: in the last adjustment
 constexpr std::size_t kOffsetPoints = 1200;  // numerical, time against precision: while offsets are found
-constexpr double kMaxGrid_hz = 30;           // numerical, time against precision
 constexpr int kOffsetRounds = 12;            // numerical, time against precision: at most
 constexpr double kOffsetFound = 0.02;        // numerical, time against precision: frames by which none moves any more
-constexpr double kNoiseFactor = 1.5;         // unswept: times what the points state
 constexpr double kAssumedHeight = 1.75;      // by definition: m, where neither height nor distance is given
-constexpr int kMinShared = 40;               // unswept: points that link two cameras
 constexpr double kPoorlyKnown = 0.02;        // by definition: of the distances, a camera's deviation that is said
-
-/// A point of a person at an instant.
-struct PointRow {
-  int person = 0;
-  double time_s = 0;
-  std::size_t point = 0;
-};
 
 class PeopleCalibration {
  public:
   PeopleCalibration(const PeopleInput& input, const PeopleOptions& options, const Hooks& hooks)
-      : in_(input), options_(options), hooks_(hooks), offsets_(input.cameras.size(), 0) {
+      : in_(input), options_(options), hooks_(hooks) {
     result_.rig = input.rig;
   }
 
   PeopleRig run() {
     check_input();
     match();
-    grow();
+    step("relating the cameras");
+    rows_ = views_.rows();
+    growth_ = grow_by_people(views_, in_.rig, rows_, options_.seed);
     fit();
     put_into_world();
     store();
@@ -73,9 +65,6 @@ class PeopleCalibration {
 
   void check_input() const;
   void match();
-  std::vector<PointRow> rows() const;
-  std::optional<Vector<2>> pixel(const PointRow& row, std::size_t camera, double later_frames) const;
-  void grow();
   void fill(bundle::Bundle& bundle);
   void fit();
   bundle::BundleResult adjust_until_still(const bundle::BundleOptions& how);
@@ -89,9 +78,7 @@ class PeopleCalibration {
   const Hooks& hooks_;
   std::int64_t steps_ = 0;
   PeopleRig result_;
-  std::vector<CameraPeople> people_;
-  std::vector<std::vector<int>> identity_;
-  std::vector<double> offsets_;
+  PeopleViews views_;
   std::vector<PointRow> rows_;
   std::vector<std::size_t> row_of_body_;  // of the bundle
   Growth growth_;
@@ -114,130 +101,25 @@ void PeopleCalibration::match() {
   step("comparing people");
   for (std::size_t c = 0; c < cameras(); ++c) {
     const RigCamera& camera = rig_camera(c);
-    people_.push_back({.people = image_people(in_.cameras[c].sequence, in_.cameras[c].rate_hz),
-                       .rate_hz = in_.cameras[c].rate_hz,
-                       .offset_s = camera.offset_s.value_or(0),
-                       .offset_known = camera.offset_s.has_value(),
-                       .lens = Camera(wand::starting_lens(camera, kLikelyFocal), Rigid3{}, *camera.size)});
-    if (people_.back().people.empty())
+    views_.cameras.push_back({.people = image_people(in_.cameras[c].sequence, in_.cameras[c].rate_hz),
+                              .rate_hz = in_.cameras[c].rate_hz,
+                              .offset_s = camera.offset_s.value_or(0),
+                              .offset_known = camera.offset_s.has_value(),
+                              .lens = Camera(wand::starting_lens(camera, kLikelyFocal), Rigid3{}, *camera.size)});
+    if (views_.cameras.back().people.empty())
       throw Error("camera \"{}\": no person is followed for half a second; let people walk where all cameras see them",
                   camera.name);
   }
-  PeopleMatch matched = match_people(people_, options_.max_offset_s, options_.seed);
-  offsets_ = std::move(matched.offsets_s);
-  identity_ = std::move(matched.identity);
-  result_.people = matched.people;
+  PeopleMatch matched = match_people(views_.cameras, options_.max_offset_s, options_.seed);
+  views_.offsets_s = std::move(matched.offsets_s);
+  views_.identity = std::move(matched.identity);
+  result_.people = views_.people = matched.people;
   if (matched.people == 0)
     throw Error(
         "{}",
         "no person is seen by two cameras at the same time, as far as their motion says: let one person walk through the whole "
         "volume, and turn, where the cameras see the body from head to feet; people who stand still do not show how cameras' "
         "clocks differ");
-}
-
-std::optional<Vector<2>> PeopleCalibration::pixel(const PointRow& row, std::size_t camera, double later_frames) const {
-  const CameraPeople& one = people_[camera];
-  const double frame = (row.time_s - offsets_[camera]) * one.rate_hz + later_frames;
-  for (std::size_t p = 0; p < one.people.size(); ++p) {
-    if (identity_[camera][p] != row.person) continue;
-    if (auto found = one.people[p].at(frame, row.point)) return found;
-  }
-  return std::nullopt;
-}
-
-/// All points at even instants that two cameras show, by time.
-std::vector<PointRow> PeopleCalibration::rows() const {
-  double begin = std::numeric_limits<double>::infinity(), end = -begin, rate_hz = 0;
-  std::size_t points = 0;
-  for (std::size_t c = 0; c < cameras(); ++c) {
-    rate_hz = std::max(rate_hz, people_[c].rate_hz);
-    points = std::max(points, in_.cameras[c].sequence.set.points.size());
-    for (const ImagePerson& person : people_[c].people) {
-      begin = std::min(begin, static_cast<double>(person.first) / people_[c].rate_hz + offsets_[c]);
-      end = std::max(end, static_cast<double>(person.end()) / people_[c].rate_hz + offsets_[c]);
-    }
-  }
-  const double step_s = 1 / std::min(kMaxGrid_hz, rate_hz);
-  std::vector<PointRow> found;
-  for (double time = begin; time < end; time += step_s) {
-    for (int person = 0; person < result_.people; ++person) {
-      for (std::size_t i = 0; i < points; ++i) {
-        const PointRow row{person, time, i};
-        int seen_by = 0;
-        for (std::size_t c = 0; c < cameras(); ++c) seen_by += pixel(row, c, 0) ? 1 : 0;
-        if (seen_by >= 2) found.push_back(row);
-      }
-    }
-  }
-  return found;
-}
-
-/// At most `maximum` of them, evenly spread, in an order that takes times and points in turn.
-std::vector<PointRow> some_of(const std::vector<PointRow>& rows, std::size_t maximum) {
-  if (rows.size() <= maximum) return rows;
-  std::vector<PointRow> some;
-  for (std::size_t k = 0; k < maximum; ++k) some.push_back(rows[(2 * k + 1) * rows.size() / (2 * maximum)]);
-  return some;
-}
-
-void PeopleCalibration::grow() {
-  step("relating the cameras");
-  rows_ = rows();
-  const std::vector<PointRow> some = some_of(rows_, kGrownPoints * cameras());
-  wand::WandTable table;
-  std::size_t required = 0;
-  for (const PointRow& row : some) {
-    auto& entries = table.emplace_back(cameras());
-    for (std::size_t c = 0; c < cameras(); ++c) {
-      if (const auto at = pixel(row, c, 0)) entries[c] = wand::Marks{*at}, ++required;
-    }
-  }
-  std::vector<std::string> names;
-  for (const RigCamera& camera : in_.rig.cameras) names.push_back(camera.name);
-  const auto shared = shared_views(table, cameras());
-  for (std::size_t c = 0; c < cameras(); ++c) {
-    int most = 0;
-    for (std::size_t other = 0; other < cameras(); ++other) most = std::max(most, other == c ? 0 : shared[c][other]);
-    if (most < kMinShared)
-      throw Error(
-          "camera \"{}\" and another camera never show one person at the same time: let people walk where both see them, or check "
-          "that it recorded at the same time",
-          names[c]);
-  }
-  double best = std::numeric_limits<double>::infinity();
-  const bool any_unknown = std::any_of(in_.rig.cameras.begin(), in_.rig.cameras.end(), [](const RigCamera& c) { return !c.lens; });
-  for (const double guess : kFocalGuesses) {
-    if (!any_unknown && guess != kFocalGuesses.front()) break;
-    stop_point();
-    std::vector<wand::WandCamera> grown;
-    for (std::size_t c = 0; c < cameras(); ++c) {
-      std::vector<double> sigmas;
-      for (const ImagePerson& person : people_[c].people) sigmas.push_back(person.sigma_px);
-      const RigCamera& camera = rig_camera(c);
-      bundle::LensFreedom freedom;
-      if (!camera.lens) freedom.focal = 0.3;
-      grown.push_back(
-          {camera.name, wand::starting_lens(camera, guess), *camera.size, freedom, kNoiseFactor * geometry::median(sigmas)});
-    }
-    try {
-      Growth growth = grow_rig(grown, wand::WandShape{}, table, options_.seed);
-      double noise = 0;
-      for (const wand::WandCamera& camera : grown) noise = std::max(noise, camera.sigma_px);
-      const double cap = 9 * noise * noise;
-      double cost = 0;
-      const auto errors = bundle::errors_of(growth.bundle);
-      for (const auto& error : errors) cost += error ? std::min(cap, error->squaredNorm()) : cap;
-      cost += cap * static_cast<double>(required - std::min(required, errors.size()));
-      if (cost < best) best = cost, growth_ = std::move(growth);
-    } catch (const Error&) {
-      continue;  // another guess may do
-    }
-  }
-  if (!std::isfinite(best))
-    throw Error(
-        "{}",
-        "the cameras' views of people do not make one geometry: let one person walk through the whole volume, near and far, in "
-        "another place than a line; check the lenses that the rig gives");
 }
 
 void PeopleCalibration::fill(bundle::Bundle& bundle) {
@@ -250,11 +132,11 @@ void PeopleCalibration::fill(bundle::Bundle& bundle) {
     const int body = static_cast<int>(bundle.bodies.size());
     std::vector<bundle::BundleObservation> seen;
     for (std::size_t c = 0; c < cameras(); ++c) {
-      const auto at = pixel(row, c, 0);
+      const auto at = views_.pixel(row, c);
       if (!at) continue;
-      const auto before = pixel(row, c, -2), after = pixel(row, c, 2);
+      const auto before = views_.pixel(row, c, -2), after = views_.pixel(row, c, 2);
       const Vector<2> velocity =
-          before && after ? Vector<2>((*after - *before) * people_[c].rate_hz / 4) : Vector<2>(Vector<2>::Zero());
+          before && after ? Vector<2>((*after - *before) * views_.cameras[c].rate_hz / 4) : Vector<2>(Vector<2>::Zero());
       const bundle::BundleCamera& camera = bundle.cameras[c];
       const Camera view(camera.lens, camera.camera_from_world, *rig_camera(c).size);
       const auto ray = view.ray(*at);
@@ -312,8 +194,8 @@ bundle::BundleResult PeopleCalibration::adjust_until_still(const bundle::BundleO
     now.noise_px = std::max(0.5, fitted.noise_px);
     double moved = 0;  // frames
     for (std::size_t c = 0; c < cameras(); ++c) {
-      moved = std::max(moved, std::abs(bundle_.cameras[c].offset_s) * people_[c].rate_hz);
-      offsets_[c] += std::exchange(bundle_.cameras[c].offset_s, 0);
+      moved = std::max(moved, std::abs(bundle_.cameras[c].offset_s) * views_.cameras[c].rate_hz);
+      views_.offsets_s[c] += std::exchange(bundle_.cameras[c].offset_s, 0);
     }
     if (moved < kOffsetFound || round == kOffsetRounds) return fitted;
   }
@@ -330,7 +212,7 @@ void PeopleCalibration::prefer_equal_lenses(bundle::BundleOptions how) {
     makes[{low, high}].push_back(c);
   }
   const bundle::Bundle before = bundle_;
-  const std::vector<double> offsets = offsets_;
+  const std::vector<double> offsets = views_.offsets_s;
   bool any = false;
   for (const auto& [size, of_make] : makes) {
     if (of_make.size() < 2) continue;
@@ -353,7 +235,7 @@ void PeopleCalibration::prefer_equal_lenses(bundle::BundleOptions how) {
     return;
   }
   bundle_ = before;
-  offsets_ = offsets;
+  views_.offsets_s = offsets;
 }
 
 void PeopleCalibration::put_into_world() {
@@ -421,7 +303,7 @@ void PeopleCalibration::store() {
     RigCamera& camera = result_.rig.cameras[c];
     camera.lens = bundle_.cameras[c].lens;
     camera.camera_from_world = bundle_.cameras[c].camera_from_world;
-    camera.offset_s = offsets_[c] + bundle_.cameras[c].offset_s;
+    camera.offset_s = views_.offsets_s[c] + bundle_.cameras[c].offset_s;
     camera.rms_px = result_.report.cameras[c].fit.rms_px;
   }
   const FitQuality& all = result_.report.all;

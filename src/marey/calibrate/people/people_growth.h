@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "marey/calibrate/grow_rig.h"
+#include "marey/calibrate/people/people_views.h"
+#include "marey/core/rig.h"
+
+namespace marey::calibrate::people {
+
+/// The fewest points of one person at one time that link two cameras.
+inline constexpr int kMinShared = 40;  // unswept
+
+/// Static cameras roughly right, by some of the points, for the focal length of several that explains them best where lenses are
+/// not known. Throws Error, with the cause and what to do, if a camera shares too few points with any other, or no geometry is
+/// found; Stopped.
+Growth grow_by_people(const PeopleViews& views, const Rig& rig, const std::vector<PointRow>& rows, std::uint64_t seed);
+
+}  // namespace marey::calibrate::people
