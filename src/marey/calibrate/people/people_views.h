@@ -23,7 +23,7 @@ struct PeopleViews {
   std::vector<double> offsets_s;           ///< by camera, in place of its own
   int people = 0;                          ///< identities
 
-  /// Where a camera sees the point, px, so many of its frames later; nothing if it does not.
+  /// Where a camera sees the point, px, `later_frames` of its frames after the row's time; nothing if it does not.
   std::optional<Vector<2>> pixel(const PointRow& row, std::size_t camera, double later_frames = 0) const;
   /// All points at even instants that two cameras show, by time.
   std::vector<PointRow> rows() const;
