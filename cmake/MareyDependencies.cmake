@@ -11,12 +11,10 @@ find_package(tomlplusplus 3.3 REQUIRED)
 find_package(pugixml 1.13 REQUIRED)
 find_package(hwy 1.0 REQUIRED)
 find_package(SQLite3 3.40 REQUIRED)
-if(MAREY_FFMPEG)
-  find_package(PkgConfig REQUIRED)
-  pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
-  pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
-  pkg_check_modules(ARAVIS IMPORTED_TARGET aravis-0.8)  # machine-vision cameras: may be absent
-endif()
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(ARAVIS IMPORTED_TARGET aravis-0.8)  # machine-vision cameras: may be absent
 if(MAREY_TESTS)
   find_package(GTest REQUIRED)
   find_package(OpenCV 4.6 REQUIRED COMPONENTS imgcodecs)  # reads back what was drawn

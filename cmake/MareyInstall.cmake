@@ -1,10 +1,9 @@
 # Installs the libraries, their headers, the program and a CMake package: find_package(marey). Components are the Debian packages' (MareyPackages).
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # a package needs no tests built
 install(TARGETS marey marey_video EXPORT marey_targets)
-if(TARGET marey_cli)
-  install(TARGETS marey_cli RUNTIME COMPONENT program)
-endif()
+install(TARGETS marey_cli RUNTIME COMPONENT program)
 # What serves tests, and what shows a library that users need not have, stays here.
 install(DIRECTORY src/marey TYPE INCLUDE FILES_MATCHING PATTERN "*.h"
         PATTERN "*_test.h" EXCLUDE PATTERN "*_testing.h" EXCLUDE PATTERN "filter_invariants.h" EXCLUDE PATTERN "rig_section.h" EXCLUDE

@@ -1,8 +1,5 @@
 # Debian packages by CPack: `marey` is the program with its completions and manual pages, `libmarey-dev` the libraries and headers,
 # `python3-marey` the Python package, `marey-models` the networks that script/model made. script/package builds them; docs/install.md tells how they are installed.
-if(NOT TARGET marey_cli)
-  return()
-endif()
 set(words ${PROJECT_BINARY_DIR}/words)  # written by script/package out of the help texts
 install(DIRECTORY ${words}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program OPTIONAL)
 install(FILES ${words}/marey.bash DESTINATION share/bash-completion/completions RENAME marey COMPONENT program OPTIONAL)
@@ -11,8 +8,8 @@ install(FILES ${words}/marey.fish DESTINATION share/fish/vendor_completions.d CO
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/marey RENAME copyright COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/libmarey-dev RENAME copyright COMPONENT dev)
 set(models ${PROJECT_SOURCE_DIR}/build/models)
-install(FILES ${models}/pose_landmark_lite.onnx ${models}/pose_landmark_full.onnx ${models}/person.onnx ${models}/person.toml
-        DESTINATION share/marey/models COMPONENT models OPTIONAL)
+set(model_files ${models}/pose_landmark_lite.onnx ${models}/pose_landmark_full.onnx ${models}/person.onnx ${models}/person.toml)
+install(FILES ${model_files} DESTINATION share/marey/models COMPONENT models OPTIONAL)
 install(FILES ${models}/LICENSE DESTINATION share/doc/marey-models RENAME copyright COMPONENT models OPTIONAL)
 
 set(CPACK_GENERATOR DEB)
@@ -49,5 +46,10 @@ if(MAREY_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/python3-marey RENAME copyright COMPONENT python)
+  # The wheel (python/pyproject.toml): the package, the program, which its script `marey` starts, and the networks.
+  install(TARGETS marey_python_wheel LIBRARY DESTINATION marey COMPONENT wheel EXCLUDE_FROM_ALL)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/marey DESTINATION . COMPONENT wheel EXCLUDE_FROM_ALL PATTERN "__pycache__" EXCLUDE)
+  install(TARGETS marey_cli RUNTIME DESTINATION marey/bin COMPONENT wheel EXCLUDE_FROM_ALL)
+  install(FILES ${model_files} DESTINATION marey/models COMPONENT wheel EXCLUDE_FROM_ALL)
 endif()
 include(CPack)

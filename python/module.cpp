@@ -4,19 +4,14 @@
 #include "bindings.h"
 
 extern "C" {
-#if MAREY_FFMPEG
 #include <libavutil/log.h>
-#endif
 }
 
 NB_MODULE(_core, module) {
   using namespace marey::python;
-#if MAREY_FFMPEG
   av_log_set_level(AV_LOG_QUIET);  // what went wrong in a video is reported in our own sentences
-#endif
   module.doc() = "What the package marey is built on; use that.";
   module.attr("version") = MAREY_VERSION;
-  module.attr("reads_films_itself") = bool(MAREY_FFMPEG);
   nb::exception<marey::Error>(module, "Error");
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
     try {

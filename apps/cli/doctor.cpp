@@ -49,14 +49,16 @@ Finding program(const char* name, const char* serves, const char* package) {
   return {"programs", name, !path.empty(), path.empty() ? fmt::format("{}: apt install {}", serves, package) : path};
 }
 
-Finding encoder(const char* name, const char* serves) {
-  const bool there = avcodec_find_encoder_by_name(name) != nullptr;
-  return {"films", name, there, there ? serves : fmt::format("{}: this build of FFmpeg lacks it", serves)};
+Finding h264_encoder() {
+  const AVCodec* encoder = avcodec_find_encoder(AV_CODEC_ID_H264);
+  const char* serves = "videos of overlays are written";
+  return {"videos", encoder == nullptr ? "H.264 encoder" : encoder->name, encoder != nullptr,
+          encoder != nullptr ? serves : fmt::format("{}: this build of FFmpeg lacks it", serves)};
 }
 
 Finding decoder(AVCodecID id, const char* name) {
   const bool there = avcodec_find_decoder(id) != nullptr;
-  return {"films", name, there, there ? "is read" : "this build of FFmpeg does not read it"};
+  return {"videos", name, there, there ? "is read" : "this build of FFmpeg does not read it"};
 }
 
 std::vector<Finding> cameras() {
@@ -82,7 +84,7 @@ std::vector<Finding> examine() {
       decoder(AV_CODEC_ID_H264, "H.264"),
       decoder(AV_CODEC_ID_HEVC, "HEVC"),
       decoder(AV_CODEC_ID_AV1, "AV1"),
-      encoder("libx264", "videos of overlays are written"),
+      h264_encoder(),
       program("ffmpeg", "the wheel of Python reads videos by it", "ffmpeg"),
       program("parallel", "marey batch submit --engine parallel", "parallel"),
       program("sbatch", "marey batch submit --engine slurm", "slurm-client"),

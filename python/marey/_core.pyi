@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 version: str
-reads_films_itself: bool
 
 class Error(Exception): ...
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 
 #include <opencv2/imgproc.hpp>
 
@@ -58,7 +59,7 @@ struct MovieWriter::Parts {
 void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality) {
   const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
   if (encoder == nullptr) encoder = avcodec_find_encoder(AV_CODEC_ID_H264);
-  if (encoder == nullptr) throw Error("{}: no H.264 encoder is installed; install FFmpeg's libraries built with x264", path);
+  if (encoder == nullptr) throw Error("{}: FFmpeg's libraries have no H.264 encoder; install ones built with x264 or OpenH264", path);
   codec.reset(allocated(avcodec_alloc_context3(encoder)));
   codec->log_level_offset = kSilent;
   codec->width = (size.width + 1) & ~1;  // 4:2:0 wants even sides
@@ -71,8 +72,14 @@ void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality)
   codec->thread_count = quality == Quality::to_record && rate < kSlow ? 1 : kThreads;
   codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   // Fast enough that the video is not what one waits for.
-  av_opt_set(codec->priv_data, "preset", quality == Quality::to_record ? "ultrafast" : "superfast", 0);
-  av_opt_set(codec->priv_data, "crf", quality == Quality::to_view ? "22" : "8", 0);
+  const int quantizer = quality == Quality::to_view ? 22 : 8;
+  if (std::string_view(encoder->name) == "libopenh264") {
+    codec->qmin = codec->qmax = quantizer;
+    codec->profile = FF_PROFILE_H264_HIGH;
+  } else {
+    av_opt_set(codec->priv_data, "preset", quality == Quality::to_record ? "ultrafast" : "superfast", 0);
+    av_opt_set(codec->priv_data, "crf", std::to_string(quantizer).c_str(), 0);
+  }
   if (const int code = avcodec_open2(codec.get(), encoder, nullptr); code < 0) {
     throw Error("{}: the H.264 encoder ({}) cannot encode {} x {} pixels ({})", path, encoder->name, size.width, size.height,
                 reason(code));
