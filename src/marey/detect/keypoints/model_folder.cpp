@@ -14,24 +14,27 @@ namespace {
 
 constexpr int kAbove = 6;  // folders
 
-/// The program or library that this code is in.
-std::filesystem::path own_file() {
-  Dl_info info{};
+/// The library that this code is in, if it is in one, and the program.
+std::vector<std::filesystem::path> own_files() {
+  std::vector<std::filesystem::path> files;
   std::error_code failed;
-  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
-    const auto file = std::filesystem::canonical(info.dli_fname, failed);
-    if (!failed) return file;
-  }
-  return std::filesystem::canonical("/proc/self/exe", failed);
+  Dl_info info{};
+  // Of a program the loader knows the name that it was called by alone, which may be another file's.
+  if (dladdr(reinterpret_cast<const void*>(&own_files), &info) != 0 && info.dli_fname != nullptr)
+    files.push_back(std::filesystem::canonical(info.dli_fname, failed));
+  files.push_back(std::filesystem::canonical("/proc/self/exe", failed));
+  return files;
 }
 
 std::vector<std::filesystem::path> model_folders() {
   if (const char* given = std::getenv("MAREY_MODELS"); given != nullptr && *given != '\0') return {given};
   std::vector<std::filesystem::path> folders;
-  std::filesystem::path folder = own_file().parent_path();
-  for (int i = 0; i < kAbove && folder.has_relative_path(); ++i, folder = folder.parent_path()) {
-    folders.push_back(folder / "models");
-    folders.push_back(folder / "share/marey/models");
+  for (const std::filesystem::path& file : own_files()) {
+    std::filesystem::path folder = file.parent_path();
+    for (int i = 0; i < kAbove && folder.has_relative_path(); ++i, folder = folder.parent_path()) {
+      folders.push_back(folder / "models");
+      folders.push_back(folder / "share/marey/models");
+    }
   }
   return folders;
 }
