@@ -59,7 +59,8 @@ struct MovieWriter::Parts {
 void MovieWriter::Parts::open_codec(cv::Size size, double rate, Quality quality) {
   const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
   if (encoder == nullptr) encoder = avcodec_find_encoder(AV_CODEC_ID_H264);
-  if (encoder == nullptr) throw Error("{}: FFmpeg's libraries have no H.264 encoder; install ones built with x264 or OpenH264", path);
+  if (encoder == nullptr)
+    throw Error("{}: FFmpeg's libraries have no H.264 encoder; install ones built with x264 or OpenH264", path);
   codec.reset(allocated(avcodec_alloc_context3(encoder)));
   codec->log_level_offset = kSilent;
   codec->width = (size.width + 1) & ~1;  // 4:2:0 wants even sides
