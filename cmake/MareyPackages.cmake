@@ -35,7 +35,7 @@ set(CPACK_DEBIAN_MODELS_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libmarey-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopencv-dev, libopencv-contrib-dev, libeigen3-dev, libceres-dev, libtbb-dev, libfmt-dev, libtomlplusplus-dev, libpugixml-dev, libhwy-dev, libsqlite3-dev, libavformat-dev, libavcodec-dev, libavutil-dev, libswscale-dev, libturbojpeg0-dev, pkg-config")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopencv-dev, libopencv-contrib-dev, libeigen3-dev, libceres-dev, libtbb-dev, libfmt-dev, libtomlplusplus-dev, libpugixml-dev, libhwy-dev, libsqlite3-dev, libssl-dev, libavformat-dev, libavcodec-dev, libavutil-dev, libswscale-dev, libturbojpeg0-dev, pkg-config")
 # What marey-config.cmake asks for where the libraries were made with it.
 if(ARAVIS_FOUND)
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libaravis-dev")

@@ -11,11 +11,6 @@
 
 namespace marey::viewer {
 
-/// What a target is made of. Nothing is decoded: our own paths and values need no escapes.
-std::string_view path_of(std::string_view target);
-/// The value of `name` in the query; empty if it is not there.
-std::string_view query_value(std::string_view target, std::string_view name);
-
 class Access {
  public:
   struct Verdict {
@@ -39,8 +34,5 @@ class Access {
   std::string token_, cookie_;
   std::vector<std::string> hosts_;
 };
-
-/// 48 hexadecimal digits that no person can guess. Throws Error if the system has none.
-std::string new_token();
 
 }  // namespace marey::viewer

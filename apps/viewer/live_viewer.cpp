@@ -14,6 +14,7 @@
 
 #include "marey/core/error.h"
 #include "marey/draw/jpeg.h"
+#include "marey/net/token.h"
 
 #include "access.h"
 #include "command_tokens.h"
@@ -240,7 +241,7 @@ void LiveViewer::Core::wand(const std::string& json) {
 }
 
 WebAnswer LiveViewer::Core::get(std::string_view target) {
-  const std::string_view path = path_of(target);
+  const std::string_view path = net::path_of(target);
   if (std::optional<WebAnswer> file = page_file(path)) return *file;
   if (path != "/scene")
     return {.status = 404, .type = "text/plain; charset=utf-8", .body = bytes_of("there is nothing of that name\n")};

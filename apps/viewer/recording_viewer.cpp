@@ -11,6 +11,7 @@
 #include "marey/core/error.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/net/token.h"
 #include "marey/pipeline/take/ground_orientation.h"
 
 #include "access.h"
@@ -151,7 +152,7 @@ std::vector<std::string> RecordingViewer::Core::read(const Hooks& hooks) {
 }
 
 WebAnswer RecordingViewer::Core::get(std::string_view target) {
-  const std::string_view path = path_of(target);
+  const std::string_view path = net::path_of(target);
   if (std::optional<WebAnswer> file = page_file(path)) return *file;
   constexpr auto kMaxCount = std::numeric_limits<std::int32_t>::max();
   if (path == "/scene")
@@ -160,12 +161,12 @@ WebAnswer RecordingViewer::Core::get(std::string_view target) {
                 scene_text(header_, recording_.state(), ground_, {.show_video = video_.has_value(), .edit = edits_ != nullptr}))};
   if (path == "/edits" && edits_) return {.type = "application/json", .body = edits_->history()};
   if (path == "/stretch") {
-    const auto required = whole_in(query_value(target, "n"), 0, kMaxCount);
+    const auto required = whole_in(net::query_value(target, "n"), 0, kMaxCount);
     const Bytes bytes = required ? recording_.segment(static_cast<std::size_t>(*required)) : nullptr;
     if (bytes != nullptr) return {.body = bytes};
   }
   if (path == "/course") {
-    if (const auto track = whole_in(query_value(target, "track"), 0, kMaxCount))
+    if (const auto track = whole_in(net::query_value(target, "track"), 0, kMaxCount))
       return {.body = bytes_of(recording_.course(TrackId{static_cast<int>(*track)}))};
   }
   return {.status = 404, .type = "text/plain; charset=utf-8", .body = bytes_of("there is nothing of that name\n")};

@@ -16,6 +16,7 @@
 
 #include "marey/core/error.h"
 #include "marey/net/server.h"
+#include "marey/net/token.h"
 
 #include "access.h"
 
@@ -124,7 +125,7 @@ class WebServer::Core::Page : public net::Session {
     const Access::Verdict verdict = core_.access_->check(request);
     if (verdict.status != 200) return page_refusal(verdict.status, verdict.message_text);
     if (request.upgrade) {
-      if (path_of(request.target) != "/socket") return page_refusal(404, "there is no such socket");
+      if (net::path_of(request.target) != "/socket") return page_refusal(404, "there is no such socket");
       return {.upgrade = true};
     }
     if (request.method != "GET" && request.method != "HEAD") return page_refusal(405, "there is nothing to be changed here");
@@ -174,7 +175,7 @@ net::Descriptor WebServer::Core::listen(const ListenAddress& location) {
   const bool everywhere = address == "0.0.0.0" || address == "::";
   const std::string host = everywhere ? first_outer_address() : address;
   shown_host_ = fmt::format(fmt::runtime(host.find(':') != std::string::npos ? "[{}]:{}" : "{}:{}"), host, port);
-  access_.emplace(new_token(), fmt::format("marey_{}", port), names_of_this_machine());
+  access_.emplace(net::new_token(), fmt::format("marey_{}", port), names_of_this_machine());
   return std::move(*made);
 }
 

@@ -8,7 +8,8 @@ namespace marey {
 namespace {
 
 constexpr std::string_view kPlayed = "play:";
-constexpr std::array<std::string_view, 9> kSchemes{"v4l2", "gige", "rtsp", "rtsps", "http", "https", "play", "sim", "node"};
+constexpr std::array<std::string_view, 10> kSchemes{"v4l2",  "gige", "rtsp",  "rtsps", "http",
+                                                    "https", "play", "phone", "sim",   "node"};
 
 }  // namespace
 

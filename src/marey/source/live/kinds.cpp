@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/core/rig.h"
 #include "marey/source/live/gige.h"
 #include "marey/source/live/network_stream.h"
+#include "marey/source/live/phone.h"
 #include "marey/source/live/played.h"
 #include "marey/source/live/v4l2.h"
 #include "marey/source/open_source.h"
@@ -34,6 +36,16 @@ Connect open_network(const Address& address, const Opening& /*opening*/) {
   return connect_network({.url = udp ? address.text.substr(0, address.text.size() - kByUdp.size()) : address.text, .udp = udp});
 }
 
+Connect open_phone(const Address& address, const Opening& /*opening*/) {
+  int port = kPhonePort;
+  AddressOptions options(address);
+  options.whole("port", port, 0, 65535);
+  options.done();
+  if (address.location.empty() || std::any_of(address.location.begin(), address.location.end(), unfit_for_camera_name))
+    throw Error("{}: write phone:NAME, with a name of letters, digits, - and _", address.text);
+  return connect_phone(address.location, port);
+}
+
 Connect open_v4l2(const Address& address, const Opening& opening) {
   return connect_v4l2(v4l2_options(address, opening.rate_hz));
 }
@@ -56,6 +68,10 @@ std::vector<Kind> camera_kinds() {
        .form = "rtsp://HOST/PATH, http://HOST/PATH",
        .meaning = "a camera on a network that sends a video",
        .open = open_network},
+      {.schemes = {"phone"},
+       .form = "phone:NAME?port=8443",
+       .meaning = "a phone whose browser has opened the page that is printed",
+       .open = open_phone},
       {.schemes = {"play"},
        .form = "play:FILE?loop",
        .meaning = "a video, or a folder of images, in real time",

@@ -1,0 +1,76 @@
+#include "marey/source/live/phone.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/core/stop.h"
+#include "marey/source/live/jpeg_decoder.h"
+#include "marey/source/live/phone_server.h"
+
+namespace marey::source::live {
+namespace {
+
+/// A name on the page, as long as somebody reads it.
+class PhoneOffer {
+ public:
+  PhoneOffer(std::shared_ptr<PhoneServer> server, std::string name) : server_(std::move(server)), name_(std::move(name)) {
+    server_->offer(name_);
+  }
+  ~PhoneOffer() { server_->forget(name_); }
+  PhoneOffer(const PhoneOffer&) = delete;
+  PhoneOffer& operator=(const PhoneOffer&) = delete;
+
+  const std::string& name() const { return name_; }
+  bool is_connected() const { return server_->is_connected(name_); }
+  std::optional<PhoneImage> next(std::chrono::milliseconds wait) { return server_->next(name_, wait); }
+
+ private:
+  std::shared_ptr<PhoneServer> server_;
+  std::string name_;
+};
+
+class PhoneCamera final : public Connection {
+ public:
+  PhoneCamera(std::shared_ptr<PhoneOffer> offer, LiveTime& time) : offer_(std::move(offer)), time_(time) {
+    info_.name = "phone " + offer_->name();
+  }
+
+  const SourceInfo& info() const override { return info_; }
+
+  Came next(Shot& shot) override {
+    const auto image = offer_->next(kStopSlice);
+    if (!image) {
+      if (!offer_->is_connected()) throw Error("phone {}: has gone; open its page again", offer_->name());
+      return Came::nothing;
+    }
+    shot.sequence = image->sequence;
+    if (image->taken) {
+      const auto age = std::chrono::steady_clock::now().time_since_epoch() - image->taken->time_since_epoch();
+      shot.taken = time_.now() - std::chrono::duration_cast<Duration>(age);
+    }
+    shot.given.frame.image = decoder_.decode(image->jpeg());
+    if (shot.given.frame.image.empty()) return Came::damaged;
+    if (info_.size.empty()) info_.size = shot.given.frame.image.size();
+    return shot.given.frame.image.size() == info_.size ? Came::frame : Came::damaged;  // it was turned: the page says so
+  }
+
+ private:
+  std::shared_ptr<PhoneOffer> offer_;
+  LiveTime& time_;
+  SourceInfo info_;
+  JpegDecoder decoder_;
+};
+
+}  // namespace
+
+Connect connect_phone(const std::string& name, int port) {
+  auto offer = std::make_shared<PhoneOffer>(PhoneServer::at(port), name);
+  return [offer](LiveTime& time, const std::stop_token&) -> std::unique_ptr<Connection> {
+    if (!offer->is_connected()) throw Error("phone {}: no phone has opened the page yet", offer->name());
+    return std::make_unique<PhoneCamera>(offer, time);
+  };
+}
+
+}  // namespace marey::source::live
