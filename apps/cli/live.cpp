@@ -25,6 +25,7 @@
 #include "live_outputs.h"
 #include "live_screen.h"
 #include "live_sources.h"
+#include "phones_screen.h"
 #include "realtime.h"
 #include "run_hooks.h"
 #include "set_figures.h"
@@ -179,6 +180,8 @@ void run(const LiveCommand& command) {
                       command.job.targets == LiveTargets::markers, ground_of(options.on_ground), command.quiet);
   options.sinks = outputs.sinks();
   if (!command.quiet) report_of_slots(command);
+  PhonesScreen phones(rig);
+  if (!command.quiet) phones.invite();
   LiveEnd end;
   LiveScreen screen(command.quiet);
   const auto recording = options.recording;
@@ -190,6 +193,7 @@ void run(const LiveCommand& command) {
     screen.begun(job, fed, keys.listens(), !command.out.empty());
   };
   options.status = [&](const pipeline::corridor::LiveStatus& status) {
+    for (const std::string& sentence : phones.news()) screen.announce(sentence);
     screen.show(status);
     outputs.report(status);
     if (command.for_s && status.seconds >= *command.for_s) end.source.request_stop();

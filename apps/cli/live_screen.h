@@ -51,6 +51,7 @@ class LiveScreen {
 
   void begun(pipeline::live::LiveJob job, const Rig& rig, bool keys, bool records);
   void show(const pipeline::corridor::LiveStatus& status);
+  void announce(const std::string& sentence) { out_.announce(sentence); }
 
  private:
   StatusLine out_;

@@ -23,7 +23,7 @@ namespace {
 using TestTcp = boost::asio::ip::tcp;
 
 /// Sends back what comes, byte for byte.
-class Echo : public Session {
+class TlsEcho : public Session {
  public:
   std::size_t received(std::string_view bytes, Outbox& out) override {
     out.answer(std::string(bytes));
@@ -40,7 +40,7 @@ class TlsFrontTest : public testing::Test {
 
   Loop loop_;
   Server server_{loop_, Address{.host = kLoopback, .port = 0}, "echo", {.protocol = Protocol::bytes}, [](const Address&) {
-                   return std::make_unique<Echo>();
+                   return std::make_unique<TlsEcho>();
                  }};
   TlsFront front_{Address{.host = kLoopback, .port = 0}, server_.address().port, "front"};
   boost::asio::io_context context_;

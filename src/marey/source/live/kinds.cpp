@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
-#include "marey/core/rig.h"
 #include "marey/source/live/gige.h"
 #include "marey/source/live/network_stream.h"
 #include "marey/source/live/phone.h"
@@ -37,13 +36,7 @@ Connect open_network(const Address& address, const Opening& /*opening*/) {
 }
 
 Connect open_phone(const Address& address, const Opening& /*opening*/) {
-  int port = kPhonePort;
-  AddressOptions options(address);
-  options.whole("port", port, 0, 65535);
-  options.done();
-  if (address.location.empty() || std::any_of(address.location.begin(), address.location.end(), unfit_for_camera_name))
-    throw Error("{}: write phone:NAME, with a name of letters, digits, - and _", address.text);
-  return connect_phone(address.location, port);
+  return connect_phone(address.location, phone_server_of(address));
 }
 
 Connect open_v4l2(const Address& address, const Opening& opening) {

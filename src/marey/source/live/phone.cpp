@@ -1,10 +1,12 @@
 #include "marey/source/live/phone.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/core/rig.h"
 #include "marey/core/stop.h"
 #include "marey/source/live/jpeg_decoder.h"
 #include "marey/source/live/phone_server.h"
@@ -65,12 +67,22 @@ class PhoneCamera final : public Connection {
 
 }  // namespace
 
-Connect connect_phone(const std::string& name, int port) {
-  auto offer = std::make_shared<PhoneOffer>(PhoneServer::at(port), name);
+Connect connect_phone(const std::string& name, std::shared_ptr<PhoneServer> server) {
+  auto offer = std::make_shared<PhoneOffer>(std::move(server), name);
   return [offer](LiveTime& time, const std::stop_token&) -> std::unique_ptr<Connection> {
     if (!offer->is_connected()) throw Error("phone {}: no phone has opened the page yet", offer->name());
     return std::make_unique<PhoneCamera>(offer, time);
   };
+}
+
+std::shared_ptr<PhoneServer> phone_server_of(const Address& address) {
+  int port = kPhonePort;
+  AddressOptions options(address);
+  options.whole("port", port, 0, 65535);
+  options.done();
+  if (address.location.empty() || std::any_of(address.location.begin(), address.location.end(), unfit_for_camera_name))
+    throw Error("{}: write phone:NAME, with a name of letters, digits, - and _", address.text);
+  return PhoneServer::at(port);
 }
 
 }  // namespace marey::source::live

@@ -1,17 +1,22 @@
 // Phones as cameras: their browser opens a page of phone_server.h and sends what the phone's camera sees.
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <string>
 
+#include "marey/source/live/address.h"
 #include "marey/source/live/connection.h"
+#include "marey/source/live/phone_server.h"
 
 namespace marey::source::live {
 
 inline constexpr int kPhonePort = 8443;
 
-/// A camera that a phone is, under `name` on the page of that port. The page waits for phones as long as what is returned, or a
-/// connection of it, lives. Throws Error if the port cannot be had, or the name is another phone's.
-Connect connect_phone(const std::string& name, int port = kPhonePort);
+/// A camera that a phone is, under `name` on the server's page. The page waits for phones as long as what is returned, or a
+/// connection of it, lives. Throws Error if the name is another phone's.
+Connect connect_phone(const std::string& name, std::shared_ptr<PhoneServer> server);
+
+/// The page that "phone:left?port=8443" is on. Throws Error as `connect_phone` does, and for an address that names no phone.
+std::shared_ptr<PhoneServer> phone_server_of(const Address& address);
 
 }  // namespace marey::source::live

@@ -73,13 +73,7 @@ std::span<const std::uint8_t> PhoneImage::jpeg() const {
 struct PhoneServer::Parts {
   class Phone;
 
-  explicit Parts(int port)
-      : server(loop, net::Address{.host = net::kLoopback, .port = 0}, "phones", kPhones,
-               [this](const net::Address&) { return std::make_unique<Phone>(*this); }),
-        front({.host = 0, .port = static_cast<std::uint16_t>(port)}, server.address().port, "phones") {
-    loop.on_tick([this] { server.tick(); });
-    loop.start();
-  }
+  explicit Parts(int port);
   ~Parts() { loop.stop(); }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
@@ -220,6 +214,14 @@ class PhoneServer::Parts::Phone : public net::Session {
   Timestamp requested_{};
   int ticks_ = 0;
 };
+
+PhoneServer::Parts::Parts(int port)
+    : server(loop, net::Address{.host = net::kLoopback, .port = 0}, "phones", kPhones,
+             [this](const net::Address&) { return std::make_unique<Phone>(*this); }),
+      front({.host = 0, .port = static_cast<std::uint16_t>(port)}, server.address().port, "phones") {
+  loop.on_tick([this] { server.tick(); });
+  loop.start();
+}
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -106,7 +107,7 @@ class Phone {
 TEST(Phone, ImagesHaveTheirTimesByTheHostsClock) {
   const auto server = PhoneServer::at(0);
   const auto time = steady_time();
-  const auto camera = keep_connected("left", connect_phone("left", 0), time, {.keep = 1000});
+  const auto camera = keep_connected("left", connect_phone("left", PhoneServer::at(0)), time, {.keep = 1000});
   Phone phone(*server, "left", token_of(*server));
   ASSERT_TRUE(comes_true([&] { return server->is_connected("left"); }));
   for (int i = 0; i < 5; ++i) phone.answer_clock();
@@ -123,7 +124,7 @@ TEST(Phone, ImagesHaveTheirTimesByTheHostsClock) {
     return came.size() > 20;
   }));
   EXPECT_EQ(camera->info().size, cv::Size(64, 48));
-  EXPECT_LT(std::abs(seconds(came.back().time.time_since_epoch()) - sent), 1) << "not by the phone's clock, 5 s ahead";
+  EXPECT_LT(std::abs(seconds(came.back().frame.time.time_since_epoch()) - sent), 1) << "not by the phone's clock, 5 s ahead";
   EXPECT_GE(camera->health().lost, 10);
   EXPECT_EQ(server->states().front().not_sent, 3);
 }
@@ -183,12 +184,12 @@ TEST(Phone, WhatNoPhoneSendsEndsItsConnectionAlone) {
 
 TEST(Phone, TwoCamerasCannotBeOnePhone) {
   const auto server = PhoneServer::at(0);
-  const Connect first = connect_phone("left", 0);
-  EXPECT_THROW(connect_phone("left", 0), Error);
+  const Connect first = connect_phone("left", PhoneServer::at(0));
+  EXPECT_THROW(connect_phone("left", PhoneServer::at(0)), Error);
 }
 
 TEST(Phone, WithoutAPhoneThereIsNoCamera) {
-  const Connect connect = connect_phone("left", 0);
+  const Connect connect = connect_phone("left", PhoneServer::at(0));
   const auto time = steady_time();
   EXPECT_THROW(connect(*time, {}), Error);
 }
