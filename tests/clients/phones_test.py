@@ -1,0 +1,89 @@
+"""Phones as cameras: two Chromium instances whose camera draws this machine's clock, in one live run.
+
+    phones_test.py MAREY [FOLDER]      exits 77 (skipped) where Node, the page's packages or Chromium are not here
+
+Clocks of phones are right when images that show the same time are given the same time; what a page could not send is counted as lost.
+"""
+import json
+import pathlib
+import re
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import viewer_test
+
+SECONDS = 12
+APART_MS = 20  # between the two clocks, on a machine that does other things too; measured on a free one: docs/live.md
+
+
+def begun(command, folder):
+    live = subprocess.Popen([str(part) for part in command], cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    for line in live.stderr:
+        if found := re.search(r"open (https://\S+) on each phone", line):
+            return live, found[1]
+    raise AssertionError(f"{command} invites no phone: {live.wait()}")
+
+
+def coded_ms(image):
+    """The time that an image shows; None where it is not to be read."""
+    import cv2
+
+    grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY) if image.ndim == 3 else image
+    block = lambda column, row: float(grey[32 * row + 8 : 32 * row + 24, 32 * column + 8 : 32 * column + 24].mean())
+    light, dark = block(1, 0), block(9, 0)
+    if light - dark < 100:
+        return None
+    level = (light + dark) / 2
+    return sum(1 << bit for bit in range(44) if block(bit % 11, 1 + bit // 11) > level)
+
+
+def differences(video):
+    """Of each frame: the time that it shows less the time that it has, ms."""
+    import cv2
+
+    found = []
+    capture = cv2.VideoCapture(str(video))
+    while True:
+        there, image = capture.read()
+        if not there:
+            return found
+        if (shown := coded_ms(image)) is not None:
+            found.append(shown - capture.get(cv2.CAP_PROP_POS_MSEC))
+
+
+def main():
+    viewer_test.skip_where_absent()
+    try:
+        import cv2  # noqa: F401
+    except ImportError:
+        print("skipped: OpenCV for Python is not here (script/setup --tests)")
+        return 77
+    marey = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory() as made:
+        folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else made).resolve()
+        folder.mkdir(parents=True, exist_ok=True)
+        live, address = begun([marey, "live", "left=phone:left?port=0", "right=phone:right?port=0", "-o", "phones.marey", "--record", "video", "--duration", "120", "--json"], folder)
+        try:
+            script = pathlib.Path(__file__).with_name("phones_browser.mjs")
+            said = subprocess.run(["node", script, viewer_test.PAGE, address, str(SECONDS), "left", "right"], check=True, timeout=200, capture_output=True, text=True).stdout
+        finally:
+            live.send_signal(signal.SIGINT)
+        summary = json.loads(live.communicate(timeout=60)[0])
+        pages = json.loads(said)
+        print(json.dumps(pages, indent=1), json.dumps(summary["cameras"], indent=1))
+        for page in pages:
+            assert not page["wrong"], page
+            assert page["problem"].startswith(f"This phone is camera {page['camera']}"), page
+        apart = [statistics.median(differences(folder / f"phones_video/{name}.mp4")) for name in ("left", "right")]
+        print(f"the two phones' clocks are {abs(apart[0] - apart[1]):.1f} ms apart")
+        assert abs(apart[0] - apart[1]) < APART_MS, apart
+        for name, camera in summary["cameras"].items():
+            assert camera["frames"] > 3 * SECONDS, (name, camera)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
