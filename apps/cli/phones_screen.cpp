@@ -50,7 +50,7 @@ void PhonesScreen::invite() const {
   for (const auto& server : servers_) {
     fmt::print(stderr,
                "marey: open {} on each phone, in the same network\n"
-               "       (its browser warns once of a certificate that nobody signed; its SHA-256 is {})\n",
+               "       (its browser warns once of a certificate made on the spot; its SHA-256 is {})\n",
                server->address(), server->fingerprint());
     if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "{}", qr_code(server->address()));
   }

@@ -1,11 +1,14 @@
-// Two phones' browsers, played by Chromium: the camera is a canvas that draws this machine's clock as a code of blocks.
+// Phones' browsers, played by Chromium: the camera is a canvas that draws this machine's clock as a code of blocks, or Chromium's own
+// camera for tests, for which the page must ask its user.
 //
-//   node phones_browser.mjs PAGE_FOLDER ADDRESS SECONDS CAMERA...       prints what each page shows at the end, as JSON
+//   node phones_browser.mjs PAGE_FOLDER ADDRESS SECONDS canvas|device CAMERA...       prints what each page shows at the end, as JSON
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
-const [page_folder, address, seconds, ...cameras] = process.argv.slice(2);
+const [page_folder, address, seconds, source, ...cameras] = process.argv.slice(2);
 const { chromium } = createRequire(join(page_folder, "package.json"))("playwright-core");
+
+const DEVICE = ["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"];
 
 /** 44 bits of Date.now(), the lowest first, 11 in a row; the first row of blocks is light, then dark, so that levels are known. */
 function draw_clock_as_camera() {
@@ -31,9 +34,9 @@ function draw_clock_as_camera() {
 }
 
 async function phone(camera) {
-  const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--ignore-certificate-errors"] });
+  const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--ignore-certificate-errors", ...(source === "device" ? DEVICE : [])] });
   const context = await browser.newContext({ viewport: { width: 390, height: 844 }, ignoreHTTPSErrors: true });
-  await context.addInitScript(draw_clock_as_camera);
+  if (source === "canvas") await context.addInitScript(draw_clock_as_camera);
   const page = await context.newPage();
   const wrong = [];
   page.on("pageerror", (error) => wrong.push(error.message));

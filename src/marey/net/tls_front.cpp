@@ -72,7 +72,7 @@ class TlsLink : public std::enable_shared_from_this<TlsLink> {
  private:
   using Piece = std::array<char, kPiece>;
 
-  /// All that comes from `from` goes to `to`, piece by piece: whoever is slow holds the other up.
+  /// All that comes from `from` goes to `to`, piece by piece: a slow side delays the other.
   template <typename From, typename To>
   void pass(From& from, To& to, Piece& piece) {
     from.async_read_some(boost::asio::buffer(piece),

@@ -1,5 +1,5 @@
 // HTTPS before a server that speaks plain HTTP: browsers open a camera for a secure page alone. Its certificate is made when it
-// begins, for this machine's addresses, and signed by nobody: the browser asks its user once whether to trust it.
+// begins, for this machine's addresses, and no authority signed it: the browser asks its user once whether to trust it.
 #pragma once
 
 #include <cstdint>

@@ -74,7 +74,7 @@ TEST_F(TlsFrontTest, TheCertificateIsForThisMachine) {
   X509_free(certificate);
 }
 
-TEST_F(TlsFrontTest, ClientsThatSpeakNoTlsHarmNobody) {
+TEST_F(TlsFrontTest, ClientsThatSpeakNoTlsEndAlone) {
   for (const std::string& bytes : {std::string("GET / HTTP/1.1\r\n\r\n"), std::string(3000, '\xff'), std::string()}) {
     TestTcp::socket wrong(context_);
     wrong.connect(location());

@@ -14,7 +14,7 @@
 namespace marey::source::live {
 namespace {
 
-/// A name on the page, as long as somebody reads it.
+/// A name on the page, as long as it is read.
 class PhoneOffer {
  public:
   PhoneOffer(std::shared_ptr<PhoneServer> server, std::string name) : server_(std::move(server)), name_(std::move(name)) {

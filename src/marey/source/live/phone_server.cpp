@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t kPhoneHead = 16;                         // bytes before the JPEG
 constexpr std::size_t kMaxPhoneImage = std::size_t{16} << 20;  // bytes
 constexpr std::size_t kMaxPhoneText = 200;                     // characters of what a phone says of itself
-constexpr std::size_t kPhoneImagesKept = 4;                    // of each phone, that nobody took yet; older ones are dropped
+constexpr std::size_t kPhoneImagesKept = 4;                    // of each phone, not read yet; older ones are dropped
 constexpr int kPhoneTicksBetween = 10;                         // of 100 ms, between questions for the clock
 constexpr int kPhoneFirstTicks = 20;                           // of each tick at first, which find the clock
 constexpr net::ServerOptions kPhones{
@@ -172,7 +172,7 @@ class PhoneServer::Parts::Phone : public net::Session {
     return text;
   }
 
-  /// Null if this is no phone, or another one has come in its place.
+  /// Null if this phone is not a camera, or another one has come in its place.
   PhoneSlot* own_slot() const {
     const auto found = parts_.slots.find(camera_);
     return found != parts_.slots.end() && found->second.session == this ? &found->second : nullptr;

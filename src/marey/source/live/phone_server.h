@@ -26,7 +26,7 @@ struct PhoneImage {
   std::span<const std::uint8_t> jpeg() const;
 };
 
-/// What is known of one phone.
+/// The state of one phone.
 struct PhoneState {
   std::string camera;
   bool connected = false;

@@ -1,4 +1,4 @@
-// A phone's browser, played over this machine's loopback: its own clock, images that it could not send, what no phone would send.
+// A phone's browser, played over this machine's loopback: its own clock, images that it could not send, malformed messages.
 #include "marey/source/live/phone.h"
 
 #include <chrono>
@@ -161,7 +161,7 @@ TEST(Phone, TheOneThatComesLastIsTheCamera) {
   server->forget("left");
 }
 
-TEST(Phone, WhatNoPhoneSendsEndsItsConnectionAlone) {
+TEST(Phone, MalformedMessagesEndTheirConnectionAlone) {
   const auto server = PhoneServer::at(0);
   server->offer("left");
   for (const auto& [message, binary] : {std::pair<std::string, bool>{"short", true},
