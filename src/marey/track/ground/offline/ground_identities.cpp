@@ -147,7 +147,7 @@ class IdentitySolver {
 }  // namespace
 
 GroundIdentities identify(std::span<const GroundTracklet> tracklets, std::span<const int> teams, std::span<const Timestamp> times,
-                          std::span<const GroundNaming> namings, const GroundIdentityOptions& options) {
+                          std::span<const IdentityAnnotation> namings, const GroundIdentityOptions& options) {
   const SegmentGraph graph = graph_of_segments(tracklets, teams, times, namings, options);
   GroundPaths paths(graph);
   paths.search(kMaxRounds);
