@@ -4,13 +4,13 @@ namespace marey::detect::network {
 
 /// Rows of one channel: what belongs to output x of tap k is taps[row][k][x].
 struct DepthwiseRows {
-  static constexpr int kMaxTaps = 5;
+  static constexpr int kMaxTaps = 5;  ///< numerical: OpenCV computes larger kernels
   const float* taps[kMaxTaps][kMaxTaps] = {};
 };
 
 /// The inner loops of convolutions. Results are held in [low, high].
 struct ConvolutionKernels {
-  static constexpr int kBlock = 32;  ///< pixels that are computed together, at most
+  static constexpr int kBlock = 32;  ///< numerical, time alone: pixels that are computed together, at most
   static constexpr int kRows = 6;    ///< output channels that are computed together
 
   /// By channel, `size` × `size` taps (3 or 5): out[x] = bias + Σ weights · taps. What stands behind a row's last value is read up

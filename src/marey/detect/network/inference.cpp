@@ -20,7 +20,7 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr int kMaxThreads = 16;  // each holds the network once
+constexpr int kMaxThreads = 16;  // numerical, memory alone: each holds the network once
 
 /// OpenCV writes to standard error what it also throws: not while this lives.
 class QuietOpenCv {

@@ -8,7 +8,7 @@
 namespace marey::track::ground::offline {
 namespace {
 
-constexpr std::size_t kMaxKindsTried = 60;  // of colours; more only costs time
+constexpr std::size_t kMaxKindsTried = 60;  // of colours; numerical: more only costs time
 
 class Swapper {
  public:
