@@ -1,6 +1,7 @@
 #include "marey/pipeline/bodies/solve_skeleton.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 
@@ -314,7 +315,7 @@ SolveSummary solve_skeleton(const std::string& recording, const std::string& ske
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   SolveSummary summary = solved.summary;
   MadeBy made_by{.program = "marey solve", .options = hooks.options, .inputs = {format::input_of(recording)}};
-  for (const std::string* path : {&skeleton, &options.static_trial, &options.motion}) {
+  for (const std::string* path : std::initializer_list<const std::string*>{&skeleton, &options.static_trial, &options.motion}) {
     if (!path->empty()) made_by.inputs.push_back(format::input_of(*path));
   }
   for (const std::string& path : outputs) {
