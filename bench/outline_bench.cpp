@@ -11,7 +11,7 @@
 #include "marey/detect/silhouette.h"
 #include "marey/geometry/bspline.h"
 #include "marey/simulate/people/people_video.h"
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 
 namespace marey {
 namespace {

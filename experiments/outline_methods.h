@@ -9,7 +9,7 @@
 #include "marey/core/detection.h"
 #include "marey/core/frame.h"
 #include "marey/simulate/people/people_renderer.h"
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 
 #include "experiments/published_outline.h"
 

@@ -7,7 +7,7 @@
 
 #include "marey/core/hooks.h"
 #include "marey/simulate/people/people_video.h"
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 
 #include "experiments/published_outline.h"
 

@@ -50,7 +50,7 @@ nb::tuple tuple_of(Result result) {
 }
 
 Rows::Rows(pipeline::jobs::Table table, const Options& options) : table_(std::move(table)) {
-  for (const auto& [name, text] : options.get<std::map<std::string, std::string>>("rows", {})) {
+  for (const auto& [name, text] : options.get<std::vector<std::pair<std::string, std::string>>>("rows", {})) {
     pipeline::jobs::Option* row = table_.find(name);
     if (row == nullptr) throw Error("there is no option {}", name);
     try {
@@ -86,8 +86,8 @@ std::string Rows::in_python(const std::string& message_text) {
 nb::list rows_of_job(const std::string& job) {
   nb::list rows;
   pipeline::jobs::with_table(job, [&](pipeline::jobs::Table& table) {
-    constexpr std::array kKinds{"flag", "number",  "whole",      "text",        "choice",
-                                "size", "corners", "input_file", "output_file", "output_folder"};
+    constexpr std::array kKinds{"flag",    "number",     "whole",       "text",          "choice", "size",
+                                "corners", "input_file", "output_file", "output_folder", "texts"};
     for (const pipeline::jobs::Option& option : table.options()) {
       nb::dict row;
       row["name"] = option.name;

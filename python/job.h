@@ -164,10 +164,10 @@ class Outputs {
   void add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const;
   /// A recording that was made in memory.
   void write(const Recording& recording) const;
-
- private:
+  /// Throws Error if a file that is written is one that is read.
   static void keep_inputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
+ private:
   struct Object {
     std::shared_ptr<Held> held;
     bool images = false;

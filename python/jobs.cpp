@@ -10,6 +10,7 @@
 #include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"
 #include "marey/pipeline/jobs/register.h"
+#include "marey/pipeline/jobs/solve.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
 #include "marey/pipeline/live/live_feeds.h"
@@ -138,6 +139,46 @@ nb::tuple reconstruct_keypoints(nb::dict given) {
   }));
 }
 
+nb::dict dict_of(const pipeline::bodies::SolveSummary& solved) {
+  nb::dict dict;
+  dict["skeleton"] = solved.skeleton;
+  dict["marker_set"] = solved.marker_set;
+  dict["frames"] = solved.frames;
+  dict["frames_without_markers"] = solved.empty;
+  dict["rate_hz"] = solved.rate_hz;
+  dict["seconds"] = solved.seconds;
+  dict["rms_mm"] = 1000 * solved.rms_m;
+  dict["worst_mm"] = 1000 * solved.worst_m;
+  dict["initialisations"] = solved.starts;
+  dict["not_recorded"] = solved.not_recorded;
+  dict["not_known"] = solved.not_known;
+  dict["warnings"] = solved.warnings;
+  dict["interrupted"] = solved.stopped;
+  nb::dict markers, coordinates;
+  for (const auto& marker : solved.markers) markers[marker.label.c_str()] = 1000 * marker.rms_m;
+  for (const auto& coordinate : solved.coordinates)
+    coordinates[coordinate.name.c_str()] = nb::make_tuple(coordinate.lowest, coordinate.highest, coordinate.observed);
+  dict["markers_rms_mm"] = markers;
+  dict["coordinates"] = coordinates;
+  return dict;
+}
+
+nb::dict solve(nb::dict given) {
+  const Options options(std::move(given));
+  pipeline::jobs::Solve job;
+  const Rows rows(table_of(job), options);
+  const pipeline::bodies::SolveOptions how = rows.resolved([&] { return resolved(job); });
+  const auto recording = options.get<std::string>("recording", {});
+  const auto outputs = options.get<std::vector<std::string>>("outputs", {});
+  std::vector<std::string> inputs = rows.files(false), written = rows.files(true);
+  inputs.push_back(recording);
+  written.insert(written.end(), outputs.begin(), outputs.end());
+  Outputs::keep_inputs(inputs, written);
+  return dict_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
+    return pipeline::bodies::solve_skeleton(recording, job.skeleton, outputs, how, hooks);
+  }));
+}
+
 /// A rig, or live sources alone, each a camera.
 nb::tuple live(nb::dict given) {
   const Options options(std::move(given));
@@ -180,6 +221,7 @@ void bind_jobs(nb::module_& module) {
   module.def("track_ground", &track_ground, nb::arg("options"));
   module.def("reconstruct", &reconstruct, nb::arg("options"));
   module.def("reconstruct_keypoints", &reconstruct_keypoints, nb::arg("options"));
+  module.def("solve", &solve, nb::arg("options"));
   module.def("live", &live, nb::arg("options"));
   module.def("is_live", [](const std::string& source) { return !scheme_of(source).empty(); }, nb::arg("source"));
   module.def("use_threads", &use_threads, nb::arg("count"));

@@ -1,3 +1,5 @@
+#include "marey/pipeline/jobs/batch.h"
+
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -33,8 +35,8 @@ struct Reporting {
 // ---- plan
 
 struct PlanCommand : Reporting {
-  PlanRequest request;
-  std::string options;
+  std::string from, plan;
+  pipeline::jobs::PlanBatch job;
 };
 
 std::string program_name() {
@@ -52,9 +54,10 @@ void print_lines(const BatchPlan& plan) {
 }
 
 void plan_batch(const PlanCommand& command) {
-  PlanRequest request = command.request;
+  PlanRequest request{
+      .from = command.from, .job = command.job.job, .options = {}, .extension = command.job.extension, .plan = command.plan};
   std::string word;
-  for (const char c : command.options + " ") {
+  for (const char c : command.job.job_options + " ") {
     if (c != ' ') {
       word += c;
     } else if (!word.empty()) {
@@ -88,8 +91,8 @@ void plan_batch(const PlanCommand& command) {
 // ---- run
 
 struct RunCommand : Reporting {
-  std::string plan, part;
-  std::optional<int> task, threads;
+  std::string plan;
+  pipeline::jobs::RunBatch job;
 };
 
 /// Which tasks are to be run: one, a share of them, or all.
@@ -98,18 +101,18 @@ struct Fraction {
 };
 
 Fraction fraction_of(const RunCommand& command, int count) {
-  if (command.task && !command.part.empty())
+  if (command.job.task && !command.job.shard.empty())
     throw WrongUsage("{}", "--task names one task, --shard a share of them: omit one of the two");
-  if (command.task) {
-    if (*command.task > count) throw WrongUsage("--task {}: {} has {} tasks", *command.task, command.plan, count);
-    return {*command.task, 1, *command.task};
+  if (command.job.task) {
+    if (*command.job.task > count) throw WrongUsage("--task {}: {} has {} tasks", *command.job.task, command.plan, count);
+    return {*command.job.task, 1, *command.job.task};
   }
-  if (command.part.empty()) return {1, 1, count};
-  const std::size_t slash = command.part.find('/');
+  if (command.job.shard.empty()) return {1, 1, count};
+  const std::size_t slash = command.job.shard.find('/');
   constexpr int kMaxCount = 1'000'000'000;
-  if (slash == std::string::npos) throw WrongUsage("--shard {}: write PART/PARTS, as 3/8", command.part);
-  const auto parts = static_cast<int>(whole_number_in(command.part.substr(slash + 1), "PARTS", 1, kMaxCount));
-  const auto part = static_cast<int>(whole_number_in(command.part.substr(0, slash), "PART", 1, parts));
+  if (slash == std::string::npos) throw WrongUsage("--shard {}: write PART/PARTS, as 3/8", command.job.shard);
+  const auto parts = static_cast<int>(whole_number_in(command.job.shard.substr(slash + 1), "PARTS", 1, kMaxCount));
+  const auto part = static_cast<int>(whole_number_in(command.job.shard.substr(0, slash), "PART", 1, parts));
   return {part, parts, count};
 }
 
@@ -120,7 +123,7 @@ struct Counts {
 void run_one(const BatchPlan& plan, const BatchTask& task, const RunCommand& command, Counts& counts) {
   TaskOutcome outcome;
   try {
-    outcome = run_task(plan, task, command.threads);
+    outcome = run_task(plan, task, command.job.threads);
   } catch (const Error& error) {
     outcome = {TaskOutcome::Kind::failed, error.what()};
   }
@@ -207,15 +210,9 @@ void reduce_batch(const ReduceCommand& command) {
 
 // ---- submit
 
-enum class Engine { slurm, parallel };
-constexpr std::array<std::pair<const char*, Engine>, 2> kEngines{{{"slurm", Engine::slurm}, {"parallel", Engine::parallel}}};
-
 struct SubmitCommand : Reporting {
   std::string plan;
-  Engine to = Engine::slurm;
-  int threads = 1;
-  std::optional<int> jobs;
-  bool dry = false;
+  pipeline::jobs::SubmitBatch job;
 };
 
 /// What the line printed, without its last newline. Throws Error if it failed.
@@ -231,17 +228,18 @@ std::string shell(const std::string& line) {
 
 void submit_batch(const SubmitCommand& command) {
   const BatchPlan plan = read_plan(command.plan);
-  BatchLines lines = lines_of(plan, program_name(), command.threads, command.jobs.value_or(default_array_jobs(plan)));
+  const bool parallel = command.job.engine == "parallel";
+  BatchLines lines = lines_of(plan, program_name(), command.job.cpus, command.job.max_jobs.value_or(default_array_jobs(plan)));
   const auto give_job = [&](const std::string& job) {
     const std::string before = "afterany:ARRAY";
     lines.slurm_reduce.replace(lines.slurm_reduce.find(before), before.size(), "afterany:" + job);
   };
-  if (command.dry) {
-    fmt::print("{}\n", command.to == Engine::parallel ? lines.parallel : lines.slurm_array + "\n" + lines.slurm_reduce);
+  if (command.job.dry_run) {
+    fmt::print("{}\n", parallel ? lines.parallel : lines.slurm_array + "\n" + lines.slurm_reduce);
     return;
   }
   fs::create_directories(fs::path(plan.results()) / "log");
-  if (command.to == Engine::parallel) {
+  if (parallel) {
     shell(lines.parallel);
     return;
   }
@@ -262,21 +260,14 @@ void add_plan(Command& batch) {
   auto options = std::make_shared<PlanCommand>();
   Command command = batch.subcommand("plan", "Find the recordings of a folder or a table, and write what is to be done with each");
   command
-      .text("FROM", options->request.from,
+      .text("FROM", options->from,
             "a folder, which is searched with all below it, or a table (CSV or TSV) with a column input, and if need be name and "
             "options")
       .required();
-  command.output_file("-o,--output", options->request.plan, "the plan; results go to PLAN.results").required().ends_in({".tsv"});
-  command.also_reads([options] { return std::vector{options->request.from}; });
-  command.text("--job", options->request.job, "what: track, ground (a rig's cameras), reconstruct, measure")
-      .check([](const std::string& job) {
-        const auto& jobs = batch_jobs();
-        if (std::find(jobs.begin(), jobs.end(), job) == jobs.end())
-          throw Error("\"{}\" is not one of track, ground, reconstruct, measure", job);
-      });
-  command.text("--job-options", options->options, "further options of that command, as one text: '--filter imm --measured-only'");
-  command.text("--extension", options->request.ending,
-               "of the results, which says their format (default: .csv, of reconstruct .marey)");
+  command.output_file("-o,--output", options->plan, "the plan; results go to PLAN.results").required().ends_in({".tsv"});
+  command.also_reads([options] { return std::vector{options->from}; });
+  const pipeline::jobs::Table& rows = command.rows(table_of(options->job));
+  command.records([&rows] { return rows.given(); });
   command.reports(options->json, options->quiet, "lines to run it");
   command.runs([options] { plan_batch(*options); });
 }
@@ -285,10 +276,8 @@ void add_run(Command& batch) {
   auto options = std::make_shared<RunCommand>();
   Command command = batch.subcommand("run", "Do a plan's tasks that are not done yet: all, one, or a share");
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
-  command.whole("--task", options->task, "N", 1, 1'000'000'000, "this one alone");
-  command.text("--shard", options->part, "PART/PARTS: every PARTS-th task from the PART-th on");
+  command.rows(table_of(options->job));
   command.reports(options->json, options->quiet, "counts");
-  command.whole("--task-threads", options->threads, "N", 1, 1024, "that each task computes with (default: one a core)");
   command.runs([options] { run_batch(*options); });
 }
 
@@ -309,11 +298,7 @@ void add_submit(Command& batch) {
   auto options = std::make_shared<SubmitCommand>();
   Command command = batch.subcommand("submit", "Hand a plan to Slurm or GNU parallel, by the lines that `plan` prints");
   command.input_file("PLAN", options->plan, "what `marey batch plan` wrote").required();
-  command.choice("--engine", options->to, kEngines, "who runs it");
-  command.whole("--cpus", options->threads, "N", 1, 1024, "of each task");
-  command.whole("--max-jobs", options->jobs, "N", 1, kMaxArrayJobs,
-                "of Slurm's array at most (default: so many that each works a minute, because it takes seconds to start one)");
-  command.flag("--dry-run", options->dry, "print the lines alone");
+  command.rows(table_of(options->job));
   command.reports(options->json, options->quiet, "jobs");
   command.runs([options] { submit_batch(*options); });
 }

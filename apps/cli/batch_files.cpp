@@ -10,6 +10,7 @@
 #include "marey/files/input_file.h"
 #include "marey/files/text_safety.h"
 #include "marey/files/whole_file.h"
+#include "marey/pipeline/jobs/batch.h"
 
 #include "batch_fields.h"
 #include "batch_plan.h"
@@ -111,8 +112,8 @@ BatchTask task_of(const std::string& line) {
   task.number = count_of(fields[0]);
   task.name = out_of_field(fields[1]);
   task.job = fields[2];
-  if (std::find(batch_jobs().begin(), batch_jobs().end(), task.job) == batch_jobs().end())
-    throw Error("\"{}\" is not a job", plain_text(task.job));
+  const std::vector<std::string>& jobs = pipeline::jobs::batch_jobs();
+  if (std::find(jobs.begin(), jobs.end(), task.job) == jobs.end()) throw Error("\"{}\" is not a job", plain_text(task.job));
   const std::vector<std::string> paths = parts_of(fields[3]), states = parts_of(fields[4]);
   if (paths.empty() || paths.size() != states.size()) throw Error("{}", "inputs and states do not belong together");
   for (std::size_t i = 0; i < paths.size(); ++i) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "marey/pipeline/jobs/batch.h"
+
 #include "batch_plan.h"
 
 namespace marey::cli {
@@ -26,7 +28,7 @@ int default_array_jobs(const BatchPlan& plan) {
   constexpr int kMinCount = 8;
   double seconds = 0;
   for (const BatchTask& task : plan.tasks) seconds += task.costs.seconds;
-  return static_cast<int>(std::clamp(seconds / kScoreWeight, double{kMinCount}, double{kMaxArrayJobs}));
+  return static_cast<int>(std::clamp(seconds / kScoreWeight, double{kMinCount}, double{pipeline::jobs::kMaxArrayJobs}));
 }
 
 BatchLines lines_of(const BatchPlan& plan, const std::string& program, int threads, int jobs) {

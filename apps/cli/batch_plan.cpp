@@ -15,6 +15,7 @@
 #include "marey/files/natural_order.h"
 #include "marey/format/input_hash.h"
 #include "marey/format/register.h"
+#include "marey/pipeline/jobs/batch.h"
 
 #include "batch_fields.h"
 #include "rig_inputs.h"
@@ -130,11 +131,6 @@ PlannedInput planned(const std::string& path, const std::map<std::string, Planne
 
 }  // namespace
 
-const std::vector<std::string>& batch_jobs() {
-  static const std::vector<std::string> jobs{"track", "ground", "reconstruct", "measure"};
-  return jobs;
-}
-
 std::vector<std::string> words_of_job(const std::string& job) {
   if (job == "ground") return {"track", "--ground"};
   return {job};
@@ -151,7 +147,7 @@ BatchPlan make_plan(const PlanRequest& request) {
       costs_before[task.job + task.inputs.front().hash] = task.costs;
     }
   }
-  const std::string ending = request.ending.empty() ? default_extension(request.job) : request.ending;
+  const std::string ending = request.extension.empty() ? default_extension(request.job) : request.extension;
   std::set<std::string> names;
   OutputCheck outputs(plan.results());
   for (const Found& found : fs::is_directory(request.from, error) ? in_folder(request, plan.results()) : in_table(request)) {
@@ -164,6 +160,7 @@ BatchPlan make_plan(const PlanRequest& request) {
     task.job = request.job;
     task.options = request.options;
     task.options.insert(task.options.end(), found.options.begin(), found.options.end());
+    task.options = pipeline::jobs::canonical_words(task.job, task.options);
     const std::vector<std::string> inputs = inputs_of(request.job, found.input);
     for (const std::string& path : inputs) task.inputs.push_back(planned(path, before));
     task.output = (fs::path(plan.results()) / (task.name + ending)).string();

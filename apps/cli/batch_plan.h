@@ -77,8 +77,6 @@ struct TaskRecord {
   std::string message_text;  ///< why it failed; what the run warned of
 };
 
-/// The jobs that `--job` names.
-const std::vector<std::string>& batch_jobs();
 /// The words of the command that does a job; its input follows.
 std::vector<std::string> words_of_job(const std::string& job);
 
@@ -95,8 +93,8 @@ struct PlanRequest {
   std::string from;  ///< a folder, or a table with a column `input`
   std::string job = "track";
   std::vector<std::string> options;
-  std::string ending;  ///< of the results; empty: the job's typical one
-  std::string plan;    ///< the file that is written; what it says of inputs that are as they were is kept
+  std::string extension;  ///< of the results; empty: the job's default one
+  std::string plan;       ///< the file that is written; what it says of inputs that are as they were is kept
 };
 
 /// Finds the recordings, in the order of their names. Throws Error if there are no recordings, or where two would have one name.
@@ -111,8 +109,6 @@ bool is_video(const std::filesystem::path& path);
 /// What the job will take with such inputs, from measurements (docs/batch.md).
 TaskCosts expected_costs(const std::string& job, const std::vector<std::string>& inputs);
 int memory_with_threads(int mb, int threads);
-
-constexpr int kMaxArrayJobs = 1000;  // Slurm takes 1001 of them where no person has changed it
 
 /// The command lines that do all of a plan.
 struct BatchLines {

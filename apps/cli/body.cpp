@@ -142,7 +142,7 @@ void add_define(Command& body) {
       .check([](const std::string& text) {
         if (labels_in(text).size() != 3) throw Error("axes take three markers, commas between");
       });
-  command.number("--outlier-factor", options->options.loose, "times", closed(1, 100),
+  command.number("--outlier-factor", options->options.loose, "factor", closed(1, 100),
                  "a marker that varies this many times as much as the others is omitted");
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });

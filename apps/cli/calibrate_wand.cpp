@@ -39,8 +39,8 @@ struct CalibrateWand {
   bool quiet = false;
 };
 
-calibrate::wand::WandShape wand_of(const std::string& text) {
-  calibrate::wand::WandShape wand;
+calibrate::MarkerLine wand_of(const std::string& text) {
+  calibrate::MarkerLine wand;
   if (text == "led") return wand;
   wand.distances = numbers_in(text, ',', closed(-100, 100), "the markers' distances from the first in m, as 0,0.12,0.30, or led");
   if (wand.distances.size() >= 2) return wand;

@@ -185,7 +185,8 @@ void add_evaluate(Command& program) {
                   "markers in space), or masks (MOTS text, COCO instances: then masks are evaluated); - for standard input")
       .required();
   command.input_file("--tracks", options->tracks, "the tracks to evaluate, likewise; - for standard input").required();
-  const Option iou = command.number("--iou", options->iou, "overlap", above(0, 1), "(IoU) from which a box counts as found");
+  const Option iou = command.number("--iou", options->iou, "IoU", above(0, 1),
+                                    "overlap (intersection over union) from which a box counts as found");
   const Option motchallenge =
       command.flag("--motchallenge", options->motchallenge,
                    "do not evaluate lines of the truth whose seventh column is 0, as MOTChallenge marks them");

@@ -60,7 +60,7 @@ void add_experiment_hypotheses(Command& experiment) {
   command.whole("--scenes", options->options.scenes, "N", 1, 10'000, "of each kind of meeting");
   command.seed(options->options.seed, "of the first scene; the others follow");
   command.number("--miss-rate", encounters.missed, "probability", closed(0, 0.9), "that a person is not seen in a frame");
-  command.number("--clutter", encounters.clutter, "a frame", closed(0, 100), "false observations");
+  command.number("--clutter", encounters.clutter, "per frame", closed(0, 100), "false observations");
   command.number("--merged", encounters.merged, "m", closed(0, 5), "two nearer than this are seen as one");
   command.whole("--hypotheses", tracker.hypotheses, "N", 1, 10'000, "kept for each cluster, at most");
   command.number("--window", tracker.window, "s", closed(0, 60), "what is older is decided");

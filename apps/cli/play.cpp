@@ -91,7 +91,7 @@ void add_play(Command& program) {
   command.input_file("RECORDING", options->recording, "known by its content: " + format::names_of_read(format::kRecordings))
       .required();
   command.flag("--loop", how.loop, "from the beginning again, until Ctrl-C");
-  command.number("--speed", how.speed, "times", closed(0.01, 100), "as fast as it was recorded");
+  command.number("--speed", how.speed, "factor", closed(0.01, 100), "as fast as it was recorded");
   command.number("--rate", how.rate_hz, "Hz", kRates, "at most this many instants a second of the recording");
   pipeline::jobs::Table names;
   add_set_rows(names, options->names);

@@ -106,7 +106,7 @@ void add_detector(Command& match, simulate::match::MatchDetectorOptions& detecto
       "--foot-error", detector.foot_error, "m", closed(0, 5),
       "standard deviation on the ground, by which boxes end beside the feet for half a second or so, each camera its own way");
   match.number("--foot-along", detector.foot_along, "fraction", closed(0, 1), "of that error's variance, along the view");
-  match.number("--false-alarms", detector.false_alarms, "a frame", closed(0, 100), "boxes of no person");
+  match.number("--false-alarms", detector.false_alarms, "per frame", closed(0, 100), "boxes of no person");
 }
 
 }  // namespace

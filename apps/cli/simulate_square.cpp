@@ -47,7 +47,8 @@ void add_simulate_square(Command& simulate) {
   command.seed(options->files.seed, "which of the endlessly many squares");
   command.number("--rate", options->files.rate_hz, "Hz", closed(0.1, 1000), "frames a second");
   command.whole("--cameras", options->files.cameras, "N", 1, 64, "how many round the square");
-  command.number("--arrivals", options->files.square.arrivals, "a second", closed(0.01, 10), "groups of one to four that come");
+  command.number("--arrivals", options->files.square.arrivals, "Hz", closed(0.01, 10),
+                 "groups of one to four that come, per second");
   command.number("--miss-rate", options->files.detector.missed, "fraction", closed(0, 1),
                  "of people in view that a camera's detector misses");
   command.number("--size-noise", options->files.detector.size_noise, "fraction", closed(0, 1),

@@ -1,5 +1,6 @@
+#include "marey/pipeline/jobs/solve.h"
+
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <memory>
 #include <numbers>
@@ -12,8 +13,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "marey/analyse/gait/body_marker_sets.h"
-#include "marey/core/error.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/bodies/solve_skeleton.h"
 
@@ -26,9 +25,9 @@ namespace marey::cli {
 namespace {
 
 struct SolveCommand {
-  std::string recording, skeleton, names;
+  std::string recording;
   std::vector<std::string> outputs;
-  pipeline::bodies::SolveOptions options;
+  pipeline::jobs::Solve job;
   bool json = false;
   bool quiet = false;
 };
@@ -145,10 +144,10 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
           {"warnings", summary.warnings}};
 }
 
-void run(SolveCommand& command) {
-  if (!command.names.empty()) command.options.bvh.names = format::skeleton::bvh_names(command.names);
+void run(const SolveCommand& command) {
+  const pipeline::bodies::SolveOptions options = resolved(command.job);
   const SolveSummary summary = with_progress(command.quiet, [&](const Hooks& hooks) {
-    return pipeline::bodies::solve_skeleton(command.recording, command.skeleton, command.outputs, command.options, hooks);
+    return pipeline::bodies::solve_skeleton(command.recording, command.job.skeleton, command.outputs, options, hooks);
   });
   warn(summary.warnings);
   if (summary.stopped) {
@@ -162,36 +161,6 @@ void run(SolveCommand& command) {
   }
 }
 
-void require_one_skeleton(const SolveCommand& command) {
-  const pipeline::bodies::SolveOptions& how = command.options;
-  if (!command.skeleton.empty() && !how.static_trial.empty())
-    throw WrongUsage("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two");
-  if (!how.marker_set.empty() && !command.skeleton.empty())
-    throw WrongUsage("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
-  if (!how.motion.empty() && how.static_trial.empty())
-    throw WrongUsage("{}", "--rom-trial: where the markers sit says a static trial; give --static-trial too");
-}
-
-void add_file_options(Command& command, SolveCommand& options) {
-  using Axis = std::optional<format::UpAxis>;
-  constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  constexpr std::array<std::pair<const char*, format::UpAxis>, 2> kBvhAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  constexpr std::array<std::pair<const char*, const char*>, 6> kOrders{
-      {{"ZXY", "ZXY"}, {"ZYX", "ZYX"}, {"XYZ", "XYZ"}, {"XZY", "XZY"}, {"YXZ", "YXZ"}, {"YZX", "YZX"}}};
-  command.choice("--up", options.options.up, kAxes,
-                 "the axis that is up in RECORDING; omitted: y for a TRC file beside an OpenSim model, else as it says, else z");
-  command.group("BVH");
-  command.number("--unit", options.options.read_skeleton.unit_m, "m", above(0, 1000),
-                 "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
-  command.choice("--skeleton-up", options.options.read_skeleton.up, kBvhAxes, "the axis that is up in a BVH, ASF or VSK skeleton");
-  command.number("--bvh-unit", options.options.bvh.unit_m, "m", above(0, 1000), "one unit of a BVH file that is written");
-  command.choice("--bvh-up", options.options.bvh.up, kBvhAxes, "the axis that is up in it");
-  command.choice("--bvh-order", options.options.bvh.order, kOrders, "of its turns");
-  command.text("--bvh-names", options.names, "what its joints are called: mixamo or motionbuilder; omitted: as in the skeleton")
-      .check([](const std::string& name) { format::skeleton::bvh_names(name); });
-  command.group("");
-}
-
 }  // namespace
 
 void add_solve(Command& program) {
@@ -199,44 +168,17 @@ void add_solve(Command& program) {
   Command command = program.subcommand("solve", "The motion of a skeleton, from labelled markers or body keypoints in space");
   command.input_file("RECORDING", options->recording, "labelled markers: " + format::names_of_read(format::Content::space))
       .required();
-  command.input_file(
-      "--skeleton", options->skeleton,
-      "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); omitted: the human skeleton");
-  command.input_file("--static-trial", options->options.static_trial,
-                     "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
-                     "given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its "
-                     "markers");
-  command
-      .text(
-          "--marker-set", options->options.marker_set,
-          "whose labels --static-trial, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; left "
-          "out: known by them")
-      .check([](const std::string& name) { analyse::gait::body_marker_set(name); });
-  command.input_file(
-      "--rom-trial", options->options.motion,
-      "beside --static-trial: the same person moving hips, knees and elbows through their range; says where the joints are");
-  command.text("--person", options->options.person,
-               "of several people whose body keypoints RECORDING has the one to solve: P2; omitted: the first");
-  command.flag("--calibrate", options->options.calibrate,
-               "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
-  command.flag("--smooth", options->options.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");
-  command.output_file("--write-skeleton", options->options.write_skeleton, "skeleton.toml of the skeleton that was used")
-      .ends_in({".toml"});
   command
       .texts("-o,--output", options->outputs,
              "what to write, may be given often: .mot or .sto (angles), .bvh or .glb (bones), or the recording with its bodies: "
-             ".marey, "
-             ".c3d, ...")
+             ".marey, .c3d, ...")
       .required()
       .check(pipeline::bodies::check_skeleton_output);
   command.also_writes([options] { return options->outputs; });
-  command.texts("--exclude", options->options.exclude, "a marker that is not used, by its label; may be given often");
-  add_file_options(command, *options);
+  const pipeline::jobs::Table& rows = command.rows(table_of(options->job));
+  command.records([&rows] { return rows.given(); });
   command.reports(options->json, options->quiet);
-  command.runs([options] {
-    require_one_skeleton(*options);
-    run(*options);
-  });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace marey::cli

@@ -38,7 +38,8 @@ Option::Declared& Command::Declared::declare_row(const Row& row) {
     return add(std::move(flag));
   }
   const auto its = std::make_shared<const Option::Declared*>(nullptr);
-  Option::Declared& option = declare(name, meaning, row.value, 1, [its](int, const std::string& text) { set_rows(**its, text); });
+  Option::Declared& option = declare(name, meaning, row.value, row.kind == Kind::texts ? 0 : 1,
+                                     [its](int, const std::string& text) { set_rows(**its, text); });
   *its = &option;
   option.parsed->default_str(row.fallback);
   const auto path = [&option] { return std::vector{option.rows.front()->given.value_or("")}; };

@@ -20,7 +20,7 @@
 #include "marey/pipeline/simulate/match_files.h"
 #include "marey/reconstruct/place_people.h"
 #include "marey/simulate/match/match_homographies.h"
-#include "marey/track/ground/ground_agreement.h"
+#include "marey/track/ground/camera_bias.h"
 
 #include "experiments/markdown_table.h"
 #include "ground_scene.h"
@@ -71,7 +71,7 @@ std::vector<track::ground::GroundInstant> instants_of(const std::string& folder)
 using Alone = std::map<int, std::map<int, Vector<2>>>;
 
 Alone alone_at(const track::ground::GroundInstant& instant, const std::vector<Sample>& truth,
-               const track::ground::GroundAgreement& agreement) {
+               const track::ground::CameraBias& agreement) {
   Alone alone;
   for (const Sample& one : truth) {
     const Vector<2> location = one.position.head<2>();
@@ -99,7 +99,7 @@ struct Disagreement {
 
 /// What cameras truly disagree by once they are corrected, from people who stand alone.
 Disagreement true_disagreement(const std::vector<track::ground::GroundInstant>& instants, const Recording& truth,
-                               const track::ground::GroundAgreement& agreement) {
+                               const track::ground::CameraBias& agreement) {
   std::vector<Alone> alone;
   InstantsOf truths(truth);
   for (std::size_t k = 0; k < instants.size(); ++k) {
@@ -147,7 +147,7 @@ pipeline::people::PeopleOnGroundOptions offline(const geometry::PitchSize& pitch
 void print_learned(const std::string& folder) {
   const std::vector<track::ground::GroundInstant> instants = instants_of(folder);
   const Recording truth = format::match::read_ground(folder + "/truth.csv");
-  const auto agreement = track::ground::GroundAgreement::learn(instants, 6);
+  const auto agreement = track::ground::CameraBias::learn(instants, 6);
   const Disagreement before = true_disagreement(instants, truth, {}), after = true_disagreement(instants, truth, agreement);
   Observation<2> one;
   one.covariance = Matrix<2>::Identity();

@@ -16,7 +16,7 @@ from ._filters import MakeFilter, Maker
 from ._frames import Frames
 from ._instant import Instant, Names
 from ._interop import rows_of_detections
-from ._options import GroundOptions, ReconstructOptions, TrackOptions
+from ._options import GroundOptions, ReconstructOptions, SolveOptions, TrackOptions
 from ._recording import Recording
 from ._rig import Rig
 
@@ -101,8 +101,8 @@ def _text(name: str, value: Any) -> str:
 
 def _rows(job: str, options: Mapping[str, Any]) -> dict[str, Any]:
     """The options of a job by their names, as text; None and False are defaults. A filter of the user's own is an object."""
-    known = [row["name"].replace("-", "_") for row in _core.job_options(job)]
-    rows: dict[str, str] = {}
+    known = {row["name"].replace("-", "_"): row["kind"] for row in _core.job_options(job)}
+    rows: list[tuple[str, str]] = []
     own: dict[str, Any] = {}
     for name, value in options.items():
         if value is None or value is False:
@@ -114,7 +114,8 @@ def _rows(job: str, options: Mapping[str, Any]) -> dict[str, Any]:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)
             raise Error(f"{name} is not an option of this job ({job}); {f'did you mean {near[0]}?' if near else 'help() lists them'}")
-        rows[name.replace("_", "-")] = _text(name, value)
+        values = value if known[name] == "texts" and not isinstance(value, str) else [value]
+        rows += [(name.replace("_", "-"), _text(name, each)) for each in values]
     return {"rows": rows, **own}
 
 
@@ -278,6 +279,25 @@ def reconstruct(
             raise Error("observations and a filter are of markers; remove them")
         return _finish(_core.reconstruct_keypoints(given | _rows("reconstruct keypoints", options)))
     return _finish(_core.reconstruct(given | _rows("reconstruct markers", {**options, "filter": filter})))
+
+
+@_shows("solve")
+def solve(
+    recording: Path, *, outputs: Iterable[Path] = (), progress: Progress | None = None, **options: Unpack[SolveOptions]
+) -> dict[str, Any]:
+    """Solves the motion of a skeleton from labelled markers, or from body keypoints, in space: `marey solve`.
+
+    recording: a file. outputs: files to write: .mot or .sto (angles), .bvh or .glb (bones), or the recording with its bodies (.marey, .c3d, ...).
+    progress: as in `track`.
+
+    Returns a summary: markers' errors in mm, and for each coordinate its lowest and highest value (rad or m) and the fraction of instants in which
+    markers show it. Raises marey.Error if a file cannot be read or written, or none of the skeleton's markers is recorded; KeyboardInterrupt.
+    """
+    given = {"recording": os.fspath(recording), "outputs": [os.fspath(path) for path in outputs], "progress": progress}
+    summary = _core.solve(given | _rows("solve", options))
+    for sentence in summary["warnings"]:
+        warnings.warn(sentence, Warning, stacklevel=2)
+    return summary
 
 
 def threads(count: int) -> None:

@@ -158,6 +158,41 @@ class ReconstructOptions(TypedDict, total=False):
     r"""N in [1, 1000]: run the networks on every N-th frame (default: 1)"""
 
 
+class SolveOptions(TypedDict, total=False):
+    skeleton: Path | None
+    r"""OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); omitted: the human skeleton"""
+    static_trial: Path | None
+    r"""the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its markers"""
+    marker_set: str | None
+    r"""whose labels --static-trial, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; omitted: found by the labels"""
+    rom_trial: Path | None
+    r"""beside --static-trial: the same person moving hips, knees and elbows through their range; states where the joints are"""
+    person: str | None
+    r"""of several people whose body keypoints RECORDING has the one to solve: P2; omitted: the first"""
+    calibrate: bool | None
+    r"""first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself"""
+    smooth: bool | None
+    r"""a second pass over the whole motion: what was hidden is bent to both ends"""
+    write_skeleton: Path | None
+    r"""skeleton.toml of the skeleton that was used"""
+    exclude: Sequence[str] | None
+    r"""a marker that is not used, by its label; may be given often"""
+    up: Literal["y", "z"] | None
+    r"""the axis that is up in RECORDING; omitted: y for a TRC file beside an OpenSim model, else as it states, else z: y, z"""
+    unit: float | None
+    r"""m in (0, 1000]: one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches (default: 0.01)"""
+    skeleton_up: Literal["y", "z"] | None
+    r"""the axis that is up in a BVH, ASF or VSK skeleton: y, z (default: y)"""
+    bvh_unit: float | None
+    r"""m in (0, 1000]: one unit of a BVH file that is written (default: 0.01)"""
+    bvh_up: Literal["y", "z"] | None
+    r"""the axis that is up in a BVH file that is written: y, z (default: y)"""
+    bvh_order: Literal["ZXY", "ZYX", "XYZ", "XZY", "YXZ", "YZX"] | None
+    r"""the order of its rotations: ZXY, ZYX, XYZ, XZY, YXZ, YZX (default: ZXY)"""
+    bvh_names: str | None
+    r"""the names of its joints: mixamo or motionbuilder; omitted: as in the skeleton"""
+
+
 class LiveOptions(TypedDict, total=False):
     ground: bool | None
     r"""people on the ground that the rig's cameras face"""

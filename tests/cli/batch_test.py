@@ -109,6 +109,17 @@ class Batch(Videos):
         self.assertIn('no column "input"', self.marey("batch", "plan", "list.csv", "-o", "other.tsv", code=1).stderr)
         self.assertIn("holds nothing that measure reads", self.marey("batch", "plan", "films", "--job", "measure", "-o", "m.tsv", code=1).stderr)
 
+    def test_options_are_checked_and_written_in_one_notation(self):
+        options = []
+        for number, words in enumerate(("--rate 25 --filter imm", "--rate=25.0 --filter=imm", "--rate 2.5e1 --filter imm")):
+            self.marey("batch", "plan", "films", "-o", f"p{number}.tsv", "-q", "--job-options", words)
+            options.append({row["options"] for row in csv.DictReader((self.folder / f"p{number}.tsv").read_text().splitlines(), delimiter="\t")})
+        self.assertEqual(options, [{"--rate|25|--filter|imm"}] * 3)
+        for words, named in (("--rate fast", "--rate: "), ("--filter none", "--filter: "), ("--measured-only --rate", "--rate: has no value")):
+            self.assertIn(named, self.marey("batch", "plan", "films", "-o", "never.tsv", "--job-options", words, code=2).stderr)
+        self.assertIn("use one of track, ground", self.marey("batch", "plan", "films", "-o", "never.tsv", "--job", "dig", code=2).stderr)
+        self.assertFalse((self.folder / "never.tsv").exists())
+
     def test_a_seasons_page(self):
         (self.folder / "matches").mkdir()
         for match, speed in ((1, 2.0), (2, 3.0)):

@@ -92,6 +92,18 @@ EXAMPLES["reconstruct keypoints"] = {
     "detector": MODELS / "person.toml",
     "detector-interval": 3,
 }
+EXAMPLES["solve"] = {
+    "skeleton": "person.toml",
+    "static-trial": "blobs.csv",
+    "marker-set": "cmu-41",
+    "rom-trial": "blobs.csv",
+    "person": "P1",
+    "write-skeleton": lambda out: out / "used.toml",
+    "exclude": "P1:left_ankle",
+    "unit": 0.0254,
+    "bvh-unit": 1,
+    "bvh-names": "mixamo",
+}
 EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
 WITH = {"foreground-masks": ["background"], "detector-interval": ["detector"], "no-background": ["detector"]}
@@ -128,6 +140,7 @@ def as_text(take):
 
 class SameBytes(unittest.TestCase):
     maxDiff = 400
+    also = ()  # names of further outputs
 
     @classmethod
     def setUpClass(cls):
@@ -162,9 +175,9 @@ class SameBytes(unittest.TestCase):
                      for option, value in options.items()}
             try:
                 if front_end == "shell":
-                    self.shell(*words(given), *shell_words(given), "-o", out / "tracks.marey", "-q")
+                    self.shell(*words(given), *shell_words(given), *(f"--output={out / name}" for name in ("tracks.marey", *self.also)), "-q")
                 else:
-                    run({option.replace("-", "_"): value for option, value in given.items()}, [out / "tracks.marey"])
+                    run({option.replace("-", "_"): value for option, value in given.items()}, [out / name for name in ("tracks.marey", *self.also)])
                 results.append(content(out))
             except marey.Error as error:
                 results.append(re.sub(r"--([a-z-]+)", lambda found: found[1].replace("-", "_"), str(error)).replace(str(out), "OUT"))
@@ -271,8 +284,23 @@ class SameBytes(unittest.TestCase):
             lambda given, sinks: marey.reconstruct(rig, targets="keypoints", sources=files, sinks=sinks, **given),
         )
 
+    def test_solve(self):
+        room = ("simulate", "room", "--motion", "walk", "--keypoints", "--cameras", 3, "--frames", 40, "--size", 1080, 1920, "-o", "dancer", "-q")
+        command(*room, cwd=FOLDER)
+        rig = FOLDER / "dancer" / "rig.toml"
+        files = {camera.name: FOLDER / "dancer" / f"keypoints_{camera.name}.json" for camera in marey.read_rig(rig).cameras}
+        dance = FOLDER / "dance.marey"
+        marey.reconstruct(rig, targets="keypoints", sources=files, sinks=[dance])
+        command("solve", dance, "-o", FOLDER / "dance.mot", "--write-skeleton", FOLDER / "person.toml", "-q", cwd=FOLDER)
+        self.also = ("motion.bvh",)
+        self.check("solve", lambda given: ["solve", dance], lambda given, outputs: marey.solve(dance, outputs=outputs, **given))
+        summary = marey.solve(dance, outputs=[FOLDER / "twice.mot"], exclude=["P1:left_ankle", "P1:right_ankle"])
+        self.assertEqual(summary["frames"], 40)
+        self.assertLess(summary["rms_mm"], 60)
+
     def test_every_job_is_here(self):
-        tested = {"track people", "track keypoints", "track markers", "track ground", "reconstruct markers", "reconstruct keypoints", "live"}
+        tested = {"track people", "track keypoints", "track markers", "track ground", "reconstruct markers", "reconstruct keypoints", "solve", "live"}
+        tested |= {"batch plan", "batch run", "batch submit"}  # of the command line alone
         self.assertEqual(set(_core.job_names()), tested)
 
 

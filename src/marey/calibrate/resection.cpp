@@ -17,7 +17,7 @@ constexpr double kMinAhead = 0.2;  // of a bearing's z, to be used in OpenCV's p
 constexpr std::size_t kMinWands = 4;
 
 /// Mean squared angle of a wand in units of the noise, in the better orientation.
-double error(const Rigid3& pose, const WandObservation& wand, const ResectionOptions& options, bool& rotated) {
+double error(const Rigid3& pose, const MarkObservation& wand, const ResectionOptions& options, bool& rotated) {
   double best = 0;
   rotated = false;
   for (const bool turn : {false, true}) {
@@ -33,19 +33,19 @@ double error(const Rigid3& pose, const WandObservation& wand, const ResectionOpt
   return best / static_cast<double>(options.markers);
 }
 
-double cost(const Rigid3& pose, std::span<const WandObservation> wands, const ResectionOptions& options) {
+double cost(const Rigid3& pose, std::span<const MarkObservation> wands, const ResectionOptions& options) {
   double sum = 0;
   bool rotated = false;
-  for (const WandObservation& wand : wands) sum += std::min(kWandGate * kWandGate, error(pose, wand, options, rotated));
+  for (const MarkObservation& wand : wands) sum += std::min(kWandGate * kWandGate, error(pose, wand, options, rotated));
   return sum;
 }
 
 /// Poses by three drawn markers of three wands.
-std::vector<Rigid3> propose(std::span<const WandObservation> wands, const ResectionOptions& options, std::mt19937_64& engine) {
+std::vector<Rigid3> propose(std::span<const MarkObservation> wands, const ResectionOptions& options, std::mt19937_64& engine) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> detected;
   for (int i = 0; i < 3; ++i) {
-    const WandObservation& wand = wands[draw_below(engine, wands.size())];
+    const MarkObservation& wand = wands[draw_below(engine, wands.size())];
     const std::size_t marker = draw_below(engine, options.markers);
     const bool rotated = options.reversible && draw_below(engine, 2) == 1;
     const Vector<3>& bearing = wand.bearing[rotated ? options.markers - 1 - marker : marker];
@@ -67,7 +67,7 @@ std::vector<Rigid3> propose(std::span<const WandObservation> wands, const Resect
 
 }  // namespace
 
-std::optional<Resection> resect(std::span<const WandObservation> wands, const ResectionOptions& options) {
+std::optional<Resection> resect(std::span<const MarkObservation> wands, const ResectionOptions& options) {
   if (wands.size() < kMinWands) return std::nullopt;
   constexpr int max_draws = 1000;
   std::mt19937_64 engine(options.seed);
@@ -82,7 +82,7 @@ std::optional<Resection> resect(std::span<const WandObservation> wands, const Re
     if (i >= 100 && best_cost < 2 * static_cast<double>(wands.size())) break;
   }
   if (!std::isfinite(best_cost)) return std::nullopt;
-  for (const WandObservation& wand : wands) {
+  for (const MarkObservation& wand : wands) {
     bool rotated = false;
     best.inlier.push_back(error(best.camera_from_world, wand, options, rotated) <= kWandGate * kWandGate);
     best.rotated.push_back(rotated);

@@ -9,15 +9,15 @@
 #include <span>
 #include <vector>
 
-#include "marey/calibrate/wand/wand_marks.h"
+#include "marey/calibrate/marker_line.h"
 #include "marey/core/geometry.h"
 #include "marey/geometry/rigid.h"
 
 namespace marey::calibrate {
 
 /// A wand whose markers' places are known, and the bearings at which the camera sees them.
-struct WandObservation {
-  std::array<Vector<3>, wand::WandShape::maximum> world, bearing;
+struct MarkObservation {
+  std::array<Vector<3>, MarkerLine::maximum> world, bearing;
 };
 
 struct ResectionOptions {
@@ -34,6 +34,6 @@ struct Resection {
 };
 
 /// Nothing if fewer than four wands or points are given, or no pose explains this many.
-std::optional<Resection> resect(std::span<const WandObservation> wands, const ResectionOptions& options);
+std::optional<Resection> resect(std::span<const MarkObservation> wands, const ResectionOptions& options);
 
 }  // namespace marey::calibrate

@@ -10,14 +10,14 @@ namespace {
 using wand::WandScene;
 
 /// The wand as camera 0 of a scene sees it; every third view turned round where asked for.
-std::vector<WandObservation> wands_of(WandScene& scene, int count, double sigma_px, bool rotated = false) {
-  std::vector<WandObservation> wands;
+std::vector<MarkObservation> wands_of(WandScene& scene, int count, double sigma_px, bool rotated = false) {
+  std::vector<MarkObservation> wands;
   const Camera lens(*scene.rig.cameras[0].lens, {}, *scene.rig.cameras[0].size);
   for (int i = 0; static_cast<int>(wands.size()) < count; ++i) {
     const auto marks = scene.detected(0, 0.17 * i, sigma_px);
     if (!marks) continue;
     const auto locations = scene.markers(0.17 * i);
-    WandObservation wand{};
+    MarkObservation wand{};
     for (std::size_t m = 0; m < locations.size(); ++m) {
       const bool turn = rotated && wands.size() % 3 == 0;
       wand.world[m] = locations[m];
@@ -81,7 +81,7 @@ TEST(Resection, TooFewWandsOrNoneThatFitGiveNothing) {
   auto wands = wands_of(scene, 12, 0);
   EXPECT_FALSE(resect(std::span(wands).first(3), {.markers = 3}));
   board::Noise noise(8);
-  for (WandObservation& wand : wands) {
+  for (MarkObservation& wand : wands) {
     for (auto& bearing : wand.bearing) bearing = Vector<3>(noise.uniform(-1, 1), noise.uniform(-1, 1), 1).normalized();
   }
   EXPECT_FALSE(resect(wands, {.markers = 3}));

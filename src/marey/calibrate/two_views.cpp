@@ -93,7 +93,7 @@ double explained(std::span<const Match> matches, const Matrix<3>& map, double si
 
 class Relation {
  public:
-  Relation(std::span<const WandPair> pairs, const TwoViewOptions& options) : pairs_(pairs), options_(options) {}
+  Relation(std::span<const MarkPair> pairs, const TwoViewOptions& options) : pairs_(pairs), options_(options) {}
 
   Match match(std::size_t pair, std::size_t marker, bool rotated) const {
     return {pairs_[pair].a[marker], pairs_[pair].b[rotated ? options_.markers - 1 - marker : marker]};
@@ -143,7 +143,7 @@ class Relation {
   double fraction_of_a_plane() const;
 
  private:
-  std::span<const WandPair> pairs_;
+  std::span<const MarkPair> pairs_;
   const TwoViewOptions& options_;
 };
 
@@ -277,7 +277,7 @@ TwoViews Relation::describe(const Matrix<3>& E) const {
 
 }  // namespace
 
-std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options) {
+std::optional<TwoViews> relate(std::span<const MarkPair> pairs, const TwoViewOptions& options) {
   const Relation relation(pairs, options);
   constexpr double good = 0.5, minimum = 0.25, plane = 0.8;
   const auto E = relation.search();

@@ -14,15 +14,15 @@
 #include <span>
 #include <vector>
 
-#include "marey/calibrate/wand/wand_marks.h"
+#include "marey/calibrate/marker_line.h"
 #include "marey/core/geometry.h"
 #include "marey/geometry/rigid.h"
 
 namespace marey::calibrate {
 
 /// One instant of a wand as two cameras see it: bearings of length 1, marker by marker.
-struct WandPair {
-  std::array<Vector<3>, wand::WandShape::maximum> a, b;
+struct MarkPair {
+  std::array<Vector<3>, MarkerLine::maximum> a, b;
 };
 
 struct TwoViewOptions {
@@ -45,6 +45,6 @@ struct TwoViews {
 
 /// Nothing if too few pairs are given (8 markers at least) or none of the drawn models explains a quarter of them. Of a plane,
 /// where no essential matrix is determined, `plane` and `share` alone are set.
-std::optional<TwoViews> relate(std::span<const WandPair> pairs, const TwoViewOptions& options);
+std::optional<TwoViews> relate(std::span<const MarkPair> pairs, const TwoViewOptions& options);
 
 }  // namespace marey::calibrate

@@ -14,15 +14,15 @@ struct Two {
 };
 
 /// Wands seen by two cameras, bearings `sigma` rad off. `flatten` squeezes them into a plane.
-std::vector<WandPair> pairs_of(const Two& cameras, const WandScene& scene, int count, double sigma, board::Noise& noise,
+std::vector<MarkPair> pairs_of(const Two& cameras, const WandScene& scene, int count, double sigma, board::Noise& noise,
                                bool flatten = false) {
-  std::vector<WandPair> pairs;
+  std::vector<MarkPair> pairs;
   const auto bearing = [&](const Rigid3& camera, const Vector<3>& point) {
     const Vector<3> off(noise.gaussian(sigma), noise.gaussian(sigma), noise.gaussian(sigma));
     return Vector<3>(((camera * point).normalized() + off).normalized());
   };
   for (int i = 0; i < count; ++i) {
-    WandPair pair{};
+    MarkPair pair{};
     const auto locations = scene.markers(0.23 * i);
     for (std::size_t m = 0; m < locations.size(); ++m) {
       Vector<3> location = locations[m];
@@ -108,7 +108,7 @@ TEST(TwoViews, TooFewOrNothingInCommonGiveNothing) {
   board::Noise noise(7);
   EXPECT_FALSE(relate(pairs_of(of(scene), scene, 2, 0, noise), {.markers = 3}));
   auto pairs = pairs_of(of(scene), scene, 80, 0, noise);
-  for (WandPair& pair : pairs) {
+  for (MarkPair& pair : pairs) {
     for (auto& bearing : pair.b) bearing = Vector<3>(noise.uniform(-1, 1), noise.uniform(-1, 1), 1).normalized();
   }
   EXPECT_FALSE(relate(pairs, {.markers = 3, .max_draws = 300}));

@@ -15,7 +15,7 @@ namespace marey::edit {
 
 /// Frames by their indices, both ends included.
 struct FrameRange {
-  static constexpr std::int64_t kToTheEnd = std::numeric_limits<std::int32_t>::max();
+  static constexpr std::int64_t kToTheEnd = std::numeric_limits<std::int32_t>::max();  // by definition
 
   std::int64_t first = 0, last = 0;
 

@@ -32,7 +32,7 @@ struct Model {
 /// A Gaussian over position and derivatives. Units: px or m, per second, per second².
 template <int D, int Order>
 struct State {
-  static constexpr std::size_t kBlocks = std::size_t{Order} * (Order + 1) / 2;
+  static constexpr std::size_t kBlocks = std::size_t{Order} * (Order + 1) / 2;  // by definition
 
   std::array<Vector<D>, Order> mean;
   std::array<Matrix<D>, kBlocks> blocks;  ///< of the covariance, the upper half: rows above, left to right

@@ -6,9 +6,9 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr double kMinBaseline = 1e-6;  // m
+constexpr double kMinBaseline = 1e-6;  // m, numerical: cameras in one place
 constexpr double kMinSine = 0.03;      // rays closer to the line of centres, or to each other, give no depth
-constexpr double kTurn = 4;            // numbers on the pencil go round once in this
+constexpr double kTurn = 4;            // by definition: numbers on the pencil go round once in this
 
 /// A number that grows with the angle of (x, y) as atan2 does, from −2 to 2, without its cost.
 double turn_of(double x, double y) {

@@ -9,8 +9,8 @@ namespace marey::reconstruct {
 namespace {
 
 constexpr double kMinCell = 8;       // px
-constexpr int kMaxCells = 4096;      // a camera
-constexpr std::size_t kGrain = 512;  // blobs: lens inversions that are worth a task (unswept)
+constexpr int kMaxCells = 4096;      // a camera; numerical: time of the search alone
+constexpr std::size_t kGrain = 512;  // blobs: lens inversions that are worth a task (numerical: time alone)
 
 double sigma_of(const Observation<2>& one, double noise_px) {
   return std::max(std::sqrt((one.covariance ? std::max(0.0, one.covariance->trace() / 2) : 0) + noise_px * noise_px), 1e-6);

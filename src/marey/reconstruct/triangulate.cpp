@@ -11,8 +11,8 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kMaxSteps = 25;
-constexpr double kSmallStep = 1e-3;      // standard deviations of the point: far below noise
+constexpr int kMaxSteps = 25;            // numerical: it ends earlier where it settles
+constexpr double kSmallStep = 1e-3;      // standard deviations of the point, numerical: far below noise
 constexpr double kMaxDistance = 1e6;     // m
 constexpr double kDistinctlyBetter = 3;  // a left-out ray is known for the wrong one where any other fits worse by this factor
 

@@ -17,20 +17,26 @@ namespace {
 
 constexpr std::array kFocalGuesses = {0.65, 0.9, 1.25, 1.75};  // unswept: of the longer side
 constexpr std::size_t kGrownPoints = 160;  // numerical, time against precision: a camera, by which the rig grows
-constexpr double kNoiseFactor = 1.5;       // unswept: times what the points state
+constexpr GrowthSubject kPeople = {
+    .name = "people",
+    .more = "let them walk longer",
+    .everywhere = "let them walk through the whole volume, near and far",
+    .shared = "let them walk where it and another camera both see them",
+};
+constexpr double kNoiseFactor = 1.5;  // unswept: times what the points state
 
-wand::WandTable table_of(const PeopleViews& views, const std::vector<PointRow>& rows) {
-  wand::WandTable table;
+MarkTable table_of(const PeopleViews& views, const std::vector<PointRow>& rows) {
+  MarkTable table;
   for (const PointRow& row : rows) {
     auto& entries = table.emplace_back(views.cameras.size());
     for (std::size_t c = 0; c < entries.size(); ++c) {
-      if (const auto at = views.pixel(row, c)) entries[c] = wand::Marks{*at};
+      if (const auto at = views.pixel(row, c)) entries[c] = Marks{*at};
     }
   }
   return table;
 }
 
-void require_shared_points(const wand::WandTable& table, const Rig& rig) {
+void require_shared_points(const MarkTable& table, const Rig& rig) {
   const auto shared = shared_views(table, rig.cameras.size());
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     int maximum = 0;
@@ -43,8 +49,8 @@ void require_shared_points(const wand::WandTable& table, const Rig& rig) {
   }
 }
 
-std::vector<wand::WandCamera> cameras_with_focal(const PeopleViews& views, const Rig& rig, double guess) {
-  std::vector<wand::WandCamera> cameras;
+std::vector<StartingCamera> cameras_with_focal(const PeopleViews& views, const Rig& rig, double guess) {
+  std::vector<StartingCamera> cameras;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const RigCamera& camera = rig.cameras[c];
     std::vector<double> sigmas;
@@ -58,9 +64,9 @@ std::vector<wand::WandCamera> cameras_with_focal(const PeopleViews& views, const
 }
 
 /// Robust cost over all that was to be explained, px².
-double cost_of(const Growth& growth, const std::vector<wand::WandCamera>& cameras, const wand::WandTable& table) {
+double cost_of(const Growth& growth, const std::vector<StartingCamera>& cameras, const MarkTable& table) {
   double noise = 0, cost = 0;
-  for (const wand::WandCamera& camera : cameras) noise = std::max(noise, camera.sigma_px);
+  for (const StartingCamera& camera : cameras) noise = std::max(noise, camera.sigma_px);
   const double cap = 9 * noise * noise;
   std::size_t required = 0;
   for (const auto& entries : table)
@@ -74,28 +80,27 @@ double cost_of(const Growth& growth, const std::vector<wand::WandCamera>& camera
 }  // namespace
 
 Growth grow_by_people(const PeopleViews& views, const Rig& rig, const std::vector<PointRow>& rows, std::uint64_t seed) {
-  const wand::WandTable table = table_of(views, some_of(rows, kGrownPoints * rig.cameras.size()));
+  const MarkTable table = table_of(views, some_of(rows, kGrownPoints * rig.cameras.size()));
   require_shared_points(table, rig);
   const bool any_unknown = std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& c) { return !c.lens; });
   double best = std::numeric_limits<double>::infinity();
   Growth result;
+  std::string cause;
   for (const double guess : kFocalGuesses) {
     if (!any_unknown && guess != kFocalGuesses.front()) break;
     stop_point();
     try {
       const auto cameras = cameras_with_focal(views, rig, guess);
-      Growth growth = grow_rig(cameras, wand::WandShape{}, table, seed);
+      Growth growth = grow_rig(cameras, MarkerLine{}, table, seed, kPeople);
       const double cost = cost_of(growth, cameras, table);
       if (cost < best) best = cost, result = std::move(growth);
-    } catch (const Error&) {
-      continue;  // another guess may do
+    } catch (const Error& error) {
+      if (cause.empty()) cause = error.what();  // another guess may do
     }
   }
   if (!std::isfinite(best))
-    throw Error(
-        "{}",
-        "the cameras' views of people do not make one geometry: let one person walk through the whole volume, near and far, in "
-        "another place than a line; check the lenses that the rig gives");
+    throw Error("the cameras' views of people do not make one geometry, with any focal length that was tried: {}",
+                cause.empty() ? "check the lenses that the rig gives" : cause);
   return result;
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "marey/calibrate/grow_rig.h"
+#include "marey/calibrate/incremental_rig.h"
 #include "marey/calibrate/people/people_views.h"
 #include "marey/core/rig.h"
 

@@ -70,7 +70,7 @@ PeopleMatcher::Fit PeopleMatcher::fit(const PairEdge& edge, double shift_s) cons
     }
   }
   if (shared.size() < kMinSharedPoints) return {};
-  std::vector<WandPair> pairs;
+  std::vector<MarkPair> pairs;
   const std::size_t count = std::min(kMaxSharedPoints, shared.size());
   constexpr double kGolden = 0.6180339887498949;
   for (std::size_t k = 0; k < count; ++k) {  // spread over time and over the points
@@ -78,7 +78,7 @@ PeopleMatcher::Fit PeopleMatcher::fit(const PairEdge& edge, double shift_s) cons
     const auto& [here, there] = shared[static_cast<std::size_t>(at * static_cast<double>(shared.size()))];
     const auto at_a = a.lens.bearing(here), at_b = b.lens.bearing(there);
     if (!at_a || !at_b) continue;
-    WandPair pair;
+    MarkPair pair;
     pair.a.fill(*at_a), pair.b.fill(*at_b);
     pairs.push_back(pair);
   }

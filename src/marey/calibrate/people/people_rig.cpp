@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "marey/calibrate/grow_rig.h"
+#include "marey/calibrate/incremental_rig.h"
 #include "marey/calibrate/people/image_people.h"
 #include "marey/calibrate/people/people_growth.h"
 #include "marey/calibrate/people/people_pairs.h"

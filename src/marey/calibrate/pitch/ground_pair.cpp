@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kSegment_s = 2;                    // long enough to show how a person moves, short enough to be one person's
 constexpr double kStride_s = 1;                     // from one segment to the next: they overlap,
-constexpr double kWeight = kStride_s / kSegment_s;  // and count the less
+constexpr double kWeight = kStride_s / kSegment_s;  // by definition: and count the less
 constexpr double kSample_s = 0.2;                   // between the places that are compared
 constexpr int kSegmentSamples = 10;                 // of a segment,
 constexpr std::size_t kMinSegmentSamples = 5;       // where one of both was not seen throughout

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "marey/calibrate/grow_rig.h"
+#include "marey/calibrate/incremental_rig.h"
 #include "marey/calibrate/wand/wand_checks.h"
 #include "marey/calibrate/wand/wand_fit.h"
 #include "marey/calibrate/wand/wand_lens.h"
@@ -27,7 +27,7 @@ constexpr double kLikelyFocal = 1.2;
 constexpr double kRefinedIsBetter = 0.97;  // of the noise with the given lenses
 
 /// Instants from which the cameras can be related: for each camera, spread over time, those that most others share.
-std::vector<std::size_t> spread_instants(const WandTable& table, std::size_t cameras, std::size_t per_camera) {
+std::vector<std::size_t> spread_instants(const MarkTable& table, std::size_t cameras, std::size_t per_camera) {
   std::vector<char> chosen(table.size(), 0);
   std::vector<std::size_t> count(table.size(), 0);
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -93,8 +93,8 @@ class WandCalibration {
     require_connected(names, shared_views(table_, cameras()), kMinShared);
   }
 
-  std::vector<WandCamera> grown_cameras(double guess, double sigma_px, bool free) const {
-    std::vector<WandCamera> cameras;
+  std::vector<StartingCamera> grown_cameras(double guess, double sigma_px, bool free) const {
+    std::vector<StartingCamera> cameras;
     for (const RigCamera& camera : in_.rig.cameras) {
       const double scale = std::max(1.0, camera.size->width / 1280.0);
       cameras.push_back({camera.name, starting_lens(camera, guess), *camera.size,
@@ -120,7 +120,7 @@ class WandCalibration {
     step("relating the cameras");
     const bool guess = any_unknown_lens();
     const auto instants = spread_instants(table_, cameras(), guess ? kGuessPerCamera : kGrowPerCamera);
-    WandTable some;
+    MarkTable some;
     std::size_t required = 0;
     for (const std::size_t i : instants) {
       some.push_back(table_[i]);
@@ -219,7 +219,7 @@ class WandCalibration {
   std::int64_t steps_ = 0;
   WandResult result_;
   std::vector<MarkTrack> tracks_;
-  WandTable table_;
+  MarkTable table_;
   Growth growth_;
 };
 

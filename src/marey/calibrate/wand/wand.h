@@ -37,7 +37,7 @@ struct KnownDistance {
 
 struct WandInput {
   Rig rig;  ///< sizes, lenses where known, poses where the world is to stay where it is
-  WandShape wand;
+  MarkerLine wand;
   std::vector<std::vector<BlobFrame>> detected;  ///< by camera, in order of time
 };
 

@@ -41,7 +41,7 @@ void check_distance(const WandInput& input, const KnownDistance& distance) {
 void check_wand_input(const WandInput& input, const WandOptions& options) {
   if (input.rig.cameras.size() < 2) throw Error("a wand calibrates two cameras or more; the rig has {}", input.rig.cameras.size());
   const auto& at = input.wand.distances;
-  if (at.empty() || at.size() > WandShape::maximum || at.front() != 0 ||
+  if (at.empty() || at.size() > MarkerLine::maximum || at.front() != 0 ||
       !std::is_sorted(at.begin(), at.end(), std::less_equal<>())) {
     throw Error("{}", "a wand is two or three distances in metres that grow from 0, as 0,0.12,0.30; or \"led\" for a single light");
   }
@@ -67,7 +67,7 @@ void check_tracks(const WandInput& input, const std::vector<MarkTrack>& tracks) 
   }
 }
 
-void check_lengths(const std::vector<double>& lengths, const WandShape& wand) {
+void check_lengths(const std::vector<double>& lengths, const MarkerLine& wand) {
   constexpr std::size_t parts = 8, minimum = 5;
   if (wand.markers() < 2 || lengths.size() < parts * minimum) return;
   const double all = geometry::median(std::vector(lengths));

@@ -16,7 +16,7 @@ void check_wand_input(const WandInput& input, const WandOptions& options);
 void check_tracks(const WandInput& input, const std::vector<MarkTrack>& tracks);
 
 /// That the wand's measured length, in order of time, is one length: m, measured by `scale` times the observations.
-void check_lengths(const std::vector<double>& lengths, const WandShape& wand);
+void check_lengths(const std::vector<double>& lengths, const MarkerLine& wand);
 
 /// That the cameras stand apart, and the wand was moved through a volume.
 void check_fitted_rig(const WandInput& input, const bundle::Bundle& bundle, const bundle::BundleResult& fit);

@@ -18,7 +18,7 @@ class WandCoverage {
   /// `lenses_known`: whether every camera's lens is given. The others are estimated from the observations, which takes more of
   /// it: with less than half of the image the cameras stood several times as far off as after a minute
   /// (bench/sweep/wand_enough.cpp).
-  WandCoverage(WandShape wand, std::size_t cameras, bool lenses_known = true)
+  WandCoverage(MarkerLine wand, std::size_t cameras, bool lenses_known = true)
       : wand_(std::move(wand)), cameras_(cameras), lenses_known_(lenses_known) {}
 
   /// What a camera gave since the last call, a few seconds of it. Times are by one clock here, as those of live cameras are.
@@ -57,7 +57,7 @@ class WandCoverage {
     std::int64_t views = 0, views_at_growth = 0;  ///< all; and when it was last seen in a new part
   };
 
-  WandShape wand_;
+  MarkerLine wand_;
   std::vector<Camera> cameras_;
   bool lenses_known_;
   std::map<std::pair<std::size_t, std::size_t>, std::int64_t> shared_;

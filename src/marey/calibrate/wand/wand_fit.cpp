@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "marey/calibrate/line_placement.h"
 #include "marey/calibrate/wand/wand_checks.h"
 #include "marey/calibrate/wand/wand_lens.h"
-#include "marey/calibrate/wand/wand_placement.h"
 #include "marey/core/geometry.h"
 #include "marey/geometry/camera.h"
 
@@ -20,8 +20,8 @@ constexpr double kResample = 0.02;   // of a period: from here on a time offset 
 constexpr double kOffsetSigmas = 5;  // a time offset is trusted from here on
 constexpr int kOffsetRounds = 4;
 
-std::vector<WandCamera> wand_cameras(const WandInput& input, const bundle::Bundle& bundle, double noise_px) {
-  std::vector<WandCamera> cameras;
+std::vector<StartingCamera> wand_cameras(const WandInput& input, const bundle::Bundle& bundle, double noise_px) {
+  std::vector<StartingCamera> cameras;
   for (std::size_t c = 0; c < bundle.cameras.size(); ++c) {
     const RigCamera& camera = input.rig.cameras[c];
     cameras.push_back({camera.name, bundle.cameras[c].lens, *camera.size, {}, std::max(0.5, 2 * noise_px)});
@@ -32,7 +32,7 @@ std::vector<WandCamera> wand_cameras(const WandInput& input, const bundle::Bundl
 /// A value between the bodies' at an instant: the one of that instant, or through the neighbours'.
 class BodyAt {
  public:
-  BodyAt(const std::vector<double>& instants, const std::vector<std::optional<bundle::Body>>& bodies, const WandShape& wand)
+  BodyAt(const std::vector<double>& instants, const std::vector<std::optional<bundle::Body>>& bodies, const MarkerLine& wand)
       : instants_(instants), bodies_(bodies), wand_(wand) {}
 
   std::optional<Vector<3>> marker(double time_s, std::size_t m) const {
@@ -61,7 +61,7 @@ class BodyAt {
 
   const std::vector<double>& instants_;
   const std::vector<std::optional<bundle::Body>>& bodies_;
-  const WandShape& wand_;
+  const MarkerLine& wand_;
 };
 
 }  // namespace
@@ -86,8 +86,8 @@ void WandFit::free_lenses(bool given_too) {
 
 void WandFit::match_blobs() {
   instants_ = instants_of(tracks_);
-  const WandTable table = table_of(tracks_, instants_, in_.wand.markers());
-  WandPlacement placement(wand_cameras(in_, bundle_, noise_px_), in_.wand, table);
+  const MarkTable table = table_of(tracks_, instants_, in_.wand.markers());
+  LinePlacement placement(wand_cameras(in_, bundle_, noise_px_), in_.wand, table);
   for (std::size_t c = 0; c < bundle_.cameras.size(); ++c) placement.poses[c] = bundle_.cameras[c].camera_from_world;
   std::vector<double> lengths;
   for (std::size_t i = 0; in_.wand.markers() > 1 && i < placement.instants(); ++i) {

@@ -15,7 +15,6 @@ namespace {
 /// Distances of a wand's two ends from the camera differ by no more than this factor where a view is used at first.
 constexpr double kDepthRatio = 1.35;
 constexpr double kMinGapPx = 3;          // of neighbouring markers: nearer, their blobs spoil one another
-constexpr double kSymmetric = 0.03;      // a middle marker this near to the middle, as a share of the length, distinguishes no end
 constexpr std::size_t kMaxBlobs = 40;    // of one view in which triples are tried
 constexpr double kStillFraction = 0.25;  // of the frames in which a blob at one place is not a wand
 constexpr std::size_t kFewFrames = 40;   // too few to detect what stands still
@@ -98,7 +97,7 @@ int orientations_of(const std::array<Vector<2>, 3>& points, double s, bool knows
 }
 
 /// The one triple that can be the wand, or nothing if none or several can.
-std::optional<Marks> only_triple(const std::vector<Vector<2>>& blobs, const WandShape& wand, const Straightener& straighten) {
+std::optional<Marks> only_triple(const std::vector<Vector<2>>& blobs, const MarkerLine& wand, const Straightener& straighten) {
   if (blobs.size() > kMaxBlobs) return std::nullopt;
   const double s = wand.distances[1] / wand.distances[2];
   std::optional<Marks> found;
@@ -121,12 +120,7 @@ std::optional<Marks> only_triple(const std::vector<Vector<2>>& blobs, const Wand
 
 }  // namespace
 
-bool WandShape::reversible() const {
-  if (markers() == 2) return true;
-  return markers() == 3 && std::abs(distances[1] / distances[2] - 0.5) < kSymmetric;
-}
-
-std::vector<MarkFrame> find_marks(std::span<const BlobFrame> frames, const WandShape& wand,
+std::vector<MarkFrame> find_marks(std::span<const BlobFrame> frames, const MarkerLine& wand,
                                   const std::optional<geometry::Lens>& lens, cv::Size size) {
   const auto still = still_cells(frames);
   const Straightener straighten(lens, size);

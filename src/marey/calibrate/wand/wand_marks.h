@@ -14,6 +14,7 @@
 
 #include <opencv2/core/types.hpp>
 
+#include "marey/calibrate/marker_line.h"
 #include "marey/core/geometry.h"
 #include "marey/geometry/lens.h"
 
@@ -25,21 +26,6 @@ struct BlobFrame {
   std::vector<Vector<2>> blobs;  ///< px
 };
 
-/// A wand: its markers' distances from the first, growing, m. One marker, at 0, is a single light.
-struct WandShape {
-  static constexpr std::size_t maximum = 3;
-
-  std::vector<double> distances{0};
-
-  std::size_t markers() const { return distances.size(); }
-  double length() const { return distances.back(); }
-  /// Turned end for end it appears the same: which end is which has to come from elsewhere.
-  bool reversible() const;
-};
-
-/// The wand's markers in one view; all of them at first, later those that were found.
-using Marks = std::array<std::optional<Vector<2>>, WandShape::maximum>;
-
 struct MarkFrame {
   double time_s = 0;
   Marks marks;
@@ -47,7 +33,7 @@ struct MarkFrame {
 
 /// The frames of one camera in which the wand was identified. `lens`, where it is known, straightens the lines; `size` of the
 /// image. Frames come in order of time, and so does the result. A reversible wand's ends are in any order.
-std::vector<MarkFrame> find_marks(std::span<const BlobFrame> frames, const WandShape& wand,
+std::vector<MarkFrame> find_marks(std::span<const BlobFrame> frames, const MarkerLine& wand,
                                   const std::optional<geometry::Lens>& lens, cv::Size size);
 
 /// Of the blobs, those nearest to where the markers should be, within `gate_px`. No blob is taken twice.

@@ -47,7 +47,7 @@ TEST(WandMarks, ThreeMarkersAreFoundTheRightWayRound) {
 }
 
 TEST(WandMarks, AViewWithTwoPossibleTriplesDoesNotCount) {
-  const WandShape wand{{0, 0.12, 0.30}};
+  const MarkerLine wand{{0, 0.12, 0.30}};
   const std::vector<Vector<2>> one{{100, 100}, {180, 100}, {300, 100}};
   std::vector<BlobFrame> frames{{0, one}, {1, one}};
   for (const Vector<2>& blob : one) frames[1].blobs.push_back(blob + Vector<2>(300, 400));
@@ -73,13 +73,6 @@ TEST(WandMarks, EmptyFramesAndTooManyBlobsGiveNothing) {
   BlobFrame crowd{0, {}};
   for (int i = 0; i < 60; ++i) crowd.blobs.emplace_back(20 * i, 17 * i % 900);
   EXPECT_TRUE(find_marks(std::vector{crowd, BlobFrame{}}, {{0, 0.1, 0.3}}, {}, kSize).empty());
-}
-
-TEST(WandShape, IsReversibleWhereItsMiddleIsInTheMiddle) {
-  EXPECT_TRUE((WandShape{{0, 0.3}}).reversible());
-  EXPECT_TRUE((WandShape{{0, 0.15, 0.3}}).reversible());
-  EXPECT_FALSE((WandShape{{0, 0.12, 0.3}}).reversible());
-  EXPECT_FALSE((WandShape{{0}}).reversible());
 }
 
 /// The slow twin: of all matches the nearest pair first, then the nearest of the rest, by inspecting all of them each time.

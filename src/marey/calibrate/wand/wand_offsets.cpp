@@ -66,10 +66,10 @@ std::optional<double> agreement(const Speed& a, const Speed& b, std::ptrdiff_t l
 
 class Offsets {
  public:
-  Offsets(std::vector<MarkTrack>& tracks, const std::vector<WandCamera>& cameras, const WandShape& wand, std::uint64_t seed)
+  Offsets(std::vector<MarkTrack>& tracks, const std::vector<StartingCamera>& cameras, const MarkerLine& wand, std::uint64_t seed)
       : tracks_(tracks), cameras_(cameras), wand_(wand), seed_(seed) {
     for (const MarkTrack& track : tracks) period_s_ = std::max(period_s_, track.period_s);
-    for (const WandCamera& camera : cameras) lenses_.emplace_back(camera.lens, Rigid3{}, camera.size);
+    for (const StartingCamera& camera : cameras) lenses_.emplace_back(camera.lens, Rigid3{}, camera.size);
   }
 
   bool settle();
@@ -88,8 +88,8 @@ class Offsets {
   std::optional<MarkerPositions> bearings(std::size_t c, double time_s) const;
 
   std::vector<MarkTrack>& tracks_;
-  const std::vector<WandCamera>& cameras_;
-  const WandShape& wand_;
+  const std::vector<StartingCamera>& cameras_;
+  const MarkerLine& wand_;
   std::uint64_t seed_;
   double period_s_ = 0;
   std::vector<Camera> lenses_;
@@ -108,7 +108,7 @@ std::optional<MarkerPositions> Offsets::bearings(std::size_t c, double time_s) c
 
 /// Of the views that two cameras share, b's times moved, how many one geometry explains.
 double Offsets::fraction(std::size_t a, std::size_t b, double shift_s) const {
-  std::vector<WandPair> pairs;
+  std::vector<MarkPair> pairs;
   for (const MarkFrame& frame : tracks_[a].frames) {
     const double time = frame.time_s + tracks_[a].offset_s;
     const auto there = bearings(b, time - shift_s), here = there ? bearings(a, time) : std::nullopt;
@@ -116,7 +116,7 @@ double Offsets::fraction(std::size_t a, std::size_t b, double shift_s) const {
   }
   if (pairs.size() < kMinPairs) return 0;
   if (pairs.size() > kMaxPairs) {  // spread over time
-    std::vector<WandPair> some;
+    std::vector<MarkPair> some;
     for (std::size_t i = 0; i < kMaxPairs; ++i) some.push_back(pairs[i * pairs.size() / kMaxPairs]);
     pairs = std::move(some);
   }
@@ -213,7 +213,7 @@ bool Offsets::settle() {
 
 }  // namespace
 
-bool settle_offsets(std::vector<MarkTrack>& tracks, const std::vector<WandCamera>& cameras, const WandShape& wand,
+bool settle_offsets(std::vector<MarkTrack>& tracks, const std::vector<StartingCamera>& cameras, const MarkerLine& wand,
                     std::uint64_t seed) {
   return Offsets(tracks, cameras, wand, seed).settle();
 }

@@ -9,14 +9,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "marey/calibrate/wand/wand_placement.h"
+#include "marey/calibrate/line_placement.h"
 #include "marey/calibrate/wand/wand_table.h"
 
 namespace marey::calibrate::wand {
 
 /// Sets the tracks' offsets, the first camera's held, where those given do not fit; leaves a camera's as it is where no shift is
 /// better. True where any was changed. `cameras` by track, their lenses as good as they are known.
-bool settle_offsets(std::vector<MarkTrack>& tracks, const std::vector<WandCamera>& cameras, const WandShape& wand,
+bool settle_offsets(std::vector<MarkTrack>& tracks, const std::vector<StartingCamera>& cameras, const MarkerLine& wand,
                     std::uint64_t seed);
 
 }  // namespace marey::calibrate::wand

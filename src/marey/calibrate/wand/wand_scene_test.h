@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 
 #include "marey/calibrate/board/board_scene_test.h"
+#include "marey/calibrate/line_placement.h"
 #include "marey/calibrate/wand/wand_marks.h"
-#include "marey/calibrate/wand/wand_placement.h"
 #include "marey/calibrate/wand/wand_table.h"
 #include "marey/core/error.h"
 #include "marey/core/geometry.h"
@@ -20,7 +20,7 @@ namespace marey::calibrate::wand {
 
 /// A wand that is waved before a ring of cameras: the truth of the tests of this folder, and of those beside it.
 struct WandScene {
-  explicit WandScene(std::uint64_t seed, int cameras = 4, WandShape shape = {{0, 0.12, 0.30}})
+  explicit WandScene(std::uint64_t seed, int cameras = 4, MarkerLine shape = {{0, 0.12, 0.30}})
       : noise(seed), wand(std::move(shape)) {
     for (int c = 0; c < cameras; ++c) {
       const double angle = 0.3 + 2 * M_PI * c / cameras;
@@ -67,14 +67,14 @@ struct WandScene {
     return result;
   }
 
-  std::vector<WandCamera> cameras(double sigma_px = 1) const {
-    std::vector<WandCamera> list;
+  std::vector<StartingCamera> cameras(double sigma_px = 1) const {
+    std::vector<StartingCamera> list;
     for (const RigCamera& camera : rig.cameras) list.push_back({camera.name, *camera.lens, *camera.size, {}, sigma_px});
     return list;
   }
 
-  WandTable table(int instants, double sigma, double step_s = 0.11) {
-    WandTable rows(static_cast<std::size_t>(instants), std::vector<std::optional<Marks>>(rig.cameras.size()));
+  MarkTable table(int instants, double sigma, double step_s = 0.11) {
+    MarkTable rows(static_cast<std::size_t>(instants), std::vector<std::optional<Marks>>(rig.cameras.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
       for (std::size_t c = 0; c < rig.cameras.size(); ++c) rows[i][c] = detected(c, step_s * static_cast<double>(i), sigma);
     }
@@ -83,7 +83,7 @@ struct WandScene {
 
   board::Noise noise;
   Rig rig;
-  WandShape wand;
+  MarkerLine wand;
 };
 
 /// rad.

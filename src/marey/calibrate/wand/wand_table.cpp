@@ -115,8 +115,8 @@ std::vector<double> instants_of(std::span<const MarkTrack> tracks) {
   return instants;
 }
 
-WandTable table_of(std::span<const MarkTrack> tracks, std::span<const double> instants, std::size_t markers) {
-  WandTable table(instants.size(), std::vector<std::optional<Marks>>(tracks.size()));
+MarkTable table_of(std::span<const MarkTrack> tracks, std::span<const double> instants, std::size_t markers) {
+  MarkTable table(instants.size(), std::vector<std::optional<Marks>>(tracks.size()));
   for (std::size_t i = 0; i < instants.size(); ++i) {
     for (std::size_t c = 0; c < tracks.size(); ++c) {
       const MarkSamples samples = sample_at(tracks[c], instants[i]);

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "marey/calibrate/line_placement.h"
 #include "marey/calibrate/wand/wand_marks.h"
-#include "marey/calibrate/wand/wand_placement.h"
 
 namespace marey::calibrate::wand {
 
@@ -21,7 +21,7 @@ struct MarkSample {
   Vector<2> velocity = Vector<2>::Zero();  ///< px/s; 0 where the neighbouring frames do not specify
 };
 
-using MarkSamples = std::array<std::optional<MarkSample>, WandShape::maximum>;
+using MarkSamples = std::array<std::optional<MarkSample>, MarkerLine::maximum>;
 
 /// Weights of four evenly spaced values for the cubic through them, at `u` in [0, 1] between the second and the third.
 std::array<double, 4> cubic_weights(double u);
@@ -38,6 +38,6 @@ MarkSamples sample_at(const MarkTrack& track, double time_s);
 std::vector<double> instants_of(std::span<const MarkTrack> tracks);
 
 /// All samples that show every one of the `markers`, by instant and camera.
-WandTable table_of(std::span<const MarkTrack> tracks, std::span<const double> instants, std::size_t markers);
+MarkTable table_of(std::span<const MarkTrack> tracks, std::span<const double> instants, std::size_t markers);
 
 }  // namespace marey::calibrate::wand

@@ -85,7 +85,7 @@ TEST(WandTable, ARowHasWhoeverSeesAllMarkers) {
   for (std::size_t c = 0; c < 3; ++c) tracks.push_back(scene.track(c, 40, 0));
   tracks[1].frames[5].marks[2].reset();
   const auto instants = instants_of(tracks);
-  const WandTable table = table_of(tracks, instants, 3);
+  const MarkTable table = table_of(tracks, instants, 3);
   ASSERT_EQ(table.size(), instants.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {

@@ -104,7 +104,8 @@ void band(const Word* const rows[3], const Byte* __restrict spread, int width, i
   const Word* __restrict a = rows[0];
   const Word* __restrict b = rows[1];
   const Word* __restrict c = rows[2];
-  constexpr Word kMaxWidth = 64 * 128, kWhite = 255 * 128;
+  constexpr Word kMaxWidth = 64 * 128;
+  constexpr Word kWhite = 255 * 128;  // format: 8 bits of luma, in 1/128
   const Word minimum = static_cast<Word>(floor * 128);
   const Word factor = static_cast<Word>(gate);
   const auto put = [&](int x, int left, int right) HWY_ATTR {

@@ -53,7 +53,7 @@ class ShadowFinder {
     int frame = 0, scene = 0, frame2 = 0, scene2 = 0, both = 0;  ///< sums over pixels, of levels over black
   };
 
-  static constexpr int kNever = 1 << 20;
+  static constexpr int kNever = 1 << 20;  // by definition: above any value
 
   std::size_t cell_at(int row, int column) const {
     return static_cast<std::size_t>(row / kCell + 1) * stride_ + static_cast<std::size_t>(column / kCell + 1);

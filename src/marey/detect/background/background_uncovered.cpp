@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kUnlikeLuma = 10, kUnlikeChroma = 7;  // levels: what differs by less is noise or shade
 constexpr double kNoiseSigmas = 5;                     // deviations of the noise; likewise
-constexpr double kOfGaussian = 1.4826;                 // standard deviations in a median distance from the median, of a Gaussian
-constexpr double kMinArea = 0.15, kMaxArea = 2;        // of the body's box; with its shadow it is larger than the body
-constexpr double kMinHeight = 0.5;                     // of the body's
-constexpr double kGap = 1.0 / 15;                      // of the body's height: what is nearer together is one thing
-constexpr double kSharper = 1.3, kSharperLevels = 2;   // how much sharper the border is in the scene, and by how many levels more
-constexpr double kSameLevels = 8;                      // mean difference of what is the same
-constexpr int kBlurReach = 2;                          // px about a region that its blur reaches
+constexpr double kOfGaussian = 1.4826;  // by definition: standard deviations in a median distance from the median, of a Gaussian
+constexpr double kMinArea = 0.15, kMaxArea = 2;       // of the body's box; with its shadow it is larger than the body
+constexpr double kMinHeight = 0.5;                    // of the body's
+constexpr double kGap = 1.0 / 15;                     // of the body's height: what is nearer together is one thing
+constexpr double kSharper = 1.3, kSharperLevels = 2;  // how much sharper the border is in the scene, and by how many levels more
+constexpr double kSameLevels = 8;                     // mean difference of what is the same
+constexpr int kBlurReach = 2;                         // px about a region that its blur reaches
 
 std::vector<float> values_of(const cv::Mat& plane, const cv::Mat& mask) {
   std::vector<float> values;

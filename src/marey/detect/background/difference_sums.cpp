@@ -11,8 +11,8 @@
 namespace marey::detect::background {
 namespace {
 
-constexpr int kMaxSum = 9 * 255;
-constexpr int kSums = 2 * kMaxSum + 1;
+constexpr int kMaxSum = 9 * 255;        // by definition: of nine pixels of 8 bits
+constexpr int kSums = 2 * kMaxSum + 1;  // by definition
 constexpr int kLanes = 4;  // of counts: neighbours are alike, and one count could not be raised twice in a row at speed
 
 /// A sum's mean in levels, as cv::blur rounds it.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDefaultStep = 5;            // px, as the paper's grid is remembered
 constexpr float kForeground = 4;           // standard deviations from all that was learned of a point
-constexpr std::size_t kMinFrameCount = 3;  // frames that a median can be taken of
+constexpr std::size_t kMinFrameCount = 3;  // by definition: frames of which a median omits one that is far off
 
 }  // namespace
 

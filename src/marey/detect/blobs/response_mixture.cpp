@@ -210,7 +210,7 @@ float PointBackground::distance(const Response& response) const {
 }
 
 Response response_noise(std::span<const cv::Mat> detected) {
-  constexpr int kEvery = 7;  // of the points: enough for a median
+  constexpr int kEvery = 7;  // of the points, numerical, time against precision: enough for a median
   Response noise;
   std::array<std::vector<float>, kResponses> deviations;
   std::vector<Response> of_point;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPoints = 33, kAll = 39, kNumbers = 5;
 constexpr std::size_t kHips = 33, kRim = 34;  // points that say where the person is
-constexpr int kCells = 64;
+constexpr int kCells = 64;                    // format of the network: a heat map's side
 const std::array<std::string, 3> kOutputs{"landmarks", "presence", "heatmaps"};
 
 /// 1 × 3 × h × w of floats in [0, 1], red first.
@@ -88,7 +88,7 @@ Body body_of(std::span<const network::Tensor> outputs, const PersonRegion& regio
   Body body;
   body.keypoints.presence = outputs[1].values.front();
   for (std::size_t i = 0; i < kPoints; ++i) {
-    constexpr std::size_t kMap = static_cast<std::size_t>(kCells) * kCells;
+    constexpr std::size_t kMap = static_cast<std::size_t>(kCells) * kCells;  // by definition
     const HeatPoint found = point_in(std::span(outputs[2].values).subspan(i * kMap, kMap), kCells,
                                      static_cast<double>(PersonRegion::kCrop) / kCells, given(i));
     body.keypoints.points.push_back(Keypoint<2>{.position = region.in_image(found.location),

@@ -22,8 +22,9 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr int kMaxSplitPixels = 20000;    // a frame: about 200 small pairs
-constexpr std::size_t kBlobsATask = 64;   // a quarter of a millisecond of fitting: a frame of few markers is one task
+constexpr int kMaxSplitPixels = 20000;  // a frame: about 200 small pairs
+constexpr std::size_t kBlobsATask =
+    64;  // numerical, time alone: a quarter of a millisecond of fitting: a frame of few markers is one task
 constexpr std::size_t kSplitsATask = 8;   // unswept, as the one above
 constexpr double kShapeMisfit = 0.06;     // of the contrast: what a lone round marker leaves at most
 constexpr double kOfRoundness = 0.6;      // a blob this much less round is not even split: it bounds a window by its blob's area

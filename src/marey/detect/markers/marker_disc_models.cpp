@@ -10,9 +10,9 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr int kMaxSplitSteps = 20;
-constexpr double kSplitSettled = 5e-3;  // px; the next step would be a hundredth of it
-constexpr double kSplitGain = 3e-3;     // of the squares left: a smaller step changes no decision
+constexpr int kMaxSplitSteps = 20;      // numerical: it ends earlier where it settles
+constexpr double kSplitSettled = 5e-3;  // px, numerical: the next step would be a hundredth of it
+constexpr double kSplitGain = 3e-3;     // of the squares left, numerical: a smaller step changes no decision
 
 bool sensible_discs(const DiscsModel& model, double reach) {
   const auto& p = model.p;

@@ -16,9 +16,9 @@
 namespace marey::detect::markers {
 namespace {
 
-constexpr double kMargin = 2.5;  // px beyond the blob
-constexpr int kMaxFitSteps = 12;
-constexpr double kFitSettled = 1e-3;      // px
+constexpr double kMargin = 2.5;           // px beyond the blob
+constexpr int kMaxFitSteps = 12;          // numerical: it ends earlier where it settles
+constexpr double kFitSettled = 1e-3;      // px, numerical: the next step would be a hundredth of it
 constexpr double kWorstMisfit = 0.2;      // of the contrast
 constexpr double kFloorDeviation = 3e-3;  // px; pixels are not quite alike
 

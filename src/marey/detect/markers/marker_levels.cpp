@@ -27,7 +27,7 @@ constexpr double kForget = 0.97;     // of the contrast is left after a frame wi
 constexpr double kUneven = 0.5;      // of what a marker must stand out by: a step in the ground that matters
 constexpr double kUnevenNoise = 5;   // noises: of noise alone seven tenths lie within 2.1
 constexpr double kOfTop = 0.6;       // of their own level: one before something bright stands out by less
-constexpr int kMaxChange = 1023;
+constexpr int kMaxChange = 1023;     // format: of a histogram, in levels of 8 bits or quarters of them
 
 double value_at(const cv::Mat& image, int x, int y) {
   return image.depth() == CV_8U ? image.ptr<std::uint8_t>(y)[x] : image.ptr<std::uint16_t>(y)[x];

@@ -12,7 +12,6 @@
 #include <opencv2/dnn.hpp>
 
 #include "marey/core/error.h"
-#include "marey/detect/network/convolution_layer.h"
 #include "marey/detect/network/half_weights.h"
 #include "marey/detect/network/onnx_graph.h"
 #include "marey/detect/network/own_network.h"
@@ -20,7 +19,7 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr int kMaxThreads = 16;  // each holds the network once
+constexpr int kMaxThreads = 16;  // numerical, memory alone: each holds the network once
 
 /// OpenCV writes to standard error what it also throws: not while this lives.
 class QuietOpenCv {
@@ -63,7 +62,6 @@ struct Inference::Engine::Net {
   std::vector<std::string> outputs;
 
   void load() {
-    use_own_convolutions();
     net = cv::dnn::readNetFromONNX(content.data(), content.size());
     net->setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     outputs = net->getUnconnectedOutLayersNames();

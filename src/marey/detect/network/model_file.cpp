@@ -14,8 +14,8 @@
 namespace marey::detect::network {
 namespace {
 
-constexpr int kMinInput = 16, kMaxInput = 4096;
-constexpr std::size_t kMaxFile = 1 << 16;  // bytes
+constexpr int kMinInput = 16, kMaxInput = 4096;  // px, format of the file (docs/network.md)
+constexpr std::size_t kMaxFile = 1 << 16;        // bytes, format
 
 [[noreturn]] void refuse(const std::string& path, const toml::node* node, const std::string& message_text) {
   throw Error("{}:{}: {}", path, node == nullptr ? 1 : std::max<unsigned>(1, node->source().begin.line), message_text);

@@ -13,7 +13,7 @@
 namespace marey::detect::network {
 
 NetworkCost network_cost(const NetworkDetectorOptions& options, cv::Size image) {
-  constexpr int kRounds = 2;  // the first warms up
+  constexpr int kRounds = 2;  // numerical: the first warms up
   LoadedNetwork network(read_network_model(options.model));
   NetworkCost cost;
   cost.threads = std::max(1, cv::getNumThreads());

@@ -13,7 +13,7 @@ namespace marey::detect::network {
 
 namespace {
 
-constexpr double kGrey = 114;  // what is round an image in its letterbox
+constexpr double kGrey = 114;  // format: the networks were trained with it round an image in its letterbox
 
 /// Where an image lies in the network's: px there = offset + scale · px of the image.
 struct Fitted {

@@ -1,7 +1,7 @@
 #include "marey/pipeline/bodies/solve_skeleton.h"
 
 #include <algorithm>
-#include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 
@@ -10,12 +10,13 @@
 
 #include "marey/core/error.h"
 #include "marey/files/whole_file.h"
+#include "marey/format/input_hash.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
-#include "marey/geometry/median.h"
 #include "marey/pipeline/bodies/gait_markers.h"
+#include "marey/pipeline/bodies/solve_counts.h"
 #include "marey/pipeline/keypoints/keypoint_skeleton.h"
 #include "marey/pipeline/markers/skeleton_in_space.h"
 #include "marey/solve/skeleton/calibrate.h"
@@ -34,85 +35,6 @@ constexpr std::int64_t kAppearanceAtPerson = 2000;  // rows by which it is repor
 bool ends_with_any(const std::string& path, std::initializer_list<std::string_view> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
 }
-
-/// Sums up poses as they come.
-class SolveCounts {
- public:
-  explicit SolveCounts(const Skeleton& skeleton)
-      : skeleton_(&skeleton),
-        markers_(skeleton.markers.size()),
-        deviations_(skeleton.coordinates.size()),
-        observed_(skeleton.coordinates.size()) {}
-
-  void add(const solve::skeleton::SolvedPose& pose) {
-    starts_ += pose.started ? 1 : 0;
-    if (pose.detected == 0) {
-      ++empty_;
-      return;
-    }
-    for (std::size_t j = 0; j < markers_.size(); ++j) {
-      if (!pose.residuals[j]) continue;
-      ++markers_[j].detected;
-      markers_[j].rms_m += *pose.residuals[j] * *pose.residuals[j];
-      markers_[j].worst_m = std::max(markers_[j].worst_m, *pose.residuals[j]);
-    }
-    for (std::size_t c = 0; c < deviations_.size(); ++c) {
-      deviations_[c].push_back(static_cast<float>(pose.deviations[c]));
-      observed_[c] += pose.observed[c] ? 1 : 0;
-    }
-  }
-
-  /// All but the starts is forgotten.
-  void restart() {
-    const std::int64_t starts = starts_;
-    *this = SolveCounts(*skeleton_);
-    starts_ = starts;
-  }
-
-  void write(const SkeletonMotion& motion, SolveSummary& summary) {
-    summary.starts = starts_;
-    summary.empty = empty_;
-    double sum = 0;
-    std::int64_t count = 0;
-    for (std::size_t j = 0; j < markers_.size(); ++j) {
-      SolveSummary::Marker& marker = markers_[j];
-      if (marker.detected == 0) continue;
-      marker.label = skeleton_->markers[j].label;
-      sum += marker.rms_m;
-      count += marker.detected;
-      marker.rms_m = std::sqrt(marker.rms_m / static_cast<double>(marker.detected));
-      summary.worst_m = std::max(summary.worst_m, marker.worst_m);
-      summary.markers.push_back(marker);
-    }
-    summary.skeleton_markers = static_cast<int>(markers_.size());
-    const std::int64_t with_any = std::ssize(motion.rows) - empty_;
-    summary.markers_a_frame = with_any > 0 ? static_cast<double>(count) / static_cast<double>(with_any) : 0;
-    summary.rms_m = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
-    for (std::size_t c = 0; c < skeleton_->coordinates.size(); ++c) {
-      if (skeleton_->coordinates[c].free()) summary.coordinates.push_back(coordinate(c, motion));
-    }
-  }
-
- private:
-  SolveSummary::Coordinate coordinate(std::size_t c, const SkeletonMotion& motion) {
-    SolveSummary::Coordinate stated{.name = skeleton_->coordinates[c].name, .rotations = skeleton_->coordinates[c].rotations};
-    for (std::size_t r = 0; r < motion.rows.size(); ++r) {
-      stated.lowest = r == 0 ? motion.rows[r][c] : std::min(stated.lowest, motion.rows[r][c]);
-      stated.highest = r == 0 ? motion.rows[r][c] : std::max(stated.highest, motion.rows[r][c]);
-    }
-    std::vector<float>& all = deviations_[c];
-    if (all.empty()) return stated;
-    stated.deviation = geometry::median(all);
-    stated.observed = static_cast<double>(observed_[c]) / static_cast<double>(all.size());
-    return stated;
-  }
-
-  const Skeleton* skeleton_;
-  std::vector<SolveSummary::Marker> markers_;
-  std::vector<std::vector<float>> deviations_;
-  std::vector<std::int64_t> observed_;
-  std::int64_t starts_ = 0, empty_ = 0;
-};
 
 /// The frames together: the direction limbs bend, and where it is asked for the second pass. Statements on the motion are then of
 /// the new one.
@@ -152,9 +74,11 @@ std::unique_ptr<format::FileReader> open_markers(const std::string& path, const 
 }
 
 /// The recording again, with its bodies, into a sink.
-void replay_with_bodies(const std::string& recording, const SolvedRecording& solved, const SolveOptions& options, Sink& sink) {
+void replay_with_bodies(const std::string& recording, const SolvedRecording& solved, const SolveOptions& options,
+                        const MadeBy& made_by, Sink& sink) {
   const auto reader = open_markers(recording, options);
   RecordingHeader header = reader->header();
+  header.made_by = made_by;
   header.bodies = bodies_of(solved.skeleton);
   const std::vector<Matrix<3>> rest = rest_of(solved.skeleton);
   sink.begin(header);
@@ -172,20 +96,21 @@ void replay_with_bodies(const std::string& recording, const SolvedRecording& sol
 
 /// Says what the file could not hold of what stands beside the recording's points.
 std::optional<std::string> write_output(const std::string& path, const std::string& recording, const SolvedRecording& solved,
-                                        const SolveOptions& options) {
+                                        const SolveOptions& options, const MadeBy& made_by) {
   if (ends_with_any(path, {".mot", ".sto"})) {
     format::skeleton::write_motion_table(path, solved.skeleton, solved.motion);
     return std::nullopt;
   }
   if (ends_with_any(path, {".glb", ".bvh"})) {
     const auto sink = path.ends_with(".glb") ? format::skeleton::create_glb(path) : format::skeleton::create_bvh(path, options.bvh);
-    replay_with_bodies(recording, solved, options, *sink);
+    replay_with_bodies(recording, solved, options, made_by, *sink);
     return std::nullopt;
   }
   const format::Format& format = format::format_to_write(path, "", Content::space);
   format::WritePlan plan = format::plan_of(*open_markers(recording, options), recording);
+  plan.info.header.made_by = made_by;
   plan.info.header.bodies = bodies_of(solved.skeleton);
-  replay_with_bodies(recording, solved, options, *format::create_recording(path, format, plan));
+  replay_with_bodies(recording, solved, options, made_by, *format::create_recording(path, format, plan));
   return format::next_to_lost(plan.info.next_to, path, format);
 }
 
@@ -389,8 +314,13 @@ SolveSummary solve_skeleton(const std::string& recording, const std::string& ske
   SolveOptions options = given;
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   SolveSummary summary = solved.summary;
+  MadeBy made_by{.program = "marey solve", .options = hooks.options, .inputs = {format::input_of(recording)}};
+  for (const std::string* path : std::initializer_list<const std::string*>{&skeleton, &options.static_trial, &options.motion}) {
+    if (!path->empty()) made_by.inputs.push_back(format::input_of(*path));
+  }
   for (const std::string& path : outputs) {
-    if (auto message_text = write_output(path, recording, solved, options)) summary.warnings.push_back(std::move(*message_text));
+    if (auto message_text = write_output(path, recording, solved, options, made_by))
+      summary.warnings.push_back(std::move(*message_text));
   }
   if (!options.write_skeleton.empty()) write_skeleton_file(options.write_skeleton, solved.skeleton);
   return summary;

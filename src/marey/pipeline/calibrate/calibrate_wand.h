@@ -44,7 +44,7 @@ bool knows_lenses(const Rig& rig);
 struct CalibrateWandOptions {
   std::string observations;  ///< what another program saw of the wand; empty: it is searched for in the cameras' sources
   detect::markers::MarkerOptions markers;
-  marey::calibrate::wand::WandShape wand;
+  marey::calibrate::MarkerLine wand;
   marey::calibrate::wand::WandOptions how;  ///< offsets are searched for unless `synced`, or no person says the cameras' rate
   bool synced = false;                      ///< the cameras' clocks are right
   live::CameraSettings* camera_settings =

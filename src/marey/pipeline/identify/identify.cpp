@@ -46,7 +46,7 @@ void require_unnamed(const EditedTake& take, const std::string& path, const std:
 
 /// The row of the first naming on a path.
 std::size_t naming_on(std::size_t path, const track::ground::offline::GroundIdentities& found,
-                      const std::vector<track::ground::offline::GroundNaming>& namings) {
+                      const std::vector<track::ground::offline::IdentityAnnotation>& namings) {
   for (std::size_t i = 0; i < namings.size(); ++i) {
     if (namings[i].name != found.paths[path].name) continue;
     for (const int s : found.paths[path].segments) {
@@ -60,7 +60,7 @@ std::size_t naming_on(std::size_t path, const track::ground::offline::GroundIden
 
 /// No person is two people at once: where no exchange leads from one naming to another, one of them is wrong.
 void require_one_each(const track::ground::offline::GroundIdentities& found,
-                      const std::vector<track::ground::offline::GroundNaming>& namings, const std::vector<SquadNaming>& given,
+                      const std::vector<track::ground::offline::IdentityAnnotation>& namings, const std::vector<SquadNaming>& given,
                       const std::vector<SquadMember>& squads) {
   const auto together = [&](std::size_t a, std::size_t b) {
     for (const int one : found.paths[a].segments) {

@@ -17,9 +17,9 @@ namespace marey::pipeline::identify {
 namespace {
 
 using format::match::clock_of_seconds;
-using track::ground::offline::GroundNaming;
 using track::ground::offline::GroundSample;
 using track::ground::offline::GroundTracklet;
+using track::ground::offline::IdentityAnnotation;
 
 constexpr double kLost = 1.5;                    // s without being measured, after which who is found may be another
 constexpr double kPositionSigma = 0.15;          // m, of a place that was measured and smoothed
@@ -198,16 +198,16 @@ TrackedPeople tracked_people(const Recording& recording) {
   return people;
 }
 
-std::vector<GroundNaming> namings_of(std::span<const SquadNaming> given, const std::vector<SquadMember>& squads,
-                                     const Recording& recording, const TrackedPeople& people) {
-  std::vector<GroundNaming> namings;
+std::vector<IdentityAnnotation> namings_of(std::span<const SquadNaming> given, const std::vector<SquadMember>& squads,
+                                           const Recording& recording, const TrackedPeople& people) {
+  std::vector<IdentityAnnotation> namings;
   for (const SquadNaming& naming : given) {
     const SquadMember& member = squads[static_cast<std::size_t>(naming.member)];
     require_on_pitch(naming, member);
     const std::int32_t instant = instant_at(naming.time_s, people);
     const TrackColumns* track = recording.find(TrackId{naming.track});
     if (track == nullptr || !track->row_at(instant)) fail_not_there(naming, member, recording, instant);
-    const GroundNaming now{tracklet_at(people, track->id(), instant, naming.where), instant, naming.member};
+    const IdentityAnnotation now{tracklet_at(people, track->id(), instant, naming.where), instant, naming.member};
     for (std::size_t i = 0; i < namings.size(); ++i) {
       if (namings[i].instant != instant || (namings[i].name == now.name) == (given[i].track == naming.track)) continue;
       if (namings[i].name == now.name)

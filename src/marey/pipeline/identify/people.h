@@ -25,8 +25,8 @@ TrackedPeople tracked_people(const Recording& recording);
 
 /// Throws Error, with the row, for a track that is not there at that time (with those that were, the nearest first), one member in
 /// two places at once, two members in one, or a member who was not on the pitch by then.
-std::vector<track::ground::offline::GroundNaming> namings_of(std::span<const SquadNaming> given,
-                                                             const std::vector<SquadMember>& squads, const Recording& recording,
-                                                             const TrackedPeople& people);
+std::vector<track::ground::offline::IdentityAnnotation> namings_of(std::span<const SquadNaming> given,
+                                                                   const std::vector<SquadMember>& squads,
+                                                                   const Recording& recording, const TrackedPeople& people);
 
 }  // namespace marey::pipeline::identify

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "marey/pipeline/jobs/batch.h"
 #include "marey/pipeline/jobs/register.h"
+#include "marey/pipeline/jobs/solve.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
 
@@ -82,6 +84,47 @@ TEST(Table, RefusesAnOptionWithoutTheOneThatItNeeds) {
   EXPECT_EQ(refusal([&] { table.check_needs(); }), "--measurement-lines requires --contour");
   table.find("contour")->set("true");
   EXPECT_EQ(refusal([&] { table.check_needs(); }), "");
+}
+
+TEST(Table, TextsAreAdded) {
+  std::vector<std::string> labels;
+  Table table;
+  table.texts("exclude", labels, "exclude");
+  table.find("exclude")->set("LANK");
+  table.find("exclude")->set("RANK");
+  EXPECT_EQ(labels, (std::vector<std::string>{"LANK", "RANK"}));
+  EXPECT_EQ(table.given().at("exclude"), "LANK,RANK");
+}
+
+TEST(Solve, ResolvesNamesAndRefusesTwoSkeletons) {
+  Solve job{.up = "y", .bvh_up = "z", .bvh_names = "mixamo"};
+  const bodies::SolveOptions options = resolved(job);
+  EXPECT_EQ(options.up, format::UpAxis::y);
+  EXPECT_EQ(options.bvh.up, format::UpAxis::z);
+  EXPECT_FALSE(options.bvh.names.empty());
+  EXPECT_FALSE(resolved(Solve{}).up.has_value());
+  job.skeleton = "person.toml";
+  job.options.static_trial = "standing.c3d";
+  EXPECT_NE(refusal([&] { resolved(job); }).find("--static-trial"), std::string::npos);
+  job.options.static_trial.clear();
+  job.options.marker_set = "cmu-41";
+  EXPECT_NE(refusal([&] { resolved(job); }).find("--marker-set"), std::string::npos);
+}
+
+TEST(Batch, WordsOfATaskAreCanonical) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(canonical_words("track", {"--rate=20.0", "--measured-only", "--json"}),
+            (Words{"--rate", "20", "--measured-only", "--json"}));
+  EXPECT_EQ(canonical_words("track", {"--rate", "2e1", "--measured-only", "--json"}),
+            (Words{"--rate", "20", "--measured-only", "--json"}));
+  EXPECT_EQ(canonical_words("track", {"--targets", "markers", "--threshold", "60.50"}),
+            (Words{"--targets", "markers", "--threshold", "60.5"}));
+  EXPECT_EQ(canonical_words("ground", {"--association", "jpda"}), (Words{"--association", "jpda"}));
+  EXPECT_EQ(canonical_words("measure", {"--rate=x"}), (Words{"--rate=x"}));
+  EXPECT_EQ(canonical_words("track", {"--targets=cars", "--rate=x"}), (Words{"--targets=cars", "--rate=x"}));
+  EXPECT_NE(refusal([] { canonical_words("track", {"--rate", "fast"}); }).find("--rate: "), std::string::npos);
+  EXPECT_NE(refusal([] { canonical_words("ground", {"--association=all"}); }).find("mht"), std::string::npos);
+  EXPECT_NE(refusal([] { canonical_words("track", {"--rate"}); }).find("--rate: has no value"), std::string::npos);
 }
 
 TEST(Jobs, DescribeEachOptionOnceWithHelpAndExistingReferences) {

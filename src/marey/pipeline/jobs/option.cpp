@@ -119,6 +119,13 @@ Option& Table::text(std::string name, std::string& value, std::string help) {
   return text_of(Kind::text, "TEXT", std::move(name), value, std::move(help));
 }
 
+Option& Table::texts(std::string name, std::vector<std::string>& values, std::string help) {
+  return add(std::move(name), Kind::texts, "TEXT", "", std::move(help), [&values](const std::string& text) {
+    values.push_back(text);
+    return fmt::format("{}", fmt::join(values, ","));
+  });
+}
+
 Option& Table::size(std::string name, std::string& value, std::string help) {
   return text_of(Kind::size, "LENGTHxWIDTH", std::move(name), value, std::move(help));
 }

@@ -29,6 +29,7 @@ enum class Kind {
   input_file,
   output_file,
   output_folder,
+  texts,  ///< may be given often, each a text
 };
 
 /// One row.
@@ -73,6 +74,8 @@ class Table {
   Option& whole(std::string name, int& value, const char* unit, int low, int high, std::string help);
   Option& whole(std::string name, std::optional<int>& value, const char* unit, int low, int high, std::string help);
   Option& text(std::string name, std::string& value, std::string help);
+  /// May be given often: each is added.
+  Option& texts(std::string name, std::vector<std::string>& values, std::string help);
   Option& input_file(std::string name, std::string& value, std::string help);
   Option& output_file(std::string name, std::string& value, std::string help);
   Option& output_folder(std::string name, std::string& value, std::string help);

@@ -5,8 +5,10 @@
 
 #include <fmt/ranges.h>
 
+#include "marey/pipeline/jobs/batch.h"
 #include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"
+#include "marey/pipeline/jobs/solve.h"
 #include "marey/pipeline/jobs/track_ground.h"
 #include "marey/pipeline/jobs/track_image.h"
 
@@ -32,7 +34,11 @@ constexpr std::array kJobs{
     NamedJob{"track ground", [](const UseTable& use) { use_table_of(TrackGround{}, use); }},
     NamedJob{"reconstruct markers", [](const UseTable& use) { use_table_of(ReconstructMarkers{}, use); }},
     NamedJob{"reconstruct keypoints", [](const UseTable& use) { use_table_of(ReconstructKeypoints{}, use); }},
+    NamedJob{"solve", [](const UseTable& use) { use_table_of(Solve{}, use); }},
     NamedJob{"live", [](const UseTable& use) { use_table_of(Live{}, use); }},
+    NamedJob{"batch plan", [](const UseTable& use) { use_table_of(PlanBatch{}, use); }},
+    NamedJob{"batch run", [](const UseTable& use) { use_table_of(RunBatch{}, use); }},
+    NamedJob{"batch submit", [](const UseTable& use) { use_table_of(SubmitBatch{}, use); }},
 };
 
 }  // namespace

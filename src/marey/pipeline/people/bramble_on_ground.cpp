@@ -146,7 +146,8 @@ class BrambleOnGround final : public GroundStage {
   }
 
   std::span<const Instant> step(const FrameSet& frames) override {
-    const auto tracks = tracker_.step(frames.time, observe(frames));
+    const std::vector<track::bramble::CameraEvidence> evidence = observe(frames);
+    const auto tracks = tracker_.step(frames.time, evidence);
     if (options_.live) {
       instant_ = live_instant(frames, tracks);
       add_live_boxes(frames, {}, {}, instant_);
@@ -167,7 +168,7 @@ class BrambleOnGround final : public GroundStage {
     auto joined = std::move(recorder_).join(
         options_.join, [this](const Vector<2>& position, Timestamp time) { return scene_.in_view(position, time); });
     people_ = second_pass(std::move(joined), scene_, header_, boxes_, std::move(ball_candidates_), options_, hooks);
-    second_pass_s_ = taken.seconds();
+    people_.linking_s = taken.seconds();
     return ground_instants(people_, scene_, boxes_, time_steps_);
   }
 
@@ -176,7 +177,6 @@ class BrambleOnGround final : public GroundStage {
       const bool searched =
           std::any_of(cameras_.begin(), cameras_.end(), [](const BrambleCamera& camera) { return camera.ball().has_value(); });
       report_people(people_, options_.ball.has_value(), searched, summary);
-      summary.ground->linking_s = second_pass_s_;
     }
     for (const BrambleCamera& camera : cameras_) camera.report(summary);
     explain_empty_result(summary);
@@ -184,16 +184,17 @@ class BrambleOnGround final : public GroundStage {
   }
 
  private:
-  std::span<const track::bramble::CameraEvidence> observe(const FrameSet& frames) {
+  /// Of the cameras that have a frame.
+  std::vector<track::bramble::CameraEvidence> observe(const FrameSet& frames) {
     std::vector<track::bramble::CameraEvidence> all(cameras_.size());
     tbb::parallel_for(std::size_t{0}, cameras_.size(), [&](std::size_t i) {
       if (frames.cameras[i]) all[i] = cameras_[i].observe(frames.cameras[i]->frame);
     });
-    evidence_.clear();
+    std::vector<track::bramble::CameraEvidence> evidence;
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      if (frames.cameras[i]) evidence_.push_back(std::move(all[i]));
+      if (frames.cameras[i]) evidence.push_back(std::move(all[i]));
     }
-    return evidence_;
+    return evidence;
   }
 
   track::ball::BallObservations ball_candidates(const FrameSet& frames) const {
@@ -209,12 +210,10 @@ class BrambleOnGround final : public GroundStage {
 
   track::bramble::BrambleTracker tracker_;
   std::vector<BrambleCamera> cameras_;
-  std::vector<track::bramble::CameraEvidence> evidence_;  // of the cameras that have a frame
   track::ground::offline::GroundRecorder recorder_;
   std::vector<Recording::TimeStep> time_steps_;  // by the header's clock
   std::vector<track::ball::BallObservations> ball_candidates_;
   GroundPeople people_;
-  double second_pass_s_ = 0;
   Instant instant_;
 };
 

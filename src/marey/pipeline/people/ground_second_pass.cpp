@@ -126,7 +126,7 @@ std::unique_ptr<corridor::InstantSource> ground_instants(const GroundPeople& peo
 void report_people(const GroundPeople& people, bool with_ball, bool ball_searched, corridor::Summary& summary) {
   summary.dropped.off_pitch = people.outside;
   corridor::GroundFigures& figures = summary.ground.emplace();
-  figures.links = people.links, figures.uncertain_links = people.uncertain_links;
+  figures.links = people.links, figures.uncertain_links = people.uncertain_links, figures.linking_s = people.linking_s;
   if (!with_ball) return;
   const TrackColumns* ball = people.ball ? people.recording.find(*people.ball) : nullptr;
   figures.ball_samples = ball == nullptr ? 0 : static_cast<std::int64_t>(ball->size());

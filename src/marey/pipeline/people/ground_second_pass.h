@@ -25,6 +25,7 @@ struct GroundPeople {
   std::int64_t links = 0;            ///< of tracks that were lost and continued
   std::int64_t uncertain_links = 0;  ///< of these, with a probability below 0.9
   std::int64_t outside = 0;          ///< people who were never within the area
+  double linking_s = 0;              ///< s that the whole pass took
 };
 
 /// `joined`: the whole recording's tracks on the world's ground. `header` is that of the result; `boxes` are renamed to its tracks.

@@ -10,7 +10,7 @@
 #include "marey/detect/detectors.h"
 #include "marey/pipeline/corridor/run.h"
 #include "marey/pipeline/keypoints/body_keypoints.h"
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 #include "marey/track/offline/join.h"
 #include "marey/track/tracker.h"
 

@@ -15,7 +15,7 @@
 #include "marey/pipeline/corridor/foreground_sink.h"
 #include "marey/pipeline/corridor/run.h"
 #include "marey/pipeline/people/image_stage.h"
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 #include "marey/track/image/clothing.h"
 #include "marey/track/image/view_border.h"
 #include "marey/track/tracker.h"

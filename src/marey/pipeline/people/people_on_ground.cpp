@@ -75,13 +75,12 @@ class RecordedGround final : public DetectedGround {
     const corridor::Stopwatch taken;
     auto joined = tracking_.finish([this](const Vector<2>& position, Timestamp time) { return scene_.in_view(position, time); });
     people_ = second_pass(std::move(joined), scene_, header_, boxes_, std::move(ball_candidates_), options_, hooks);
-    second_pass_s_ = taken.seconds();
+    people_.linking_s = taken.seconds();
     return ground_instants(people_, scene_, boxes_, time_steps_);
   }
 
   void report(corridor::Summary& summary) const override {
     report_people(people_, options_.ball.has_value(), cameras_.search_ball(), summary);
-    summary.ground->linking_s = second_pass_s_;
     cameras_.report(summary);
     explain_empty_result(summary);
     if (options_.learn.agreement) report_agreement(summary);
@@ -101,7 +100,6 @@ class RecordedGround final : public DetectedGround {
   std::vector<Recording::TimeStep> time_steps_;  // by the header's clock
   std::vector<track::ball::BallObservations> ball_candidates_;
   GroundPeople people_;
-  double second_pass_s_ = 0;
 };
 
 /// Each instant reported in its own step: nothing read ahead, nothing improved afterwards.

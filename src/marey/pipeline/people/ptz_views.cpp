@@ -63,7 +63,7 @@ void enter_ptz(GroundViews& views, CameraId id, const RigCamera& camera, const P
 Matrix<2> aim_covariance(const RigCamera& camera, const PtzCamera& ptz, Timestamp time, const Vector<2>& pixel) {
   const PtzCamera::Turn* turn = turn_at(ptz, seconds(time) - camera.offset_s.value_or(0));
   if (turn == nullptr || !turn->heading) return Matrix<2>::Zero();
-  constexpr double kStep = 1e-4;  // rad, and ln of the focal length
+  constexpr double kStep = 1e-4;  // numerical derivative: rad, and ln of the focal length
   const auto ground_at = [&](const Vector<3>& heading) {
     return GroundView(geometry::camera_of(ptz.tripod, geometry::Heading::of(heading), *camera.size)).location(pixel);
   };

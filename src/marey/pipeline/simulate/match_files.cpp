@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxMatch = 24 * 3600;  // s
+constexpr double kMaxMatch = 24 * 3600;  // s, by definition of the domain
 
 /// What one camera of a match yields, in files of its name.
 class MatchCameraFiles {

@@ -21,7 +21,7 @@
 namespace marey::pipeline::simulate {
 namespace {
 
-constexpr double kMaxVideo = 3 * 3600;  // s
+constexpr double kMaxVideo = 3 * 3600;  // s, by definition of the domain
 constexpr double kClickedApart = 0.15;  // rad between frames that are clicked
 constexpr std::size_t kMinClicks = 4;   // that a user would search for in a frame
 

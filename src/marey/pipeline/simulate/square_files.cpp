@@ -19,7 +19,7 @@
 namespace marey::pipeline::simulate {
 namespace {
 
-constexpr double kMaxSquareLength = 24 * 3600;  // s
+constexpr double kMaxSquareLength = 24 * 3600;  // s, by definition of the domain
 
 /// What one camera's detector says, in a file of its name.
 class SquareCameraFile {

@@ -14,11 +14,11 @@ namespace {
 
 using assign::kNoIndex;
 
-constexpr std::size_t kNoneOfThem = std::numeric_limits<std::size_t>::max();
-constexpr double kNever = -1e6;               // nats: no name for this track
-constexpr std::size_t kMinRequested = 3;      // neighbours, below which nothing is said
-constexpr double kMaxLack = 8;                // nats that one distance is off by, at most
-constexpr double kStationary = 0.008;         // m: what varies less is rigid, and has a side
+constexpr std::size_t kNoneOfThem = std::numeric_limits<std::size_t>::max();  // by definition
+constexpr double kNever = -1e6;                                               // nats: no name for this track
+constexpr std::size_t kMinRequested = 3;                                      // neighbours, below which nothing is said
+constexpr double kMaxLack = 8;                                                // nats that one distance is off by, at most
+constexpr double kStationary = 0.008;                                         // m: what varies less is rigid, and has a side
 constexpr double kStationaryLearned = 0.012;  // m, of the distances learned meanwhile if a moving subject taught
 constexpr double kWrongSide = 6;              // nats
 constexpr std::size_t kMaxSides = 6;

@@ -14,11 +14,11 @@
 namespace marey::solve::skeleton {
 namespace {
 
-constexpr double kMinStepSize = 1e-6;       // rad, m
+constexpr double kMinStepSize = 1e-6;       // rad, m; numerical: settled
 constexpr double kWeakPrior = 1;            // 1/rad²
 constexpr double kWeakPriorOfShift = 1e-4;  // 1/m²
-constexpr double kMinS = 1e-6;
-constexpr double kPlainM = 1e6;  // a robust scale beyond which none is
+constexpr double kMinS = 1e-6;              // numerical: instants at one time do not divide by 0
+constexpr double kPlainM = 1e6;             // a robust scale beyond which none is
 
 double geman_mcclure(double squared, double scale) {
   return squared * scale * scale / (scale * scale + squared);

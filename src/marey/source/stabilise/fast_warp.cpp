@@ -10,7 +10,8 @@
 namespace marey::source::stabilise {
 namespace {
 
-constexpr int kStep = 32;  // px; a homography that is nearly the identity is straight within them
+constexpr int kStep =
+    32;  // px, numerical, time against precision: a homography that is nearly the identity is straight within them
 
 /// Bilinear over `count` pixels; the weights begin at fx, fy and grow by sx, sy.
 template <typename Level>

@@ -7,7 +7,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/followed_target.h"
+#include "marey/track/contour/contour_target.h"
 #include "marey/track/contour/line_search.h"
 
 namespace marey::track::contour {

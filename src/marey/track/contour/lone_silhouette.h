@@ -9,7 +9,7 @@
 #include "marey/core/track.h"
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/colour_patch.h"
-#include "marey/track/contour/followed_target.h"
+#include "marey/track/contour/contour_target.h"
 
 namespace marey::track::contour {
 

@@ -6,7 +6,7 @@
 
 #include "marey/core/detection.h"
 #include "marey/core/track.h"
-#include "marey/track/contour/followed_target.h"
+#include "marey/track/contour/contour_target.h"
 
 namespace marey::track::contour {
 

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "marey/core/image.h"
-#include "marey/track/contour/followed_target.h"
+#include "marey/track/contour/contour_target.h"
 #include "marey/track/contour/scene_image.h"
 
 namespace marey::track::contour {

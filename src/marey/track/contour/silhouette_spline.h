@@ -7,7 +7,7 @@
 
 #include "marey/core/detection.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 
 namespace marey::track::contour {
 

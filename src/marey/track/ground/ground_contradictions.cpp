@@ -30,7 +30,7 @@ struct Watcher {
   std::set<Cell> watched;
 };
 
-std::vector<Watcher> watchers(std::span<const GroundInstant> instants, const GroundAgreement& agreement, int cameras) {
+std::vector<Watcher> watchers(std::span<const GroundInstant> instants, const CameraBias& agreement, int cameras) {
   std::vector<Watcher> all(static_cast<std::size_t>(cameras));
   std::vector<std::map<Cell, int>> counts(all.size());
   const std::size_t step = std::max<std::size_t>(1, instants.size() / kMaxCompared);
@@ -77,8 +77,7 @@ struct Appearances {
 
 }  // namespace
 
-std::vector<ComparedCameras> compare_cameras(std::span<const GroundInstant> instants, const GroundAgreement& agreement,
-                                             int cameras) {
+std::vector<ComparedCameras> compare_cameras(std::span<const GroundInstant> instants, const CameraBias& agreement, int cameras) {
   std::vector<ComparedCameras> compared;
   if (cameras < 2 || instants.empty() || seconds(instants.back().time - instants.front().time) < kBriefest) return compared;
   const std::vector<Watcher> all = watchers(instants, agreement, cameras);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "marey/core/ids.h"
-#include "marey/track/ground/ground_agreement.h"
+#include "marey/track/ground/camera_bias.h"
 #include "marey/track/ground/ground_instant.h"
 
 namespace marey::track::ground {
@@ -24,7 +24,6 @@ struct ComparedCameras {
 };
 
 /// All pairs that can be compared, of recordings of a few seconds at least; `agreement`: the known errors.
-std::vector<ComparedCameras> compare_cameras(std::span<const GroundInstant> instants, const GroundAgreement& agreement,
-                                             int cameras);
+std::vector<ComparedCameras> compare_cameras(std::span<const GroundInstant> instants, const CameraBias& agreement, int cameras);
 
 }  // namespace marey::track::ground

@@ -45,7 +45,7 @@ std::vector<GroundInstant> walkers(std::uint64_t seed, const LocatedBy& located)
 /// Pairs that contradict each other, as 10 · first + second.
 std::vector<int> contradicting(const std::vector<GroundInstant>& instants) {
   std::vector<int> pairs;
-  for (const ComparedCameras& one : compare_cameras(instants, GroundAgreement::learn(instants, 3), 3)) {
+  for (const ComparedCameras& one : compare_cameras(instants, CameraBias::learn(instants, 3), 3)) {
     if (one.contradict()) pairs.push_back(10 * number(one.first) + number(one.second));
   }
   return pairs;

@@ -1,7 +1,7 @@
 #include "marey/track/ground/ground_gnn.h"
 
 #include "marey/assign/gated_assignment.h"
-#include "marey/track/ground/ground_follower.h"
+#include "marey/track/ground/tracker_base.h"
 
 namespace marey::track::ground {
 namespace {

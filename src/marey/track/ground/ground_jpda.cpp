@@ -13,7 +13,7 @@
 
 #include "marey/assign/association_marginals.h"
 #include "marey/assign/gated_assignment.h"
-#include "marey/track/ground/ground_follower.h"
+#include "marey/track/ground/tracker_base.h"
 
 namespace marey::track::ground {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "marey/track/ground/ground_walk.h"
+#include "marey/track/ground/motion_statistics.h"
 
 namespace marey::track::ground {
 namespace {
@@ -71,7 +71,7 @@ void GroundRun::learn() {
   std::vector<GroundInstant> all(std::make_move_iterator(kept_.begin()), std::make_move_iterator(kept_.end()));
   kept_.clear();
   if (learn_.agreement) {
-    agreement_ = GroundAgreement::learn(all, views_->cameras());
+    agreement_ = CameraBias::learn(all, views_->cameras());
     compared_ =
         compare_cameras(all, {}, views_->cameras());  // as they are: the learned fields may hide that a camera is off by metres
   }
@@ -109,7 +109,7 @@ void GroundRun::learn_motion() {
     recorder.add(instant.frame, instant.time, tracks, instant.cameras, quick->matches());
   }
   const std::vector<Timestamp> times(recorder.times().begin(), recorder.times().end());
-  const std::optional<GroundWalk> walk = learn_walk(std::move(recorder).tracklets(), times);
+  const std::optional<MotionStatistics> walk = learn_walk(std::move(recorder).tracklets(), times);
   auto* kalman = std::get_if<filter::KalmanOptions>(&options_.filter);
   if (!walk || (kalman != nullptr && walk->acceleration > kCalm * kalman->acceleration_noise)) return;
   if (kalman != nullptr) {

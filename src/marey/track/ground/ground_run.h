@@ -1,6 +1,6 @@
 // Following people over a whole recording: the models learned from its beginning serve all of it.
 //
-// How cameras disagree (ground_agreement.h) and how people move (ground_walk.h) differ from rig to rig and from square to pitch.
+// How cameras disagree (camera_bias.h) and how people move (motion_statistics.h) differ from rig to rig and from square to pitch.
 // Until there is enough to learn from, or the recording ends, instants are kept and a quick tracker goes ahead, for who asks where
 // people are expected; then the stored instants are tracked again by the requested tracker, corrected by the learned models, and
 // so on to the end. Memory: 200 bytes per stored observation; later what the tracker has not decided yet, and 48 bytes a
@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "marey/track/ground/ground_agreement.h"
+#include "marey/track/ground/camera_bias.h"
 #include "marey/track/ground/ground_contradictions.h"
 #include "marey/track/ground/ground_instant.h"
 #include "marey/track/ground/ground_tracker.h"
@@ -64,7 +64,7 @@ class GroundRun {
   std::shared_ptr<const GroundViews> views_;
   OnDecided on_decided_;
   std::unique_ptr<GroundTracker> tracker_;
-  GroundAgreement agreement_;
+  CameraBias agreement_;
   std::vector<ComparedCameras> compared_;
   bool learned_ = false;
   std::size_t kept_observations_ = 0;

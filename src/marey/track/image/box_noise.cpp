@@ -10,7 +10,7 @@ namespace {
 constexpr double kNearSpan = 0.2, kFarSpan = 0.48;  // s
 constexpr double kFirstCount = 300;                 // differences that the first levels count for
 constexpr double kMaxCounted = 4000;                // differences that are remembered
-constexpr double kMinSquare = 1e-8;                 // of a difference
+constexpr double kMinSquare = 1e-8;                 // of a difference, numerical: a power of 0
 constexpr double kOutlier = 9;                      // times the mean
 // Levels beyond these are not people's.
 constexpr double kMinPosition = 0.003, kMaxPosition = 0.15;

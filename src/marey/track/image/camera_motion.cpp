@@ -14,17 +14,17 @@ using geometry::Similarity2;
 // Of these kRateLasts alone was tried at another value (bench/tuning.md); the others are unswept.
 constexpr std::size_t kMaxPeople = 40;
 constexpr std::size_t kMinPeople = 3;
-constexpr double kMaxShift = 0.7;     // sizes; a camera does not turn more between two frames than it was expected to
-constexpr double kSameHeight = 0.25;  // difference of logarithms
-constexpr double kPerfectFit = 20;    // likelihood of a person who is just where expected, beside any other person's
-constexpr double kJolt = 6;           // log-likelihood that a sudden motion costs, at most
-constexpr double kUnrestMemory = 1;   // s over which the camera's unrest is learned
-constexpr double kRateMemory = 0.15;  // s over which its speed is learned
-constexpr double kRateLasts = 2;      // s
-constexpr double kMinUnrest = 1e-6;   // squared sizes
-constexpr double kMaxTurn = 0.03;     // of zoom and roll, between two frames
-constexpr double kMinTurnUnrest = 1e-10;
-constexpr double kCauchy = 4;  // squared deviations at which a person counts half
+constexpr double kMaxShift = 0.7;         // sizes; a camera does not turn more between two frames than it was expected to
+constexpr double kSameHeight = 0.25;      // difference of logarithms
+constexpr double kPerfectFit = 20;        // likelihood of a person who is just where expected, beside any other person's
+constexpr double kJolt = 6;               // log-likelihood that a sudden motion costs, at most
+constexpr double kUnrestMemory = 1;       // s over which the camera's unrest is learned
+constexpr double kRateMemory = 0.15;      // s over which its speed is learned
+constexpr double kRateLasts = 2;          // s
+constexpr double kMinUnrest = 1e-6;       // squared sizes
+constexpr double kMaxTurn = 0.03;         // of zoom and roll, between two frames
+constexpr double kMinTurnUnrest = 1e-10;  // numerical: no division by 0
+constexpr double kCauchy = 4;             // squared deviations at which a person counts half
 constexpr int kFitRounds = 3;
 
 std::vector<Sighting> largest(std::span<const Sighting> all) {

@@ -145,11 +145,10 @@ void cut(GroundTracklet tracklet, const std::vector<std::size_t>& cuts, std::vec
 void cut_near(const std::vector<GroundSample>& samples, const GroundSample& end, std::int32_t instant, double near,
               std::vector<std::size_t>& cuts) {
   if (samples.front().instant >= instant || samples.back().instant < instant) return;
-  const auto next = std::lower_bound(samples.begin(), samples.end(), instant,
-                                     [](const GroundSample& sample, std::int32_t sought) { return sample.instant < sought; });
-  const double unsure = 2 * (next->spread().trace() + end.spread().trace());
-  if ((next->at() - end.at()).squaredNorm() > near * near + unsure) return;
-  cuts.push_back(static_cast<std::size_t>(next - samples.begin()));
+  const std::size_t next = index_from(samples, instant);
+  const double unsure = 2 * (samples[next].spread().trace() + end.spread().trace());
+  if ((samples[next].at() - end.at()).squaredNorm() > near * near + unsure) return;
+  cuts.push_back(next);
 }
 
 /// Whether what both show at the same instants may be one person: near, and seen by different cameras.
@@ -170,10 +169,9 @@ std::optional<std::size_t> handed_over(const GroundTracklet& tracklet, const Gro
   const std::int32_t last = tracklet.samples.back().instant, begin = next.samples.front().instant;
   if (begin > last || begin <= tracklet.samples.front().instant || next.samples.back().instant <= last) return std::nullopt;
   if (seconds(times[last] - times[begin]) > options.overlap) return std::nullopt;
-  const auto from = std::find_if(tracklet.samples.begin(), tracklet.samples.end(),
-                                 [&](const GroundSample& sample) { return sample.instant >= begin; });
-  if (!may_be_one({from, tracklet.samples.end()}, next.samples, options.together)) return std::nullopt;
-  return static_cast<std::size_t>(from - tracklet.samples.begin());
+  const std::size_t from = index_from(tracklet.samples, begin);
+  if (!may_be_one(std::span(tracklet.samples).subspan(from), next.samples, options.together)) return std::nullopt;
+  return from;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 
 #include "marey/core/colour.h"
-#include "marey/track/ground/offline/ground_encounters.h"
+#include "marey/track/ground/offline/encounters.h"
 #include "marey/track/ground/offline/ground_join.h"
 
 namespace marey::track::ground::offline {

@@ -13,7 +13,7 @@ namespace {
 
 using assign::kNoIndex;
 
-constexpr int kMaxRounds = 2000;
+constexpr int kMaxRounds = 2000;         // numerical: the search ends earlier where no move gains
 constexpr double kMinAlternative = -12;  // gain of moves that still count against a decision
 constexpr double kCaution =
     1.5;  // by which gains are divided before they are taken for logarithms of odds: roles are weaker evidence than they seem
@@ -147,7 +147,7 @@ class IdentitySolver {
 }  // namespace
 
 GroundIdentities identify(std::span<const GroundTracklet> tracklets, std::span<const int> teams, std::span<const Timestamp> times,
-                          std::span<const GroundNaming> namings, const GroundIdentityOptions& options) {
+                          std::span<const IdentityAnnotation> namings, const GroundIdentityOptions& options) {
   const SegmentGraph graph = graph_of_segments(tracklets, teams, times, namings, options);
   GroundPaths paths(graph);
   paths.search(kMaxRounds);

@@ -1,6 +1,6 @@
 // Who is who over a whole recording, once people were named: which paths the names go along.
 //
-// A tracker's tracks are cut wherever it may have been wrong: where two met (ground_encounters.h) and where one was lost. Each
+// A tracker's tracks are cut wherever it may have been wrong: where two met (encounters.h) and where one was lost. Each
 // segment between is one person's. How segments follow each other is then decided over the recording at once, so that the sum of
 // logarithms of likelihoods is the greatest that is found:
 //   meetings   two continue as they were tracked, or exchanged: by place, velocity and clothes right before and after;
@@ -20,14 +20,14 @@
 #include <vector>
 
 #include "marey/core/time.h"
-#include "marey/track/ground/offline/ground_encounters.h"
+#include "marey/track/ground/offline/encounters.h"
 #include "marey/track/ground/offline/ground_join.h"
 #include "marey/track/ground/offline/ground_tracklet.h"
 
 namespace marey::track::ground::offline {
 
 /// A person was named.
-struct GroundNaming {
+struct IdentityAnnotation {
   int tracklet = 0;
   std::int32_t instant = 0;
   int name = 0;  ///< in [0, 256)
@@ -81,6 +81,6 @@ struct GroundIdentities {
 /// `tracklets` as tracked, by track and time, those cut off saying so (`goes_on`); `teams` of each: 0, 1, or −1 where it is not
 /// known. `times` by instant. No tracklet is empty.
 GroundIdentities identify(std::span<const GroundTracklet> tracklets, std::span<const int> teams, std::span<const Timestamp> times,
-                          std::span<const GroundNaming> namings, const GroundIdentityOptions& options = {});
+                          std::span<const IdentityAnnotation> namings, const GroundIdentityOptions& options = {});
 
 }  // namespace marey::track::ground::offline

@@ -53,8 +53,8 @@ std::vector<GroundTracklet> six(double swapped, int instants) {
   return tracklets;
 }
 
-std::vector<GroundNaming> named_at_once(int people) {
-  std::vector<GroundNaming> namings;
+std::vector<IdentityAnnotation> named_at_once(int people) {
+  std::vector<IdentityAnnotation> namings;
   for (int identity = 0; identity < people; ++identity) namings.push_back({identity, 5, identity});
   return namings;
 }
@@ -72,7 +72,7 @@ std::string names_of(const GroundIdentities& found, int tracklet, int every_s, i
   return names;
 }
 
-GroundIdentities identify_all(const std::vector<GroundTracklet>& tracklets, const std::vector<GroundNaming>& namings,
+GroundIdentities identify_all(const std::vector<GroundTracklet>& tracklets, const std::vector<IdentityAnnotation>& namings,
                               int instants) {
   return identify(tracklets, std::vector<int>(tracklets.size(), -1), scene_clock(instants), namings);
 }
@@ -113,7 +113,7 @@ TEST(GroundIdentities, ReacquiredPersonKeepsName) {
 TEST(GroundIdentities, SwapsDoublyNamedTrackAtEncounter) {
   // Too little is seen for roles to decide: the given identities decide.
   const int instants = static_cast<int>(80 * kSceneRate);
-  std::vector<GroundNaming> namings = named_at_once(6);
+  std::vector<IdentityAnnotation> namings = named_at_once(6);
   namings.push_back({0, instants - 10, 1});
   const auto found = identify_all(six(60, instants), namings, instants);
   EXPECT_EQ(names_of(found, 0, 10, instants).front(), '0');

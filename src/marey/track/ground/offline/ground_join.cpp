@@ -14,7 +14,7 @@
 #include "marey/assign/successors.h"
 #include "marey/core/colour.h"
 #include "marey/geometry/median.h"
-#include "marey/track/ground/offline/ground_openness.h"
+#include "marey/track/ground/offline/entry_exit_map.h"
 
 namespace marey::track::ground::offline {
 namespace {
@@ -112,10 +112,10 @@ class Chainer {
     }
     std::vector<double> came(n, 0.5), left(n, 0.5);
     for (int turn = 0; turn < kRotations; ++turn) {
-      std::vector<GroundOpenness::Passage> comings, leavings;
+      std::vector<EntryExitMap::EntryExit> comings, leavings;
       for (const std::size_t i : begun) comings.push_back({heads_[i].state.location(), head_at_border_[i] != 0, came[i]});
       for (const std::size_t i : ended) leavings.push_back({tails_[i].state.location(), tail_at_border_[i] != 0, left[i]});
-      const GroundOpenness openness(comings, leavings, recorded);
+      const EntryExitMap openness(comings, leavings, recorded);
       for (std::size_t k = 0; k < begun.size(); ++k) heads_[begun[k]].coming = openness.coming(comings[k]);
       for (std::size_t k = 0; k < ended.size(); ++k) tails_[ended[k]].leaving = openness.leaving(leavings[k]);
       weigh_pairs(came, left);

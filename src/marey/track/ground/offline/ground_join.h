@@ -8,7 +8,7 @@
 //              (place and velocity, both with what is uncertain of them), against a person who comes from anywhere, anyhow;
 //   time       lost people are found again sooner rather than later;
 //   place      where people come into sight and leave it, they are likely to have done so; elsewhere they are not: that is learned
-//              from the recording (ground_openness.h);
+//              from the recording (entry_exit_map.h);
 //   clothes    the two colours are as one person's, against how common such a colour is in this recording.
 // No person is in two places at once, since a chain never goes back in time, and no person is faster than people are. Short gaps
 // are settled first: what that joins is longer, and surer of its velocities and colours, when the long gaps follow. Cost: pairs

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "marey/track/ground/offline/ground_stretches.h"
+#include "marey/track/ground/offline/segment_graph.h"
 
 namespace marey::track::ground::offline {
 
@@ -33,7 +33,6 @@ class GroundPaths {
   int path_of(int node) const { return path_[static_cast<std::size_t>(node)]; }
   int next(int node) const { return next_[static_cast<std::size_t>(node)]; }
   bool swapped(int crossing) const { return swapped_[static_cast<std::size_t>(crossing)]; }
-  RoleSum role_of_path(int path) const { return sums_[static_cast<std::size_t>(path)].back(); }
 
  private:
   /// A segment of a path: its nodes from one position up to another.

@@ -8,7 +8,7 @@
 namespace marey::track::ground::offline {
 namespace {
 
-constexpr std::size_t kMaxKindsTried = 60;  // of colours; more only costs time
+constexpr std::size_t kMaxKindsTried = 60;  // of colours; numerical: more only costs time
 
 class Swapper {
  public:
@@ -22,7 +22,7 @@ class Swapper {
   }
 
   /// Whether the two were exchanged.
-  bool settle(const CloseGroundEncounter& close_encounter) {
+  bool settle(const CloseEncounter& close_encounter) {
     const int a = holder_[close_encounter.a];
     const int b = holder_[close_encounter.b];
     const auto gain = gain_of_swap(samples_of(a), samples_of(b), close_encounter, times_, colours_, options_);
@@ -68,7 +68,7 @@ class Swapper {
 int repair_swaps(std::vector<GroundTracklet>& tracklets, std::span<const Timestamp> times, const SwapRepairOptions& options) {
   Swapper exchanger(tracklets, times, options);
   int swapped = 0;
-  for (const CloseGroundEncounter& close_encounter : find_encounters(tracklets, times, options.near))
+  for (const CloseEncounter& close_encounter : find_encounters(tracklets, times, options.near))
     swapped += exchanger.settle(close_encounter) ? 1 : 0;
   return swapped;
 }

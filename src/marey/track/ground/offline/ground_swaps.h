@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "marey/core/time.h"
-#include "marey/track/ground/offline/ground_encounters.h"
+#include "marey/track/ground/offline/encounters.h"
 #include "marey/track/ground/offline/ground_tracklet.h"
 
 namespace marey::track::ground::offline {

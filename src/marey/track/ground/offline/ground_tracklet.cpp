@@ -6,6 +6,12 @@
 
 namespace marey::track::ground::offline {
 
+std::size_t index_from(std::span<const GroundSample> samples, std::int32_t instant) {
+  const auto found = std::lower_bound(samples.begin(), samples.end(), instant,
+                                      [](const GroundSample& sample, std::int32_t sought) { return sample.instant < sought; });
+  return static_cast<std::size_t>(found - samples.begin());
+}
+
 GroundTracklet split(GroundTracklet& tracklet, std::size_t from) {
   assert(from > 0 && from < tracklet.samples.size() && "both parts hold something");
   GroundTracklet later{.runs = {}, .confirmed = tracklet.confirmed, .samples = {}, .goes_on = tracklet.goes_on};

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "marey/core/appearance.h"
@@ -43,6 +44,9 @@ struct GroundTracklet {
   std::vector<GroundSample> samples;
   bool goes_on = false;  ///< the tracker thought that the next tracklet of the list is the same person; but it was cut off
 };
+
+/// The first sample of this instant or a later one.
+std::size_t index_from(std::span<const GroundSample> samples, std::int32_t instant);
 
 /// Takes from sample `from` on off and gives it back as a tracklet of its own. 0 < from < samples.
 GroundTracklet split(GroundTracklet& tracklet, std::size_t from);

@@ -3,7 +3,7 @@
 // (lone_silhouette.h), a region that several share is divided among them (shared_outlines.h), and an outline that left its target
 // is brought back (outline_report.h). Nothing is allocated once every target has been seen, divided regions apart. Reference:
 // Arnaut & Costa, TECCEN 2(1), 2009.
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/followed_target.h"
+#include "marey/track/contour/contour_target.h"
 #include "marey/track/contour/line_correction.h"
 #include "marey/track/contour/lone_silhouette.h"
 #include "marey/track/contour/outline_report.h"

@@ -23,23 +23,20 @@ struct CloseEncounterOptions {
 };
 
 /// Two who were near each other.
-struct CloseGroundEncounter {
+struct CloseEncounter {
   int a = 0, b = 0;                                           ///< tracklets, a < b
   std::int32_t first = 0, last = 0, nearest = 0;              ///< instants
   double distance = std::numeric_limits<double>::infinity();  ///< at the nearest, m²
 };
 
 /// All meetings, in the order in which the two were nearest. `times` by instant.
-std::vector<CloseGroundEncounter> find_encounters(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
-                                                  double near);
+std::vector<CloseEncounter> find_encounters(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                            double near);
 
 /// Logarithm of how much likelier it is, by place, velocity and clothes before and after, that the two were exchanged in the
 /// meeting than that they were not. Nothing if either was seen too briefly to decide, or would have had to be too fast.
 std::optional<double> gain_of_swap(std::span<const GroundSample> a, std::span<const GroundSample> b,
-                                   const CloseGroundEncounter& close_encounter, std::span<const Timestamp> times,
+                                   const CloseEncounter& close_encounter, std::span<const Timestamp> times,
                                    const GroundColours& colours, const CloseEncounterOptions& options);
-
-/// The first sample of this instant or a later one.
-std::size_t index_from(std::span<const GroundSample> samples, std::int32_t instant);
 
 }  // namespace marey::track::ground::offline

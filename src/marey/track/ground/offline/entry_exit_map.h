@@ -16,24 +16,24 @@
 
 namespace marey::track::ground::offline {
 
-class GroundOpenness {
+class EntryExitMap {
  public:
   /// A place where tracks begin or end, and the probability that the one who it is came or left just there.
-  struct Passage {
+  struct EntryExit {
     Vector<2> location = Vector<2>::Zero();
     bool at_border = false;  ///< of what is in sight
     double probability = 0.5;
   };
 
   /// Knows the prior alone.
-  GroundOpenness() = default;
+  EntryExitMap() = default;
   /// `recorded` in s, positive.
-  GroundOpenness(std::span<const Passage> came, std::span<const Passage> left, double recorded);
+  EntryExitMap(std::span<const EntryExit> came, std::span<const EntryExit> left, double recorded);
 
   /// People who come into sight at the place of one that was learned from, a m² and s: by all others.
-  double coming(const Passage& one) const;
+  double coming(const EntryExit& one) const;
   /// Of those whose tracks end there, the share who left permanently: likewise.
-  double leaving(const Passage& one) const;
+  double leaving(const EntryExit& one) const;
 
  private:
   GroundGrid grid_;

@@ -1,4 +1,4 @@
-#include "marey/track/ground/ground_follower.h"
+#include "marey/track/ground/tracker_base.h"
 
 #include <algorithm>
 #include <cmath>

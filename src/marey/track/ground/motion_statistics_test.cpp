@@ -1,4 +1,4 @@
-#include "marey/track/ground/ground_walk.h"
+#include "marey/track/ground/motion_statistics.h"
 
 #include <cmath>
 
@@ -38,7 +38,7 @@ std::vector<Timestamp> times_of(int instants, double rate) {
   return times;
 }
 
-TEST(GroundWalk, HasteIsMeasuredWhateverTheNoise) {
+TEST(MotionStatistics, HasteIsMeasuredWhateverTheNoise) {
   for (const double noise : {0.1, 0.2}) {
     for (const double acceleration : {0.4, 1.0, 2.6}) {
       const auto walk = learn_walk(walks(acceleration, 2, noise, 60), times_of(60, 2));
@@ -49,7 +49,7 @@ TEST(GroundWalk, HasteIsMeasuredWhateverTheNoise) {
   }
 }
 
-TEST(GroundWalk, FewPlacesTellNothing) {
+TEST(MotionStatistics, FewPlacesTellNothing) {
   EXPECT_FALSE(learn_walk(walks(1, 2, 0.1, 4), times_of(4, 2)));
   EXPECT_FALSE(learn_walk({}, {}));
 }

@@ -1,4 +1,4 @@
-#include "marey/track/ground/ground_agreement.h"
+#include "marey/track/ground/camera_bias.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ std::vector<GroundInstant> scene(std::uint64_t seed, double fraction, double noi
 }
 
 /// Root mean square of what cameras still disagree by over the pitch, m.
-double disagreement(const GroundAgreement& agreement, double fraction) {
+double disagreement(const CameraBias& agreement, double fraction) {
   double sum = 0;
   int count = 0;
   for (double x = 5; x < 100; x += 10) {
@@ -58,17 +58,17 @@ double disagreement(const GroundAgreement& agreement, double fraction) {
   return std::sqrt(sum / count);
 }
 
-TEST(GroundAgreement, SmoothErrorsOfCamerasAreLearned) {
+TEST(CameraBias, SmoothErrorsOfCamerasAreLearned) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const GroundAgreement agreement = GroundAgreement::learn(scene(seed, 1, 0.1), 3);
+    const CameraBias agreement = CameraBias::learn(scene(seed, 1, 0.1), 3);
     ASSERT_TRUE(agreement.learned()) << "seed " << seed;
     EXPECT_GT(disagreement({}, 1), 0.6);
     EXPECT_LT(disagreement(agreement, 1), 0.25) << "seed " << seed;
   }
 }
 
-TEST(GroundAgreement, CamerasThatAgreeAreLeftAlone) {
-  const GroundAgreement agreement = GroundAgreement::learn(scene(4, 0, 0.1), 3);
+TEST(CameraBias, CamerasThatAgreeAreLeftAlone) {
+  const CameraBias agreement = CameraBias::learn(scene(4, 0, 0.1), 3);
   EXPECT_LT(disagreement(agreement, 0), 0.05);
 }
 
@@ -125,46 +125,46 @@ double what_lasts(const Errors& errors) {
   return errors.lasting * std::exp(-0.1 / errors.constant_s / 2);
 }
 
-TEST(GroundAgreement, MeasuresLastingError) {
+TEST(CameraBias, MeasuresLastingError) {
   std::uint64_t seed = 10;
   for (const Errors& errors : {Errors{.lasting = 0.2}, Errors{.noise = 0.3, .lasting = 0.2, .stated = 0.3},
                                Errors{.lasting = 0.25, .stated = 0.4}, Errors{.lasting = 0.2, .along = std::sqrt(2.0)},
                                Errors{.noise = 0.2, .lasting = 0.1, .stated = 0.2}, Errors{.noise = 0.1, .lasting = 0.35}}) {
-    const GroundAgreement agreement = GroundAgreement::learn(walked(++seed, errors), 3);
+    const CameraBias agreement = CameraBias::learn(walked(++seed, errors), 3);
     ASSERT_TRUE(agreement.disagreement());
     EXPECT_NEAR(*agreement.disagreement() / what_lasts(errors), 1, 0.12)
         << "noise " << errors.noise << " lasting " << errors.lasting << " stated " << errors.stated << " along " << errors.along;
   }
 }
 
-TEST(GroundAgreement, FindsLittleLastingErrorInWhiteNoise) {
-  EXPECT_LT(GroundAgreement::learn(walked(20, {.noise = 0.2, .stated = 0.2}), 3).disagreement().value(), 0.08);
+TEST(CameraBias, FindsLittleLastingErrorInWhiteNoise) {
+  EXPECT_LT(CameraBias::learn(walked(20, {.noise = 0.2, .stated = 0.2}), 3).disagreement().value(), 0.08);
 }
 
-double noise_factor(const GroundAgreement& agreement) {
+double noise_factor(const CameraBias& agreement) {
   Observation<2> one;
   one.value = {50, 30};
   one.covariance = Matrix<2>::Identity();
   return std::sqrt(agreement.corrected(one).covariance.value()(0, 0));
 }
 
-TEST(GroundAgreement, NoiseIsMeasuredApartFromWhatLasts) {
-  EXPECT_NEAR(noise_factor(GroundAgreement::learn(walked(5, {.noise = 0.2, .lasting = 0.2, .constant_s = 5}), 3)), 2, 0.25);
+TEST(CameraBias, NoiseIsMeasuredApartFromWhatLasts) {
+  EXPECT_NEAR(noise_factor(CameraBias::learn(walked(5, {.noise = 0.2, .lasting = 0.2, .constant_s = 5}), 3)), 2, 0.25);
 }
 
-TEST(GroundAgreement, StatedNoiseIsLowerBound) {
-  EXPECT_EQ(noise_factor(GroundAgreement::learn(walked(6, {.noise = 0.1, .stated = 0.3}), 3)), 1);
+TEST(CameraBias, StatedNoiseIsLowerBound) {
+  EXPECT_EQ(noise_factor(CameraBias::learn(walked(6, {.noise = 0.1, .stated = 0.3}), 3)), 1);
 }
 
-TEST(GroundAgreement, WithoutTheSamePeopleTwiceAShareIsTakenToLast) {
-  const GroundAgreement agreement = GroundAgreement::learn(scene(7, 0, 0.2), 3);
+TEST(CameraBias, WithoutTheSamePeopleTwiceAShareIsTakenToLast) {
+  const CameraBias agreement = CameraBias::learn(scene(7, 0, 0.2), 3);
   EXPECT_NEAR(noise_factor(agreement), 2, 0.3);
   EXPECT_NEAR(agreement.disagreement().value(), 0.085, 0.01);
 }
 
-TEST(GroundAgreement, SingleCameraHasNoAgreement) {
-  EXPECT_FALSE(GroundAgreement::learn(scene(6, 1, 0.1), 1).learned());
-  EXPECT_FALSE(GroundAgreement::learn({}, 3).learned());
+TEST(CameraBias, SingleCameraHasNoAgreement) {
+  EXPECT_FALSE(CameraBias::learn(scene(6, 1, 0.1), 1).learned());
+  EXPECT_FALSE(CameraBias::learn({}, 3).learned());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "marey/calibrate/grow_rig.h"
+#include "marey/calibrate/incremental_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ double worst_distance(const Growth& growth, const WandScene& scene) {
   return worst;
 }
 
-std::string refusal_of(const std::vector<wand::WandCamera>& cameras, const wand::WandShape& shape, const wand::WandTable& table) {
+std::string refusal_of(const std::vector<StartingCamera>& cameras, const MarkerLine& shape, const MarkTable& table) {
   return wand::refusal([&] { grow_rig(cameras, shape, table, 1); });
 }
 
@@ -72,13 +72,22 @@ TEST(GrowRig, RejectsImpossibleRigWithCause) {
   EXPECT_NE(refusal_of(scene.cameras(), scene.wand, scene.table(2, 0)), "");
 }
 
+TEST(GrowRig, RefusalNamesTheSubject) {
+  WandScene scene(6);
+  GrowthSubject people;
+  people.name = "people";
+  people.more = "let them walk longer";
+  const std::string why = wand::refusal([&] { grow_rig(scene.cameras(), scene.wand, scene.table(2, 0), 1, people); });
+  EXPECT_EQ(why, "no two cameras see people together often enough to begin: let them walk longer");
+}
+
 TEST(GrowRig, SharedViewsAreCountedPairByPair) {
   board::Noise noise(8);
-  wand::WandTable table(50, std::vector<std::optional<wand::Marks>>(3));
+  MarkTable table(50, std::vector<std::optional<Marks>>(3));
   std::vector<std::vector<int>> expected(3, std::vector<int>(3, 0));
   for (auto& row : table) {
     for (auto& view : row) {
-      if (noise.uniform() < 0.6) view = wand::Marks{};
+      if (noise.uniform() < 0.6) view = Marks{};
     }
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t b = 0; b < 3; ++b) expected[a][b] += row[a].has_value() && row[b].has_value();

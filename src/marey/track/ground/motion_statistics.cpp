@@ -1,4 +1,4 @@
-#include "marey/track/ground/ground_walk.h"
+#include "marey/track/ground/motion_statistics.h"
 
 #include <array>
 #include <cmath>
@@ -77,10 +77,10 @@ double log_likelihood(std::span<const PathStep> steps, const filter::KalmanOptio
 
 }  // namespace
 
-std::optional<GroundWalk> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times) {
+std::optional<MotionStatistics> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times) {
   const std::vector<PathStep> steps = path_steps(tracklets, times);
   if (steps.size() < kMinSamples) return std::nullopt;
-  GroundWalk walk;
+  MotionStatistics walk;
   walk.speed = std::max(0.3, speed_of(steps));
   double best = -std::numeric_limits<double>::infinity();
   for (const double acceleration : kAccelerations) {

@@ -1,4 +1,4 @@
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 
 #include <cmath>
 #include <numbers>

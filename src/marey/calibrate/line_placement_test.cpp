@@ -1,22 +1,24 @@
-#include "marey/calibrate/wand/wand_placement.h"
+#include "marey/calibrate/line_placement.h"
 
 #include <gtest/gtest.h>
 
 #include "marey/calibrate/wand/wand_scene_test.h"
 
-namespace marey::calibrate::wand {
+namespace marey::calibrate {
 namespace {
 
-void stand(WandPlacement& placement, const WandScene& scene) {
+using wand::WandScene;
+
+void stand(LinePlacement& placement, const WandScene& scene) {
   for (std::size_t c = 0; c < scene.rig.cameras.size(); ++c) placement.poses[c] = scene.rig.cameras[c].camera_from_world;
 }
 
-TEST(WandPlacement, PlacesTheWandWhereItIs) {
+TEST(LinePlacement, PlacesTheWandWhereItIs) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SCOPED_TRACE(seed);
     WandScene scene(seed);
-    const WandTable table = scene.table(40, 0);
-    WandPlacement placement(scene.cameras(), scene.wand, table);
+    const MarkTable table = scene.table(40, 0);
+    LinePlacement placement(scene.cameras(), scene.wand, table);
     stand(placement, scene);
     placement.position_all();
     for (std::size_t i = 0; i < placement.instants(); ++i) {
@@ -27,13 +29,13 @@ TEST(WandPlacement, PlacesTheWandWhereItIs) {
   }
 }
 
-TEST(WandPlacement, SingleCameraOrSkewRaysLeaveUnlocated) {
+TEST(LinePlacement, SingleCameraOrSkewRaysLeaveUnlocated) {
   WandScene scene(6);
-  WandTable table = scene.table(10, 0);
+  MarkTable table = scene.table(10, 0);
   for (std::size_t c = 1; c < 4; ++c) table[3][c].reset();  // seen by one
   for (std::size_t m = 0; m < 3; ++m) *(*table[5][0])[m] += Vector<2>(0, 300);
   for (std::size_t c = 2; c < 4; ++c) table[5][c].reset();  // two that contradict each other
-  WandPlacement placement(scene.cameras(), scene.wand, table);
+  LinePlacement placement(scene.cameras(), scene.wand, table);
   placement.position_all();
   for (const auto& body : placement.bodies) EXPECT_FALSE(body) << "no camera stands yet";
   stand(placement, scene);
@@ -43,10 +45,10 @@ TEST(WandPlacement, SingleCameraOrSkewRaysLeaveUnlocated) {
   EXPECT_TRUE(placement.bodies[4]);
 }
 
-TEST(WandPlacement, AWandOfAnotherLengthIsNotPlacedButMeasured) {
+TEST(LinePlacement, AWandOfAnotherLengthIsNotPlacedButMeasured) {
   WandScene scene(7);
-  const WandTable table = scene.table(10, 0);
-  WandPlacement placement(scene.cameras(), {{0, 0.18, 0.45}}, table);  // said to be half as long again
+  const MarkTable table = scene.table(10, 0);
+  LinePlacement placement(scene.cameras(), {{0, 0.18, 0.45}}, table);  // said to be half as long again
   stand(placement, scene);
   placement.position_all();
   for (std::size_t i = 0; i < 10; ++i) {
@@ -57,12 +59,12 @@ TEST(WandPlacement, AWandOfAnotherLengthIsNotPlacedButMeasured) {
   }
 }
 
-TEST(WandPlacement, ViewsOfAReversibleWandAreTurnedToFitTheFirst) {
+TEST(LinePlacement, ViewsOfAReversibleWandAreTurnedToFitTheFirst) {
   WandScene scene(8, 4, {{0, 0.15, 0.30}});
-  WandTable table = scene.table(20, 0);
-  const WandTable straight = table;
+  MarkTable table = scene.table(20, 0);
+  const MarkTable straight = table;
   for (std::size_t i = 0; i < table.size(); ++i) std::swap((*table[i][1 + i % 3])[0], (*table[i][1 + i % 3])[2]);
-  WandPlacement placement(scene.cameras(), scene.wand, table);
+  LinePlacement placement(scene.cameras(), scene.wand, table);
   stand(placement, scene);
   placement.position_all();
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -74,10 +76,10 @@ TEST(WandPlacement, ViewsOfAReversibleWandAreTurnedToFitTheFirst) {
   }
 }
 
-TEST(WandPlacement, SigmasAreAnglesAndFollowTheLens) {
+TEST(LinePlacement, SigmasAreAnglesAndFollowTheLens) {
   WandScene scene(9);
-  const WandTable table = scene.table(3, 0);
-  WandPlacement placement(scene.cameras(2), scene.wand, table);
+  const MarkTable table = scene.table(3, 0);
+  LinePlacement placement(scene.cameras(2), scene.wand, table);
   EXPECT_NEAR(placement.sigma(0), 2 / 1100.0, 1e-12);
   const Vector<3> before = placement.bearings(0, 0)[0];
   placement.set_lens(0, geometry::BrownLens{{2200, 2200}, {639.5, 511.5}, {}});
@@ -86,4 +88,4 @@ TEST(WandPlacement, SigmasAreAnglesAndFollowTheLens) {
 }
 
 }  // namespace
-}  // namespace marey::calibrate::wand
+}  // namespace marey::calibrate

@@ -1,4 +1,4 @@
-#include "marey/track/ground/ground_agreement.h"
+#include "marey/track/ground/camera_bias.h"
 
 #include <algorithm>
 #include <array>
@@ -329,8 +329,8 @@ LastingDisagreement lasting_of(const Agreeing& agreeing, int cameras) {
 
 }  // namespace
 
-GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, int cameras) {
-  GroundAgreement agreement;
+CameraBias CameraBias::learn(std::span<const GroundInstant> instants, int cameras) {
+  CameraBias agreement;
   if (cameras < 2 || instants.empty()) return agreement;
   const Shots shots = shots_of(instants, cameras);
   Agreeing agreeing(shots, cameras);
@@ -346,7 +346,7 @@ GroundAgreement GroundAgreement::learn(std::span<const GroundInstant> instants, 
   return agreement;
 }
 
-Observation<2> GroundAgreement::corrected(Observation<2> detected) const {
+Observation<2> CameraBias::corrected(Observation<2> detected) const {
   const auto camera = static_cast<std::size_t>(number(detected.camera));
   if (!bias_.empty()) detected.value -= bias_[camera].at(detected.value);
   if (!noise_.empty()) *detected.covariance *= noise_[camera] * noise_[camera];

@@ -1,4 +1,4 @@
-#include "marey/calibrate/grow_rig.h"
+#include "marey/calibrate/incremental_rig.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,12 +19,12 @@ constexpr double kGoodParallax = 0.15;   // rad, from which on more does not cou
 constexpr double kMinParallax = 0.01;    // rad
 constexpr double kProportionOff = 0.05;  // by which the middle marker's share of the length may differ from the wand's
 
-class Grower {
+class IncrementalRig {
  public:
-  Grower(const std::vector<wand::WandCamera>& cameras, const wand::WandShape& wand, const wand::WandTable& table,
-         std::uint64_t seed)
-      : at_(cameras, wand, table), markers_(wand.markers()), seed_(seed) {
-    for (const wand::WandCamera& camera : cameras) known_.push_back(camera.lens);
+  IncrementalRig(const std::vector<StartingCamera>& cameras, const MarkerLine& line, const MarkTable& table, std::uint64_t seed,
+                 const GrowthSubject& subject)
+      : at_(cameras, line, table), markers_(line.markers()), seed_(seed), subject_(subject) {
+    for (const StartingCamera& camera : cameras) known_.push_back(camera.lens);
   }
 
   Growth run() {
@@ -62,14 +62,15 @@ class Grower {
     if (cause_.empty()) cause_ = std::move(cause);
   }
 
-  wand::WandPlacement at_;
+  LinePlacement at_;
   std::vector<geometry::Lens> known_;  // as they were given or guessed
   std::size_t markers_;
   std::uint64_t seed_;
+  GrowthSubject subject_;
   std::string cause_;  // why the first of the pairs that failed did
 };
 
-std::optional<Grower::Start> Grower::choose() {
+std::optional<IncrementalRig::Start> IncrementalRig::choose() {
   std::vector<Start> pairs;
   for (std::size_t a = 0; a < at_.cameras(); ++a) {
     for (std::size_t b = a + 1; b < at_.cameras(); ++b) {
@@ -90,10 +91,10 @@ std::optional<Grower::Start> Grower::choose() {
   return best;
 }
 
-bool Grower::relate_pair(Start& pair) {
-  std::vector<WandPair> sights;
+bool IncrementalRig::relate_pair(Start& pair) {
+  std::vector<MarkPair> sights;
   for (const std::size_t i : pair.instants) sights.push_back({at_.bearings(i, pair.a), at_.bearings(i, pair.b)});
-  const auto views = relate(sights, {markers_, at_.wand().reversible(), at_.sigma(pair.a), at_.sigma(pair.b), seed_});
+  const auto views = relate(sights, {markers_, at_.line().reversible(), at_.sigma(pair.a), at_.sigma(pair.b), seed_});
   const std::string &a = at_.camera(pair.a).name, &b = at_.camera(pair.b).name;
   if (!views || views->fraction < 0.5) {
     blame(
@@ -110,10 +111,7 @@ bool Grower::relate_pair(Start& pair) {
     return false;
   }
   if (views->plane) {
-    blame(
-        fmt::format("the wand was moved in a plane as cameras \"{}\" and \"{}\" saw it: move it through the whole volume, up and "
-                    "down, near and far, and turn it",
-                    a, b));
+    blame(fmt::format("cameras \"{}\" and \"{}\" saw {} in a plane: {}", a, b, subject_.name, subject_.everywhere));
     return false;
   }
   pair.views = *views;
@@ -121,10 +119,12 @@ bool Grower::relate_pair(Start& pair) {
   return true;
 }
 
-void Grower::begin() {
+void IncrementalRig::begin() {
   const auto start = choose();
   if (!start)
-    throw Error("{}", cause_.empty() ? "no two cameras see the wand together often enough to begin: wave it longer" : cause_);
+    throw Error("{}", !cause_.empty()
+                          ? cause_
+                          : fmt::format("no two cameras see {} together often enough to begin: {}", subject_.name, subject_.more));
   at_.poses[start->a] = Rigid3{};
   at_.poses[start->b] = start->views.b_from_a;
   if (markers_ > 1) at_.poses[start->b]->translation *= metres_per_baseline(*start);
@@ -135,7 +135,7 @@ void Grower::begin() {
   adjust_all(bundle, 2);
 }
 
-double Grower::metres_per_baseline(const Start& start) {
+double IncrementalRig::metres_per_baseline(const Start& start) {
   std::vector<double> lengths, fractions;
   for (std::size_t k = 0; k < start.instants.size(); ++k) {
     const std::size_t i = start.instants[k];
@@ -145,15 +145,15 @@ double Grower::metres_per_baseline(const Start& start) {
     if (markers_ == 3) fractions.push_back(((*locations)[1] - (*locations)[0]).norm() / lengths.back());
   }
   if (lengths.size() < kMinShared / 2) {
-    throw Error("{}", "too few views of the wand fit together: wave it longer, where the cameras see it");
+    throw Error("too few views of {} fit together: {}, where the cameras see it", subject_.name, subject_.more);
   }
   require_proportions(fractions);
-  return at_.wand().length() / geometry::median(lengths);
+  return at_.line().length() / geometry::median(lengths);
 }
 
-void Grower::require_proportions(const std::vector<double>& fractions) const {
-  if (fractions.empty() || at_.wand().reversible()) return;
-  const double detected = geometry::median(std::vector(fractions)), stated = at_.wand().distances[1] / at_.wand().distances[2];
+void IncrementalRig::require_proportions(const std::vector<double>& fractions) const {
+  if (fractions.empty() || at_.line().reversible()) return;
+  const double detected = geometry::median(std::vector(fractions)), stated = at_.line().distances[1] / at_.line().distances[2];
   if (std::abs(detected - stated) <= kProportionOff) return;
   throw Error(
       "the wand's middle marker lies at {:.0f} % of its length by what the cameras see, and at {:.0f} % by --wand: give the "
@@ -162,7 +162,7 @@ void Grower::require_proportions(const std::vector<double>& fractions) const {
 }
 
 /// The camera not yet standing that sees most of what is placed, set by it.
-void Grower::add_next() {
+void IncrementalRig::add_next() {
   std::vector<std::pair<std::size_t, std::size_t>> candidates;  // how many, camera
   for (std::size_t c = 0; c < at_.cameras(); ++c) {
     if (at_.poses[c]) continue;
@@ -180,33 +180,33 @@ void Grower::add_next() {
   }
   const auto& [count, c] = candidates.front();
   throw Error(
-      "camera \"{}\" cannot be set beside the others: {} of the wand's places that the others fix are seen by it{}; wave the "
-      "wand where it and another camera both see it, and check its lens and that it was started with the others",
-      at_.camera(c).name, count, count < kMinShared ? "" : ", and they do not fit together");
+      "camera \"{}\" cannot be set beside the others: {} of the places of {} that the others fix are seen by it{}; {}, and check "
+      "its lens and that it was started with the others",
+      at_.camera(c).name, count, subject_.name, count < kMinShared ? "" : ", and they do not fit together", subject_.shared);
 }
 
-bool Grower::set_camera(std::size_t c) {
-  std::vector<WandObservation> wands;
+bool IncrementalRig::set_camera(std::size_t c) {
+  std::vector<MarkObservation> seen;
   std::vector<std::size_t> instants;
   for (std::size_t i = 0; i < at_.instants(); ++i) {
     if (!at_.bodies[i] || !at_.observes(i, c)) continue;
-    WandObservation wand{{}, at_.bearings(i, c)};
-    for (std::size_t m = 0; m < markers_; ++m) wand.world[m] = at_.marker_at(*at_.bodies[i], m);
-    wands.push_back(wand);
+    MarkObservation one{{}, at_.bearings(i, c)};
+    for (std::size_t m = 0; m < markers_; ++m) one.world[m] = at_.marker_at(*at_.bodies[i], m);
+    seen.push_back(one);
     instants.push_back(i);
   }
-  const auto found = resect(wands, {markers_, at_.wand().reversible(), at_.sigma(c), seed_});
-  if (!found || 2 * found->inliers < wands.size() || found->inliers < kMinShared / 2) return false;
+  const auto found = resect(seen, {markers_, at_.line().reversible(), at_.sigma(c), seed_});
+  if (!found || 2 * found->inliers < seen.size() || found->inliers < kMinShared / 2) return false;
   at_.poses[c] = found->camera_from_world;
   for (std::size_t k = 0; k < instants.size(); ++k) at_.rotated[instants[k]][c] = found->rotated[k];
   return true;
 }
 
 /// What stands and is placed, as a bundle; gives each camera's place in it, -1 for none.
-std::vector<int> Grower::fill(bundle::Bundle& bundle) const {
+std::vector<int> IncrementalRig::fill(bundle::Bundle& bundle) const {
   std::vector<int> place_in_bundle(at_.cameras(), -1);
   const bool lens_shows = markers_ > 1 || standing() > 2;
-  bundle.wand = at_.wand().distances;
+  bundle.wand = at_.line().distances;
   for (std::size_t c = 0; c < at_.cameras(); ++c) {
     if (!at_.poses[c]) continue;
     place_in_bundle[c] = static_cast<int>(bundle.cameras.size());
@@ -227,7 +227,7 @@ std::vector<int> Grower::fill(bundle::Bundle& bundle) const {
 }
 
 /// Adjusts the static cameras and what is placed, and takes both over.
-bundle::BundleResult Grower::adjust_all(bundle::Bundle& bundle, int rounds) {
+bundle::BundleResult IncrementalRig::adjust_all(bundle::Bundle& bundle, int rounds) {
   const std::vector<int> place_in_bundle = fill(bundle);
   bundle::BundleOptions options;
   options.noise_px = 0;
@@ -250,12 +250,12 @@ bundle::BundleResult Grower::adjust_all(bundle::Bundle& bundle, int rounds) {
 
 }  // namespace
 
-Growth grow_rig(const std::vector<wand::WandCamera>& cameras, const wand::WandShape& wand, const wand::WandTable& table,
-                std::uint64_t seed) {
-  return Grower(cameras, wand, table, seed).run();
+Growth grow_rig(const std::vector<StartingCamera>& cameras, const MarkerLine& line, const MarkTable& table, std::uint64_t seed,
+                const GrowthSubject& subject) {
+  return IncrementalRig(cameras, line, table, seed, subject).run();
 }
 
-std::vector<std::vector<int>> shared_views(const wand::WandTable& table, std::size_t cameras) {
+std::vector<std::vector<int>> shared_views(const MarkTable& table, std::size_t cameras) {
   std::vector<std::vector<int>> shared(cameras, std::vector<int>(cameras, 0));
   for (const auto& row : table) {
     for (std::size_t a = 0; a < cameras; ++a) {

@@ -25,12 +25,12 @@
 
 namespace marey::track::ground {
 
-class GroundAgreement {
+class CameraBias {
  public:
-  GroundAgreement() = default;
+  CameraBias() = default;
 
   /// From what `cameras` cameras saw. Nothing is learned from fewer than some hundred pairs.
-  static GroundAgreement learn(std::span<const GroundInstant> instants, int cameras);
+  static CameraBias learn(std::span<const GroundInstant> instants, int cameras);
 
   /// Whether cameras were found to disagree, or to agree, at all.
   bool learned() const { return !noise_.empty(); }

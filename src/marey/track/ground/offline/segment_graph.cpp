@@ -1,4 +1,4 @@
-#include "marey/track/ground/offline/ground_stretches.h"
+#include "marey/track/ground/offline/segment_graph.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,11 +22,11 @@ class GraphOfSegments {
                   const GroundIdentityOptions& options)
       : tracklets_(tracklets), teams_(teams), times_(times), options_(options) {}
 
-  SegmentGraph graph(std::span<const GroundNaming> namings) {
+  SegmentGraph graph(std::span<const IdentityAnnotation> namings) {
     cut(find_encounters(tracklets_, times_, options_.close_encounter.near), namings);
     find_middles();
     for (SegmentGraph::Node& node : graph_.nodes) node.role = role_of(node);
-    for (const GroundNaming& naming : namings)
+    for (const IdentityAnnotation& naming : namings)
       node_at(naming.tracklet, naming.instant).names.set(static_cast<std::size_t>(naming.name));
     find_gaps();
     return std::move(graph_);
@@ -39,7 +39,7 @@ class GraphOfSegments {
     int close_encounter = assign::kNoIndex;  // or two names that nothing lies between
   };
 
-  void cut(const std::vector<CloseGroundEncounter>& close_encounters, std::span<const GroundNaming> namings) {
+  void cut(const std::vector<CloseEncounter>& close_encounters, std::span<const IdentityAnnotation> namings) {
     std::vector<std::vector<Cut>> cuts(tracklets_.size());
     for (std::size_t m = 0; m < close_encounters.size(); ++m) {
       for (const int tracklet : {close_encounters[m].a, close_encounters[m].b})
@@ -51,13 +51,13 @@ class GraphOfSegments {
   }
 
   /// Where nothing lies between two names of a tracklet, it is cut half-way.
-  static void cut_between_names(std::vector<std::vector<Cut>>& cuts, std::span<const GroundNaming> namings) {
-    std::vector<GroundNaming> sorted(namings.begin(), namings.end());
-    std::sort(sorted.begin(), sorted.end(), [](const GroundNaming& a, const GroundNaming& b) {
+  static void cut_between_names(std::vector<std::vector<Cut>>& cuts, std::span<const IdentityAnnotation> namings) {
+    std::vector<IdentityAnnotation> sorted(namings.begin(), namings.end());
+    std::sort(sorted.begin(), sorted.end(), [](const IdentityAnnotation& a, const IdentityAnnotation& b) {
       return std::pair(a.tracklet, a.instant) < std::pair(b.tracklet, b.instant);
     });
     for (std::size_t i = 1; i < sorted.size(); ++i) {
-      const GroundNaming &one = sorted[i - 1], &other = sorted[i];
+      const IdentityAnnotation &one = sorted[i - 1], &other = sorted[i];
       if (one.tracklet != other.tracklet || one.name == other.name) continue;
       std::vector<Cut>& here = cuts[static_cast<std::size_t>(one.tracklet)];
       const auto between = [&](const Cut& c) { return one.instant < c.from && c.from <= other.instant; };
@@ -68,7 +68,7 @@ class GraphOfSegments {
     }
   }
 
-  void add_nodes(int tracklet, const std::vector<Cut>& cuts, const std::vector<CloseGroundEncounter>& close_encounters) {
+  void add_nodes(int tracklet, const std::vector<Cut>& cuts, const std::vector<CloseEncounter>& close_encounters) {
     const std::vector<GroundSample>& samples = tracklets_[static_cast<std::size_t>(tracklet)].samples;
     std::int32_t from = samples.front().instant;
     first_.push_back(static_cast<int>(graph_.nodes.size()));
@@ -88,7 +88,7 @@ class GraphOfSegments {
     last_.push_back(static_cast<int>(graph_.nodes.size()) - 1);
   }
 
-  double log_odds_of(const CloseGroundEncounter& close_encounter) const {
+  double log_odds_of(const CloseEncounter& close_encounter) const {
     const auto gain = gain_of_swap(tracklets_[static_cast<std::size_t>(close_encounter.a)].samples,
                                    tracklets_[static_cast<std::size_t>(close_encounter.b)].samples, close_encounter, times_,
                                    colours_, options_.close_encounter);
@@ -164,7 +164,7 @@ class GraphOfSegments {
 }  // namespace
 
 SegmentGraph graph_of_segments(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
-                               std::span<const Timestamp> times, std::span<const GroundNaming> namings,
+                               std::span<const Timestamp> times, std::span<const IdentityAnnotation> namings,
                                const GroundIdentityOptions& options) {
   return GraphOfSegments(tracklets, teams, times, options).graph(namings);
 }

@@ -1,4 +1,4 @@
-#include "marey/track/ground/offline/ground_encounters.h"
+#include "marey/track/ground/offline/encounters.h"
 
 #include <algorithm>
 #include <map>
@@ -25,7 +25,7 @@ class EncounterDetector {
   EncounterDetector(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times, double near)
       : tracklets_(tracklets), times_(times), near_(near) {}
 
-  std::vector<CloseGroundEncounter> close_encounters() {
+  std::vector<CloseEncounter> close_encounters() {
     std::vector<int> by_start(tracklets_.size());
     std::iota(by_start.begin(), by_start.end(), 0);
     const auto start = [&](int i) { return tracklets_[i].samples.front().instant; };
@@ -36,7 +36,7 @@ class EncounterDetector {
       inspect(now);
     }
     for (auto& [pair, close_encounter] : open_) found_.push_back(close_encounter);
-    std::sort(found_.begin(), found_.end(), [](const CloseGroundEncounter& x, const CloseGroundEncounter& y) {
+    std::sort(found_.begin(), found_.end(), [](const CloseEncounter& x, const CloseEncounter& y) {
       return std::tie(x.nearest, x.a, x.b) < std::tie(y.nearest, y.a, y.b);
     });
     return std::move(found_);
@@ -72,8 +72,7 @@ class EncounterDetector {
       open_.erase(open);
       return;
     }
-    CloseGroundEncounter& close_encounter =
-        open_.try_emplace(key, CloseGroundEncounter{x.tracklet, y.tracklet, now, now, now}).first->second;
+    CloseEncounter& close_encounter = open_.try_emplace(key, CloseEncounter{x.tracklet, y.tracklet, now, now, now}).first->second;
     close_encounter.last = now;
     const double distance = (a.at() - b.at()).squaredNorm();
     if (distance >= close_encounter.distance) return;
@@ -85,14 +84,14 @@ class EncounterDetector {
   std::span<const Timestamp> times_;
   double near_;
   std::vector<Present> present_, detected_;  // `next` of who is seen is the sample of now
-  std::map<std::pair<int, int>, CloseGroundEncounter> open_;
-  std::vector<CloseGroundEncounter> found_;
+  std::map<std::pair<int, int>, CloseEncounter> open_;
+  std::vector<CloseEncounter> found_;
 };
 
 /// What lies before and after a meeting.
 class Parting {
  public:
-  Parting(const CloseGroundEncounter& close_encounter, std::span<const Timestamp> times, const GroundColours& colours,
+  Parting(const CloseEncounter& close_encounter, std::span<const Timestamp> times, const GroundColours& colours,
           const CloseEncounterOptions& options)
       : close_encounter_(close_encounter), times_(times), colours_(colours), options_(options) {}
 
@@ -112,27 +111,25 @@ class Parting {
   std::optional<GroundEnd> before(std::span<const GroundSample> all) const {
     const auto samples = all.first(index_from(all, close_encounter_.first));
     if (lasting(samples) < min_seconds) return std::nullopt;
-    GroundEnd end;
-    end.time = times_[samples.back().instant];
-    end.state = last_state(samples, times_, options_.motion, options_.evaluated_by);
-    const Timestamp from = end.time - duration_from_seconds(colour_seconds);
-    const auto first =
-        std::partition_point(samples.begin(), samples.end(), [&](const GroundSample& s) { return times_[s.instant] < from; });
-    end.appearance = appearance_of(samples.subspan(static_cast<std::size_t>(first - samples.begin())));
+    GroundEnd end{.time = times_[samples.back().instant],
+                  .state = last_state(samples, times_, options_.motion, options_.evaluated_by)};
+    end.appearance = appearance_of(samples.subspan(index_at(samples, end.time - duration_from_seconds(colour_seconds))));
     return end;
   }
 
   std::optional<GroundEnd> after(std::span<const GroundSample> all) const {
     const auto samples = all.subspan(index_from(all, close_encounter_.last + 1));
     if (lasting(samples) < min_seconds) return std::nullopt;
-    GroundEnd end;
-    end.time = times_[samples.front().instant];
-    end.state = first_state(samples, times_, options_.motion, options_.evaluated_by);
-    const Timestamp until = end.time + duration_from_seconds(colour_seconds);
-    const auto last =
-        std::partition_point(samples.begin(), samples.end(), [&](const GroundSample& s) { return times_[s.instant] < until; });
-    end.appearance = appearance_of(samples.first(static_cast<std::size_t>(last - samples.begin())));
+    GroundEnd end{.time = times_[samples.front().instant],
+                  .state = first_state(samples, times_, options_.motion, options_.evaluated_by)};
+    end.appearance = appearance_of(samples.first(index_at(samples, end.time + duration_from_seconds(colour_seconds))));
     return end;
+  }
+
+  /// The first sample of this time or later.
+  std::size_t index_at(std::span<const GroundSample> samples, Timestamp time) const {
+    const auto earlier = [&](const GroundSample& sample) { return times_[sample.instant] < time; };
+    return static_cast<std::size_t>(std::partition_point(samples.begin(), samples.end(), earlier) - samples.begin());
   }
 
   double fits(const GroundEnd& tail, const GroundEnd& head) const {
@@ -144,7 +141,7 @@ class Parting {
     return method > options_.max_speed * seconds(head.time - tail.time) + options_.near;
   }
 
-  const CloseGroundEncounter& close_encounter_;
+  const CloseEncounter& close_encounter_;
   std::span<const Timestamp> times_;
   const GroundColours& colours_;
   const CloseEncounterOptions& options_;
@@ -152,19 +149,13 @@ class Parting {
 
 }  // namespace
 
-std::size_t index_from(std::span<const GroundSample> samples, std::int32_t instant) {
-  const auto found = std::lower_bound(samples.begin(), samples.end(), instant,
-                                      [](const GroundSample& sample, std::int32_t sought) { return sample.instant < sought; });
-  return static_cast<std::size_t>(found - samples.begin());
-}
-
-std::vector<CloseGroundEncounter> find_encounters(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
-                                                  double near) {
+std::vector<CloseEncounter> find_encounters(std::span<const GroundTracklet> tracklets, std::span<const Timestamp> times,
+                                            double near) {
   return EncounterDetector(tracklets, times, near).close_encounters();
 }
 
 std::optional<double> gain_of_swap(std::span<const GroundSample> a, std::span<const GroundSample> b,
-                                   const CloseGroundEncounter& close_encounter, std::span<const Timestamp> times,
+                                   const CloseEncounter& close_encounter, std::span<const Timestamp> times,
                                    const GroundColours& colours, const CloseEncounterOptions& options) {
   return Parting(close_encounter, times, colours, options).gain_of_swap(a, b);
 }

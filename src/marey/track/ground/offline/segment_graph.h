@@ -43,7 +43,7 @@ struct SegmentGraph {
 };
 
 SegmentGraph graph_of_segments(std::span<const GroundTracklet> tracklets, std::span<const int> teams,
-                               std::span<const Timestamp> times, std::span<const GroundNaming> namings,
+                               std::span<const Timestamp> times, std::span<const IdentityAnnotation> namings,
                                const GroundIdentityOptions& options);
 
 }  // namespace marey::track::ground::offline

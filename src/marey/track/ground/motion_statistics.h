@@ -13,12 +13,12 @@
 
 namespace marey::track::ground {
 
-struct GroundWalk {
+struct MotionStatistics {
   double acceleration = 2;  ///< velocity strays by this each √second, m/s^1.5
   double speed = 3;         ///< root mean square of each component of the velocity, m/s
 };
 
 /// Nothing if the tracks are too few or too short. `times` by instant.
-std::optional<GroundWalk> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times);
+std::optional<MotionStatistics> learn_walk(std::span<const offline::GroundTracklet> tracklets, std::span<const Timestamp> times);
 
 }  // namespace marey::track::ground

@@ -1,4 +1,4 @@
-#include "marey/track/ground/offline/ground_openness.h"
+#include "marey/track/ground/offline/entry_exit_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,32 +20,32 @@ constexpr double kReach = 1.5;          // m, standard deviation: as far round a
 constexpr double kPassageCell = 0.75;   // m
 constexpr double kFewPassages = 0.002;  // of the passages lie beyond the grid on each side
 
-GroundGrid grid_over(std::span<const GroundOpenness::Passage> came, std::span<const GroundOpenness::Passage> left) {
+GroundGrid grid_over(std::span<const EntryExitMap::EntryExit> came, std::span<const EntryExitMap::EntryExit> left) {
   std::vector<double> x, y;
   for (const auto& passages : {came, left}) {
-    for (const GroundOpenness::Passage& one : passages) x.push_back(one.location.x()), y.push_back(one.location.y());
+    for (const EntryExitMap::EntryExit& one : passages) x.push_back(one.location.x()), y.push_back(one.location.y());
   }
   if (x.empty()) return {};
   return GroundGrid::over({geometry::quantile(x, kFewPassages), geometry::quantile(y, kFewPassages)},
                           {geometry::quantile(x, 1 - kFewPassages), geometry::quantile(y, 1 - kFewPassages)}, kPassageCell);
 }
 
-std::vector<double> sums_over(const GroundGrid& grid, std::span<const GroundOpenness::Passage> passages, bool weighted) {
+std::vector<double> sums_over(const GroundGrid& grid, std::span<const EntryExitMap::EntryExit> passages, bool weighted) {
   std::vector<double> sums(grid.size(), 0);
-  for (const GroundOpenness::Passage& one : passages) sums[grid.index(one.location)] += weighted ? one.probability : 1;
+  for (const EntryExitMap::EntryExit& one : passages) sums[grid.index(one.location)] += weighted ? one.probability : 1;
   return spread_over(grid, sums, std::max(kReach, grid.cell));
 }
 
 }  // namespace
 
-GroundOpenness::GroundOpenness(std::span<const Passage> came, std::span<const Passage> left, double recorded)
+EntryExitMap::EntryExitMap(std::span<const EntryExit> came, std::span<const EntryExit> left, double recorded)
     : grid_(grid_over(came, left)),
       came_(sums_over(grid_, came, true)),
       left_(sums_over(grid_, left, true)),
       ended_(sums_over(grid_, left, false)),
       recorded_(recorded) {}
 
-double GroundOpenness::coming(const Passage& one) const {
+double EntryExitMap::coming(const EntryExit& one) const {
   const double prior = one.at_border ? kComingAtBorder : kComingInside;
   if (came_.empty()) return prior;
   const double reach = std::max(kReach, grid_.cell);
@@ -53,7 +53,7 @@ double GroundOpenness::coming(const Passage& one) const {
   return (others / (2 * std::numbers::pi * reach * reach) + kPriorSeconds * prior) / (recorded_ + kPriorSeconds);
 }
 
-double GroundOpenness::leaving(const Passage& one) const {
+double EntryExitMap::leaving(const EntryExit& one) const {
   const double prior = one.at_border ? kLeavingAtBorder : kLeavingInside;
   if (left_.empty()) return prior;
   const std::size_t cell = grid_.index(one.location);

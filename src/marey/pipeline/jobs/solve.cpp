@@ -1,0 +1,76 @@
+#include "marey/pipeline/jobs/solve.h"
+
+#include "marey/analyse/gait/body_marker_sets.h"
+#include "marey/format/skeleton/bvh.h"
+
+namespace marey::pipeline::jobs {
+namespace {
+
+format::UpAxis axis_of(const std::string& name) {
+  return name == "y" ? format::UpAxis::y : format::UpAxis::z;
+}
+
+void add_skeleton_rows(Table& table, Solve& job) {
+  bodies::SolveOptions& how = job.options;
+  table.input_file("skeleton", job.skeleton,
+                   "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); omitted: the human skeleton");
+  table.input_file("static-trial", how.static_trial,
+                   "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
+                   "given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its "
+                   "markers");
+  table
+      .text("marker-set", how.marker_set,
+            "whose labels --static-trial, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; "
+            "omitted: found by the labels")
+      .checked([](const std::string& name) { analyse::gait::body_marker_set(name); });
+  table
+      .input_file("rom-trial", how.motion,
+                  "beside --static-trial: the same person moving hips, knees and elbows through their range; states where the "
+                  "joints are")
+      .needing("static-trial");
+  table.text("person", how.person, "of several people whose body keypoints RECORDING has the one to solve: P2; omitted: the first");
+  table.flag("calibrate", how.calibrate,
+             "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
+  table.flag("smooth", how.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");
+  table.output_file("write-skeleton", how.write_skeleton, "skeleton.toml of the skeleton that was used").ending_in({".toml"});
+  table.texts("exclude", how.exclude, "a marker that is not used, by its label; may be given often");
+  table.choice("up", job.up, {"y", "z"},
+               "the axis that is up in RECORDING; omitted: y for a TRC file beside an OpenSim model, else as it states, else z");
+}
+
+void add_bvh_rows(Table& table, Solve& job) {
+  bodies::SolveOptions& how = job.options;
+  table.group("BVH");
+  table.number("unit", how.read_skeleton.unit_m, "m", above(0, 1000),
+               "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
+  table.choice("skeleton-up", job.skeleton_up, {"y", "z"}, "the axis that is up in a BVH, ASF or VSK skeleton");
+  table.number("bvh-unit", how.bvh.unit_m, "m", above(0, 1000), "one unit of a BVH file that is written");
+  table.choice("bvh-up", job.bvh_up, {"y", "z"}, "the axis that is up in a BVH file that is written");
+  table.choice("bvh-order", how.bvh.order, {"ZXY", "ZYX", "XYZ", "XZY", "YXZ", "YZX"}, "the order of its rotations");
+  table.text("bvh-names", job.bvh_names, "the names of its joints: mixamo or motionbuilder; omitted: as in the skeleton")
+      .checked([](const std::string& name) { format::skeleton::bvh_names(name); });
+}
+
+}  // namespace
+
+Table table_of(Solve& job) {
+  Table table;
+  add_skeleton_rows(table, job);
+  add_bvh_rows(table, job);
+  return table;
+}
+
+bodies::SolveOptions resolved(const Solve& job) {
+  bodies::SolveOptions options = job.options;
+  if (!job.skeleton.empty() && !options.static_trial.empty())
+    throw WrongOption("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two");
+  if (!options.marker_set.empty() && !job.skeleton.empty())
+    throw WrongOption("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
+  if (!job.up.empty()) options.up = axis_of(job.up);
+  options.read_skeleton.up = axis_of(job.skeleton_up);
+  options.bvh.up = axis_of(job.bvh_up);
+  if (!job.bvh_names.empty()) options.bvh.names = format::skeleton::bvh_names(job.bvh_names);
+  return options;
+}
+
+}  // namespace marey::pipeline::jobs
