@@ -89,13 +89,13 @@ void add_moments(Command& program) {
                      "the ground's forces: a C3D file with force plates, or OpenSim's external loads (.xml)");
   command.output_file("-o,--output", options->output, "a moment (N m) or force (N) for each coordinate").ends_in({".sto", ".mot"});
   command.output_file("--powers", options->powers, "moment times speed of each coordinate, W").ends_in({".sto", ".mot"});
-  command.number("--cutoff", options->options.cutoff_hz, "Hz", from(0, 1000),
+  command.number("--cutoff", options->options.cutoff_hz, "Hz", {0, 1000},
                  "low pass of coordinates and plates' forces; 0: none");
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", options->options.up, kAxes, "the axis that is up in the C3D file; as it says where this is omitted, else z");
-  command.text("--left-foot", options->options.left_foot, "NAME", "the model's body on which the left foot's loads act");
-  command.text("--right-foot", options->options.right_foot, "NAME", "the model's body on which the right foot's loads act");
+  command.text("--left-foot", options->options.left_foot, "the model's body on which the left foot's loads act");
+  command.text("--right-foot", options->options.right_foot, "the model's body on which the right foot's loads act");
   command.reports(options->json, options->quiet, "figures");
   command.runs([options] { run(*options); });
 }

@@ -72,22 +72,52 @@ double push_of(const ForcePlate& plate, double threshold) {
   return count > 0 ? sum / count : 0;
 }
 
-/// The mean distance between centres of pressure and the nearer foot.
+/// A foot of which heel or toe barely moves over the ground.
+bool stands(const FeetOnGround& ground, Side side, double time_s) {
+  constexpr double kStepS = 0.02;
+  const auto before = ground.at(side, time_s - kStepS), after = ground.at(side, time_s + kStepS);
+  if (!before || !after) return false;
+  const double heel = (after->first - before->first).norm(), toe = (after->second - before->second).norm();
+  return std::min(heel, toe) < 2 * kStepS * kStandsM_s;
+}
+
+/// Samples in which something is on the plate, without a break: first and last.
+std::vector<std::pair<std::size_t, std::size_t>> loaded_spans(const ForcePlate& plate, double threshold) {
+  std::vector<std::pair<std::size_t, std::size_t>> spans;
+  const auto on = [&](std::size_t s) { return plate.loads[s].force.z() > threshold; };
+  for (std::size_t s = 0; s < plate.loads.size();) {
+    if (!on(s)) {
+      ++s;
+      continue;
+    }
+    const std::size_t first = s;
+    while (s < plate.loads.size() && on(s)) ++s;
+    spans.emplace_back(first, s - 1);
+  }
+  return spans;
+}
+
+/// The mean distance between centres of pressure and where the nearer foot that stands has them: from heel to toe in a contact's time.
 std::optional<double> distance_from_feet(const ForcePlate& plate, const FeetOnGround& ground, double threshold) {
   const auto step = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kCheckedEveryS * plate.rate_hz)));
   double sum = 0, count = 0;
-  for (std::size_t s = 0; s < plate.loads.size(); s += step) {
-    const auto load = foot_load(plate, s);
-    if (!load || load->force.z() < threshold) continue;
-    const double time = plate.begin_s + static_cast<double>(s) / plate.rate_hz;
-    std::optional<double> nearest;
-    for (const Side side : kSides) {
-      const auto distance = ground.distance(side, time, load->pressure);
-      if (distance && (!nearest || *distance < *nearest)) nearest = distance;
+  for (const auto& [first, last] : loaded_spans(plate, threshold)) {
+    for (std::size_t s = first; s <= last; s += step) {
+      const auto load = foot_load(plate, s);
+      const double time = plate.begin_s + static_cast<double>(s) / plate.rate_hz;
+      const double share = static_cast<double>(s - first) / static_cast<double>(std::max<std::size_t>(1, last - first));
+      std::optional<double> nearest;
+      for (const Side side : kSides) {
+        const auto foot = ground.at(side, time);
+        if (!load || !foot || !stands(ground, side, time)) continue;
+        const Vector<3> expected = foot->first + share * (foot->second - foot->first);
+        const double distance = (load->pressure - expected).head<2>().norm();
+        if (!nearest || distance < *nearest) nearest = distance;
+      }
+      if (!nearest) continue;
+      sum += *nearest;
+      ++count;
     }
-    if (!nearest) continue;
-    sum += *nearest;
-    ++count;
   }
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
@@ -98,15 +128,6 @@ double beyond_edge(const ForcePlate& plate, const Vector<3>& point) {
   const Vector<3> at = axes.transpose() * (point - plate.centre());
   const double half_x = 0.5 * (plate.corners[0] - plate.corners[1]).norm(), half_y = 0.5 * (plate.corners[0] - plate.corners[3]).norm();
   return std::max(std::abs(at.x()) - half_x, std::abs(at.y()) - half_y);
-}
-
-/// A foot of which heel or toe barely moves over the ground.
-bool stands(const FeetOnGround& ground, Side side, double time_s) {
-  constexpr double kStepS = 0.02;
-  const auto before = ground.at(side, time_s - kStepS), after = ground.at(side, time_s + kStepS);
-  if (!before || !after) return false;
-  const double heel = (after->first - before->first).norm(), toe = (after->second - before->second).norm();
-  return std::min(heel, toe) < 2 * kStepS * kStandsM_s;
 }
 
 /// What is known of one foot during a contact.
@@ -234,50 +255,40 @@ std::optional<std::string> orient(ForcePlate& plate, const FeetOnGround& ground,
   if (push == 0) return std::nullopt;
   if (pulls) reverse(plate);
   const auto as_written = distance_from_feet(plate, ground, options.threshold_n);
-  const auto sign = [&]() -> std::optional<std::string> {
-    if (!pulls) return std::nullopt;
-    return fmt::format("{}: its forces pull on the person; reversed", plate.name);
-  };
-  if (as_written && *as_written < kNearFootM && !upside_down) return sign();
-  // Other orders of the corners: half a turn about one of the plate's axes.
   std::optional<double> least = as_written;
   std::optional<ForcePlate> best;
-  for (Eigen::Index a = 0; a < 3; ++a) {
+  // Other orders of the corners: half a turn about one of the plate's axes.
+  for (Eigen::Index a = 0; a < 3 && as_written && (upside_down || *as_written > kNearFootM); ++a) {
     ForcePlate turned = plate;
     turn_half(turned, axes.col(a));
     if (push_of(turned, options.threshold_n) < 0) reverse(turned);
-    const auto distance = distance_from_feet(turned, ground, options.threshold_n);
-    if (!distance || *distance > kTurnedNearFootM || (least && *distance > 0.5 * *least)) continue;
+    const double distance = distance_from_feet(turned, ground, options.threshold_n).value_or(*least);
+    if (distance >= (upside_down ? *least : std::min(kTurnedNearFootM, 0.5 * *least))) continue;
     least = distance;
     best = std::move(turned);
   }
   if (best) {
     plate = std::move(*best);
-    return fmt::format("{}: its corners are {}; read in the order that puts its centre of pressure under a foot ({:.0f} mm away)",
-                       plate.name, upside_down ? "upside down" : "in another order than C3D specifies", 1000 * *least);
+    return fmt::format("{}: its corners are {}; read in the order that puts its centre of pressure under a foot", plate.name,
+                       upside_down ? "upside down" : "in another order than C3D specifies");
   }
-  if (upside_down && !(as_written && *as_written < kNearFootM))
+  if (upside_down && (!least || *least > kNearFootM))
     return fmt::format("{}: its corners are upside down, and no foot shows in which order they belong; centres of pressure may be "
                        "mirrored",
                        plate.name);
-  return sign();
+  if (!pulls) return std::nullopt;
+  return fmt::format("{}: its forces pull on the person; reversed", plate.name);
 }
 
 std::vector<PlateContact> contacts_of(const ForcePlate& plate, std::size_t index, const FeetOnGround& ground,
                                       const FootForceOptions& options) {
   std::vector<PlateContact> contacts;
   const auto least = static_cast<std::size_t>(std::ceil(options.min_contact_s * plate.rate_hz));
-  const auto on = [&](std::size_t s) { return plate.loads[s].force.z() > options.threshold_n; };
-  for (std::size_t s = 0; s < plate.loads.size();) {
-    if (!on(s)) {
-      ++s;
-      continue;
-    }
-    PlateContact contact{.plate = index, .first = s, .last = s, .strike_s = {}, .off_s = {}, .side = {}, .reason = {}};
-    while (s < plate.loads.size() && on(s)) contact.last = s++;
-    if (contact.last - contact.first + 1 < least) continue;
-    if (contact.first > 0) contact.strike_s = crossing_time(plate, contact.first - 1, options.threshold_n) - ground.begin_s;
-    if (s < plate.loads.size()) contact.off_s = crossing_time(plate, contact.last, options.threshold_n) - ground.begin_s;
+  for (const auto& [first, last] : loaded_spans(plate, options.threshold_n)) {
+    if (last - first + 1 < least) continue;
+    PlateContact contact{.plate = index, .first = first, .last = last, .strike_s = {}, .off_s = {}, .side = {}, .reason = {}};
+    if (first > 0) contact.strike_s = crossing_time(plate, first - 1, options.threshold_n) - ground.begin_s;
+    if (last + 1 < plate.loads.size()) contact.off_s = crossing_time(plate, contact.last, options.threshold_n) - ground.begin_s;
     find_foot(plate, contact, ground, options);
     contacts.push_back(std::move(contact));
   }

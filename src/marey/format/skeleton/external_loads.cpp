@@ -14,6 +14,7 @@
 #include "marey/format/read_file.h"
 #include "marey/format/skeleton/motion_table.h"
 #include "marey/format/skeleton/skeleton_file.h"
+#include "marey/format/text_rows.h"
 #include "marey/format/xml_text.h"
 
 namespace marey::format::skeleton {

@@ -61,8 +61,9 @@ bool is_voltage(const std::string& unit) {
 
 format::motion::AnalogData read_plates(const std::string& recording, const GaitMarkers& markers, const std::string& plates) {
   if (plates.empty()) return format::motion::read_analog_data(markers.next_to);
-  const auto reader = format::open_recording(plates, format::format_to_read(plates, format::Content::space),
-                                             {.up = markers.up == format::UpAxis::y ? std::optional(markers.up) : std::nullopt});
+  format::ReadOptions how;
+  if (markers.up == format::UpAxis::y) how.up = markers.up;
+  const auto reader = format::open_recording(plates, format::format_to_read(plates, format::Content::space), how);
   if (reader->info().next_to.channels == 0) throw Error("{}: has no force plates; a C3D file with analog channels is wanted", plates);
   if (std::abs(reader->header().rate_hz - markers.rate_hz) > 1e-6 * markers.rate_hz)
     throw Error("{}: has {:g} frames a second, and {} {:g}; force plates of the same walk are wanted", plates,
