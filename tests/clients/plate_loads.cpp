@@ -3,6 +3,7 @@
 // in the file's world. Where nothing pushes, the last two are missing.
 #include <exception>
 
+#include <Eigen/Geometry>
 #include <fmt/core.h>
 
 #include "marey/format/motion/force_plates.h"

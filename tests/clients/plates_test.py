@@ -57,17 +57,17 @@ def write(path, kind, random):
     units = ["N"] * 3 + (["mm", "mm", "Nmm"] if kind == 1 else ["Nmm"] * 3) if kind != 3 else ["N"] * 8
     file["parameters"]["ANALOG"]["UNITS"]["value"] = units
     file["data"]["analogs"] = values[np.newaxis]
-    file.add_parameter("FORCE_PLATFORM", "USED", [1])
-    file.add_parameter("FORCE_PLATFORM", "TYPE", [kind])
-    file.add_parameter("FORCE_PLATFORM", "ZERO", [1, 0])
-    file.add_parameter("FORCE_PLATFORM", "CORNERS", corners(random)[:, :, np.newaxis])
+    plates = file["parameters"]["FORCE_PLATFORM"]
+    plates["USED"]["value"] = np.array([1])
+    plates["TYPE"]["value"] = np.array([kind])
+    plates["CORNERS"]["value"] = corners(random)[:, :, np.newaxis]
     origin = np.array([[200.0], [150.0], [-40.0]]) if kind == 3 else np.array([[2.0], [-1.0], [-40.0]])
     if kind == 1:
         origin = np.array([[0.0], [0.0], [0.0]])
-    file.add_parameter("FORCE_PLATFORM", "ORIGIN", origin)
-    file.add_parameter("FORCE_PLATFORM", "CHANNEL", np.arange(1, channels + 1).reshape(channels, 1))
+    plates["ORIGIN"]["value"] = origin
+    plates["CHANNEL"]["value"] = np.arange(1, channels + 1).reshape(channels, 1)
     calibration = np.eye(6) + 0.05 * random.normal(0, 1, (6, 6))
-    file.add_parameter("FORCE_PLATFORM", "CAL_MATRIX", calibration[:, :, np.newaxis])
+    plates["CAL_MATRIX"]["value"] = calibration[:, :, np.newaxis]
     file.write(str(path))
 
 

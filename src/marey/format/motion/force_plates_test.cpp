@@ -116,7 +116,8 @@ class ForcePlatesTest : public testing::Test {
 
   /// What a plate of a type shows of the loads, in N and `moment_unit_m`, per the C3D user guide.
   PlateOfFile plate_of(int type) {
-    PlateOfFile plate{.type = type};
+    PlateOfFile plate;
+    plate.type = type;
     if (type == 3) plate.origin = {0.2, 0.15, -0.04};
     for (int i = 0; i < 36 && type == 4; ++i) plate.calibration.data()[i] += 0.05 * number(1);
     for (const PlateLoad& load : truth_) plate.rows.push_back(row_of(plate, load));

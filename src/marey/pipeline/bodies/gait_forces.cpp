@@ -10,6 +10,7 @@
 #include "marey/files/whole_file.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/format/take/take_plates.h"
 
 namespace marey::pipeline::bodies {
 namespace {
@@ -53,6 +54,17 @@ void smooth(format::skeleton::ExternalLoad& load, double cutoff_hz, double rate_
   for (std::size_t s = 0; s < load.forces.size(); ++s) load.moments[s] = about_origin[s] - load.points[s].cross(load.forces[s]);
 }
 
+/// None if the recording is not a take, or has none.
+format::motion::AnalogData plates_of_take(const std::string& recording) {
+  format::motion::AnalogData analog;
+  if (format::format_to_read(recording, format::Content::space).name != "take") return analog;
+  analog.plates = format::take::read_plates(recording);
+  if (analog.plates.empty()) return analog;
+  analog.rate_hz = analog.plates.front().rate_hz;
+  analog.begin_s = analog.plates.front().begin_s;
+  return analog;
+}
+
 bool is_voltage(const std::string& unit) {
   return unit == "V" || unit == "mV" || unit == "uV" || unit == "µV" || unit == "\xB5V";
 }
@@ -60,7 +72,8 @@ bool is_voltage(const std::string& unit) {
 }  // namespace
 
 format::motion::AnalogData read_plates(const std::string& recording, const GaitMarkers& markers, const std::string& plates) {
-  if (plates.empty()) return format::motion::read_analog_data(markers.next_to);
+  if (plates.empty() && !markers.next_to.path.empty()) return format::motion::read_analog_data(markers.next_to);
+  if (plates.empty()) return plates_of_take(recording);
   format::ReadOptions how;
   if (markers.up == format::UpAxis::y) how.up = markers.up;
   const auto reader = format::open_recording(plates, format::format_to_read(plates, format::Content::space), how);

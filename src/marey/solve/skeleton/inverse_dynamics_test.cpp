@@ -12,7 +12,7 @@ namespace {
 constexpr unsigned kSeed = 38;
 
 /// A tree of five segments with every kind of axis: shifts and turns of the root, a knee whose shifts are splines of its angle, a
-/// weld, a branch.
+/// weld, a branch. One coordinate turns about two axes, as Arnold's knee about three.
 class InverseDynamicsTest : public testing::Test {
  protected:
   InverseDynamicsTest() : random_(kSeed) {
@@ -28,7 +28,9 @@ class InverseDynamicsTest : public testing::Test {
     y.amount = CoordinateFunction::polynomial({-0.4, 0.02, -0.013, 0.004}).times(1.1);
     JointAxis tilted = turn(9);
     tilted.amount = CoordinateFunction::polynomial({0.1, 0.9, 0.05});
-    add(1, {x, y, tilted});
+    JointAxis screwed = turn(9);
+    screwed.amount = CoordinateFunction::spline({-3, -1, 0, 1, 3}, {0.2, -0.3, 0.1, 0.3, -0.1});
+    add(1, {x, y, tilted, screwed});
     add(2, {});  // a weld
     add(0, {turn(10), shift(11, 2)});
   }
