@@ -29,11 +29,47 @@ struct GaitCommand {
 
 namespace gait = analyse::gait;
 
+void print_forces(const pipeline::bodies::GaitMeasure& measure) {
+  if (measure.forces.feet[0].empty()) return;
+  std::array<int, 2> whole{};
+  for (const gait::PlateContact& contact : measure.forces.contacts) {
+    if (contact.side) ++whole[static_cast<std::size_t>(*contact.side)];
+  }
+  fmt::print("force plates: {} contacts, {} of the left foot, {} of the right\n", measure.forces.contacts.size(), whole[0], whole[1]);
+  for (const auto& [name, of] : {std::pair("strikes", &measure.by_force.strikes), std::pair("offs", &measure.by_force.offs)}) {
+    if (of->count > 0)
+      fmt::print("{} by kinematics against force: {:+.1f} ± {:.1f} ms ({})\n", name, 1000 * of->mean_s, 1000 * of->deviation_s,
+                 of->count);
+  }
+}
+
+Json forces_json(const pipeline::bodies::GaitMeasure& measure) {
+  if (measure.forces.feet[0].empty()) return nullptr;
+  Json contacts = Json::array();
+  for (const gait::PlateContact& contact : measure.forces.contacts) {
+    const auto time = [&](std::size_t sample) {
+      return measure.forces_begin_s + static_cast<double>(sample) / measure.forces.rate_hz;
+    };
+    Json one = {{"plate", contact.plate + 1}, {"begin_s", time(contact.first)}, {"end_s", time(contact.last)}};
+    if (contact.side) one["foot"] = *contact.side == gait::Side::left ? "left" : "right";
+    if (!contact.reason.empty()) one["not_used"] = contact.reason;
+    contacts.push_back(std::move(one));
+  }
+  const auto difference = [](const gait::PreferredEvents::Difference& of) {
+    return Json{{"count", of.count}, {"mean_s", of.mean_s}, {"deviation_s", of.deviation_s}};
+  };
+  return {{"rate_hz", measure.forces.rate_hz},
+          {"contacts", contacts},
+          {"kinematic_strikes_against_force", difference(measure.by_force.strikes)},
+          {"kinematic_offs_against_force", difference(measure.by_force.offs)}};
+}
+
 void print_gait(const pipeline::bodies::GaitMeasure& measure) {
   int strikes = 0, offs = 0;
   for (const gait::GaitEvent& event : measure.events) ++(event.strike ? strikes : offs);
   fmt::print("{} frames at {:g} Hz: {} strikes, {} offs, {} whole cycles\n", measure.frames, measure.rate_hz, strikes, offs,
              measure.cycles.cycles.size());
+  print_forces(measure);
   fmt::print("{:<22} {:>10} {:>10}\n", "", "left", "right");
   for (const gait::GaitFigure& figure : measure.cycles.figures) {
     const auto shown = [&](std::size_t side) {
@@ -54,7 +90,8 @@ Json gait_json(const pipeline::bodies::GaitMeasure& measure) {
   for (const gait::GaitFigure& figure : measure.cycles.figures)
     figures[figure.name] = {{"left", figure.mean[0]}, {"right", figure.mean[1]}, {"unit", figure.unit}};
   return {{"frames", measure.frames}, {"rate_hz", measure.rate_hz}, {"cycles", measure.cycles.cycles.size()},
-          {"events", events},         {"figures", figures},         {"warnings", measure.warnings}};
+          {"events", events},         {"figures", figures},         {"force_plates", forces_json(measure)},
+          {"warnings", measure.warnings}};
 }
 
 void run(GaitCommand& command) {
@@ -85,6 +122,13 @@ void add_gait(Command& program) {
   command.output_file("-o,--output", options->output.cycles, "CSV: every angle at 101 points of the cycle, mean and deviation")
       .ends_in({".csv"});
   command.output_file("--angles", options->output.angles, "CSV: every angle at every frame, degrees").ends_in({".csv"});
+  command.input_file("--plates", options->options.plates,
+                     "a C3D file of the same walk with its force plates, if RECORDING does not contain them");
+  command
+      .output_file("--forces", options->output.forces,
+                   "the ground's force, centre of pressure and free moment on each foot: .mot for OpenSim, with the external loads in "
+                   "an .xml beside it, or .csv")
+      .ends_in({".mot", ".csv"});
   command.output_file("--report", options->output.report, "a page with the curves, the walk's figures and its events")
       .ends_in({".html"});
   command

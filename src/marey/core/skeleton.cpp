@@ -111,6 +111,18 @@ double CoordinateFunction::slope(double x) const {
   return factor_ * (s.b[i] + t * (2 * s.c[i] + 3 * t * s.d[i]));
 }
 
+double CoordinateFunction::curvature(double x) const {
+  if (const auto* powers = std::get_if<std::vector<double>>(&function_)) {
+    double sum = 0;
+    for (std::size_t i = powers->size(); i-- > 2;) sum = sum * x + static_cast<double>(i * (i - 1)) * (*powers)[i];
+    return factor_ * sum;
+  }
+  const Spline& s = std::get<Spline>(function_);
+  if (x <= s.x.front() || x >= s.x.back()) return 0;
+  const auto i = static_cast<std::size_t>(std::upper_bound(s.x.begin(), s.x.end(), x) - s.x.begin()) - 1;
+  return factor_ * (2 * s.c[i] + 6 * (x - s.x[i]) * s.d[i]);
+}
+
 std::optional<std::pair<double, double>> CoordinateFunction::line() const {
   const auto* powers = std::get_if<std::vector<double>>(&function_);
   if (powers == nullptr || powers->size() > 2) return std::nullopt;

@@ -36,6 +36,8 @@ class CoordinateFunction {
   CoordinateFunction times(double factor) const;
   double value(double x) const;
   double slope(double x) const;
+  /// The second derivative.
+  double curvature(double x) const;
   /// Slope and offset, where it is a straight line.
   std::optional<std::pair<double, double>> line() const;
 

@@ -265,8 +265,9 @@ std::optional<std::string> next_to_lost(const AuxiliaryData& next_to, const std:
   if (!next_to.any() || format.auxiliary_data) return std::nullopt;
   const std::string channels = next_to.channels > 0 ? fmt::format("{} analog channels (forces, EMG)", next_to.channels) : "";
   const std::string events = next_to.events > 0 ? fmt::format("{} events", next_to.events) : "";
-  return fmt::format("{}: {} holds none of the {}{}{} of {}; they go along into .c3d alone", path, format.title, channels,
-                     channels.empty() || events.empty() ? "" : " and ", events, next_to.path);
+  return fmt::format("{}: {} holds none of the {}{}{} of {}; they go along into .c3d alone{}", path, format.title, channels,
+                     channels.empty() || events.empty() ? "" : " and ", events, next_to.path,
+                     format.name == "take" && next_to.channels > 0 ? ", but for force plates" : "");
 }
 
 }  // namespace marey::format

@@ -37,6 +37,26 @@ double C3dAuxiliary::rate_hz() const {
   return rate > 0 ? rate : static_cast<double>(head_.rate_hz);
 }
 
+std::vector<std::string> C3dAuxiliary::labels() const {
+  std::vector<std::string> labels = head_.texts("ANALOG:LABELS");
+  labels.resize(layout_.analog_channels);
+  return labels;
+}
+
+std::vector<std::string> C3dAuxiliary::units() const {
+  std::vector<std::string> units = head_.texts("ANALOG:UNITS");
+  units.resize(layout_.analog_channels);
+  return units;
+}
+
+std::vector<double> C3dAuxiliary::scales() const {
+  std::vector<double> scales = head_.numbers("ANALOG:SCALE");
+  scales.resize(layout_.analog_channels, 1);
+  const double all = head_.number("ANALOG:GEN_SCALE").value_or(1);
+  for (double& scale : scales) scale *= all;
+  return scales;
+}
+
 std::span<const float> C3dAuxiliary::frame(std::int64_t index) {
   const std::size_t words = layout_.analog_channels * layout_.analog_samples;
   row_.assign(words, 0.0F);

@@ -29,6 +29,15 @@ class C3dAuxiliary {
   std::size_t channels() const { return layout_.analog_channels; }
   std::size_t samples() const { return layout_.analog_samples; }  ///< of a channel in a frame
   double rate_hz() const;                                         ///< of the points
+  std::int64_t first_index() const { return layout_.first_index; }
+  std::int64_t frames() const { return static_cast<std::int64_t>(layout_.frames); }
+  double unit_m() const { return layout_.unit_m; }  ///< of the points
+  /// Of each channel; empty text if the file has none.
+  std::vector<std::string> labels() const;
+  std::vector<std::string> units() const;
+  /// A value is (what `frame` gives − offset) · scale.
+  std::vector<double> scales() const;
+  const std::vector<double>& offsets() const { return offsets_; }
   /// One frame's values, sample by sample, all channels of each: what stands in the file, as floats, so that its own scales and
   /// offsets hold. Of a frame that the file has not: what stands for 0.
   std::span<const float> frame(std::int64_t index);

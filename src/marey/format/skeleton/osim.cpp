@@ -52,6 +52,7 @@ class OsimModel {
     file_.skeleton.name = plain_text(model_.attribute("name").value());
     gather_joints();
     for (const std::string& body : in_order()) add_segment(body);
+    add_masses();
     for (const pugi::xml_node constraint : model_.child("ConstraintSet").child("objects").children()) add_constraint(constraint);
     for (const Coordinate& coordinate : file_.skeleton.coordinates) {
       if (coordinate.coupling && file_.skeleton.coordinates[static_cast<std::size_t>(coordinate.coupling->to)].coupling)
@@ -196,6 +197,25 @@ class OsimModel {
     segment.joint.joint_from_segment = hung.child.body_from_frame.inverse();
     add_axes(hung.joint, segment.joint);
     file_.skeleton.segments.push_back(std::move(segment));
+  }
+
+  void add_masses() {
+    file_.masses.resize(file_.skeleton.segments.size());
+    for (const pugi::xml_node body : model_.child("BodySet").child("objects").children("Body")) {
+      const std::string name = last_part(body.attribute("name").value());
+      const auto segment = file_.skeleton.segment(name);
+      if (!segment) continue;
+      SegmentMass& mass = file_.masses[static_cast<std::size_t>(*segment)];
+      mass.mass_kg = number_in(body.child("mass"), 0);
+      if (!(mass.mass_kg >= 0)) fail(fmt::format("{} has a mass of {} kg", shown(name), mass.mass_kg));
+      mass.centre = vector_in(body.child("mass_center"));
+      const std::vector<double> six = numbers_in(body.child("inertia"));  // version 4; before, each has an element
+      const auto of = [&](std::size_t i, const char* element) {
+        return six.size() == 6 ? six[i] : number_in(body.child(element), 0);
+      };
+      const double xy = of(3, "inertia_xy"), xz = of(4, "inertia_xz"), yz = of(5, "inertia_yz");
+      mass.inertia << of(0, "inertia_xx"), xy, xz, xy, of(1, "inertia_yy"), yz, xz, yz, of(2, "inertia_zz");
+    }
   }
 
   void add_axes(pugi::xml_node joint, Joint& into) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "marey/core/segment_mass.h"
 #include "marey/core/skeleton.h"
 #include "marey/format/format.h"
 
@@ -24,6 +25,7 @@ struct SkeletonFile {
   Skeleton skeleton;
   std::optional<SkeletonMotion> motion;  ///< of BVH, where it has one
   double unit_m = 1;                     ///< what one unit of the file is: an AMC file's are its ASF's
+  std::vector<SegmentMass> masses;       ///< one a segment; empty if the file has none. OpenSim's models have them
   std::vector<std::string> warnings;     ///< one sentence each: what was omitted, what is doubtful
 };
 

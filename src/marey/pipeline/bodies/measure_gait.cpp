@@ -14,6 +14,7 @@
 #include "marey/draw/gait_report.h"
 #include "marey/files/whole_file.h"
 #include "marey/pipeline/bodies/gait_c3d.h"
+#include "marey/pipeline/bodies/gait_forces.h"
 #include "marey/pipeline/bodies/gait_markers.h"
 
 namespace marey::pipeline::bodies {
@@ -57,7 +58,14 @@ gait::FeetPaths feet_of(const GaitMarkers& markers) {
   return feet;
 }
 
-void write_cycles(const std::string& path, const gait::GaitCycles& cycles) {
+/// "Voltage.L Rect": what a table can hold without quotes.
+std::string csv_name(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, '_');
+  return text;
+}
+
+/// Muscles' curves have their file's unit where angles have degrees.
+void write_cycles(const std::string& path, const gait::GaitCycles& cycles, std::span<const gait::EmgCurve> muscles) {
   WholeFile file(path);
   std::string text = "angle,percent,mean_deg,deviation_deg,cycles\n";
   for (const gait::CycleCurve& curve : cycles.curves) {
@@ -65,6 +73,11 @@ void write_cycles(const std::string& path, const gait::GaitCycles& cycles) {
     for (std::size_t p = 0; p < gait::kCyclePoints; ++p)
       fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{:.4f},{}\n", curve.name, p, curve.mean[p] * kDegrees,
                      curve.deviation[p] * kDegrees, curve.cycles.size());
+  }
+  for (const gait::EmgCurve& curve : muscles) {
+    for (std::size_t p = 0; p < gait::kCyclePoints; ++p)
+      fmt::format_to(std::back_inserter(text), "emg_{},{},{:.6g},{:.6g},{}\n", csv_name(curve.label), p, curve.mean[p],
+                     curve.deviation[p], curve.cycles.size());
   }
   file.write(text);
   file.finish();
@@ -195,6 +208,17 @@ std::optional<std::string> up_across(const std::string& recording, const std::op
   return fmt::format("{}: --up {} was given, and the person's up is along {}: does it lie down?", recording, taken, there);
 }
 
+/// Loads of force plates, and their events in place of those by kinematics.
+void add_forces(const format::motion::AnalogData& analog, const gait::FeetPaths& feet, const std::string& recording,
+                GaitMeasure& measure) {
+  measure.warnings.insert(measure.warnings.end(), analog.warnings.begin(), analog.warnings.end());
+  measure.forces = gait::foot_forces(analog.plates, feet, measure.rate_hz, measure.begin_s);
+  measure.forces_begin_s = analog.begin_s;
+  for (const std::string& warning : measure.forces.warnings) measure.warnings.push_back(fmt::format("{}: {}", recording, warning));
+  measure.by_force = gait::prefer_forces(measure.events, measure.forces.events);
+  measure.events = measure.by_force.events;
+}
+
 void need_a_cycle(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {
   need_steps(recording, measure, output);
   if (std::any_of(measure.cycles.curves.begin(), measure.cycles.curves.end(), [](const auto& c) { return !c.cycles.empty(); }))
@@ -247,20 +271,26 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
         "a side",
         recording);
   measure.events = gait::gait_events(feet, measure.rate_hz, options.events);
+  const format::motion::AnalogData analog = read_plates(recording, markers, options.plates);
+  add_forces(analog, feet, recording, measure);
   if (measure.events.empty())
     measure.warnings.push_back(fmt::format("{}: no steps were found: HEE and TOE of a side are needed, and a walk", recording));
   measure.cycles = gait::gait_cycles(measure.events, measure.angles, feet, measure.rate_hz);
+  measure.muscles = emg_curves(analog, measure.begin_s, measure.cycles.cycles);
   warn_of_gaps(recording, measure);
   return measure;
 }
 
 GaitMeasure measure_gait(const std::string& recording, const GaitOutput& output, const GaitOptions& options, const Hooks& hooks) {
   GaitMeasure measure = measure_gait(recording, options, hooks);
-  if (output.angles.empty() && output.c3d.empty()) need_steps(recording, measure, output);
+  if (output.angles.empty() && output.c3d.empty() && output.forces.empty()) need_steps(recording, measure, output);
+  if (!output.forces.empty() && measure.forces.feet[0].empty())
+    throw Error("{}: has no force plates; --plates names a C3D file of the same walk that has them", recording);
+  if (!output.forces.empty()) write_forces(output.forces, measure.forces, measure.forces_begin_s);
   if (!output.angles.empty()) write_angles(output.angles, measure);
   if (!output.c3d.empty()) write_gait_c3d(output.c3d, recording, options.up, measure);
   if (!output.cycles.empty() || !output.report.empty()) need_a_cycle(recording, measure, output);
-  if (!output.cycles.empty()) write_cycles(output.cycles, measure.cycles);
+  if (!output.cycles.empty()) write_cycles(output.cycles, measure.cycles, measure.muscles);
   if (!output.report.empty()) write_gait_report(output.report, recording, measure);
   return measure;
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "marey/analyse/gait/emg_envelope.h"
+#include "marey/analyse/gait/foot_forces.h"
 #include "marey/analyse/gait/gait_cycles.h"
 #include "marey/analyse/gait/joint_angles.h"
 #include "marey/core/hooks.h"
@@ -15,6 +17,7 @@ namespace marey::pipeline::bodies {
 
 struct GaitOptions {
   std::string static_trial = {};  ///< the same person, standing; empty: the feet's neutral position is not known
+  std::string plates = {};        ///< a C3D file of the same walk with its force plates; empty: the walk's own
   std::optional<format::UpAxis> up = {};
   analyse::gait::GaitSubject subject = {};  ///< given measures; a C3D file's own measures (PROCESSING) fill in the rest
   analyse::gait::GaitEventOptions events = {};
@@ -24,7 +27,8 @@ struct GaitOutput {
   std::string cycles;    ///< CSV: curve, percent, mean, deviation
   std::string angles;    ///< CSV: a row an instant
   std::string report;    ///< HTML
-  std::string c3d = {};  ///< the recording again, with angles and events
+  std::string c3d = {};     ///< the recording again, with angles and events
+  std::string forces = {};  ///< the ground's forces: .mot with an .xml beside it, or .csv
 };
 
 struct GaitMeasure {
@@ -37,6 +41,10 @@ struct GaitMeasure {
   std::vector<analyse::gait::AngleCurve> angles;
   std::vector<analyse::gait::GaitEvent> events;
   analyse::gait::GaitCycles cycles;
+  analyse::gait::FootForces forces;             ///< of force plates; without samples if there are none
+  double forces_begin_s = 0;                    ///< the recording's time of their first sample
+  analyse::gait::PreferredEvents by_force;      ///< how events by force differ from those by kinematics, which they replace
+  std::vector<analyse::gait::EmgCurve> muscles;  ///< over the cycles
   std::vector<std::string> warnings;
 };
 

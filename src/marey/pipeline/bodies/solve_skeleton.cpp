@@ -15,6 +15,8 @@
 #include "marey/format/register.h"
 #include "marey/format/skeleton/gltf.h"
 #include "marey/format/skeleton/motion_table.h"
+#include "marey/geometry/median.h"
+#include "marey/pipeline/bodies/calibrate_skeleton.h"
 #include "marey/pipeline/bodies/gait_markers.h"
 #include "marey/pipeline/bodies/solve_counts.h"
 #include "marey/pipeline/keypoints/keypoint_skeleton.h"
@@ -28,7 +30,6 @@ namespace {
 
 using format::Content;
 using format::UpAxis;
-constexpr std::size_t kMaxCalibrationFrames = 4096;
 constexpr double kKeypointSigma_m = 0.02, kKeypointRobust_m = 0.15, kKeypointLost_m = 0.4;  // unswept
 constexpr std::int64_t kAppearanceAtPerson = 2000;  // rows by which it is reported whether the static trial is another's
 
@@ -61,16 +62,6 @@ void solve_again(SolvedRecording& solved, const std::vector<solve::skeleton::Obs
 std::optional<UpAxis> up_of(const format::Format& format, const std::string& skeleton, const SolveOptions& options) {
   if (!options.up && format.name == "trc" && skeleton.ends_with(".osim")) return UpAxis::y;
   return options.up;
-}
-
-std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options) {
-  const format::Format& format = format::format_to_read(path, Content::space);
-  format::ReadOptions how;
-  how.up = options.up;
-  auto reader = format::open_recording(path, format, how);
-  if (reader->header().frame.kind != FrameOfReference::Kind::space)
-    throw Error("{}: holds no points in space; a skeleton is solved from markers in space", path);
-  return reader;
 }
 
 /// The recording again, with its bodies, into a sink.
@@ -168,28 +159,6 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
 
 namespace {
 
-/// The markers of all frames, for a calibration.
-std::vector<solve::skeleton::ObservedMarkers> all_observed(const std::string& recording, const Skeleton& skeleton,
-                                                           const SolveOptions& options) {
-  const auto reader = open_markers(recording, options);
-  markers::SkeletonMarkers labels(skeleton, options.exclude);
-  labels.name(reader->tracks());
-  std::vector<solve::skeleton::ObservedMarkers> frames;
-  std::size_t step = 1, count = 0;
-  while (const auto instant = reader->next()) {
-    labels.name(instant->named);
-    if (count++ % step != 0) continue;
-    solve::skeleton::ObservedMarkers detected;
-    labels.take(*instant, detected);
-    frames.push_back(std::move(detected));
-    if (frames.size() < kMaxCalibrationFrames) continue;
-    for (std::size_t i = 0; 2 * i < frames.size(); ++i) frames[i] = std::move(frames[2 * i]);
-    frames.resize((frames.size() + 1) / 2);
-    step *= 2;
-  }
-  return frames;
-}
-
 /// The human skeleton of who moves in the recording. Throws Error, with what else there is, where its markers are not set.
 HumanSkeleton human_of_motion(const std::string& recording, const HumanOptions& how, const Hooks& hooks) {
   try {
@@ -273,12 +242,6 @@ std::optional<std::string> lies_on_its_side(const SolvedRecording& solved, UpAxi
                      recording, named, there, there, there);
 }
 
-void write_skeleton_file(const std::string& path, const Skeleton& skeleton) {
-  WholeFile file(path);
-  file.write(format::skeleton::to_toml(skeleton));
-  file.finish();
-}
-
 }  // namespace
 
 SolvedRecording solve_with_skeleton(const std::string& recording, const std::string& skeleton, const SolveOptions& given,
@@ -289,7 +252,7 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   std::optional<solve::skeleton::Calibration> calibration;
   if (options.calibrate) {
-    calibration = solve::skeleton::calibrate(file.skeleton, all_observed(recording, file.skeleton, options));
+    calibration = calibrate_skeleton(recording, file.skeleton, !skeleton.empty(), options);
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
@@ -302,6 +265,8 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
     solved.summary.overall_scale = calibration->overall_scale;
     solved.summary.rms_before_m = calibration->rms_before_m;
     solved.summary.undetermined = calibration->undetermined;
+    solved.summary.undetermined_markers = calibration->undetermined_markers;
+    solved.scales = calibration->scales;
   }
   return solved;
 }
@@ -322,7 +287,7 @@ SolveSummary solve_skeleton(const std::string& recording, const std::string& ske
     if (auto message_text = write_output(path, recording, solved, options, made_by))
       summary.warnings.push_back(std::move(*message_text));
   }
-  if (!options.write_skeleton.empty()) write_skeleton_file(options.write_skeleton, solved.skeleton);
+  if (!options.write_skeleton.empty()) write_skeleton_file(skeleton, solved, options, summary.warnings);
   return summary;
 }
 

@@ -32,7 +32,15 @@ void add_skeleton_rows(Table& table, Solve& job) {
   table.flag("calibrate", how.calibrate,
              "first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself");
   table.flag("smooth", how.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");
-  table.output_file("write-skeleton", how.write_skeleton, "skeleton.toml of the skeleton that was used").ending_in({".toml"});
+  table
+      .texts("calibration-take", how.calibration_takes,
+             "another recording of the same person with the same markers, for --calibrate; may be given often")
+      .needing("calibrate");
+  table.number("mass", how.mass_kg, "kg", {1, 500}, "the person's mass, for the masses of --write-skeleton's .osim");
+  table
+      .output_file("write-skeleton", how.write_skeleton,
+                   "the skeleton that was used: skeleton.toml, or, of an OpenSim model, .osim with its bodies scaled and markers moved")
+      .ending_in({".toml", ".osim"});
   table.texts("exclude", how.exclude, "a marker that is not used, by its label; may be given often");
   table.choice("up", job.up, {"y", "z"},
                "the axis that is up in RECORDING; omitted: y for a TRC file beside an OpenSim model, else as it states, else z");
@@ -62,8 +70,10 @@ Table table_of(Solve& job) {
 
 bodies::SolveOptions resolved(const Solve& job) {
   bodies::SolveOptions options = job.options;
-  if (!job.skeleton.empty() && !options.static_trial.empty())
-    throw WrongOption("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two");
+  if (!job.skeleton.empty() && !options.static_trial.empty() && !options.calibrate)
+    throw WrongOption("{}", "--static-trial: with --skeleton it is for --calibrate; give that too, or one of the two");
+  if (options.mass_kg && !options.write_skeleton.ends_with(".osim"))
+    throw WrongOption("{}", "--mass: is for --write-skeleton FILE.osim");
   if (!options.marker_set.empty() && !job.skeleton.empty())
     throw WrongOption("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
   if (!job.up.empty()) options.up = axis_of(job.up);

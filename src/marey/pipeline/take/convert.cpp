@@ -10,6 +10,8 @@
 
 #include "marey/core/error.h"
 #include "marey/core/ground_transform.h"
+#include "marey/format/motion/force_plates.h"
+#include "marey/format/take/take_plates.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/pipeline/take/ground_orientation.h"
@@ -152,6 +154,20 @@ format::AuxiliaryData analog_of(const std::string& path, const std::string& from
   return next_to;
 }
 
+/// Force plates of a C3D file, or of another take, into a take.
+void copy_plates(const std::string& from, const Format& in, const format::AuxiliaryData& next_to, const std::string& to,
+                 std::vector<std::string>& warnings) {
+  std::vector<ForcePlate> plates;
+  if (next_to.channels > 0) {
+    format::motion::AnalogData analog = format::motion::read_analog_data(next_to);
+    plates = std::move(analog.plates);
+    warnings.insert(warnings.end(), analog.warnings.begin(), analog.warnings.end());
+  } else if (in.name == "take") {
+    plates = format::take::read_plates(from);
+  }
+  if (!plates.empty()) format::take::write_plates(to, plates);
+}
+
 /// Instant by instant, so that memory does not grow with its length. Read twice: most formats begin with data known only at the
 /// end.
 ConvertSummary convert_stream(const std::string& from, const std::string& to, const Format& in, const Format& out,
@@ -190,6 +206,7 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     }
   }
   sink->finish();
+  if (out.name == "take") copy_plates(from, in, plan.info.next_to, to, summary.warnings);
   count(plan.info.header, frames, samples, summary);
   return summary;
 }

@@ -12,6 +12,9 @@
 namespace marey::solve::skeleton {
 namespace {
 
+constexpr int kMaxStanding = 10;    // frames: they repeat each other
+constexpr double kTightM = 0.005;  // a marker that sits so tightly counts 1 while the person's size is found
+
 /// "femur_r" and "femur_l", "right_thigh" and "left_thigh", "RightLeg" and "LeftLeg" are one.
 std::string without_side(std::string name) {
   for (const auto& [right, left] : {std::pair<std::string, std::string>{"right", "left"}, {"Right", "Left"}}) {
@@ -25,16 +28,21 @@ std::string without_side(std::string name) {
 
 class Calibrator {
  public:
-  Calibrator(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options)
+  Calibrator(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options,
+             std::span<const ObservedMarkers> standing)
       : base_(skeleton), options_(options) {
-    const std::size_t step = std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(std::max(1, options.frames)));
-    for (std::size_t f = 0; f < frames.size(); f += step) frames_.push_back(&frames[f]);
+    // Standing frames first: the poses of those that move follow from one another.
+    take_some(standing, std::min(options.frames, kMaxStanding));
+    standing_ = frames_.size();
+    take_some(frames, options.frames);
     std::map<std::string, int> groups;
     for (const Segment& segment : skeleton.segments)
       group_of_.push_back(groups.try_emplace(without_side(segment.name), static_cast<int>(groups.size())).first->second);
     group_scale_.assign(groups.size(), Vector<3>::Ones());
     offsets_.assign(skeleton.markers.size(), Vector<3>::Zero());
     centre_.setOnes(3 * std::ssize(group_scale_));
+    find_twins();
+    if (!options_.offset_sigmas_m.empty()) weigh_markers();
   }
 
   Calibration run() {
@@ -43,20 +51,62 @@ class Calibrator {
     solve_poses();
     result.rms_before_m = rms_;
     if (options_.overall) result.overall_scale = find_overall();
+    weigh_alike();
     for (int round = 0; round < options_.rounds; ++round) {
       solve_poses();
       if (!improve()) break;
     }
     solve_poses();
     result.rms_after_m = rms_;
-    if (options_.scale_sigma > 0) result.undetermined = undetermined();
+    if (options_.scale_sigma > 0) result.undetermined = undetermined(result.undetermined_markers);
     result.skeleton = now_;
+    for (std::size_t j = 0; j < offsets_.size(); ++j) result.skeleton.markers[j].weight = given_weights_.empty() ? base_.markers[j].weight : given_weights_[j];
     for (std::size_t s = 0; s < base_.segments.size(); ++s) result.scales.push_back(scale_of(s));
     for (std::size_t j = 0; j < offsets_.size(); ++j) result.marker_moved_m.push_back(offsets_[j].norm());
     return result;
   }
 
  private:
+  void take_some(std::span<const ObservedMarkers> frames, int count) {
+    const std::size_t step = std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(std::max(1, count)));
+    for (std::size_t f = 0; f < frames.size(); f += step) frames_.push_back(&frames[f]);
+  }
+
+  /// Markers of the other side on the same bones: "L.Knee.Lat" of "R.Knee.Lat".
+  void find_twins() {
+    std::map<std::string, std::size_t> by_name;
+    for (std::size_t j = 0; j < base_.markers.size(); ++j) by_name[base_.markers[j].label] = j;
+    for (std::size_t j = 0; j < base_.markers.size(); ++j) {
+      std::string label = base_.markers[j].label;
+      if (label.size() < 2 || label[0] != 'L') continue;
+      label[0] = 'R';
+      const auto other = by_name.find(label);
+      if (other == by_name.end()) continue;
+      const auto a = static_cast<std::size_t>(base_.markers[j].segment), b = static_cast<std::size_t>(base_.markers[other->second].segment);
+      if (group_of_[a] == group_of_[b]) twins_.emplace_back(j, other->second);
+    }
+    // The axis across: along which twins lie on either side.
+    Vector<3> opposite = Vector<3>::Zero();
+    for (const auto& [left, right] : twins_) opposite += base_.markers[left].position.cwiseProduct(base_.markers[right].position);
+    opposite.minCoeff(&across_);
+  }
+
+  /// While the size is found, what sits loosely counts little.
+  void weigh_markers() {
+    for (std::size_t j = 0; j < base_.markers.size(); ++j) {
+      given_weights_.push_back(base_.markers[j].weight);
+      const double sigma = std::hypot(options_.offset_sigmas_m[j], options_.marker_sigma_m);
+      base_.markers[j].weight *= kTightM * kTightM / (sigma * sigma);
+    }
+  }
+  void weigh_alike() {
+    for (std::size_t j = 0; j < given_weights_.size(); ++j) base_.markers[j].weight = given_weights_[j];
+  }
+
+  double offset_sigma(std::size_t marker) const {
+    return options_.offset_sigmas_m.empty() ? options_.offset_sigma_m : options_.offset_sigmas_m[marker];
+  }
+
   const Vector<3>& scale_of(std::size_t segment) const { return group_scale_[static_cast<std::size_t>(group_of_[segment])]; }
 
   void apply() {
@@ -75,11 +125,43 @@ class Calibrator {
     for (const ObservedMarkers* frame : frames_) {
       const SolvedPose& pose = solver.step(0.1, *frame);
       poses_.push_back(pose.coordinates);
+      if (poses_.size() <= standing_) stand(solver, *frame);
       sum += pose.rms_m * pose.rms_m * pose.detected;
       count += pose.detected;
     }
     if (count == 0) throw Error("{}: none of the frames shows one of the skeleton's markers", base_.name);
     rms_ = std::sqrt(sum / count);
+  }
+
+  /// The last pose again, near the skeleton's rest but for where the root is.
+  void stand(PoseSolver& solver, const ObservedMarkers& frame) {
+    const SkeletonState start = solver.articulation().state_of(poses_.back());
+    poses_.back() = solver.solve_towards(start, rest_at(solver.articulation(), start), standing_deviations(solver.articulation()), frame).coordinates;
+    solver.start_from(poses_.back());
+  }
+
+  /// At rest, the root as in `state`.
+  SkeletonState rest_at(const Articulation& articulation, const SkeletonState& state) const {
+    std::vector<double> coordinates = base_.rest();
+    for (const JointAxis& axis : base_.segments.front().joint.axes) {
+      if (axis.coordinate) coordinates[static_cast<std::size_t>(*axis.coordinate)] = state.coordinates[static_cast<std::size_t>(*axis.coordinate)];
+    }
+    return articulation.state_of(coordinates);
+  }
+
+  /// Of each degree of freedom; 0 of the root's.
+  std::vector<double> standing_deviations(const Articulation& articulation) const {
+    std::vector<bool> of_root(base_.coordinates.size(), false);
+    for (const JointAxis& axis : base_.segments.front().joint.axes) {
+      if (axis.coordinate) of_root[static_cast<std::size_t>(*axis.coordinate)] = true;
+    }
+    std::vector<double> deviations;
+    for (const Articulation::Dof& dof : articulation.dof()) {
+      const bool root = dof.coordinate ? of_root[static_cast<std::size_t>(*dof.coordinate)]
+                                       : articulation.balls()[static_cast<std::size_t>(dof.ball)].segment == 0;
+      deviations.push_back(root || !dof.rotations ? 0 : options_.standing_sigma_rad);
+    }
+    return deviations;
   }
 
   /// The one scale of the whole person, by golden section: poses are solved again for each.
@@ -131,18 +213,36 @@ class Calibrator {
     const Eigen::Index scales = 3 * std::ssize(group_scale_), unknowns = scales + 3 * std::ssize(offsets_);
     NormalEquations all{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
     PoseSolver solver(now_, {.marker_sigma_m = options_.marker_sigma_m});
-    for (std::size_t f = 0; f < frames_.size(); ++f) add_frame(solver, *frames_[f], poses_[f], all.information, all.gradient);
-    const double of_scale = options_.scale_sigma > 0 ? 1 / (options_.scale_sigma * options_.scale_sigma) : 1e12,
-                 of_offset = 1 / (options_.offset_sigma_m * options_.offset_sigma_m);
+    for (std::size_t f = 0; f < frames_.size(); ++f) add_frame(solver, f, all.information, all.gradient);
+    const double of_scale = options_.scale_sigma > 0 ? 1 / (options_.scale_sigma * options_.scale_sigma) : 1e12;
     for (Eigen::Index u = 0; u < unknowns; ++u) {
       const bool scale = u < scales;
       const double now = scale ? group_scale_[static_cast<std::size_t>(u / 3)][u % 3]
                                : offsets_[static_cast<std::size_t>((u - scales) / 3)][(u - scales) % 3];
-      const double weight = scale ? of_scale : of_offset;
+      const double sigma = scale ? 0 : offset_sigma(static_cast<std::size_t>((u - scales) / 3)), weight = scale ? of_scale : 1 / (sigma * sigma);
       all.information(u, u) += weight;
       all.gradient[u] += weight * ((scale ? centre_[u] : 0) - now);
     }
+    if (options_.tie_sigma_m > 0) tie_twins(scales, all);
     return all;
+  }
+
+  /// A left marker's offset is the right one's, mirrored, but for the tie's deviation.
+  void tie_twins(Eigen::Index scales, NormalEquations& all) const {
+    const double weight = 1 / (options_.tie_sigma_m * options_.tie_sigma_m);
+    for (const auto& [left, right] : twins_) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const double mirror = axis == across_ ? -1 : 1;
+        const Eigen::Index a = scales + 3 * static_cast<Eigen::Index>(left) + axis, b = scales + 3 * static_cast<Eigen::Index>(right) + axis;
+        const double apart = offsets_[left][axis] - mirror * offsets_[right][axis];
+        all.information(a, a) += weight;
+        all.information(b, b) += weight;
+        all.information(a, b) -= weight * mirror;
+        all.information(b, a) -= weight * mirror;
+        all.gradient[a] -= weight * apart;
+        all.gradient[b] += weight * mirror * apart;
+      }
+    }
   }
 
   /// One Gauss–Newton step of scales and offsets; false where it is small.
@@ -158,11 +258,15 @@ class Calibrator {
 
   /// Segments of whose size the frames say less than the prior did: the distance to one of the joints (or the end) on it
   /// keeps more than half of its variance; without any, each of its three axes does.
-  std::vector<std::string> undetermined() const {
+  std::vector<std::string> undetermined(std::vector<std::string>& markers) const {
     const NormalEquations equations = normal_equations();
     const Eigen::MatrixXd covariance = geometry::solve_symmetric(
         equations.information, Eigen::MatrixXd::Identity(equations.gradient.size(), equations.gradient.size()));
     const double prior = options_.scale_sigma * options_.scale_sigma;
+    for (std::size_t j = 0; j < offsets_.size(); ++j) {
+      const Eigen::Index at = 3 * std::ssize(group_scale_) + 3 * static_cast<Eigen::Index>(j);
+      if (covariance.diagonal().segment<3>(at).maxCoeff() > 0.5 * offset_sigma(j) * offset_sigma(j)) markers.push_back(base_.markers[j].label);
+    }
     std::vector<std::string> names;
     for (std::size_t s = 0; s < base_.segments.size(); ++s) {
       const Matrix<3> own = covariance.block<3, 3>(3 * group_of_[s], 3 * group_of_[s]);
@@ -192,11 +296,11 @@ class Calibrator {
   }
 
   /// Adds what a frame says, its pose eliminated: B − E H⁻¹ Eᵀ. A joint that is held at its limit does not give way to a size.
-  void add_frame(PoseSolver& solver, const ObservedMarkers& detected, const std::vector<double>& coordinates,
-                 Eigen::MatrixXd& information, Eigen::VectorXd& gradient) const {
+  void add_frame(PoseSolver& solver, std::size_t frame, Eigen::MatrixXd& information, Eigen::VectorXd& gradient) const {
+    const ObservedMarkers& detected = *frames_[frame];
     Articulation& articulation = solver.articulation();
     const int n = articulation.dofs();
-    const SkeletonState state = articulation.state_of(coordinates);
+    const SkeletonState state = articulation.state_of(poses_[frame]);
     articulation.location(state);
     const auto& pose = articulation.world_from_segment();
     const double weight = 1 / (options_.marker_sigma_m * options_.marker_sigma_m);
@@ -204,6 +308,7 @@ class Calibrator {
     Eigen::MatrixXd e = Eigen::MatrixXd::Zero(n, gradient.size());
     PoseEquations own_pose{.information = Eigen::MatrixXd::Identity(n, n), .gradient = Eigen::VectorXd::Zero(n)};
     solver.add_limits(state, own_pose);
+    if (frame < standing_) add_standing(articulation, state, own_pose);
     Eigen::MatrixXd& h = own_pose.information;
     Eigen::VectorXd& b = own_pose.gradient;
     for (std::size_t j = 0; j < detected.size(); ++j) {
@@ -228,11 +333,27 @@ class Calibrator {
     gradient.noalias() -= e.transpose() * pose_solver.solve(b);
   }
 
-  const Skeleton& base_;
+  void add_standing(const Articulation& articulation, const SkeletonState& state, PoseEquations& equations) const {
+    Eigen::VectorXd back(articulation.dofs());
+    articulation.difference(state, rest_at(articulation, state), back);
+    const std::vector<double> deviations = standing_deviations(articulation);
+    for (Eigen::Index d = 0; d < back.size(); ++d) {
+      const double deviation = deviations[static_cast<std::size_t>(d)];
+      if (deviation == 0) continue;
+      equations.information(d, d) += 1 / (deviation * deviation);
+      equations.gradient[d] += back[d] / (deviation * deviation);
+    }
+  }
+
+  Skeleton base_;
   CalibrateOptions options_;
   std::vector<const ObservedMarkers*> frames_;
   std::vector<int> group_of_;
   std::vector<Vector<3>> group_scale_, offsets_;
+  std::vector<double> given_weights_;                        // of the markers, if theirs depend on how loose they are
+  std::vector<std::pair<std::size_t, std::size_t>> twins_;  // left, right
+  Eigen::Index across_ = 2;
+  std::size_t standing_ = 0;  // the first frames are of a person who stands
   Eigen::VectorXd centre_;
   Skeleton now_;
   std::vector<std::vector<double>> poses_;
@@ -264,8 +385,9 @@ Skeleton scaled(const Skeleton& skeleton, std::span<const Vector<3>> scales) {
   return result;
 }
 
-Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options) {
-  return Calibrator(skeleton, frames, options).run();
+Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options,
+                      std::span<const ObservedMarkers> standing) {
+  return Calibrator(skeleton, frames, options, standing).run();
 }
 
 }  // namespace marey::solve::skeleton

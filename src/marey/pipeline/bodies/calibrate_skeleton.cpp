@@ -1,0 +1,90 @@
+#include "marey/pipeline/bodies/calibrate_skeleton.h"
+
+#include <iterator>
+#include <utility>
+
+#include "marey/core/error.h"
+#include "marey/files/whole_file.h"
+#include "marey/format/read_file.h"
+#include "marey/format/recording_file.h"
+#include "marey/format/register.h"
+#include "marey/format/skeleton/scaled_osim.h"
+#include "marey/pipeline/bodies/marker_sigmas.h"
+#include "marey/pipeline/markers/skeleton_in_space.h"
+
+namespace marey::pipeline::bodies {
+namespace {
+
+constexpr std::size_t kMaxCalibrationFrames = 4096;
+constexpr double kTieSigma_m = 0.01;  // unswept
+
+/// The markers of all frames, for a calibration.
+std::vector<solve::skeleton::ObservedMarkers> all_observed(const std::string& recording, const Skeleton& skeleton,
+                                                           const SolveOptions& options) {
+  const auto reader = open_markers(recording, options);
+  markers::SkeletonMarkers labels(skeleton, options.exclude);
+  labels.name(reader->tracks());
+  std::vector<solve::skeleton::ObservedMarkers> frames;
+  std::size_t step = 1, count = 0;
+  while (const auto instant = reader->next()) {
+    labels.name(instant->named);
+    if (count++ % step != 0) continue;
+    solve::skeleton::ObservedMarkers detected;
+    labels.take(*instant, detected);
+    frames.push_back(std::move(detected));
+    if (frames.size() < kMaxCalibrationFrames) continue;
+    for (std::size_t i = 0; 2 * i < frames.size(); ++i) frames[i] = std::move(frames[2 * i]);
+    frames.resize((frames.size() + 1) / 2);
+    step *= 2;
+  }
+  return frames;
+}
+
+}  // namespace
+
+std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options) {
+  const format::Format& format = format::format_to_read(path, format::Content::space);
+  format::ReadOptions how;
+  how.up = options.up;
+  auto reader = format::open_recording(path, format, how);
+  if (reader->header().frame.kind != FrameOfReference::Kind::space)
+    throw Error("{}: holds no points in space; a skeleton is solved from markers in space", path);
+  return reader;
+}
+
+solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool given,
+                                                const SolveOptions& options) {
+  std::vector<solve::skeleton::ObservedMarkers> frames = all_observed(recording, skeleton, options), standing;
+  for (const std::string& take : options.calibration_takes) {
+    std::vector<solve::skeleton::ObservedMarkers> more = all_observed(take, skeleton, options);
+    frames.insert(frames.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
+  solve::skeleton::CalibrateOptions how;
+  if (given) {
+    how.offset_sigmas_m = marker_sigmas(skeleton);
+    how.tie_sigma_m = kTieSigma_m;
+    if (!options.static_trial.empty()) standing = all_observed(options.static_trial, skeleton, options);
+  }
+  return solve::skeleton::calibrate(skeleton, frames, how, standing);
+}
+
+void write_skeleton_file(const std::string& source, const SolvedRecording& solved, const SolveOptions& options,
+                         std::vector<std::string>& warnings) {
+  const std::string& path = options.write_skeleton;
+  std::string text;
+  if (path.ends_with(".osim")) {
+    if (!source.ends_with(".osim")) throw Error("{}: an .osim is written of an OpenSim model alone; give it by --skeleton, or write .toml", path);
+    const std::vector<Vector<3>> alike(solved.skeleton.segments.size(), Vector<3>::Ones());
+    format::skeleton::ScaledOsim scaled = format::skeleton::scaled_osim(format::read_file(source), source, solved.skeleton,
+                                                                       solved.scales.empty() ? alike : solved.scales, options.mass_kg);
+    warnings.insert(warnings.end(), scaled.warnings.begin(), scaled.warnings.end());
+    text = std::move(scaled.text);
+  } else {
+    text = format::skeleton::to_toml(solved.skeleton);
+  }
+  WholeFile file(path);
+  file.write(text);
+  file.finish();
+}
+
+}  // namespace marey::pipeline::bodies

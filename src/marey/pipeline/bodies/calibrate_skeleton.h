@@ -1,0 +1,26 @@
+// A skeleton fitted to the person in recordings, and written as a file.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "marey/format/format.h"
+#include "marey/pipeline/bodies/solve_skeleton.h"
+#include "marey/solve/skeleton/calibrate.h"
+
+namespace marey::pipeline::bodies {
+
+/// Throws Error if the file holds no points in space.
+std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options);
+
+/// From the recording, the options' other takes, and where `given` (the skeleton is a file's) their static trial. A given skeleton's
+/// markers have the deviations of `marker_sigmas`.
+solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool given,
+                                                const SolveOptions& options);
+
+/// skeleton.toml, or by its ending the .osim that `source` is, calibrated. Throws Error if there is no such model, or no calibration.
+void write_skeleton_file(const std::string& source, const SolvedRecording& solved, const SolveOptions& options,
+                         std::vector<std::string>& warnings);
+
+}  // namespace marey::pipeline::bodies
