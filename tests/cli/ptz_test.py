@@ -91,10 +91,13 @@ class Ptz(unittest.TestCase):
             self.run_marey("track", f"film/{name}.toml", "--ground", "main=film/boxes.txt", "-o", f"{name}.csv", "-q")
         self.assertEqual((self.folder / "rig.csv").read_bytes(), (self.folder / "earlier.csv").read_bytes())
 
-    def test_images_need_a_network(self):
-        said = self.run_marey("track", "film/rig.toml", "--ground", "-o", "none.csv", code=1).stderr
-        self.assertIn("PTZ", said)
-        self.assertIn("--detector", said)
+    def test_people_are_found_before_the_mosaic_of_the_empty_scene(self):
+        self.run_marey("track", "film/rig.toml", "--ground", "-o", "mosaic.csv", "-q")
+        self.run_marey("track", "film/rig.toml", "--ground", "main=film/boxes.txt", "-o", "boxes.csv", "-q")
+        mosaic, boxes = (json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", f"{name}.csv", "--distance", "1.5",
+                                                   "--json").stdout) for name in ("mosaic", "boxes"))
+        self.assertGreater(mosaic["found"], 0.5 * boxes["found"])
+        self.assertLess(mosaic["false"], 0.35)
 
     def test_clicks_have_to_report_their_frame_and_lie_on_the_pitch(self):
         (self.folder / "no_frame.csv").write_text("x,y,u,v\n0,0,10,10\n")

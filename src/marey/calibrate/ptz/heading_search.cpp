@@ -8,14 +8,14 @@
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr double kCoarse = 9;       // shrunk px between headings that are tried about the best, twice as much elsewhere
-constexpr double kZoomStep = 0.13;  // of ln f
-constexpr float kMissingLine = 0.55F;   // what a piece of line that is not there counts against
-constexpr float kMinDepth = 5;      // m before the camera
-constexpr float kMaxBent = 4;       // half image widths squared: beyond, the radial term grows no more
+constexpr double kCoarse = 9;          // shrunk px between headings that are tried about the best, twice as much elsewhere
+constexpr double kZoomStep = 0.13;     // of ln f
+constexpr float kMissingLine = 0.55F;  // what a piece of line that is not there counts against
+constexpr float kMinDepth = 5;         // m before the camera
+constexpr float kMaxBent = 4;          // half image widths squared: beyond, the radial term grows no more
 
 std::vector<HeadingCandidate> rated_headings(const cv::Mat& near, const geometry::Tripod& tripod, const LineSamples& lines,
-                                    const std::vector<geometry::Heading>& headings) {
+                                             const std::vector<geometry::Heading>& headings) {
   std::vector<HeadingCandidate> all(headings.size());
   cv::parallel_for_(cv::Range(0, static_cast<int>(headings.size())), [&](const cv::Range& range) {
     for (int i = range.start; i < range.end; ++i) {
@@ -41,8 +41,7 @@ double coarse_step(const geometry::Heading& heading) {
 
 /// One of the 27 headings about another: itself and a step to each side.
 geometry::Heading neighbour(const geometry::Heading& heading, int code, double step, double zoom) {
-  return {heading.pan + (code % 3 - 1) * step, heading.tilt + (code / 3 % 3 - 1) * step,
-          heading.log_focal + (code / 9 - 1) * zoom};
+  return {heading.pan + (code % 3 - 1) * step, heading.tilt + (code / 3 % 3 - 1) * step, heading.log_focal + (code / 9 - 1) * zoom};
 }
 
 /// Headings between the coarse ones, about each of the best of them.
@@ -132,8 +131,7 @@ std::vector<geometry::Heading> headings_in(const HeadingRange& range, double asp
 }
 
 std::vector<HeadingCandidate> best_headings(const PaintMask& seen, const geometry::Tripod& tripod, const SearchLines& lines,
-                                            const std::vector<geometry::Heading>& headings, std::size_t starts,
-                                            std::size_t count) {
+                                            const std::vector<geometry::Heading>& headings, std::size_t starts, std::size_t count) {
   std::vector<HeadingCandidate> all = rated_headings(seen.about, tripod, lines.coarse, headings);
   best_scores(all, starts);
   all = rated_headings(seen.near, tripod, lines.middle, headings_about(all));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <opencv2/imgproc.hpp>
 
@@ -14,7 +15,7 @@ constexpr std::size_t kPositions = 400;  // pieces of paint that a heading has t
 
 /// The threshold over which a ridge stands out: as low as the grass allows.
 double ridge_threshold(const cv::Mat& ridges, const cv::Mat& ground, const PaintMaskOptions& options) {
-  constexpr std::array<float, 2> kLevels{0, 64};
+  constexpr std::array<float, 2> kLevels{0, 64};  // numerical
   const float* levels = kLevels.data();
   const int channel = 0, bins = 64;
   cv::Mat counts;
@@ -26,6 +27,19 @@ double ridge_threshold(const cv::Mat& ridges, const cv::Mat& ground, const Paint
     if (level >= options.min_ridge && above < options.paint_fraction * all) return std::min<double>(level, options.max_ridge);
   }
   return options.max_ridge;
+}
+
+/// Leaves the pieces that are as long as this or longer, in one direction or the other.
+void drop_specks(cv::Mat& paint, int piece) {
+  cv::Mat labels, boxes, middles;
+  const int count = cv::connectedComponentsWithStats(paint, labels, boxes, middles, 8, CV_32S);
+  std::vector<std::uint8_t> kept(static_cast<std::size_t>(count), 0);
+  for (int i = 1; i < count; ++i)
+    kept[static_cast<std::size_t>(i)] =
+        std::max(boxes.at<int>(i, cv::CC_STAT_WIDTH), boxes.at<int>(i, cv::CC_STAT_HEIGHT)) >= piece ? 255 : 0;
+  for (int y = 0; y < paint.rows; ++y) {
+    for (int x = 0; x < paint.cols; ++x) paint.at<std::uint8_t>(y, x) = kept[static_cast<std::size_t>(labels.at<int>(y, x))];
+  }
 }
 
 /// A straight line of the image: the direction of its normal, and how far it is from the middle.
@@ -61,6 +75,7 @@ PaintMask paint_mask(const Image& image, const PaintMaskOptions& options) {
   PaintMask result;
   result.ground = cv::mean(ground)[0] / 255;
   result.paint = shrunk >= 40;
+  if (options.piece > 0) drop_specks(result.paint, options.piece);
   const cv::Mat bare = ~result.paint;  // 0 where there is paint
   cv::Mat far;
   cv::distanceTransform(bare, far, cv::DIST_L2, 3);
@@ -82,7 +97,8 @@ int distinct_lines(const PaintMask& mask) {
   const Vector<2> middle(mask.paint.cols / 2.0, mask.paint.rows / 2.0);
   std::vector<ImageLine> lines;
   for (const cv::Vec4i& piece : pieces) {
-    const Vector<2> from(piece[0], piece[1]), to(piece[2], piece[3]), along = (to - from).normalized(), normal(-along.y(), along.x());
+    const Vector<2> from(piece[0], piece[1]), to(piece[2], piece[3]), along = (to - from).normalized(),
+                                                                      normal(-along.y(), along.x());
     const ImageLine here{std::atan2(normal.y(), normal.x()), normal.dot((from + to) / 2 - middle)};
     const bool known = std::any_of(lines.begin(), lines.end(), [&](const ImageLine& other) {
       const double turned = std::remainder(here.angle - other.angle, 2 * M_PI);

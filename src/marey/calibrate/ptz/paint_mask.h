@@ -15,8 +15,9 @@ namespace marey::calibrate::ptz {
 inline constexpr int kMaskWidth = 480;  ///< px: images are shrunk to this
 
 struct PaintMaskOptions {
-  int min_ridge = 5, max_ridge = 14;  ///< grey levels above the grass of what may be paint: the lowest level
-  double paint_fraction = 0.06;       ///< that no more of the ground exceeds
+  int min_ridge = 5, max_ridge = 40;  ///< grey levels above the grass of what may be paint: the lowest level
+  double paint_fraction = 0.025;      ///< that no more of the ground exceeds
+  int piece = 12;                     ///< shrunk px: pieces that are shorter are grass, not paint
 };
 
 struct PaintMask {

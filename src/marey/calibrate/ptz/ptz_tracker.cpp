@@ -21,7 +21,8 @@ constexpr std::size_t kMinForTripod = 40;  // sightings of a keyframe
 SmoothOptions smooth_options(const TrackingOptions& options) {
   SmoothOptions smooth;
   smooth.aim = options.aim;
-  smooth.flow_px = options.flow_px, smooth.flow_zoom = options.flow_zoom, smooth.moving_fraction = options.moving_fraction, smooth.moving_zoom = options.moving_zoom;
+  smooth.flow_px = options.flow_px, smooth.flow_zoom = options.flow_zoom, smooth.moving_fraction = options.moving_fraction,
+  smooth.moving_zoom = options.moving_zoom;
   return smooth;
 }
 

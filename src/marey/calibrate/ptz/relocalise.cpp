@@ -113,8 +113,7 @@ std::optional<AimFit> find_again(const Image& image, const geometry::Tripod& tri
   const double aspect = static_cast<double>(seen.near.rows) / seen.near.cols;
   if (options.near) {
     const auto headings = headings_in(heading_range_about(*options.near, options), aspect, false);
-    const auto near =
-        headings_by_evidence(image, seen, tripod, pitch, lines, search, headings, options.near_count, options);
+    const auto near = headings_by_evidence(image, seen, tripod, pitch, lines, search, headings, options.near_count, options);
     if (const auto found = decided(near, options)) return found;
   }
   if (!options.everywhere) return std::nullopt;

@@ -30,20 +30,20 @@ struct NearHeading {
 struct FindAgainOptions {
   std::optional<NearHeading> near;  ///< headings about it are tried first, and preferred
   double min_log_focal = 0.3, max_log_focal = 2.4;
-  double fraction = 0.55;  ///< of the samples of the lines in view that have to be paint,
-  int lowest_count = 35;   ///< and this many of them,
-  int lines = 3;           ///< on this many lines
-  double both = 0.4;       ///< √(fraction of the lines that is paint · fraction of the paint that is lines), at least
-  bool everywhere = true;  ///< not about the last heading alone
-  std::size_t near_count = 3;      ///< headings about the last one that are refined
+  double fraction = 0.55;      ///< of the samples of the lines in view that have to be paint,
+  int lowest_count = 35;       ///< and this many of them,
+  int lines = 3;               ///< on this many lines
+  double both = 0.4;           ///< √(fraction of the lines that is paint · fraction of the paint that is lines), at least
+  bool everywhere = true;      ///< not about the last heading alone
+  std::size_t near_count = 3;  ///< headings about the last one that are refined
   double near_angle = 0.06, near_zoom = 0.15;             ///< rad, ln f about the last heading,
   double near_angle_rate = 0.008, near_zoom_rate = 0.02;  ///< and as much more for every frame since,
   double max_near_angle = 0.35, max_near_zoom = 0.6;      ///< but no more than this
   PaintMaskOptions mask;
-  double explained_px = 3.5;                              ///< of the shrunk image: paint so near a line belongs to it
-  double beyond = 1.5;                                    ///< m beyond the lines paint belongs to no pitch,
-  double off_pitch_weight = 0.3;                          ///< and weighs as much there
-  double rival = 0.8;                                     ///< another heading may agree with at most this share of as many
+  double explained_px = 3.5;      ///< of the shrunk image: paint so near a line belongs to it
+  double beyond = 1.5;            ///< m beyond the lines paint belongs to no pitch,
+  double off_pitch_weight = 0.3;  ///< and weighs as much there
+  double rival = 0.8;             ///< another heading may agree with at most this share of as many
 };
 
 /// How well a heading explains an image, evaluated both ways.

@@ -5,22 +5,24 @@
 #include <cmath>
 #include <utility>
 
+#include "marey/calibrate/ptz/frame_fit.h"
 #include "marey/core/stop.h"
 #include "marey/geometry/ground_view.h"
 
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr double kSampleStep = 0.5;                      // m between samples of the model's lines
-constexpr std::array<double, 3> kAcross{-1.6, 0, 1.6};   // deviations from where main cameras stand: tripods that are tried
+constexpr double kSampleStep = 0.5;                     // m between samples of the model's lines
+constexpr std::array<double, 3> kAcross{-1.6, 0, 1.6};  // deviations from where main cameras stand: tripods that are tried
 constexpr std::array<double, 4> kBehind{-1.2, -0.4, 0.4, 1.1};
 constexpr std::array<double, 4> kUp{-1.4, -0.5, 0.4, 1.5};
-constexpr double kFarthest = 2.5;                        // deviations
-constexpr double kRangeOfMiddle = 110;                   // m: where an image's middle shows no ground
-constexpr std::array<double, 3> kMove{1.5, 4, 1.5};      // m: the first steps of a tripod that is moved
-constexpr double kSameGround = 5;                        // m: hypotheses that show the same ground are one
-constexpr std::size_t kStarts = 40, kOfTripod = 4;       // headings of one tripod; numerical: cost alone
-constexpr std::size_t kHeadings = 3;                     // of an image that a hypothesis is tested on
+constexpr double kLowest = 3;                        // m up: no main camera stands lower
+constexpr double kFarthest = 2.5;                    // deviations
+constexpr double kRangeOfMiddle = 110;               // m: where an image's middle shows no ground
+constexpr std::array<double, 3> kMove{1.5, 4, 1.5};  // m: the first steps of a tripod that is moved
+constexpr double kSameGround = 5;                    // m: hypotheses that show the same ground are one
+constexpr std::size_t kStarts = 40, kOfTripod = 4;   // headings of one tripod; numerical: cost alone
+constexpr std::size_t kHeadings = 3;                 // of an image that a hypothesis is tested on
 
 struct Hypothesis {
   geometry::Tripod tripod;
@@ -82,7 +84,7 @@ Hypothesis moved(const Hypothesis& from, const Vector<3>& by) {
 
 bool stands_apart(const Search& search, const Hypothesis& one) {
   const Vector<3> off = (one.tripod.location - search.near.location).cwiseQuotient(search.near.sigma);
-  return off.cwiseAbs().maxCoeff() > kFarthest || one.tripod.location.z() < 3;
+  return off.cwiseAbs().maxCoeff() > kFarthest || one.tripod.location.z() < kLowest;
 }
 
 /// Tripod and heading together, by small steps to the top of the score.
@@ -132,8 +134,7 @@ std::vector<Hypothesis> hypotheses_of(const Search& search, std::size_t image) {
   std::vector<Hypothesis> all;
   for (const geometry::Tripod& tripod : tripods_of(search)) {
     stop_point();
-    const auto range = headings_over_pitch(tripod, search.pitch, search.options.again.min_log_focal,
-                                           search.options.max_log_focal);
+    const auto range = headings_over_pitch(tripod, search.pitch, search.options.again.min_log_focal, search.options.max_log_focal);
     for (const HeadingCandidate& one :
          best_headings(seen, tripod, search.samples, headings_in(range, search.aspect(), true), kStarts, kOfTripod))
       all.push_back({tripod, one.heading, one.score});
@@ -150,9 +151,8 @@ std::vector<Hypothesis> hypotheses_of(const Search& search, std::size_t image) {
   std::stable_sort(all.begin(), all.end(), better);
   std::vector<Hypothesis> best;
   for (const Hypothesis& one : all) {
-    const bool known = std::any_of(best.begin(), best.end(), [&](const Hypothesis& other) {
-      return same_ground(one, other, seen.near.size());
-    });
+    const bool known =
+        std::any_of(best.begin(), best.end(), [&](const Hypothesis& other) { return same_ground(one, other, seen.near.size()); });
     if (!known) best.push_back(one);
     if (best.size() == 2 * search.options.tested) break;
   }
@@ -177,7 +177,7 @@ void refine_alone(const Search& search, std::size_t image, Hypothesis& one) {
     const Paint paint = find_paint(luma, one.tripod, one.heading, search.lines, how);
     const std::array<TripodFrameSight, 1> sight{TripodFrameSight{one.heading, paint.detected, {}}};
     const TripodSolution found = solve_tripod(one.tripod, sight, search.size(), search.solve);
-    if (!std::isfinite(found.cost)) return;
+    if (!std::isfinite(found.cost) || found.tripod.location.z() < kLowest) return;
     one.tripod = found.tripod, one.heading = found.headings.front();
   }
 }
@@ -246,6 +246,23 @@ Tested tested(const Search& search, std::size_t image, const Hypothesis& one) {
   return result;
 }
 
+/// How many lines of the model are seen in one image or another; the centre circle counts as two, as it fixes a view alone.
+int lines_seen(const Search& search, const Tested& tested) {
+  constexpr int kPieces = 5;  // of a line in an image: numerical, fewer may be people's
+  std::vector<int> most(search.lines.size(), 0);
+  for (const auto& view : tested.views) {
+    if (!view) continue;
+    std::vector<int> pieces(search.lines.size(), 0);
+    for (const PaintSighting& one :
+         agreeing_paint(view->paint, tested.tripod, view->fit.aim, search.size(), AimOptions{}.cut_off / 2, view->paint.size()))
+      ++pieces[static_cast<std::size_t>(one.line)];
+    for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], pieces[i]);
+  }
+  int count = 0;
+  for (std::size_t i = 0; i < most.size(); ++i) count += most[i] < kPieces ? 0 : search.lines[i].name == "centre circle" ? 2 : 1;
+  return count;
+}
+
 bool same_answer(const Search& search, const Tested& a, const Tested& b) {
   for (std::size_t i = 0; i < a.views.size(); ++i) {
     if (a.views[i] && b.views[i])
@@ -272,17 +289,13 @@ std::vector<Tested> all_tested(const Search& search) {
       refine_alone(search, image, one);
       const ImageEvidence evidence = evidence_at(search, image, one.tripod, one.heading);
       one.heading = evidence.fit.aim.heading;
-#ifdef DEV
-      fmt::print("  image {} score {:.0f} agree {} of {} lines {} expl {:.2f} both {:.2f} at {:.1f} {:.1f} {:.1f} h {:.2f} {:.2f} {:.2f}\n", search.images[image].frame, one.score, evidence.fit.agreeing, evidence.expected, evidence.fit.lines, evidence.explained, evidence.both(), one.tripod.location.x(), one.tripod.location.y(), one.tripod.location.z(), one.heading.pan, one.heading.tilt, one.heading.log_focal);
-#endif
       if (evidence.enough(search.options.again)) refined.emplace_back(evidence.merit(), one);
     }
     std::stable_sort(refined.begin(), refined.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     refined.resize(std::min(refined.size(), search.options.tested));
     for (const auto& [merit, one] : refined) {
       const bool known = std::any_of(all.begin(), all.end(), [&](const Tested& other) {
-        return other.views[image] &&
-               same_ground({other.tripod, other.views[image]->fit.aim.heading}, one, search.size());
+        return other.views[image] && same_ground({other.tripod, other.views[image]->fit.aim.heading}, one, search.size());
       });
       if (!known) all.push_back(tested(search, image, one));
     }
@@ -297,8 +310,8 @@ LocationPrior main_camera_prior(const geometry::PitchSize& pitch) {
   return {Vector<3>(pitch.length / 2, -31, 15), {2.5, 12, 4.5}};
 }
 
-SearchedTripod search_tripod(std::span<const SearchImage> images, const geometry::PitchSize& pitch,
-                             const TripodSolveOptions& solve, const TripodSearchOptions& options) {
+SearchedTripod search_tripod(std::span<const SearchImage> images, const geometry::PitchSize& pitch, const TripodSolveOptions& solve,
+                             const TripodSearchOptions& options) {
   SearchedTripod result;
   const auto rich = std::count_if(images.begin(), images.end(), [&](const auto& one) { return one.lines >= options.many_lines; });
   result.verdict = TripodVerdict::no_lines;
@@ -316,7 +329,8 @@ SearchedTripod search_tripod(std::span<const SearchImage> images, const geometry
     if (!same_answer(search, other, best)) result.rival = std::max(result.rival, other.merit);
   }
   if (best.explained < std::min(images.size(), options.lowest_images) ||
-      static_cast<double>(best.explained) < options.fraction * static_cast<double>(rich))
+      static_cast<double>(best.explained) < options.fraction * static_cast<double>(rich) ||
+      lines_seen(search, best) < options.lines)
     return result;
   result.verdict = result.rival > options.rival * result.merit ? TripodVerdict::ambiguous : TripodVerdict::found;
   return result;

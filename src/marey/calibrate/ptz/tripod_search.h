@@ -30,15 +30,23 @@ struct SearchImage {
   int lines = 0;  ///< distinct straight ones (paint_mask.h)
 };
 
+/// What is enough to explain an image where the tripod is not known: the image may show fewer lines, as others have to agree.
+inline FindAgainOptions searched_evidence() {
+  FindAgainOptions again;
+  again.lines = 2;
+  return again;
+}
+
 struct TripodSearchOptions {
-  FindAgainOptions again;         ///< what is enough to explain an image
-  double max_log_focal = 1.9;     ///< of an image's heading: closer shots are left to the tracker
-  std::size_t start_images = 2;   ///< that hypotheses are drawn from, those with most lines
-  std::size_t climbed = 30;       ///< hypotheses of an image that are moved to the top of their score,
-  std::size_t tested = 3;         ///< and tested on the other images
-  std::size_t lowest_images = 3;  ///< that have to be explained,
-  double fraction = 0.5;          ///< and this share of those that show `many_lines` or more
+  FindAgainOptions again = searched_evidence();  ///< what is enough to explain an image
+  double max_log_focal = 1.9;                    ///< of an image's heading: closer shots are left to the tracker
+  std::size_t start_images = 2;                  ///< that hypotheses are drawn from, those with most lines
+  std::size_t climbed = 30;                      ///< hypotheses of an image that are moved to the top of their score,
+  std::size_t tested = 3;                        ///< and tested on the other images
+  std::size_t lowest_images = 3;                 ///< that have to be explained,
+  double fraction = 0.5;                         ///< and this share of those that show `many_lines` or more
   int many_lines = 4;
+  int lines = 3;        ///< of the model that are seen in one image or another; the centre circle counts as two
   double rival = 0.75;  ///< another hypothesis may explain at most this share of as much
 };
 

@@ -20,11 +20,11 @@ namespace {
 
 using marey::calibrate::ptz::ClickedFrame;
 
-constexpr double kMinFound = 0.1;      // of the frames: a video with less is not of the pitch that was clicked
-constexpr double kMinReported = 0.02;  // of the frames that are lost
-constexpr double kOddClick = 6;        // deviations of a click, or medians of all: farther off it is on something else
-constexpr int kFewLines = 4;           // straight lines: an image with fewer cannot be searched
-constexpr double kStartAgrees = 2;     // m: the track may be so far off a frame of the start,
+constexpr double kMinFound = 0.1;         // of the frames: a video with less is not of the pitch that was clicked
+constexpr double kMinReported = 0.02;     // of the frames that are lost
+constexpr double kOddClick = 6;           // deviations of a click, or medians of all: farther off it is on something else
+constexpr int kFewLines = 4;              // straight lines: an image with fewer cannot be searched
+constexpr double kStartAgrees = 2;        // m: the track may be so far off a frame of the start,
 constexpr double kStartsThatAgree = 0.6;  // in all but few of them
 
 /// Where in the clicks' frame the pitch's corner with the smallest x and y lies: the origin, or, where they count from the middle,
@@ -143,10 +143,11 @@ void check_result(PtzRun& run, const std::string& video) {
   const auto frames = static_cast<double>(run.result.camera.rotations.size());
   const double found = frames - run.result.lost;
   if (found < kMinFound * frames)
-    throw Error("{}: the lines of the {}pitch were found in {:.0f} of {:.0f} frames; is it a video of one main camera over a football "
-                "pitch, {} and is --size the pitch's?",
-                video, run.searched ? "" : "clicked ", found, frames,
-                run.searched ? "do two frames face different sides (--points decides)," : "are the clicks right,");
+    throw Error(
+        "{}: the lines of the {}pitch were found in {:.0f} of {:.0f} frames; is it a video of one main camera over a football "
+        "pitch, {} and is --size the pitch's?",
+        video, run.searched ? "" : "clicked ", found, frames,
+        run.searched ? "do two frames face different sides (--points decides)," : "are the clicks right,");
   for (const auto& click : run.result.clicks) {
     if (click.contradicts)
       run.warnings.push_back(
@@ -235,8 +236,8 @@ Error unsearchable(const PtzStart& start, const std::string& video) {
         "camera over a football pitch?",
         video, start.frame, start.lines);
   return Error(
-      "{}: {} its lines; click in frame {}, which shows most of them ({}), and in one or more that face elsewhere (--points)", video,
-      start.ambiguous ? "two places of a main camera explain" : "no place of a main camera over a football pitch explains",
+      "{}: {} its lines; click in frame {}, which shows most of them ({}), and in one or more that face elsewhere (--points)",
+      video, start.ambiguous ? "two places of a main camera explain" : "no place of a main camera over a football pitch explains",
       start.frame, start.lines);
 }
 
@@ -256,7 +257,7 @@ void start_without_clicks(PtzRun& run, const corridor::Feed& feed, PtzRunOptions
   options.tracking.tripod.near = marey::calibrate::ptz::main_camera_prior(options.tracking.pitch);
   if (!options.side)
     run.warnings.push_back(
-        "without clicks the camera is taken to stand behind the touchline y = 0; turned by half a turn the pitch looks the same "
+        "without clicks the camera is taken to stand behind the touchline y = 0; turned by half a turn the pitch has the same image "
         "(--side far)");
 }
 

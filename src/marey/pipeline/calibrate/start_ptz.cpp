@@ -14,9 +14,9 @@ using marey::calibrate::ptz::SearchImage;
 using marey::calibrate::ptz::TripodVerdict;
 
 constexpr double kSearchWindow = 60;       // s that are searched together
-constexpr double kSearchEvery = 0.4;     // s between images whose lines are counted
+constexpr double kSearchEvery = 0.4;       // s between images whose lines are counted
 constexpr std::size_t kSearchImages = 10;  // of a window, each the one of its tenth that shows most lines
-constexpr int kMinLines = 2;        // an image with fewer is none of a pitch
+constexpr int kMinLines = 2;               // an image with fewer shows no pitch
 
 Image searched_copy(const Image& image) {
   if (!image.is_colour()) return Image(image.luma().clone());
@@ -29,8 +29,9 @@ std::vector<SearchImage> images_with_lines(std::vector<SearchImage> all) {
   for (std::size_t k = 0; k < kSearchImages; ++k) {
     const std::size_t begin = k * all.size() / kSearchImages, end = (k + 1) * all.size() / kSearchImages;
     if (begin == end) continue;
-    const auto most = std::max_element(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end),
-                                       [](const SearchImage& a, const SearchImage& b) { return a.lines < b.lines; });
+    const auto most =
+        std::max_element(all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end),
+                         [](const SearchImage& a, const SearchImage& b) { return a.lines < b.lines; });
     if (most->lines >= kMinLines) best.push_back(std::move(*most));
   }
   return best;
@@ -38,7 +39,7 @@ std::vector<SearchImage> images_with_lines(std::vector<SearchImage> all) {
 
 /// The images of the next minute; false at the video's end.
 bool read_search_window(corridor::Feed& feed, std::int64_t& index, std::int64_t window, std::vector<SearchImage>& images,
-                 const Hooks& hooks) {
+                        const Hooks& hooks) {
   const auto every = std::max<std::int64_t>(1, std::llround(kSearchEvery * feed.rate_hz()));
   const std::int64_t end = index + window;
   for (; index < end; ++index) {

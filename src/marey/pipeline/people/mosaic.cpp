@@ -10,11 +10,11 @@
 namespace marey::pipeline::people {
 namespace {
 
-constexpr int kKept = 7;               // values of a cell
-constexpr double kMaxDistance = 110;   // m: what rises above the ground is taken to be this far away
-constexpr double kFinest = 1.2;        // of the angle of a pixel at the longest focal length: between cells
-constexpr int kLookupGrid = 8;         // px between rays that are looked up
-constexpr double kPole = 1.2;          // rad: directions so steep are not kept
+constexpr int kKept = 7;              // values of a cell
+constexpr double kMaxDistance = 110;  // m: what rises above the ground is taken to be this far away
+constexpr double kFinest = 1.2;       // of the angle of a pixel at the longest focal length: between cells
+constexpr int kLookupGrid = 8;        // px between rays that are computed; numerical
+constexpr double kPole = 1.2;         // rad: directions so steep are not kept
 
 /// Evenly mixed bits.
 std::uint32_t mixed(std::uint32_t value) {
@@ -34,7 +34,8 @@ Mosaic::Mosaic(const PtzCamera& camera, cv::Size size, std::size_t cells) : trip
     if (!turn.heading) continue;
     const double focal = std::exp(turn.heading->log_focal), half = std::atan(1.15 / focal),
                  upright = std::atan(1.15 * size.height / size.width / focal);
-    const Vector<2> aim(turn.heading->pan, turn.heading->tilt), reach(half / std::max(0.4, std::cos(turn.heading->tilt)), upright + 0.02);
+    const Vector<2> aim(turn.heading->pan, turn.heading->tilt),
+        reach(half / std::max(0.4, std::cos(turn.heading->tilt)), upright + 0.02);
     low = low.cwiseMin(aim - reach), high = high.cwiseMax(aim + reach);
     longest = std::max(longest, focal);
   }
@@ -74,7 +75,8 @@ void Mosaic::add(const cv::Mat& luma, const geometry::Heading& heading) {
         if (frame.depth(location) < 1) continue;
         const Vector<2> pixel = geometry::to_pixel(frame.detected(location), size_);
         if (pixel.x() < 1 || pixel.y() < 1 || pixel.x() > size_.width - 2 || pixel.y() > size_.height - 2) continue;
-        const std::size_t cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+        const std::size_t cell =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
         std::uint8_t& count = count_[cell];
         std::size_t at = count;
         if (count >= kKept) at = mixed(static_cast<std::uint32_t>(cell) * 31U + number) % (count + 1U);
@@ -91,7 +93,8 @@ void Mosaic::finish() {
   cv::parallel_for_(cv::Range(0, rows_), [&](const cv::Range& range) {
     for (int row = range.start; row < range.end; ++row) {
       for (int column = 0; column < columns_; ++column) {
-        const std::size_t cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+        const std::size_t cell =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
         const int count = std::min<int>(kKept, count_[cell]);
         std::uint8_t* values = &kept_[kKept * cell];
         std::nth_element(values, values + count / 2, values + count);

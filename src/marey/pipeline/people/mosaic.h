@@ -1,8 +1,8 @@
-// The empty scene of a camera that turns on a tripod: a mosaic over pan and tilt, from frames whose aim is known.
+// The empty scene of a PTZ camera: a mosaic over pan and tilt, from frames whose aim is known.
 //
 // A camera on a tripod sees every scene from nearly one place, so that a direction from it always shows the same: the ground, or
 // what stands far behind it. The mosaic keeps some values of each direction, evenly chosen over time, and their median is the
-// empty scene; people move on. Cost: some 30 ms a frame of 720p to add or to look up. Memory: 8 bytes a cell, 12 million cells at
+// empty scene; people move on. Cost: some 30 ms a frame of 720p to add or to give. Memory: 8 bytes a cell, 12 million cells at
 // most.
 // Reference: Szeliski, "Image alignment and stitching", 2006 (rotational mosaics); Thomas 2007 (texture of a pitch as seen).
 #pragma once

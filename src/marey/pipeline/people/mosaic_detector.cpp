@@ -27,7 +27,8 @@ cv::Mat luma_in_bytes(const Image& image) {
 class MosaicDetector : public detect::Detector {
  public:
   MosaicDetector(Mosaic mosaic, const RigCamera& camera, CameraId id, std::shared_ptr<const PtzCamera> ptz,
-                 std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area, const MosaicDetectorOptions& options)
+                 std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
+                 const MosaicDetectorOptions& options)
       : mosaic_(std::move(mosaic)),
         camera_(camera),
         id_(id),
@@ -116,7 +117,8 @@ std::unique_ptr<detect::Detector> mosaic_detector(const corridor::Feed& feed, st
   const std::vector<Frame> frames = feed.sample(options.frames, options.seconds, options.most_frames);
   if (frames.empty())
     throw Error(
-        "camera \"{0}\" is a PTZ camera whose images cannot be read twice, so that its empty scene cannot be learned; give a network "
+        "camera \"{0}\" is a PTZ camera whose images cannot be read twice, so that its empty scene cannot be learned; give a "
+        "network "
         "with --detector MODEL.toml (docs/network.md), or what another program detected: {0}=boxes.txt",
         feed.camera().name);
   Mosaic mosaic(*camera, *feed.camera().size);
@@ -125,7 +127,8 @@ std::unique_ptr<detect::Detector> mosaic_detector(const corridor::Feed& feed, st
     if (const auto heading = heading_at(feed.camera(), *camera, frame.time)) mosaic.add(luma_in_bytes(frame.image), *heading);
   }
   mosaic.finish();
-  return std::make_unique<MosaicDetector>(std::move(mosaic), feed.camera(), feed.id(), std::move(camera), std::move(views), area, options);
+  return std::make_unique<MosaicDetector>(std::move(mosaic), feed.camera(), feed.id(), std::move(camera), std::move(views), area,
+                                          options);
 }
 
 }  // namespace marey::pipeline::people

@@ -39,7 +39,7 @@ cv::Vec3b shaded(double blue, double green, double red, double bright) {
           cv::saturate_cast<std::uint8_t>(red * bright)};
 }
 
-/// Stripes differ as usual at 1; beyond, their seams shine as well, as narrow as paint.
+/// Stripes differ as they do on most pitches at 1; beyond, their seams shine as well, as narrow as paint.
 double mown_bright(double x, double mowing) {
   constexpr double kSeam = 0.1;  // m
   const double from_seam = std::abs(std::remainder(x, kMowing));
@@ -86,7 +86,8 @@ void wet_grass(cv::Mat ground, double wet, std::uint64_t seed) {
 void lay_mats(cv::Mat ground, const geometry::PitchSize& pitch) {
   constexpr double kFrom = 2.2, kWide = 2.5, kEdge = 0.15;  // m
   const auto rect = [&](double x, double y, double width, double height) {
-    return cv::Rect(cvRound((x + kRound) / kTexel), cvRound((y + kNear) / kTexel), cvRound(width / kTexel), cvRound(height / kTexel)) &
+    return cv::Rect(cvRound((x + kRound) / kTexel), cvRound((y + kNear) / kTexel), cvRound(width / kTexel),
+                    cvRound(height / kTexel)) &
            cv::Rect({}, ground.size());
   };
   const auto lay = [&](double x, double y, double width, double height) {
@@ -219,7 +220,10 @@ struct Lookup {
 }  // namespace
 
 PtzBackground::PtzBackground(const geometry::PitchSize& pitch, std::uint64_t seed, const PtzPaint& paint)
-    : pitch_(pitch), appearance_(paint), seed_(seed), lines_(paint.hockey ? hockey_lines(pitch) : geometry::pitch_lines(pitch, 0.5)) {
+    : pitch_(pitch),
+      appearance_(paint),
+      seed_(seed),
+      lines_(paint.hockey ? hockey_lines(pitch) : geometry::pitch_lines(pitch, 0.5)) {
   const Extent extent(pitch);
   Random random(seed * 2654435761u + 81), painter(seed * 2654435761u + 82);
   for (int i = 0; i < paint.extra; ++i) lines_.push_back(other_paint(pitch, painter));

@@ -91,11 +91,11 @@ geometry::Heading PtzMatch::on_screen(const geometry::Heading& heading) const {
 }
 
 /// Off a screen: shaken, a little askew, its rows of pixels against the camera's.
-cv::Mat PtzMatch::filmed(const cv::Mat& shown) const {
+cv::Mat PtzMatch::off_screen(const cv::Mat& shown) const {
   const Hand hand = hand_at(time(), options_.screen, seed_);
   const double unit = shown.cols / 1280.0, cosine = hand.scale * std::cos(hand.roll), sine = hand.scale * std::sin(hand.roll);
   const Vector<2> middle((shown.cols - 1) / 2.0, (shown.rows - 1) / 2.0);
-  constexpr double kAskew = 3e-6;  // per px of the image
+  constexpr double kAskew = 3e-6;                                                                      // per px of the image
   cv::Matx33d to(cosine, -sine, middle.x() - cosine * middle.x() + sine * middle.y() + unit * hand.x,  //
                  sine, cosine, middle.y() - sine * middle.x() - cosine * middle.y() + unit * hand.y,   //
                  kAskew, 0, 1 - kAskew * middle.x());
@@ -179,7 +179,7 @@ Image PtzMatch::image() const {
   }
   scene = blurred(scene);
   add_graphics(scene);
-  if (options_.screen > 0 && heading()) scene = filmed(scene);
+  if (options_.screen > 0 && heading()) scene = off_screen(scene);
   const Image clean = Image::from_bgr(scene);
   cv::Mat luma = clean.luma().clone(), cb = clean.cb().clone(), cr = clean.cr().clone();
   people::apply(options_.degradation, luma, cb, cr);

@@ -9,7 +9,7 @@
 namespace marey::simulate::match {
 namespace {
 
-constexpr std::array<std::string_view, 13> kPtzScenes{"plain", "whip",   "thin",   "wet",    "worn", "extra", "low",
+constexpr std::array<std::string_view, 13> kPtzScenes{"plain", "whip", "thin",   "wet",    "worn",   "extra", "low",
                                                       "near",  "mats", "junior", "screen", "hockey", "all"};
 constexpr double kSomeWhips = 0.15, kManyWhips = 0.5;  // a second
 
