@@ -84,7 +84,7 @@ void wet_grass(cv::Mat ground, double wet, std::uint64_t seed) {
 
 /// Mats beside the lines, with white edges: lines that are parallel to those of the pitch.
 void lay_mats(cv::Mat ground, const geometry::PitchSize& pitch) {
-  constexpr double kFrom = 2.2, kWide = 2.5, kEdge = 0.15;  // m
+  constexpr double kMatFrom = 2.2, kMatWide = 2.5, kMatEdge = 0.15;  // m
   const auto rect = [&](double x, double y, double width, double height) {
     return cv::Rect(cvRound((x + kRound) / kTexel), cvRound((y + kNear) / kTexel), cvRound(width / kTexel),
                     cvRound(height / kTexel)) &
@@ -92,36 +92,39 @@ void lay_mats(cv::Mat ground, const geometry::PitchSize& pitch) {
   };
   const auto lay = [&](double x, double y, double width, double height) {
     ground(rect(x, y, width, height)) = cv::Scalar(205, 212, 206);
-    ground(rect(x + kEdge, y + kEdge, width - 2 * kEdge, height - 2 * kEdge)) = cv::Scalar(60, 92, 70);
+    ground(rect(x + kMatEdge, y + kMatEdge, width - 2 * kMatEdge, height - 2 * kMatEdge)) = cv::Scalar(60, 92, 70);
   };
-  for (double along = -4; along < pitch.length - 4; along += 28) lay(along, pitch.width + kFrom, 24, kWide);
+  for (double along = -4; along < pitch.length - 4; along += 28) lay(along, pitch.width + kMatFrom, 24, kMatWide);
   for (double along = 4; along < pitch.width - 12; along += 26) {
     if (std::abs(along + 12 - pitch.width / 2) < 13) continue;
-    lay(-kFrom - kWide, along, kWide, 22), lay(pitch.length + kFrom, along, kWide, 22);
+    lay(-kMatFrom - kMatWide, along, kMatWide, 22), lay(pitch.length + kMatFrom, along, kMatWide, 22);
   }
 }
 
 /// The lines of field hockey, 91.4 × 55 m, in the middle of this ground.
 std::vector<geometry::PitchLine> hockey_lines(const geometry::PitchSize& pitch) {
-  constexpr double kLength = 91.4, kWidth = 55, kFromGoal = 22.9, kCircle = 14.63, kPost = 1.83, kStep = 0.5;  // m
-  const Vector<2> corner((pitch.length - kLength) / 2, (pitch.width - kWidth) / 2);
+  constexpr double kHockeyLength = 91.4, kHockeyWidth = 55, kHockeyFromGoal = 22.9, kHockeyCircle = 14.63, kHockeyPost = 1.83,
+                   kHockeyStep = 0.5;  // m
+  const Vector<2> corner((pitch.length - kHockeyLength) / 2, (pitch.width - kHockeyWidth) / 2);
   std::vector<geometry::PitchLine> lines;
   const auto straight = [&](const Vector<2>& from, const Vector<2>& to) {
     geometry::PitchLine& line = lines.emplace_back();
     const Vector<2> along = (to - from).normalized();
-    for (double at = 0; at <= (to - from).norm(); at += kStep)
+    for (double at = 0; at <= (to - from).norm(); at += kHockeyStep)
       line.points.push_back(corner + from + at * along), line.tangents.push_back(along);
   };
-  for (const double y : {0.0, kWidth}) straight({0, y}, {kLength, y});
-  for (const double x : {0.0, kFromGoal, kLength / 2, kLength - kFromGoal, kLength}) straight({x, 0}, {x, kWidth});
+  for (const double y : {0.0, kHockeyWidth}) straight({0, y}, {kHockeyLength, y});
+  for (const double x : {0.0, kHockeyFromGoal, kHockeyLength / 2, kHockeyLength - kHockeyFromGoal, kHockeyLength})
+    straight({x, 0}, {x, kHockeyWidth});
   for (const double side : {-1.0, 1.0}) {
-    const double x = side < 0 ? 0 : kLength;
-    straight({x - side * kCircle, kWidth / 2 - kPost}, {x - side * kCircle, kWidth / 2 + kPost});
+    const double x = side < 0 ? 0 : kHockeyLength;
+    straight({x - side * kHockeyCircle, kHockeyWidth / 2 - kHockeyPost},
+             {x - side * kHockeyCircle, kHockeyWidth / 2 + kHockeyPost});
     for (const double post : {-1.0, 1.0}) {
       geometry::PitchLine& arc = lines.emplace_back();
-      for (double angle = 0; angle <= M_PI / 2; angle += kStep / kCircle) {
+      for (double angle = 0; angle <= M_PI / 2; angle += kHockeyStep / kHockeyCircle) {
         const Vector<2> out(-side * std::cos(angle), post * std::sin(angle));
-        arc.points.push_back(corner + Vector<2>(x, kWidth / 2 + post * kPost) + kCircle * out);
+        arc.points.push_back(corner + Vector<2>(x, kHockeyWidth / 2 + post * kHockeyPost) + kHockeyCircle * out);
         arc.tangents.emplace_back(-out.y(), out.x());
       }
     }
