@@ -11,8 +11,8 @@ namespace {
 constexpr double kCoarse = 9;          // shrunk px between headings that are tried about the best, twice as much elsewhere
 constexpr double kZoomStep = 0.13;     // of ln f
 constexpr float kMissingLine = 0.55F;  // what a piece of line that is not there counts against
-constexpr float kMinDepth = 5;         // m before the camera
-constexpr float kMaxBent = 4;          // half image widths squared: beyond, the radial term grows no more
+constexpr float kMinDepth = 5;         // m before the camera; numerical
+constexpr float kMaxBent = 4;          // half image widths squared: beyond, the radial term grows no more; numerical
 
 std::vector<HeadingCandidate> rated_headings(const cv::Mat& near, const geometry::Tripod& tripod, const LineSamples& lines,
                                              const std::vector<geometry::Heading>& headings) {

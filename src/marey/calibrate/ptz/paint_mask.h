@@ -12,7 +12,7 @@
 
 namespace marey::calibrate::ptz {
 
-inline constexpr int kMaskWidth = 480;  ///< px: images are shrunk to this
+inline constexpr int kMaskWidth = 480;  ///< px: images are shrunk to this; numerical: cost
 
 struct PaintMaskOptions {
   int min_ridge = 5, max_ridge = 40;  ///< grey levels above the grass of what may be paint: the lowest level

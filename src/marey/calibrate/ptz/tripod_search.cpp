@@ -12,17 +12,17 @@
 namespace marey::calibrate::ptz {
 namespace {
 
-constexpr double kSampleStep = 0.5;                     // m between samples of the model's lines
+constexpr double kSampleStep = 0.5;                     // m between samples of the model's lines; numerical
 constexpr std::array<double, 3> kAcross{-1.6, 0, 1.6};  // deviations from where main cameras stand: tripods that are tried
 constexpr std::array<double, 4> kBehind{-1.2, -0.4, 0.4, 1.1};
 constexpr std::array<double, 4> kUp{-1.4, -0.5, 0.4, 1.5};
-constexpr double kLowest = 3;                        // m up: no main camera stands lower
-constexpr double kFarthest = 2.5;                    // deviations
-constexpr double kRangeOfMiddle = 110;               // m: where an image's middle shows no ground
+constexpr double kMinUp = 3;                        // m up: no main camera stands lower; physical
+constexpr double kMaxApart = 2.5;                    // deviations; numerical
+constexpr double kRangeOfMiddle = 110;               // m: where an image's middle shows no ground; numerical
 constexpr std::array<double, 3> kMove{1.5, 4, 1.5};  // m: the first steps of a tripod that is moved
 constexpr double kSameGround = 5;                    // m: hypotheses that show the same ground are one
 constexpr std::size_t kStarts = 40, kOfTripod = 4;   // headings of one tripod; numerical: cost alone
-constexpr std::size_t kHeadings = 3;                 // of an image that a hypothesis is tested on
+constexpr std::size_t kHeadings = 3;                 // of an image that a hypothesis is tested on; numerical: cost alone
 
 struct Hypothesis {
   geometry::Tripod tripod;
@@ -84,7 +84,7 @@ Hypothesis moved(const Hypothesis& from, const Vector<3>& by) {
 
 bool stands_apart(const Search& search, const Hypothesis& one) {
   const Vector<3> off = (one.tripod.location - search.near.location).cwiseQuotient(search.near.sigma);
-  return off.cwiseAbs().maxCoeff() > kFarthest || one.tripod.location.z() < kLowest;
+  return off.cwiseAbs().maxCoeff() > kMaxApart || one.tripod.location.z() < kMinUp;
 }
 
 /// Tripod and heading together, by small steps to the top of the score.
@@ -177,7 +177,7 @@ void refine_alone(const Search& search, std::size_t image, Hypothesis& one) {
     const Paint paint = find_paint(luma, one.tripod, one.heading, search.lines, how);
     const std::array<TripodFrameSight, 1> sight{TripodFrameSight{one.heading, paint.detected, {}}};
     const TripodSolution found = solve_tripod(one.tripod, sight, search.size(), search.solve);
-    if (!std::isfinite(found.cost) || found.tripod.location.z() < kLowest) return;
+    if (!std::isfinite(found.cost) || found.tripod.location.z() < kMinUp) return;
     one.tripod = found.tripod, one.heading = found.headings.front();
   }
 }
@@ -202,7 +202,7 @@ std::optional<ImageEvidence> heading_in(const Search& search, std::size_t image,
   return std::move(all.front());
 }
 
-/// Solves the tripod on all images that it explains, and looks at them again with it.
+/// Solves the tripod on all images that it explains, and inspects them again with it.
 void solve_together(const Search& search, Tested& tested) {
   std::vector<TripodFrameSight> sights;
   std::vector<std::size_t> of;

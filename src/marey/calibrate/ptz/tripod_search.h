@@ -4,10 +4,10 @@
 // from each of them, on the images that show most lines: every try is a hypothesis of which lines of the pitch are seen
 // (heading_search.h). The best are moved to the top of the score, place and heading together, and refined on the paint with what
 // main cameras have in common as a prior. Each is then tested on the other images: its tripod has to explain them as well, by some
-// heading, and all that it explains are solved together. A hypothesis counts where it explains most of the images, evaluated both
-// ways, and no other explains nearly as many.
+// heading, and all that it explains are solved together. A hypothesis counts where it explains most of the images, lines without
+// paint and paint without lines, and no other explains nearly as many.
 //
-// A pitch turned by half a turn looks the same: the camera is taken to stand before y = 0. Cost: some 5 s of a processor.
+// A pitch turned by half a turn has the same image: the camera is taken to stand before y = 0. Cost: some 5 s of a processor.
 #pragma once
 
 #include <cstdint>

@@ -13,9 +13,9 @@ using marey::calibrate::ptz::SearchedTripod;
 using marey::calibrate::ptz::SearchImage;
 using marey::calibrate::ptz::TripodVerdict;
 
-constexpr double kSearchWindow = 60;       // s that are searched together
-constexpr double kSearchEvery = 0.4;       // s between images whose lines are counted
-constexpr std::size_t kSearchImages = 10;  // of a window, each the one of its tenth that shows most lines
+constexpr double kSearchWindow = 60;       // s that are searched together; numerical: memory and cost alone
+constexpr double kSearchEvery = 0.4;       // s between images whose lines are counted; numerical: memory and cost alone
+constexpr std::size_t kSearchImages = 10;  // of a window, each the one of its tenth that shows most lines; numerical: memory and cost alone
 constexpr int kMinLines = 2;               // an image with fewer shows no pitch
 
 Image searched_copy(const Image& image) {

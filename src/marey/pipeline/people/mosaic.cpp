@@ -10,11 +10,11 @@
 namespace marey::pipeline::people {
 namespace {
 
-constexpr int kKept = 7;              // values of a cell
+constexpr int kKept = 7;              // values of a cell; numerical: memory alone
 constexpr double kMaxDistance = 110;  // m: what rises above the ground is taken to be this far away
-constexpr double kFinest = 1.2;       // of the angle of a pixel at the longest focal length: between cells
+constexpr double kFinest = 1.2;       // of the angle of a pixel at the longest focal length: between cells; numerical: memory alone
 constexpr int kLookupGrid = 8;        // px between rays that are computed; numerical
-constexpr double kPole = 1.2;         // rad: directions so steep are not kept
+constexpr double kPole = 1.2;         // rad: directions so steep are not kept; numerical
 
 /// Evenly mixed bits.
 std::uint32_t mixed(std::uint32_t value) {
