@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "marey/core/error.h"
 #include "marey/format/rig/rig_turns.h"
 #include "marey/pipeline/calibrate/calibrate_ptz.h"
 
@@ -21,13 +22,19 @@ namespace {
 
 struct CalibratePtz {
   std::string video, clicks, out;
-  std::string size = "105x68";
+  std::string size = "105x68", side;
   pipeline::calibrate::PtzRunOptions options;
   bool json = false;
   bool quiet = false;
 };
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+
+pipeline::calibrate::PtzSide side_named(const std::string& name) {
+  if (name == "near") return pipeline::calibrate::PtzSide::near;
+  if (name == "far") return pipeline::calibrate::PtzSide::far;
+  throw Error("--side {}: near or far", name);
+}
 
 /// From where to where it turned and zoomed.
 struct Rotated {
@@ -66,6 +73,7 @@ Json as_json(const pipeline::calibrate::PtzRun& run) {
           {"tripod", {tripod.location.x(), tripod.location.y(), tripod.location.z()}},
           {"seconds", run.seconds},
           {"clicked", frames},
+          {"searched", run.searched},
           {"warnings", run.warnings}};
 }
 
@@ -74,8 +82,11 @@ void print_report(const pipeline::calibrate::PtzRun& run, const std::string& out
   const Vector<2> location = (*run.rig.ground_from_world * camera.tripod.location.head<2>().homogeneous()).hnormalized();
   std::size_t clicks = 0;
   for (const auto& frame : run.clicks) clicks += frame.locations.size();
-  fmt::print("the tripod stands at ({:.1f}, {:.1f}), {:.1f} m up: {} clicks in {} frames, {:.1f} px off in the middle\n",
-             location.x(), location.y(), camera.tripod.location.z(), clicks, run.clicks.size(), run.clicked.median_px);
+  fmt::print("the tripod stands at ({:.1f}, {:.1f}), {:.1f} m up: ", location.x(), location.y(), camera.tripod.location.z());
+  if (run.searched)
+    fmt::print("by the lines of {} frames\n", run.clicks.size());
+  else
+    fmt::print("{} clicks in {} frames, {:.1f} px off in the middle\n", clicks, run.clicks.size(), run.clicked.median_px);
   const Rotated range = rotated(camera);
   const double half = run.rig.cameras.front().size->width / 2.0;
   fmt::print("it turned by {:.1f} degrees, its focal length was {:.0f} to {:.0f} px\n",
@@ -91,6 +102,7 @@ void print_report(const pipeline::calibrate::PtzRun& run, const std::string& out
 void run(const CalibratePtz& command) {
   pipeline::calibrate::PtzRunOptions options = command.options;
   options.tracking.pitch = parse_pitch_size(command.size);
+  if (!command.side.empty()) options.side = side_named(command.side);
   const pipeline::calibrate::PtzRun found = with_progress(command.quiet, [&](const Hooks& hooks) {
     return pipeline::calibrate::calibrate_ptz(command.video, command.clicks, options, hooks);
   });
@@ -112,10 +124,13 @@ void add_calibrate_ptz(Command& calibrate) {
       "ptz",
       "Where a camera over a football pitch looks that pans, tilts and zooms, from clicks in a few frames and the white lines");
   command.input_file("INPUT", options->video, "a video of one main camera").required();
+  command.input_file("--points", options->clicks,
+                     "clicked places in 2 to 4 frames that look to different sides: CSV frame,x,y,u,v, or CVAT XML (default: the "
+                     "lines in the images alone)");
   command
-      .input_file("--points", options->clicks,
-                  "clicked places in 2 to 4 frames that look to different sides: CSV frame,x,y,u,v, or CVAT XML")
-      .required();
+      .text("--side", options->side,
+            "without --points: near or far, whether the camera stands behind the touchline y = 0 or the other one; both fit alike")
+      .check(side_named);
   command.text("--size", options->size, "of the pitch, LENGTHxWIDTH in m").check(parse_pitch_size);
   command.text("--name", options->options.name, "of the camera, in the rig");
   command.output_file("-o,--output", options->out, "rig file to write; where the camera looks is in a file beside it")

@@ -72,7 +72,10 @@ void add_simulate_ptz(Command& simulate) {
                  "at this time another camera is shown, for two seconds (default: never)");
   command.number("--graphics", options->graphics_at, "s", closed(0, 10800),
                  "at this time the lower half of the image is covered, for four seconds (default: never)");
-  command.text("--scene", options->scene, "plain, whip, thin, wet, worn, extra, low or all: what makes the lines hard to follow")
+  command
+      .text("--scene", options->scene,
+            "plain, whip, thin, wet, worn, extra, low, near, mats, junior, screen, hockey or all: what makes the lines hard to "
+            "follow")
       .check(simulate::match::ptz_scene);
   command.number("--click-noise", options->files.click_noise, "px", closed(0, 100), "standard deviation of the clicks");
   command.number("--clicked-from", options->files.clicked_from, "s", closed(0, 10800), "no frame before is clicked");

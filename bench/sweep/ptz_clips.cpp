@@ -141,6 +141,7 @@ void set(PtzRunOptions& options, const std::string& text) {
       {"flow_px", [&](double v) { t.flow_px = v; }},
       {"flow_zoom", [&](double v) { t.flow_zoom = v; }},
       {"moving_fraction", [&](double v) { t.moving_fraction = v; }},
+      {"moving_zoom", [&](double v) { t.moving_zoom = v; }},
       {"unsure_px", [&](double v) { t.unsure_px = v; }},
       {"fraction", [&](double v) { t.fraction = v; }},
       {"patience", [&](double v) { t.patience = static_cast<int>(v); }},
@@ -155,12 +156,12 @@ void set(PtzRunOptions& options, const std::string& text) {
   found->second(std::stod(text.substr(equals + 1)));
 }
 
-Score run_clip(const std::filesystem::path& folder, const PtzRunOptions& options) {
+Score run_clip(const std::filesystem::path& folder, const PtzRunOptions& options, bool clicks) {
   const auto truth = format::rig::read_ptz((folder / "rig.toml").string());
   const std::clock_t begin = std::clock();
   try {
     const PtzRun run =
-        pipeline::calibrate::calibrate_ptz((folder / "main.mp4").string(), (folder / "clicks.csv").string(), options);
+        pipeline::calibrate::calibrate_ptz((folder / "main.mp4").string(), clicks ? (folder / "clicks.csv").string() : "", options);
     const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     Score score = assessed(*truth.front(), run);
     score.seconds = seconds;
@@ -178,9 +179,11 @@ Score run_clip(const std::filesystem::path& folder, const PtzRunOptions& options
 
 int main(int count, char** words) {
   std::vector<std::string> folders, settings;
+  bool no_clicks = false;
   CLI::App app("Simulated clips of a PTZ camera, calibrated by their clicks and compared with their truth");
   app.add_option("folders", folders, "as marey simulate ptz writes them")->required();
   app.add_option("--set", settings, "a constant, NAME=VALUE");
+  app.add_flag("--no-clicks", no_clicks, "by the lines of the images alone");
   CLI11_PARSE(app, count, words);
   PtzRunOptions options;
   for (const std::string& one : settings) set(options, one);
@@ -189,7 +192,7 @@ int main(int count, char** words) {
                         .c_str());
   Score all;
   for (const std::string& folder : folders) {
-    const Score score = run_clip(folder, options);
+    const Score score = run_clip(folder, options, !no_clicks);
     print_row(std::filesystem::path(folder).filename().string(), score);
     all.add(score);
   }

@@ -47,6 +47,39 @@ class Ptz(unittest.TestCase):
         score = json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", "film/found.csv", "--distance", "1.5", "--json").stdout)
         self.assertTrue(score)
 
+    def test_lines_alone_give_the_camera_and_say_which_of_two(self):
+        done = self.run_marey("calibrate", "ptz", "film/main.mp4", "-o", "film/alone.toml", "--json")
+        report = json.loads(done.stdout)
+        self.assertTrue(report["searched"])
+        self.assertLess(report["lost"], 20)
+        self.assertIn("half a turn", done.stderr)
+        self.assertIn("--side far", done.stderr)
+        for is_, was in zip(self.rows("film/rig_main_ptz.csv"), self.rows("film/alone_main_ptz.csv")):
+            if was["pan"]:
+                self.assertLess(abs(float(is_["focal"]) / float(was["focal"]) - 1), 0.05)
+        far = self.run_marey("calibrate", "ptz", "film/main.mp4", "--side", "far", "-o", "film/far.toml")
+        self.assertNotIn("half a turn", far.stderr)
+        for name in ("alone", "far"):
+            self.run_marey("track", f"film/{name}.toml", "--ground", "main=film/boxes.txt", "-o", f"{name}.csv", "-q")
+        near, turned = (json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", f"{name}.csv", "--distance", "1.5",
+                                                  "--json").stdout) for name in ("alone", "far"))
+        self.assertNotEqual(near, turned)
+        self.run_marey("calibrate", "ptz", "film/main.mp4", "--side", "left", "-o", "none.toml", code=2)
+
+    def test_without_a_pitch_it_says_so_or_which_frame_to_click(self):
+        self.run_marey("simulate", "ptz", "-o", "hockey", "--scene", "hockey", "--seconds", "4", "--size", "640", "360", "-q")
+        said = self.run_marey("calibrate", "ptz", "hockey/main.mp4", "-o", "none.toml", code=1).stderr
+        self.assertRegex(said, r"frame \d+")
+        self.assertFalse((self.folder / "none.toml").exists())
+
+    def test_a_click_on_another_line_is_named(self):
+        lines = (self.folder / "film/clicks.csv").read_text().splitlines()
+        frame, x, y, u, v = lines[2].split(",")
+        lines[2] = ",".join([frame, x, y, str(float(u) + (90 if float(u) < 400 else -90)), v])
+        (self.folder / "odd.csv").write_text("\n".join(lines) + "\n")
+        said = self.run_marey("calibrate", "ptz", "film/main.mp4", "--points", "odd.csv", "-o", "odd.toml").stderr
+        self.assertRegex(said, rf"frame {frame}: the click on .* px from where the other clicks place it")
+
     def test_rigs_of_earlier_versions_are_read(self):
         rig = (self.folder / "film/rig.toml").read_text()
         earlier = rig
@@ -58,10 +91,13 @@ class Ptz(unittest.TestCase):
             self.run_marey("track", f"film/{name}.toml", "--ground", "main=film/boxes.txt", "-o", f"{name}.csv", "-q")
         self.assertEqual((self.folder / "rig.csv").read_bytes(), (self.folder / "earlier.csv").read_bytes())
 
-    def test_images_need_a_network(self):
-        said = self.run_marey("track", "film/rig.toml", "--ground", "-o", "none.csv", code=1).stderr
-        self.assertIn("PTZ", said)
-        self.assertIn("--detector", said)
+    def test_people_are_found_before_the_mosaic_of_the_empty_scene(self):
+        self.run_marey("track", "film/rig.toml", "--ground", "-o", "mosaic.csv", "-q")
+        self.run_marey("track", "film/rig.toml", "--ground", "main=film/boxes.txt", "-o", "boxes.csv", "-q")
+        mosaic, boxes = (json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", f"{name}.csv", "--distance", "1.5",
+                                                   "--json").stdout) for name in ("mosaic", "boxes"))
+        self.assertGreater(mosaic["found"], 0.5 * boxes["found"])
+        self.assertLess(mosaic["false"], 0.35)
 
     def test_clicks_have_to_report_their_frame_and_lie_on_the_pitch(self):
         (self.folder / "no_frame.csv").write_text("x,y,u,v\n0,0,10,10\n")

@@ -21,7 +21,8 @@ constexpr std::size_t kMinForTripod = 40;  // sightings of a keyframe
 SmoothOptions smooth_options(const TrackingOptions& options) {
   SmoothOptions smooth;
   smooth.aim = options.aim;
-  smooth.flow_px = options.flow_px, smooth.flow_zoom = options.flow_zoom, smooth.moving_fraction = options.moving_fraction;
+  smooth.flow_px = options.flow_px, smooth.flow_zoom = options.flow_zoom, smooth.moving_fraction = options.moving_fraction,
+  smooth.moving_zoom = options.moving_zoom;
   return smooth;
 }
 
@@ -32,6 +33,7 @@ PtzTracker::PtzTracker(const geometry::Tripod& tripod, cv::Size size, const Trac
       size_(size),
       options_(options),
       lines_(geometry::pitch_lines(options.pitch, kLineStep)),
+      search_(lines_),
       odometry_(size, options.odometry) {
   const Vector<2> middle = Vector<2>(options.pitch.length / 2, options.pitch.width / 2) - tripod.location.head<2>();
   last_ = {std::atan2(middle.x(), middle.y()), std::atan2(tripod.location.z(), middle.norm()), 1};
@@ -113,7 +115,7 @@ std::optional<Aim> PtzTracker::found_in(const Image& image) {
   FindAgainOptions how = options_.again;
   how.everywhere = !lost_for_ || waited / options_.inspect_again % options_.inspect_everywhere == 0;
   if (lost_for_) how.near = NearHeading{last_, *lost_for_};
-  const auto found = find_again(image, tripod_, options_.pitch, lines_, how);
+  const auto found = find_again(image, tripod_, options_.pitch, lines_, search_, how);
   if (!found) return std::nullopt;
   ++result_.found_again;
   return Aim{found->aim.heading, Vector<3>(4e-6, 4e-6, 1e-4).asDiagonal().toDenseMatrix()};
@@ -162,7 +164,8 @@ void PtzTracker::add(const Image& image, double time_s) {
   if (!expected) expected = held(luma);
   bool contradicts = false, alone = false;
   std::optional<Correction> detected;
-  if (known_at(frame) != nullptr) detected = clicked(luma, expected, contradicts);
+  const Known* known = known_at(frame);
+  if (known != nullptr && (!known->clicks.empty() || !expected)) detected = clicked(luma, expected, contradicts);
   if (!detected && !expected) {
     if (was_known) waited_ = 0;  // a cut: search immediately
     if (!was_known && record.rotated && lost_for_) {
@@ -264,6 +267,7 @@ void PtzTracker::check_clicks(std::vector<std::optional<Aim>>& smooth) {
   const auto about = static_cast<std::size_t>(options_.click_about);
   const double limit = options_.click_agrees * options_.tripod.click_px * size_.width / 1280.0;
   for (const Known& known : known_) {
+    if (known.clicks.empty()) continue;
     ClickCheck& check = result_.clicks.emplace_back();
     check.frame = known.frame;
     const auto at = static_cast<std::size_t>(known.frame);

@@ -37,7 +37,8 @@ struct TrackingOptions {
   FindAgainOptions again;
   double flow_px = 0.25;           ///< standard deviation of the odometry's pan and tilt, px of the image at 1280 px across,
   double flow_zoom = 3e-4;         ///< and of its ln f, a frame
-  double moving_fraction = 0.02;   ///< and this much of how far it next_aim
+  double moving_fraction = 0.02;   ///< and this much of how far it turns and zooms,
+  double moving_zoom = 0.02;       ///< and of its ln f for each half image width that it turns: a thrown pan is blurred
   double unsure_px = 8;            ///< standard deviation of the aim, px at 1280: beyond, the camera is lost
   double fraction = 0.3;           ///< of the paint that ought to be seen: with less,
   int patience = 8;                ///< for this many frames in a row, the camera is lost
@@ -76,7 +77,8 @@ class PtzTracker {
  public:
   PtzTracker(const geometry::Tripod& tripod, cv::Size size, const TrackingOptions& options = {});
 
-  /// A frame whose heading is known about, from clicks: frames that the tripod is solved on besides.
+  /// A frame whose heading is known about, from clicks: frames that the tripod is solved on besides. Without clicks the heading is
+  /// taken where the camera is lost.
   void know(std::int64_t frame, const geometry::Heading& heading, const std::vector<ClickedPosition>& clicks);
   /// The image of a frame that is known about, before any is added: its lines sharpen the tripod. CV_8UC1.
   void prepare(std::int64_t frame, const cv::Mat& luma);
@@ -124,6 +126,7 @@ class PtzTracker {
   cv::Size size_;
   TrackingOptions options_;
   std::vector<geometry::PitchLine> lines_;
+  SearchLines search_;
   Odometry odometry_;
   std::vector<Known> known_;
   std::vector<TurnRecord> records_;

@@ -10,7 +10,10 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "marey/calibrate/ptz/heading_search.h"
+#include "marey/calibrate/ptz/paint_mask.h"
 #include "marey/calibrate/ptz/ptz_fit.h"
 #include "marey/core/image.h"
 #include "marey/geometry/pitch.h"
@@ -27,25 +30,50 @@ struct NearHeading {
 struct FindAgainOptions {
   std::optional<NearHeading> near;  ///< headings about it are tried first, and preferred
   double min_log_focal = 0.3, max_log_focal = 2.4;
-  double fraction = 0.55;  ///< of the samples of the lines in view that have to be paint,
-  int lowest_count = 35;   ///< and this many of them,
-  int lines = 3;           ///< on this many lines
-  double both = 0.4;       ///< √(fraction of the lines that is paint · fraction of the paint that is lines), at least
-  bool everywhere = true;  ///< not about the last heading alone
-  int near_count = 3;      ///< headings about the last one that are refined
+  double fraction = 0.55;      ///< of the samples of the lines in view that have to be paint,
+  int lowest_count = 35;       ///< and this many of them,
+  int lines = 3;               ///< on this many lines
+  double both = 0.4;           ///< √(fraction of the lines that is paint · fraction of the paint that is lines), at least
+  bool everywhere = true;      ///< not about the last heading alone
+  std::size_t near_count = 3;  ///< headings about the last one that are refined
   double near_angle = 0.06, near_zoom = 0.15;             ///< rad, ln f about the last heading,
   double near_angle_rate = 0.008, near_zoom_rate = 0.02;  ///< and as much more for every frame since,
   double max_near_angle = 0.35, max_near_zoom = 0.6;      ///< but no more than this
-  int min_ridge = 5, max_ridge = 14;                      ///< grey levels above the grass of what may be paint: the lowest level
-  double paint_fraction = 0.06;                           ///< that no more of the ground exceeds
-  double explained_px = 3.5;                              ///< of the shrunk image: paint so near a line belongs to it
-  double beyond = 1.5;                                    ///< m beyond the lines paint belongs to no pitch,
-  double off_pitch_weight = 0.3;                          ///< and weighs as much there
-  double rival = 0.8;                                     ///< another heading may agree with at most this share of as many
+  PaintMaskOptions mask;
+  double explained_px = 3.5;      ///< of the shrunk image: paint so near a line belongs to it
+  double beyond = 1.5;            ///< m beyond the lines paint belongs to no pitch,
+  double off_pitch_weight = 0.3;  ///< and weighs as much there
+  double rival = 0.8;             ///< another heading may agree with at most this share of as many
 };
 
-/// `lines` in the world. The covariance is that of the paint alone.
+/// How well a heading explains an image, evaluated both ways.
+struct ImageEvidence {
+  AimFit fit;
+  std::vector<PaintSighting> paint;  ///< found where its lines are expected
+  int expected = 0;                  ///< samples of lines in the image
+  double explained = 0;              ///< fraction of the paint mask that lies on a line
+  double merit() const;
+  double both() const;  ///< √(fraction of the lines that is paint · fraction of the paint that is lines)
+  bool enough(const FindAgainOptions& options) const;
+};
+
+/// The heading refined on the paint itself, from `start`; `seen` is the image's mask, `lines` in the world.
+ImageEvidence evidence_of(const Image& image, const PaintMask& seen, const geometry::Tripod& tripod,
+                          const geometry::PitchSize& pitch, std::span<const geometry::PitchLine> lines,
+                          const geometry::Heading& start, const FindAgainOptions& options);
+
+/// Whether two headings are about the same.
+bool alike(const geometry::Heading& a, const geometry::Heading& b);
+
+/// The closest of the best headings in a range, those that explain more first.
+std::vector<ImageEvidence> headings_by_evidence(const Image& image, const PaintMask& seen, const geometry::Tripod& tripod,
+                                                const geometry::PitchSize& pitch, std::span<const geometry::PitchLine> lines,
+                                                const SearchLines& search, const std::vector<geometry::Heading>& headings,
+                                                std::size_t count, const FindAgainOptions& options);
+
+/// `lines` in the world, `search` the same prepared. The covariance is that of the paint alone.
 std::optional<AimFit> find_again(const Image& image, const geometry::Tripod& tripod, const geometry::PitchSize& pitch,
-                                 std::span<const geometry::PitchLine> lines, const FindAgainOptions& options = {});
+                                 std::span<const geometry::PitchLine> lines, const SearchLines& search,
+                                 const FindAgainOptions& options = {});
 
 }  // namespace marey::calibrate::ptz

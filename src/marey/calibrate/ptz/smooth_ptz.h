@@ -27,7 +27,7 @@ struct TurnRecord {
 struct SmoothOptions {
   AimOptions aim;
   double same_px = 4, same_deviations = 3;  ///< two aims of a frame agree within this many px at 1280 and deviations
-  double flow_px = 0.25, flow_zoom = 3e-4, moving_fraction = 0.02;  ///< as TrackingOptions has them
+  double flow_px = 0.25, flow_zoom = 3e-4, moving_fraction = 0.02, moving_zoom = 0.02;  ///< as TrackingOptions has them
 };
 
 /// How unsure the flow's step is, at a focal length.

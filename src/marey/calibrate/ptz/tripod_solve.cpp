@@ -72,6 +72,16 @@ struct StillPrior {
   }
 };
 
+struct LocationOff {
+  LocationPrior near;
+
+  template <typename T>
+  bool operator()(const T* still, T* off) const {
+    for (int i = 0; i < 3; ++i) off[i] = (still[i] - T(near.location(i))) / T(near.sigma(i));
+    return true;
+  }
+};
+
 std::vector<int> counts_by_line(std::span<const PaintSighting> paint) {
   std::vector<int> counts;
   for (const PaintSighting& one : paint) {
@@ -203,6 +213,9 @@ TripodSolution solve_tripod(const geometry::Tripod& start, std::span<const Tripo
   ceres::Problem problem;
   for (std::size_t i = 0; i < frames.size(); ++i) add_frame(problem, frames[i], still.data(), ptz[i].data(), size, options);
   problem.AddResidualBlock(new ceres::AutoDiffCostFunction<StillPrior, 5, kStill>(new StillPrior{options}), nullptr, still.data());
+  if (options.near)
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LocationOff, 3, kStill>(new LocationOff{*options.near}), nullptr,
+                             still.data());
   for (Vector<3>& heading : ptz) {  // a wrong start must not run away
     if (!problem.HasParameterBlock(heading.data())) continue;
     problem.SetParameterLowerBound(heading.data(), 2, -1);

@@ -3,6 +3,7 @@
 // hold the place. Priors are wide, what main cameras have in common (upright within half a degree, lens nearly straight).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ struct TripodFrameSight {
   std::vector<ClickedPosition> clicks;
 };
 
+/// Where the tripod is known to stand about, m.
+struct LocationPrior {
+  Vector<3> location = Vector<3>::Zero(), sigma = Vector<3>::Ones();
+};
+
 struct TripodSolveOptions {
   double click_px = 2.5;                    ///< how well people click, of 1280 px across
   double lean_sigma = 0.01;                 ///< rad
@@ -30,6 +36,7 @@ struct TripodSolveOptions {
   double ahead = 0.15, ahead_sigma = 0.15;  ///< m
   double bend = 0.01, bend_sigma = 0.03;    ///< per half image width squared
   double per_line = 8;                      ///< samples of one line in one frame err together
+  std::optional<LocationPrior> near;        ///< nothing: anywhere
 };
 
 struct TripodSolution {

@@ -81,7 +81,7 @@ void add_covariance(std::string& text, const Matrix<3>& covariance, double focal
     const double both = sd(i) * sd(k);
     return both > 0 ? std::clamp(covariance(i, k) / both, -1.0, 1.0) : 0.0;
   };
-  fmt::format_to(std::back_inserter(text), ",{:.3g},{:.3g},{:.3g},{:.4f},{:.4f},{:.4f}", sd(0) / kTurnDegree, sd(1) / kTurnDegree,
+  fmt::format_to(std::back_inserter(text), ",{:.4g},{:.4g},{:.4g},{:.6f},{:.6f},{:.6f}", sd(0) / kTurnDegree, sd(1) / kTurnDegree,
                  sd(2) * focal, together(0, 1), together(0, 2), together(1, 2));
 }
 

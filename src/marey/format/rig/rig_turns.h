@@ -25,7 +25,7 @@ std::string ptz_text(const PtzCamera& camera, cv::Size size);
 /// `nodal_offset` and `bend` of a camera, docs/rig.md). Throws Error with every problem of the file.
 std::vector<std::shared_ptr<const PtzCamera>> read_ptz(const std::string& rig_path);
 
-/// Writes a rig file as `write_rig` does, the rotations of each of its PTZ cameras in a file beside it, RIG_CAMERA_turns.csv.
+/// Writes a rig file as `write_rig` does, the rotations of each of its PTZ cameras in a file beside it, RIG_CAMERA_ptz.csv.
 /// `turning` as `read_ptz` gives it; such a camera has its size. Throws Error if that cannot be.
 void write_ptz_rig(const Rig& rig, const std::vector<std::shared_ptr<const PtzCamera>>& ptz, const std::string& path);
 

@@ -12,6 +12,7 @@
 #include "marey/draw/movie_writer.h"
 #include "marey/draw/pitch_drawing.h"
 #include "marey/format/pitch_points.h"
+#include "marey/pipeline/calibrate/start_ptz.h"
 #include "marey/pipeline/corridor/feed.h"
 
 namespace marey::pipeline::calibrate {
@@ -19,8 +20,12 @@ namespace {
 
 using marey::calibrate::ptz::ClickedFrame;
 
-constexpr double kMinFound = 0.1;      // of the frames: a video with less is not of the pitch that was clicked
-constexpr double kMinReported = 0.02;  // of the frames that are lost
+constexpr double kMinFound = 0.1;         // of the frames: a video with less is not of the pitch that was clicked
+constexpr double kMinReported = 0.02;     // of the frames that are lost
+constexpr double kOddClick = 6;           // deviations of a click, or medians of all: farther off it is on something else
+constexpr int kFewLines = 4;              // straight lines: an image with fewer cannot be searched
+constexpr double kStartAgrees = 2;        // m: the track may be so far off a frame of the start,
+constexpr double kStartsThatAgree = 0.6;  // in all but few of them
 
 /// Where in the clicks' frame the pitch's corner with the smallest x and y lies: the origin, or, where they count from the middle,
 /// half a pitch before it.
@@ -62,14 +67,6 @@ void check_in_image(const std::vector<ClickedFrame>& clicks, const std::string& 
   }
 }
 
-/// 8-bit luma with the colours beside it.
-Image in_bytes(const Image& image) {
-  if (image.luma().type() == CV_8UC1) return image;
-  cv::Mat bytes;
-  image.luma().convertTo(bytes, CV_8U, 1.0 / 257);
-  return Image(bytes);
-}
-
 RigCamera camera_of_video(const std::string& video, const std::string& name) {
   RigCamera camera;
   camera.name = name;
@@ -83,6 +80,14 @@ bool is_even(const std::vector<PtzCamera::Turn>& rotations, double rate) {
     if (std::abs(rotations[i].time_s - static_cast<double>(i) / rate) > 0.4 / rate) return false;
   }
   return true;
+}
+
+/// The same turned by half a turn: the camera stands behind the far touchline.
+Matrix<3> ground_from_other_side(const geometry::PitchSize& pitch) {
+  Matrix<3> ground = Matrix<3>::Identity();
+  ground(0, 0) = ground(1, 1) = -1;
+  ground(0, 2) = pitch.length, ground(1, 2) = pitch.width;
+  return ground;
 }
 
 /// The users' frame from the world's, whose pitch begins at the origin.
@@ -139,10 +144,10 @@ void check_result(PtzRun& run, const std::string& video) {
   const double found = frames - run.result.lost;
   if (found < kMinFound * frames)
     throw Error(
-        "{}: the lines of the clicked pitch were found in {:.0f} of {:.0f} frames; is it a video of one main camera over a "
-        "football "
-        "pitch, are the clicks right, and is --size the pitch's?",
-        video, found, frames);
+        "{}: the lines of the {}pitch were found in {:.0f} of {:.0f} frames; is it a video of one main camera over a football "
+        "pitch, {} and is --size the pitch's?",
+        video, run.searched ? "" : "clicked ", found, frames,
+        run.searched ? "do two frames face different sides (--points decides)," : "are the clicks right,");
   for (const auto& click : run.result.clicks) {
     if (click.contradicts)
       run.warnings.push_back(
@@ -162,7 +167,9 @@ void enter_camera(PtzRun& run, const corridor::Feed& feed, const Vector<2>& corn
   camera.offset_s = 0;
   if (is_even(run.result.camera.rotations, feed.rate_hz())) camera.rate_hz = feed.rate_hz();
   run.rig.cameras = {std::move(camera)};
-  run.rig.ground_from_world = ground_from_pitch(corner, run.clicked.reflected, options.tracking.pitch);
+  run.rig.ground_from_world = run.searched && options.side == PtzSide::far
+                                  ? ground_from_other_side(options.tracking.pitch)
+                                  : ground_from_pitch(corner, run.clicked.reflected, options.tracking.pitch);
   run.rig.calibration.emplace().method = "pitch";
 }
 
@@ -190,25 +197,105 @@ void draw_overlay(const corridor::Feed& feed, const PtzRun& run, const PtzRunOpt
   movie.finish();
 }
 
-}  // namespace
+/// Single clicks that the others contradict.
+void warn_of_odd_clicks(PtzRun& run, const PtzRunOptions& options, cv::Size size) {
+  const double limit =
+      std::max(kOddClick * options.tracking.tripod.click_px * size.width / 1280.0, kOddClick * run.clicked.median_px);
+  for (std::size_t i = 0; i < run.clicks.size(); ++i) {
+    for (std::size_t k = 0; k < run.clicks[i].locations.size(); ++k) {
+      const double off = run.clicked.error_px[i][k];
+      if (off > limit)
+        run.warnings.push_back(
+            fmt::format("frame {}: the click on {} is {:.0f} px from where the other clicks place it; is it on that line?",
+                        run.clicks[i].frame, run.clicks[i].locations[k].name, off));
+    }
+  }
+}
 
-PtzRun calibrate_ptz(const std::string& video, const std::string& clicks, const PtzRunOptions& options, const Hooks& hooks) {
-  const StopScope scope(hooks.stop);
-  PtzRun run;
+/// Enters clicks and the tripod by them; where their frame's corner of the pitch lies.
+Vector<2> start_with_clicks(PtzRun& run, const corridor::Feed& feed, const PtzRunOptions& options, const std::string& clicks) {
   const geometry::PitchSize& pitch = options.tracking.pitch;
   const format::PitchClicks file = format::read_pitch_clicks(clicks);
   const Vector<2> corner = corner_of_clicks(file, pitch);
   run.clicks = by_frame(file, clicks, pitch, corner);
-  corridor::Feed feed(camera_of_video(video, options.name), CameraId{});
   check_in_image(run.clicks, clicks, feed.info().size);
   try {
     run.clicked = marey::calibrate::ptz::tripod_from_clicks(run.clicks, feed.info().size, pitch, options.tracking.tripod);
   } catch (const Error& error) {
     throw Error("{}: {}", clicks, error.what());
   }
+  warn_of_odd_clicks(run, options, feed.info().size);
+  return corner;
+}
+
+/// What to do where the images do not decide.
+Error unsearchable(const PtzStart& start, const std::string& video) {
+  if (start.lines < kFewLines)
+    return Error(
+        "{}: no frame shows the lines of a pitch (frame {} shows most straight lines on grass: {}); is it a video of one main "
+        "camera over a football pitch?",
+        video, start.frame, start.lines);
+  return Error(
+      "{}: {} its lines; click in frame {}, which shows most of them ({}), and in one or more that face elsewhere (--points)",
+      video, start.ambiguous ? "two places of a main camera explain" : "no place of a main camera over a football pitch explains",
+      start.frame, start.lines);
+}
+
+/// Enters the tripod that the images give, and the headings of theirs that it explains.
+void start_without_clicks(PtzRun& run, const corridor::Feed& feed, PtzRunOptions& options, const std::string& video,
+                          const Hooks& hooks) {
+  run.searched = true;
+  const PtzStart start = start_of_video(feed, options.tracking.pitch, options.tracking.tripod, hooks);
+  if (!start.found) throw unsearchable(start, video);
+  run.clicked.tripod = start.found->tripod;
+  run.clicked.covariance = start.found->covariance;
+  for (const auto& view : start.found->views) {
+    run.clicks.push_back({view.frame, {}});
+    run.clicked.headings.push_back(view.heading);
+    run.clicked.error_px.emplace_back();
+  }
+  options.tracking.tripod.near = marey::calibrate::ptz::main_camera_prior(options.tracking.pitch);
+  if (!options.side)
+    run.warnings.push_back(
+        "without clicks the camera is taken to stand behind the touchline y = 0; turned by half a turn the pitch has the same image "
+        "(--side far)");
+}
+
+/// The frames of the start beside the track of the whole video.
+void check_start(const PtzRun& run, const corridor::Feed& feed, const std::string& video) {
+  std::size_t agree = 0;
+  for (std::size_t i = 0; i < run.clicks.size(); ++i) {
+    const auto at = static_cast<std::size_t>(run.clicks[i].frame);
+    if (at >= run.result.camera.rotations.size() || !run.result.camera.rotations[at].heading) continue;
+    const GroundView start(geometry::camera_of(run.clicked.tripod, run.clicked.headings[i], feed.info().size)),
+        tracked(geometry::camera_of(run.result.camera.tripod, *run.result.camera.rotations[at].heading, feed.info().size));
+    const Vector<2> low(feed.info().size.width / 2.0, feed.info().size.height * 0.7);
+    const auto a = start.location(low), b = tracked.location(low);
+    agree += a && b && (a->ground - b->ground).norm() < kStartAgrees ? 1 : 0;
+  }
+  if (static_cast<double>(agree) < kStartsThatAgree * static_cast<double>(run.clicks.size()))
+    throw Error(
+        "{}: the places that lines give in single frames contradict what moves between them (in {} of {} frames they agree); "
+        "click in frame {} and in one or more that face elsewhere (--points)",
+        video, agree, run.clicks.size(), run.clicks.front().frame);
+}
+
+}  // namespace
+
+PtzRun calibrate_ptz(const std::string& video, const std::string& clicks, const PtzRunOptions& given, const Hooks& hooks) {
+  const StopScope scope(hooks.stop);
+  PtzRun run;
+  PtzRunOptions options = given;
+  corridor::Feed feed(camera_of_video(video, options.name), CameraId{});
+  Vector<2> corner = Vector<2>::Zero();
+  if (clicks.empty())
+    start_without_clicks(run, feed, options, video, hooks);
+  else
+    corner = start_with_clicks(run, feed, options, clicks);
   const auto begin = std::chrono::steady_clock::now();
   run.result = run_tracker(feed, run, options, hooks);
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (run.searched) check_start(run, feed, video);
   check_result(run, video);
   enter_camera(run, feed, corner, options);
   if (!options.overlay.empty()) draw_overlay(feed, run, options, hooks);

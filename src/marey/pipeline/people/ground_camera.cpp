@@ -6,6 +6,7 @@
 
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
+#include "marey/pipeline/people/mosaic_detector.h"
 #include "marey/pipeline/people/people_in_view.h"
 #include "marey/pipeline/people/ptz_views.h"
 #include "marey/reconstruct/place_people.h"
@@ -13,17 +14,15 @@
 namespace marey::pipeline::people {
 namespace {
 
-/// A PTZ camera has no empty scene to learn: a network processes every frame.
-detect::DetectorOptions for_ptz(detect::DetectorOptions options, const std::string& name) {
-  auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&options);
-  if (network == nullptr)
-    throw Error(
-        "camera \"{0}\" is a PTZ camera, and background subtraction needs a static one; give a network with --detector MODEL.toml "
-        "(docs/network.md), or what another program detected: {0}=boxes.txt",
-        name);
+/// People before a PTZ camera: by a network in every frame, or before the mosaic of its empty scene.
+std::unique_ptr<detect::Detector> ptz_detector(const corridor::Feed& feed, const std::shared_ptr<const GroundViews>& views,
+                                               const reconstruct::GroundArea& area, const GroundCameraOptions& options) {
+  detect::DetectorOptions detector = options.detector;
+  auto* network = std::get_if<detect::network::NetworkDetectorOptions>(&detector);
+  if (network == nullptr) return mosaic_detector(feed, options.ptz, views, area);
   network->background = false;
   network->every = 1;
-  return options;
+  return detect::make_detector(detector);
 }
 
 }  // namespace
@@ -44,9 +43,11 @@ GroundCamera::GroundCamera(const corridor::Feed& feed, std::shared_ptr<const Gro
     : camera_(feed.camera()), id_(feed.id()), area_(area), views_(std::move(views)), ptz_(options.ptz) {
   const GroundView& view = view_at(Timestamp{});
   const Camera* whole = view.camera();
-  if (feed.has_images()) {
-    detect::DetectorOptions detector = ptz_ ? for_ptz(options.detector, camera_.name) : options.detector;
-    if (whole != nullptr && !ptz_) {
+  if (feed.has_images() && ptz_) {
+    detector_ = ptz_detector(feed, views_, area, options);
+  } else if (feed.has_images()) {
+    detect::DetectorOptions detector = options.detector;
+    if (whole != nullptr) {
       const cv::Rect part = part_with_people(view, area);
       if (part.size() != whole->size()) part_ = part;
       if (detect::people::PeopleOptions* people = detect::people_options_of(detector))

@@ -37,7 +37,8 @@ GroundView ground_view_of(const RigCamera& camera, const geometry::GroundSurface
 class GroundCamera {
  public:
   /// `views`: of all cameras of the rig, this one's among them. Of the feed's images only the part is inspected in which people
-  /// may be who count. Throws Error if a PTZ camera has images and its detector needs one that stands.
+  /// may be who count. A PTZ camera's people are found by a network, or before the
+  /// mosaic of its empty scene; throws Error if neither is possible.
   GroundCamera(const corridor::Feed& feed, std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
                const GroundCameraOptions& options);
   ~GroundCamera();

@@ -60,6 +60,11 @@ void enter_ptz(GroundViews& views, CameraId id, const RigCamera& camera, const P
   }
 }
 
+std::optional<geometry::Heading> heading_at(const RigCamera& camera, const PtzCamera& ptz, Timestamp time) {
+  const PtzCamera::Turn* turn = turn_at(ptz, seconds(time) - camera.offset_s.value_or(0));
+  return turn == nullptr ? std::nullopt : turn->heading;
+}
+
 Matrix<2> aim_covariance(const RigCamera& camera, const PtzCamera& ptz, Timestamp time, const Vector<2>& pixel) {
   const PtzCamera::Turn* turn = turn_at(ptz, seconds(time) - camera.offset_s.value_or(0));
   if (turn == nullptr || !turn->heading) return Matrix<2>::Zero();

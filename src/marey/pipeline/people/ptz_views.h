@@ -26,6 +26,9 @@ GroundView first_view(const RigCamera& camera, const PtzCamera& ptz, const geome
 void enter_ptz(GroundViews& views, CameraId id, const RigCamera& camera, const PtzCamera& ptz,
                const geometry::GroundSurface& surface);
 
+/// Where a camera is aimed at a time, by the rig's clock; nothing if that is not known.
+std::optional<geometry::Heading> heading_at(const RigCamera& camera, const PtzCamera& ptz, Timestamp time);
+
 /// The part of a place's covariance from the uncertainty of the camera's aim; `time` by the rig's clock, `pixel` where the
 /// foot is seen.
 Matrix<2> aim_covariance(const RigCamera& camera, const PtzCamera& ptz, Timestamp time, const Vector<2>& pixel);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <opencv2/imgproc.hpp>
 
@@ -38,7 +39,14 @@ cv::Vec3b shaded(double blue, double green, double red, double bright) {
           cv::saturate_cast<std::uint8_t>(red * bright)};
 }
 
-void draw_grass(cv::Mat ground, const geometry::PitchSize& pitch, std::uint64_t seed) {
+/// Stripes differ as they do on most pitches at 1; beyond, their seams shine as well, as narrow as paint.
+double mown_bright(double x, double mowing) {
+  constexpr double kSeam = 0.1;  // m
+  const double from_seam = std::abs(std::remainder(x, kMowing));
+  return mowing > 1 && from_seam < kSeam ? 1 + 0.25 * (mowing - 1) : 1;
+}
+
+void draw_grass(cv::Mat ground, const geometry::PitchSize& pitch, double mowing, std::uint64_t seed) {
   cv::parallel_for_(cv::Range(0, ground.rows), [&](const cv::Range& rows) {
     for (int row = rows.start; row < rows.end; ++row) {
       for (int column = 0; column < ground.cols; ++column) {
@@ -47,7 +55,9 @@ void draw_grass(cv::Mat ground, const geometry::PitchSize& pitch, std::uint64_t 
                               0.05 * value_noise(at / 0.8, seed + 2) + 0.06 * value_noise(at / 0.25, seed + 3);
         const bool even = static_cast<std::int64_t>(std::floor((at.x() + 100 * kMowing) / kMowing)) % 2 == 0;
         const bool mown = at.x() > -4 && at.x() < pitch.length + 4 && at.y() > -4 && at.y() < pitch.width + 4;
-        ground.at<cv::Vec3b>(row, column) = mown && even ? shaded(72, 110, 92, bright) : shaded(70, mown ? 98 : 92, 76, bright);
+        ground.at<cv::Vec3b>(row, column) =
+            mown && even ? shaded(70 + 2 * mowing, 98 + 12 * mowing, 76 + 16 * mowing, bright * mown_bright(at.x(), mowing))
+                         : shaded(70, mown ? 98 : 92, 76, mown ? bright * mown_bright(at.x(), mowing) : bright);
       }
     }
   });
@@ -70,6 +80,68 @@ void wet_grass(cv::Mat ground, double wet, std::uint64_t seed) {
       }
     }
   });
+}
+
+/// Mats beside the lines, with white edges: lines that are parallel to those of the pitch.
+void lay_mats(cv::Mat ground, const geometry::PitchSize& pitch) {
+  constexpr double kMatFrom = 2.2, kMatWide = 2.5, kMatEdge = 0.15;  // m
+  const auto rect = [&](double x, double y, double width, double height) {
+    return cv::Rect(cvRound((x + kRound) / kTexel), cvRound((y + kNear) / kTexel), cvRound(width / kTexel),
+                    cvRound(height / kTexel)) &
+           cv::Rect({}, ground.size());
+  };
+  const auto lay = [&](double x, double y, double width, double height) {
+    ground(rect(x, y, width, height)) = cv::Scalar(205, 212, 206);
+    ground(rect(x + kMatEdge, y + kMatEdge, width - 2 * kMatEdge, height - 2 * kMatEdge)) = cv::Scalar(60, 92, 70);
+  };
+  for (double along = -4; along < pitch.length - 4; along += 28) lay(along, pitch.width + kMatFrom, 24, kMatWide);
+  for (double along = 4; along < pitch.width - 12; along += 26) {
+    if (std::abs(along + 12 - pitch.width / 2) < 13) continue;
+    lay(-kMatFrom - kMatWide, along, kMatWide, 22), lay(pitch.length + kMatFrom, along, kMatWide, 22);
+  }
+}
+
+/// The lines of field hockey, 91.4 × 55 m, in the middle of this ground.
+std::vector<geometry::PitchLine> hockey_lines(const geometry::PitchSize& pitch) {
+  constexpr double kHockeyLength = 91.4, kHockeyWidth = 55, kHockeyFromGoal = 22.9, kHockeyCircle = 14.63, kHockeyPost = 1.83,
+                   kHockeyStep = 0.5;  // m
+  const Vector<2> corner((pitch.length - kHockeyLength) / 2, (pitch.width - kHockeyWidth) / 2);
+  std::vector<geometry::PitchLine> lines;
+  const auto straight = [&](const Vector<2>& from, const Vector<2>& to) {
+    geometry::PitchLine& line = lines.emplace_back();
+    const Vector<2> along = (to - from).normalized();
+    for (double at = 0; at <= (to - from).norm(); at += kHockeyStep)
+      line.points.push_back(corner + from + at * along), line.tangents.push_back(along);
+  };
+  for (const double y : {0.0, kHockeyWidth}) straight({0, y}, {kHockeyLength, y});
+  for (const double x : {0.0, kHockeyFromGoal, kHockeyLength / 2, kHockeyLength - kHockeyFromGoal, kHockeyLength})
+    straight({x, 0}, {x, kHockeyWidth});
+  for (const double side : {-1.0, 1.0}) {
+    const double x = side < 0 ? 0 : kHockeyLength;
+    straight({x - side * kHockeyCircle, kHockeyWidth / 2 - kHockeyPost},
+             {x - side * kHockeyCircle, kHockeyWidth / 2 + kHockeyPost});
+    for (const double post : {-1.0, 1.0}) {
+      geometry::PitchLine& arc = lines.emplace_back();
+      for (double angle = 0; angle <= M_PI / 2; angle += kHockeyStep / kHockeyCircle) {
+        const Vector<2> out(-side * std::cos(angle), post * std::sin(angle));
+        arc.points.push_back(corner + Vector<2>(x, kHockeyWidth / 2 + post * kHockeyPost) + kHockeyCircle * out);
+        arc.tangents.emplace_back(-out.y(), out.x());
+      }
+    }
+  }
+  return lines;
+}
+
+/// The lines of a children's pitch across a half of this one.
+std::vector<geometry::PitchLine> junior_lines(const geometry::PitchSize& pitch, bool right) {
+  const double width = 0.8 * pitch.length / 2, length = 0.82 * pitch.width;
+  std::vector<geometry::PitchLine> lines = geometry::pitch_lines({length, width}, 0.5);
+  const Vector<2> corner(right ? pitch.length - 0.1 * pitch.length / 2 : 0.9 * pitch.length / 2, 0.09 * pitch.width);
+  for (geometry::PitchLine& line : lines) {  // turned by a quarter
+    for (Vector<2>& point : line.points) point = corner + Vector<2>(-point.y(), point.x());
+    for (Vector<2>& tangent : line.tangents) tangent = Vector<2>(-tangent.y(), tangent.x());
+  }
+  return lines;
 }
 
 /// Straight lines that are of no football pitch: another sport's, a training ground's.
@@ -151,14 +223,21 @@ struct Lookup {
 }  // namespace
 
 PtzBackground::PtzBackground(const geometry::PitchSize& pitch, std::uint64_t seed, const PtzPaint& paint)
-    : pitch_(pitch), appearance_(paint), seed_(seed), lines_(geometry::pitch_lines(pitch, 0.5)) {
+    : pitch_(pitch),
+      appearance_(paint),
+      seed_(seed),
+      lines_(paint.hockey ? hockey_lines(pitch) : geometry::pitch_lines(pitch, 0.5)) {
   const Extent extent(pitch);
   Random random(seed * 2654435761u + 81), painter(seed * 2654435761u + 82);
   for (int i = 0; i < paint.extra; ++i) lines_.push_back(other_paint(pitch, painter));
+  for (int i = 0; i < paint.junior; ++i) {
+    for (geometry::PitchLine& line : junior_lines(pitch, i == 1)) lines_.push_back(std::move(line));
+  }
   texture_.create(extent.ground.height + extent.wall.height, std::max(extent.ground.width, extent.wall.width), CV_8UC3);
   texture_ = cv::Scalar::all(0);
   cv::Mat ground = texture_(cv::Rect({}, extent.ground));
-  draw_grass(ground, pitch, seed);
+  draw_grass(ground, pitch, paint.mowing, seed);
+  if (paint.mats) lay_mats(ground, pitch);
   if (paint.wet > 0) wet_grass(ground, paint.wet, seed);
   // A pixel is some decimetres deep on the ground: what it would alias is blurred away.
   cv::GaussianBlur(ground.clone(), ground, {1, 5}, 0.01, 1.1);

@@ -23,6 +23,10 @@ struct PtzPaint {
   double missing = 0;                        ///< share of the lines' length that is worn away, in pieces of some metres
   int extra = 0;                             ///< straight pieces of paint, 8 to 30 m long, that belong to no football pitch
   double wet = 0;                            ///< 0 dry … 1: the lights shine in streaks on the grass
+  int junior = 0;                            ///< pitches for children, across a half each, 0 to 2, as bright as the paint
+  bool hockey = false;                       ///< the lines of field hockey in place of football's
+  double mowing = 1;                         ///< how strongly the mown stripes differ, and their seams shine beyond 1
+  bool mats = false;                         ///< green mats with white edges lie beside the lines
 };
 
 class PtzBackground {

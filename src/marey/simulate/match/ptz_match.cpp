@@ -7,6 +7,7 @@
 
 #include "marey/core/error.h"
 #include "marey/simulate/match/goal_posts.h"
+#include "marey/simulate/value_noise.h"
 
 namespace marey::simulate::match {
 namespace {
@@ -52,7 +53,7 @@ Camera PtzMatch::camera_now(const geometry::Heading& heading) const {
 std::optional<geometry::Heading> PtzMatch::heading() const {
   if (std::any_of(options_.cuts.begin(), options_.cuts.end(), [&](const VideoSpan& cut) { return cut.holds(time()); }))
     return std::nullopt;
-  return now_;
+  return options_.screen > 0 ? on_screen(now_) : now_;
 }
 
 void PtzMatch::advance() {
@@ -61,9 +62,53 @@ void PtzMatch::advance() {
   before_ = now_;
   now_ = operator_.run_tracker(motion_.ball(), 1 / options_.rate_hz);
   if (frame_ == 0) before_ = now_;
-  camera_.emplace(heading() ? camera_now(now_) : geometry::camera_of(kOtherTripod, kOtherHeading, options_.size));
+  const Camera other = geometry::camera_of(kOtherTripod, kOtherHeading, options_.size);
+  camera_.emplace(heading() ? camera_now(*heading()) : other);
+  drawn_.emplace(heading() ? camera_now(now_) : other);
   for (std::size_t i = 0; i < stances_.size(); ++i) stances_[i] = match_stance(motion_.people()[i], Matrix<3>::Identity());
   detected_ = people_in_view(GroundView(*camera_), figures_, stances_);
+}
+
+namespace {
+
+/// What a hand does to the image of a screen: moved by px at 1280, rolled, enlarged.
+struct Hand {
+  double x = 0, y = 0, roll = 0, scale = 1;
+};
+
+Hand hand_at(double time, double shake, std::uint64_t seed) {
+  const auto slow = [&](double rate, int which) { return value_noise({rate * time, 7.3 * which}, seed + 400); };
+  return {1.7 * shake * (slow(1.1, 0) + 0.3 * slow(4, 1)), 1.7 * shake * (slow(1.1, 2) + 0.3 * slow(4, 3)), 0.002 * slow(0.7, 4),
+          1.03 + 0.004 * slow(0.4, 5)};
+}
+
+}  // namespace
+
+geometry::Heading PtzMatch::on_screen(const geometry::Heading& heading) const {
+  const Hand hand = hand_at(time(), options_.screen, seed_);
+  const double px = 640 * std::exp(heading.log_focal);
+  return {heading.pan - hand.x / px / std::cos(heading.tilt), heading.tilt - hand.y / px, heading.log_focal + std::log(hand.scale)};
+}
+
+/// Off a screen: shaken, a little askew, its rows of pixels against the camera's.
+cv::Mat PtzMatch::off_screen(const cv::Mat& shown) const {
+  const Hand hand = hand_at(time(), options_.screen, seed_);
+  const double unit = shown.cols / 1280.0, cosine = hand.scale * std::cos(hand.roll), sine = hand.scale * std::sin(hand.roll);
+  const Vector<2> middle((shown.cols - 1) / 2.0, (shown.rows - 1) / 2.0);
+  constexpr double kAskew = 3e-6;                                                                      // per px of the image
+  cv::Matx33d to(cosine, -sine, middle.x() - cosine * middle.x() + sine * middle.y() + unit * hand.x,  //
+                 sine, cosine, middle.y() - sine * middle.x() - cosine * middle.y() + unit * hand.y,   //
+                 kAskew, 0, 1 - kAskew * middle.x());
+  cv::Mat result;
+  cv::warpPerspective(shown, result, to, shown.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  for (int y = 0; y < result.rows; ++y) {
+    auto* row = result.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < result.cols; ++x) {
+      const double moire = 1 + 0.03 * std::sin(0.061 * x + 0.013 * y + 2 * time()) * std::sin(0.047 * y - 0.009 * x);
+      for (int i = 0; i < 3; ++i) row[x][i] = cv::saturate_cast<std::uint8_t>(moire * row[x][i] + 6);
+    }
+  }
+  return result;
 }
 
 /// Every frame is smeared by the motion of its middle while it is exposed.
@@ -116,12 +161,12 @@ Image PtzMatch::image() const {
   render.sun = {0.45, 0.3, 1.0};
   render.shadow_level = 0.7;
   render.noise = 0;
-  cv::Mat scene = ground_.draw(*camera_);
+  cv::Mat scene = ground_.draw(*drawn_);
   if (options_.people) {
-    const GroundView view(*camera_);
+    const GroundView view(*drawn_);
     const auto in_reach = [&](const Vector<3>& point) -> std::optional<people::Sighting> {
       const auto detected = sight(view, point);
-      const double reach = camera_->size().width;
+      const double reach = drawn_->size().width;
       if (!detected || std::abs(detected->at.x()) > 2 * reach || std::abs(detected->at.y()) > 2 * reach || detected->scale > reach)
         return std::nullopt;
       return detected;
@@ -134,6 +179,7 @@ Image PtzMatch::image() const {
   }
   scene = blurred(scene);
   add_graphics(scene);
+  if (options_.screen > 0 && heading()) scene = off_screen(scene);
   const Image clean = Image::from_bgr(scene);
   cv::Mat luma = clean.luma().clone(), cb = clean.cb().clone(), cr = clean.cr().clone();
   people::apply(options_.degradation, luma, cb, cr);

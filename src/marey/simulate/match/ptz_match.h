@@ -35,6 +35,7 @@ struct PtzMatchOptions {
   people::ImageDegradation degradation{0.7, 0.2, 2, 1.2, 0, 8};
   double lens_breathes = 0.006;  ///< the radial term changes by this much for each e-fold of the focal length
   bool people = true, scoreboard = true;
+  double screen = 0;                ///< px at 1280: the match is recorded by hand off a screen, and the hand shakes by this deviation
   std::vector<VideoSpan> cuts;      ///< another camera is shown
   std::vector<VideoSpan> graphics;  ///< the lower half of the image is covered
 };
@@ -51,7 +52,8 @@ class PtzMatch {
 
   std::int64_t frame() const { return frame_; }
   double time() const { return static_cast<double>(frame_) / options_.rate_hz; }
-  /// The aim of the main camera; nothing while another is shown.
+  /// The aim of the main camera; nothing while another is shown. Recorded off a screen: of the camera that comes nearest to what the
+  /// hand makes of it, within some pixels.
   std::optional<geometry::Heading> heading() const;
   /// Whichever camera is shown.
   const Camera& camera() const { return *camera_; }
@@ -65,7 +67,9 @@ class PtzMatch {
 
  private:
   Camera camera_now(const geometry::Heading& heading) const;
+  geometry::Heading on_screen(const geometry::Heading& heading) const;
   cv::Mat blurred(const cv::Mat& sharp) const;
+  cv::Mat off_screen(const cv::Mat& shown) const;
   void add_graphics(cv::Mat& image) const;
 
   PtzMatchOptions options_;
@@ -79,7 +83,7 @@ class PtzMatch {
   std::array<people::Stance, kMatchPeople> stances_{};
   std::int64_t frame_ = -1;
   geometry::Heading now_, before_;
-  std::optional<Camera> camera_;
+  std::optional<Camera> camera_, drawn_;  // as the video shows it, and what a screen shows that is recorded
   std::vector<ObservedPerson> detected_;
 };
 

@@ -9,7 +9,9 @@
 namespace marey::simulate::match {
 
 /// Names of the scenes: plain, whip (thrown pans), thin (narrow, pale lines), wet, worn (paint missing), extra (another sport's
-/// lines), low (television of few bits: blurred and noisy), all (a little of everything).
+/// lines), low (television of few bits: blurred and noisy), near (a goal area fills the image, thin lines), mats (mats with white
+/// edges beside the pitch, mown stripes with shining seams), junior (children's pitches across both halves, as bright), screen
+/// (recorded by hand off a screen), hockey (another sport: no football camera is to be found there), all (a little of everything).
 std::span<const std::string_view> ptz_scene_names();
 
 /// Throws Error, with the names, if there is no scene of that name.
