@@ -97,11 +97,12 @@ TEST(Table, TextsAreAdded) {
 }
 
 TEST(Solve, ResolvesNamesAndRefusesTwoSkeletons) {
-  Solve job{.up = "y", .bvh_up = "z", .bvh_names = "mixamo"};
+  Solve job{.up = "y", .bvh_up = "z"};
+  job.options.bones.rig_names = "mixamo";
   const bodies::SolveOptions options = resolved(job);
   EXPECT_EQ(options.up, format::UpAxis::y);
-  EXPECT_EQ(options.bvh.up, format::UpAxis::z);
-  EXPECT_FALSE(options.bvh.names.empty());
+  EXPECT_EQ(options.bones.bvh_up, format::UpAxis::z);
+  EXPECT_EQ(options.bones.rig_names, "mixamo");
   EXPECT_FALSE(resolved(Solve{}).up.has_value());
   job.skeleton = "person.toml";
   job.options.static_trial = "standing.c3d";

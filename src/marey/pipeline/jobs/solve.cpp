@@ -1,7 +1,9 @@
 #include "marey/pipeline/jobs/solve.h"
 
+#include <fmt/format.h>
+
 #include "marey/analyse/gait/body_marker_sets.h"
-#include "marey/format/skeleton/bvh.h"
+#include "marey/format/skeleton/rig_names.h"
 
 namespace marey::pipeline::jobs {
 namespace {
@@ -38,8 +40,9 @@ void add_skeleton_rows(Table& table, Solve& job) {
       .needing("calibrate");
   table.number("mass", how.mass_kg, "kg", {1, 500}, "the person's mass, for the masses of --write-skeleton's .osim");
   table
-      .output_file("write-skeleton", how.write_skeleton,
-                   "the skeleton that was used: skeleton.toml, or, of an OpenSim model, .osim with its bodies scaled and markers moved")
+      .output_file(
+          "write-skeleton", how.write_skeleton,
+          "the skeleton that was used: skeleton.toml, or, of an OpenSim model, .osim with its bodies scaled and markers moved")
       .ending_in({".toml", ".osim"});
   table.texts("exclude", how.exclude, "a marker that is not used, by its label; may be given often");
   table.choice("up", job.up, {"y", "z"},
@@ -52,11 +55,20 @@ void add_bvh_rows(Table& table, Solve& job) {
   table.number("unit", how.read_skeleton.unit_m, "m", above(0, 1000),
                "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
   table.choice("skeleton-up", job.skeleton_up, {"y", "z"}, "the axis that is up in a BVH, ASF or VSK skeleton");
-  table.number("bvh-unit", how.bvh.unit_m, "m", above(0, 1000), "one unit of a BVH file that is written");
-  table.choice("bvh-up", job.bvh_up, {"y", "z"}, "the axis that is up in a BVH file that is written");
-  table.choice("bvh-order", how.bvh.order, {"ZXY", "ZYX", "XYZ", "XZY", "YXZ", "YZX"}, "the order of its rotations");
-  table.text("bvh-names", job.bvh_names, "the names of its joints: mixamo or motionbuilder; omitted: as in the skeleton")
-      .checked([](const std::string& name) { format::skeleton::bvh_names(name); });
+  format::skeleton::BoneOutput& bones = how.bones;
+  table.number("bvh-unit", bones.bvh_unit_m, "m", above(0, 1000),
+               "one unit of a BVH file that is written; omitted: 0.01, or as --rig-names has it");
+  table.choice("bvh-up", job.bvh_up, {"y", "z"},
+               "the axis that is up in a BVH file that is written; omitted: y, or as --rig-names has it");
+  table.choice("bvh-order", bones.bvh_order, {"ZXY", "ZYX", "XYZ", "XZY", "YXZ", "YZX"},
+               "the order of its rotations; omitted: ZXY, or as --rig-names has it");
+  table.group("");
+  table
+      .text("rig-names", bones.rig_names,
+            fmt::format("whose bones .bvh and .glb have (names, rest pose, BVH's unit, axis and rotation order): {}; omitted: the "
+                        "skeleton's own",
+                        format::skeleton::rig_scheme_names()))
+      .checked([](const std::string& name) { format::skeleton::rig_scheme(name); });
 }
 
 }  // namespace
@@ -78,8 +90,7 @@ bodies::SolveOptions resolved(const Solve& job) {
     throw WrongOption("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
   if (!job.up.empty()) options.up = axis_of(job.up);
   options.read_skeleton.up = axis_of(job.skeleton_up);
-  options.bvh.up = axis_of(job.bvh_up);
-  if (!job.bvh_names.empty()) options.bvh.names = format::skeleton::bvh_names(job.bvh_names);
+  if (!job.bvh_up.empty()) options.bones.bvh_up = axis_of(job.bvh_up);
   return options;
 }
 
