@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -13,7 +12,7 @@
 #include "marey/filter/human_motion.h"
 #include "marey/filter/position_smoother.h"
 #include "marey/geometry/butterworth.h"
-#include "marey/geometry/decompositions.h"
+#include "marey/geometry/local_polynomial.h"
 #include "marey/geometry/median.h"
 
 namespace marey::analyse {
@@ -95,31 +94,17 @@ void low_pass(std::vector<Vector<2>>& values, double cutoff_hz, double rate_hz) 
 // --- Savitzky-Golay
 // ---------------------------------------------------------------------------------------------------------------
 
-/// Of N x = v with N symmetric and not negative; the shortest where several solve it, as with fewer places than coefficients.
-Eigen::Matrix<double, 3, 2> minimum_norm_solution(const Matrix<3>& N, const Eigen::Matrix<double, 3, 2>& v) {
-  const auto [values, vectors] = geometry::eigenpairs<3>(N);
-  const double minimum = 3 * std::numeric_limits<double>::epsilon() * values[2];
-  Eigen::Matrix<double, 3, 2> x = Eigen::Matrix<double, 3, 2>::Zero();
-  for (int i = 0; i < 3; ++i) {
-    if (values[i] > minimum) x += vectors.col(i) * (vectors.col(i).transpose() * v / values[i]);
-  }
-  return x;
-}
-
 void savitzky_golay(Path& path, double window_s) {
   const auto half = std::max<std::ptrdiff_t>(1, std::lround(window_s / path.step_s / 2));
   const auto count = static_cast<std::ptrdiff_t>(path.location.size());
   std::vector<Vector<2>> location(path.location.size()), velocity(path.location.size()), acceleration(path.location.size());
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    Matrix<3> N = Matrix<3>::Zero();
-    Eigen::Matrix<double, 3, 2> v = Eigen::Matrix<double, 3, 2>::Zero();
+    geometry::LocalPolynomial<3, 2> parabola;
     for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(0, i - half); j <= std::min(count - 1, i + half); ++j) {
       const double t = path.step_s * static_cast<double>(j - i);
-      const Vector<3> basis(1, t, t * t / 2);
-      N += basis * basis.transpose();
-      v += basis * path.location[static_cast<std::size_t>(j)].transpose();
+      parabola.add(Vector<3>(1, t, t * t / 2), 1, path.location[static_cast<std::size_t>(j)].transpose());
     }
-    const Eigen::Matrix<double, 3, 2> fit = minimum_norm_solution(N, v);
+    const Eigen::Matrix<double, 3, 2> fit = parabola.fit();
     location[static_cast<std::size_t>(i)] = fit.row(0);
     velocity[static_cast<std::size_t>(i)] = fit.row(1);
     acceleration[static_cast<std::size_t>(i)] = fit.row(2);

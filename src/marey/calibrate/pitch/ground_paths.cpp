@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include <Eigen/Cholesky>
+#include "marey/geometry/local_polynomial.h"
 
 namespace marey::calibrate::pitch {
 namespace {
@@ -18,25 +18,21 @@ constexpr double kIndependent = 2;    // errors of a second's samples hang toget
 std::optional<SmoothPath::State> fit(std::span<const GroundPath::Sample> samples, double time_s) {
   if (samples.size() < kMinValue || samples.front().time_s > time_s - kNear_s || samples.back().time_s < time_s + kNear_s)
     return std::nullopt;
-  Matrix<3> normal = Matrix<3>::Zero();
-  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
+  geometry::LocalPolynomial<3, 2> parabola;
   Matrix<2> noise = Matrix<2>::Zero();
   double total = 0;
   for (const GroundPath::Sample& sample : samples) {
     const double u = (sample.time_s - time_s) / kReach_s;
     const double bell = 1 - u * u;
     const double weight = bell / std::max(sample.covariance.trace(), 1e-6);
-    const Vector<3> basis(1, u, u * u);
-    normal += weight * basis * basis.transpose();
-    right += weight * basis * sample.location.transpose();
+    parabola.add(u, weight, sample.location.transpose());
     noise += bell * sample.covariance;
     total += bell;
   }
   if (!(total > 0)) return std::nullopt;
-  const Eigen::LLT<Matrix<3>> solver(normal);
-  if (solver.info() != Eigen::Success || solver.rcond() < 1e-9) return std::nullopt;
-  const Eigen::Matrix<double, 3, 2> found = solver.solve(right);
-  return SmoothPath::State{found.row(0), found.row(1) / kReach_s, noise / total / kIndependent};
+  const auto found = parabola.well_determined_fit(1e-9);
+  if (!found) return std::nullopt;
+  return SmoothPath::State{found->row(0), found->row(1) / kReach_s, noise / total / kIndependent};
 }
 
 }  // namespace

@@ -2,32 +2,16 @@
 
 #include <cmath>
 
+#include "marey/geometry/local_polynomial.h"
+
 namespace marey::track::offline {
 namespace {
 
 using Tracklet = TrackletLog::Tracklet;
 
-/// Values of one quantity, fitted at time 0 by value + slope · t under weights.
-class LocalLine {
- public:
-  void add(double t, double weight, double value) {
-    w_ += weight;
-    wt_ += weight * t;
-    wtt_ += weight * t * t;
-    wv_ += weight * value;
-    wtv_ += weight * t * value;
-  }
-  double slope() const {
-    const double spread = wtt_ - wt_ * wt_ / w_;
-    return spread > 1e-12 ? (wtv_ - wt_ * wv_ / w_) / spread : 0.0;
-  }
-  double value() const { return wv_ / w_ - slope() * wt_ / w_; }
-  double mean() const { return wv_ / w_; }
-  double weight() const { return w_; }
-
- private:
-  double w_ = 0, wt_ = 0, wtt_ = 0, wv_ = 0, wtv_ = 0;
-};
+/// Straight lines of C quantities.
+template <int C>
+using LocalLines = geometry::LocalPolynomial<2, C>;
 
 constexpr double kernel_reach = 3;        // standard deviations
 constexpr double predicted_weight = 0.1;  // beside an observed row's 1
@@ -49,17 +33,18 @@ void around(const Tracklet& rows, const std::vector<double>& times, std::size_t 
 
 /// The centre of the outline, from those found round about; a row between two that have one gets one.
 void smooth_outline(const Tracklet& rows, const std::vector<double>& times, std::size_t k, double sigma, TrackRow& row) {
-  LocalLine x, y, early, late;
+  LocalLines<2> centre;
+  double early = 0, late = 0;
   around(rows, times, k, sigma, [&](const TrackRow& other, double t, double weight) {
     if (!other.has_centre) return;
-    x.add(t, weight, other.centre_x);
-    y.add(t, weight, other.centre_y);
-    (t < 0 ? early : late).add(t, weight, 0);
+    centre.add(t, weight, {other.centre_x, other.centre_y});
+    (t < 0 ? early : late) += weight;
   });
-  row.has_centre = row.has_centre || (early.weight() > 0 && late.weight() > 0);
+  row.has_centre = row.has_centre || (early > 0 && late > 0);
   if (!row.has_centre) return;
-  row.centre_x = static_cast<float>(x.value());
-  row.centre_y = static_cast<float>(y.value());
+  const auto at = centre.fit();
+  row.centre_x = static_cast<float>(at(0, 0));
+  row.centre_y = static_cast<float>(at(0, 1));
 }
 
 }  // namespace
@@ -70,32 +55,28 @@ void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) 
   for (const TrackRow& row : rows) times.push_back(seconds(log.time_of(row.frame)));
   const Tracklet before = rows;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    LocalLine x, y, fast_x, fast_y, centre_x, centre_y, width, height;
+    LocalLines<4> location;  // of the place and of the box's centre
+    LocalLines<2> velocity, size;
     around(before, times, k, smoothing.location, [&](const TrackRow& row, double t, double weight) {
-      x.add(t, weight, row.x);
-      y.add(t, weight, row.y);
-      centre_x.add(t, weight, row.left + row.width / 2);
-      centre_y.add(t, weight, row.top + row.height / 2);
+      location.add(t, weight, {row.x, row.y, row.left + row.width / 2, row.top + row.height / 2});
     });
-    around(before, times, k, smoothing.velocity, [&](const TrackRow& row, double t, double weight) {
-      fast_x.add(t, weight, row.x);
-      fast_y.add(t, weight, row.y);
-    });
-    around(before, times, k, smoothing.size, [&](const TrackRow& row, double t, double weight) {
-      width.add(t, weight, row.width);
-      height.add(t, weight, row.height);
-    });
+    around(before, times, k, smoothing.velocity,
+           [&](const TrackRow& row, double t, double weight) { velocity.add(t, weight, {row.x, row.y}); });
+    around(before, times, k, smoothing.size,
+           [&](const TrackRow& row, double t, double weight) { size.add(t, weight, {row.width, row.height}); });
     TrackRow& row = rows[k];
     smooth_outline(before, times, k, smoothing.location, row);
-    row.x = static_cast<float>(x.value());
-    row.y = static_cast<float>(y.value());
-    row.vx = static_cast<float>(fast_x.slope());
-    row.vy = static_cast<float>(fast_y.slope());
+    const auto at = location.fit();
+    const auto moving = velocity.fit();
+    row.x = static_cast<float>(at(0, 0));
+    row.y = static_cast<float>(at(0, 1));
+    row.vx = static_cast<float>(moving(1, 0));
+    row.vy = static_cast<float>(moving(1, 1));
     if (!row.has_box()) continue;
-    row.width = static_cast<float>(width.mean());
-    row.height = static_cast<float>(height.mean());
-    row.left = static_cast<float>(centre_x.value() - row.width / 2);
-    row.top = static_cast<float>(centre_y.value() - row.height / 2);
+    row.width = static_cast<float>(size.mean()[0]);
+    row.height = static_cast<float>(size.mean()[1]);
+    row.left = static_cast<float>(at(0, 2) - row.width / 2);
+    row.top = static_cast<float>(at(0, 3) - row.height / 2);
   }
 }
 
