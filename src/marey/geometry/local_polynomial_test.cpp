@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include <Eigen/QR>
 #include <gtest/gtest.h>
 
 namespace marey::geometry {

@@ -113,7 +113,7 @@ std::vector<Observation<2>> observe(Random& random, const std::vector<Vector<2>>
     one.score = 0.9;
   };
   for (const Vector<2>& location : blend(locations, options.merged)) {
-    const Vector<2> error(random.gaussian(0, noise), random.gaussian(0, noise));
+    const Vector<2> error = random.gaussian_pair(noise);
     if (!random.chance(options.missed)) add(location + error);
   }
   double rest = options.clutter;

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "marey/core/geometry.h"
+
 namespace marey::simulate {
 
 /// Random numbers that are the same on every machine and standard library: the engine is fixed by the C++ standard, and the
@@ -23,6 +25,16 @@ class Random {
   double gaussian(double mean = 0.0, double sigma = 1.0) {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - unit()));
     return mean + sigma * radius * std::cos(2.0 * std::numbers::pi * unit());
+  }
+
+  /// Two, the second drawn first. As arguments of one call they would be drawn in an order that each compiler chooses.
+  Vector<2> gaussian_pair(double sigma = 1.0) {
+    const double second = gaussian(0, sigma), first = gaussian(0, sigma);
+    return {first, second};
+  }
+  Vector<2> uniform_pair(double low_x, double high_x, double low_y, double high_y) {
+    const double second = uniform(low_y, high_y), first = uniform(low_x, high_x);
+    return {first, second};
   }
 
   bool chance(double probability) { return unit() < probability; }

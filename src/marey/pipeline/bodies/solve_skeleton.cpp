@@ -178,6 +178,8 @@ std::optional<format::skeleton::SkeletonFile> skeleton_by_keypoints(const std::s
   std::vector<std::string> names;
   for (const std::string& prefix : people) names.push_back(prefix.substr(0, prefix.find(':')));
   const auto found = options.person.empty() ? names.begin() : std::find(names.begin(), names.end(), options.person);
+  if (found == names.end() && names.front().empty())
+    throw Error("{}: has the keypoints of one person, without a name; remove --person", recording);
   if (found == names.end())
     throw Error("{}: has no keypoints of a person {}; there are {}", recording, options.person, fmt::join(names, ", "));
   format::skeleton::SkeletonFile file;

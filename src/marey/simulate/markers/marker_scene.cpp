@@ -148,7 +148,7 @@ OcclusionMotion behind_barrier(int frames, const cv::Size& size, Random& random)
   for (int draw = max_draws(frames); draw > 0; --draw) {
     const double speed = kSpeed.draw(random) * size.width / 640;
     const double bend = bent ? (random.chance(0.5) ? 1 : -1) * kBend.draw(random) : 0;
-    const Vector<2> centre = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
+    const Vector<2> centre = middle(size) + random.uniform_pair(-60, 60, -40, 40);
     const int bend_frames = static_cast<int>(width / speed);
     Path path = through(centre, random.uniform(0, 2 * kPi), speed, bend, bend_frames, frames);
     if (stays_inside(path, size)) return {std::move(path), Box::from_centre(centre, width, height)};
@@ -210,7 +210,7 @@ std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& siz
   constexpr Range kAngle{0.35, 2.8};  // rad, between the two courses
   constexpr Range kBend{-0.5, 0.5};   // rad
   for (int draw = max_draws(frames); draw > 0; --draw) {
-    const Vector<2> crossing = middle(size) + Vector<2>(random.uniform(-60, 60), random.uniform(-40, 40));
+    const Vector<2> crossing = middle(size) + random.uniform_pair(-60, 60, -40, 40);
     const double course = random.uniform(0, 2 * kPi);
     const Vector<2> miss = random.uniform(0, radius) * direction(random.uniform(0, 2 * kPi));
     Path first = through(crossing, course, kSpeed.draw(random), kBend.draw(random), frames / 2, frames);

@@ -7,11 +7,11 @@ namespace {
 
 constexpr double kGoalWidth = 7.32, kGoalHeight = 2.44, kPostWidth = 0.12;  // m
 
+}  // namespace
+
 Vector<2> in_world(const Matrix<3>& world_from_pitch, const Vector<2>& at) {
   return (world_from_pitch * at.homogeneous()).head<2>();
 }
-
-}  // namespace
 
 std::vector<people::Post> goal_posts(const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch) {
   std::vector<people::Post> posts;

@@ -8,6 +8,9 @@
 
 namespace marey::simulate::match {
 
+/// A point of the pitch, in the world.
+Vector<2> in_world(const Matrix<3>& world_from_pitch, const Vector<2>& at);
+
 /// The posts of both goals, in the world.
 std::vector<people::Post> goal_posts(const Matrix<3>& world_from_pitch, const geometry::PitchSize& pitch);
 

@@ -53,7 +53,7 @@ MatchPlay::MatchPlay(std::uint64_t seed, const geometry::PitchSize& pitch)
     : pitch_(pitch), random_(seed), ball_(pitch.length / 2, pitch.width / 2), ball_from_(ball_), ball_to_(ball_) {
   for (Mind& mind : minds_) {
     mind.pace = random_.uniform(0.9, 1.12);
-    mind.wander = kWander * Vector<2>(random_.gaussian(), random_.gaussian());
+    mind.wander = kWander * random_.gaussian_pair();
     mind.rethink_at = random_.uniform(0, 2);
   }
 }
@@ -80,7 +80,7 @@ std::array<Vector<2>, kMatchPeople> MatchPlay::beginning() {
     const Role& role = role_of(i);
     const double half = pitch_.length / 2;
     locations[index(i)] = from_goal(side_of(i), (0.42 + 0.5 * role.depth) * half, role.aside * 0.42 * pitch_.width) +
-                          Vector<2>(random_.uniform(-1, 1), random_.uniform(-1, 1));
+                          random_.uniform_pair(-1, 1, -1, 1);
   }
   locations[index(holder_)] = ball_ + Vector<2>(-0.6, 0.3);
   locations[22] = ball_ + Vector<2>(-4, 9);
@@ -149,7 +149,7 @@ void MatchPlay::pass(People people) {
   const MatchPosition& to = people[index(receiver_)];
   const double flight = (to.location - ball_).norm() / kBallSpeed + 0.2;
   ball_from_ = ball_;
-  ball_to_ = on_pitch(to.location + 0.8 * flight * to.velocity + 1.5 * Vector<2>(random_.gaussian(), random_.gaussian()), 0.5);
+  ball_to_ = on_pitch(to.location + 0.8 * flight * to.velocity + 1.5 * random_.gaussian_pair(), 0.5);
   if (random_.chance(kLost))
     ball_to_ = on_pitch(0.4 * ball_to_ + 0.6 * people[index(nearest(ball_to_, 1 - side, people))].location, 0.5);
   phase_ = Phase::flying;
@@ -308,7 +308,7 @@ const std::array<MatchIntent, kMatchPeople>& MatchPlay::decide(double step, Peop
   now_ += step;
   const double fade = step / kWanderTime;
   for (Mind& mind : minds_) {
-    mind.wander += -fade * mind.wander + kWander * std::sqrt(2 * fade) * Vector<2>(random_.gaussian(), random_.gaussian());
+    mind.wander += -fade * mind.wander + kWander * std::sqrt(2 * fade) * random_.gaussian_pair();
   }
   play_on(step, people);
   maybe_run(people);

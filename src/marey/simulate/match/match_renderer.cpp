@@ -140,7 +140,7 @@ std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& wo
   for (int i = 0; i < count; ++i) {  // in turn put elsewhere and named as its neighbour
     MatchClick& click = clicks[static_cast<std::size_t>(2 * i)];
     if (i % 2 == 0)
-      click.pixel += kSlip * Vector<2>(random.gaussian(), random.gaussian());
+      click.pixel += kSlip * random.gaussian_pair();
     else
       click.ground = clicks[static_cast<std::size_t>(2 * i + 1)].ground;
   }

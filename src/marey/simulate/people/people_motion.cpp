@@ -170,7 +170,7 @@ void Director::crossing() {
   // Both widths are passed in the time of the overlap.
   const double px_per_m = camera_(Vector<3>(far_at.x(), far_at.y(), 0))->scale;
   const double apart = 2 * kWide * height / px_per_m / (options_.overlap_frames * dt_);
-  const Vector<2> common = options_.pace * Vector<2>(random_.uniform(-1.6, 1.6), random_.uniform(-0.6, 0.6));
+  const Vector<2> common = options_.pace * random_.uniform_pair(-1.6, 1.6, -0.6, 0.6);
   const double side = random_.chance(0.5) ? 0.5 : -0.5;
   const double drift = random_.uniform(-0.2, 0.2);
   walk_straight(far, far_at, middle, common + Vector<2>(side * apart, drift), random_.uniform(0.05, 0.2));
@@ -189,7 +189,7 @@ void Director::overlap() {
   const double side = random_.chance(0.5) ? 1 : -1, offset = random_.uniform(0.1, 0.75) * width;
   const double pace = options_.pace * random_.uniform(0.8, 2.5);
   const double after = random_.chance(0.5) ? side * pace : -side * pace;  // back again, or on past the other
-  const Vector<2> common = options_.pace * Vector<2>(random_.uniform(-1.2, 1.2), random_.uniform(-0.5, 0.5));
+  const Vector<2> common = options_.pace * random_.uniform_pair(-1.2, 1.2, -0.5, 0.5);
   const double length = static_cast<double>(motion_.frames.size()) * dt_;
   const double begin = 0.35 * length, end = begin + std::min(2.0, 0.3 * length);
   const int comes = random_.integer(0, 1);  // the farther or the nearer one

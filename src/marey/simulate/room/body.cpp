@@ -95,7 +95,8 @@ std::vector<BodyMarker> position_markers(int count, Random& random) {
   while (std::ssize(markers) < count) {
     const int limb = limb_by_surface(random);
     const LimbShape& shape = limb_shapes()[static_cast<std::size_t>(limb)];
-    const Vector<3> in_limb = on_limb(shape, random.uniform(0.05, 0.95), random.uniform(0, 2 * std::numbers::pi));
+    const double angle = random.uniform(0, 2 * std::numbers::pi), along = random.uniform(0.05, 0.95);  // in this order
+    const Vector<3> in_limb = on_limb(shape, along, angle);
     const Vector<3> location = upright[static_cast<std::size_t>(limb)] * in_limb;
     const bool free =
         std::all_of(locations.begin(), locations.end(), [&](const Vector<3>& other) { return (other - location).norm() > apart; });

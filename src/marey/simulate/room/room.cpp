@@ -155,7 +155,7 @@ std::vector<RoomBlob> RoomScene::Parts::blobs(int index, double t, std::uint64_t
   const std::size_t there = result.size();
   if (options.merge_px > 0) merge(result, far);
   std::erase_if(result, [&](const RoomBlob&) { return random.chance(options.dropped); });
-  for (RoomBlob& blob : result) blob.pixel += Vector<2>(random.gaussian(0, options.noise_px), random.gaussian(0, options.noise_px));
+  for (RoomBlob& blob : result) blob.pixel += random.gaussian_pair(options.noise_px);
   for (std::size_t i = 0; i < there; ++i) {
     if (!random.chance(options.ghosts)) continue;
     result.push_back(

@@ -126,7 +126,7 @@ std::vector<Keypoints<2>> keypoints_observed(const RoomScene& scene, int camera,
       const auto pixel = biased_pixel(eye, locations[actor][of], errors.bias_m, Random(keypoint_seed({seed, 6, own, actor, of})));
       const bool missing = random.chance(errors.missing), outlier = random.chance(errors.outliers);
       const double sigma = outlier ? errors.outlier_px : errors.noise_px;
-      const Vector<2> noise(random.gaussian(0, sigma), random.gaussian(0, sigma));
+      const Vector<2> noise = random.gaussian_pair(sigma);
       const double confidence = outlier ? random.uniform(0.2, 0.9) : random.uniform(0.6, 1.0);
       if (!pixel || !eye.in_image(*pixel)) continue;
       ++in_image;

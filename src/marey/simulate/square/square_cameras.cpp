@@ -26,7 +26,7 @@ Rig square_cameras(int cameras, double rate_hz, const SquareOptions& square, std
     const Vector<2> to(std::cos(angle), std::sin(angle));
     const Vector<2> half = middle + Vector<2>(3, 4);
     const Vector<2> at = middle + to / std::max(std::abs(to.x()) / half.x(), std::abs(to.y()) / half.y());
-    const Vector<2> aim = middle + 0.25 * (at - middle) + Vector<2>(random.uniform(-3, 3), random.uniform(-1, 1));
+    const Vector<2> aim = middle + 0.25 * (at - middle) + random.uniform_pair(-3, 3, -1, 1);
     RigCamera camera;
     camera.name = fmt::format("cam{}", i + 1);
     camera.rate_hz = rate_hz;

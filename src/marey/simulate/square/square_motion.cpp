@@ -44,7 +44,7 @@ void SquareMotion::step() {
   std::vector<Vector<2>> accelerations;
   for (Walker& walker : walkers_) {
     Vector<2> a = (required(walker) - walker.person.velocity) / kHesitation + pushed(walker);
-    a += Vector<2>(random_.gaussian(0, 0.8), random_.gaussian(0, 0.8));
+    a += random_.gaussian_pair(0.8);
     if (a.norm() > kMaxPush) a *= kMaxPush / a.norm();
     accelerations.push_back(a);
   }
@@ -88,7 +88,7 @@ void SquareMotion::arrive() {
   Vector<2> middle(random_.uniform(1, options_.length - 1), random_.uniform(1, options_.width - 1));
   if (stops && !benches_.empty() && random_.chance(0.5))
     middle = benches_[static_cast<std::size_t>(random_.integer(0, static_cast<int>(benches_.size()) - 1))] +
-             Vector<2>(random_.uniform(-1, 1), random_.uniform(-0.3, 0.3));
+             random_.uniform_pair(-1, 1, -0.3, 0.3);
   first.goals = {middle, at_side(to)};
   // Straight on beyond the side, so that a goal is not turned round at.
   first.goals.back() += 2 * options_.around * (first.goals.back() - middle).normalized();

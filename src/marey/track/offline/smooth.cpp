@@ -66,7 +66,8 @@ void smooth(Tracklet& rows, const TrackletLog& log, const Smoothing& smoothing) 
            [&](const TrackRow& row, double t, double weight) { size.add(t, weight, {row.width, row.height}); });
     TrackRow& row = rows[k];
     smooth_outline(before, times, k, smoothing.location, row);
-    const auto at = location.fit(), moving = velocity.fit();
+    const auto at = location.fit();
+    const auto moving = velocity.fit();
     row.x = static_cast<float>(at(0, 0));
     row.y = static_cast<float>(at(0, 1));
     row.vx = static_cast<float>(moving(1, 0));
