@@ -47,7 +47,7 @@ class Ptz(unittest.TestCase):
         score = json.loads(self.run_marey("evaluate", "--truth", "film/truth.csv", "--tracks", "film/found.csv", "--distance", "1.5", "--json").stdout)
         self.assertTrue(score)
 
-    def test_lines_alone_give_the_camera_and_say_which_of_two(self):
+    def test_lines_alone_give_the_camera_and_its_side_is_stated(self):
         done = self.run_marey("calibrate", "ptz", "film/main.mp4", "-o", "film/alone.toml", "--json")
         report = json.loads(done.stdout)
         self.assertTrue(report["searched"])
@@ -66,7 +66,7 @@ class Ptz(unittest.TestCase):
         self.assertNotEqual(near, turned)
         self.run_marey("calibrate", "ptz", "film/main.mp4", "--side", "left", "-o", "none.toml", code=2)
 
-    def test_without_a_pitch_it_says_so_or_which_frame_to_click(self):
+    def test_without_a_pitch_a_frame_to_click_is_named(self):
         self.run_marey("simulate", "ptz", "-o", "hockey", "--scene", "hockey", "--seconds", "4", "--size", "640", "360", "-q")
         said = self.run_marey("calibrate", "ptz", "hockey/main.mp4", "-o", "none.toml", code=1).stderr
         self.assertRegex(said, r"frame \d+")

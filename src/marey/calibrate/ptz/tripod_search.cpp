@@ -16,7 +16,7 @@ constexpr double kSampleStep = 0.5;                     // m between samples of 
 constexpr std::array<double, 3> kAcross{-1.6, 0, 1.6};  // deviations from where main cameras stand: tripods that are tried
 constexpr std::array<double, 4> kBehind{-1.2, -0.4, 0.4, 1.1};
 constexpr std::array<double, 4> kUp{-1.4, -0.5, 0.4, 1.5};
-constexpr double kMinUp = 3;                        // m up: no main camera stands lower; physical
+constexpr double kMinUp = 3;                         // m up: no main camera stands lower; physical
 constexpr double kMaxApart = 2.5;                    // deviations; numerical
 constexpr double kRangeOfMiddle = 110;               // m: where an image's middle shows no ground; numerical
 constexpr std::array<double, 3> kMove{1.5, 4, 1.5};  // m: the first steps of a tripod that is moved
@@ -247,7 +247,7 @@ Tested tested(const Search& search, std::size_t image, const Hypothesis& one) {
 }
 
 /// How many lines of the model are seen in one image or another; the centre circle counts as two, as it fixes a view alone.
-int lines_seen(const Search& search, const Tested& tested) {
+int lines_observed(const Search& search, const Tested& tested) {
   constexpr int kPieces = 5;  // of a line in an image: numerical, fewer may be people's
   std::vector<int> most(search.lines.size(), 0);
   for (const auto& view : tested.views) {
@@ -330,7 +330,7 @@ SearchedTripod search_tripod(std::span<const SearchImage> images, const geometry
   }
   if (best.explained < std::min(images.size(), options.lowest_images) ||
       static_cast<double>(best.explained) < options.fraction * static_cast<double>(rich) ||
-      lines_seen(search, best) < options.lines)
+      lines_observed(search, best) < options.lines)
     return result;
   result.verdict = result.rival > options.rival * result.merit ? TripodVerdict::ambiguous : TripodVerdict::found;
   return result;

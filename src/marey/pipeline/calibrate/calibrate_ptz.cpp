@@ -20,12 +20,9 @@ namespace {
 
 using marey::calibrate::ptz::ClickedFrame;
 
-constexpr double kMinFound = 0.1;         // of the frames: a video with less is not of the pitch that was clicked
-constexpr double kMinReported = 0.02;     // of the frames that are lost
-constexpr double kOddClick = 6;           // deviations of a click, or medians of all: farther off it is on something else
-constexpr int kFewLines = 4;              // straight lines: an image with fewer cannot be searched
-constexpr double kStartAgrees = 2;        // m: the track may be so far off a frame of the start,
-constexpr double kStartsThatAgree = 0.6;  // in all but few of them
+constexpr double kMinFound = 0.1;      // of the frames: a video with less is not of the pitch that was clicked
+constexpr double kMinReported = 0.02;  // of the frames that are lost
+constexpr int kFewLines = 4;  // straight lines: with fewer the message says that there is no pitch; numerical: nothing else
 
 /// Where in the clicks' frame the pitch's corner with the smallest x and y lies: the origin, or, where they count from the middle,
 /// half a pitch before it.
@@ -199,8 +196,8 @@ void draw_overlay(const corridor::Feed& feed, const PtzRun& run, const PtzRunOpt
 
 /// Single clicks that the others contradict.
 void warn_of_odd_clicks(PtzRun& run, const PtzRunOptions& options, cv::Size size) {
-  const double limit =
-      std::max(kOddClick * options.tracking.tripod.click_px * size.width / 1280.0, kOddClick * run.clicked.median_px);
+  const double limit = std::max(options.odd_click * options.tracking.tripod.click_px * size.width / 1280.0,
+                                options.odd_click * run.clicked.median_px);
   for (std::size_t i = 0; i < run.clicks.size(); ++i) {
     for (std::size_t k = 0; k < run.clicks[i].locations.size(); ++k) {
       const double off = run.clicked.error_px[i][k];
@@ -257,12 +254,13 @@ void start_without_clicks(PtzRun& run, const corridor::Feed& feed, PtzRunOptions
   options.tracking.tripod.near = marey::calibrate::ptz::main_camera_prior(options.tracking.pitch);
   if (!options.side)
     run.warnings.push_back(
-        "without clicks the camera is taken to stand behind the touchline y = 0; turned by half a turn the pitch has the same image "
+        "without clicks the camera is taken to stand behind the touchline y = 0; turned by half a turn the pitch has the same "
+        "image "
         "(--side far)");
 }
 
 /// The frames of the start beside the track of the whole video.
-void check_start(const PtzRun& run, const corridor::Feed& feed, const std::string& video) {
+void check_start(const PtzRun& run, const corridor::Feed& feed, const PtzRunOptions& options, const std::string& video) {
   std::size_t agree = 0;
   for (std::size_t i = 0; i < run.clicks.size(); ++i) {
     const auto at = static_cast<std::size_t>(run.clicks[i].frame);
@@ -271,9 +269,9 @@ void check_start(const PtzRun& run, const corridor::Feed& feed, const std::strin
         tracked(geometry::camera_of(run.result.camera.tripod, *run.result.camera.rotations[at].heading, feed.info().size));
     const Vector<2> low(feed.info().size.width / 2.0, feed.info().size.height * 0.7);
     const auto a = start.location(low), b = tracked.location(low);
-    agree += a && b && (a->ground - b->ground).norm() < kStartAgrees ? 1 : 0;
+    agree += a && b && (a->ground - b->ground).norm() < options.start_agrees ? 1 : 0;
   }
-  if (static_cast<double>(agree) < kStartsThatAgree * static_cast<double>(run.clicks.size()))
+  if (static_cast<double>(agree) < options.starts_that_agree * static_cast<double>(run.clicks.size()))
     throw Error(
         "{}: the places that lines give in single frames contradict what moves between them (in {} of {} frames they agree); "
         "click in frame {} and in one or more that face elsewhere (--points)",
@@ -295,7 +293,7 @@ PtzRun calibrate_ptz(const std::string& video, const std::string& clicks, const 
   const auto begin = std::chrono::steady_clock::now();
   run.result = run_tracker(feed, run, options, hooks);
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (run.searched) check_start(run, feed, video);
+  if (run.searched) check_start(run, feed, options, video);
   check_result(run, video);
   enter_camera(run, feed, corner, options);
   if (!options.overlay.empty()) draw_overlay(feed, run, options, hooks);

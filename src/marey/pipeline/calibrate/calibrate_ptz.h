@@ -20,6 +20,9 @@ struct PtzRunOptions {
   /// Without clicks: behind which touchline the camera stands, y = 0 or the far one; both fit alike. Nothing: near, and a
   /// warning that says so.
   std::optional<PtzSide> side;
+  double odd_click = 6;            ///< deviations of a click, or medians of all clicks: one that lies farther off is named
+  double start_agrees = 2;         ///< m: without clicks, the track may be so far off a frame of the start,
+  double starts_that_agree = 0.6;  ///< and this share of them has to agree
 };
 
 struct PtzRun {

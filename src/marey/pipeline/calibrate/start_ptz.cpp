@@ -13,10 +13,11 @@ using marey::calibrate::ptz::SearchedTripod;
 using marey::calibrate::ptz::SearchImage;
 using marey::calibrate::ptz::TripodVerdict;
 
-constexpr double kSearchWindow = 60;       // s that are searched together; numerical: memory and cost alone
-constexpr double kSearchEvery = 0.4;       // s between images whose lines are counted; numerical: memory and cost alone
-constexpr std::size_t kSearchImages = 10;  // of a window, each the one of its tenth that shows most lines; numerical: memory and cost alone
-constexpr int kMinLines = 2;               // an image with fewer shows no pitch
+constexpr double kSearchWindow = 60;  // s that are searched together; numerical: memory and cost alone
+constexpr double kSearchEvery = 0.4;  // s between images whose lines are counted; numerical: memory and cost alone
+constexpr std::size_t kSearchImages =
+    10;                       // of a window, each the one of its tenth that shows most lines; numerical: memory and cost alone
+constexpr int kMinLines = 2;  // an image with fewer shows no pitch; numerical: cost alone
 
 Image searched_copy(const Image& image) {
   if (!image.is_colour()) return Image(image.luma().clone());

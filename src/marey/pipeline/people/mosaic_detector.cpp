@@ -15,8 +15,6 @@
 namespace marey::pipeline::people {
 namespace {
 
-constexpr double kAside = 1.7;  // of a person's width: a wider region holds several
-
 cv::Mat luma_in_bytes(const Image& image) {
   if (image.luma().type() == CV_8UC1) return image.luma();
   cv::Mat bytes;
@@ -86,7 +84,7 @@ class MosaicDetector : public detect::Detector {
       ++misfits_;
       return;
     }
-    const int people = std::max(1, static_cast<int>(std::lround(box.width / (kAside * person->width))));
+    const int people = std::max(1, static_cast<int>(std::lround(box.width / (options_.aside * person->width))));
     for (int k = 0; k < people; ++k) {
       Detection& one = detections.emplace_back();
       const double width = static_cast<double>(box.width) / people;
@@ -114,7 +112,7 @@ class MosaicDetector : public detect::Detector {
 std::unique_ptr<detect::Detector> mosaic_detector(const corridor::Feed& feed, std::shared_ptr<const PtzCamera> camera,
                                                   std::shared_ptr<const GroundViews> views, const reconstruct::GroundArea& area,
                                                   const MosaicDetectorOptions& options) {
-  const std::vector<Frame> frames = feed.sample(options.frames, options.seconds, options.most_frames);
+  const std::vector<Frame> frames = feed.sample(options.frames, options.seconds, options.max_frames);
   if (frames.empty())
     throw Error(
         "camera \"{0}\" is a PTZ camera whose images cannot be read twice, so that its empty scene cannot be learned; give a "

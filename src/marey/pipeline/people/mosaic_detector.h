@@ -15,11 +15,12 @@ namespace marey::pipeline::people {
 struct MosaicDetectorOptions {
   int frames = 120;               ///< that the empty scene is learned from, evenly over the video's beginning,
   double seconds = 300;           ///< which is as long
-  int most_frames = 3000;         ///< that are read for it
+  int max_frames = 3000;          ///< that are read for it
   double contrast = 18;           ///< grey levels that a person differs by,
   int slack_px = 1;               ///< px at 1280: from everything so far about in the empty scene
   double low = 0.45, high = 1.6;  ///< of a person's height: a region is as tall
   double filled = 0.2;            ///< of a region's box differs, at least
+  double aside = 1.7;             ///< of a person's width: a wider region holds several
 };
 
 /// Reads the video's beginning ahead to learn the empty scene. Throws Error if it cannot be read twice; Stopped.

@@ -29,7 +29,7 @@ TEST(Mosaic, ShowsTheEmptySceneFromEveryAim) {
     match.advance(), empty.advance();
     images.push_back(match.image().luma());
     without.push_back(empty.image().luma());
-    camera.rotations.push_back({match.time(), match.heading(), {}, {}});
+    camera.rotations.push_back({match.time(), match.heading(), Matrix<3>::Zero(), std::nullopt});
   }
   Mosaic mosaic(camera, mosaic_match(true).size);
   for (std::size_t i = 0; i < images.size(); ++i) mosaic.add(images[i], *camera.rotations[i].heading);
@@ -39,11 +39,17 @@ TEST(Mosaic, ShowsTheEmptySceneFromEveryAim) {
     const cv::Mat grass(scene, cv::Rect(0, 200, 640, 150));
     const cv::Mat known = grass > 0;
     EXPECT_GT(cv::countNonZero(known), 0.95 * 640 * 150) << i;
-    cv::Mat off_mosaic, off_image;
-    cv::absdiff(grass, without[i](cv::Rect(0, 200, 640, 150)), off_mosaic);
-    cv::absdiff(images[i](cv::Rect(0, 200, 640, 150)), without[i](cv::Rect(0, 200, 640, 150)), off_image);
+    const cv::Mat bare = without[i](cv::Rect(0, 200, 640, 150)), crowded = images[i](cv::Rect(0, 200, 640, 150));
+    cv::Mat off_mosaic, off_image, low, high;
+    cv::absdiff(grass, bare, off_mosaic);
+    cv::absdiff(crowded, bare, off_image);
     EXPECT_LT(cv::mean(off_mosaic, known)[0], 6) << i;
-    EXPECT_LT(cv::countNonZero(off_mosaic > 30), cv::countNonZero(off_image > 30) / 2 + 40) << i;
+    // Paint is a pixel wide: what counts is that nothing is there which is not close by.
+    cv::erode(bare, low, cv::Mat::ones(3, 3, CV_8U)), cv::dilate(bare, high, cv::Mat::ones(3, 3, CV_8U));
+    const cv::Mat strange = known & ((grass > high + 25) | (grass < low - 25));
+    EXPECT_LT(cv::countNonZero(strange), 0.003 * 640 * 150) << i;
+    const cv::Mat people = off_image > 40, shown = people & (off_mosaic > 30);
+    EXPECT_LE(cv::countNonZero(shown), 0.3 * cv::countNonZero(people) + 5) << i;
   }
 }
 
