@@ -89,6 +89,8 @@ void print_solved(const std::string& recording, const SolveSummary& summary, con
                *summary.overall_scale, 1000 * summary.rms_before_m);
     if (!summary.undetermined.empty())
       fmt::print(stderr, "sizes that the recording does not determine: {}\n", joined(summary.undetermined, 8));
+    if (!summary.undetermined_markers.empty())
+      fmt::print(stderr, "markers whose places it does not determine: {}\n", joined(summary.undetermined_markers, 8));
   }
   if (!summary.marker_set.empty()) fmt::print(stderr, "the human skeleton, by {}\n", summary.marker_set);
   for (const pipeline::bodies::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.stated);
@@ -164,9 +166,10 @@ void run(SolveCommand& command) {
 
 void require_one_skeleton(const SolveCommand& command) {
   const pipeline::bodies::SolveOptions& how = command.options;
-  if (!command.skeleton.empty() && !how.static_trial.empty() && !how.calibrate)
-    throw WrongUsage("{}", "--static-trial: with --skeleton it is for --calibrate; give that too, or one of the two");
-  if (!how.calibration_takes.empty() && !how.calibrate) throw WrongUsage("{}", "--calibration-take: is for --calibrate; give that too");
+  if (!command.skeleton.empty() && !how.static_trial.empty())
+    throw WrongUsage("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two");
+  if (!how.calibration_takes.empty() && !how.calibrate)
+    throw WrongUsage("{}", "--calibration-take: is for --calibrate; give that too");
   if (how.mass_kg && !how.write_skeleton.ends_with(".osim")) throw WrongUsage("{}", "--mass: is for --write-skeleton FILE.osim");
   if (!how.marker_set.empty() && !command.skeleton.empty())
     throw WrongUsage("{}", "--marker-set: is for the human skeleton, and --skeleton is one; give one of the two");
@@ -224,10 +227,12 @@ void add_solve(Command& program) {
   command.flag("--smooth", options->options.smooth, "a second pass over the whole motion: what was hidden is bent to both ends");
   command.input_files("--calibration-take", options->options.calibration_takes,
                       "another recording of the same person with the same markers, for --calibrate; may be given often");
-  command.number("--mass", options->options.mass_kg, "kg", {1, 500}, "the person's mass, for the masses of --write-skeleton's .osim");
+  command.number("--mass", options->options.mass_kg, "kg", {1, 500},
+                 "the person's mass, for the masses of --write-skeleton's .osim");
   command
-      .output_file("--write-skeleton", options->options.write_skeleton,
-                   "the skeleton that was used: skeleton.toml, or, of an OpenSim model, .osim with its bodies scaled and markers moved")
+      .output_file(
+          "--write-skeleton", options->options.write_skeleton,
+          "the skeleton that was used: skeleton.toml, or, of an OpenSim model, .osim with its bodies scaled and markers moved")
       .ends_in({".toml", ".osim"});
   command
       .texts("-o,--output", options->outputs,

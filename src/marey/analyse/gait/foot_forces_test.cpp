@@ -72,7 +72,9 @@ class SimulatedWalk {
     return {-100 * std::cos(std::numbers::pi * s) * std::sin(std::numbers::pi * s), 20,
             700 * (std::sin(std::numbers::pi * s) + 0.3 * std::sin(3 * std::numbers::pi * s))};
   }
-  static Vector<3> pressure(const Step& step, double time) { return step.heel + Vector<3>(0.02 + 0.15 * share(step, time), 0.01, 0); }
+  static Vector<3> pressure(const Step& step, double time) {
+    return step.heel + Vector<3>(0.02 + 0.15 * share(step, time), 0.01, 0);
+  }
 
   const FeetPaths& feet() const { return feet_; }
 
@@ -84,7 +86,8 @@ class SimulatedWalk {
       if (step.begin <= time) before = &step;
       if (step.begin > time && after == nullptr) after = &step;
     }
-    if (before == nullptr) return after == nullptr ? Vector<3>(-5, 0.5, 0) : Vector<3>(after->heel - Vector<3>(2 * (after->begin - time), 0, 0));
+    if (before == nullptr)
+      return after == nullptr ? Vector<3>(-5, 0.5, 0) : Vector<3>(after->heel - Vector<3>(2 * (after->begin - time), 0, 0));
     if (time <= before->end) return before->heel;
     if (after == nullptr) return before->heel + Vector<3>(2 * (time - before->end), 0, 0);
     const double s = (time - before->end) / (after->begin - before->end);
@@ -100,7 +103,7 @@ std::vector<Step> two_steps() {
   return {{Side::left, 0.5, 1.2, {-0.1, 0.1, 0}}, {Side::right, 1.1, 1.8, {0.55, -0.1, 0}}};
 }
 
-/// Where the truth and what was found differ at most, over one foot's samples: N, m, N m.
+/// The largest differences of the result from the truth, over one foot's samples: N, m, N m.
 std::array<double, 3> differences(const FootForces& forces, const Step& step) {
   std::array<double, 3> worst{};
   const auto& foot = forces.feet[static_cast<std::size_t>(step.side)];
@@ -212,7 +215,7 @@ TEST_F(FootForcesTest, FeetOverAnEdgeAreNotUsed) {
   EXPECT_EQ(forces.contacts[0].reason, "the left foot reaches over its edge");
 }
 
-TEST_F(FootForcesTest, OneFootOnTwoPlatesIsSummed) {
+TEST_F(FootForcesTest, SumsAFootOnTwoPlates) {
   // The same step, half of its force on each of two plates that lie on one another.
   std::vector<ForcePlate> plates = {plates_[0], plates_[0]};
   for (ForcePlate& plate : plates) {
@@ -234,7 +237,8 @@ TEST_F(FootForcesTest, PlatesOfTwoRatesAreRefused) {
 }
 
 TEST_F(FootForcesTest, ForceEventsReplaceTheNearestOfTheirKind) {
-  const std::vector<GaitEvent> kinematic = {{Side::left, true, 0.49, 0.014}, {Side::left, false, 1.23, 0.014}, {Side::right, true, 3, 0.014}};
+  const std::vector<GaitEvent> kinematic = {
+      {Side::left, true, 0.49, 0.014}, {Side::left, false, 1.23, 0.014}, {Side::right, true, 3, 0.014}};
   const PreferredEvents preferred = prefer_forces(kinematic, found().events);
   ASSERT_EQ(preferred.events.size(), 5U) << "two replaced, one kept, two added";
   EXPECT_EQ(preferred.added, 2U);

@@ -78,10 +78,14 @@ struct PlateChannels {
     std::array<double, 8> v{};
     for (std::size_t i = 0; i < channels.size(); ++i) v[i] = values[channels[i]] * (type == 4 ? 1 : unit[i]);
     switch (type) {
-      case 1: return of_centre_of_pressure(v);
-      case 3: return of_corners(v);
-      case 4: return of_sensor(calibrated(v));
-      default: return of_sensor(v);
+      case 1:
+        return of_centre_of_pressure(v);
+      case 3:
+        return of_corners(v);
+      case 4:
+        return of_sensor(calibrated(v));
+      default:
+        return of_sensor(v);
     }
   }
 

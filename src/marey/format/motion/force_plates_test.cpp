@@ -37,12 +37,14 @@ struct PlateOfFile {
 std::array<Vector<3>, 4> turned_corners() {
   const Matrix<3> turn = Eigen::AngleAxisd(0.5, Vector<3>::UnitZ()).toRotationMatrix();
   std::array<Vector<3>, 4> corners;
-  const std::array<Vector<3>, 4> flat = {Vector<3>(0.3, -0.2, 0), Vector<3>(-0.3, -0.2, 0), Vector<3>(-0.3, 0.2, 0), Vector<3>(0.3, 0.2, 0)};
+  const std::array<Vector<3>, 4> flat = {Vector<3>(0.3, -0.2, 0), Vector<3>(-0.3, -0.2, 0), Vector<3>(-0.3, 0.2, 0),
+                                         Vector<3>(0.3, 0.2, 0)};
   for (std::size_t c = 0; c < 4; ++c) corners[c] = turn * flat[c] + Vector<3>(1, 2, 0.01);
   return corners;
 }
 
-void write_plate(const std::string& path, const PlateOfFile& plate, const std::array<Vector<3>, 4>& corners, int channels_named = 0) {
+void write_plate(const std::string& path, const PlateOfFile& plate, const std::array<Vector<3>, 4>& corners,
+                 int channels_named = 0) {
   const std::size_t n = plate.channels() + 1;
   const auto parameters = [&](std::int64_t block) {
     C3dSection section;
@@ -62,7 +64,11 @@ void write_plate(const std::string& path, const PlateOfFile& plate, const std::a
     std::vector<std::string> labels = {"L Rect"}, units = {"V"};
     for (std::size_t c = 1; c < n; ++c) {
       labels.push_back("Channel" + std::to_string(c));
-      units.push_back(plate.type == 4 ? "V" : plate.type == 3 || c <= 3 ? "N" : plate.moment_unit_m == 1 ? "Nm" : plate.type == 1 && c < 6 ? "mm" : "Nmm");
+      units.push_back(plate.type == 4             ? "V"
+                      : plate.type == 3 || c <= 3 ? "N"
+                      : plate.moment_unit_m == 1  ? "Nm"
+                      : plate.type == 1 && c < 6  ? "mm"
+                                                  : "Nmm");
     }
     section.texts("LABELS", labels);
     section.texts("UNITS", units);
@@ -77,8 +83,10 @@ void write_plate(const std::string& path, const PlateOfFile& plate, const std::a
       for (const double value : corner) flat.push_back(1000 * value);
     }
     section.reals("CORNERS", flat, {3, 4, 1});
-    section.reals("ORIGIN", std::array<double, 3>{1000 * plate.origin.x(), 1000 * plate.origin.y(), 1000 * plate.origin.z()}, {3, 1});
-    if (plate.type == 4) section.reals("CAL_MATRIX", std::vector<double>(plate.calibration.data(), plate.calibration.data() + 36), {6, 6, 1});
+    section.reals("ORIGIN", std::array<double, 3>{1000 * plate.origin.x(), 1000 * plate.origin.y(), 1000 * plate.origin.z()},
+                  {3, 1});
+    if (plate.type == 4)
+      section.reals("CAL_MATRIX", std::vector<double>(plate.calibration.data(), plate.calibration.data() + 36), {6, 6, 1});
     return section.blocks(path);
   };
   const auto block = static_cast<std::int64_t>(2 + parameters(2).size() / kC3dBlock);
@@ -128,11 +136,12 @@ class ForcePlatesTest : public testing::Test {
     const Vector<3>& f = load.force;
     const double unit = plate.moment_unit_m;
     if (plate.type == 1) {
-      // Where the force meets the surface, and what is left about its normal.
+      // Where the force meets the surface, and the rest about its normal.
       const Vector<3> at(-load.moment.y() / f.z(), load.moment.x() / f.z(), 0);
       return {f.x(), f.y(), f.z(), at.x() / unit, at.y() / unit, (load.moment - at.cross(f)).z() / unit};
     }
-    const Vector<3> about_sensor = load.moment + Vector<3>(plate.type == 3 ? Vector<3>(0, 0, plate.origin.z()) : plate.origin).cross(f);
+    const Vector<3> about_sensor =
+        load.moment + Vector<3>(plate.type == 3 ? Vector<3>(0, 0, plate.origin.z()) : plate.origin).cross(f);
     if (plate.type == 3) return corners_of(plate, f, about_sensor);
     Eigen::Matrix<double, 6, 1> six;
     six << f, about_sensor / unit;

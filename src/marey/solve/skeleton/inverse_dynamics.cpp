@@ -19,7 +19,8 @@ struct MovingFrame {
     return acceleration + turning_change.cross(from_origin) + turning.cross(turning.cross(from_origin));
   }
   /// Its origin goes along `shift` (world), which grows with `rate` and `change` (world, seen from the frame).
-  void shift_origin(const Vector<3>& shift, const Vector<3>& rate = Vector<3>::Zero(), const Vector<3>& change = Vector<3>::Zero()) {
+  void shift_origin(const Vector<3>& shift, const Vector<3>& rate = Vector<3>::Zero(),
+                    const Vector<3>& change = Vector<3>::Zero()) {
     acceleration = acceleration_at(shift) + 2 * turning.cross(rate) + change;
     velocity += turning.cross(shift) + rate;
     origin += shift;
@@ -106,8 +107,8 @@ std::vector<double> inverse_dynamics(const Skeleton& skeleton, std::span<const S
     const Wrench& wrench = wrenches[s];
     for (const ElementaryAxis& axis : axes[s]) {
       if (!axis.coordinate) continue;
-      const double along = axis.rotations ? axis.direction.dot(wrench.moment - axis.point.cross(wrench.force))
-                                          : axis.direction.dot(wrench.force);
+      const double along =
+          axis.rotations ? axis.direction.dot(wrench.moment - axis.point.cross(wrench.force)) : axis.direction.dot(wrench.force);
       forces[static_cast<std::size_t>(*axis.coordinate)] += axis.slope * along;
     }
     if (!skeleton.segments[s].parent) continue;

@@ -49,7 +49,8 @@ class InverseDynamicsTest : public testing::Test {
     segment.joint = {place(), std::move(axes), place()};
     skeleton_.segments.push_back(segment);
     SegmentMass mass{.mass_kg = 2 + number(), .centre = vector(0.2)};
-    const Matrix<3> root = Matrix<3>::Identity() * 0.3 + Matrix<3>(0.1 * Matrix<3>::NullaryExpr([&](Eigen::Index) { return number(); }));
+    const Matrix<3> root =
+        Matrix<3>::Identity() * 0.3 + Matrix<3>(0.1 * Matrix<3>::NullaryExpr([&](Eigen::Index) { return number(); }));
     mass.inertia = root * root.transpose();
     masses_.push_back(mass);
   }
@@ -130,7 +131,8 @@ TEST_F(InverseDynamicsTest, AgreesWithLagrangeByDifferences) {
   for (int run = 0; run < 5; ++run) {
     const CoordinateMotion motion{random_row(1), random_row(2), random_row(5)};
     const std::vector<double> fast = inverse_dynamics(skeleton_, masses_, motion, {}), slow = slow_forces(energy, motion);
-    for (std::size_t c = 0; c < fast.size(); ++c) EXPECT_NEAR(fast[c], slow[c], 2e-4 * (10 + std::abs(slow[c]))) << c << ", seed " << kSeed;
+    for (std::size_t c = 0; c < fast.size(); ++c)
+      EXPECT_NEAR(fast[c], slow[c], 2e-4 * (10 + std::abs(slow[c]))) << c << ", seed " << kSeed;
   }
 }
 
@@ -148,8 +150,8 @@ TEST_F(InverseDynamicsTest, LoadsActByTheWorkTheyDo) {
     more[c] += kStep;
     const Rigid3 a = pose_of(skeleton_, less)[3], b = pose_of(skeleton_, more)[3], now = pose_of(skeleton_, motion.value)[3];
     const Matrix<3> spin = (b.rotation - a.rotation) / (2 * kStep) * now.rotation.transpose();
-    const double work = force.dot(b * in_segment - a * in_segment) / (2 * kStep) +
-                        moment.dot(Vector<3>(spin(2, 1), spin(0, 2), spin(1, 0)));
+    const double work =
+        force.dot(b * in_segment - a * in_segment) / (2 * kStep) + moment.dot(Vector<3>(spin(2, 1), spin(0, 2), spin(1, 0)));
     EXPECT_NEAR(without[c] - with[c], work, 1e-5 * (1 + std::abs(work))) << c << ", seed " << kSeed;
   }
 }
