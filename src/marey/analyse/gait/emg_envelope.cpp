@@ -9,7 +9,7 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kLowestRateHz = 60;  // numerical: 20 Hz need it
+constexpr double kMinRateHz = 60;  // numerical: 20 Hz need it
 
 bool letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
@@ -18,7 +18,7 @@ bool letter(char c) {
 }  // namespace
 
 std::vector<double> emg_envelope(std::span<const double> signal, double rate_hz, const EmgOptions& options) {
-  if (rate_hz < kLowestRateHz || signal.size() < 3) return {};
+  if (rate_hz < kMinRateHz || signal.size() < 3) return {};
   std::vector<double> values(signal.begin(), signal.end());
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   for (double& value : values) value -= mean;

@@ -66,14 +66,14 @@ class SimulatedWalk {
     }
   }
 
-  static double share(const Step& step, double time) { return (time - step.begin) / (step.end - step.begin); }
+  static double fraction(const Step& step, double time) { return (time - step.begin) / (step.end - step.begin); }
   static Vector<3> force_at(const Step& step, double time) {
-    const double s = share(step, time);
+    const double s = fraction(step, time);
     return {-100 * std::cos(std::numbers::pi * s) * std::sin(std::numbers::pi * s), 20,
             700 * (std::sin(std::numbers::pi * s) + 0.3 * std::sin(3 * std::numbers::pi * s))};
   }
   static Vector<3> pressure(const Step& step, double time) {
-    return step.heel + Vector<3>(0.02 + 0.15 * share(step, time), 0.01, 0);
+    return step.heel + Vector<3>(0.02 + 0.15 * fraction(step, time), 0.01, 0);
   }
 
   const FeetPaths& feet() const { return feet_; }
@@ -153,9 +153,9 @@ TEST_F(FootForcesTest, FindsFeetForcesPressureAndFreeMoment) {
 
 TEST_F(FootForcesTest, RemovesOffsetAndDrift) {
   for (std::size_t s = 0; s < plates_[0].loads.size(); ++s) {
-    const double share = static_cast<double>(s) / static_cast<double>(plates_[0].loads.size());
-    plates_[0].loads[s].force += Vector<3>(3, -4, 15 + 25 * share);
-    plates_[0].loads[s].moment += Vector<3>(2, 1 - 3 * share, 0.5);
+    const double fraction = static_cast<double>(s) / static_cast<double>(plates_[0].loads.size());
+    plates_[0].loads[s].force += Vector<3>(3, -4, 15 + 25 * fraction);
+    plates_[0].loads[s].moment += Vector<3>(2, 1 - 3 * fraction, 0.5);
   }
   const FootForces forces = found();
   expect_truth(forces);

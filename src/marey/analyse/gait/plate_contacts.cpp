@@ -14,7 +14,7 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kLeastForceN = 5;  // numerical: centres of pressure of less are noise
+constexpr double kMinForceN = 5;  // numerical: centres of pressure of less are noise
 constexpr double kWindowS = 0.1;
 constexpr double kQuietN = 4;              // deviation within a window in which nothing is on the plate
 constexpr double kFreeN = 60;              // farther from zero nothing is free: the lightest child stands with more on one foot
@@ -106,12 +106,12 @@ std::optional<double> distance_from_feet(const ForcePlate& plate, const FeetOnGr
     for (std::size_t s = first; s <= last; s += step) {
       const auto load = foot_load(plate, s);
       const double time = plate.begin_s + static_cast<double>(s) / plate.rate_hz;
-      const double share = static_cast<double>(s - first) / static_cast<double>(std::max<std::size_t>(1, last - first));
+      const double fraction = static_cast<double>(s - first) / static_cast<double>(std::max<std::size_t>(1, last - first));
       std::optional<double> nearest;
       for (const Side side : kSides) {
         const auto foot = ground.at(side, time);
         if (!load || !foot || !stands(ground, side, time)) continue;
-        const Vector<3> expected = foot->first + share * (foot->second - foot->first);
+        const Vector<3> expected = foot->first + fraction * (foot->second - foot->first);
         const double distance = (load->pressure - expected).head<2>().norm();
         if (!nearest || distance < *nearest) nearest = distance;
       }
@@ -220,7 +220,7 @@ std::optional<FootLoad> foot_load(const ForcePlate& plate, std::size_t sample) {
   Vector<3> up = plate.axes().col(2);
   if (up.z() < 0) up = -up;
   const double push = load.force.dot(up);
-  if (!(push > kLeastForceN)) return std::nullopt;
+  if (!(push > kMinForceN)) return std::nullopt;
   const Vector<3> arm = up.cross(load.moment) / push;
   return FootLoad{load.force, plate.centre() + arm, up.dot(load.moment - arm.cross(load.force))};
 }

@@ -193,7 +193,7 @@ class PlateReader {
   }
 
   /// In m. The file says where the surface's middle is from the sensor, with z down: a sensor is below it, so that z is negative.
-  /// Some write the way from the surface to the sensor.
+  /// Some write the vector from the surface to the sensor.
   static void find_origin(const PlateGroup& group, std::size_t p, PlateChannels& channels) {
     const auto numbers = group.of("ORIGIN", p, 3, 3);
     if (numbers.empty()) return;

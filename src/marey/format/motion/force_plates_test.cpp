@@ -34,7 +34,7 @@ struct PlateOfFile {
 };
 
 /// Corners of a plate that lies turned in the world; z up, m.
-std::array<Vector<3>, 4> turned_corners() {
+std::array<Vector<3>, 4> rotated_corners() {
   const Matrix<3> turn = Eigen::AngleAxisd(0.5, Vector<3>::UnitZ()).toRotationMatrix();
   std::array<Vector<3>, 4> corners;
   const std::array<Vector<3>, 4> flat = {Vector<3>(0.3, -0.2, 0), Vector<3>(-0.3, -0.2, 0), Vector<3>(-0.3, 0.2, 0),
@@ -182,7 +182,7 @@ class ForcePlatesTest : public testing::Test {
 TEST_F(ForcePlatesTest, ReadsTypes1To4InTheWorld) {
   for (const int type : {1, 2, 3, 4}) {
     SCOPED_TRACE(type);
-    write_plate(folder_ / "a.c3d", plate_of(type), turned_corners());
+    write_plate(folder_ / "a.c3d", plate_of(type), rotated_corners());
     const AnalogData data = read_analog_data({.path = folder_ / "a.c3d"});
     expect_truth(data);
     EXPECT_TRUE(data.warnings.empty());
@@ -197,30 +197,30 @@ TEST_F(ForcePlatesTest, ReadsTypes1To4InTheWorld) {
 }
 
 TEST_F(ForcePlatesTest, TurnsPlatesWithARecordingWhoseYIsUp) {
-  std::array<Vector<3>, 4> y_up = turned_corners();
+  std::array<Vector<3>, 4> y_up = rotated_corners();
   for (Vector<3>& corner : y_up) corner = Vector<3>(corner.x(), corner.z(), -corner.y());
   write_plate(folder_ / "a.c3d", plate_of(2), y_up);
   const AnalogData data = read_analog_data({.path = folder_ / "a.c3d", .rotated = true});
   expect_truth(data);
-  EXPECT_LT((data.plates.at(0).corners[0] - turned_corners()[0]).norm(), 1e-6);
+  EXPECT_LT((data.plates.at(0).corners[0] - rotated_corners()[0]).norm(), 1e-6);
 }
 
 TEST_F(ForcePlatesTest, ReadsOriginsFromTheSurfaceToTheSensor) {
   PlateOfFile plate = plate_of(2);
   plate.origin = -plate.origin;
-  write_plate(folder_ / "a.c3d", plate, turned_corners());
+  write_plate(folder_ / "a.c3d", plate, rotated_corners());
   expect_truth(read_analog_data({.path = folder_ / "a.c3d"}));
 }
 
 TEST_F(ForcePlatesTest, OmitsPlatesThatItCannotRead) {
   PlateOfFile plate = plate_of(2);
   plate.type = 12;
-  write_plate(folder_ / "a.c3d", plate, turned_corners());
+  write_plate(folder_ / "a.c3d", plate, rotated_corners());
   AnalogData data = read_analog_data({.path = folder_ / "a.c3d"});
   ASSERT_EQ(data.warnings.size(), 1U);
   EXPECT_NE(data.warnings[0].find("its type is 12"), std::string::npos);
   plate.type = 2;
-  write_plate(folder_ / "a.c3d", plate, turned_corners(), 99);
+  write_plate(folder_ / "a.c3d", plate, rotated_corners(), 99);
   data = read_analog_data({.path = folder_ / "a.c3d"});
   ASSERT_EQ(data.warnings.size(), 1U);
   EXPECT_NE(data.warnings[0].find("channels"), std::string::npos);
@@ -239,7 +239,7 @@ TEST_F(ForcePlatesTest, MarksChannelsAtTheirLimit) {
     const double bump = -900 * std::sin(3.14159 * static_cast<double>(s) / 100);
     if (s < 100) plate.rows[s][2] = std::max(bump, -700.0);
   }
-  write_plate(folder_ / "a.c3d", plate, turned_corners());
+  write_plate(folder_ / "a.c3d", plate, rotated_corners());
   const AnalogData data = read_analog_data({.path = folder_ / "a.c3d"});
   ASSERT_EQ(data.plates.size(), 1U);
   ASSERT_EQ(data.plates[0].saturated.size(), plate.rows.size());

@@ -73,7 +73,7 @@ class ModelScaler {
     return segment ? std::optional(scales_[static_cast<std::size_t>(*segment)]) : std::nullopt;
   }
 
-  static void stretch(pugi::xml_node node, const std::optional<Vector<3>>& scale) {
+  static void scale_vector(pugi::xml_node node, const std::optional<Vector<3>>& scale) {
     const std::vector<double> values = numbers_of_node(node);
     if (!node || !scale || values.size() != 3) return;
     const Vector<3> stretched = scale->cwiseProduct(Vector<3>(values[0], values[1], values[2]));
@@ -83,19 +83,21 @@ class ModelScaler {
   void scale_body(pugi::xml_node body) {
     const auto scale = scale_of(body_named(body.attribute("name").value()));
     if (!scale) return;
-    stretch(body.child("mass_center"), scale);
+    scale_vector(body.child("mass_center"), scale);
     scale_mass(body, *scale);
-    for (const pugi::xml_node geometry : body.child("attached_geometry").children()) stretch_geometry(geometry, *scale);
+    for (const pugi::xml_node geometry : body.child("attached_geometry").children()) scale_geometry(geometry, *scale);
     for (const pugi::xml_node geometry : body.child("VisibleObject").child("GeometrySet").child("objects").children())
-      stretch_geometry(geometry, *scale);
+      scale_geometry(geometry, *scale);
     for (const pugi::xml_node wrap : body.child("WrapObjectSet").child("objects").children()) scale_wrap(wrap, *scale);
   }
 
-  static void stretch_geometry(pugi::xml_node geometry, const Vector<3>& scale) { stretch(geometry.child("scale_factors"), scale); }
+  static void scale_geometry(pugi::xml_node geometry, const Vector<3>& scale) {
+    scale_vector(geometry.child("scale_factors"), scale);
+  }
 
   /// Sizes by the mean scale: a cylinder stays one.
   static void scale_wrap(pugi::xml_node wrap, const Vector<3>& scale) {
-    stretch(wrap.child("translation"), scale);
+    scale_vector(wrap.child("translation"), scale);
     for (const char* size : {"radius", "length", "dimensions", "inner_radius", "outer_radius"}) {
       const pugi::xml_node node = wrap.child(size);
       std::vector<double> values = numbers_of_node(node);
@@ -133,7 +135,7 @@ class ModelScaler {
     for (const pugi::xml_node frame : joint.child("frames").children()) {
       const std::string body = body_named(frame.child("socket_parent").child_value());
       body_of_frame[frame.attribute("name").value()] = body;
-      stretch(frame.child("translation"), scale_of(body));
+      scale_vector(frame.child("translation"), scale_of(body));
     }
     const auto body_at = [&](const char* socket) {
       const std::string frame = body_named(joint.child(socket).child_value());
@@ -146,8 +148,8 @@ class ModelScaler {
   /// Version 2 and 3: the joint is in the body that hangs on it.
   void scale_old_joint(pugi::xml_node joint, const std::string& body) {
     const std::string parent = body_named(joint.child("parent_body").child_value());
-    stretch(joint.child("location_in_parent"), scale_of(parent));
-    stretch(joint.child("location"), scale_of(body));
+    scale_vector(joint.child("location_in_parent"), scale_of(parent));
+    scale_vector(joint.child("location"), scale_of(body));
     scale_shifts(joint, parent, body);
   }
 
@@ -199,7 +201,7 @@ class ModelScaler {
         moving_ = true;
       } else if (std::string_view(child.name()).ends_with("PathPoint") && child.child("location")) {
         const char* const where = child.child("socket_parent_frame") ? "socket_parent_frame" : "body";
-        stretch(child.child("location"), scale_of(body_named(child.child_value(where))));
+        scale_vector(child.child("location"), scale_of(body_named(child.child_value(where))));
         ++points_;
       } else {
         scale_points(child);

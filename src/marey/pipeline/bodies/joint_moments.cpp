@@ -165,7 +165,7 @@ Vector<3> interpolated(const std::vector<double>& times, const std::vector<Vecto
 }
 
 /// What the root's shifts lack, in N.
-void judge_residuals(const Skeleton& skeleton, JointMoments& moments) {
+void assess_residuals(const Skeleton& skeleton, JointMoments& moments) {
   std::vector<std::size_t> shifts;
   for (const JointAxis& axis : skeleton.segments.front().joint.axes) {
     if (!axis.rotations && axis.coordinate) shifts.push_back(static_cast<std::size_t>(*axis.coordinate));
@@ -238,7 +238,7 @@ JointMoments joint_moments(const std::string& model, const std::string& motion_p
     }
     hooks.advance({.step = "moments", .done = static_cast<std::int64_t>(f) + 1, .total = std::ssize(motion.times)});
   }
-  judge_residuals(skeleton, moments);
+  assess_residuals(skeleton, moments);
   return moments;
 }
 

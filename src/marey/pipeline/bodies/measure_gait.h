@@ -41,7 +41,7 @@ struct GaitMeasure {
   std::vector<analyse::gait::AngleCurve> angles;
   std::vector<analyse::gait::GaitEvent> events;
   analyse::gait::GaitCycles cycles;
-  analyse::gait::FootForces forces;              ///< of force plates; without samples if there are none
+  analyse::gait::FootForces forces;              ///< of force plates; empty if it has no plates
   double forces_begin_s = 0;                     ///< the recording's time of their first sample
   analyse::gait::PreferredEvents by_force;       ///< how events by force differ from those by kinematics, which they replace
   std::vector<analyse::gait::EmgCurve> muscles;  ///< over the cycles
