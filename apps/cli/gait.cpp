@@ -35,7 +35,8 @@ void print_forces(const pipeline::bodies::GaitMeasure& measure) {
   for (const gait::PlateContact& contact : measure.forces.contacts) {
     if (contact.side) ++whole[static_cast<std::size_t>(*contact.side)];
   }
-  fmt::print("force plates: {} contacts, {} of the left foot, {} of the right\n", measure.forces.contacts.size(), whole[0], whole[1]);
+  fmt::print("force plates: {} contacts, {} of the left foot, {} of the right\n", measure.forces.contacts.size(), whole[0],
+             whole[1]);
   for (const auto& [name, of] : {std::pair("strikes", &measure.by_force.strikes), std::pair("offs", &measure.by_force.offs)}) {
     if (of->count > 0)
       fmt::print("{} by kinematics against force: {:+.1f} ± {:.1f} ms ({})\n", name, 1000 * of->mean_s, 1000 * of->deviation_s,
@@ -89,8 +90,12 @@ Json gait_json(const pipeline::bodies::GaitMeasure& measure) {
   }
   for (const gait::GaitFigure& figure : measure.cycles.figures)
     figures[figure.name] = {{"left", figure.mean[0]}, {"right", figure.mean[1]}, {"unit", figure.unit}};
-  return {{"frames", measure.frames}, {"rate_hz", measure.rate_hz}, {"cycles", measure.cycles.cycles.size()},
-          {"events", events},         {"figures", figures},         {"force_plates", forces_json(measure)},
+  return {{"frames", measure.frames},
+          {"rate_hz", measure.rate_hz},
+          {"cycles", measure.cycles.cycles.size()},
+          {"events", events},
+          {"figures", figures},
+          {"force_plates", forces_json(measure)},
           {"warnings", measure.warnings}};
 }
 
@@ -125,9 +130,10 @@ void add_gait(Command& program) {
   command.input_file("--plates", options->options.plates,
                      "a C3D file of the same walk with its force plates, if RECORDING does not contain them");
   command
-      .output_file("--forces", options->output.forces,
-                   "the ground's force, centre of pressure and free moment on each foot: .mot for OpenSim, with the external loads in "
-                   "an .xml beside it, or .csv")
+      .output_file(
+          "--forces", options->output.forces,
+          "the ground's force, centre of pressure and free moment on each foot: .mot for OpenSim, with the external loads in "
+          "an .xml beside it, or .csv")
       .ends_in({".mot", ".csv"});
   command.output_file("--report", options->output.report, "a page with the curves, the walk's figures and its events")
       .ends_in({".html"});

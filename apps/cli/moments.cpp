@@ -47,7 +47,8 @@ void print_moments(const JointMoments& moments) {
                100 * *moments.unexplained_fraction);
   fmt::print("{:<28} {:>14} {:>12}\n", "", "largest", "power");
   for (const JointMoments::Coordinate& one : moments.coordinates)
-    fmt::print("{:<28} {:>10.2f} {:<3} {:>10.2f} W\n", one.name, largest(one.forces), one.rotations ? "N m" : "N", largest(one.powers));
+    fmt::print("{:<28} {:>10.2f} {:<3} {:>10.2f} W\n", one.name, largest(one.forces), one.rotations ? "N m" : "N",
+               largest(one.powers));
 }
 
 Json moments_json(const JointMoments& moments) {
@@ -57,8 +58,11 @@ Json moments_json(const JointMoments& moments) {
                            {"unit", one.rotations ? "N m" : "N"},
                            {"largest", largest(one.forces)},
                            {"largest_power_w", largest(one.powers)}});
-  Json json = {{"frames", moments.times.size()}, {"rate_hz", moments.rate_hz}, {"mass_kg", moments.mass_kg},
-               {"coordinates", coordinates},     {"warnings", moments.warnings}};
+  Json json = {{"frames", moments.times.size()},
+               {"rate_hz", moments.rate_hz},
+               {"mass_kg", moments.mass_kg},
+               {"coordinates", coordinates},
+               {"warnings", moments.warnings}};
   if (moments.residual_n) json["residual_n"] = *moments.residual_n;
   if (moments.unexplained_fraction) json["unexplained_fraction"] = *moments.unexplained_fraction;
   return json;
@@ -89,11 +93,11 @@ void add_moments(Command& program) {
                      "the ground's forces: a C3D file with force plates, or OpenSim's external loads (.xml)");
   command.output_file("-o,--output", options->output, "a moment (N m) or force (N) for each coordinate").ends_in({".sto", ".mot"});
   command.output_file("--powers", options->powers, "moment times speed of each coordinate, W").ends_in({".sto", ".mot"});
-  command.number("--cutoff", options->options.cutoff_hz, "Hz", {0, 1000},
-                 "low pass of coordinates and plates' forces; 0: none");
+  command.number("--cutoff", options->options.cutoff_hz, "Hz", {0, 1000}, "low pass of coordinates and plates' forces; 0: none");
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  command.choice("--up", options->options.up, kAxes, "the axis that is up in the C3D file; as it says where this is omitted, else z");
+  command.choice("--up", options->options.up, kAxes,
+                 "the axis that is up in the C3D file; as it says where this is omitted, else z");
   command.text("--left-foot", options->options.left_foot, "the model's body on which the left foot's loads act");
   command.text("--right-foot", options->options.right_foot, "the model's body on which the right foot's loads act");
   command.reports(options->json, options->quiet, "figures");

@@ -88,6 +88,8 @@ void print_solved(const std::string& recording, const SolveSummary& summary, con
                *summary.overall_scale, 1000 * summary.rms_before_m);
     if (!summary.undetermined.empty())
       fmt::print(stderr, "sizes that the recording does not determine: {}\n", joined(summary.undetermined, 8));
+    if (!summary.undetermined_markers.empty())
+      fmt::print(stderr, "markers whose places it does not determine: {}\n", joined(summary.undetermined_markers, 8));
   }
   if (!summary.marker_set.empty()) fmt::print(stderr, "the human skeleton, by {}\n", summary.marker_set);
   for (const pipeline::bodies::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.stated);

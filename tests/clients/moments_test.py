@@ -119,7 +119,7 @@ def expect_solver(program, folder, name, path):
         value, speed, acceleration = smooth(random, times, 0.15 if rotational else 0.05)
         # Arnold's turn about three axes at once: see expect_centre_of_mass.
         motion[coordinate.getName()] = (middle + value, 0 * speed if middle and name.startswith("Arnold") else speed, acceleration)
-    follow(model, path, motion)
+    couple(model, path, motion)
     body = {side: model.getBodySet().get(f"calcn_{side}") for side in "lr"}
     # Made loads on both feet: a force somewhere near the foot, and a moment.
     loads = {side: np.column_stack([random.normal(0, 80, (FRAMES, 2)), random.normal(0, 0.3, (FRAMES, 3)), random.normal(0, 20, (FRAMES, 3)), random.normal(700, 100, FRAMES)]) for side in "lr"}
@@ -174,7 +174,7 @@ def expect_solver(program, folder, name, path):
     report(name, names, ours, theirs)
 
 
-def follow(model, path, motion):
+def couple(model, path, motion):
     """Coordinates that couplers drive have the coupler's values: by differences of its function, exact enough for its spline's pieces is its own derivative."""
     whole = opensim.Model(str(path))
     for constraint in whole.getConstraintSet():

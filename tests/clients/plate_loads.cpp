@@ -23,7 +23,8 @@ int main(int argc, char** argv) {
         const double push = load.force.dot(normal);
         if (push != 0) {
           const marey::Vector<3> arm = normal.cross(load.moment) / push, at = 1000 * (plate.centre() + arm);
-          fmt::print(" {:.9g} {:.9g} {:.9g} {:.9g}", at.x(), at.y(), at.z(), 1000 * (load.moment - arm.cross(load.force)).dot(normal));
+          fmt::print(" {:.9g} {:.9g} {:.9g} {:.9g}", at.x(), at.y(), at.z(),
+                     1000 * (load.moment - arm.cross(load.force)).dot(normal));
         }
         fmt::print("\n");
       }

@@ -8,7 +8,7 @@ namespace marey {
 /// Of one segment, in its own frame.
 struct SegmentMass {
   double mass_kg = 0;
-  Vector<3> centre = Vector<3>::Zero();    ///< m
+  Vector<3> centre = Vector<3>::Zero();   ///< m
   Matrix<3> inertia = Matrix<3>::Zero();  ///< kg m², about the centre
 };
 

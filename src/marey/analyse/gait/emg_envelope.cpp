@@ -9,7 +9,7 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kLowestRateHz = 60;
+constexpr double kMinRateHz = 60;  // numerical: 20 Hz need it
 
 bool letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0;
@@ -18,7 +18,7 @@ bool letter(char c) {
 }  // namespace
 
 std::vector<double> emg_envelope(std::span<const double> signal, double rate_hz, const EmgOptions& options) {
-  if (rate_hz < kLowestRateHz || signal.size() < 3) return {};
+  if (rate_hz < kMinRateHz || signal.size() < 3) return {};
   std::vector<double> values(signal.begin(), signal.end());
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   for (double& value : values) value -= mean;
@@ -37,9 +37,12 @@ std::optional<Side> side_of_label(std::string_view label) {
     if (lower.find(word) != std::string::npos) return side;
   }
   // A letter by itself at an end, or a capital before another: "L Rect", "RGast", "TA_R".
-  const auto side_of = [](char c) { return c == 'L' || c == 'l' ? std::optional(Side::left) : c == 'R' || c == 'r' ? std::optional(Side::right) : std::nullopt; };
+  const auto side_of = [](char c) {
+    return c == 'L' || c == 'l' ? std::optional(Side::left) : c == 'R' || c == 'r' ? std::optional(Side::right) : std::nullopt;
+  };
   if (label.size() < 2) return std::nullopt;
-  const bool first_alone = !letter(label[1]) || (std::isupper(static_cast<unsigned char>(label[0])) != 0 && std::isupper(static_cast<unsigned char>(label[1])) != 0);
+  const bool first_alone = !letter(label[1]) || (std::isupper(static_cast<unsigned char>(label[0])) != 0 &&
+                                                 std::isupper(static_cast<unsigned char>(label[1])) != 0);
   if (const auto side = side_of(label.front()); side && first_alone) return side;
   if (const auto side = side_of(label.back()); side && !letter(label[label.size() - 2])) return side;
   return std::nullopt;

@@ -1,5 +1,5 @@
-// A muscle's activity over the gait cycle: the linear envelope of its electromyogram (Winter 2009, section 10.3.2). The mean and what is
-// below 20 Hz (movement of the cables) are removed, the rest is rectified and low-passed at 6 Hz, forwards and backwards.
+// A muscle's activity over the gait cycle: the linear envelope of its electromyogram (Winter 2009, section 10.3.2). The mean and
+// what is below 20 Hz (movement of the cables) are removed, the rest is rectified and low-passed at 6 Hz, forwards and backwards.
 #pragma once
 
 #include <array>

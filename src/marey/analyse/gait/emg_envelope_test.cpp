@@ -32,16 +32,18 @@ TEST(EmgEnvelope, FollowsTheActivityAndIgnoresOffsetAndCables) {
 }
 
 TEST(EmgEnvelope, FindsTheSideOfALabel) {
-  for (const char* label : {"Voltage.L Rect", "LGast", "left_tibialis", "TA_L"}) EXPECT_EQ(side_of_label(label), Side::left) << label;
-  for (const char* label : {"Voltage.R Tib Ant", "RVastusLat", "RIGHT HAM", "Gast R"}) EXPECT_EQ(side_of_label(label), Side::right) << label;
+  for (const char* label : {"Voltage.L Rect", "LGast", "left_tibialis", "TA_L"})
+    EXPECT_EQ(side_of_label(label), Side::left) << label;
+  for (const char* label : {"Voltage.R Tib Ant", "RVastusLat", "RIGHT HAM", "Gast R"})
+    EXPECT_EQ(side_of_label(label), Side::right) << label;
   for (const char* label : {"", "Rectus", "Lateral", "EMG1", "Trigger"}) EXPECT_FALSE(side_of_label(label)) << label;
 }
 
 TEST(EmgEnvelope, IsTakenOverTheCyclesOfItsSide) {
   std::vector<double> envelope(3000);
   for (std::size_t i = 0; i < envelope.size(); ++i) envelope[i] = static_cast<double>(i);
-  const std::vector<GaitCycles::Cycle> cycles = {{Side::left, 0.5, 1.5, {}}, {Side::right, 1, 2, {}}, {Side::left, 1.5, 2.5, {}},
-                                                 {Side::left, 2.5, 3.5, {}}};
+  const std::vector<GaitCycles::Cycle> cycles = {
+      {Side::left, 0.5, 1.5, {}}, {Side::right, 1, 2, {}}, {Side::left, 1.5, 2.5, {}}, {Side::left, 2.5, 3.5, {}}};
   const EmgCurve curve = emg_over_cycles("L", Side::left, envelope, 1000, 0.25, cycles);
   ASSERT_EQ(curve.cycles.size(), 2U) << "the last ends after the signal";
   EXPECT_NEAR(curve.cycles[0][0], 250, 1e-9);

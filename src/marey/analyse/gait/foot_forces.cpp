@@ -13,8 +13,8 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kReplacedWithinS = 0.15;
-constexpr double kForceDeviationS = 0.002;  // of an event by force: the threshold's crossing, two samples of 1 kHz
+constexpr double kReplacedWithinS = 0.15;   // physical: a third of the shortest stance; the same event
+constexpr double kForceDeviationS = 0.002;  // by definition: of an event by force: the threshold's crossing, two samples of 1 kHz
 
 /// Sums of one foot's loads on several plates at one sample.
 FootLoad sum_of(std::span<const FootLoad> loads) {
@@ -91,7 +91,8 @@ FootForces foot_forces(std::span<const ForcePlate> plates, const FeetPaths& feet
   std::vector<ForcePlate> zeroed(plates.begin(), plates.end());
   forces.rate_hz = plates.front().rate_hz;
   for (const ForcePlate& plate : plates) {
-    if (plate.rate_hz != forces.rate_hz || plate.begin_s != plates.front().begin_s || plate.loads.size() != plates.front().loads.size())
+    if (plate.rate_hz != forces.rate_hz || plate.begin_s != plates.front().begin_s ||
+        plate.loads.size() != plates.front().loads.size())
       throw Error("{}: its rate, beginning or length differ from those of {}", plate.name, plates.front().name);
   }
   const FeetOnGround ground{feet, feet_rate_hz, begin_s};
@@ -102,7 +103,8 @@ FootForces foot_forces(std::span<const ForcePlate> plates, const FeetPaths& feet
       if (!contact.reason.empty())
         forces.warnings.push_back(fmt::format("{}, {:.2f} to {:.2f} s: {}; not used", zeroed[p].name,
                                               zeroed[p].begin_s + static_cast<double>(contact.first) / forces.rate_hz,
-                                              zeroed[p].begin_s + static_cast<double>(contact.last) / forces.rate_hz, contact.reason));
+                                              zeroed[p].begin_s + static_cast<double>(contact.last) / forces.rate_hz,
+                                              contact.reason));
       forces.contacts.push_back(std::move(contact));
     }
   }
@@ -135,7 +137,8 @@ PreferredEvents prefer_forces(std::span<const GaitEvent> kinematic, std::span<co
       ++preferred.added;
     }
   }
-  std::stable_sort(preferred.events.begin(), preferred.events.end(), [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+  std::stable_sort(preferred.events.begin(), preferred.events.end(),
+                   [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
   preferred.strikes = difference_of(differences[0]);
   preferred.offs = difference_of(differences[1]);
   return preferred;

@@ -66,13 +66,15 @@ class SimulatedWalk {
     }
   }
 
-  static double share(const Step& step, double time) { return (time - step.begin) / (step.end - step.begin); }
+  static double fraction(const Step& step, double time) { return (time - step.begin) / (step.end - step.begin); }
   static Vector<3> force_at(const Step& step, double time) {
-    const double s = share(step, time);
+    const double s = fraction(step, time);
     return {-100 * std::cos(std::numbers::pi * s) * std::sin(std::numbers::pi * s), 20,
             700 * (std::sin(std::numbers::pi * s) + 0.3 * std::sin(3 * std::numbers::pi * s))};
   }
-  static Vector<3> pressure(const Step& step, double time) { return step.heel + Vector<3>(0.02 + 0.15 * share(step, time), 0.01, 0); }
+  static Vector<3> pressure(const Step& step, double time) {
+    return step.heel + Vector<3>(0.02 + 0.15 * fraction(step, time), 0.01, 0);
+  }
 
   const FeetPaths& feet() const { return feet_; }
 
@@ -84,7 +86,8 @@ class SimulatedWalk {
       if (step.begin <= time) before = &step;
       if (step.begin > time && after == nullptr) after = &step;
     }
-    if (before == nullptr) return after == nullptr ? Vector<3>(-5, 0.5, 0) : Vector<3>(after->heel - Vector<3>(2 * (after->begin - time), 0, 0));
+    if (before == nullptr)
+      return after == nullptr ? Vector<3>(-5, 0.5, 0) : Vector<3>(after->heel - Vector<3>(2 * (after->begin - time), 0, 0));
     if (time <= before->end) return before->heel;
     if (after == nullptr) return before->heel + Vector<3>(2 * (time - before->end), 0, 0);
     const double s = (time - before->end) / (after->begin - before->end);
@@ -100,7 +103,7 @@ std::vector<Step> two_steps() {
   return {{Side::left, 0.5, 1.2, {-0.1, 0.1, 0}}, {Side::right, 1.1, 1.8, {0.55, -0.1, 0}}};
 }
 
-/// Where the truth and what was found differ at most, over one foot's samples: N, m, N m.
+/// The largest differences of the result from the truth, over one foot's samples: N, m, N m.
 std::array<double, 3> differences(const FootForces& forces, const Step& step) {
   std::array<double, 3> worst{};
   const auto& foot = forces.feet[static_cast<std::size_t>(step.side)];
@@ -150,9 +153,9 @@ TEST_F(FootForcesTest, FindsFeetForcesPressureAndFreeMoment) {
 
 TEST_F(FootForcesTest, RemovesOffsetAndDrift) {
   for (std::size_t s = 0; s < plates_[0].loads.size(); ++s) {
-    const double share = static_cast<double>(s) / static_cast<double>(plates_[0].loads.size());
-    plates_[0].loads[s].force += Vector<3>(3, -4, 15 + 25 * share);
-    plates_[0].loads[s].moment += Vector<3>(2, 1 - 3 * share, 0.5);
+    const double fraction = static_cast<double>(s) / static_cast<double>(plates_[0].loads.size());
+    plates_[0].loads[s].force += Vector<3>(3, -4, 15 + 25 * fraction);
+    plates_[0].loads[s].moment += Vector<3>(2, 1 - 3 * fraction, 0.5);
   }
   const FootForces forces = found();
   expect_truth(forces);
@@ -212,7 +215,7 @@ TEST_F(FootForcesTest, FeetOverAnEdgeAreNotUsed) {
   EXPECT_EQ(forces.contacts[0].reason, "the left foot reaches over its edge");
 }
 
-TEST_F(FootForcesTest, OneFootOnTwoPlatesIsSummed) {
+TEST_F(FootForcesTest, SumsAFootOnTwoPlates) {
   // The same step, half of its force on each of two plates that lie on one another.
   std::vector<ForcePlate> plates = {plates_[0], plates_[0]};
   for (ForcePlate& plate : plates) {
@@ -234,7 +237,8 @@ TEST_F(FootForcesTest, PlatesOfTwoRatesAreRefused) {
 }
 
 TEST_F(FootForcesTest, ForceEventsReplaceTheNearestOfTheirKind) {
-  const std::vector<GaitEvent> kinematic = {{Side::left, true, 0.49, 0.014}, {Side::left, false, 1.23, 0.014}, {Side::right, true, 3, 0.014}};
+  const std::vector<GaitEvent> kinematic = {
+      {Side::left, true, 0.49, 0.014}, {Side::left, false, 1.23, 0.014}, {Side::right, true, 3, 0.014}};
   const PreferredEvents preferred = prefer_forces(kinematic, found().events);
   ASSERT_EQ(preferred.events.size(), 5U) << "two replaced, one kept, two added";
   EXPECT_EQ(preferred.added, 2U);

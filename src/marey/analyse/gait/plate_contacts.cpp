@@ -14,17 +14,17 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kLeastForceN = 5;
+constexpr double kMinForceN = 5;  // numerical: centres of pressure of less are noise
 constexpr double kWindowS = 0.1;
-constexpr double kQuietN = 4;          // deviation within a window in which nothing is on the plate
-constexpr double kFreeN = 60;          // farther from zero nothing is free: the lightest child stands with more on one foot
-constexpr double kReportedN = 5;
-constexpr double kOverEdgeM = 0.02;    // a marker beyond the edge by more: the foot is not on the plate as a whole
-constexpr double kNearFootM = 0.1;     // corners are in order where the centre of pressure is so near
+constexpr double kQuietN = 4;              // deviation within a window in which nothing is on the plate
+constexpr double kFreeN = 60;              // farther from zero nothing is free: the lightest child stands with more on one foot
+constexpr double kReportedN = 5;           // by definition: what is worth a warning
+constexpr double kOverEdgeM = 0.02;        // a marker beyond the edge by more: the foot is not on the plate as a whole
+constexpr double kNearFootM = 0.1;         // corners are in order where the centre of pressure is so near
 constexpr double kTurnedNearFootM = 0.05;  // another order must bring it so near: between two feet it is nearer to none
-constexpr double kStandsM_s = 0.3;     // heel or toe slower than that: the foot stands
-constexpr double kBothFraction = 0.1;  // of a contact in which the other foot stands on the plate too
-constexpr double kCheckedEveryS = 0.01;
+constexpr double kStandsM_s = 0.3;         // heel or toe slower than that: the foot stands
+constexpr double kBothFraction = 0.1;      // of a contact in which the other foot stands on the plate too
+constexpr double kCheckedEveryS = 0.01;    // numerical
 
 /// Means of the windows in which nothing is on the plate.
 struct FreeWindow {
@@ -74,7 +74,7 @@ double push_of(const ForcePlate& plate, double threshold) {
 
 /// A foot of which heel or toe barely moves over the ground.
 bool stands(const FeetOnGround& ground, Side side, double time_s) {
-  constexpr double kStepS = 0.02;
+  constexpr double kStepS = 0.02;  // numerical
   const auto before = ground.at(side, time_s - kStepS), after = ground.at(side, time_s + kStepS);
   if (!before || !after) return false;
   const double heel = (after->first - before->first).norm(), toe = (after->second - before->second).norm();
@@ -97,7 +97,8 @@ std::vector<std::pair<std::size_t, std::size_t>> loaded_spans(const ForcePlate& 
   return spans;
 }
 
-/// The mean distance between centres of pressure and where the nearer foot that stands has them: from heel to toe in a contact's time.
+/// The mean distance between centres of pressure and where the nearer foot that stands has them: from heel to toe in a contact's
+/// time.
 std::optional<double> distance_from_feet(const ForcePlate& plate, const FeetOnGround& ground, double threshold) {
   const auto step = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kCheckedEveryS * plate.rate_hz)));
   double sum = 0, count = 0;
@@ -105,12 +106,12 @@ std::optional<double> distance_from_feet(const ForcePlate& plate, const FeetOnGr
     for (std::size_t s = first; s <= last; s += step) {
       const auto load = foot_load(plate, s);
       const double time = plate.begin_s + static_cast<double>(s) / plate.rate_hz;
-      const double share = static_cast<double>(s - first) / static_cast<double>(std::max<std::size_t>(1, last - first));
+      const double fraction = static_cast<double>(s - first) / static_cast<double>(std::max<std::size_t>(1, last - first));
       std::optional<double> nearest;
       for (const Side side : kSides) {
         const auto foot = ground.at(side, time);
         if (!load || !foot || !stands(ground, side, time)) continue;
-        const Vector<3> expected = foot->first + share * (foot->second - foot->first);
+        const Vector<3> expected = foot->first + fraction * (foot->second - foot->first);
         const double distance = (load->pressure - expected).head<2>().norm();
         if (!nearest || distance < *nearest) nearest = distance;
       }
@@ -126,11 +127,12 @@ std::optional<double> distance_from_feet(const ForcePlate& plate, const FeetOnGr
 double beyond_edge(const ForcePlate& plate, const Vector<3>& point) {
   const Matrix<3> axes = plate.axes();
   const Vector<3> at = axes.transpose() * (point - plate.centre());
-  const double half_x = 0.5 * (plate.corners[0] - plate.corners[1]).norm(), half_y = 0.5 * (plate.corners[0] - plate.corners[3]).norm();
+  const double half_x = 0.5 * (plate.corners[0] - plate.corners[1]).norm(),
+               half_y = 0.5 * (plate.corners[0] - plate.corners[3]).norm();
   return std::max(std::abs(at.x()) - half_x, std::abs(at.y()) - half_y);
 }
 
-/// What is known of one foot during a contact.
+/// One foot during a contact.
 struct FootDuring {
   double distance = 0, standing_on_plate = 0, over_edge = 0;  // mean m; fractions of the checked instants
   std::size_t checked = 0;
@@ -164,9 +166,9 @@ void find_foot(const ForcePlate& plate, PlateContact& contact, const FeetOnGroun
   }
   const bool is_left = right.checked == 0 || (left.checked > 0 && left.distance <= right.distance);
   const FootDuring &own = is_left ? left : right, &other = is_left ? right : left;
-  const bool whole = plate.saturated.empty() ||
-                     std::count(plate.saturated.begin() + static_cast<std::ptrdiff_t>(contact.first),
-                                plate.saturated.begin() + static_cast<std::ptrdiff_t>(contact.last) + 1, 1) == 0;
+  const bool whole =
+      plate.saturated.empty() || std::count(plate.saturated.begin() + static_cast<std::ptrdiff_t>(contact.first),
+                                            plate.saturated.begin() + static_cast<std::ptrdiff_t>(contact.last) + 1, 1) == 0;
   if (other.standing_on_plate > kBothFraction) {
     contact.reason = "both feet are on it";
   } else if (own.distance > options.max_foot_distance_m) {
@@ -218,7 +220,7 @@ std::optional<FootLoad> foot_load(const ForcePlate& plate, std::size_t sample) {
   Vector<3> up = plate.axes().col(2);
   if (up.z() < 0) up = -up;
   const double push = load.force.dot(up);
-  if (!(push > kLeastForceN)) return std::nullopt;
+  if (!(push > kMinForceN)) return std::nullopt;
   const Vector<3> arm = up.cross(load.moment) / push;
   return FootLoad{load.force, plate.centre() + arm, up.dot(load.moment - arm.cross(load.force))};
 }
@@ -226,8 +228,7 @@ std::optional<FootLoad> foot_load(const ForcePlate& plate, std::size_t sample) {
 std::optional<std::string> remove_offset(ForcePlate& plate) {
   const std::vector<FreeWindow> windows = free_windows(plate);
   if (plate.loads.empty()) return std::nullopt;
-  if (windows.empty())
-    return fmt::format("{}: something is on it throughout, so that its offset is not known", plate.name);
+  if (windows.empty()) return fmt::format("{}: something is on it throughout, so that its offset is not known", plate.name);
   double largest = 0, least = 0;
   std::size_t next = 0;
   for (std::size_t s = 0; s < plate.loads.size(); ++s) {
@@ -273,9 +274,10 @@ std::optional<std::string> orient(ForcePlate& plate, const FeetOnGround& ground,
                        upside_down ? "upside down" : "in another order than C3D specifies");
   }
   if (upside_down && (!least || *least > kNearFootM))
-    return fmt::format("{}: its corners are upside down, and no foot shows in which order they belong; centres of pressure may be "
-                       "mirrored",
-                       plate.name);
+    return fmt::format(
+        "{}: its corners are upside down, and no foot shows in which order they belong; centres of pressure may be "
+        "mirrored",
+        plate.name);
   if (!pulls) return std::nullopt;
   return fmt::format("{}: its forces pull on the person; reversed", plate.name);
 }

@@ -21,7 +21,7 @@ struct FeetOnGround {
   std::optional<double> distance(Side side, double time_s, const Vector<3>& point) const;
 };
 
-/// Nothing where the force is 5 N upwards or less, or the plate is saturated. With no contact's threshold applied.
+/// Nothing if the force is 5 N upwards or less, or the plate is saturated. With no contact's threshold applied.
 std::optional<FootLoad> foot_load(const ForcePlate& plate, std::size_t sample);
 
 /// With the foot found. `index` is the plate's.

@@ -78,10 +78,14 @@ struct PlateChannels {
     std::array<double, 8> v{};
     for (std::size_t i = 0; i < channels.size(); ++i) v[i] = values[channels[i]] * (type == 4 ? 1 : unit[i]);
     switch (type) {
-      case 1: return of_centre_of_pressure(v);
-      case 3: return of_corners(v);
-      case 4: return of_sensor(calibrated(v));
-      default: return of_sensor(v);
+      case 1:
+        return of_centre_of_pressure(v);
+      case 3:
+        return of_corners(v);
+      case 4:
+        return of_sensor(calibrated(v));
+      default:
+        return of_sensor(v);
     }
   }
 
@@ -189,7 +193,7 @@ class PlateReader {
   }
 
   /// In m. The file says where the surface's middle is from the sensor, with z down: a sensor is below it, so that z is negative.
-  /// Some write the way from the surface to the sensor.
+  /// Some write the vector from the surface to the sensor.
   static void find_origin(const PlateGroup& group, std::size_t p, PlateChannels& channels) {
     const auto numbers = group.of("ORIGIN", p, 3, 3);
     if (numbers.empty()) return;

@@ -34,15 +34,17 @@ struct PlateOfFile {
 };
 
 /// Corners of a plate that lies turned in the world; z up, m.
-std::array<Vector<3>, 4> turned_corners() {
+std::array<Vector<3>, 4> rotated_corners() {
   const Matrix<3> turn = Eigen::AngleAxisd(0.5, Vector<3>::UnitZ()).toRotationMatrix();
   std::array<Vector<3>, 4> corners;
-  const std::array<Vector<3>, 4> flat = {Vector<3>(0.3, -0.2, 0), Vector<3>(-0.3, -0.2, 0), Vector<3>(-0.3, 0.2, 0), Vector<3>(0.3, 0.2, 0)};
+  const std::array<Vector<3>, 4> flat = {Vector<3>(0.3, -0.2, 0), Vector<3>(-0.3, -0.2, 0), Vector<3>(-0.3, 0.2, 0),
+                                         Vector<3>(0.3, 0.2, 0)};
   for (std::size_t c = 0; c < 4; ++c) corners[c] = turn * flat[c] + Vector<3>(1, 2, 0.01);
   return corners;
 }
 
-void write_plate(const std::string& path, const PlateOfFile& plate, const std::array<Vector<3>, 4>& corners, int channels_named = 0) {
+void write_plate(const std::string& path, const PlateOfFile& plate, const std::array<Vector<3>, 4>& corners,
+                 int channels_named = 0) {
   const std::size_t n = plate.channels() + 1;
   const auto parameters = [&](std::int64_t block) {
     C3dSection section;
@@ -62,7 +64,11 @@ void write_plate(const std::string& path, const PlateOfFile& plate, const std::a
     std::vector<std::string> labels = {"L Rect"}, units = {"V"};
     for (std::size_t c = 1; c < n; ++c) {
       labels.push_back("Channel" + std::to_string(c));
-      units.push_back(plate.type == 4 ? "V" : plate.type == 3 || c <= 3 ? "N" : plate.moment_unit_m == 1 ? "Nm" : plate.type == 1 && c < 6 ? "mm" : "Nmm");
+      units.push_back(plate.type == 4             ? "V"
+                      : plate.type == 3 || c <= 3 ? "N"
+                      : plate.moment_unit_m == 1  ? "Nm"
+                      : plate.type == 1 && c < 6  ? "mm"
+                                                  : "Nmm");
     }
     section.texts("LABELS", labels);
     section.texts("UNITS", units);
@@ -77,8 +83,10 @@ void write_plate(const std::string& path, const PlateOfFile& plate, const std::a
       for (const double value : corner) flat.push_back(1000 * value);
     }
     section.reals("CORNERS", flat, {3, 4, 1});
-    section.reals("ORIGIN", std::array<double, 3>{1000 * plate.origin.x(), 1000 * plate.origin.y(), 1000 * plate.origin.z()}, {3, 1});
-    if (plate.type == 4) section.reals("CAL_MATRIX", std::vector<double>(plate.calibration.data(), plate.calibration.data() + 36), {6, 6, 1});
+    section.reals("ORIGIN", std::array<double, 3>{1000 * plate.origin.x(), 1000 * plate.origin.y(), 1000 * plate.origin.z()},
+                  {3, 1});
+    if (plate.type == 4)
+      section.reals("CAL_MATRIX", std::vector<double>(plate.calibration.data(), plate.calibration.data() + 36), {6, 6, 1});
     return section.blocks(path);
   };
   const auto block = static_cast<std::int64_t>(2 + parameters(2).size() / kC3dBlock);
@@ -128,11 +136,12 @@ class ForcePlatesTest : public testing::Test {
     const Vector<3>& f = load.force;
     const double unit = plate.moment_unit_m;
     if (plate.type == 1) {
-      // Where the force meets the surface, and what is left about its normal.
+      // Where the force meets the surface, and the rest about its normal.
       const Vector<3> at(-load.moment.y() / f.z(), load.moment.x() / f.z(), 0);
       return {f.x(), f.y(), f.z(), at.x() / unit, at.y() / unit, (load.moment - at.cross(f)).z() / unit};
     }
-    const Vector<3> about_sensor = load.moment + Vector<3>(plate.type == 3 ? Vector<3>(0, 0, plate.origin.z()) : plate.origin).cross(f);
+    const Vector<3> about_sensor =
+        load.moment + Vector<3>(plate.type == 3 ? Vector<3>(0, 0, plate.origin.z()) : plate.origin).cross(f);
     if (plate.type == 3) return corners_of(plate, f, about_sensor);
     Eigen::Matrix<double, 6, 1> six;
     six << f, about_sensor / unit;
@@ -173,7 +182,7 @@ class ForcePlatesTest : public testing::Test {
 TEST_F(ForcePlatesTest, ReadsTypes1To4InTheWorld) {
   for (const int type : {1, 2, 3, 4}) {
     SCOPED_TRACE(type);
-    write_plate(folder_ / "a.c3d", plate_of(type), turned_corners());
+    write_plate(folder_ / "a.c3d", plate_of(type), rotated_corners());
     const AnalogData data = read_analog_data({.path = folder_ / "a.c3d"});
     expect_truth(data);
     EXPECT_TRUE(data.warnings.empty());
@@ -188,30 +197,30 @@ TEST_F(ForcePlatesTest, ReadsTypes1To4InTheWorld) {
 }
 
 TEST_F(ForcePlatesTest, TurnsPlatesWithARecordingWhoseYIsUp) {
-  std::array<Vector<3>, 4> y_up = turned_corners();
+  std::array<Vector<3>, 4> y_up = rotated_corners();
   for (Vector<3>& corner : y_up) corner = Vector<3>(corner.x(), corner.z(), -corner.y());
   write_plate(folder_ / "a.c3d", plate_of(2), y_up);
   const AnalogData data = read_analog_data({.path = folder_ / "a.c3d", .rotated = true});
   expect_truth(data);
-  EXPECT_LT((data.plates.at(0).corners[0] - turned_corners()[0]).norm(), 1e-6);
+  EXPECT_LT((data.plates.at(0).corners[0] - rotated_corners()[0]).norm(), 1e-6);
 }
 
 TEST_F(ForcePlatesTest, ReadsOriginsFromTheSurfaceToTheSensor) {
   PlateOfFile plate = plate_of(2);
   plate.origin = -plate.origin;
-  write_plate(folder_ / "a.c3d", plate, turned_corners());
+  write_plate(folder_ / "a.c3d", plate, rotated_corners());
   expect_truth(read_analog_data({.path = folder_ / "a.c3d"}));
 }
 
 TEST_F(ForcePlatesTest, OmitsPlatesThatItCannotRead) {
   PlateOfFile plate = plate_of(2);
   plate.type = 12;
-  write_plate(folder_ / "a.c3d", plate, turned_corners());
+  write_plate(folder_ / "a.c3d", plate, rotated_corners());
   AnalogData data = read_analog_data({.path = folder_ / "a.c3d"});
   ASSERT_EQ(data.warnings.size(), 1U);
   EXPECT_NE(data.warnings[0].find("its type is 12"), std::string::npos);
   plate.type = 2;
-  write_plate(folder_ / "a.c3d", plate, turned_corners(), 99);
+  write_plate(folder_ / "a.c3d", plate, rotated_corners(), 99);
   data = read_analog_data({.path = folder_ / "a.c3d"});
   ASSERT_EQ(data.warnings.size(), 1U);
   EXPECT_NE(data.warnings[0].find("channels"), std::string::npos);
@@ -230,7 +239,7 @@ TEST_F(ForcePlatesTest, MarksChannelsAtTheirLimit) {
     const double bump = -900 * std::sin(3.14159 * static_cast<double>(s) / 100);
     if (s < 100) plate.rows[s][2] = std::max(bump, -700.0);
   }
-  write_plate(folder_ / "a.c3d", plate, turned_corners());
+  write_plate(folder_ / "a.c3d", plate, rotated_corners());
   const AnalogData data = read_analog_data({.path = folder_ / "a.c3d"});
   ASSERT_EQ(data.plates.size(), 1U);
   ASSERT_EQ(data.plates[0].saturated.size(), plate.rows.size());

@@ -55,7 +55,8 @@ class ModelScaler {
   void scale(const std::optional<double>& mass_kg) {
     for (const pugi::xml_node body : model_.child("BodySet").child("objects").children("Body")) {
       scale_body(body);
-      const pugi::xml_node joints = body.child("Joint").child("objects") ? body.child("Joint").child("objects") : body.child("Joint");
+      const pugi::xml_node joints =
+          body.child("Joint").child("objects") ? body.child("Joint").child("objects") : body.child("Joint");
       for (const pugi::xml_node joint : joints.children()) scale_old_joint(joint, body_named(body.attribute("name").value()));
     }
     for (const pugi::xml_node joint : model_.child("JointSet").child("objects").children()) scale_joint(joint);
@@ -72,7 +73,7 @@ class ModelScaler {
     return segment ? std::optional(scales_[static_cast<std::size_t>(*segment)]) : std::nullopt;
   }
 
-  static void stretch(pugi::xml_node node, const std::optional<Vector<3>>& scale) {
+  static void scale_vector(pugi::xml_node node, const std::optional<Vector<3>>& scale) {
     const std::vector<double> values = numbers_of_node(node);
     if (!node || !scale || values.size() != 3) return;
     const Vector<3> stretched = scale->cwiseProduct(Vector<3>(values[0], values[1], values[2]));
@@ -82,21 +83,21 @@ class ModelScaler {
   void scale_body(pugi::xml_node body) {
     const auto scale = scale_of(body_named(body.attribute("name").value()));
     if (!scale) return;
-    stretch(body.child("mass_center"), scale);
+    scale_vector(body.child("mass_center"), scale);
     scale_mass(body, *scale);
-    for (const pugi::xml_node geometry : body.child("attached_geometry").children()) stretch_geometry(geometry, *scale);
+    for (const pugi::xml_node geometry : body.child("attached_geometry").children()) scale_geometry(geometry, *scale);
     for (const pugi::xml_node geometry : body.child("VisibleObject").child("GeometrySet").child("objects").children())
-      stretch_geometry(geometry, *scale);
+      scale_geometry(geometry, *scale);
     for (const pugi::xml_node wrap : body.child("WrapObjectSet").child("objects").children()) scale_wrap(wrap, *scale);
   }
 
-  static void stretch_geometry(pugi::xml_node geometry, const Vector<3>& scale) {
-    stretch(geometry.child("scale_factors"), scale);
+  static void scale_geometry(pugi::xml_node geometry, const Vector<3>& scale) {
+    scale_vector(geometry.child("scale_factors"), scale);
   }
 
   /// Sizes by the mean scale: a cylinder stays one.
   static void scale_wrap(pugi::xml_node wrap, const Vector<3>& scale) {
-    stretch(wrap.child("translation"), scale);
+    scale_vector(wrap.child("translation"), scale);
     for (const char* size : {"radius", "length", "dimensions", "inner_radius", "outer_radius"}) {
       const pugi::xml_node node = wrap.child(size);
       std::vector<double> values = numbers_of_node(node);
@@ -110,7 +111,8 @@ class ModelScaler {
     const double before = body.child("mass").text().as_double(), volume = scale.prod();
     if (!body.child("mass") || !(before > 0)) return;
     body.child("mass").text().set(fmt::format("{:.17g}", before * volume).c_str());
-    constexpr std::array<const char*, 6> kElements = {"inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"};
+    constexpr std::array<const char*, 6> kElements = {"inertia_xx", "inertia_yy", "inertia_zz",
+                                                      "inertia_xy", "inertia_xz", "inertia_yz"};
     std::vector<double> six = numbers_of_node(body.child("inertia"));
     const bool together = six.size() == 6;
     if (!together) {
@@ -119,7 +121,8 @@ class ModelScaler {
     }
     Matrix<3> inertia;
     inertia << six[0], six[3], six[4], six[3], six[1], six[5], six[4], six[5], six[2];
-    const Matrix<3> second = volume * (scale.asDiagonal() * Matrix<3>(0.5 * inertia.trace() * Matrix<3>::Identity() - inertia) * scale.asDiagonal());
+    const Matrix<3> second =
+        volume * (scale.asDiagonal() * Matrix<3>(0.5 * inertia.trace() * Matrix<3>::Identity() - inertia) * scale.asDiagonal());
     const Matrix<3> grown = second.trace() * Matrix<3>::Identity() - second;
     six = {grown(0, 0), grown(1, 1), grown(2, 2), grown(0, 1), grown(0, 2), grown(1, 2)};
     if (together) return set_numbers(body.child("inertia"), six);
@@ -132,7 +135,7 @@ class ModelScaler {
     for (const pugi::xml_node frame : joint.child("frames").children()) {
       const std::string body = body_named(frame.child("socket_parent").child_value());
       body_of_frame[frame.attribute("name").value()] = body;
-      stretch(frame.child("translation"), scale_of(body));
+      scale_vector(frame.child("translation"), scale_of(body));
     }
     const auto body_at = [&](const char* socket) {
       const std::string frame = body_named(joint.child(socket).child_value());
@@ -145,8 +148,8 @@ class ModelScaler {
   /// Version 2 and 3: the joint is in the body that hangs on it.
   void scale_old_joint(pugi::xml_node joint, const std::string& body) {
     const std::string parent = body_named(joint.child("parent_body").child_value());
-    stretch(joint.child("location_in_parent"), scale_of(parent));
-    stretch(joint.child("location"), scale_of(body));
+    scale_vector(joint.child("location_in_parent"), scale_of(parent));
+    scale_vector(joint.child("location"), scale_of(body));
     scale_shifts(joint, parent, body);
   }
 
@@ -198,7 +201,7 @@ class ModelScaler {
         moving_ = true;
       } else if (std::string_view(child.name()).ends_with("PathPoint") && child.child("location")) {
         const char* const where = child.child("socket_parent_frame") ? "socket_parent_frame" : "body";
-        stretch(child.child("location"), scale_of(body_named(child.child_value(where))));
+        scale_vector(child.child("location"), scale_of(body_named(child.child_value(where))));
         ++points_;
       } else {
         scale_points(child);
@@ -226,11 +229,13 @@ class ModelScaler {
 
   void set_mass(double mass_kg) {
     double sum = 0;
-    for (const pugi::xml_node body : model_.child("BodySet").child("objects").children("Body")) sum += body.child("mass").text().as_double();
+    for (const pugi::xml_node body : model_.child("BodySet").child("objects").children("Body"))
+      sum += body.child("mass").text().as_double();
     if (!(sum > 0)) return;
     const double factor = mass_kg / sum;
     for (const pugi::xml_node body : model_.child("BodySet").child("objects").children("Body")) {
-      for (const char* element : {"mass", "inertia", "inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"}) {
+      for (const char* element :
+           {"mass", "inertia", "inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"}) {
         const pugi::xml_node node = body.child(element);
         std::vector<double> values = numbers_of_node(node);
         for (double& value : values) value *= factor;
@@ -262,7 +267,8 @@ ScaledOsim scaled_osim(std::string_view text, const std::string& name, const Ske
   ModelScaler scaler(model, name, fitted, scales);
   scaler.scale(mass_kg);
   ScaledOsim scaled{to_text(document), {}};
-  if (scaler.has_muscles()) scaled.warnings.push_back(fmt::format("{}: muscles' paths are scaled, their fibre and tendon lengths are not", name));
+  if (scaler.has_muscles())
+    scaled.warnings.push_back(fmt::format("{}: muscles' paths are scaled, their fibre and tendon lengths are not", name));
   if (scaler.has_moving_points()) scaled.warnings.push_back(fmt::format("{}: muscles' moving path points are not scaled", name));
   return scaled;
 }

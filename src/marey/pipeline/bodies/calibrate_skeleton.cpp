@@ -16,7 +16,6 @@ namespace marey::pipeline::bodies {
 namespace {
 
 constexpr std::size_t kMaxCalibrationFrames = 4096;
-constexpr double kTieSigma_m = 0.01;  // unswept
 
 /// The markers of all frames, for a calibration.
 std::vector<solve::skeleton::ObservedMarkers> all_observed(const std::string& recording, const Skeleton& skeleton,
@@ -52,20 +51,19 @@ std::unique_ptr<format::FileReader> open_markers(const std::string& path, const 
   return reader;
 }
 
-solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool given,
+solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool generic,
                                                 const SolveOptions& options) {
-  std::vector<solve::skeleton::ObservedMarkers> frames = all_observed(recording, skeleton, options), standing;
+  std::vector<solve::skeleton::ObservedMarkers> frames = all_observed(recording, skeleton, options);
   for (const std::string& take : options.calibration_takes) {
     std::vector<solve::skeleton::ObservedMarkers> more = all_observed(take, skeleton, options);
     frames.insert(frames.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   solve::skeleton::CalibrateOptions how;
-  if (given) {
+  if (generic) {
     how.offset_sigmas_m = marker_sigmas(skeleton);
-    how.tie_sigma_m = kTieSigma_m;
-    if (!options.static_trial.empty()) standing = all_observed(options.static_trial, skeleton, options);
+    how.tie_sigma_m = 0.01;  // unswept
   }
-  return solve::skeleton::calibrate(skeleton, frames, how, standing);
+  return solve::skeleton::calibrate(skeleton, frames, how);
 }
 
 void write_skeleton_file(const std::string& source, const SolvedRecording& solved, const SolveOptions& options,
@@ -73,10 +71,11 @@ void write_skeleton_file(const std::string& source, const SolvedRecording& solve
   const std::string& path = options.write_skeleton;
   std::string text;
   if (path.ends_with(".osim")) {
-    if (!source.ends_with(".osim")) throw Error("{}: an .osim is written of an OpenSim model alone; give it by --skeleton, or write .toml", path);
+    if (!source.ends_with(".osim"))
+      throw Error("{}: an .osim is written of an OpenSim model alone; give it by --skeleton, or write .toml", path);
     const std::vector<Vector<3>> alike(solved.skeleton.segments.size(), Vector<3>::Ones());
-    format::skeleton::ScaledOsim scaled = format::skeleton::scaled_osim(format::read_file(source), source, solved.skeleton,
-                                                                       solved.scales.empty() ? alike : solved.scales, options.mass_kg);
+    format::skeleton::ScaledOsim scaled = format::skeleton::scaled_osim(
+        format::read_file(source), source, solved.skeleton, solved.scales.empty() ? alike : solved.scales, options.mass_kg);
     warnings.insert(warnings.end(), scaled.warnings.begin(), scaled.warnings.end());
     text = std::move(scaled.text);
   } else {

@@ -14,12 +14,13 @@ namespace marey::pipeline::bodies {
 /// Throws Error if the file holds no points in space.
 std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options);
 
-/// From the recording, the options' other takes, and where `given` (the skeleton is a file's) their static trial. A given skeleton's
-/// markers have the deviations of `marker_sigmas`.
-solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool given,
+/// From the recording and the options' other takes. Markers of a `generic` model have the deviations of `marker_sigmas` on their
+/// segments, left and right tied; those of others 10 mm.
+solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool generic,
                                                 const SolveOptions& options);
 
-/// skeleton.toml, or by its ending the .osim that `source` is, calibrated. Throws Error if there is no such model, or no calibration.
+/// skeleton.toml, or by its ending the .osim that `source` is, calibrated. Throws Error if there is no such model, or no
+/// calibration.
 void write_skeleton_file(const std::string& source, const SolvedRecording& solved, const SolveOptions& options,
                          std::vector<std::string>& warnings);
 

@@ -21,15 +21,16 @@ void write_force_csv(const std::string& path, const gait::FootForces& forces, do
   WholeFile file(path);
   std::string text = "time_s";
   for (const char* side : kForceSides)
-    text += fmt::format(",{0}_force_x_n,{0}_force_y_n,{0}_force_z_n,{0}_pressure_x_m,{0}_pressure_y_m,{0}_pressure_z_m,{0}_free_moment_nm",
-                        side);
+    text += fmt::format(
+        ",{0}_force_x_n,{0}_force_y_n,{0}_force_z_n,{0}_pressure_x_m,{0}_pressure_y_m,{0}_pressure_z_m,{0}_free_moment_nm", side);
   text += '\n';
   for (std::size_t s = 0; s < forces.feet[0].size(); ++s) {
     fmt::format_to(std::back_inserter(text), "{:.6g}", begin_s + static_cast<double>(s) / forces.rate_hz);
     for (const auto& foot : forces.feet) {
       if (const auto& load = foot[s])
-        fmt::format_to(std::back_inserter(text), ",{:.3f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.4f}", load->force.x(), load->force.y(),
-                       load->force.z(), load->pressure.x(), load->pressure.y(), load->pressure.z(), load->free_moment);
+        fmt::format_to(std::back_inserter(text), ",{:.3f},{:.3f},{:.3f},{:.5f},{:.5f},{:.5f},{:.4f}", load->force.x(),
+                       load->force.y(), load->force.z(), load->pressure.x(), load->pressure.y(), load->pressure.z(),
+                       load->free_moment);
       else
         text += ",,,,,,,";
     }
@@ -77,7 +78,8 @@ format::motion::AnalogData read_plates(const std::string& recording, const GaitM
   format::ReadOptions how;
   if (markers.up == format::UpAxis::y) how.up = markers.up;
   const auto reader = format::open_recording(plates, format::format_to_read(plates, format::Content::space), how);
-  if (reader->info().next_to.channels == 0) throw Error("{}: has no force plates; a C3D file with analog channels is wanted", plates);
+  if (reader->info().next_to.channels == 0)
+    throw Error("{}: has no force plates; a C3D file with analog channels is wanted", plates);
   if (std::abs(reader->header().rate_hz - markers.rate_hz) > 1e-6 * markers.rate_hz)
     throw Error("{}: has {:g} frames a second, and {} {:g}; force plates of the same walk are wanted", plates,
                 reader->header().rate_hz, recording, markers.rate_hz);
@@ -86,11 +88,12 @@ format::motion::AnalogData read_plates(const std::string& recording, const GaitM
   const double end_s = analog.begin_s + static_cast<double>(analog.plates.front().loads.size()) / analog.rate_hz;
   const double walk_end_s = markers.begin_s + static_cast<double>(markers.rows.size()) / markers.rate_hz;
   if (end_s <= markers.begin_s || analog.begin_s >= walk_end_s)
-    throw Error("{}: is from {:.2f} to {:.2f} s, and {} from {:.2f} to {:.2f} s: not of the same walk", plates, analog.begin_s, end_s,
-                recording, markers.begin_s, walk_end_s);
+    throw Error("{}: is from {:.2f} to {:.2f} s, and {} from {:.2f} to {:.2f} s: not of the same walk", plates, analog.begin_s,
+                end_s, recording, markers.begin_s, walk_end_s);
   if (std::abs(end_s - walk_end_s) + std::abs(analog.begin_s - markers.begin_s) > 1 / markers.rate_hz + 1e-9)
-    analog.warnings.push_back(fmt::format("{}: is from {:.2f} to {:.2f} s, and {} from {:.2f} to {:.2f} s; are they of the same walk?",
-                                          plates, analog.begin_s, end_s, recording, markers.begin_s, walk_end_s));
+    analog.warnings.push_back(
+        fmt::format("{}: is from {:.2f} to {:.2f} s, and {} from {:.2f} to {:.2f} s; are they of the same walk?", plates,
+                    analog.begin_s, end_s, recording, markers.begin_s, walk_end_s));
   return analog;
 }
 

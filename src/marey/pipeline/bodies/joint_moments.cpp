@@ -22,9 +22,9 @@
 namespace marey::pipeline::bodies {
 namespace {
 
-constexpr double kMissingFraction = 0.1;  // of the weight
-constexpr double kUneven = 0.01;          // of a frame
-constexpr double kToeM = 0.18;            // from a heel's body to the toe, where the model has no toes
+constexpr double kMissingFraction = 0.1;  // by definition: of the weight
+constexpr double kUneven = 0.01;          // numerical: of a frame
+constexpr double kToeM = 0.18;            // physical: from a heel's body to the toe, where the model has no toes
 
 using solve::skeleton::CoordinateMotion;
 using solve::skeleton::SegmentLoad;
@@ -98,15 +98,16 @@ DynamicMotion read_motion(const std::string& path, const Skeleton& skeleton, dou
     if (!value && !coordinate.coupling) absent.push_back(coordinate.name);
     const bool known = value.has_value();
     if (!value) value = std::vector<double>(frames, coordinate.rest);
-    auto speed = column_of(table, coordinate.name + "/speed", scale), acceleration = column_of(table, coordinate.name + "/acceleration", scale);
+    auto speed = column_of(table, coordinate.name + "/speed", scale),
+         acceleration = column_of(table, coordinate.name + "/acceleration", scale);
     if (known && !(speed && acceleration) && cutoff_hz > 0) value = gait::low_pass(std::move(*value), cutoff_hz, motion.rate_hz);
     motion.speed.push_back(speed ? *speed : derivative(*value, motion.rate_hz, 1));
     motion.acceleration.push_back(acceleration ? *acceleration : derivative(*value, motion.rate_hz, 2));
     motion.value.push_back(std::move(*value));
   }
   if (!absent.empty())
-    warnings.push_back(fmt::format("{}: {} of the model's coordinates are not in it, or have gaps, and rest: {}{}", path, absent.size(),
-                                   absent.front(), absent.size() > 1 ? ", …" : ""));
+    warnings.push_back(fmt::format("{}: {} of the model's coordinates are not in it, or have gaps, and rest: {}{}", path,
+                                   absent.size(), absent.front(), absent.size() > 1 ? ", …" : ""));
   return motion;
 }
 
@@ -137,9 +138,11 @@ int body_of_model(const Skeleton& skeleton, const std::string& model, const std:
 }
 
 /// Loads on the feet by force plates. Forces are low-passed as the motion is, so that both have the same impacts.
-std::vector<format::skeleton::ExternalLoad> plate_loads(const std::string& model, const Skeleton& skeleton, const DynamicMotion& motion,
-                                                        const MomentOptions& options, std::vector<std::string>& warnings) {
-  const std::array<int, 2> feet = {body_of_model(skeleton, model, options.left_foot), body_of_model(skeleton, model, options.right_foot)};
+std::vector<format::skeleton::ExternalLoad> plate_loads(const std::string& model, const Skeleton& skeleton,
+                                                        const DynamicMotion& motion, const MomentOptions& options,
+                                                        std::vector<std::string>& warnings) {
+  const std::array<int, 2> feet = {body_of_model(skeleton, model, options.left_foot),
+                                   body_of_model(skeleton, model, options.right_foot)};
   format::ReadOptions how;
   how.up = options.up;
   const auto reader = format::open_recording(options.loads, format::format_to_read(options.loads, format::Content::space), how);
@@ -162,7 +165,7 @@ Vector<3> interpolated(const std::vector<double>& times, const std::vector<Vecto
 }
 
 /// What the root's shifts lack, in N.
-void judge_residuals(const Skeleton& skeleton, JointMoments& moments) {
+void assess_residuals(const Skeleton& skeleton, JointMoments& moments) {
   std::vector<std::size_t> shifts;
   for (const JointAxis& axis : skeleton.segments.front().joint.axes) {
     if (!axis.rotations && axis.coordinate) shifts.push_back(static_cast<std::size_t>(*axis.coordinate));
@@ -185,8 +188,11 @@ void judge_residuals(const Skeleton& skeleton, JointMoments& moments) {
 }
 
 void write_columns(const std::string& path, const JointMoments& moments, bool powers) {
-  format::skeleton::MotionTable table{
-      .title = powers ? "Joint powers" : "Inverse Dynamics Generalized Forces", .in_degrees = false, .columns = {}, .times = moments.times, .rows = {}};
+  format::skeleton::MotionTable table{.title = powers ? "Joint powers" : "Inverse Dynamics Generalized Forces",
+                                      .in_degrees = false,
+                                      .columns = {},
+                                      .times = moments.times,
+                                      .rows = {}};
   table.rows.resize(moments.times.size());
   for (const JointMoments::Coordinate& coordinate : moments.coordinates) {
     table.columns.push_back(coordinate.name + (powers ? "_power" : coordinate.rotations ? "_moment" : "_force"));
@@ -198,7 +204,8 @@ void write_columns(const std::string& path, const JointMoments& moments, bool po
 
 }  // namespace
 
-JointMoments joint_moments(const std::string& model, const std::string& motion_path, const MomentOptions& options, const Hooks& hooks) {
+JointMoments joint_moments(const std::string& model, const std::string& motion_path, const MomentOptions& options,
+                           const Hooks& hooks) {
   const format::skeleton::SkeletonFile file = format::skeleton::read_skeleton(model);
   const Skeleton& skeleton = file.skeleton;
   JointMoments moments;
@@ -214,7 +221,8 @@ JointMoments joint_moments(const std::string& model, const std::string& motion_p
                                             : plate_loads(model, skeleton, motion, options, moments.warnings);
   std::vector<int> bodies;
   for (const auto& load : loads) bodies.push_back(body_of_model(skeleton, model, load.body));
-  for (const Coordinate& coordinate : skeleton.coordinates) moments.coordinates.push_back({coordinate.name, coordinate.rotations, {}, {}});
+  for (const Coordinate& coordinate : skeleton.coordinates)
+    moments.coordinates.push_back({coordinate.name, coordinate.rotations, {}, {}});
   for (std::size_t f = 0; f < motion.times.size(); ++f) {
     CoordinateMotion now = motion.at(f);
     couple(skeleton, now);
@@ -230,7 +238,7 @@ JointMoments joint_moments(const std::string& model, const std::string& motion_p
     }
     hooks.advance({.step = "moments", .done = static_cast<std::int64_t>(f) + 1, .total = std::ssize(motion.times)});
   }
-  judge_residuals(skeleton, moments);
+  assess_residuals(skeleton, moments);
   return moments;
 }
 

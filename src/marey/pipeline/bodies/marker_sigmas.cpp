@@ -14,27 +14,24 @@ struct MarkerKind {
   double sigma_m;
 };
 
-constexpr double kCluster_m = 0.05;
+constexpr double kCluster_m = 0.05;  // physical: anywhere on the limb
 
-/// Between examiners, root mean square by axis: pelvis 6 to 21 mm, knee 11 to 22, ankle 8 to 15, foot 7 to 16 (Della Croce, Leardini,
-/// Chiari, Cappozzo 2005, Gait & Posture 21, table 2); shoulder, elbow and wrist 7 to 15 (de Groot 1997, Clinical Biomechanics 12).
-/// Clusters are on no landmark: their place is the limb's length by its width. Longer words come before their beginnings.
-constexpr std::array<MarkerKind, 58> kKinds = {{{"asis", 0.012},      {"asi", 0.012},      {"psis", 0.012},     {"psi", 0.012},
-                                                {"vsacral", 0.015},   {"sacr", 0.015},     {"sacral", 0.015},   {"hjc", 0.01},
-                                                {"kneelat", 0.012},   {"kneemed", 0.012},  {"knee", 0.012},     {"knm", 0.012},
-                                                {"kne", 0.012},       {"kjc", 0.01},       {"lfc", 0.012},      {"mfc", 0.012},
-                                                {"anklelat", 0.01},   {"anklemed", 0.01},  {"ankle", 0.01},     {"anm", 0.01},
-                                                {"ank", 0.01},        {"ajc", 0.01},       {"lmal", 0.01},      {"mmal", 0.01},
-                                                {"heel", 0.012},      {"hee", 0.012},      {"cal", 0.012},      {"toe", 0.012},
-                                                {"mt", 0.012},        {"midfoot", 0.015},  {"acromium", 0.015}, {"acr", 0.015},
-                                                {"sho", 0.015},       {"ash", 0.02},       {"psh", 0.02},       {"sjc", 0.01},
-                                                {"elbow", 0.012},     {"elb", 0.012},      {"lel", 0.012},      {"mel", 0.012},
-                                                {"ejc", 0.01},        {"wrist", 0.012},    {"wra", 0.012},      {"wrb", 0.012},
-                                                {"fin", 0.015},       {"sternum", 0.015},  {"strn", 0.015},     {"clav", 0.015},
-                                                {"thigh", kCluster_m}, {"thi", kCluster_m}, {"th", kCluster_m},  {"shank", kCluster_m},
-                                                {"tib", kCluster_m},  {"tb", kCluster_m},  {"bicep", kCluster_m}, {"ua", kCluster_m},
-                                                {"fa", kCluster_m},   {"upa", kCluster_m}}};
-constexpr double kOther_m = 0.02;
+/// Between examiners, root mean square by axis: pelvis 6 to 21 mm, knee 11 to 22, ankle 8 to 15, foot 7 to 16 (Della Croce,
+/// Leardini, Chiari, Cappozzo 2005, Gait & Posture 21, table 2); shoulder, elbow and wrist 7 to 15 (de Groot 1997, Clinical
+/// Biomechanics 12). Clusters are on no landmark: their place is the limb's length by its width. Longer words come before their
+/// beginnings.
+constexpr std::array<MarkerKind, 58> kKinds = {
+    {{"asis", 0.012},       {"asi", 0.012},      {"psis", 0.012},    {"psi", 0.012},        {"vsacral", 0.015},  {"sacr", 0.015},
+     {"sacral", 0.015},     {"hjc", 0.01},       {"kneelat", 0.012}, {"kneemed", 0.012},    {"knee", 0.012},     {"knm", 0.012},
+     {"kne", 0.012},        {"kjc", 0.01},       {"lfc", 0.012},     {"mfc", 0.012},        {"anklelat", 0.01},  {"anklemed", 0.01},
+     {"ankle", 0.01},       {"anm", 0.01},       {"ank", 0.01},      {"ajc", 0.01},         {"lmal", 0.01},      {"mmal", 0.01},
+     {"heel", 0.012},       {"hee", 0.012},      {"cal", 0.012},     {"toe", 0.012},        {"mt", 0.012},       {"midfoot", 0.015},
+     {"acromium", 0.015},   {"acr", 0.015},      {"sho", 0.015},     {"ash", 0.02},         {"psh", 0.02},       {"sjc", 0.01},
+     {"elbow", 0.012},      {"elb", 0.012},      {"lel", 0.012},     {"mel", 0.012},        {"ejc", 0.01},       {"wrist", 0.012},
+     {"wra", 0.012},        {"wrb", 0.012},      {"fin", 0.015},     {"sternum", 0.015},    {"strn", 0.015},     {"clav", 0.015},
+     {"thigh", kCluster_m}, {"thi", kCluster_m}, {"th", kCluster_m}, {"shank", kCluster_m}, {"tib", kCluster_m}, {"tb", kCluster_m},
+     {"bicep", kCluster_m}, {"ua", kCluster_m},  {"fa", kCluster_m}, {"upa", kCluster_m}}};
+constexpr double kOther_m = 0.02;  // physical: the loosest landmark of the table
 
 /// Letters alone, small; the side's first letter is omitted: "R.Knee.Lat" is "kneelat".
 std::string bare_label(std::string_view label) {

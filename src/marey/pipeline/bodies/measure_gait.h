@@ -24,9 +24,9 @@ struct GaitOptions {
 };
 
 struct GaitOutput {
-  std::string cycles;    ///< CSV: curve, percent, mean, deviation
-  std::string angles;    ///< CSV: a row an instant
-  std::string report;    ///< HTML
+  std::string cycles;       ///< CSV: curve, percent, mean, deviation
+  std::string angles;       ///< CSV: a row an instant
+  std::string report;       ///< HTML
   std::string c3d = {};     ///< the recording again, with angles and events
   std::string forces = {};  ///< the ground's forces: .mot with an .xml beside it, or .csv
 };
@@ -41,9 +41,9 @@ struct GaitMeasure {
   std::vector<analyse::gait::AngleCurve> angles;
   std::vector<analyse::gait::GaitEvent> events;
   analyse::gait::GaitCycles cycles;
-  analyse::gait::FootForces forces;             ///< of force plates; without samples if there are none
-  double forces_begin_s = 0;                    ///< the recording's time of their first sample
-  analyse::gait::PreferredEvents by_force;      ///< how events by force differ from those by kinematics, which they replace
+  analyse::gait::FootForces forces;              ///< of force plates; empty if it has no plates
+  double forces_begin_s = 0;                     ///< the recording's time of their first sample
+  analyse::gait::PreferredEvents by_force;       ///< how events by force differ from those by kinematics, which they replace
   std::vector<analyse::gait::EmgCurve> muscles;  ///< over the cycles
   std::vector<std::string> warnings;
 };

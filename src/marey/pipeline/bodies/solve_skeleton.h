@@ -26,15 +26,14 @@ struct SolveOptions {
   solve::skeleton::PoseOptions pose;
   bool smooth = false;  ///< a second pass over the whole motion
   std::string
-      static_trial;  ///< of the same person standing: makes the human skeleton, where none is given, else calibrates the given one
-                     ///< besides; empty: from the motion alone
-  std::string marker_set;      ///< its name; empty: known by the labels
-  std::string motion;          ///< and of its range of motion: where its joints are; empty: none
-  std::string person;          ///< of several whose keypoints are recorded ("P2"), where neither is given; empty: the first
-  bool calibrate = false;      ///< first fits the skeleton to the person, from the recording itself
+      static_trial;  ///< of the same person standing: makes the human skeleton, where none is given; empty: from the motion alone
+  std::string marker_set;  ///< its name; empty: known by the labels
+  std::string motion;      ///< and of its range of motion: where its joints are; empty: none
+  std::string person;      ///< of several whose keypoints are recorded ("P2"), where neither is given; empty: the first
+  bool calibrate = false;  ///< first fits the skeleton to the person, from the recording itself
   std::vector<std::string> calibration_takes = {};  ///< and from these of the same person with the same markers
   std::optional<double> mass_kg = {};               ///< of the person, for an .osim
-  std::string write_skeleton;  ///< skeleton.toml of what was solved with, or a calibrated .osim; empty: none
+  std::string write_skeleton;                       ///< skeleton.toml of what was solved with, or a calibrated .osim; empty: none
 };
 
 /// The result.
@@ -66,9 +65,9 @@ struct SolveSummary {
   std::vector<std::string> warnings;
   std::optional<double> overall_scale;  ///< of a calibration; with what it found:
   double rms_before_m = 0;
-  std::string marker_set;                 ///< whose human skeleton it is; empty if it is another one
-  std::vector<FoundJoint> joints;         ///< of the human skeleton that the range of motion was asked for
-  std::vector<std::string> undetermined;  ///< segments whose size the recording does not determine
+  std::string marker_set;                         ///< whose human skeleton it is; empty if it is another one
+  std::vector<FoundJoint> joints;                 ///< of the human skeleton that the range of motion was asked for
+  std::vector<std::string> undetermined;          ///< segments whose size the recording does not determine
   std::vector<std::string> undetermined_markers;  ///< markers whose place on their segments it does not determine
   bool stopped = false;
 };

@@ -82,8 +82,8 @@ Table table_of(Solve& job) {
 
 bodies::SolveOptions resolved(const Solve& job) {
   bodies::SolveOptions options = job.options;
-  if (!job.skeleton.empty() && !options.static_trial.empty() && !options.calibrate)
-    throw WrongOption("{}", "--static-trial: with --skeleton it is for --calibrate; give that too, or one of the two");
+  if (!job.skeleton.empty() && !options.static_trial.empty())
+    throw WrongOption("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two");
   if (options.mass_kg && !options.write_skeleton.ends_with(".osim"))
     throw WrongOption("{}", "--mass: is for --write-skeleton FILE.osim");
   if (!options.marker_set.empty() && !job.skeleton.empty())

@@ -11,11 +11,11 @@
 #include "marey/core/error.h"
 #include "marey/core/ground_transform.h"
 #include "marey/format/motion/force_plates.h"
-#include "marey/format/take/take_plates.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/skeleton/rig_names.h"
+#include "marey/format/take/take_plates.h"
 #include "marey/pipeline/take/ground_orientation.h"
 #include "marey/pipeline/take/part_of_recording.h"
 

@@ -12,8 +12,7 @@
 namespace marey::solve::skeleton {
 namespace {
 
-constexpr int kMaxStanding = 10;    // frames: they repeat each other
-constexpr double kTightM = 0.005;  // a marker that sits so tightly counts 1 while the person's size is found
+constexpr double kTightM = 0.005;  // by definition: a marker that sits so tightly counts 1 while the person's size is found
 
 /// "femur_r" and "femur_l", "right_thigh" and "left_thigh", "RightLeg" and "LeftLeg" are one.
 std::string without_side(std::string name) {
@@ -28,13 +27,10 @@ std::string without_side(std::string name) {
 
 class Calibrator {
  public:
-  Calibrator(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options,
-             std::span<const ObservedMarkers> standing)
+  Calibrator(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options)
       : base_(skeleton), options_(options) {
-    // Standing frames first: the poses of those that move follow from one another.
-    take_some(standing, std::min(options.frames, kMaxStanding));
-    standing_ = frames_.size();
-    take_some(frames, options.frames);
+    const std::size_t step = std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(std::max(1, options.frames)));
+    for (std::size_t f = 0; f < frames.size(); f += step) frames_.push_back(&frames[f]);
     std::map<std::string, int> groups;
     for (const Segment& segment : skeleton.segments)
       group_of_.push_back(groups.try_emplace(without_side(segment.name), static_cast<int>(groups.size())).first->second);
@@ -60,18 +56,14 @@ class Calibrator {
     result.rms_after_m = rms_;
     if (options_.scale_sigma > 0) result.undetermined = undetermined(result.undetermined_markers);
     result.skeleton = now_;
-    for (std::size_t j = 0; j < offsets_.size(); ++j) result.skeleton.markers[j].weight = given_weights_.empty() ? base_.markers[j].weight : given_weights_[j];
+    for (std::size_t j = 0; j < offsets_.size(); ++j)
+      result.skeleton.markers[j].weight = given_weights_.empty() ? base_.markers[j].weight : given_weights_[j];
     for (std::size_t s = 0; s < base_.segments.size(); ++s) result.scales.push_back(scale_of(s));
     for (std::size_t j = 0; j < offsets_.size(); ++j) result.marker_moved_m.push_back(offsets_[j].norm());
     return result;
   }
 
  private:
-  void take_some(std::span<const ObservedMarkers> frames, int count) {
-    const std::size_t step = std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(std::max(1, count)));
-    for (std::size_t f = 0; f < frames.size(); f += step) frames_.push_back(&frames[f]);
-  }
-
   /// Markers of the other side on the same bones: "L.Knee.Lat" of "R.Knee.Lat".
   void find_twins() {
     std::map<std::string, std::size_t> by_name;
@@ -82,7 +74,8 @@ class Calibrator {
       label[0] = 'R';
       const auto other = by_name.find(label);
       if (other == by_name.end()) continue;
-      const auto a = static_cast<std::size_t>(base_.markers[j].segment), b = static_cast<std::size_t>(base_.markers[other->second].segment);
+      const auto a = static_cast<std::size_t>(base_.markers[j].segment),
+                 b = static_cast<std::size_t>(base_.markers[other->second].segment);
       if (group_of_[a] == group_of_[b]) twins_.emplace_back(j, other->second);
     }
     // The axis across: along which twins lie on either side.
@@ -125,43 +118,11 @@ class Calibrator {
     for (const ObservedMarkers* frame : frames_) {
       const SolvedPose& pose = solver.step(0.1, *frame);
       poses_.push_back(pose.coordinates);
-      if (poses_.size() <= standing_) stand(solver, *frame);
       sum += pose.rms_m * pose.rms_m * pose.detected;
       count += pose.detected;
     }
     if (count == 0) throw Error("{}: none of the frames shows one of the skeleton's markers", base_.name);
     rms_ = std::sqrt(sum / count);
-  }
-
-  /// The last pose again, near the skeleton's rest but for where the root is.
-  void stand(PoseSolver& solver, const ObservedMarkers& frame) {
-    const SkeletonState start = solver.articulation().state_of(poses_.back());
-    poses_.back() = solver.solve_towards(start, rest_at(solver.articulation(), start), standing_deviations(solver.articulation()), frame).coordinates;
-    solver.start_from(poses_.back());
-  }
-
-  /// At rest, the root as in `state`.
-  SkeletonState rest_at(const Articulation& articulation, const SkeletonState& state) const {
-    std::vector<double> coordinates = base_.rest();
-    for (const JointAxis& axis : base_.segments.front().joint.axes) {
-      if (axis.coordinate) coordinates[static_cast<std::size_t>(*axis.coordinate)] = state.coordinates[static_cast<std::size_t>(*axis.coordinate)];
-    }
-    return articulation.state_of(coordinates);
-  }
-
-  /// Of each degree of freedom; 0 of the root's.
-  std::vector<double> standing_deviations(const Articulation& articulation) const {
-    std::vector<bool> of_root(base_.coordinates.size(), false);
-    for (const JointAxis& axis : base_.segments.front().joint.axes) {
-      if (axis.coordinate) of_root[static_cast<std::size_t>(*axis.coordinate)] = true;
-    }
-    std::vector<double> deviations;
-    for (const Articulation::Dof& dof : articulation.dof()) {
-      const bool root = dof.coordinate ? of_root[static_cast<std::size_t>(*dof.coordinate)]
-                                       : articulation.balls()[static_cast<std::size_t>(dof.ball)].segment == 0;
-      deviations.push_back(root || !dof.rotations ? 0 : options_.standing_sigma_rad);
-    }
-    return deviations;
   }
 
   /// The one scale of the whole person, by golden section: poses are solved again for each.
@@ -219,7 +180,8 @@ class Calibrator {
       const bool scale = u < scales;
       const double now = scale ? group_scale_[static_cast<std::size_t>(u / 3)][u % 3]
                                : offsets_[static_cast<std::size_t>((u - scales) / 3)][(u - scales) % 3];
-      const double sigma = scale ? 0 : offset_sigma(static_cast<std::size_t>((u - scales) / 3)), weight = scale ? of_scale : 1 / (sigma * sigma);
+      const double sigma = scale ? 0 : offset_sigma(static_cast<std::size_t>((u - scales) / 3)),
+                   weight = scale ? of_scale : 1 / (sigma * sigma);
       all.information(u, u) += weight;
       all.gradient[u] += weight * ((scale ? centre_[u] : 0) - now);
     }
@@ -233,7 +195,8 @@ class Calibrator {
     for (const auto& [left, right] : twins_) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const double mirror = axis == across_ ? -1 : 1;
-        const Eigen::Index a = scales + 3 * static_cast<Eigen::Index>(left) + axis, b = scales + 3 * static_cast<Eigen::Index>(right) + axis;
+        const Eigen::Index a = scales + 3 * static_cast<Eigen::Index>(left) + axis,
+                           b = scales + 3 * static_cast<Eigen::Index>(right) + axis;
         const double apart = offsets_[left][axis] - mirror * offsets_[right][axis];
         all.information(a, a) += weight;
         all.information(b, b) += weight;
@@ -265,7 +228,8 @@ class Calibrator {
     const double prior = options_.scale_sigma * options_.scale_sigma;
     for (std::size_t j = 0; j < offsets_.size(); ++j) {
       const Eigen::Index at = 3 * std::ssize(group_scale_) + 3 * static_cast<Eigen::Index>(j);
-      if (covariance.diagonal().segment<3>(at).maxCoeff() > 0.5 * offset_sigma(j) * offset_sigma(j)) markers.push_back(base_.markers[j].label);
+      if (covariance.diagonal().segment<3>(at).maxCoeff() > 0.5 * offset_sigma(j) * offset_sigma(j))
+        markers.push_back(base_.markers[j].label);
     }
     std::vector<std::string> names;
     for (std::size_t s = 0; s < base_.segments.size(); ++s) {
@@ -308,7 +272,6 @@ class Calibrator {
     Eigen::MatrixXd e = Eigen::MatrixXd::Zero(n, gradient.size());
     PoseEquations own_pose{.information = Eigen::MatrixXd::Identity(n, n), .gradient = Eigen::VectorXd::Zero(n)};
     solver.add_limits(state, own_pose);
-    if (frame < standing_) add_standing(articulation, state, own_pose);
     Eigen::MatrixXd& h = own_pose.information;
     Eigen::VectorXd& b = own_pose.gradient;
     for (std::size_t j = 0; j < detected.size(); ++j) {
@@ -333,27 +296,14 @@ class Calibrator {
     gradient.noalias() -= e.transpose() * pose_solver.solve(b);
   }
 
-  void add_standing(const Articulation& articulation, const SkeletonState& state, PoseEquations& equations) const {
-    Eigen::VectorXd back(articulation.dofs());
-    articulation.difference(state, rest_at(articulation, state), back);
-    const std::vector<double> deviations = standing_deviations(articulation);
-    for (Eigen::Index d = 0; d < back.size(); ++d) {
-      const double deviation = deviations[static_cast<std::size_t>(d)];
-      if (deviation == 0) continue;
-      equations.information(d, d) += 1 / (deviation * deviation);
-      equations.gradient[d] += back[d] / (deviation * deviation);
-    }
-  }
-
   Skeleton base_;
   CalibrateOptions options_;
   std::vector<const ObservedMarkers*> frames_;
   std::vector<int> group_of_;
   std::vector<Vector<3>> group_scale_, offsets_;
-  std::vector<double> given_weights_;                        // of the markers, if theirs depend on how loose they are
+  std::vector<double> given_weights_;                       // of the markers, if theirs depend on how loose they are
   std::vector<std::pair<std::size_t, std::size_t>> twins_;  // left, right
   Eigen::Index across_ = 2;
-  std::size_t standing_ = 0;  // the first frames are of a person who stands
   Eigen::VectorXd centre_;
   Skeleton now_;
   std::vector<std::vector<double>> poses_;
@@ -385,9 +335,8 @@ Skeleton scaled(const Skeleton& skeleton, std::span<const Vector<3>> scales) {
   return result;
 }
 
-Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options,
-                      std::span<const ObservedMarkers> standing) {
-  return Calibrator(skeleton, frames, options, standing).run();
+Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options) {
+  return Calibrator(skeleton, frames, options).run();
 }
 
 }  // namespace marey::solve::skeleton

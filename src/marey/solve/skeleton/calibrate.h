@@ -21,13 +21,12 @@ struct CalibrateOptions {
   double marker_sigma_m = 0.005;
   double scale_sigma = 0.05;     ///< of a segment's scale along one of its axes, against the person's; 0: scales stay
   double offset_sigma_m = 0.01;  ///< of a marker's place on its segment
-  /// Of each marker, in place of `offset_sigma_m`: bony landmarks sit where the skeleton has them, those of a cluster anywhere. Empty:
-  /// all alike. A loose marker counts less for the person's size and the first poses.
+  /// Of each marker, in place of `offset_sigma_m`: bony landmarks sit where the skeleton has them, those of a cluster anywhere.
+  /// Empty: all alike. A loose marker counts less for the person's size and the first poses.
   std::vector<double> offset_sigmas_m = {};
-  double tie_sigma_m = 0;        ///< of a left marker's place against its right twin's mirror image; 0: they are free
-  double standing_sigma_rad = 0.09;  ///< unswept; of a joint's angles from its rest, in frames of a standing person
-  bool overall = true;           ///< first finds the person's size as a whole
-  int frames = 60;               ///< this many of those given, evenly
+  double tie_sigma_m = 0;  ///< of a left marker's place against its right twin's mirror image; 0: they are free
+  bool overall = true;     ///< first finds the person's size as a whole
+  int frames = 60;         ///< this many of those given, evenly
   int rounds = 8;
 };
 
@@ -36,17 +35,15 @@ using ObservedMarkers = std::vector<std::optional<Vector<3>>>;  ///< one place f
 struct Calibration {
   Skeleton skeleton;
   double overall_scale = 1;
-  double rms_before_m = 0, rms_after_m = 0;  ///< of the frames used
-  std::vector<Vector<3>> scales;             ///< by segment
-  std::vector<double> marker_moved_m;        ///< by marker
-  std::vector<std::string> undetermined;     ///< segments whose scale the frames do not determine: less than the prior said
+  double rms_before_m = 0, rms_after_m = 0;       ///< of the frames used
+  std::vector<Vector<3>> scales;                  ///< by segment
+  std::vector<double> marker_moved_m;             ///< by marker
+  std::vector<std::string> undetermined;          ///< segments whose scale the frames do not determine: less than the prior said
   std::vector<std::string> undetermined_markers;  ///< markers whose place they do not determine along some axis, likewise
 };
 
-/// `standing` are frames of the person standing still, near the skeleton's rest. Throws Error if there are no frames, or they do not
-/// show the skeleton.
-Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options = {},
-                      std::span<const ObservedMarkers> standing = {});
+/// Throws Error if there are no frames, or they do not show the skeleton.
+Calibration calibrate(const Skeleton& skeleton, std::span<const ObservedMarkers> frames, const CalibrateOptions& options = {});
 
 /// The skeleton with its segments larger along their own axes: joints that hang on them, markers, and shifts of the joints that
 /// hang on them.

@@ -12,16 +12,17 @@ namespace {
 struct MovingFrame {
   Matrix<3> rotation = Matrix<3>::Identity();
   Vector<3> origin = Vector<3>::Zero(), velocity = Vector<3>::Zero(), acceleration = Vector<3>::Zero();
-  Vector<3> turning = Vector<3>::Zero(), turning_change = Vector<3>::Zero();  // rad/s, rad/s²
+  Vector<3> angular_velocity = Vector<3>::Zero(), angular_acceleration = Vector<3>::Zero();  // rad/s, rad/s²
 
   /// The acceleration of a point that the frame carries, `from_origin` in the world.
   Vector<3> acceleration_at(const Vector<3>& from_origin) const {
-    return acceleration + turning_change.cross(from_origin) + turning.cross(turning.cross(from_origin));
+    return acceleration + angular_acceleration.cross(from_origin) + angular_velocity.cross(angular_velocity.cross(from_origin));
   }
   /// Its origin goes along `shift` (world), which grows with `rate` and `change` (world, seen from the frame).
-  void shift_origin(const Vector<3>& shift, const Vector<3>& rate = Vector<3>::Zero(), const Vector<3>& change = Vector<3>::Zero()) {
-    acceleration = acceleration_at(shift) + 2 * turning.cross(rate) + change;
-    velocity += turning.cross(shift) + rate;
+  void shift_origin(const Vector<3>& shift, const Vector<3>& rate = Vector<3>::Zero(),
+                    const Vector<3>& change = Vector<3>::Zero()) {
+    acceleration = acceleration_at(shift) + 2 * angular_velocity.cross(rate) + change;
+    velocity += angular_velocity.cross(shift) + rate;
     origin += shift;
   }
   void move(const Rigid3& fixed) {
@@ -55,8 +56,8 @@ void move_along(const JointAxis& axis, const CoordinateMotion& motion, MovingFra
     return;
   }
   frame.rotation = frame.rotation * Eigen::AngleAxisd(amount, axis.axis).toRotationMatrix();
-  frame.turning_change += direction * change + frame.turning.cross(direction * rate);
-  frame.turning += direction * rate;
+  frame.angular_acceleration += direction * change + frame.angular_velocity.cross(direction * rate);
+  frame.angular_velocity += direction * rate;
 }
 
 /// Force and moment about the world's origin.
@@ -74,7 +75,7 @@ Wrench moving_wrench(const MovingFrame& frame, const SegmentMass& mass, double g
   const Matrix<3> inertia = frame.rotation * mass.inertia * frame.rotation.transpose();
   Wrench wrench;
   wrench.add(mass.mass_kg * (frame.acceleration_at(centre) + Vector<3>(0, 0, gravity)), frame.origin + centre);
-  wrench.moment += inertia * frame.turning_change + frame.turning.cross(inertia * frame.turning);
+  wrench.moment += inertia * frame.angular_acceleration + frame.angular_velocity.cross(inertia * frame.angular_velocity);
   return wrench;
 }
 
@@ -106,8 +107,8 @@ std::vector<double> inverse_dynamics(const Skeleton& skeleton, std::span<const S
     const Wrench& wrench = wrenches[s];
     for (const ElementaryAxis& axis : axes[s]) {
       if (!axis.coordinate) continue;
-      const double along = axis.rotations ? axis.direction.dot(wrench.moment - axis.point.cross(wrench.force))
-                                          : axis.direction.dot(wrench.force);
+      const double along =
+          axis.rotations ? axis.direction.dot(wrench.moment - axis.point.cross(wrench.force)) : axis.direction.dot(wrench.force);
       forces[static_cast<std::size_t>(*axis.coordinate)] += axis.slope * along;
     }
     if (!skeleton.segments[s].parent) continue;

@@ -37,7 +37,7 @@ class InverseDynamicsTest : public testing::Test {
 
   double number(double scale = 1) { return scale * std::uniform_real_distribution<double>(-1, 1)(random_); }
   Vector<3> vector(double scale = 1) { return {number(scale), number(scale), number(scale)}; }
-  Rigid3 place() {
+  Rigid3 random_pose() {
     const Vector<3> turned = vector();
     return {Eigen::AngleAxisd(turned.norm(), turned.normalized()).toRotationMatrix(), vector(0.3)};
   }
@@ -46,10 +46,11 @@ class InverseDynamicsTest : public testing::Test {
   void add(std::optional<int> parent, std::vector<JointAxis> axes) {
     Segment segment;
     segment.parent = parent;
-    segment.joint = {place(), std::move(axes), place()};
+    segment.joint = {random_pose(), std::move(axes), random_pose()};
     skeleton_.segments.push_back(segment);
     SegmentMass mass{.mass_kg = 2 + number(), .centre = vector(0.2)};
-    const Matrix<3> root = Matrix<3>::Identity() * 0.3 + Matrix<3>(0.1 * Matrix<3>::NullaryExpr([&](Eigen::Index) { return number(); }));
+    const Matrix<3> root =
+        Matrix<3>::Identity() * 0.3 + Matrix<3>(0.1 * Matrix<3>::NullaryExpr([&](Eigen::Index) { return number(); }));
     mass.inertia = root * root.transpose();
     masses_.push_back(mass);
   }
@@ -88,9 +89,9 @@ struct SlowEnergy {
     for (std::size_t s = 0; s < now.size(); ++s) {
       const Vector<3> velocity = (b[s] * masses[s].centre - a[s] * masses[s].centre) / (2 * kStep);
       const Matrix<3> spin = (b[s].rotation - a[s].rotation) / (2 * kStep) * now[s].rotation.transpose();
-      const Vector<3> turning(spin(2, 1), spin(0, 2), spin(1, 0));
+      const Vector<3> angular_velocity(spin(2, 1), spin(0, 2), spin(1, 0));
       const Matrix<3> inertia = now[s].rotation * masses[s].inertia * now[s].rotation.transpose();
-      sum += 0.5 * masses[s].mass_kg * velocity.squaredNorm() + 0.5 * turning.dot(inertia * turning);
+      sum += 0.5 * masses[s].mass_kg * velocity.squaredNorm() + 0.5 * angular_velocity.dot(inertia * angular_velocity);
     }
     return sum;
   }
@@ -130,7 +131,8 @@ TEST_F(InverseDynamicsTest, AgreesWithLagrangeByDifferences) {
   for (int run = 0; run < 5; ++run) {
     const CoordinateMotion motion{random_row(1), random_row(2), random_row(5)};
     const std::vector<double> fast = inverse_dynamics(skeleton_, masses_, motion, {}), slow = slow_forces(energy, motion);
-    for (std::size_t c = 0; c < fast.size(); ++c) EXPECT_NEAR(fast[c], slow[c], 2e-4 * (10 + std::abs(slow[c]))) << c << ", seed " << kSeed;
+    for (std::size_t c = 0; c < fast.size(); ++c)
+      EXPECT_NEAR(fast[c], slow[c], 2e-4 * (10 + std::abs(slow[c]))) << c << ", seed " << kSeed;
   }
 }
 
@@ -148,8 +150,8 @@ TEST_F(InverseDynamicsTest, LoadsActByTheWorkTheyDo) {
     more[c] += kStep;
     const Rigid3 a = pose_of(skeleton_, less)[3], b = pose_of(skeleton_, more)[3], now = pose_of(skeleton_, motion.value)[3];
     const Matrix<3> spin = (b.rotation - a.rotation) / (2 * kStep) * now.rotation.transpose();
-    const double work = force.dot(b * in_segment - a * in_segment) / (2 * kStep) +
-                        moment.dot(Vector<3>(spin(2, 1), spin(0, 2), spin(1, 0)));
+    const double work =
+        force.dot(b * in_segment - a * in_segment) / (2 * kStep) + moment.dot(Vector<3>(spin(2, 1), spin(0, 2), spin(1, 0)));
     EXPECT_NEAR(without[c] - with[c], work, 1e-5 * (1 + std::abs(work))) << c << ", seed " << kSeed;
   }
 }

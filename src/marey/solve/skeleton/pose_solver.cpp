@@ -114,20 +114,6 @@ SkeletonState PoseSolver::solve_near(const SkeletonState& start, Detected detect
   return state_;
 }
 
-SkeletonState PoseSolver::solve_towards(const SkeletonState& start, const SkeletonState& near, std::span<const double> deviations,
-                                        Detected detected) {
-  state_ = start;
-  predicted_ = near;
-  set_weak_prior();
-  for (int d = 0; d < articulation_.dofs(); ++d) {
-    const double deviation = deviations[static_cast<std::size_t>(d)];
-    if (deviation > 0) prior_information_(d, d) = 1 / (deviation * deviation);
-  }
-  minimise(detected, options_.max_iterations);
-  articulation_.take_angles(state_);
-  return state_;
-}
-
 /// Where the pose is heading.
 void PoseSolver::predict(double seconds, Detected detected) {
   const double slower = std::exp(-seconds / options_.decay_s);

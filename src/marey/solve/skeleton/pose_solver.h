@@ -104,9 +104,6 @@ class PoseSolver {
   const Eigen::MatrixXd& openness(const SkeletonState& state, std::span<const std::optional<Vector<3>>> detected);
   /// From a pose to where the markers are; what they leave open stays. Forgets the motion.
   SkeletonState solve_near(const SkeletonState& start, std::span<const std::optional<Vector<3>>> detected);
-  /// A frame's pose that is also near another: of each degree of freedom its deviation from there, 0 if it has none. Forgets the motion.
-  SkeletonState solve_towards(const SkeletonState& start, const SkeletonState& near, std::span<const double> deviations,
-                              std::span<const std::optional<Vector<3>>> detected);
   /// Adds what pulls coordinates back that are beyond their limits.
   void add_limits(const SkeletonState& state, PoseEquations& equations) const;
 
