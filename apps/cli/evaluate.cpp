@@ -15,6 +15,7 @@
 
 #include "command_line.h"
 #include "commands.h"
+#include "evaluate_game_state.h"
 #include "evaluate_places.h"
 #include "json_value.h"
 #include "run_hooks.h"
@@ -157,6 +158,8 @@ void evaluate_mask_files(const EvaluateOptions& options) {
 
 void run(const EvaluateOptions& options) {
   if (options.truth == "-" && options.tracks == "-") throw WrongUsage("only one of --truth and --tracks can be standard input");
+  if (!options.distance && are_game_states(options.truth, options.tracks))
+    return evaluate_game_states(options.truth, options.tracks, options.json, options.quiet);
   if (!options.distance && format::tracks::has_masks(options.truth) && format::tracks::has_masks(options.tracks)) {
     return evaluate_mask_files(options);
   }
@@ -180,9 +183,11 @@ void add_evaluate(Command& program) {
   auto options = std::make_shared<EvaluateOptions>();
   Command command = program.subcommand("evaluate", "Evaluate tracks against the truth");
   command
-      .input_file("--truth", options->truth,
-                  "the truth: MOTChallenge text, or any file of tracks in an image (with --distance, of people on the ground or of "
-                  "markers in space), or masks (MOTS text, COCO instances: then masks are evaluated); - for standard input")
+      .input_file(
+          "--truth", options->truth,
+          "the truth: MOTChallenge text, or any file of tracks in an image (with --distance, of people on the ground or of "
+          "markers in space), or masks (MOTS text, COCO instances: then masks are evaluated), or a game state of SoccerNet or a "
+          "folder of them (then GS-HOTA); - for standard input")
       .required();
   command.input_file("--tracks", options->tracks, "the tracks to evaluate, likewise; - for standard input").required();
   const Option iou = command.number("--iou", options->iou, "overlap", above(0, 1), "(IoU) from which a box counts as found");

@@ -56,7 +56,7 @@ Evaluated assess(std::span<const Item> truth, std::span<const Item> tracks, doub
 
   result.clear = clear.scores();
   evaluate_identities(pairs, evaluated);
-  result.hota = hota.scores();
+  result.hota = hota.counts().scores();
   evaluated.objects = clear.objects();
   return evaluated;
 }

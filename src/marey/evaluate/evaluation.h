@@ -37,9 +37,11 @@ struct IdentityScores {
 /// Luiten et al. 2021, as trackeval counts: means over the overlaps 0.05, 0.10, ..., 0.95 that a match must have.
 struct HotaScores {
   double hota = 0;
-  double detection = 0;     ///< DetA
-  double association = 0;   ///< AssA
-  double localisation = 1;  ///< LocA; 1 where nothing matches, as trackeval has it
+  double detection = 0;                                      ///< DetA
+  double association = 0;                                    ///< AssA
+  double detection_recall = 0, detection_precision = 0;      ///< DetRe, DetPr
+  double association_recall = 0, association_precision = 0;  ///< AssRe, AssPr
+  double localisation = 1;                                   ///< LocA; 1 where nothing matches, as trackeval has it
 };
 
 /// Everything `marey evaluate` reports.

@@ -76,31 +76,59 @@ void HotaCounter::match(const FramePairs& frame) {
   }
 }
 
-HotaScores HotaCounter::scores() const {
-  const double true_boxes = std::accumulate(object_frames_.begin(), object_frames_.end(), 0.0);
-  const double track_boxes = std::accumulate(track_frames_.begin(), track_frames_.end(), 0.0);
-  HotaScores scores;
-  if (true_boxes == 0 || track_boxes == 0) return scores;
-  scores.localisation = 0;
+HotaCounts HotaCounter::counts() const {
+  HotaCounts counts;
+  counts.true_boxes = std::accumulate(object_frames_.begin(), object_frames_.end(), 0.0);
+  counts.track_boxes = std::accumulate(track_frames_.begin(), track_frames_.end(), 0.0);
   std::vector<std::int64_t> matched(pairs_.pairs().size(), 0);
   double overlap = 0;
   for (int level = hota_levels; level > 0; --level) {
+    HotaLevel& at = counts.levels[static_cast<std::size_t>(level - 1)];
     overlap += overlap_at_level_[level];
-    double matches = 0;
-    double association = 0;
+    at.overlap = overlap;
     for (std::size_t i = 0; i < matched.size(); ++i) {
       const IdPair& pair = pairs_.pairs()[i];
       matched[i] += pair.at_level[level];
       const auto count = static_cast<double>(matched[i]);
-      matches += count;
-      association += count * count / std::max(1.0, object_frames_[pair.object] + track_frames_[pair.track] - count);
+      const double in_truth = object_frames_[pair.object], in_tracks = track_frames_[pair.track];
+      at.matches += count;
+      at.association += count * count / std::max(1.0, in_truth + in_tracks - count);
+      at.association_recall += count * count / std::max(1.0, in_truth);
+      at.association_precision += count * count / std::max(1.0, in_tracks);
     }
-    association /= std::max(1.0, matches);
-    const double detection = matches / std::max(1.0, true_boxes + track_boxes - matches);
+  }
+  return counts;
+}
+
+HotaCounts& HotaCounts::operator+=(const HotaCounts& other) {
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    levels[i].matches += other.levels[i].matches;
+    levels[i].association += other.levels[i].association;
+    levels[i].association_recall += other.levels[i].association_recall;
+    levels[i].association_precision += other.levels[i].association_precision;
+    levels[i].overlap += other.levels[i].overlap;
+  }
+  true_boxes += other.true_boxes;
+  track_boxes += other.track_boxes;
+  return *this;
+}
+
+HotaScores HotaCounts::scores() const {
+  HotaScores scores;
+  if (true_boxes == 0 || track_boxes == 0) return scores;
+  scores.localisation = 0;
+  for (const HotaLevel& level : levels) {
+    const double found = std::max(1.0, level.matches);
+    const double detection = level.matches / std::max(1.0, true_boxes + track_boxes - level.matches);
+    const double association = level.association / found;
     scores.detection += detection / hota_levels;
+    scores.detection_recall += level.matches / true_boxes / hota_levels;
+    scores.detection_precision += level.matches / track_boxes / hota_levels;
     scores.association += association / hota_levels;
+    scores.association_recall += level.association_recall / found / hota_levels;
+    scores.association_precision += level.association_precision / found / hota_levels;
     scores.hota += std::sqrt(detection * association) / hota_levels;
-    scores.localisation += std::max(1e-10, overlap) / std::max(1e-10, matches) / hota_levels;
+    scores.localisation += std::max(1e-10, level.overlap) / std::max(1e-10, level.matches) / hota_levels;
   }
   return scores;
 }

@@ -10,6 +10,24 @@
 
 namespace marey::evaluate {
 
+/// HOTA's counts at one overlap. Those of several recordings are added, as trackeval combines sequences.
+struct HotaLevel {
+  double matches = 0;
+  double association = 0;         ///< sum over the matches of their pair's AssA
+  double association_recall = 0;  ///< likewise
+  double association_precision = 0;
+  double overlap = 0;  ///< sum over the matches
+};
+
+/// Everything that HOTA is made of.
+struct HotaCounts {
+  std::array<HotaLevel, hota_levels> levels{};
+  double true_boxes = 0, track_boxes = 0;
+
+  HotaCounts& operator+=(const HotaCounts& other);
+  HotaScores scores() const;
+};
+
 /// Counts HOTA in two passes: `see` every frame, `align` once, `match` every frame.
 class HotaCounter {
  public:
@@ -19,7 +37,7 @@ class HotaCounter {
   void observe_frame(const FramePairs& frame);
   void align();
   void match(const FramePairs& frame);
-  HotaScores scores() const;
+  HotaCounts counts() const;
 
  private:
   PairTable& pairs_;
