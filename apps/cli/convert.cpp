@@ -13,6 +13,7 @@
 #include "marey/core/error.h"
 #include "marey/edit/request.h"
 #include "marey/format/register.h"
+#include "marey/format/skeleton/rig_names.h"
 
 #include "command_line.h"
 #include "commands.h"
@@ -81,6 +82,10 @@ void add_reading_options(Command& command, ConvertCommand& options) {
   command.number("--amc-rate", how.read.amc_rate_hz, "Hz", kRates, "frames a second of an AMC file, which does not specify");
   command.input_file("--metadata", how.read.metadata,
                      "of TRACAB, EPTS or DFL, and an AMC file's .asf, where it is not beside A under a like name");
+  command
+      .text("--rig-names", how.rig_names,
+            fmt::format("whose bones B has (.bvh, .glb): {}; omitted: the skeleton's own", format::skeleton::rig_scheme_names()))
+      .check([](const std::string& name) { format::skeleton::rig_scheme(name); });
   command.group("People on the ground");
   command.text("--size", options.size, "of the pitch, LENGTHxWIDTH in m, where A does not specify").check(parse_pitch_size);
   command.number("--rate", how.read.rate_hz, "Hz", kRates, "frames a second, where A does not specify");
@@ -91,7 +96,11 @@ void add_reading_options(Command& command, ConvertCommand& options) {
   const Option y_down =
       command.flag("--y-down", how.frame.y_down, "y of CSV and MOT grows downwards, seen from above with x to the right");
   command.flag("--centred", how.frame.centred, "CSV and MOT count from the middle of the pitch, not from a corner");
-  command.input_file("--rig", how.rig, "rig whose ground_from_world says whether --y-down is so").excludes(y_down);
+  command
+      .input_file(
+          "--rig", how.rig,
+          "rig whose ground_from_world says whether --y-down is so; of points in space: the cameras of a scene for Blender (.py)")
+      .excludes(y_down);
   command.group("");
 }
 

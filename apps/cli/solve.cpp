@@ -26,7 +26,7 @@ namespace marey::cli {
 namespace {
 
 struct SolveCommand {
-  std::string recording, skeleton, names;
+  std::string recording, skeleton;
   std::vector<std::string> outputs;
   pipeline::bodies::SolveOptions options;
   bool json = false;
@@ -146,7 +146,6 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
 }
 
 void run(SolveCommand& command) {
-  if (!command.names.empty()) command.options.bvh.names = format::skeleton::bvh_names(command.names);
   const SolveSummary summary = with_progress(command.quiet, [&](const Hooks& hooks) {
     return pipeline::bodies::solve_skeleton(command.recording, command.skeleton, command.outputs, command.options, hooks);
   });
@@ -175,7 +174,7 @@ void require_one_skeleton(const SolveCommand& command) {
 void add_file_options(Command& command, SolveCommand& options) {
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
-  constexpr std::array<std::pair<const char*, format::UpAxis>, 2> kBvhAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
+  constexpr std::array<std::pair<const char*, format::UpAxis>, 2> kReadAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   constexpr std::array<std::pair<const char*, const char*>, 6> kOrders{
       {{"ZXY", "ZXY"}, {"ZYX", "ZYX"}, {"XYZ", "XYZ"}, {"XZY", "XZY"}, {"YXZ", "YXZ"}, {"YZX", "YZX"}}};
   command.choice("--up", options.options.up, kAxes,
@@ -183,13 +182,19 @@ void add_file_options(Command& command, SolveCommand& options) {
   command.group("BVH");
   command.number("--unit", options.options.read_skeleton.unit_m, "m", above(0, 1000),
                  "one unit of a BVH skeleton that is read, in metres: 0.01 is cm, 0.0254 inches");
-  command.choice("--skeleton-up", options.options.read_skeleton.up, kBvhAxes, "the axis that is up in a BVH, ASF or VSK skeleton");
-  command.number("--bvh-unit", options.options.bvh.unit_m, "m", above(0, 1000), "one unit of a BVH file that is written");
-  command.choice("--bvh-up", options.options.bvh.up, kBvhAxes, "the axis that is up in it");
-  command.choice("--bvh-order", options.options.bvh.order, kOrders, "of its turns");
-  command.text("--bvh-names", options.names, "what its joints are called: mixamo or motionbuilder; omitted: as in the skeleton")
-      .check([](const std::string& name) { format::skeleton::bvh_names(name); });
+  command.choice("--skeleton-up", options.options.read_skeleton.up, kReadAxes, "the axis that is up in a BVH, ASF or VSK skeleton");
+  format::skeleton::BoneOutput& bones = options.options.bones;
+  command.number("--bvh-unit", bones.bvh_unit_m, "m", above(0, 1000),
+                 "one unit of a BVH file that is written; omitted: 0.01, or as --rig-names has it");
+  command.choice("--bvh-up", bones.bvh_up, kAxes, "the axis that is up in it; omitted: y, or as --rig-names has it");
+  command.choice("--bvh-order", bones.bvh_order, kOrders, "of its turns; omitted: ZXY, or as --rig-names has it");
   command.group("");
+  command
+      .text("--rig-names", bones.rig_names,
+            fmt::format("whose bones .bvh and .glb have (names, rest pose, BVH's unit, axis and turns): {}; omitted: the "
+                        "skeleton's own",
+                        format::skeleton::rig_scheme_names()))
+      .check([](const std::string& name) { format::skeleton::rig_scheme(name); });
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ struct Renamed {
 };
 constexpr Renamed kRenamed[]{{"--as-recorded", "--without-edits"},
                              {"--associate", "--association"},
+                             {"--bvh-names", "--rig-names"},
                              {"--cameras", "--soccernet-cameras"},
                              {"--contact", "--contact-shadow"},
                              {"--delay", "--lag"},

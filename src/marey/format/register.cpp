@@ -17,6 +17,7 @@
   row(format::skeleton, bvh) \
   row(format::skeleton, acclaim) \
   row(format::skeleton, glb) \
+  row(format::scene, blender) \
   row(format::bodies, poses) \
   row(format::motion, trc) \
   row(format::motion, motive) \

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "marey/core/sink.h"
 #include "marey/format/format.h"
@@ -13,14 +10,10 @@ namespace marey::format::skeleton {
 
 /// How a BVH file is to be written: there are many dialects.
 struct BvhDialect {
-  double unit_m = 0.01;                                   ///< what one unit of the file is
-  UpAxis up = UpAxis::y;                                  ///< (x, y, z) with z up becomes (x, z, −y)
-  std::string order = "ZXY";                              ///< of the turns: each letter once
-  std::map<std::string, std::string, std::less<>> names;  ///< what segments are called, where not as they are
+  double unit_m = 0.01;       ///< what one unit of the file is
+  UpAxis up = UpAxis::y;      ///< (x, y, z) with z up becomes (x, z, −y)
+  std::string order = "ZXY";  ///< of the turns: each letter once
 };
-
-/// Names of the segments of Marey's human skeleton in other programs: "mixamo", "motionbuilder". Throws Error for others.
-std::map<std::string, std::string, std::less<>> bvh_names(const std::string& program);
 
 /// Writes the bodies of a recording that form a skeleton. Each angle follows on from the one before it: what turns beyond 180° does
 /// not jump. Joints that shift by more than 0.1 mm get position channels. Needs all of it, so that memory grows with the length.

@@ -125,9 +125,8 @@ class BvhSink final : public Sink {
                        [&](const Vector<3>& location) { return (location - joint.offset).norm() * dialect_.unit_m > kShiftM; });
   }
 
-  std::string shown_name(const Body& body) const {
-    const auto mapped = dialect_.names.find(body.label);
-    std::string name = plain_text(mapped != dialect_.names.end() ? mapped->second : body.label);
+  static std::string shown_name(const Body& body) {
+    std::string name = plain_text(body.label);
     std::replace(name.begin(), name.end(), ' ', '_');
     std::replace_if(name.begin(), name.end(), [](char c) { return c == '{' || c == '}'; }, '_');
     return name.empty() ? fmt::format("joint{}", number(body.id)) : name;
@@ -204,48 +203,6 @@ std::unique_ptr<Sink> create_bvh(const std::string& path, const BvhDialect& dial
   std::sort(sorted.begin(), sorted.end());
   if (sorted != "XYZ") throw Error("\"{}\" is no order of turns; ZXY, ZYX, XYZ, XZY, YXZ and YZX are", dialect.order);
   return std::make_unique<BvhSink>(path, dialect);
-}
-
-std::map<std::string, std::string, std::less<>> bvh_names(const std::string& program) {
-  // Segments of our human skeleton, then MotionBuilder's (HumanIK) names; Mixamo's are the same behind "mixamorig:".
-  static const std::vector<std::pair<const char*, const char*>> kHumanIk = {{"pelvis", "Hips"},
-                                                                            {"trunk", "Spine"},
-                                                                            {"head", "Head"},
-                                                                            {"left_thigh", "LeftUpLeg"},
-                                                                            {"left_shank", "LeftLeg"},
-                                                                            {"left_foot", "LeftFoot"},
-                                                                            {"right_thigh", "RightUpLeg"},
-                                                                            {"right_shank", "RightLeg"},
-                                                                            {"right_foot", "RightFoot"},
-                                                                            {"left_clavicle", "LeftShoulder"},
-                                                                            {"left_upper_arm", "LeftArm"},
-                                                                            {"left_forearm", "LeftForeArm"},
-                                                                            {"left_hand", "LeftHand"},
-                                                                            {"right_clavicle", "RightShoulder"},
-                                                                            {"right_upper_arm", "RightArm"},
-                                                                            {"right_forearm", "RightForeArm"},
-                                                                            {"right_hand", "RightHand"},
-                                                                            // OpenSim's bodies
-                                                                            {"torso", "Spine"},
-                                                                            {"femur_l", "LeftUpLeg"},
-                                                                            {"tibia_l", "LeftLeg"},
-                                                                            {"talus_l", "LeftFoot"},
-                                                                            {"toes_l", "LeftToeBase"},
-                                                                            {"femur_r", "RightUpLeg"},
-                                                                            {"tibia_r", "RightLeg"},
-                                                                            {"talus_r", "RightFoot"},
-                                                                            {"toes_r", "RightToeBase"},
-                                                                            {"humerus_l", "LeftArm"},
-                                                                            {"ulna_l", "LeftForeArm"},
-                                                                            {"hand_l", "LeftHand"},
-                                                                            {"humerus_r", "RightArm"},
-                                                                            {"ulna_r", "RightForeArm"},
-                                                                            {"hand_r", "RightHand"}};
-  std::map<std::string, std::string, std::less<>> names;
-  if (program != "mixamo" && program != "motionbuilder")
-    throw Error("\"{}\": names are known of mixamo and motionbuilder", program);
-  for (const auto& [own, theirs] : kHumanIk) names[own] = (program == "mixamo" ? "mixamorig:" : "") + std::string(theirs);
-  return names;
 }
 
 Format bvh_format() {

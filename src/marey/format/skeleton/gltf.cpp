@@ -32,6 +32,10 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
 constexpr double kMinBoneM = 1e-3;
+constexpr std::array<std::string_view, 21> kVrmBones{
+    "hips",         "spine",        "chest",         "neck",          "head",          "leftUpperLeg",  "leftLowerLeg",
+    "leftFoot",     "leftToes",     "rightUpperLeg", "rightLowerLeg", "rightFoot",     "rightToes",     "leftShoulder",
+    "leftUpperArm", "leftLowerArm", "leftHand",      "rightShoulder", "rightUpperArm", "rightLowerArm", "rightHand"};
 
 std::string json_text(const std::string& text) {
   std::string quoted_text = "\"";
@@ -131,7 +135,8 @@ struct StickFigure {
 
 class GlbSink final : public Sink {
  public:
-  explicit GlbSink(std::string path) : path_(std::move(path)), file_from_world_(z_up_from(UpAxis::y).transpose()) {}
+  GlbSink(std::string path, bool vrm_animation)
+      : path_(std::move(path)), vrm_animation_(vrm_animation), file_from_world_(z_up_from(UpAxis::y).transpose()) {}
 
   std::string name() const override { return path_; }
 
@@ -279,21 +284,36 @@ class GlbSink final : public Sink {
                        fmt::join(channels, ","));
   }
 
+  /// Which node is which bone, as VRM animations (.vrma) say it.
+  std::string vrm_extension() const {
+    std::vector<std::string> bones;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      if (std::ranges::find(kVrmBones, joints_[i].body.label) == kVrmBones.end()) continue;
+      bones.push_back(fmt::format("{}:{{\"node\":{}}}", json_text(joints_[i].body.label), i));
+    }
+    return fmt::format(
+        ",\"extensionsUsed\":[\"VRMC_vrm_animation\"],\"extensions\":{{\"VRMC_vrm_animation\":{{\"specVersion\":\"1.0\","
+        "\"humanoid\":{{\"humanBones\":{{{}}}}}}}}}",
+        fmt::join(bones, ","));
+  }
+
   std::string describe() {
     const std::size_t armature = joints_.size();
     const std::string all_nodes = nodes(), its_mesh = mesh(), its_skin = skin(),
-                      its_animation = times_.empty() ? "" : fmt::format(",\"animations\":[{}]", animation());
+                      its_animation = times_.empty() ? "" : fmt::format(",\"animations\":[{}]", animation()),
+                      extension = vrm_animation_ ? vrm_extension() : "";
     std::string json =
         fmt::format("{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"Marey\"}},\"scene\":0,\"scenes\":[{{\"nodes\":[{},{}]}}],",
                     armature, armature + 1);
-    json += fmt::format("\"nodes\":[{},{{\"name\":\"figure\",\"mesh\":0,\"skin\":0}}],\"meshes\":[{}],\"skins\":[{}]{},", all_nodes,
-                        its_mesh, its_skin, its_animation);
+    json += fmt::format("\"nodes\":[{},{{\"name\":\"figure\",\"mesh\":0,\"skin\":0}}],\"meshes\":[{}],\"skins\":[{}]{}{},",
+                        all_nodes, its_mesh, its_skin, its_animation, extension);
     json += fmt::format("\"accessors\":[{}],\"bufferViews\":[{}],", fmt::join(buffer_.accessors(), ","),
                         fmt::join(buffer_.views(), ","));
     return json + fmt::format("\"buffers\":[{{\"byteLength\":{}}}]}}", buffer_.size());
   }
 
   std::string path_;
+  bool vrm_animation_ = false;
   Matrix<3> file_from_world_;
   std::vector<GltfJoint> joints_;
   std::vector<float> times_;
@@ -303,8 +323,8 @@ class GlbSink final : public Sink {
 
 }  // namespace
 
-std::unique_ptr<Sink> create_glb(const std::string& path) {
-  return std::make_unique<GlbSink>(path);
+std::unique_ptr<Sink> create_glb(const std::string& path, bool vrm_animation) {
+  return std::make_unique<GlbSink>(path, vrm_animation);
 }
 
 namespace {

@@ -158,7 +158,7 @@ TEST(Bvh, IsReadAgainAsItWasWritten) {
       SCOPED_TRACE(std::string(name) + " as " + order);
       const SkeletonFile file = read_skeleton(folder + name);
       const std::string path = here / "again.bvh";
-      write_again(file, *create_bvh(path, {.unit_m = 0.01, .up = UpAxis::y, .order = order, .names = {}}));
+      write_again(file, *create_bvh(path, {.unit_m = 0.01, .up = UpAxis::y, .order = order}));
       const SkeletonFile again = read_skeleton(path);
       ASSERT_EQ(again.motion->rows.size(), file.motion->rows.size());
       EXPECT_NEAR(again.motion->rate_hz, file.motion->rate_hz, 1e-3);

@@ -177,8 +177,8 @@ std::optional<std::string> write_output(const std::string& path, const std::stri
     format::skeleton::write_motion_table(path, solved.skeleton, solved.motion);
     return std::nullopt;
   }
-  if (ends_with_any(path, {".glb", ".bvh"})) {
-    const auto sink = path.ends_with(".glb") ? format::skeleton::create_glb(path) : format::skeleton::create_bvh(path, options.bvh);
+  if (format::skeleton::is_bone_file(path)) {
+    const auto sink = format::skeleton::create_bones(path, options.bones);
     replay_with_bodies(recording, solved, options, *sink);
     return std::nullopt;
   }

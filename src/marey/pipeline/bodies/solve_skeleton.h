@@ -10,7 +10,7 @@
 #include "marey/core/hooks.h"
 #include "marey/core/skeleton.h"
 #include "marey/format/format.h"
-#include "marey/format/skeleton/bvh.h"
+#include "marey/format/skeleton/rig_names.h"
 #include "marey/format/skeleton/skeleton_file.h"
 #include "marey/pipeline/bodies/human_skeleton.h"
 #include "marey/solve/skeleton/pose_solver.h"
@@ -21,8 +21,8 @@ struct SolveOptions {
   format::skeleton::SkeletonOptions read_skeleton;
   std::optional<format::UpAxis>
       up;  ///< of the recording; nothing: y where a TRC file meets an OpenSim model, else as it says, else z
-  std::vector<std::string> exclude;  ///< labels of markers that are not used
-  format::skeleton::BvhDialect bvh;
+  std::vector<std::string> exclude;    ///< labels of markers that are not used
+  format::skeleton::BoneOutput bones;  ///< of .bvh and .glb
   solve::skeleton::PoseOptions pose;
   bool smooth = false;  ///< a second pass over the whole motion
   std::string

@@ -12,6 +12,8 @@
 #include "marey/core/ground_transform.h"
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
+#include "marey/format/rig/rig_file.h"
+#include "marey/format/skeleton/rig_names.h"
 #include "marey/pipeline/take/ground_orientation.h"
 #include "marey/pipeline/take/part_of_recording.h"
 
@@ -169,15 +171,19 @@ ConvertSummary convert_stream(const std::string& from, const std::string& to, co
     if (options.frames) require_frames(plan.last_frame - plan.first_frame + 1, *options.frames, from);
   }
   plan.up = to_up;
+  if (!options.rig.empty()) plan.info.header.rig = format::rig::read_rig(options.rig);
   if (options.labelled) {
     std::erase_if(plan.info.tracks, [](const TrackName& track) { return track.label.empty(); });
     if (plan.info.tracks.empty()) throw Error("{}: none of its tracks has a label; without --labelled-only all are written", from);
   }
+  if (!options.rig_names.empty() && !format::skeleton::is_bone_file(to))
+    throw format::WrongFormat("{}: --rig-names is for bones: .bvh and .glb", to);
   if (auto message_text = format::poses_lost(plan.info.header, to, out)) summary.warnings.push_back(std::move(*message_text));
   if (!options.analog.empty()) plan.info.next_to = analog_of(options.analog, from, to, out, plan, summary.warnings);
   if (auto message_text = format::next_to_lost(plan.info.next_to, to, out)) summary.warnings.push_back(std::move(*message_text));
   const auto reader = opened(from, in, how, options.frames);
-  const auto sink = format::create_recording(to, out, plan);
+  const auto sink = options.rig_names.empty() ? format::create_recording(to, out, plan)
+                                              : format::skeleton::create_bones(to, {.rig_names = options.rig_names});
   sink->begin(plan.info.header);
   while (auto instant = reader->next()) {
     if (options.labelled) exclude_others(*instant, plan.info.tracks);

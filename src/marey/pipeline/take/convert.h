@@ -21,12 +21,14 @@ struct ConvertOptions {
   std::optional<format::UpAxis> from_up;  ///< in the one that is read
   std::optional<edit::FrameRange> frames = {};  ///< these alone, with their numbers and times; nothing: all
   bool labelled = false;                        ///< tracks without a label are omitted
+  std::string rig_names = {};                   ///< whose bones .bvh and .glb have; empty: the skeleton's own
   std::string analog;                           ///< a C3D file whose analog channels and events go along into a C3D file
   // Of people on the ground.
   std::string home, away;  ///< teams; empty: as the file says, or by the order of their people
   std::vector<format::match::GroundPeriod> periods;
   format::match::GroundFrame frame;  ///< of the user's own coordinates
-  std::string rig;                   ///< whose ground_from_world says whether y was turned, in place of `frame.y_down`
+  /// Whose ground_from_world says whether y was turned, in place of `frame.y_down`; of points in space the cameras.
+  std::string rig;
 };
 
 struct ConvertSummary {
