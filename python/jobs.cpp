@@ -39,7 +39,8 @@ nb::tuple in_image(const Options& options, const pipeline::jobs::ImageInput& inp
   pipeline::people::ImageFeed feed{.camera = input.camera};
   set_feed(feed, options);
   const Outputs outputs(options, format::Content::image, {&feed.camera, 1}, &rows);
-  const pipeline::people::TrackOutput output{.tracks = {}, .overlay = input.overlay, .plot = input.plot};
+  const pipeline::people::TrackOutput output{
+      .tracks = {}, .overlay = input.overlay, .copy = input.copy, .blur_faces = !input.blur.empty(), .plot = input.plot};
   return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
     result.summary = run(feed, output, outputs.open(result.recording), hooks);

@@ -50,6 +50,7 @@ void print_json(const pipeline::people::GroundSummary& summary, const pipeline::
                      {"warnings", summary.warnings},
                      {"tracks", output.tracks},
                      {"overlays", path_or_null(output.overlays)},
+                     {"copies", path_or_null(output.copies)},
                      {"pitch_view", path_or_null(output.pitch_view)}};
   print(json);
 }
@@ -77,6 +78,7 @@ void print_summary(const pipeline::people::GroundSummary& summary, const pipelin
   }
   fmt::print(stderr, "tracks: {}\n", output.tracks);
   if (!output.overlays.empty()) fmt::print(stderr, "overlays: {}\n", output.overlays);
+  if (!output.copies.empty()) fmt::print(stderr, "copies: {}\n", output.copies);
   if (!output.pitch_view.empty()) fmt::print(stderr, "pitch view: {}\n", output.pitch_view);
 }
 

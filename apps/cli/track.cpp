@@ -64,8 +64,12 @@ std::string default_output(const TrackCommand& command, const std::string& forma
 
 pipeline::people::TrackOutput output_of(const TrackCommand& command) {
   const pipeline::jobs::ImageInput& input = command.people.input;
-  pipeline::people::TrackOutput output{
-      .tracks = command.out, .overlay = input.overlay, .plot = input.plot, .masks = command.people.masks};
+  pipeline::people::TrackOutput output{.tracks = command.out,
+                                       .overlay = input.overlay,
+                                       .copy = input.copy,
+                                       .blur_faces = !input.blur.empty(),
+                                       .plot = input.plot,
+                                       .masks = command.people.masks};
   const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
   if (named || !command.format.empty()) {
     output.format = format::format_to_write(command.out, command.format, format::Content::image).name;

@@ -38,6 +38,7 @@ void print_json(const pipeline::corridor::Summary& summary, const pipeline::peop
                {"warnings", summary.warnings},
                {"tracks", output.tracks},
                {"overlay", path_or_null(output.overlay)},
+               {"copy", path_or_null(output.copy)},
                {"plot", path_or_null(output.plot)}};
   if (!markers) {
     const pipeline::corridor::Dropped& dropped = summary.dropped;
@@ -73,6 +74,7 @@ void print_summary(const pipeline::corridor::Summary& summary, const pipeline::p
   }
   fmt::print(stderr, "tracks: {}\n", output.tracks);
   if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
+  if (!output.copy.empty()) fmt::print(stderr, "copy: {}\n", output.copy);
   if (!output.plot.empty()) fmt::print(stderr, "plot: {}\n", output.plot);
 }
 

@@ -27,6 +27,7 @@ EXAMPLES = {
         "detections": "boxes.txt",
         "rate": 20,
         "overlay": lambda out: out / "overlay.mp4",
+        "copy": lambda out: out / "copy.mp4",
         "plot": lambda out: out / "plot.svg",
         "foreground-masks": lambda out: out / "masks",
         "lag": 0.5,
@@ -57,6 +58,7 @@ EXAMPLES = {
     "track ground": {
         "rate": 20,
         "overlay": lambda out: out / "overlays",
+        "copy": lambda out: out / "copies",
         "pitch-view": lambda out: out / "view.mp4",
         "detector": MODELS / "person.toml",
         "detector-interval": 3,
@@ -94,7 +96,7 @@ EXAMPLES["reconstruct keypoints"] = {
 }
 EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
-WITH = {"foreground-masks": ["background"], "detector-interval": ["detector"], "no-background": ["detector"]}
+WITH = {"blur": ["overlay"], "foreground-masks": ["background"], "detector-interval": ["detector"], "no-background": ["detector"]}
 # Options whose network is made by script/model, which not every machine has.
 MODEL_OPTIONS = {"detector", "detector-interval", "no-background", "model"}
 

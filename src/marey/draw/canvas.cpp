@@ -169,6 +169,30 @@ void Canvas::rectangle(const cv::Rect2f& where, const Colour& colour, double thi
   lay(stencil, part.tl(), colour);
 }
 
+void Canvas::coarsen(const cv::Rect2f& where) {
+  constexpr int kCells = 4;              // across: fewer than any face is known by
+  constexpr float kToCorners = 0.7071F;  // half an ellipse's axes, of the sides of a rectangle that it goes round
+  const cv::Point2f centre(where.x + where.width / 2, where.y + where.height / 2);
+  const cv::Size2f half(where.width * kToCorners, where.height * kToCorners);
+  const cv::Rect part = even_part({centre.x - half.width, centre.y - half.height, 2 * half.width, 2 * half.height}, 0);
+  if (part.empty()) return;
+  cv::Mat stencil(part.size(), CV_8UC1, cv::Scalar(0));
+  cv::ellipse(stencil, fine(centre - cv::Point2f(static_cast<float>(part.x), static_cast<float>(part.y))),
+              cv::Size(fine({half.width, half.height})), 0, 0, 360, cv::Scalar(255), cv::FILLED, cv::LINE_8, kShift);
+  cv::Mat chroma_stencil;
+  const auto cover = [&](cv::Mat plane, const cv::Mat& mask) {
+    cv::Mat cells, coarse;
+    cv::resize(plane, cells, {std::min(kCells, plane.cols), std::min(kCells, plane.rows)}, 0, 0, cv::INTER_AREA);
+    cv::resize(cells, coarse, plane.size(), 0, 0, cv::INTER_LINEAR);
+    coarse.copyTo(plane, mask);
+  };
+  cover(luma_(part), stencil);
+  const cv::Rect chroma = cv::Rect(part.x / 2, part.y / 2, (part.width + 1) / 2, (part.height + 1) / 2) & cv::Rect({}, cb_.size());
+  cv::resize(stencil, chroma_stencil, chroma.size(), 0, 0, cv::INTER_NEAREST);
+  cover(cb_(chroma), chroma_stencil);
+  cover(cr_(chroma), chroma_stencil);
+}
+
 void Canvas::fill(const cv::Rect2f& where, const Colour& colour) {
   const cv::Rect part = even_part(where, 0);
   if (!part.empty()) lay(cv::Mat(part.size(), CV_8UC1, cv::Scalar(255)), part.tl(), colour);

@@ -39,6 +39,8 @@ class Canvas {
   /// Filled discs of one colour.
   void discs(const std::vector<cv::Point2f>& centres, double radius, const Colour& colour, double opacity = 1);
   void rectangle(const cv::Rect2f& where, const Colour& colour, double thickness, double opacity = 1);
+  /// An ellipse round this part in a few cells, which nothing can undo; the corners of `where` are in it.
+  void coarsen(const cv::Rect2f& where);
   void fill(const cv::Rect2f& where, const Colour& colour);
   /// Text with its middle at `centre`.
   void text(const std::string& text, cv::Point2f centre, const Colour& colour, double text_height);

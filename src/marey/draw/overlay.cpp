@@ -134,8 +134,11 @@ Image Overlay::lightened(const Image& image) {
   return with_white(image, white_);
 }
 
-Image Overlay::draw(const Image& image, Timestamp now, std::span<const Sample> samples, const TrackNames& names) {
+Image Overlay::draw(const Image& image, Timestamp now, std::span<const Sample> samples, const TrackNames& names,
+                    std::span<const cv::Rect2f> blurred) {
   Canvas canvas(lightened(image));
+  for (const cv::Rect2f& part : blurred) canvas.coarsen(part);
+  if (options_.bare) return canvas.take();
   // 2 px lines and numbers 11 px high in an image of 576 rows; slower than the image beyond, or they would hide people.
   const double unit = std::max(1.0, std::sqrt(image.size().height / 576.0));
   for (const Sample& sample : samples) {
@@ -143,7 +146,12 @@ Image Overlay::draw(const Image& image, Timestamp now, std::span<const Sample> s
     trails_.add(number(sample.track), now, to_point(location), colour_of(names.of(sample.track), sample.track));
   }
   trails_.draw(canvas, now, 0.9, 2 * unit);
+  draw_targets(canvas, samples, names, unit);
+  write_names(canvas, samples, names, unit);
+  return canvas.take();
+}
 
+void Overlay::draw_targets(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit) {
   for (const Sample& sample : samples) {
     if (sample.outline) {
       draw_lines(canvas, *sample.outline, unit);
@@ -157,8 +165,6 @@ Image Overlay::draw(const Image& image, Timestamp now, std::span<const Sample> s
     const bool detected = sample.measured() && !has_body;
     canvas.rectangle(edge_of(*sample.box), colour, detected ? 2 * unit : 1, detected ? 1.0 : 0.7);
   }
-  write_names(canvas, samples, names, unit);
-  return canvas.take();
 }
 
 void Overlay::write_names(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit) {

@@ -19,6 +19,8 @@ struct OverlayOptions {
   Duration trail = std::chrono::seconds(4);   ///< how long a trail takes to fade
   bool trail_of_centres = false;              ///< trails show where centres went, not feet
   std::optional<KeypointSet> keypoints = {};  ///< what the samples' body points are
+  bool blur_faces = false;                    ///< heads are made unrecognisable (draw/heads.h)
+  bool bare = false;                          ///< nothing is drawn
 };
 
 /// What a track is drawn in: its own colour, or one that is steady by its number.
@@ -35,9 +37,12 @@ class Overlay {
   explicit Overlay(const OverlayOptions& options = {}) : options_(options), trails_(options.trail) {}
 
   /// Instants come in order; px. Keeps trails of those targets alone that were seen within `trail`.
-  Image draw(const Image& image, Timestamp now, std::span<const Sample> samples, const TrackNames& names);
+  /// `blurred`: parts that are made unrecognisable first.
+  Image draw(const Image& image, Timestamp now, std::span<const Sample> samples, const TrackNames& names,
+             std::span<const cv::Rect2f> blurred = {});
 
  private:
+  void draw_targets(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit);
   Image lightened(const Image& image);
   void write_names(Canvas& canvas, std::span<const Sample> samples, const TrackNames& names, double unit);
 

@@ -1,13 +1,19 @@
 #include "marey/draw/overlay_video.h"
 
 namespace marey::draw {
+namespace {
+
+constexpr Duration kHoldHeads = std::chrono::milliseconds(400);  // unswept: before and after a track
+
+}  // namespace
 
 OverlayVideo::OverlayVideo(const std::string& path, const View& view, const OverlayOptions& options)
     : path_(path),
       view_(view),
       movie_(path, view.size, view.rate_hz, MovieWriter::Quality::to_view, MovieWriter::Keep::when_finished, view.sound_of),
       options_(options),
-      overlay_(options) {}
+      overlay_(options),
+      heads_(kHoldHeads) {}
 
 Sink::SinkRequirements OverlayVideo::begin(const RecordingHeader& header) {
   by_boxes_ = header.frame.metric();
@@ -31,12 +37,41 @@ std::vector<Sample> OverlayVideo::in_view(const Instant& instant) const {
 }
 
 void OverlayVideo::write(const Instant& instant) {
-  names_.add(instant.named);
+  std::vector<TrackName> named = instant.named;
   for (const Frame& frame : instant.frames) {
     if (frame.camera != view_.camera) continue;
     const Timestamp own = frame.time - view_.offset;
-    movie_.write(overlay_.draw(frame.image, own, by_boxes_ ? in_view(instant) : instant.samples, names_), own);
+    Waiting now{
+        .image = frame.image, .time = own, .samples = by_boxes_ ? in_view(instant) : instant.samples, .named = std::move(named)};
+    named.clear();
+    if (options_.blur_faces) {
+      heads_.add(own, now.samples, options_.keypoints);
+      waiting_.push_back(std::move(now));
+      write_ready(false);
+    } else {
+      write_frame(now, {});
+    }
   }
+  names_.add(named);  // of an instant without an image
+}
+
+void OverlayVideo::write_ready(bool at_end) {
+  while (!waiting_.empty()) {
+    const auto heads = heads_.next(at_end);
+    if (!heads) return;
+    write_frame(waiting_.front(), *heads);
+    waiting_.pop_front();
+  }
+}
+
+void OverlayVideo::write_frame(const Waiting& frame, std::span<const cv::Rect2f> blurred) {
+  names_.add(frame.named);
+  movie_.write(overlay_.draw(frame.image, frame.time, frame.samples, names_, blurred), frame.time);
+}
+
+void OverlayVideo::finish() {
+  write_ready(true);
+  movie_.finish();
 }
 
 }  // namespace marey::draw

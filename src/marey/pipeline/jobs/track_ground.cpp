@@ -94,6 +94,10 @@ Table table_of(TrackGround& job) {
   table.always("ground", "true");
   table.number("rate", job.options.rate_hz, "Hz", kRates, "frame rate, if the file does not specify it or is wrong");
   table.output_folder("overlay", job.output.overlays, "a folder for such a video of each camera, CAMERA.mp4");
+  table.choice("blur", job.output.blur, {"faces"},
+               "make heads unrecognisable in --overlay and --copy: those of the people who are tracked");
+  table.output_folder("copy", job.output.copies, "a folder for the videos with nothing drawn and faces blurred, CAMERA.mp4")
+      .needing("blur");
   add_filter_row(table, job.filter);
   table.flag("live", job.options.live, "write each frame's tracks at once; nothing is corrected by later frames");
   table.flag("stabilise", job.options.stabilise,

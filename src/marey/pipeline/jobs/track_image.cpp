@@ -18,6 +18,14 @@ void add_image_rows(Table& table, ImageInput& input) {
   table.output_file("plot", input.plot, "the trajectories as one image, in its coordinates: FILE.svg").ending_in({".svg"});
 }
 
+void add_blur_rows(Table& table, ImageInput& input) {
+  table.choice("blur", input.blur, {"faces"},
+               "make heads unrecognisable in --overlay and --copy: those of the people who are tracked");
+  table.output_file("copy", input.copy, "the video again with nothing drawn and faces blurred: FILE.mp4")
+      .ending_in({".mp4"})
+      .needing("blur");
+}
+
 void add_outline_rows(Table& table, TrackPeople& job) {
   table.flag("contour", job.outline, "track each person's outline too: a closed spline");
   table
@@ -53,6 +61,8 @@ track::contour::OutlineOptions outlines_of(const TrackPeople& job) {
 void check(const ImageInput& input) {
   if (!input.overlay.empty() && !input.overlay.ends_with(".mp4") && !is_stream(input.overlay))
     throw WrongOption("--overlay {}: is an MP4 video; end its name in .mp4", input.overlay);
+  if (!input.blur.empty() && input.overlay.empty() && input.copy.empty())
+    throw WrongOption("--blur {}: blurs in --overlay FILE.mp4 or --copy FILE.mp4; give one of them", input.blur);
 }
 
 void check(const TrackPeople& job) {
@@ -72,6 +82,7 @@ Table table_of(TrackPeople& job) {
   Table table;
   if (job.keypoints) table.always("targets", "keypoints");
   add_image_rows(table, job.input);
+  add_blur_rows(table, job.input);
   table.output_folder("foreground-masks", job.masks,
                       "a new folder for the output of the background model: bin000001.png of the first frame, white on black");
   add_filter_row(table, job.input.filter);

@@ -14,6 +14,7 @@ namespace marey::pipeline::jobs {
 struct ImageInput {
   RigCamera camera;                                      ///< `source` is the front end's
   std::string overlay, plot;                             ///< files of graphics; empty: none
+  std::string blur, copy;                                ///< "faces"; a video with faces blurred and nothing drawn; empty: none
   std::string filter;                                    ///< by name; empty: the default one
   std::optional<filter::FilterOptions> own_filter = {};  ///< of a caller's, in place of a named one
 };

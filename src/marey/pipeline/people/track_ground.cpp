@@ -31,8 +31,9 @@ void check(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptio
     throw Error("the rate is {} frames a second; it must be positive", *options.rate_hz);
   if (!(options.margin >= 0)) throw Error("the margin is {} m; it must not be negative", options.margin);
   const auto has_images = [](const RigCamera& camera) { return !camera.source.empty(); };
-  if (!output.overlays.empty() && std::none_of(rig.cameras.begin(), rig.cameras.end(), has_images))
-    throw Error("{}: no camera has images to draw into; ask for a pitch view instead", output.overlays);
+  const std::string& videos = output.overlays.empty() ? output.copies : output.overlays;
+  if (!videos.empty() && std::none_of(rig.cameras.begin(), rig.cameras.end(), has_images))
+    throw Error("{}: no camera has images to draw into; ask for a pitch view instead", videos);
 }
 
 CameraId id_of(const Rig& rig, const std::string& name) {
@@ -40,12 +41,13 @@ CameraId id_of(const Rig& rig, const std::string& name) {
   return CameraId{static_cast<int>(&camera_named(copy, name) - copy.cameras.data())};
 }
 
-std::string overlay_of(const GroundOutput& output, const RigCamera& camera) {
-  return (fs::path(output.overlays) / (camera.name + ".mp4")).string();
+std::string video_of(const std::string& folder, const RigCamera& camera) {
+  return (fs::path(folder) / (camera.name + ".mp4")).string();
 }
 
-void add_videos(corridor::Sinks& sinks, const GroundOutput& output, const std::vector<corridor::Feed>& feeds) {
-  fs::create_directories(output.overlays);
+void add_videos(corridor::Sinks& sinks, const std::string& folder, const draw::OverlayOptions& drawn,
+                const std::vector<corridor::Feed>& feeds) {
+  fs::create_directories(folder);
   for (const corridor::Feed& feed : feeds) {
     if (!feed.has_images()) continue;
     const RigCamera& camera = feed.camera();
@@ -54,8 +56,7 @@ void add_videos(corridor::Sinks& sinks, const GroundOutput& output, const std::v
                                         .rate_hz = feed.info().rate_hz,
                                         .sound_of = feed.sound_source(),
                                         .offset = duration_from_seconds(camera.offset_s.value_or(0))};
-    sinks.add(
-        std::make_unique<draw::OverlayVideo>(overlay_of(output, camera), view, draw::OverlayOptions{.trail_of_centres = true}));
+    sinks.add(std::make_unique<draw::OverlayVideo>(video_of(folder, camera), view, drawn));
   }
 }
 
@@ -69,7 +70,11 @@ corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const Peopl
     const std::string name = by_name || !output.format.empty() ? output.format : "ground";
     sinks.add(format::create_recording(output.tracks, format::format_to_write(output.tracks, name, format::Content::ground)));
   }
-  if (!output.overlays.empty()) add_videos(sinks, output, feeds);
+  draw::OverlayOptions drawn{.trail_of_centres = true};
+  drawn.blur_faces = !output.blur.empty();
+  if (!output.overlays.empty()) add_videos(sinks, output.overlays, drawn, feeds);
+  drawn.bare = true;
+  if (!output.copies.empty()) add_videos(sinks, output.copies, drawn, feeds);
   if (!output.pitch_view.empty()) {
     const reconstruct::GroundArea area = area_of(rig, options);
     const draw::ShownGround shown{area.pitch(), area.margin(), area.mirrored()};
@@ -164,8 +169,10 @@ GroundSummary track_ground(const Rig& rig, const GroundOutput& output, std::vect
 
 std::vector<std::string> overlays_of(const Rig& rig, const GroundOutput& output) {
   std::vector<std::string> files;
-  if (output.overlays.empty()) return files;
-  for (const RigCamera& camera : rig.cameras) files.push_back(overlay_of(output, camera));
+  for (const std::string& folder : {output.overlays, output.copies}) {
+    if (folder.empty()) continue;
+    for (const RigCamera& camera : rig.cameras) files.push_back(video_of(folder, camera));
+  }
   return files;
 }
 

@@ -18,6 +18,8 @@ struct GroundOutput {
   std::string format = {};  ///< a name of the register
   std::string boxes_of =
       {};  ///< a camera: `tracks` then is MOT text whatever `format` is, the boxes in that view by that camera's own frames
+  std::string blur = {};        ///< "faces": heads are made unrecognisable in `overlays`
+  std::string copies = {};      ///< a folder for the same videos with faces blurred and nothing drawn
   std::string overlays = {};    ///< a folder: <camera>.mp4, a video of each camera that has images
   std::string pitch_view = {};  ///< a video of the ground from above
 };

@@ -41,11 +41,17 @@ corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<
       throw Error("{}: masks are of the background model, and detections are given", output.masks);
     sinks.add(std::make_unique<MaskSink>(output.masks));
   }
-  if (output.overlay.empty()) return sinks;
-  if (!feed.has_images()) throw Error("{}: an overlay needs images to draw into", output.overlay);
   const draw::OverlayVideo::View view{
       .camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz, .sound_of = feed.sound_source()};
-  sinks.add(std::make_unique<draw::OverlayVideo>(output.overlay, view, drawn));
+  for (const bool bare : {false, true}) {
+    const std::string& path = bare ? output.copy : output.overlay;
+    if (path.empty()) continue;
+    if (!feed.has_images()) throw Error("{}: {} needs images", path, bare ? "a copy of the video" : "an overlay");
+    draw::OverlayOptions options = drawn;
+    options.bare = bare;
+    options.blur_faces = bare || output.blur_faces;
+    sinks.add(std::make_unique<draw::OverlayVideo>(path, view, options));
+  }
   return sinks;
 }
 

@@ -21,6 +21,8 @@ struct TrackOutput {
   std::string tracks;
   std::string format = {};   ///< by name; empty: the ending of `tracks` says it
   std::string overlay = {};  ///< a video with the tracks drawn into the images
+  std::string copy = {};     ///< the video, with nothing drawn and faces blurred
+  bool blur_faces = false;   ///< in `overlay`
   std::string plot = {};     ///< an SVG image of the trajectories, in the coordinates of the image
   std::string masks = {};    ///< of people: a folder for the foreground of each frame (draw/mask_folder.h)
 };
