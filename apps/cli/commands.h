@@ -21,6 +21,7 @@ void add_info(Command& program);
 void add_edit(Command& program);
 void add_view(Command& program);
 void add_identify(Command& program);
+void add_plan(Command& program);
 void add_play(Command& program);
 void add_live(Command& program);
 void add_node(Command& program);

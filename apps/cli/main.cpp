@@ -22,6 +22,7 @@ int run_program(int argc, char** argv) {
   add_edit(root);
   add_identify(root);
   add_view(root);
+  add_plan(root);
   add_play(root);
   add_reconstruct(root);
   add_live(root);
