@@ -34,9 +34,8 @@ std::optional<Number> number(const std::string& text) {
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
   throw Error(
-      "board \"{}\": {}; write chess:9x6:0.025 (inner corners, m) or charuco:5x7:0.04:0.03:4X4_50 (squares, m), :inverted behind "
-      "it "
-      "where black and white are exchanged",
+      "board \"{}\": {}; write chess:9x6:0.025 (inner corners, m), charuco:5x7:0.04:0.03:4X4_50 (squares, m) or "
+      "aruco:1x1:0.16:0:4X4_50 (markers, their side and the gap, m), :inverted behind it where black and white are exchanged",
       text, why);
 }
 
@@ -58,14 +57,37 @@ double side_of(const std::string& text, const std::string& part, const char* wha
   return *side;
 }
 
-std::string dictionary_of(const std::string& text, std::string name, int squares) {
+std::string dictionary_of(const std::string& text, std::string name, int markers) {
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   if (name.starts_with("DICT_")) name.erase(0, 5);
   const auto size = board_dictionary_size(name);
   if (!size) refuse(text, fmt::format("there is no dictionary \"{}\"; supported: {}", name, fmt::join(board_dictionaries(), " ")));
-  if (*size < squares / 2)
-    refuse(text, fmt::format("dictionary {} holds {} markers and the board needs {}", name, *size, squares / 2));
+  if (*size < markers) refuse(text, fmt::format("dictionary {} holds {} markers and the board needs {}", name, *size, markers));
   return name;
+}
+
+/// What stands behind "aruco".
+Board sheet_of(const std::string& text, const std::vector<std::string>& parts) {
+  if (parts.size() != 5 && parts.size() != 6)
+    refuse(
+        text,
+        "a sheet of ArUco markers has a grid, the side of a marker, the gap between two, a dictionary, and maybe the first number");
+  Board board;
+  board.kind = Board::Kind::aruco;
+  const cv::Size markers = grid_of(text, parts[1], 1);
+  board.corners = {2 * markers.width, 2 * markers.height};
+  board.marker_m = side_of(text, parts[2], "marker");
+  const auto gap = number<double>(parts[3]);
+  if (!gap || !(*gap >= 0 && *gap < 100)) refuse(text, fmt::format("\"{}\" is not a gap in m", parts[3]));
+  if (*gap == 0 && markers.area() > 1) refuse(text, "markers need a white gap between them");
+  board.square_m = board.marker_m + *gap;
+  if (parts.size() == 6) {
+    const auto first = number<int>(parts[5]);
+    if (!first || *first < 0 || *first > 100'000) refuse(text, fmt::format("\"{}\" is not the number of a marker", parts[5]));
+    board.first_marker = *first;
+  }
+  board.dictionary = dictionary_of(text, parts[4], board.first_marker + markers.area());
+  return board;
 }
 
 }  // namespace
@@ -83,6 +105,12 @@ Board parse_board(const std::string& text) {
     board.square_m = side_of(text, parts[2], "square");
     return board;
   }
+  if (parts[0] == "aruco") {
+    const bool inverted = board.inverted;
+    board = sheet_of(text, parts);
+    board.inverted = inverted;
+    return board;
+  }
   if (parts[0] != "charuco") refuse(text, fmt::format("\"{}\" is not a kind of board", parts[0]));
   if (parts.size() != 5) refuse(text, "a ChArUco board has a grid, the sides of a square and of a marker, and a dictionary");
   const cv::Size squares = grid_of(text, parts[1], 3);
@@ -91,7 +119,7 @@ Board parse_board(const std::string& text) {
   board.square_m = side_of(text, parts[2], "square");
   board.marker_m = side_of(text, parts[3], "marker");
   if (board.marker_m >= board.square_m) refuse(text, "a marker must be smaller than its square");
-  board.dictionary = dictionary_of(text, parts[4], squares.area());
+  board.dictionary = dictionary_of(text, parts[4], squares.area() / 2);
   return board;
 }
 
@@ -99,6 +127,11 @@ std::string to_string(const Board& board) {
   const char* inverted = board.inverted ? ":inverted" : "";
   if (board.kind == Board::Kind::chess)
     return fmt::format("chess:{}x{}:{}{}", board.corners.width, board.corners.height, board.square_m, inverted);
+  if (board.kind == Board::Kind::aruco) {
+    return fmt::format("aruco:{}x{}:{}:{:g}:{}{}{}", board.corners.width / 2, board.corners.height / 2, board.marker_m,
+                       board.square_m - board.marker_m, board.dictionary,
+                       board.first_marker > 0 ? fmt::format(":{}", board.first_marker) : "", inverted);
+  }
   return fmt::format("charuco:{}x{}:{}:{}:{}{}", board.corners.width + 1, board.corners.height + 1, board.square_m, board.marker_m,
                      board.dictionary, inverted);
 }

@@ -141,7 +141,11 @@ struct BoardDetector::Markers {
 };
 
 BoardDetector::BoardDetector(const Board& board) : board_(board), markers_(std::make_unique<Markers>()) {
-  if (board_.kind != Board::Kind::charuco) return;
+  if (board_.kind == Board::Kind::chess) return;
+  if (board_.kind == Board::Kind::aruco) {
+    markers_->dictionary = board_dictionary(board_.dictionary);
+    return;
+  }
   const cv::Size squares(board_.corners.width + 1, board_.corners.height + 1);
   markers_->dictionary = board_dictionary(board_.dictionary);
   markers_->parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
@@ -154,7 +158,7 @@ BoardDetector::~BoardDetector() = default;
 std::optional<BoardView> BoardDetector::detect(const Image& image) const {
   if (image.empty() || std::min(image.size().width, image.size().height) < 16) return std::nullopt;
   const cv::Mat grey = grey_of(image, board_.inverted);
-  return board_.kind == Board::Kind::chess ? chess(grey) : charuco_from_either_side(grey);
+  return board_.kind == Board::Kind::chess ? chess(grey) : from_either_side(grey);
 }
 
 std::optional<BoardView> BoardDetector::chess(const cv::Mat& grey) const {
@@ -184,15 +188,52 @@ std::optional<BoardView> BoardDetector::chess(const cv::Mat& grey) const {
 }
 
 /// The side from which more of the board is seen: a mirrored marker may now and then be read as another one.
-std::optional<BoardView> BoardDetector::charuco_from_either_side(const cv::Mat& grey) const {
-  auto front = charuco(grey);
+std::optional<BoardView> BoardDetector::from_either_side(const cv::Mat& grey) const {
+  const auto seen_in = [&](const cv::Mat& image) { return board_.kind == Board::Kind::aruco ? aruco(image) : charuco(image); };
+  auto front = seen_in(grey);
   if (front && static_cast<int>(front->corners.size()) >= std::max(kCertainlyInFront, board_.corner_count() / 4)) return front;
   cv::Mat mirrored;
   cv::flip(grey, mirrored, 1);
-  auto behind = charuco(mirrored);
+  auto behind = seen_in(mirrored);
   if (!behind || (front && front->corners.size() >= behind->corners.size())) return front;
   for (BoardCorner& corner : behind->corners) corner.pixel.x() = grey.cols - 1 - corner.pixel.x();
   return behind;
+}
+
+/// Every corner of a marker is where two edges of its black square meet. What lies in the first cell within is inspected alone.
+std::optional<BoardView> BoardDetector::aruco(const cv::Mat& grey) const {
+  std::vector<std::vector<cv::Point2f>> quads;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(grey, markers_->dictionary, quads, ids, markers_->parameters);
+  const int columns = board_.corners.width / 2, markers = columns * board_.corners.height / 2;
+  BoardView view;
+  std::vector<cv::Point2f> on_board, in_image;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const int marker = ids[i] - board_.first_marker;
+    if (marker < 0 || marker >= markers || std::ranges::count(ids, ids[i]) > 1) continue;
+    const double cell = std::sqrt(std::abs(cv::contourArea(quads[i]))) / (markers_->dictionary->markerSize + 2);
+    const int window = std::clamp(static_cast<int>(0.7 * cell), 2, 12);
+    cv::cornerSubPix(grey, quads[i], {window, window}, {-1, -1}, {cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 50, 1e-3});
+    for (int k = 0; k < 4; ++k) {  // clockwise from the top left
+      const int column = 2 * (marker % columns) + (k == 1 || k == 2 ? 1 : 0), row = 2 * (marker / columns) + (k >= 2 ? 1 : 0);
+      const int id = row * board_.corners.width + column;
+      const cv::Point2f& pixel = quads[i][static_cast<std::size_t>(k)];
+      view.corners.push_back({id, {pixel.x, pixel.y}});
+      const Vector<3> location = board_.corner(id);
+      on_board.emplace_back(static_cast<float>(location.x()), static_cast<float>(location.y()));
+      in_image.push_back(pixel);
+    }
+  }
+  if (static_cast<int>(view.corners.size()) < kMinCorners) return std::nullopt;
+  if (view.corners.size() > kMinCorners) {  // a marker that lies elsewhere, or was misread
+    std::vector<unsigned char> good;
+    const double width = std::max(4.0, 0.02 * grey.cols);
+    if (cv::findHomography(on_board, in_image, good, cv::RANSAC, width).empty()) return std::nullopt;
+    std::size_t i = 0;
+    std::erase_if(view.corners, [&](const BoardCorner&) { return good[i++] == 0; });
+  }
+  std::ranges::sort(view.corners, {}, &BoardCorner::id);
+  return static_cast<int>(view.corners.size()) < kMinCorners ? std::nullopt : std::optional(std::move(view));
 }
 
 std::optional<BoardView> BoardDetector::charuco(const cv::Mat& grey) const {

@@ -20,9 +20,9 @@ struct BoardView {
   std::vector<BoardCorner> corners;
 };
 
-/// Finds a board in images. A ChArUco board on glass or record that is seen from behind shows its markers mirrored; its corners are
-/// where they are all the same, and a pose from them has the camera on the board's other side. A chess board's back is not a
-/// different from its front, and is taken for it.
+/// Finds a board in images. A ChArUco board or a sheet of markers on glass or record that is seen from behind shows its markers
+/// mirrored; its corners are where they are all the same, and a pose from them has the camera on the board's other side. A chess
+/// board's back is not a different from its front, and is taken for it.
 class BoardDetector {
  public:
   explicit BoardDetector(const Board& board);
@@ -39,7 +39,8 @@ class BoardDetector {
  private:
   std::optional<BoardView> chess(const cv::Mat& grey) const;
   std::optional<BoardView> charuco(const cv::Mat& grey) const;
-  std::optional<BoardView> charuco_from_either_side(const cv::Mat& grey) const;
+  std::optional<BoardView> aruco(const cv::Mat& grey) const;
+  std::optional<BoardView> from_either_side(const cv::Mat& grey) const;
 
   Board board_;
   struct Markers;

@@ -119,5 +119,51 @@ TEST(BoardDetector, NothingIsFoundWhereThereIsNoSuchBoard) {
   EXPECT_FALSE(BoardDetector(parse_board("chess:9x6:0.03")).detect(Image()));
 }
 
+/// A sheet of markers as printed: a marker's black is a whole number of px wide.
+cv::Mat sheet(const Board& board, double px_a_metre) {
+  const int columns = board.corners.width / 2, rows = board.corners.height / 2,
+            side = static_cast<int>(std::lround(board.marker_m * px_a_metre)),
+            step = static_cast<int>(std::lround(board.square_m * px_a_metre));
+  cv::Mat image((rows - 1) * step + side + 2 * kMargin, (columns - 1) * step + side + 2 * kMargin, CV_8UC1, cv::Scalar(255));
+  for (int marker = 0; marker < rows * columns; ++marker) {
+    cv::Mat code;
+    cv::aruco::drawMarker(board_dictionary(board.dictionary), board.first_marker + marker, side, code);
+    code.copyTo(image(cv::Rect(kMargin + marker % columns * step, kMargin + marker / columns * step, side, side)));
+  }
+  return image;
+}
+
+TEST(BoardDetector, MarkersOfASheetAreFoundFromBothSides) {
+  for (const char* text : {"aruco:1x1:0.16:0:4X4_50:23", "aruco:3x2:0.06:0.015:5X5_100", "aruco:2x2:0.08:0.02:APRILTAG_36H11:5"}) {
+    const Board board = parse_board(text);
+    EXPECT_EQ(to_string(board), text);
+    const double scale = 240 / (board.square_m * board.corners.width / 2);
+    const cv::Mat flat = sheet(board, std::round(board.marker_m * scale / 12) * 12 / board.marker_m);
+    const double px_a_metre = std::round(board.marker_m * scale / 12) * 12 / board.marker_m;
+    const auto w = static_cast<float>(flat.cols), h = static_cast<float>(flat.rows);
+    const std::vector<cv::Point2f> from{{0, 0}, {w, 0}, {w, h}, {0, h}}, to{{200, 140}, {560, 170}, {530, 470}, {180, 430}};
+    const cv::Matx33d image_from_sheet(cv::getPerspectiveTransform(from, to));
+    cv::Mat image;
+    cv::warpPerspective(flat, image, image_from_sheet, {800, 640}, cv::INTER_AREA, cv::BORDER_CONSTANT, cv::Scalar(128));
+    cv::GaussianBlur(image, image, {}, 0.8);
+    for (const bool behind : {false, true}) {
+      cv::Mat shown = image;
+      if (behind) cv::flip(image, shown, 1);
+      const auto view = BoardDetector(board).detect(Image(shown));
+      ASSERT_TRUE(view) << text << behind;
+      ASSERT_EQ(static_cast<int>(view->corners.size()), board.corner_count()) << text << behind;
+      double squares = 0;
+      for (const BoardCorner& corner : view->corners) {
+        const Vector<3> at = board.corner(corner.id) * px_a_metre;
+        const cv::Vec3d p = image_from_sheet * cv::Vec3d(at.x() + kMargin - 0.5, at.y() + kMargin - 0.5, 1);
+        Vector<2> truth(p[0] / p[2], p[1] / p[2]);
+        if (behind) truth.x() = shown.cols - 1 - truth.x();
+        squares += (corner.pixel - truth).squaredNorm();
+      }
+      EXPECT_LT(std::sqrt(squares / board.corner_count()), 0.25) << text << behind;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace marey::calibrate::board

@@ -50,8 +50,8 @@ marey::calibrate::board::BoardRigCamera observe_boards(RigCamera& camera, const 
   corridor::Feed feed(by_its_own_clock, CameraId{});
   const BoardSightings detected = find_boards(feed, detector, {.step = "searching for the board in " + camera.name}, hooks);
   if (detected.sightings.empty()) {
-    throw Error("camera \"{}\": the board {} is in none of its {} images; are its kind, its numbers and its colours as given?",
-                camera.name, marey::calibrate::board::to_string(detector.board()), detected.frames);
+    throw Error("camera \"{}\": the board {} is in none of its {} images: {}", camera.name,
+                marey::calibrate::board::to_string(detector.board()), detected.frames, detected.why_missing);
   }
   fit_to_size(camera, detected.size);
   if (!camera.lens) camera.lens = lens_by_board(camera, detector.board(), detected);

@@ -24,9 +24,8 @@ LensRun calibrate_lens(const std::string& input, const marey::calibrate::board::
   how.every = std::max<std::int64_t>(1, feed.info().frame_count.value_or(0) / kFramesInspectedAt);
   const BoardSightings found = find_boards(feed, marey::calibrate::board::BoardDetector(board), how, hooks);
   if (found.sightings.empty())
-    throw Error("{}: the board {} is in none of the {} images inspected; are its kind, its numbers of {} and its colours as given?",
-                input, marey::calibrate::board::to_string(board), found.frames,
-                board.kind == marey::calibrate::board::Board::Kind::chess ? "inner corners" : "squares");
+    throw Error("{}: the board {} is in none of the {} images inspected: {}", input, marey::calibrate::board::to_string(board),
+                found.frames, found.why_missing);
   LensRun run;
   run.calibration = lens_by_sightings(board, found, options.max_views, options.lens);
   run.frames = found.frames;

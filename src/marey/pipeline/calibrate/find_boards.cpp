@@ -7,12 +7,32 @@
 #include <tbb/parallel_for.h>
 
 #include "marey/calibrate/board/choose_views.h"
+#include "marey/calibrate/board/missing_board.h"
 #include "marey/calibrate/board/sharpness.h"
 
 namespace marey::pipeline::calibrate {
 namespace {
 
 constexpr std::size_t kFramesAtOnce = 16;  // frames
+constexpr std::size_t kKeptImages = 24;  // numerical: to say why there is no board in them; half are dropped when there are as many
+
+/// Images from all over a video, evenly, whatever its length.
+class KeptImages {
+ public:
+  void add(const Image& image) {
+    if (count_++ % every_ != 0) return;
+    images_.push_back(image);
+    if (images_.size() < kKeptImages) return;
+    for (std::size_t i = 1; 2 * i < images_.size(); ++i) images_[i] = images_[2 * i];
+    images_.resize((images_.size() + 1) / 2);
+    every_ *= 2;
+  }
+  const std::vector<Image>& images() const { return images_; }
+
+ private:
+  std::vector<Image> images_;
+  std::size_t count_ = 0, every_ = 1;
+};
 
 }  // namespace
 
@@ -22,7 +42,11 @@ BoardSightings find_boards(corridor::Feed& feed, const marey::calibrate::board::
   found.size = feed.info().size;
   std::vector<Frame> batch;
   std::vector<std::optional<BoardSighting>> detected;
+  KeptImages kept;
   const auto inspect = [&] {
+    for (const Frame& frame : batch) {
+      if (found.sightings.empty()) kept.add(frame.image);
+    }
     detected.assign(batch.size(), std::nullopt);
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       const Image& image = batch[i].image;
@@ -47,6 +71,7 @@ BoardSightings find_boards(corridor::Feed& feed, const marey::calibrate::board::
   if (hooks.stop.stop_requested()) throw Stopped();
   inspect();
   found.warnings = feed.warnings();
+  if (found.sightings.empty()) found.why_missing = marey::calibrate::board::why_missing(detector.board(), kept.images());
   return found;
 }
 

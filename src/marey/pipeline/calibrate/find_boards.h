@@ -30,6 +30,7 @@ struct BoardSightings {
   std::int64_t frames = 0;               ///< inspected
   std::vector<BoardSighting> sightings;  ///< in the order of time
   std::vector<std::string> warnings;     ///< the feed's
+  std::string why_missing;               ///< in no frame: what the images show in its place (calibrate/board/missing_board.h)
 };
 
 struct FindBoardsOptions {
