@@ -70,11 +70,11 @@ TEST(MissingBoard, ExchangedColoursAndOtherGridsAreNamed) {
   cv::bitwise_not(board_image(parse_board(kBoard)).luma(), negative);
   EXPECT_EQ(reason(kBoard, Image(negative)), "black and white are exchanged; give " + kBoard + ":inverted");
   EXPECT_EQ(reason("chess:9x6:0.03", board_image(parse_board("chess:8x5:0.03"))),
-            "a chessboard of 8x5 inner corners is seen; give chess:8x5:0.03");
+            "a chessboard of 8x5 inner corners is detected; give chess:8x5:0.03");
   EXPECT_EQ(reason(kBoard, board_image(parse_board("chess:8x6:0.04"))),
-            "a chessboard of 8x6 inner corners is seen; give chess:8x6:0.04");
+            "a chessboard of 8x6 inner corners is detected; give chess:8x6:0.04");
   const std::string later = reason("charuco:7x5:0.04:0.03:5X5_100", board_image(parse_board(kBoard), 1, 0.7, 60));
-  EXPECT_NE(later.find("up to number 76 are seen, and the board as given has 17"), std::string::npos) << later;
+  EXPECT_NE(later.find("up to number 76 are detected, and the board as given has 17"), std::string::npos) << later;
 }
 
 TEST(MissingBoard, NamesDefectsOfImages) {
@@ -88,7 +88,7 @@ TEST(MissingBoard, NamesDefectsOfImages) {
   EXPECT_NE(dark.find("dark"), std::string::npos) << dark;
   cv::Mat room(480, 640, CV_8UC1, cv::Scalar(90));
   cv::rectangle(room, {100, 100, 200, 150}, cv::Scalar(200), cv::FILLED);
-  EXPECT_NE(reason(kBoard, Image(room)).find("nothing like it is seen"), std::string::npos);
+  EXPECT_NE(reason(kBoard, Image(room)).find("nothing like it is detected"), std::string::npos);
   EXPECT_NE(why_missing(board, {}).find("too small"), std::string::npos);
 }
 
