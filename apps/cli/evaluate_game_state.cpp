@@ -107,7 +107,7 @@ void print_score(const char* name, double value, const char* meaning) {
 void print_losses(const evaluate::GameStateEvaluation& all) {
   const auto hota = [&](GameStateDetail detail) { return all.scores(detail).hota; };
   fmt::print("What it would be if less had to be right\n");
-  print_score("places", hota(GameStateDetail::places), "only the places");
+  print_score("places", hota(GameStateDetail::positions), "only the places");
   print_score("roles", hota(GameStateDetail::roles), "places and roles (player, goalkeeper, referee, other)");
   print_score("teams", hota(GameStateDetail::teams), "and teams");
   print_score("numbers", hota(GameStateDetail::numbers), "and players' shirt numbers: GS-HOTA");

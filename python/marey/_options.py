@@ -18,6 +18,10 @@ class TrackOptions(TypedDict, total=False):
     r"""a video with boxes, IDs and trails drawn into the images: FILE.mp4"""
     plot: Path | None
     r"""the trajectories as one image, in its coordinates: FILE.svg"""
+    blur: Literal["faces"] | None
+    r"""make heads unrecognisable in --overlay and --copy: those of the people who are tracked: faces"""
+    copy: Path | None
+    r"""the video again with nothing drawn and faces blurred: FILE.mp4"""
     foreground_masks: Path | None
     r"""a new folder for the output of the background model: bin000001.png of the first frame, white on black"""
     live: bool | None
@@ -75,6 +79,10 @@ class GroundOptions(TypedDict, total=False):
     r"""Hz in [0.001, 1e6]: frame rate, if the file does not specify it or is wrong"""
     overlay: Path | None
     r"""a folder for such a video of each camera, CAMERA.mp4"""
+    blur: Literal["faces"] | None
+    r"""make heads unrecognisable in --overlay and --copy: those of the people who are tracked: faces"""
+    copy: Path | None
+    r"""a folder for the videos with nothing drawn and faces blurred, CAMERA.mp4"""
     live: bool | None
     r"""write each frame's tracks at once; nothing is corrected by later frames"""
     stabilise: bool | None

@@ -25,7 +25,7 @@ import numpy as np
 with contextlib.redirect_stdout(sys.stderr):
     import trackeval
     folder = sys.argv[1]
-    told, took = {}, 0
+    results, took = {}, 0
     for detail, used in (("numbers", (1, 1, 1)), ("teams", (1, 1, 0)), ("roles", (1, 0, 0)), ("places", (0, 0, 0))):
         start = time.perf_counter()
         data = trackeval.datasets.SoccerNetGS({"GT_FOLDER": folder + "/truth", "TRACKERS_FOLDER": folder + "/trackers", "SPLIT_TO_EVAL": "valid",
@@ -33,11 +33,11 @@ with contextlib.redirect_stdout(sys.stderr):
         evaluator = trackeval.Evaluator({"USE_PARALLEL": False, "PRINT_RESULTS": False, "OUTPUT_SUMMARY": False, "OUTPUT_DETAILED": False, "PLOT_CURVES": False,
             "PRINT_CONFIG": False, "TIME_PROGRESS": False, "BREAK_ON_ERROR": True})
         found = evaluator.evaluate([data], [trackeval.metrics.HOTA()])[0]["SoccerNetGS"]["made"]
-        told[detail] = {clip: {name: float(np.mean(value)) for name, value in result["person"]["HOTA"].items()}
+        results[detail] = {clip: {name: float(np.mean(value)) for name, value in result["person"]["HOTA"].items()}
                         for clip, result in found.items() if clip != "SUMMARIES"}
         if detail == "numbers":
             took = time.perf_counter() - start
-print(json.dumps([told, took]))
+print(json.dumps([results, took]))
 """
 
 
@@ -50,7 +50,7 @@ def annotation(number, image_id, track, place, role, team, jersey):
                            "y_bottom_middle": y}}
 
 
-def someone(rng, index):
+def made_person(rng, index):
     role = "player" if index < 9 else rng.choice(["player", "goalkeeper", "goalkeeper", "referee", "other", "ball"])
     team = rng.choice(["left", "right"]) if role in ("player", "goalkeeper") else None
     jersey = rng.choice([None, str(rng.randint(1, 5)), "07"]) if role in ("player", "goalkeeper") else None
@@ -61,7 +61,7 @@ def someone(rng, index):
 def made_clip(rng, prefix):
     """Truth and predictions of people who cross; places err, some by more than 5 m; roles, teams, numbers flicker; people are lost, invented,
     swapped. Images that are not labelled, of another clip, and short ids of the first release."""
-    people = [someone(rng, i) for i in range(PEOPLE)]
+    people = [made_person(rng, i) for i in range(PEOPLE)]
     names = list(range(1, PEOPLE + 1))
     images, truth, stated = [], [], []
     for frame in range(IMAGES):

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kFaceParts{"nose", "eye", "ear", "mouth"};
 // Shares of a box's height and width, and of the face's extent; generous by a half over the proportions above. unswept: the price
 // of too much is pixels beside heads, of too little a face.
-constexpr float kUpper = 0.22F, kWide = 0.5F, kFaceReach = 1.6F, kLeastOfBody = 0.075F;
+constexpr float kUpper = 0.22F, kWide = 0.28F, kFaceReach = 1.6F, kMinOfBody = 0.075F;
 constexpr double kWithin = 0.3;  // presence of a point
 
 bool is_of_face(std::string_view name) {
@@ -25,7 +25,7 @@ std::optional<cv::Rect2f> upper_part(const Sample& sample) {
   const auto width = static_cast<float>(sample.box->width), height = static_cast<float>(sample.box->height);
   // Someone who bends or lies has the head anywhere in the upper half.
   if (width > 0.8F * height) return cv::Rect2f(left, top - 0.05F * height, width, 0.6F * height);
-  const float upper = kUpper * height, wide = std::max(kWide * height * 0.5F, 0.7F * width);
+  const float upper = kUpper * height, wide = std::max(kWide * height, 0.7F * width);
   return cv::Rect2f(left + (width - wide) / 2, top - 0.03F * height, wide, upper + 0.03F * height);
 }
 
@@ -40,7 +40,7 @@ std::optional<cv::Rect2f> round_face(const Sample& sample, const KeypointSet& se
   if (points.size() < 2) return std::nullopt;
   cv::Point2f centre(0, 0);
   for (const cv::Point2f& point : points) centre += point * (1.0F / static_cast<float>(points.size()));
-  float reach = sample.box ? kLeastOfBody * static_cast<float>(sample.box->height) : 0;
+  float reach = sample.box ? kMinOfBody * static_cast<float>(sample.box->height) : 0;
   for (const cv::Point2f& point : points) reach = std::max(reach, kFaceReach * static_cast<float>(cv::norm(point - centre)));
   return cv::Rect2f(centre.x - reach, centre.y - 1.2F * reach, 2 * reach, 2.4F * reach);
 }

@@ -13,7 +13,7 @@
 namespace marey::evaluate {
 
 /// What two people must have in common, besides their place, to be the same. Each includes those before it.
-enum class GameStateDetail { places, roles, teams, numbers };
+enum class GameStateDetail { positions, roles, teams, numbers };
 inline constexpr std::size_t game_state_details = 4;
 
 /// The counts of one clip, or of several added up.

@@ -34,7 +34,7 @@ TEST(GameStateEvaluation, EachDetailIsAskedFor) {
     if (person.id == 2) person.team = PitchTeam::left;
   }
   const GameStateEvaluation result = evaluate_game_state(truth, tracks);
-  EXPECT_NEAR(result.scores(GameStateDetail::places).hota, 1, 1e-12);
+  EXPECT_NEAR(result.scores(GameStateDetail::positions).hota, 1, 1e-12);
   EXPECT_NEAR(result.scores(GameStateDetail::roles).hota, 1, 1e-12);
   // One of two is right: DetA = 10 / 30, AssA = 1.
   EXPECT_NEAR(result.scores(GameStateDetail::teams).hota, std::sqrt(1.0 / 3), 1e-12);

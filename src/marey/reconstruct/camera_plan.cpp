@@ -20,22 +20,26 @@
 namespace marey::reconstruct {
 namespace {
 
-constexpr int kSides = 8;
-constexpr double kGrazing = 0.17;  // cosine from which a side is seen: 80° aside
-constexpr int kMostAcross = 9, kMostUp = 4;
-constexpr double kWantedShare = 0.001;  // s, of the room's diagonal. unswept: between what plans for markers and for people want
-constexpr double kPriorShare = 0.1;     // of the diagonal
-constexpr int kMostRounds = 6;          // of exchanges; two to three are used
-constexpr double kAimReach = 0.25;      // of the volume's half extent, from its middle. unswept
+// numerical: how finely the volume is divided.
+constexpr int kSides = 8, kMaxAcross = 9, kMaxUp = 4;
+// physical: the cosine from which a side is visible, 80° aside.
+constexpr double kGrazing = 0.17;
+// numerical: lets a first camera count, and bounds the exchanges, of which two or three are used.
+constexpr double kPriorFraction = 0.1;  // of the diagonal
+constexpr int kMaxRounds = 6;
+// s, of the room's diagonal; of a point that is visible, and from one camera alone; of the volume's half extent. unswept
+constexpr double kTargetFraction = 0.001;
+constexpr double kViewCredit = 0.3, kFirstView = 0.6;
+constexpr double kAimReach = 0.25;
 
-/// A place of the volume, and the side from which it must be seen; no side for points that are seen from everywhere.
+/// A place of the volume, and the side from which it must be observed; no side for points that are seen from everywhere.
 struct SidedPoint {
   Vector<3> location;
   std::optional<Vector<3>> side;
 };
 
 struct PointGrid {
-  std::vector<Vector<3>> places;
+  std::vector<Vector<3>> positions;
   int columns, rows, layers;
   std::vector<SidedPoint> points;  // of each place, one after the other
 };
@@ -46,21 +50,21 @@ int steps_of(double length, double spacing, int most) {
 
 PointGrid grid_of(const PlannedRoom& room) {
   const Vector<3> extent = room.volume.to - room.volume.from;
-  const double spacing = std::max(extent.x(), extent.y()) / (kMostAcross - 1);
-  PointGrid grid{.places = {},
-                 .columns = steps_of(extent.x(), spacing, kMostAcross),
-                 .rows = steps_of(extent.y(), spacing, kMostAcross),
-                 .layers = steps_of(extent.z(), spacing, kMostUp),
+  const double spacing = std::max(extent.x(), extent.y()) / (kMaxAcross - 1);
+  PointGrid grid{.positions = {},
+                 .columns = steps_of(extent.x(), spacing, kMaxAcross),
+                 .rows = steps_of(extent.y(), spacing, kMaxAcross),
+                 .layers = steps_of(extent.z(), spacing, kMaxUp),
                  .points = {}};
   for (int k = 0; k < grid.layers; ++k) {
     for (int j = 0; j < grid.rows; ++j) {
       for (int i = 0; i < grid.columns; ++i) {
         const Vector<3> share((i + 0.5) / grid.columns, (j + 0.5) / grid.rows, (k + 0.5) / grid.layers);
-        grid.places.push_back(room.volume.from + share.cwiseProduct(extent));
-        if (!room.facing) grid.points.push_back({grid.places.back(), std::nullopt});
+        grid.positions.push_back(room.volume.from + share.cwiseProduct(extent));
+        if (!room.facing) grid.points.push_back({grid.positions.back(), std::nullopt});
         for (int side = 0; room.facing && side < kSides; ++side) {
           const double angle = 2 * std::numbers::pi * side / kSides;
-          grid.points.push_back({grid.places.back(), Vector<3>(std::cos(angle), std::sin(angle), 0)});
+          grid.points.push_back({grid.positions.back(), Vector<3>(std::cos(angle), std::sin(angle), 0)});
         }
       }
     }
@@ -93,7 +97,7 @@ bool in_sight(const PlannedRoom& room, const Vector<3>& from, const SidedPoint& 
   return std::ranges::none_of(room.obstacles, [&](const RoomBox& box) { return crosses(box, from, point.location); });
 }
 
-std::optional<SightLine> seen_by(const geometry::Camera& camera, int number, const Vector<3>& location, double noise_px) {
+std::optional<SightLine> observed_by(const geometry::Camera& camera, int number, const Vector<3>& location, double noise_px) {
   const auto pixel = camera.project(location);
   if (!pixel || !camera.in_image(*pixel)) return std::nullopt;
   return sight_line(camera, number, *pixel, noise_px);
@@ -135,7 +139,7 @@ geometry::BrownLens pinhole_of(const PlannedRoom& room) {
 struct CandidateCamera {
   std::size_t mount = 0;
   geometry::Camera camera;
-  std::vector<std::pair<std::size_t, Matrix<3>>> seen;  // points, by number, and what it says of them
+  std::vector<std::pair<std::size_t, Matrix<3>>> observed;  // points, by number, and what it says of them
 };
 
 /// The directions in which a camera may look: to the middle of the volume and to points round it.
@@ -163,22 +167,23 @@ std::vector<CandidateCamera> candidates_of(const PlannedRoom& room, const PointG
     CandidateCamera& candidate = candidates[i];
     for (std::size_t p = 0; p < grid.points.size(); ++p) {
       if (!in_sight(room, candidate.camera.centre(), grid.points[p])) continue;
-      const auto line = seen_by(candidate.camera, 0, grid.points[p].location, room.noise_px);
-      if (line) candidate.seen.emplace_back(p, information_of(*line, grid.points[p].location));
+      const auto line = observed_by(candidate.camera, 0, grid.points[p].location, room.noise_px);
+      if (line) candidate.observed.emplace_back(p, information_of(*line, grid.points[p].location));
     }
   });
   return candidates;
 }
 
 /// The set that is being put together.
-class Exchange {
+class CameraSelection {
  public:
-  Exchange(const PlannedRoom& room, const PointGrid& grid, std::vector<CandidateCamera> candidates)
+  CameraSelection(const PlannedRoom& room, const PointGrid& grid, std::vector<CandidateCamera> candidates)
       : room_(room), candidates_(std::move(candidates)) {
     const double diagonal = (room.volume.to - room.volume.from).norm();
-    wanted_ = std::pow(kWantedShare * diagonal, 2);
-    information_.assign(grid.points.size(), Matrix<3>::Identity() / std::pow(kPriorShare * diagonal, 2));
-    values_.assign(grid.points.size(), value(information_.front()));
+    target_ = std::pow(kTargetFraction * diagonal, 2);
+    views_.assign(grid.points.size(), 0);
+    information_.assign(grid.points.size(), Matrix<3>::Identity() / std::pow(kPriorFraction * diagonal, 2));
+    values_.assign(grid.points.size(), value(information_.front(), 0));
   }
 
   std::vector<std::size_t> solve() {
@@ -186,7 +191,9 @@ class Exchange {
       stop_point();
       take(best());
     }
-    for (int round = 0; round < kMostRounds; ++round) {
+    credit_ = 0;
+    for (std::size_t p = 0; p < values_.size(); ++p) values_[p] = value(information_[p], views_[p]);
+    for (int round = 0; round < kMaxRounds; ++round) {
       bool changed = false;
       for (std::size_t i = 0; i < taken_.size(); ++i) {
         stop_point();
@@ -206,11 +213,17 @@ class Exchange {
   const std::vector<CandidateCamera>& candidates() const { return candidates_; }
 
  private:
-  double value(const Matrix<3>& information) const { return wanted_ / (wanted_ + information.inverse().trace()); }
+  /// While cameras are added, one that sees a point alone has a part of what the second one brings: else no pair would ever begin
+  /// behind a wall.
+  double value(const Matrix<3>& information, int views) const {
+    const double credit = views == 0 ? 0 : views == 1 ? kFirstView : 1;
+    return target_ / (target_ + information.inverse().trace()) + credit_ * credit;
+  }
 
   double gain(const CandidateCamera& candidate) const {
     double sum = 0;
-    for (const auto& [point, seen] : candidate.seen) sum += value(information_[point] + seen) - values_[point];
+    for (const auto& [point, observed] : candidate.observed)
+      sum += value(information_[point] + observed, views_[point] + 1) - values_[point];
     return sum;
   }
 
@@ -225,10 +238,11 @@ class Exchange {
     return static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
   }
 
-  void add(std::size_t candidate, double sign) {
-    for (const auto& [point, seen] : candidates_[candidate].seen) {
-      information_[point] += sign * seen;
-      values_[point] = value(information_[point]);
+  void add(std::size_t candidate, int sign) {
+    for (const auto& [point, observed] : candidates_[candidate].observed) {
+      information_[point] += sign * observed;
+      views_[point] += sign;
+      values_[point] = value(information_[point], views_[point]);
     }
   }
 
@@ -239,13 +253,14 @@ class Exchange {
 
   const PlannedRoom& room_;
   std::vector<CandidateCamera> candidates_;
-  double wanted_ = 1;
+  double target_ = 1, credit_ = kViewCredit;
+  std::vector<int> views_;  // cameras that see each point
   std::vector<Matrix<3>> information_;
   std::vector<double> values_;
   std::vector<std::size_t> taken_;
 };
 
-double sorted_share(std::vector<double>& values, double share) {
+double quantile_of(std::vector<double>& values, double share) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
@@ -256,7 +271,7 @@ double sorted_share(std::vector<double>& values, double share) {
 std::optional<double> expected_error(const Vector<3>& location, const std::vector<geometry::Camera>& cameras, double noise_px) {
   std::vector<SightLine> lines;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    if (const auto line = seen_by(cameras[i], static_cast<int>(i), location, noise_px)) lines.push_back(*line);
+    if (const auto line = observed_by(cameras[i], static_cast<int>(i), location, noise_px)) lines.push_back(*line);
   }
   return lines.size() < 2 ? std::nullopt : error_of(lines, location);
 }
@@ -266,10 +281,10 @@ RoomCoverage coverage_of(const PlannedRoom& room, const std::vector<geometry::Ca
   RoomCoverage coverage{.points = {}, .columns = grid.columns, .rows = grid.rows, .layers = grid.layers};
   std::vector<double> errors;
   std::vector<SightLine> lines;
-  const std::size_t sides = grid.points.size() / grid.places.size();
-  for (std::size_t place = 0; place < grid.places.size(); ++place) {
+  const std::size_t sides = grid.points.size() / grid.positions.size();
+  for (std::size_t place = 0; place < grid.positions.size(); ++place) {
     PlannedPoint& point = coverage.points.emplace_back();
-    point.location = grid.places[place];
+    point.location = grid.positions[place];
     double squares = 0;
     int covered = 0;
     for (std::size_t side = 0; side < sides; ++side) {
@@ -277,7 +292,7 @@ RoomCoverage coverage_of(const PlannedRoom& room, const std::vector<geometry::Ca
       lines.clear();
       for (std::size_t i = 0; i < cameras.size(); ++i) {
         if (!in_sight(room, cameras[i].centre(), sided)) continue;
-        if (const auto line = seen_by(cameras[i], static_cast<int>(i), sided.location, room.noise_px)) lines.push_back(*line);
+        if (const auto line = observed_by(cameras[i], static_cast<int>(i), sided.location, room.noise_px)) lines.push_back(*line);
       }
       const auto error = lines.size() < 2 ? std::nullopt : error_of(lines, sided.location);
       if (!error) continue;
@@ -289,20 +304,20 @@ RoomCoverage coverage_of(const PlannedRoom& room, const std::vector<geometry::Ca
     point.error_m = covered == 0 ? 0 : std::sqrt(squares / covered);
   }
   coverage.covered = static_cast<double>(errors.size()) / static_cast<double>(grid.points.size());
-  coverage.p95_m = sorted_share(errors, 0.95);
-  coverage.median_m = sorted_share(errors, 0.5);
+  coverage.p95_m = quantile_of(errors, 0.95);
+  coverage.median_m = quantile_of(errors, 0.5);
   return coverage;
 }
 
 Rig plan_cameras(const PlannedRoom& room) {
   const PointGrid grid = grid_of(room);
   std::vector<CandidateCamera> candidates = candidates_of(room, grid);
-  if (std::ranges::all_of(candidates, [](const CandidateCamera& one) { return one.seen.empty(); }))
+  if (std::ranges::all_of(candidates, [](const CandidateCamera& one) { return one.observed.empty(); }))
     throw Error("{}", "no camera at any of the mounts sees the volume: obstacles, `farthest`, or mounts inside it hide it all");
-  Exchange exchange(room, grid, std::move(candidates));
+  CameraSelection selection(room, grid, std::move(candidates));
   Rig rig;
-  for (const std::size_t chosen : exchange.solve()) {
-    const geometry::Camera& camera = exchange.candidates()[chosen].camera;
+  for (const std::size_t chosen : selection.solve()) {
+    const geometry::Camera& camera = selection.candidates()[chosen].camera;
     RigCamera& one = rig.cameras.emplace_back();
     one.name = fmt::format("cam{}", rig.cameras.size());
     one.size = room.size;

@@ -121,7 +121,8 @@ TEST(BoardDetector, NothingIsFoundWhereThereIsNoSuchBoard) {
 
 /// A sheet of markers as printed: a marker's black is a whole number of px wide.
 cv::Mat sheet(const Board& board, double px_a_metre) {
-  const int columns = board.corners.width / 2, rows = board.corners.height / 2, side = static_cast<int>(std::lround(board.marker_m * px_a_metre)),
+  const int columns = board.corners.width / 2, rows = board.corners.height / 2,
+            side = static_cast<int>(std::lround(board.marker_m * px_a_metre)),
             step = static_cast<int>(std::lround(board.square_m * px_a_metre));
   cv::Mat image((rows - 1) * step + side + 2 * kMargin, (columns - 1) * step + side + 2 * kMargin, CV_8UC1, cv::Scalar(255));
   for (int marker = 0; marker < rows * columns; ++marker) {

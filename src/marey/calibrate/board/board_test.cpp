@@ -36,8 +36,8 @@ TEST(Board, ASheetOfMarkersHasTheirCorners) {
 }
 
 TEST(Board, ReadsWhatItWrites) {
-  for (const char* text : {"chess:9x6:0.025", "charuco:5x7:0.04:0.03:6X6_250", "chess:9x5:0.1:inverted", "aruco:1x1:0.16:0:4X4_50:23",
-                           "aruco:3x2:0.06:0.015:5X5_100", "aruco:2x2:0.05:0.01:6X6_50:inverted"})
+  for (const char* text : {"chess:9x6:0.025", "charuco:5x7:0.04:0.03:6X6_250", "chess:9x5:0.1:inverted",
+                           "aruco:1x1:0.16:0:4X4_50:23", "aruco:3x2:0.06:0.015:5X5_100", "aruco:2x2:0.05:0.01:6X6_50:inverted"})
     EXPECT_EQ(to_string(parse_board(text)), text);
 }
 

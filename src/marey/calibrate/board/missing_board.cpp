@@ -21,11 +21,12 @@
 namespace marey::calibrate::board {
 namespace {
 
-constexpr std::size_t kMostImages = 12;
-constexpr std::size_t kSureMarkers = 3;  // of another dictionary in one image; fewer may be anything
-constexpr double kDark = 40;             // of 255, at the brightest hundredth
-constexpr double kSmeared = 0.22;        // of an edge's step between two pixels: smeared over five. unswept
-constexpr std::size_t kSureSquares = 4;  // without a readable marker
+// numerical: bounds the cost.
+constexpr std::size_t kMaxImages = 12;
+// These choose a sentence and change no measurement, by definition: markers and squares in one image, fewer of which may be
+// anything; the brightest hundredth of an image, of 255; an edge's step between two pixels.
+constexpr std::size_t kMinMarkers = 3, kMinSquares = 4;
+constexpr double kDark = 40, kSmeared = 0.22;
 const std::array<cv::Size, 12> kGrids{cv::Size(9, 6), {8, 6}, {7, 5}, {7, 6}, {8, 5},  {8, 7},
                                       {10, 7},        {9, 7}, {6, 4}, {6, 5}, {11, 8}, {5, 4}};
 
@@ -42,30 +43,31 @@ cv::Mat eight_bits(const Image& image) {
   return grey;
 }
 
-/// What is seen of one dictionary in one image.
-struct SeenMarkers {
+/// What is detected of one dictionary in one image.
+struct DetectedMarkers {
   std::vector<int> ids;
   std::vector<double> sides;       // px
   std::vector<double> unreadable;  // sides of squares without a marker that can be read, px
 };
 
-SeenMarkers markers_in(const cv::Mat& grey, const std::string& dictionary) {
+DetectedMarkers markers_in(const cv::Mat& grey, const std::string& dictionary) {
   std::vector<std::vector<cv::Point2f>> quads, rejected;
-  SeenMarkers seen;
-  cv::aruco::detectMarkers(grey, board_dictionary(dictionary), quads, seen.ids, cv::aruco::DetectorParameters::create(), rejected);
+  DetectedMarkers detected;
+  cv::aruco::detectMarkers(grey, board_dictionary(dictionary), quads, detected.ids, cv::aruco::DetectorParameters::create(),
+                           rejected);
   const auto side_of = [](const std::vector<cv::Point2f>& quad) { return std::sqrt(std::abs(cv::contourArea(quad))); };
-  for (const auto& quad : quads) seen.sides.push_back(side_of(quad));
-  for (const auto& quad : rejected) seen.unreadable.push_back(side_of(quad));
-  return seen;
+  for (const auto& quad : quads) detected.sides.push_back(side_of(quad));
+  for (const auto& quad : rejected) detected.unreadable.push_back(side_of(quad));
+  return detected;
 }
 
-/// The image in which most of them are seen.
-SeenMarkers most_markers(const std::vector<cv::Mat>& images, const std::string& dictionary) {
-  SeenMarkers most;
+/// The image in which most of them are detected.
+DetectedMarkers max_markers(const std::vector<cv::Mat>& images, const std::string& dictionary) {
+  DetectedMarkers most;
   for (const cv::Mat& grey : images) {
-    SeenMarkers seen = markers_in(grey, dictionary);
-    if (seen.ids.size() > most.ids.size() || (most.ids.empty() && seen.unreadable.size() > most.unreadable.size()))
-      most = std::move(seen);
+    DetectedMarkers detected = markers_in(grey, dictionary);
+    if (detected.ids.size() > most.ids.size() || (most.ids.empty() && detected.unreadable.size() > most.unreadable.size()))
+      most = std::move(detected);
   }
   return most;
 }
@@ -97,25 +99,25 @@ std::string family_of(const std::string& dictionary) {
 }
 
 /// Markers of the right dictionary are there, but no board of them.
-std::string not_this_grid(const Board& board, const SeenMarkers& seen) {
-  const int largest = *std::ranges::max_element(seen.ids);
+std::string not_this_grid(const Board& board, const DetectedMarkers& detected) {
+  const int largest = *std::ranges::max_element(detected.ids);
   if (largest >= markers_of(board))
-    return fmt::format("markers of {} up to number {} are seen, and the board as given has {}: has it more squares?",
+    return fmt::format("markers of {} up to number {} are detected, and the board as given has {}: has it more squares?",
                        board.dictionary, largest, markers_of(board));
   return fmt::format(
       "at most {} of its {} markers are seen in an image, {:.0f} px wide: show more of the board, nearer and flatter",
-      seen.ids.size(), markers_of(board), middle_of(seen.sides));
+      detected.ids.size(), markers_of(board), middle_of(detected.sides));
 }
 
 std::optional<std::string> another_dictionary(const Board& board, const std::vector<cv::Mat>& images) {
   std::string best;
-  SeenMarkers most;
+  DetectedMarkers most;
   for (const std::string& name : board_dictionaries()) {
     if (family_of(name) == family_of(board.dictionary) && board_dictionary_size(name) <= board_dictionary_size(board.dictionary))
       continue;
-    SeenMarkers seen = most_markers(images, name);
-    if (seen.ids.size() < kSureMarkers || seen.ids.size() <= most.ids.size()) continue;
-    most = std::move(seen);
+    DetectedMarkers detected = max_markers(images, name);
+    if (detected.ids.size() < kMinMarkers || detected.ids.size() <= most.ids.size()) continue;
+    most = std::move(detected);
     best = name;
   }
   if (best.empty()) return std::nullopt;
@@ -134,19 +136,19 @@ std::optional<std::string> another_grid(const Board& board, const std::vector<cv
       Board other = board;
       other.kind = Board::Kind::chess;
       other.corners = grid;
-      return fmt::format("a chessboard of {}x{} inner corners is seen; give {}", grid.width, grid.height, to_string(other));
+      return fmt::format("a chessboard of {}x{} inner corners is detected; give {}", grid.width, grid.height, to_string(other));
     }
   }
   return std::nullopt;
 }
 
 /// The steepest step between two pixels beside an image's strongest edges, as a share of their height.
-double steepest_share(const cv::Mat& grey) {
+double edge_steepness(const cv::Mat& grey) {
   cv::Mat along, down, size;
   cv::Sobel(grey, along, CV_32F, 1, 0, 1, 0.5);
   cv::Sobel(grey, down, CV_32F, 0, 1, 1, 0.5);
   cv::magnitude(along, down, size);
-  constexpr int kRound = 7;
+  constexpr int kRound = 7;  // px round an edge; numerical
   cv::Mat low, high;
   cv::erode(grey, low, cv::Mat::ones(2 * kRound + 1, 2 * kRound + 1, CV_8U));
   cv::dilate(grey, high, cv::Mat::ones(2 * kRound + 1, 2 * kRound + 1, CV_8U));
@@ -180,7 +182,7 @@ std::string how_the_images_are(const std::vector<cv::Mat>& images) {
   std::vector<double> bright, steep;
   for (const cv::Mat& grey : images) {
     bright.push_back(brightest_hundredth(grey));
-    steep.push_back(steepest_share(grey));
+    steep.push_back(edge_steepness(grey));
   }
   if (const double value = middle_of(bright); value < kDark)
     return fmt::format("the images are dark, {:.0f} of 255 at the brightest hundredth: more light, or a longer exposure", value);
@@ -189,25 +191,25 @@ std::string how_the_images_are(const std::vector<cv::Mat>& images) {
         "the images are blurred, their sharpest edges smeared over {:.0f} px: hold the board still, expose for a shorter time, "
         "focus",
         1 / value);
-  return "nothing like it is seen; are its kind, its numbers and its colours as given?";
+  return "nothing like it is detected; are its kind, its numbers and its colours as given?";
 }
 
 std::optional<std::string> by_markers(const Board& board, const std::vector<cv::Mat>& images) {
-  const SeenMarkers right = most_markers(images, board.dictionary), negative = most_markers(negatives(images), board.dictionary);
-  if (negative.ids.size() >= kSureMarkers && negative.ids.size() > 2 * right.ids.size()) {
+  const DetectedMarkers right = max_markers(images, board.dictionary), negative = max_markers(negatives(images), board.dictionary);
+  if (negative.ids.size() >= kMinMarkers && negative.ids.size() > 2 * right.ids.size()) {
     Board other = board;
     other.inverted = !board.inverted;
     return fmt::format("black and white are exchanged; give {}", to_string(other));
   }
   auto other = another_dictionary(board, images);
-  if (right.ids.size() >= kSureMarkers || (!right.ids.empty() && !other)) return not_this_grid(board, right);
+  if (right.ids.size() >= kMinMarkers || (!right.ids.empty() && !other)) return not_this_grid(board, right);
   if (other) return other;
   std::vector<double> squares;
   for (const double side : right.unreadable) {
     if (side > 4) squares.push_back(side);
   }
   const double least = 2.0 * (board_dictionary(board.dictionary)->markerSize + 2);
-  if (squares.size() >= kSureSquares && middle_of(squares) < 1.5 * least)
+  if (squares.size() >= kMinSquares && middle_of(squares) < 1.5 * least)
     return fmt::format(
         "squares of about {:.0f} px are seen in which no marker can be read; a marker of {} needs {:.0f} px: nearer, or more "
         "pixels",
@@ -219,8 +221,8 @@ std::optional<std::string> by_markers(const Board& board, const std::vector<cv::
 
 std::string why_missing(const Board& board, std::span<const Image> images) {
   std::vector<cv::Mat> greys;
-  const std::size_t step = std::max<std::size_t>(1, images.size() / kMostImages);
-  for (std::size_t i = 0; i < images.size() && greys.size() < kMostImages; i += step) {
+  const std::size_t step = std::max<std::size_t>(1, images.size() / kMaxImages);
+  for (std::size_t i = 0; i < images.size() && greys.size() < kMaxImages; i += step) {
     if (std::min(images[i].size().width, images[i].size().height) >= 32) greys.push_back(eight_bits(images[i]));
   }
   if (greys.empty()) return "the images are too small to show anything";

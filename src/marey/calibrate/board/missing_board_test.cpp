@@ -31,14 +31,18 @@ cv::Mat printed(const Board& board, int first = 0) {
 }
 
 /// The board in a grey room of 1280 × 960 px, this much smaller, at a slant.
-Image seen(const Board& board, double scale = 1, double blur = 0.7, int first = 0) {
+Image board_image(const Board& board, double scale = 1, double blur = 0.7, int first = 0) {
   const cv::Mat flat = printed(board, first);
   const auto w = static_cast<float>(flat.cols), h = static_cast<float>(flat.rows);
   const auto s = static_cast<float>(scale);
   const std::vector<cv::Point2f> from{{0, 0}, {w, 0}, {w, h}, {0, h}};
-  const std::vector<cv::Point2f> to{{300, 200}, {300 + s * w, 200 + 0.06F * s * w}, {300 + 0.94F * s * w, 200 + 0.95F * s * h}, {300 + 0.04F * s * w, 200 + s * h}};
+  const std::vector<cv::Point2f> to{{300, 200},
+                                    {300 + s * w, 200 + 0.06F * s * w},
+                                    {300 + 0.94F * s * w, 200 + 0.95F * s * h},
+                                    {300 + 0.04F * s * w, 200 + s * h}};
   cv::Mat image;
-  cv::warpPerspective(flat, image, cv::getPerspectiveTransform(from, to), {1280, 960}, cv::INTER_AREA, cv::BORDER_CONSTANT, cv::Scalar(120));
+  cv::warpPerspective(flat, image, cv::getPerspectiveTransform(from, to), {1280, 960}, cv::INTER_AREA, cv::BORDER_CONSTANT,
+                      cv::Scalar(120));
   cv::GaussianBlur(image, image, {}, blur);
   return Image(image);
 }
@@ -55,7 +59,7 @@ const std::string kBoard = "charuco:7x5:0.04:0.03:5X5_100";
 TEST(MissingBoard, TheDictionaryThatFitsIsNamed) {
   for (const std::string dictionary : {"5X5_100", "6X6_50", "7X7_50", "APRILTAG_36H11", "ARUCO_ORIGINAL"}) {
     const std::string right = "charuco:7x5:0.04:0.03:" + dictionary;
-    const std::string told = reason("charuco:7x5:0.04:0.03:4X4_50", seen(parse_board(right)));
+    const std::string told = reason("charuco:7x5:0.04:0.03:4X4_50", board_image(parse_board(right)));
     EXPECT_NE(told.find("another dictionary"), std::string::npos) << told;
     EXPECT_NE(told.find("charuco:7x5:0.04:0.03:" + dictionary.substr(0, dictionary.rfind('_') + 1)), std::string::npos) << told;
   }
@@ -63,26 +67,28 @@ TEST(MissingBoard, TheDictionaryThatFitsIsNamed) {
 
 TEST(MissingBoard, ExchangedColoursAndOtherGridsAreNamed) {
   cv::Mat negative;
-  cv::bitwise_not(seen(parse_board(kBoard)).luma(), negative);
+  cv::bitwise_not(board_image(parse_board(kBoard)).luma(), negative);
   EXPECT_EQ(reason(kBoard, Image(negative)), "black and white are exchanged; give " + kBoard + ":inverted");
-  EXPECT_EQ(reason("chess:9x6:0.03", seen(parse_board("chess:8x5:0.03"))), "a chessboard of 8x5 inner corners is seen; give chess:8x5:0.03");
-  EXPECT_EQ(reason(kBoard, seen(parse_board("chess:8x6:0.04"))), "a chessboard of 8x6 inner corners is seen; give chess:8x6:0.04");
-  const std::string later = reason("charuco:7x5:0.04:0.03:5X5_100", seen(parse_board(kBoard), 1, 0.7, 60));
-  EXPECT_NE(later.find("up to number 76 are seen, and the board as given has 17"), std::string::npos) << later;
+  EXPECT_EQ(reason("chess:9x6:0.03", board_image(parse_board("chess:8x5:0.03"))),
+            "a chessboard of 8x5 inner corners is detected; give chess:8x5:0.03");
+  EXPECT_EQ(reason(kBoard, board_image(parse_board("chess:8x6:0.04"))),
+            "a chessboard of 8x6 inner corners is detected; give chess:8x6:0.04");
+  const std::string later = reason("charuco:7x5:0.04:0.03:5X5_100", board_image(parse_board(kBoard), 1, 0.7, 60));
+  EXPECT_NE(later.find("up to number 76 are detected, and the board as given has 17"), std::string::npos) << later;
 }
 
-TEST(MissingBoard, WhatImagesLackIsNamed) {
+TEST(MissingBoard, NamesDefectsOfImages) {
   const Board board = parse_board(kBoard);
-  const std::string small = reason(kBoard, seen(board, 0.22, 0.5));
+  const std::string small = reason(kBoard, board_image(board, 0.22, 0.5));
   EXPECT_NE(small.find("px"), std::string::npos) << small;
   EXPECT_NE(small.find("nearer"), std::string::npos) << small;
-  const std::string blurred = reason(kBoard, seen(board, 1, 14));
+  const std::string blurred = reason(kBoard, board_image(board, 1, 14));
   EXPECT_NE(blurred.find("blurred"), std::string::npos) << blurred;
-  const std::string dark = reason(kBoard, Image(cv::Mat(seen(board).luma() * 0.02)));
+  const std::string dark = reason(kBoard, Image(cv::Mat(board_image(board).luma() * 0.02)));
   EXPECT_NE(dark.find("dark"), std::string::npos) << dark;
   cv::Mat room(480, 640, CV_8UC1, cv::Scalar(90));
   cv::rectangle(room, {100, 100, 200, 150}, cv::Scalar(200), cv::FILLED);
-  EXPECT_NE(reason(kBoard, Image(room)).find("nothing like it is seen"), std::string::npos);
+  EXPECT_NE(reason(kBoard, Image(room)).find("nothing like it is detected"), std::string::npos);
   EXPECT_NE(why_missing(board, {}).find("too small"), std::string::npos);
 }
 

@@ -114,11 +114,11 @@ class PeopleReader {
                                                : std::nullopt;
     if (!id || *id < 0 || *id > 1'000'000'000) fail("has a track_id that is no whole number from 0");
     person.id = static_cast<std::int32_t>(*id);
-    place(member(one, "bbox_pitch"), person);
+    read_position(member(one, "bbox_pitch"), person);
     describe(attributes, role, person);
   }
 
-  void place(const json& box, PitchPerson& person) const {
+  void read_position(const json& box, PitchPerson& person) const {
     if (!box.is_object()) fail("has no place on the pitch (bbox_pitch)");
     const auto coordinate = [&](const char* key) {
       const json& value = member(box, key);

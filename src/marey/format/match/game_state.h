@@ -26,7 +26,7 @@ struct TrueGameState {
 /// image) and for anything malformed.
 TrueGameState read_true_game_state(const std::string& path);
 
-/// A tracker's predictions for that clip; what they say of other images is left out. Images are those of the truth, by the same
+/// A tracker's predictions for that clip; those of other images are dropped. Images are those of the truth, by the same
 /// ids; by Marey's ids, which name no clip; or by the short ids of the first release, which count from 0. Throws Error likewise.
 GameState read_predicted_game_state(const std::string& path, const LabelledImages& images);
 

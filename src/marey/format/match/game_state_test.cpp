@@ -73,7 +73,7 @@ TEST(GameState, PredictionsAreOfTheTruthsImages) {
   EXPECT_NE(none.warnings[0].find("begin with 2021"), std::string::npos) << none.warnings[0];
 }
 
-TEST(GameState, WhatCannotBeEvaluatedIsNamed) {
+TEST(GameState, NamesEntriesThatCannotBeEvaluated) {
   const auto message = [&](const std::string& one) {
     return stated([&] { parse_predicted_game_state(predictions({one}), "p.json", kImages); });
   };

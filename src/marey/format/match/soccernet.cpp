@@ -107,7 +107,7 @@ class SoccernetReader {
                  match_.pitch.width / 2 - location("y_bottom_middle"), where_);
   }
 
-  /// Two people of one team with one number in one image are told of.
+  /// Two people of one team with one number in one image are reported.
   void note_shirt(std::int32_t frame, const std::string& team, const std::string& jersey, std::int64_t track) {
     if (jersey.empty() || team.empty()) return;
     const auto [first, is_new] = wearing_.try_emplace({frame, team, jersey}, track);

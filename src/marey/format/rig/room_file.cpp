@@ -16,36 +16,36 @@ namespace marey::format::rig {
 namespace {
 
 constexpr double kMountSpacing = 1.0;  // m along a wall
-constexpr std::size_t kMostMounts = 400;
-constexpr int kMostCameras = 64;
-constexpr double kLargestRoom = 1000;  // m
+constexpr std::size_t kMaxMounts = 400;
+constexpr int kMaxCameras = 64;
+constexpr double kMaxRoom = 1000;  // m
 
 std::optional<Vector<3>> point_of(const Section& section, const char* key) {
   const auto numbers = section.numbers(key, 3, 3, "three numbers, m: [x, y, z]");
   if (!numbers) return std::nullopt;
   const Vector<3> point((*numbers)[0], (*numbers)[1], (*numbers)[2]);
-  if (point.cwiseAbs().maxCoeff() > kLargestRoom) section.problem(key, "is farther than 1000 m; write metres");
+  if (point.cwiseAbs().maxCoeff() > kMaxRoom) section.problem(key, fmt::format("{} is farther than 1000 m; write metres", key));
   return point;
 }
 
 /// `flat`: may be without height.
 RoomBox box_of(const Section& section, bool flat = false) {
   const auto from = point_of(section, "from"), to = point_of(section, "to");
-  if (!from) section.problem("from", "is missing; write the box's lowest corner: from = [-2, -2, 0]");
-  if (!to) section.problem("to", "is missing; write the box's highest corner: to = [2, 2, 2]");
+  if (!from) section.problem("from", "from is missing; write the box's lowest corner: from = [-2, -2, 0]");
+  if (!to) section.problem("to", "to is missing; write the box's highest corner: to = [2, 2, 2]");
   if (!from || !to) return {};
   const Vector<3> extent = *to - *from;
   if (!(extent.x() > 0 && extent.y() > 0 && (extent.z() > 0 || (flat && extent.z() == 0))))
-    section.problem("to", "must be above `from` in each coordinate");
+    section.problem("to", "to must be above from in each coordinate");
   return {*from, *to};
 }
 
 /// Evenly along the four walls of a box, at its lowest and its highest height.
-std::vector<Vector<3>> places_on_walls(const RoomBox& box) {
+std::vector<Vector<3>> mounts_on_walls(const RoomBox& box) {
   std::vector<double> heights{box.from.z()};
   if (box.to.z() - box.from.z() > 0.3) heights.push_back(box.to.z());
   const double length = box.to.x() - box.from.x(), width = box.to.y() - box.from.y();
-  const double spacing = std::max(kMountSpacing, 4 * (length + width) / static_cast<double>(kMostMounts));
+  const double spacing = std::max(kMountSpacing, 4 * (length + width) / static_cast<double>(kMaxMounts));
   const int along = std::max(1, static_cast<int>(std::floor(length / spacing))),
             across = std::max(1, static_cast<int>(std::floor(width / spacing)));
   std::vector<Vector<3>> places;
@@ -64,28 +64,28 @@ void read_mounts(const toml::table& table, PlannedRoom& room, Problems& problems
   const Section section(table, "mounts", problems);
   section.only({"from", "to", "places"});
   if (section.has("places") && (section.has("from") || section.has("to")))
-    section.problem("places", "and a box are two ways to say where cameras may be; leave one out");
+    section.problem("places", "places and a box both specify where cameras may be; remove one");
   if (!section.has("places")) {
-    room.mounts = places_on_walls(box_of(section, true));
+    room.mounts = mounts_on_walls(box_of(section, true));
     return;
   }
-  for (const std::vector<double>& row : section.rows("places", 3, kMostMounts, "places in m: [[x, y, z], …]"))
+  for (const std::vector<double>& row : section.rows("places", 3, kMaxMounts, "places in m: [[x, y, z], …]"))
     room.mounts.emplace_back(row[0], row[1], row[2]);
-  if (room.mounts.size() < 2) section.problem("places", "has fewer than two places");
+  if (room.mounts.size() < 2) section.problem("places", "places has fewer than two");
 }
 
 void read_cameras(const toml::table& table, PlannedRoom& room, Problems& problems) {
   const Section section(table, "cameras", problems);
   section.only({"count", "size", "field_of_view", "noise_px", "farthest"});
   room.cameras = section.count("count").value_or(room.cameras);
-  if (room.cameras < 2 || room.cameras > kMostCameras) section.problem("count", fmt::format("must be 2 to {}", kMostCameras));
+  if (room.cameras < 2 || room.cameras > kMaxCameras) section.problem("count", fmt::format("count must be 2 to {}", kMaxCameras));
   if (const auto size = section.numbers("size", 2, 2, "width and height in px: [1920, 1080]")) {
     room.size = {static_cast<int>((*size)[0]), static_cast<int>((*size)[1])};
     if (room.size.width < 16 || room.size.height < 16 || room.size.width > 32768 || room.size.height > 32768)
-      section.problem("size", "must be 16 to 32768 px");
+      section.problem("size", "size must be 16 to 32768 px");
   }
   const double degrees = section.positive("field_of_view").value_or(room.field_of_view * 180 / std::numbers::pi);
-  if (degrees < 1 || degrees > 150) section.problem("field_of_view", "must be 1 to 150 degrees across the image");
+  if (degrees < 1 || degrees > 150) section.problem("field_of_view", "field_of_view must be 1 to 150 degrees across the image");
   room.field_of_view = degrees * std::numbers::pi / 180;
   room.noise_px = section.positive("noise_px").value_or(room.noise_px);
   room.farthest_m = section.positive("farthest");

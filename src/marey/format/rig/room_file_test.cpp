@@ -58,8 +58,8 @@ TEST(RoomFile, EveryProblemIsNamedWithItsLine) {
   const std::string message = message_of(
       "points = \"people\"\nfloor = 1\n[volume]\nfrom = [0, 0, 0]\nto = [1, 1, -1]\n[mounts]\nplaces = [[1, 2, 3]]\n[cameras]\n"
       "count = 1\nfield_of_view = 200\n");
-  for (const char* part : {"room.toml:1: points", "room.toml:2: \"floor\" is not known", "must be above `from`",
-                           "fewer than two places", "must be 2 to 64", "must be 1 to 150"})
+  for (const char* part : {"room.toml:1: points", "room.toml:2: \"floor\" is not known", "to must be above from",
+                           "places has fewer than two", "count must be 2 to 64", "field_of_view must be 1 to 150"})
     EXPECT_NE(message.find(part), std::string::npos) << part << " in " << message;
   EXPECT_NE(message_of("[cameras]\n").find("has no [volume]"), std::string::npos);
   EXPECT_NE(message_of("[volume\n").find("room.toml:"), std::string::npos);

@@ -24,9 +24,9 @@
 namespace marey::format::scene {
 namespace {
 
-constexpr double kShortestBoneM = 0.02;  // Blender drops bones without length
+constexpr double kMinBoneM = 0.02;  // Blender drops bones without length
 constexpr double kMarkerM = 0.01;
-constexpr double kToldBendPx = 2;
+constexpr double kMinReportedBendPx = 2;
 
 /// A Python string.
 std::string quoted_python(const std::string& text) {
@@ -71,7 +71,7 @@ std::string camera_text(const RigCamera& one, const Camera& camera) {
   const auto bend = bend_of(camera);
   if (one.region) text += "  # its video is a part of a larger image: no background";
   if (!bend) text += "  # its lens is too wide for a pinhole: the edges differ from its video";
-  if (bend && *bend > kToldBendPx)
+  if (bend && *bend > kMinReportedBendPx)
     text += fmt::format("  # its lens bends the corners by {:.0f} px, which Blender's does not", *bend);
   return text + "\n";
 }
@@ -169,9 +169,9 @@ class BlenderSceneSink final : public Sink {
   static Vector<3> tail_of(const std::vector<SceneBone>& bones, std::size_t i) {
     const Vector<3>& head = bones[i].head;
     for (const SceneBone& other : bones) {
-      if (other.parent == i && (other.head - head).norm() > kShortestBoneM) return other.head;
+      if (other.parent == i && (other.head - head).norm() > kMinBoneM) return other.head;
     }
-    if (bones[i].body.end && bones[i].body.end->norm() > kShortestBoneM) return head + *bones[i].body.end;
+    if (bones[i].body.end && bones[i].body.end->norm() > kMinBoneM) return head + *bones[i].body.end;
     return head + Vector<3>(0, 0, 0.05);
   }
 

@@ -63,7 +63,7 @@ TEST(BlenderScene, MarkersAndCamerasAreInTheScript) {
   EXPECT_EQ(text.find("\nimport os"), std::string::npos) << "names stay on their line";
 }
 
-TEST(BlenderScene, WhatBlenderDoesNotHaveIsStated) {
+TEST(BlenderScene, StatesMissingFeaturesOfBlender) {
   RecordingHeader header = header_in_space();
   RigCamera bent = camera_before_origin(), part = camera_before_origin();
   geometry::BrownLens lens = std::get<geometry::BrownLens>(*bent.lens);

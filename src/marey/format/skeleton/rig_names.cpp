@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -37,9 +38,10 @@ struct HumanBone {
   std::string_view others;                ///< how OpenSim and motion capture call it: lower case, without separators
   std::array<std::string_view, 5> names;  ///< mixamo's, unreal's, vrm's, rokoko's, rigify's; MotionBuilder's are Mixamo's
 };
-constexpr std::array<HumanBone, 12> kBones{{
+constexpr std::array<HumanBone, 13> kBones{{
     {"pelvis", "pelvis hips hip", {"Hips", "pelvis", "hips", "Hips", "spine"}},
-    {"trunk", "trunk torso spine abdomen thorax", {"Spine", "spine_01", "spine", "Spine1", "spine.001"}},
+    {"trunk", "trunk torso spine abdomen", {"Spine", "spine_01", "spine", "Spine1", "spine.001"}},
+    {"chest", "chest thorax spine1", {"Spine1", "spine_02", "chest", "Spine2", "spine.002"}},
     {"neck", "neck", {"Neck", "neck_01", "neck", "Neck", "spine.004"}},
     {"head", "head", {"Head", "head", "head", "Head", "spine.006"}},
     {"?_thigh", "thigh femur upleg upperleg", {"?UpLeg", "thigh_?", "?UpperLeg", "?Thigh", "thigh.?"}},
@@ -128,11 +130,11 @@ class RestPose {
       if (bodies[i].skeleton == skeleton) bones_.push_back(i);
     }
     upright_ = upright_axes(path, skeleton);
-    for (const std::size_t i : bones_) turns_[bodies[i].id] = own_turn(bodies[i]);
+    for (const std::size_t i : bones_) rotations_[bodies[i].id] = own_turn(bodies[i]);
   }
 
   /// body_from_named of each bone.
-  const std::map<BodyId, Matrix<3>>& turns() const { return turns_; }
+  const std::map<BodyId, Matrix<3>>& rotations() const { return rotations_; }
 
  private:
   const Body* bone_named(std::string_view marey, Flank side) const {
@@ -150,7 +152,8 @@ class RestPose {
     const Body* const shank = bone_named("?_shank", Flank::left);
     if (left == nullptr || right == nullptr || shank == nullptr || left->parent != right->parent)
       throw Error(
-          "{}: the skeleton {} has no two thighs and a left shank by their names, which tell its left and its up; --rig-names is "
+          "{}: the skeleton {} has no two thighs and a left shank by their names, by which its left and its up are known; "
+          "--rig-names is "
           "for human skeletons",
           path, skeleton);
     const Vector<3> up = nearest_axis(-shank->offset), to_left = nearest_axis(left->offset - right->offset);
@@ -172,8 +175,8 @@ class RestPose {
 
   /// Of the bone that it hangs on.
   Matrix<3> turn_above(const Body& body) const {
-    const auto parent = body.parent ? turns_.find(*body.parent) : turns_.end();
-    return parent == turns_.end() ? upright_ : parent->second;
+    const auto parent = body.parent ? rotations_.find(*body.parent) : rotations_.end();
+    return parent == rotations_.end() ? upright_ : parent->second;
   }
 
   Matrix<3> own_turn(const Body& body) const {
@@ -192,7 +195,7 @@ class RestPose {
   const RigScheme& scheme_;
   std::vector<std::size_t> bones_;
   Matrix<3> upright_;
-  std::map<BodyId, Matrix<3>> turns_;
+  std::map<BodyId, Matrix<3>> rotations_;
 };
 
 class NamedSink final : public Sink {
@@ -209,8 +212,9 @@ class NamedSink final : public Sink {
         skeletons.push_back(body.skeleton);
     }
     for (const std::string& skeleton : skeletons)
-      turns_.merge(std::map(RestPose(header.bodies, skeleton, scheme_, name()).turns()));
-    for (Body& body : named.bodies) rename(body);
+      rotations_.merge(std::map(RestPose(header.bodies, skeleton, scheme_, name()).rotations()));
+    for (Body& body : named.bodies) turn(body);
+    for (const std::string& skeleton : skeletons) rename(skeleton, named.bodies);
     if (!scheme_.root.empty()) add_roots(skeletons, named.bodies);
     return inner_->begin(named);
   }
@@ -218,7 +222,7 @@ class NamedSink final : public Sink {
   void write(const Instant& instant) override {
     Instant named = instant;
     for (BodyPose& pose : named.bodies) {
-      if (const auto turn = turns_.find(pose.body); turn != turns_.end()) pose.world_from_body.rotation *= turn->second;
+      if (const auto turn = rotations_.find(pose.body); turn != rotations_.end()) pose.world_from_body.rotation *= turn->second;
     }
     for (const BodyId root : roots_)
       named.bodies.insert(named.bodies.begin(), BodyPose{.body = root, .world_from_body = {}, .covariance = {}, .residual_m = {}});
@@ -228,17 +232,35 @@ class NamedSink final : public Sink {
   void finish() override { inner_->finish(); }
 
  private:
-  void rename(Body& body) const {
-    const auto turn = turns_.find(body.id);
-    if (turn == turns_.end()) return;
-    const Matrix<3> named_from_body = turn->second.transpose();
+  void turn(Body& body) const {
+    const auto own = rotations_.find(body.id);
+    if (own == rotations_.end()) return;
+    const Matrix<3> named_from_body = own->second.transpose();
     if (body.end) body.end = named_from_body * *body.end;
     for (BodyMarker& marker : body.markers) marker.position = named_from_body * marker.position;
     if (body.parent) {
-      if (const auto parent = turns_.find(*body.parent); parent != turns_.end())
+      if (const auto parent = rotations_.find(*body.parent); parent != rotations_.end())
         body.offset = parent->second.transpose() * body.offset;
     }
-    body.label = rig_bone_name(scheme_, body.label);
+  }
+
+  /// A chest is the trunk where there is no other one. A name that another bone of the skeleton has already is not given again.
+  void rename(const std::string& skeleton, std::vector<Body>& bodies) const {
+    const auto is_bone = [&](const Body& body, std::string_view bone) {
+      const auto known = known_bone(body.label);
+      return body.skeleton == skeleton && known && known->bone->marey == bone;
+    };
+    const bool has_trunk = std::ranges::any_of(bodies, [&](const Body& body) { return is_bone(body, "trunk"); });
+    std::set<std::string> used;
+    for (Body& body : bodies) {
+      if (body.skeleton != skeleton) continue;
+      const std::string name = rig_bone_name(scheme_, !has_trunk && is_bone(body, "chest") ? "trunk" : body.label);
+      if (used.insert(name).second) {
+        body.label = name;
+      } else {
+        used.insert(body.label);
+      }
+    }
   }
 
   /// A bone at the origin before each skeleton's first one.
@@ -261,7 +283,7 @@ class NamedSink final : public Sink {
 
   std::unique_ptr<Sink> inner_;
   const RigScheme& scheme_;
-  std::map<BodyId, Matrix<3>> turns_;
+  std::map<BodyId, Matrix<3>> rotations_;
   std::vector<BodyId> roots_;
 };
 

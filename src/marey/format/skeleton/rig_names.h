@@ -56,7 +56,7 @@ std::unique_ptr<Sink> create_bones(const std::string& path, const BoneOutput& ou
 
 /// Gives `inner` the same motion by the scheme's bones: named as there, facing −y, with the scheme's pose where nothing is turned.
 /// Joints are where they were. Bodies that are no skeleton's, and bones that it does not know, keep their names. `begin` throws
-/// Error if a skeleton has no legs to tell up and left by.
+/// Error if a skeleton has no legs by which up and left are known.
 std::unique_ptr<Sink> with_rig_scheme(std::unique_ptr<Sink> inner, const RigScheme& scheme);
 
 }  // namespace marey::format::skeleton

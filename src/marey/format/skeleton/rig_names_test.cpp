@@ -31,7 +31,7 @@ Body bone(int id, const char* label, std::optional<int> parent, const Vector<3>&
 }
 
 /// Someone who stands with their arms down, x ahead, y to the left, z up.
-RecordingHeader someone() {
+RecordingHeader person_header() {
   RecordingHeader header;
   header.rate_hz = 100;
   header.bodies = {bone(1, "pelvis", {}, {0, 0, 0}),
@@ -77,34 +77,34 @@ class Listener final : public Sink {
   std::vector<Instant> instants;
 };
 
-struct Heard {
+struct NamedRecording {
   std::vector<Body> bodies;
   std::vector<Instant> instants;
 
   const Body& labelled(const std::string& label) const { return *std::ranges::find(bodies, label, &Body::label); }
 };
 
-Heard heard_of(const RecordingHeader& header, const std::string& scheme) {
+NamedRecording named_recording(const RecordingHeader& header, const std::string& scheme) {
   auto listener = std::make_unique<Listener>();
-  Listener& heard = *listener;
+  Listener& named = *listener;
   const auto sink = with_rig_scheme(std::move(listener), rig_scheme(scheme));
   sink->begin(header);
   for (int frame = 0; frame < 5; ++frame) sink->write(moved(header, frame));
   sink->finish();
-  return {heard.bodies, heard.instants};
+  return {named.bodies, named.instants};
 }
 
 TEST(RigNames, JointsStayWhereTheyAreAndHangTogether) {
-  const RecordingHeader header = someone();
+  const RecordingHeader header = person_header();
   for (const std::string scheme : {"mixamo", "unreal", "vrm", "rokoko", "rigify", "motionbuilder"}) {
-    const Heard heard = heard_of(header, scheme);
-    ASSERT_EQ(heard.bodies.size(), header.bodies.size() + (scheme == "unreal" ? 1 : 0)) << scheme;
+    const NamedRecording named = named_recording(header, scheme);
+    ASSERT_EQ(named.bodies.size(), header.bodies.size() + (scheme == "unreal" ? 1 : 0)) << scheme;
     for (int frame = 0; frame < 5; ++frame) {
       std::map<BodyId, Rigid3> poses;
-      for (const BodyPose& pose : heard.instants[static_cast<std::size_t>(frame)].bodies) poses[pose.body] = pose.world_from_body;
+      for (const BodyPose& pose : named.instants[static_cast<std::size_t>(frame)].bodies) poses[pose.body] = pose.world_from_body;
       for (const BodyPose& own : moved(header, frame).bodies)
         EXPECT_LT((poses.at(own.body).translation - own.world_from_body.translation).norm(), 1e-12) << scheme;
-      for (const Body& body : heard.bodies) {
+      for (const Body& body : named.bodies) {
         EXPECT_NEAR(poses.at(body.id).rotation.determinant(), 1, 1e-9);
         if (!body.parent || body.label == "pelvis") continue;
         EXPECT_LT((poses.at(*body.parent) * body.offset - poses.at(body.id).translation).norm(), 1e-12) << scheme << body.label;
@@ -114,7 +114,7 @@ TEST(RigNames, JointsStayWhereTheyAreAndHangTogether) {
 }
 
 TEST(RigNames, AtRestTheArmsAreAsTheProgramHasThem) {
-  const Heard t = heard_of(someone(), "mixamo"), a = heard_of(someone(), "unreal");
+  const NamedRecording t = named_recording(person_header(), "mixamo"), a = named_recording(person_header(), "unreal");
   EXPECT_LT((t.labelled("mixamorig:LeftForeArm").offset.normalized() - Vector<3>(1, 0, 0)).norm(), 1e-9);
   EXPECT_LT((t.labelled("mixamorig:LeftHand").offset.normalized() - Vector<3>(1, 0, 0)).norm(), 1e-9);
   EXPECT_LT((*t.labelled("mixamorig:LeftHand").end - Vector<3>(0.1, 0, 0)).norm(), 1e-9);
@@ -136,12 +136,23 @@ TEST(RigNames, BonesOfOtherProgramsAreKnown) {
   EXPECT_EQ(rig_bone_name(rig_scheme("motionbuilder"), "ulna_r"), "RightForeArm");
 }
 
-TEST(RigNames, WhatIsNoPersonIsRefused) {
+TEST(RigNames, AChestIsTheTrunkWhereThereIsNoOther) {
+  RecordingHeader header = person_header();
+  header.bodies[1].label = "chest";
+  EXPECT_EQ(named_recording(header, "vrm").bodies[1].label, "spine");
+  header = person_header();
+  header.bodies[8].label = "chest";
+  EXPECT_EQ(named_recording(header, "vrm").bodies[8].label, "chest");
+  header.bodies[8].label = "torso";
+  EXPECT_EQ(named_recording(header, "vrm").bodies[8].label, "torso") << "the trunk has that name already";
+}
+
+TEST(RigNames, RejectsSkeletonsWithoutLegs) {
   EXPECT_THROW(rig_scheme("maya"), Error);
-  RecordingHeader header = someone();
+  RecordingHeader header = person_header();
   header.bodies.resize(5);
   try {
-    heard_of(header, "vrm");
+    named_recording(header, "vrm");
     ADD_FAILURE() << "a person without legs";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("two thighs"), std::string::npos) << error.what();

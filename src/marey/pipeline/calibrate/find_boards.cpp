@@ -14,7 +14,7 @@ namespace marey::pipeline::calibrate {
 namespace {
 
 constexpr std::size_t kFramesAtOnce = 16;  // frames
-constexpr std::size_t kKeptImages = 24;    // to say why there is no board in them; half are dropped when there are as many
+constexpr std::size_t kKeptImages = 24;  // numerical: to say why there is no board in them; half are dropped when there are as many
 
 /// Images from all over a video, evenly, whatever its length.
 class KeptImages {
