@@ -64,8 +64,11 @@ std::string default_output(const TrackCommand& command, const std::string& forma
 
 pipeline::people::TrackOutput output_of(const TrackCommand& command) {
   const pipeline::jobs::ImageInput& input = command.people.input;
-  pipeline::people::TrackOutput output{
-      .tracks = command.out, .overlay = input.overlay, .plot = input.plot, .masks = command.people.masks};
+  pipeline::people::TrackOutput output{.tracks = command.out,
+                                       .overlay = input.overlay,
+                                       .plot = input.plot,
+                                       .target_masks = command.people.target_masks,
+                                       .masks = command.people.masks};
   const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
   if (named || !command.format.empty()) {
     output.format = format::format_to_write(command.out, command.format, format::Content::image).name;
@@ -117,7 +120,8 @@ void check_on_ground(const TrackCommand& command) {
 }
 
 /// Options that would change the output much: without effect they are refused, the others are named in a warning.
-constexpr std::array<std::string_view, 5> kRefusedElsewhere{"foreground-masks", "contour", "lag", "measured-only", "stabilise"};
+constexpr std::array<std::string_view, 6> kRefusedElsewhere{"target-masks", "foreground-masks", "contour",
+                                                            "lag",          "measured-only",    "stabilise"};
 
 /// Options that were given and that the job does not have.
 void check_of_other_jobs(const TrackCommand& command) {
