@@ -58,6 +58,7 @@ nb::tuple track_people(nb::dict given) {
   how.next_to = (std::filesystem::temp_directory_path() / "marey").string();
   return in_image(options, job.input, rows, [&](const auto& feed, auto output, auto sinks, const Hooks& hooks) {
     output.masks = job.masks;
+    output.target_masks = job.target_masks;
     return pipeline::people::track_people(feed, output, std::move(sinks), how, hooks);
   });
 }

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "marey/pipeline/take/ground_orientation.h"
+#include "marey/pipeline/take/measure_contours.h"
 #include "marey/pipeline/take/measure_match.h"
 
 #include "command_line.h"
@@ -23,6 +24,7 @@ namespace {
 struct MeasureCommand {
   std::string tracks;
   pipeline::take::MeasureOutput output;
+  std::string series;
   std::string method = "lowpass", zones = "2,4,5.5,7", size = "105x68", rig;
   bool y_down = false;
   pipeline::take::MeasureMatchOptions options;
@@ -137,7 +139,57 @@ std::string report_file(const MeasureCommand& command) {
   return (std::filesystem::path(command.output.report) / "report.html").string();
 }
 
+Json contour_json(const pipeline::take::ContourFigure& figure) {
+  if (figure.samples == 0) return nullptr;
+  return {{"mean", figure.mean}, {"sd", figure.spread}, {"sigma", figure.deviation}};
+}
+
+void report_contours_json(const pipeline::take::ContourMeasurement& measured) {
+  Json people = Json::array();
+  for (const pipeline::take::PersonContours& person : measured.people) {
+    people.push_back({{"id", person.id},
+                      {"label", person.label},
+                      {"contours", person.contours},
+                      {"measured", person.area.samples},
+                      {"area", contour_json(person.area)},
+                      {"width", contour_json(person.width)},
+                      {"height", contour_json(person.height)},
+                      {"lean_deg", contour_json(person.lean)},
+                      {"leg_opening", contour_json(person.leg_opening)}});
+  }
+  print(Json{{"people", people}, {"unit", measured.metric ? "m" : "px"}});
+}
+
+void print_contours(const pipeline::take::ContourMeasurement& measured) {
+  const char* unit = measured.metric ? "m" : "px";
+  const auto shown = [](const pipeline::take::ContourFigure& figure) {
+    return figure.samples > 0 ? fmt::format("{:.3g} ± {:.2g}", figure.mean, figure.deviation) : std::string("-");
+  };
+  fmt::print("{:>5} {:<12} {:>9} {:>16} {:>15} {:>15} {:>13} {:>15}\n", "id", "label", "contours", fmt::format("area, {}²", unit),
+             fmt::format("width, {}", unit), fmt::format("height, {}", unit), "lean, °", fmt::format("legs, {}", unit));
+  for (const pipeline::take::PersonContours& person : measured.people) {
+    fmt::print("{:>5} {:<12} {:>9} {:>15} {:>15} {:>15} {:>13} {:>15}\n", person.id, person.label, person.contours,
+               shown(person.area), shown(person.width), shown(person.height), shown(person.lean), shown(person.leg_opening));
+  }
+}
+
+/// Of tracks in an image: what their contours say.
+void run_contours(const MeasureCommand& command) {
+  if (!command.output.report.empty()) throw WrongUsage("--report is of people on the ground; {} is of an image", command.tracks);
+  const pipeline::take::MeasureContoursOptions options{.rig = command.rig, .series = command.series};
+  const auto measured = with_progress(command.quiet, [&](const Hooks& hooks) {
+    return pipeline::take::measure_contours(command.tracks, command.output.figures, options, hooks);
+  });
+  if (command.json) {
+    report_contours_json(measured);
+  } else if (!command.quiet) {
+    print_contours(measured);
+  }
+}
+
 void run(const MeasureCommand& command) {
+  if (pipeline::take::is_of_image(command.tracks)) return run_contours(command);
+  if (!command.series.empty()) throw WrongUsage("--series is of contours, and {} has none", command.tracks);
   pipeline::take::MeasureMatchOptions options = command.options;
   options.how.path.method = analyse::parse_path_method(command.method);
   options.how.zones = parse_zones(command.zones);
@@ -160,13 +212,16 @@ void run(const MeasureCommand& command) {
 
 void add_measure(Command& program) {
   auto options = std::make_shared<MeasureCommand>();
-  Command command = program.subcommand("measure", "How far and how fast every person ran, from places on the ground");
+  Command command = program.subcommand(
+      "measure", "How far and how fast every person ran, from places on the ground; or how large bodies are, from contours");
   command
-      .input_file(
-          "TRACKS", options->tracks,
-          "CSV of `marey track --ground`, or of another tool: frame,time,id,x,y; or TRACAB, EPTS, Metrica, ...: see marey convert")
+      .input_file("TRACKS", options->tracks,
+                  "CSV of `marey track --ground`, or of another tool: frame,time,id,x,y; or TRACAB, EPTS, Metrica, ...: see marey "
+                  "convert; or a "
+                  "take with contours")
       .required();
   command.output_file("-o,--output", options->output.figures, "CSV with a row for each person").required().ends_in({".csv"});
+  command.output_file("--series", options->series, "of contours: CSV with a row for each person and instant").ends_in({".csv"});
   command.output_folder("--report", options->output.report, "folder for a page with plots, tables, heat maps and paths");
   command.text("--smoothing", options->method, "of the paths: lowpass, savgol, kalman or raw").check(analyse::parse_path_method);
   command.number("--cutoff", options->options.how.path.cutoff_hz, "Hz", closed(0.01, 100), "of lowpass");
@@ -178,7 +233,11 @@ void add_measure(Command& program) {
   const Option y_down =
       command.flag("--y-down", options->y_down,
                    "y grows downwards, seen from above with x to the right, where TRACKS does not specify; for the page");
-  command.input_file("--rig", options->rig, "rig whose ground_from_world says whether --y-down is so").excludes(y_down);
+  command
+      .input_file(
+          "--rig", options->rig,
+          "rig whose ground_from_world says whether --y-down is so; of contours, the calibrated camera that took them, for metres")
+      .excludes(y_down);
   command.also_writes([options] {
     if (options->output.report.empty()) return std::vector<std::string>{};
     return std::vector{report_file(*options)};

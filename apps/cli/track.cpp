@@ -69,6 +69,7 @@ pipeline::people::TrackOutput output_of(const TrackCommand& command) {
                                        .copy = input.copy,
                                        .blur_faces = !input.blur.empty(),
                                        .plot = input.plot,
+                                      .target_masks = command.people.target_masks,
                                        .masks = command.people.masks};
   const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
   if (named || !command.format.empty()) {
@@ -121,7 +122,8 @@ void check_on_ground(const TrackCommand& command) {
 }
 
 /// Options that would change the output much: without effect they are refused, the others are named in a warning.
-constexpr std::array<std::string_view, 5> kRefusedElsewhere{"foreground-masks", "contour", "lag", "measured-only", "stabilise"};
+constexpr std::array<std::string_view, 6> kRefusedElsewhere{"target-masks", "foreground-masks", "contour",
+                                                            "lag",          "measured-only",    "stabilise"};
 
 /// Options that were given and that the job does not have.
 void check_of_other_jobs(const TrackCommand& command) {

@@ -46,6 +46,10 @@ class TrackOptions(TypedDict, total=False):
     r"""N in [2, 8]: of the spline, degree + 1 (default: 4, cubic)"""
     measurement_lines: int | None
     r"""N in [1, 512]: measurement lines across each outline, along which it is searched (default: 24)"""
+    target_masks: Path | None
+    r"""a new folder for the pixels of each person's contour: target000001.png of the first frame, 16 bits, a pixel's value is the number of the person that it shows"""
+    contour_model: str | None
+    r"""a network whose masks of people count as evidence beside colours: lite, full or heavy (script/model), or a FILE.onnx (default: none)"""
     model: str | None
     r"""the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx (default: full)"""
     threshold: float | None

@@ -72,6 +72,48 @@ class Masks(unittest.TestCase):
             self.assertEqual(done.returncode, 1)
             self.assertIn("expected one size", done.stderr)
 
+    def test_masks_of_targets_and_figures_of_their_contours(self):
+        with tempfile.TemporaryDirectory() as folder:
+            options = {"cwd": folder}
+            made = marey("simulate", "people", "--situation", "apart", "--people", 3, "--frames", 40, "--seed", 2, "-o", "people", "-q", **options)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            done = marey("track", "people/video.mp4", "--contour", "-o", "take.marey", "--target-masks", "masks", "-q", **options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            masks = sorted(pathlib.Path(folder, "masks").iterdir())
+            self.assertEqual([path.name for path in masks], [f"target{i + 1:06}.png" for i in range(40)])
+            self.assertEqual(masks[0].read_bytes()[24:26], bytes([16, 0]), "16 bits, grey")
+            again = marey("track", "people/video.mp4", "--contour", "-o", "other.marey", "--target-masks", "masks", "-q", **options)
+            self.assertEqual(again.returncode, 1)
+            self.assertIn("is not empty", again.stderr)
+            alone = marey("track", "people/video.mp4", "-o", "other.marey", "--target-masks", "others", "-q", **options)
+            self.assertEqual(alone.returncode, 2, "--target-masks needs --contour")
+            measured = marey("measure", "take.marey", "-o", "bodies.csv", "--series", "series.csv", "--json", **options)
+            self.assertEqual(measured.returncode, 0, measured.stderr)
+            found = json.loads(measured.stdout)
+            self.assertEqual(found["unit"], "px")
+            self.assertGreaterEqual(len(found["people"]), 2)
+            for person in found["people"]:
+                self.assertGreater(person["measured"], 10)
+                self.assertTrue(40 < person["height"]["mean"] < 80, person)
+                self.assertLess(person["width"]["mean"], person["height"]["mean"])
+                self.assertLess(abs(person["lean_deg"]["mean"]), 25)
+                for figure in ("area", "width", "height", "lean_deg", "leg_opening"):
+                    self.assertGreater(person[figure]["sigma"], 0)
+            rows = pathlib.Path(folder, "series.csv").read_text().splitlines()
+            self.assertTrue(rows[0].startswith("frame,time,id,area_px2,area_px2_sigma,width_px,"), rows[0])
+            self.assertEqual(len(rows) - 1, sum(person["measured"] for person in found["people"]))
+
+    def test_what_has_no_contours_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            options = {"cwd": folder}
+            made = marey("simulate", "people", "--situation", "apart", "--people", 2, "--frames", 30, "--seed", 2, "-o", "people", "-q", **options)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            marey("track", "people/video.mp4", "-o", "take.marey", "-q", **options)
+            done = marey("measure", "take.marey", "-o", "bodies.csv", "-q", **options)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("without contours", done.stderr)
+            self.assertFalse(pathlib.Path(folder, "bodies.csv").exists())
+
 
 if __name__ == "__main__":
     MAREY = sys.argv.pop(1)

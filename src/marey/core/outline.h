@@ -47,7 +47,7 @@ struct Outline {
   std::vector<MeasurementLine> lines;                ///< of this frame; empty in a target's first
   State state = State::detected;
   std::vector<TrackId> behind;  ///< targets that hide a part of it in this frame, ascending
-  std::vector<int> hidden;      ///< control points that they hide, ascending: there the shape is as it was before
+  std::vector<int> hidden;      ///< control points, ascending, whose edge is not seen: there the shape is as it was before
 };
 
 }  // namespace marey

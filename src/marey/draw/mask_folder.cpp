@@ -11,15 +11,12 @@
 #include "marey/draw/image_file.h"
 
 namespace marey::draw {
-namespace {
 
-std::filesystem::path mask_path(const std::string& folder, std::int64_t index) {
-  return std::filesystem::path(folder) / fmt::format("bin{:06}.png", index + 1);
+std::string MaskFolder::path_of(std::int64_t index) const {
+  return (std::filesystem::path(folder_) / fmt::format("{}{:06}.png", prefix_, index + 1)).string();
 }
 
-}  // namespace
-
-MaskFolder::MaskFolder(std::string folder) : folder_(std::move(folder)) {
+MaskFolder::MaskFolder(std::string folder, std::string prefix) : folder_(std::move(folder)), prefix_(std::move(prefix)) {
   std::error_code problem;
   made_ = std::filesystem::create_directories(folder_, problem);
   if (problem) throw Error("{}: cannot be made a folder for masks", folder_);
@@ -37,13 +34,13 @@ void MaskFolder::require_free(const std::string& folder) {
 MaskFolder::~MaskFolder() {
   if (finished_) return;
   std::error_code ignored;
-  for (const std::int64_t index : written_) std::filesystem::remove(mask_path(folder_, index), ignored);
+  for (const std::int64_t index : written_) std::filesystem::remove(path_of(index), ignored);
   if (made_) std::filesystem::remove(folder_, ignored);  // only where it is empty
 }
 
 void MaskFolder::add(std::int64_t index, const cv::Mat& mask, cv::Size size) {
   const Image image(mask.empty() ? cv::Mat(size, CV_8UC1, cv::Scalar(0)) : mask);
-  write_image(mask_path(folder_, index).string(), image);
+  write_image(path_of(index), image);
   written_.push_back(index);
 }
 

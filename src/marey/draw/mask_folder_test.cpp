@@ -34,6 +34,20 @@ TEST(MaskFolder, ReadsBackAsGreyPicturesThatCountFromOne) {
   EXPECT_TRUE(std::filesystem::exists(masks + "/bin000008.png"));
 }
 
+TEST(MaskFolder, HoldsNumbersOfTargets) {
+  const test::TemporaryFolder folder;
+  cv::Mat numbers(20, 30, CV_16UC1, cv::Scalar(0));
+  numbers(cv::Rect(3, 4, 10, 8)).setTo(1234);
+  {
+    MaskFolder out(folder / "masks", "target");
+    out.add(0, numbers, numbers.size());
+    out.finish();
+  }
+  const cv::Mat read = cv::imread(folder / "masks/target000001.png", cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(read.type(), CV_16UC1);
+  EXPECT_EQ(cv::norm(read, numbers, cv::NORM_INF), 0);
+}
+
 TEST(MaskFolder, LeavesNothingBehindUnfinished) {
   const test::TemporaryFolder folder;
   const std::string masks = folder / "masks";

@@ -46,12 +46,28 @@ void draw_lines(Canvas& canvas, const Outline& outline, double unit) {
   canvas.discs(crossings, 0.8 * unit, kLine, 0.9);
 }
 
-void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, double unit) {
-  const std::vector<Vector<2>> corners = geometry::ClosedSpline(outline.order, outline.control_points).polygon();
-  const bool detected = outline.state != Outline::State::held;
+/// The curve in pieces: dashed where the edge is not seen.
+std::vector<Canvas::Stroke> strokes_of(const Outline& outline, double opacity, double unit) {
+  constexpr int kPieces = 8;     // a control point
+  constexpr double kDash = 3.5;  // units: as long as the gap after it
+  const std::vector<Vector<2>> corners = geometry::ClosedSpline(outline.order, outline.control_points).polygon(kPieces);
+  const std::size_t count = outline.control_points.size();
+  std::vector<char> hidden(count, 0);
+  for (const int point : outline.hidden) hidden[static_cast<std::size_t>(point)] = 1;
   std::vector<Canvas::Stroke> curve;
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    curve.push_back({to_point(corners[i]), to_point(corners[(i + 1) % corners.size()]), detected ? 1.0 : 0.6});
+  double length = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vector<2>&from = corners[i], &to = corners[(i + 1) % corners.size()];
+    const bool is_hidden = hidden[((i + kPieces / 2) / kPieces) % count] != 0;
+    if (!is_hidden || std::fmod(length, 2 * kDash * unit) < kDash * unit) curve.push_back({to_point(from), to_point(to), opacity});
+    length = is_hidden ? length + (to - from).norm() : 0;
+  }
+  return curve;
+}
+
+void draw_curve(Canvas& canvas, const Outline& outline, const Colour& colour, double unit) {
+  const bool detected = outline.state != Outline::State::held;
+  const std::vector<Canvas::Stroke> curve = strokes_of(outline, detected ? 1.0 : 0.6, unit);
   canvas.strokes(curve, colour, detected ? 1.4 * unit : 1);
   std::vector<cv::Point2f> points;
   for (const Vector<2>& point : outline.control_points) points.push_back(to_point(point));

@@ -29,6 +29,7 @@ Colour colour_of(const TrackName& name, TrackId id);
 /// Draws the targets into the images of a recording: a box and a number for each target, thin where it is not seen but
 /// predicted, and a trail of where its foot was that fades with age. A target with an outline has, in place of the box, the curve,
 /// its control points, and the measurement lines across it: bright with a dot where the outline was found, faint where it was not.
+/// The curve is dashed where its edge is not seen.
 /// Body points are drawn with their bones, those on the left lighter, fainter where something may hide them; none where they
 /// are likely outside the image. Colours are steady by number. Lines and numbers grow with the image. A name stands where it
 /// covers neither another target nor another name, as near its own as there is room, and stays on that side while it can.

@@ -1,5 +1,6 @@
 #include "marey/detect/keypoints/landmark_network.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -15,6 +16,7 @@ constexpr int kPoints = 33, kAll = 39, kNumbers = 5;
 constexpr std::size_t kHips = 33, kRim = 34;  // points that say where the person is
 constexpr int kCells = 64;                    // format of the network: a heat map's side
 const std::array<std::string, 3> kOutputs{"landmarks", "presence", "heatmaps"};
+const std::array<std::string, 2> kPixels{"mask", "presence"};
 
 /// 1 × 3 × h × w of floats in [0, 1], red first.
 cv::Mat red_first(const cv::Mat& crop) {
@@ -51,9 +53,10 @@ LandmarkNetwork::LandmarkNetwork(const std::string& onnx)
   }
 }
 
-std::vector<network::Tensor> LandmarkNetwork::run(network::Inference::Engine& engine, const cv::Mat& crop) const {
+std::vector<network::Tensor> LandmarkNetwork::run(network::Inference::Engine& engine, const cv::Mat& crop,
+                                                  std::span<const std::string> outputs) const {
   try {
-    return engine.run(red_first(crop), kOutputs);
+    return engine.run(red_first(crop), outputs);
   } catch (const cv::Exception&) {
     throw Error("{}: is another network than those for keypoints that script/model makes", path_);
   }
@@ -61,14 +64,14 @@ std::vector<network::Tensor> LandmarkNetwork::run(network::Inference::Engine& en
 
 std::vector<network::Tensor> LandmarkNetwork::raw(const cv::Mat& crop) {
   std::vector<network::Tensor> outputs;
-  inference_.each(1, [&](network::Inference::Engine& engine, std::size_t) { outputs = run(engine, crop); });
+  inference_.each(1, [&](network::Inference::Engine& engine, std::size_t) { outputs = run(engine, crop, kOutputs); });
   return outputs;
 }
 
 std::vector<Body> LandmarkNetwork::find(const cv::Mat& bgr, std::span<const PersonRegion> regions) {
   std::vector<Body> bodies(regions.size());
   inference_.each(regions.size(), [&](network::Inference::Engine& engine, std::size_t i) {
-    bodies[i] = body_of(run(engine, crop_of(bgr, regions[i])), regions[i]);
+    bodies[i] = body_of(run(engine, crop_of(bgr, regions[i]), kOutputs), regions[i]);
   });
   return bodies;
 }
@@ -76,9 +79,31 @@ std::vector<Body> LandmarkNetwork::find(const cv::Mat& bgr, std::span<const Pers
 std::vector<Body> LandmarkNetwork::find(std::span<const Look> appearances) {
   std::vector<Body> bodies(appearances.size());
   inference_.each(appearances.size(), [&](network::Inference::Engine& engine, std::size_t i) {
-    bodies[i] = body_of(run(engine, crop_of(appearances[i].image, appearances[i].region)), appearances[i].region);
+    bodies[i] = body_of(run(engine, crop_of(appearances[i].image, appearances[i].region), kOutputs), appearances[i].region);
   });
   return bodies;
+}
+
+std::vector<BodyPixels> LandmarkNetwork::pixels(std::span<const Look> appearances) {
+  std::vector<BodyPixels> found(appearances.size());
+  inference_.each(appearances.size(), [&](network::Inference::Engine& engine, std::size_t i) {
+    const auto outputs = run(engine, crop_of(appearances[i].image, appearances[i].region), kPixels);
+    found[i] = pixels_of(outputs, appearances[i].region);
+  });
+  return found;
+}
+
+BodyPixels pixels_of(std::span<const network::Tensor> outputs, const PersonRegion& region) {
+  constexpr auto kAllPixels = static_cast<std::size_t>(PersonRegion::kCrop) * PersonRegion::kCrop;  // by definition
+  const std::vector<float>& logits = outputs[0].values;
+  if (logits.size() != kAllPixels)
+    throw Error("a landmark network whose mask has {} pixels in place of {}", logits.size(), kAllPixels);
+  BodyPixels pixels{.chance = cv::Mat(PersonRegion::kCrop, PersonRegion::kCrop, CV_32FC1),
+                    .presence = outputs[1].values.front(),
+                    .region = region};
+  std::transform(logits.begin(), logits.end(), pixels.chance.begin<float>(),
+                 [](float logit) { return static_cast<float>(likelihood_of(logit)); });
+  return pixels;
 }
 
 Body body_of(std::span<const network::Tensor> outputs, const PersonRegion& region) {

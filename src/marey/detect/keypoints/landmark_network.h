@@ -19,6 +19,13 @@ struct Body {
   PersonRegion next;       ///< where the person is to be searched for in the next image
 };
 
+/// Which pixels of a region show its person.
+struct BodyPixels {
+  cv::Mat chance;       ///< CV_32FC1, kCrop × kCrop, 0 … 1: over the region's crop
+  double presence = 0;  ///< of any person in the region
+  PersonRegion region;
+};
+
 /// A region of one of several cameras' images.
 struct Look {
   Image image;  ///< colour or grey
@@ -36,15 +43,23 @@ class LandmarkNetwork {
   /// The same in regions of several images, which share the threads. Only the pixels in a region are converted.
   std::vector<Body> find(std::span<const Look> appearances);
 
+  /// The pixels of who is in each region, where the body points are not needed.
+  std::vector<BodyPixels> pixels(std::span<const Look> appearances);
+
   /// What the network says of one crop: "landmarks" (39 × x, y, depth, visibility, presence), "presence", "heatmaps".
   std::vector<network::Tensor> raw(const cv::Mat& crop);
 
  private:
-  std::vector<network::Tensor> run(network::Inference::Engine& engine, const cv::Mat& crop) const;
+  std::vector<network::Tensor> run(network::Inference::Engine& engine, const cv::Mat& crop,
+                                   std::span<const std::string> outputs) const;
 
   std::string path_;
   network::Inference inference_;
 };
+
+/// Pixels out of the mask and the presence that a landmark network gives for a region's crop. Throws Error for a mask of another
+/// size.
+BodyPixels pixels_of(std::span<const network::Tensor> outputs, const PersonRegion& region);
 
 /// A body out of what a landmark network says of a region's crop.
 Body body_of(std::span<const network::Tensor> outputs, const PersonRegion& region);

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -33,6 +34,22 @@ std::string refused_landmarks(const std::string& path) {
     return error.what();
   }
   return "";
+}
+
+TEST(LandmarkNetwork, LogitsOfAMaskAreChances) {
+  std::vector<network::Tensor> outputs(2);
+  outputs[0].values.assign(static_cast<std::size_t>(PersonRegion::kCrop) * PersonRegion::kCrop, -20);
+  outputs[0].values[10 * PersonRegion::kCrop + 30] = 0;
+  outputs[0].values[10 * PersonRegion::kCrop + 31] = 20;
+  outputs[1].values = {0.8F};
+  const BodyPixels pixels = pixels_of(outputs, region_of(Box{100, 50, 40, 128}));
+  EXPECT_NEAR(pixels.chance.at<float>(10, 30), 0.5, 1e-6);
+  EXPECT_NEAR(pixels.chance.at<float>(10, 31), 1, 1e-6);
+  EXPECT_NEAR(pixels.chance.at<float>(11, 31), 0, 1e-6);
+  EXPECT_NEAR(pixels.presence, 0.8, 1e-6);
+  EXPECT_EQ(pixels.region.centre, (Box{100, 50, 40, 128}.centre()));
+  outputs[0].values.pop_back();
+  EXPECT_THROW(pixels_of(outputs, {}), Error);
 }
 
 TEST(Blazepose, EveryPointHasItsOtherSide) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kHeadBytes = 8;
 constexpr std::size_t kPlainNumbers = 10;  // centre, velocity, scale rate, and their deviations
 constexpr std::size_t kMaxPoints = 65535;
-enum Flags : std::uint8_t { has_silhouette = 1, has_deviations = 2, is_behind = 4 };
+enum Flags : std::uint8_t { has_silhouette = 1, has_deviations = 2, is_hidden_partly = 4 };
 
 template <typename Value>
 void append(Bytes& blob, Value value) {
@@ -33,9 +33,9 @@ void append_outline(Bytes& blob, const Outline& outline) {
   append(blob, static_cast<std::uint8_t>(outline.order));
   append(blob, static_cast<std::uint16_t>(points));
   append(blob, static_cast<std::uint8_t>((outline.silhouette ? has_silhouette : 0) | (deviations ? has_deviations : 0) |
-                                         (outline.behind.empty() ? 0 : is_behind)));
+                                         (outline.behind.empty() && outline.hidden.empty() ? 0 : is_hidden_partly)));
   const auto behind = static_cast<std::uint8_t>(std::min<std::size_t>(outline.behind.size(), 255));
-  const auto hidden = static_cast<std::uint16_t>(behind > 0 ? std::min(outline.hidden.size(), points) : 0);
+  const auto hidden = static_cast<std::uint16_t>(std::min(outline.hidden.size(), points));
   append(blob, behind);
   append(blob, hidden);
   for (std::size_t i = 0; i < points; ++i) append_pair(blob, outline.control_points[i]);
@@ -79,7 +79,7 @@ std::shared_ptr<const Outline> outline_of(std::span<const std::byte> record, con
   const auto byte = [&](std::size_t i) { return std::to_integer<std::uint8_t>(record[i]); };
   const std::size_t points = byte(2) | static_cast<std::size_t>(byte(3)) << 8;
   const bool silhouette = (byte(4) & has_silhouette) != 0, deviations = (byte(4) & has_deviations) != 0;
-  const bool is_hidden = (byte(4) & is_behind) != 0;  // earlier takes have nothing in the bytes that count them
+  const bool is_hidden = (byte(4) & is_hidden_partly) != 0;  // earlier takes have nothing in the bytes that count them
   const std::size_t behind = is_hidden ? byte(5) : 0, hidden = is_hidden ? byte(6) | static_cast<std::size_t>(byte(7)) << 8 : 0;
   const std::size_t numbers = points * (deviations ? 4 : 2) + kPlainNumbers + (silhouette ? 2 : 0) + behind + hidden;
   if (byte(0) > 2 || record.size() != kHeadBytes + 4 * numbers) decoder.fail("an outline has another length than its points");

@@ -40,7 +40,7 @@ void append_json(std::string& text, const Outline& outline) {
   fmt::format_to(out, R"({{"state":"{}","order":{},)", name_of(outline.state), outline.order);
   append_pairs(text, "control_points", outline.control_points);
   append_pairs(text, "deviations", outline.deviations);
-  if (!outline.behind.empty()) {
+  if (!outline.behind.empty() || !outline.hidden.empty()) {
     fmt::format_to(out, R"("behind":[)");
     for (std::size_t i = 0; i < outline.behind.size(); ++i)
       fmt::format_to(out, "{}{}", i == 0 ? "" : ",", number(outline.behind[i]));

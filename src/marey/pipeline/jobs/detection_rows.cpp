@@ -48,15 +48,17 @@ detect::DetectorOptions detector_of(const PeopleDetection& detection, bool keypo
   return network;
 }
 
+void check_model(const std::string& name) {
+  if (name != "lite" && name != "full" && name != "heavy" && !name.ends_with(".onnx"))
+    throw WrongOption("{}: is neither lite, full or heavy, nor a FILE.onnx", name);
+}
+
 void add_model_row(Table& table, std::string& model) {
   table
       .text("model", model,
             "the network that finds the points: lite, full or heavy, each slower and more accurate than the one before "
             "(script/model), or a FILE.onnx")
-      .checked([](const std::string& name) {
-        if (name != "lite" && name != "full" && name != "heavy" && !name.ends_with(".onnx"))
-          throw WrongOption("{}: is neither lite, full or heavy, nor a FILE.onnx", name);
-      });
+      .checked(check_model);
 }
 
 void add_threshold_row(Table& table, std::optional<double>& threshold) {

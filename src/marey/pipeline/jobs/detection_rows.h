@@ -23,6 +23,8 @@ void add_people_rows(Table& table, PeopleDetection& detection);
 /// needs detections in each frame, empty if absent. Throws WrongOption for options that exclude each other.
 detect::DetectorOptions detector_of(const PeopleDetection& detection, bool keypoints, const std::string& needs_every_frame);
 
+/// Throws WrongOption unless this names a landmark network: lite, full, heavy or a FILE.onnx.
+void check_model(const std::string& name);
 /// --model: the network that finds body points.
 void add_model_row(Table& table, std::string& model);
 

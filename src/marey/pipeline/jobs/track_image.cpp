@@ -40,6 +40,17 @@ void add_outline_rows(Table& table, TrackPeople& job) {
       .whole("measurement-lines", job.lines, "N", 1, kMaxLines,
              "measurement lines across each outline, along which it is searched (default: 24)")
       .needing("contour");
+  table
+      .output_folder("target-masks", job.target_masks,
+                     "a new folder for the pixels of each person's contour: target000001.png of the first frame, 16 bits, a "
+                     "pixel's value is the number of the person that it shows")
+      .needing("contour");
+  table
+      .text("contour-model", job.options.contour_model,
+            "a network whose masks of people count as evidence beside colours: lite, full or heavy (script/model), or a FILE.onnx "
+            "(default: none)")
+      .checked(check_model)
+      .needing("contour");
 }
 
 void add_keypoint_rows(Table& table, TrackPeople& job) {

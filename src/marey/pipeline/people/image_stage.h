@@ -23,6 +23,7 @@ struct ImagePeopleOptions {
   std::optional<keypoints::KeypointOptions> keypoints =
       {};                                                  ///< search for every person's body points too; images are needed for it
   std::optional<track::contour::OutlineOptions> outlines;  ///< follow outlines too, with these; images are needed for it
+  std::string contour_model = {};  ///< a landmark network (lite, full, heavy, FILE.onnx) whose masks help contours; empty: none
   /// Every frame's tracks are reported as they come: nothing is read ahead and nothing improved by what came later.
   bool live = false;
   double delay = 0;            ///< s that a live run uses later frames before it reports an instant

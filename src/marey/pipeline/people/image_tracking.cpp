@@ -1,10 +1,16 @@
 #include "marey/pipeline/people/image_tracking.h"
 
+#include <memory>
+#include <string>
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
+
 #include "marey/core/error.h"
 #include "marey/detect/appearance.h"
+#include "marey/detect/keypoints/landmark_network.h"
+#include "marey/detect/keypoints/model_folder.h"
 
 namespace marey::pipeline::people {
 namespace {
@@ -47,6 +53,23 @@ track::TrackerOptions image_tracker_options(const corridor::Feed& feed, const Im
   return tracker;
 }
 
+/// Masks of people by a landmark network; none of one that it does not see.
+track::contour::FindBodyMasks masks_by(const std::string& model) {
+  const auto network = std::make_shared<detect::keypoints::LandmarkNetwork>(detect::keypoints::landmark_model(model));
+  return [network](const Image& image, std::span<const Box> boxes) {
+    constexpr double kPresent = 0.5;  // by definition: more likely than not
+    std::vector<detect::keypoints::Look> looks;
+    for (const Box& box : boxes) looks.push_back({image, detect::keypoints::region_of(box)});
+    std::vector<track::contour::BodyMask> masks;
+    for (detect::keypoints::BodyPixels& one : network->pixels(looks)) {
+      if (one.presence < kPresent) one.chance.release();
+      masks.push_back(
+          {.chance = std::move(one.chance), .corner = one.region.in_image(Vector<2>::Zero()), .scale = one.region.scale()});
+    }
+    return masks;
+  };
+}
+
 }  // namespace
 
 ObservedFrame observed_in(const Frame& frame, const detect::Detections& found) {
@@ -68,7 +91,14 @@ ImageTracking::ImageTracking(const corridor::Feed& feed, const ImagePeopleOption
   if (feed.has_images() && feed.detector() == nullptr) detector_ = detect::make_detector(options.detector);
   if (!contour_options_) return;
   if (!feed.has_images()) throw Error("{}: outlines are searched in images; give those", feed.info().name);
+  contour_model_ = options.contour_model;
+  if (!contour_model_.empty()) find_masks_ = masks_by(contour_model_);
+  begin_contours();
+}
+
+void ImageTracking::begin_contours() {
   contours_.emplace(*contour_options_);
+  if (find_masks_) contours_->use_masks(find_masks_);
 }
 
 detect::Detections ImageTracking::detect(const CameraFrame& given) {
@@ -108,7 +138,7 @@ std::span<const Track<2>> ImageTracking::count(std::span<const Track<2>> tracks,
 void ImageTracking::restart(std::span<const Frame> samples) {
   counts_ = {};
   tracker_ = track::make_tracker(tracker_options_);
-  if (contours_) contours_.emplace(*contour_options_);
+  if (contours_) begin_contours();
   detector_ = detect::make_detector(detector_options_);
   detector_->prime(samples);
 }
@@ -118,6 +148,10 @@ void ImageTracking::report(corridor::Summary& summary) const {
   std::int64_t too_short = 0;
   for (const TrackId id : counts_.begun) too_short += !counts_.confirmed.contains(id);
   summary.dropped.too_short = too_short;
+  if (contours_) {
+    summary.notes.push_back(find_masks_ ? fmt::format("contours: the masks of the network {} count as evidence", contour_model_)
+                                        : "contours: by colour, motion and shape, without a network");
+  }
 }
 
 }  // namespace marey::pipeline::people

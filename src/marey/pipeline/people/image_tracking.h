@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "marey/detect/detector.h"
@@ -59,6 +60,7 @@ class ImageTracking {
     std::int64_t detections = 0;
   };
 
+  void begin_contours();
   std::span<const Track<2>> count(std::span<const Track<2>> tracks, std::size_t detections);
 
   detect::DetectorOptions detector_options_;
@@ -67,6 +69,8 @@ class ImageTracking {
   std::unique_ptr<detect::Detector> detector_;
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<track::contour::ContourTracker> contours_;
+  std::string contour_model_;
+  track::contour::FindBodyMasks find_masks_;  // empty: contours go without a network
   track::image::ViewBorder border_;
   std::function<void(corridor::FrameForeground)> give_;
   Counts counts_;

@@ -13,6 +13,7 @@
 #include "marey/pipeline/corridor/stabilised_camera.h"
 #include "marey/pipeline/keypoints/keypoint_recording.h"
 #include "marey/pipeline/people/mask_sink.h"
+#include "marey/pipeline/people/target_mask_sink.h"
 #include "marey/source/open_source.h"
 
 namespace marey::pipeline::people {
@@ -41,6 +42,7 @@ corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<
       throw Error("{}: masks are of the background model, and detections are given", output.masks);
     sinks.add(std::make_unique<MaskSink>(output.masks));
   }
+  if (!output.target_masks.empty()) sinks.add(std::make_unique<TargetMaskSink>(output.target_masks));
   const draw::OverlayVideo::View view{
       .camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz, .sound_of = feed.sound_source()};
   for (const bool bare : {false, true}) {
@@ -72,7 +74,9 @@ corridor::Summary track_people(const RigCamera& camera, const TrackOutput& outpu
 corridor::Summary track_people(const ImageFeed& given, const TrackOutput& output, std::vector<std::unique_ptr<Sink>> own_sinks,
                                const ImagePeopleOptions& options, const Hooks& hooks) {
   const StopScope scope(hooks.stop);
-  if (!output.masks.empty()) draw::MaskFolder::require_free(output.masks);  // before anything that takes long
+  for (const std::string& masks : {output.masks, output.target_masks}) {  // before anything that takes long
+    if (!masks.empty()) draw::MaskFolder::require_free(masks);
+  }
   std::optional<corridor::StabilisedCamera> stabilise;
   if (options.stabilise) stabilise.emplace(given.camera, given.how, options.live);
   corridor::Feed feed = open(given, stabilise ? stabilise->feed_options() : given.how);

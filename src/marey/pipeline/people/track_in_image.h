@@ -19,12 +19,13 @@ namespace marey::pipeline::people {
 /// Where the results go; what is empty is not made.
 struct TrackOutput {
   std::string tracks;
-  std::string format = {};   ///< by name; empty: the ending of `tracks` says it
-  std::string overlay = {};  ///< a video with the tracks drawn into the images
-  std::string copy = {};     ///< the video, with nothing drawn and faces blurred
-  bool blur_faces = false;   ///< in `overlay`
-  std::string plot = {};     ///< an SVG image of the trajectories, in the coordinates of the image
-  std::string masks = {};    ///< of people: a folder for the foreground of each frame (draw/mask_folder.h)
+  std::string format = {};        ///< by name; empty: the ending of `tracks` says it
+  std::string overlay = {};       ///< a video with the tracks drawn into the images
+  std::string copy = {};          ///< the video, with nothing drawn and faces blurred
+  bool blur_faces = false;        ///< in `overlay`
+  std::string plot = {};          ///< an SVG image of the trajectories, in the coordinates of the image
+  std::string target_masks = {};  ///< a folder for the visible pixels of each target's contour (target_mask_sink.h)
+  std::string masks = {};         ///< of people: a folder for the foreground of each frame (draw/mask_folder.h)
 };
 
 /// Follows people through what one camera saw: its `source`, or its `detections` by another program. Its name may be empty. The

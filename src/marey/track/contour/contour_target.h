@@ -22,6 +22,8 @@ inline constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from 
 inline constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
                         kHiddenCentre = 4;  // how the centre swings with the steps; the last: factor where a part is hidden
 
+inline constexpr double kMaxHigher = 1.25;  // of the tracker's box, from which on an outline has grown beyond its target
+
 inline constexpr double kFractionMemory = 0.05;  // what a frame counts in what is typical of a target
 
 // Doubts of a target that begins, or begins again.
@@ -29,6 +31,11 @@ inline constexpr double kBend = 0.12;            // heights each √second, of a
 inline constexpr double kGrowthAmbiguity = 0.5;  // 1/s
 inline constexpr double kGrowthNoise = 2;        // 1/s, of the growth read off two outlines
 inline constexpr int kHeldTooLong = 5;           // frames after which a shape that was held says little
+
+/// px, standard deviation of a control point whose edge is not seen, of a target of that height.
+inline double prior_deviation(double height) {
+  return 0.05 * height;
+}
 
 /// px, standard deviation axis by axis.
 struct MeasuredCentre {
@@ -44,6 +51,7 @@ struct ContourTarget {
   double default_area;               ///< px²
   double tracked_height;             ///< px; of the tracker's box while `default_area` was seen
   geometry::ClosedSpline predicted;  ///< of this frame, before anything was seen of it
+  Vector<2> extent = {0, 0};         ///< px; width and height of its outlines while it was alone; 0 before
   BodyModel body = {};               ///
   int learned = 0;                   ///< frames that `body` was learned from
   int held = 0;                      ///< frames since it was seen, or a part of it
@@ -56,7 +64,7 @@ struct ContourTarget {
   std::vector<MeasurementLine> lines = {};
   std::array<std::shared_ptr<Outline>, 3> slots = {};  ///< a reader may still hold one
   std::vector<TrackId> behind = {};                    ///< targets that hide a part of it in this frame
-  std::vector<int> hidden = {};                        ///< control points that they hide
+  std::vector<int> hidden = {};                        ///< control points whose edge is not seen
   bool crowded = false;                                ///< its box meets another's
   bool knotted = false;                                ///< what the lines made of it was no outline
   std::optional<MeasuredCentre> measured = {};         ///< in this frame, for the motion filter

@@ -31,7 +31,8 @@ constexpr double kMeets = 0.03;     // share of its box from which on another's 
 
 class ContourTracker::Implementation {
  public:
-  explicit Implementation(const OutlineOptions& options) : options_(options), lines_(options.lines), lone_(fit_options(options)) {
+  explicit Implementation(const OutlineOptions& options)
+      : options_(options), lines_(options.lines), lone_(fit_options(options), options.labelling) {
     check(options);
   }
 
@@ -62,6 +63,7 @@ class ContourTracker::Implementation {
     std::erase_if(first_observed_, [&](const auto& one) { return one.second.time != before_; });
     tracks_.assign(tracks.begin(), tracks.end());
     shared_.clear();
+    request_masks();
     for (const Track<2>& track : tracks_) {
       const Detection* raw = detection_of(track, detections);
       const Detection* detected = raw != nullptr && !raw->group && raw->box.height >= options_.min_height ? raw : nullptr;
@@ -70,7 +72,7 @@ class ContourTracker::Implementation {
       // Where another's box meets its own, a silhouette may hold pixels of both.
       const bool alone =
           target == nullptr || target->learned == 0 || !track.box || !lone_.has_colours() || !meets_another(track.id, *track.box);
-      if (target != nullptr && detected != nullptr && alone && lone_.take(*target, *detected, track)) continue;
+      if (target != nullptr && detected != nullptr && alone && lone_.take(*target, *detected, track, mask_of(track.id))) continue;
       if (track.box && lone_.has_colours()) shared_.push_back({track.id, *track.box, raw != nullptr, raw != nullptr && raw->group});
     }
     divide_shared();
@@ -87,7 +89,29 @@ class ContourTracker::Implementation {
     return tracks_;
   }
 
+  void use_masks(FindBodyMasks find) { find_masks_ = std::move(find); }
+
  private:
+  /// A network's masks of all targets whose box is known.
+  void request_masks() {
+    masks_.clear();
+    if (!find_masks_ || !lone_.has_colours()) return;
+    std::vector<Box> boxes;
+    std::vector<TrackId> ids;
+    for (const Track<2>& track : tracks_) {
+      if (!track.box || track.box->height < options_.min_height) continue;
+      boxes.push_back(*track.box);
+      ids.push_back(track.id);
+    }
+    std::vector<BodyMask> found = find_masks_(image_, boxes);
+    for (std::size_t i = 0; i < ids.size() && i < found.size(); ++i) masks_.emplace(ids[i], std::move(found[i]));
+  }
+
+  const BodyMask* mask_of(TrackId id) const {
+    const auto mask = masks_.find(id);
+    return mask != masks_.end() && !mask->second.chance.empty() ? &mask->second : nullptr;
+  }
+
   struct Silhouette {
     geometry::ClosedSpline spline;
     Timestamp time;
@@ -161,8 +185,9 @@ class ContourTracker::Implementation {
       if (members.size() == 1 && !shared_[i].in_group) continue;  // hidden by the scene, or missed: the lines decide
       std::sort(members.begin(), members.end());
       std::vector<SharedTarget> targets;
-      for (const std::size_t k : members) targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed});
-      outline_shared_region(image_, mask_, &scene_, targets);
+      for (const std::size_t k : members)
+        targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed, mask_of(shared_[k].id)});
+      outline_shared_region(image_, mask_, &scene_, targets, options_.labelling);
     }
   }
 
@@ -225,7 +250,9 @@ class ContourTracker::Implementation {
   LineCorrection lines_;
   LoneSilhouettes lone_;
   SceneImage scene_;
-  Timestamp before_{};  // of the last frame attached
+  FindBodyMasks find_masks_;           // empty: no network is asked
+  std::map<TrackId, BodyMask> masks_;  // of this frame
+  Timestamp before_{};                 // of the last frame attached
   std::vector<ContourTarget> targets_;
   std::map<TrackId, Silhouette> first_observed_;  // targets seen once, in the last frame
   std::vector<Observation<2>> hints_;
@@ -238,6 +265,10 @@ ContourTracker::ContourTracker(const OutlineOptions& options) : self_(std::make_
 ContourTracker::~ContourTracker() = default;
 ContourTracker::ContourTracker(ContourTracker&&) noexcept = default;
 ContourTracker& ContourTracker::operator=(ContourTracker&&) noexcept = default;
+
+void ContourTracker::use_masks(FindBodyMasks find) {
+  self_->use_masks(std::move(find));
+}
 
 std::span<const Observation<2>> ContourTracker::observe(const Frame& frame, const Foreground& foreground,
                                                         std::span<const Detection> detections) {

@@ -11,16 +11,19 @@
 #include "marey/core/observation.h"
 #include "marey/core/outline.h"
 #include "marey/core/track.h"
+#include "marey/track/contour/body_mask.h"
+#include "marey/track/contour/labelling.h"
 
 namespace marey::track::contour {
 
 /// Lengths in px; noises in heights of the target, so that the same hold near the camera and far from it.
 struct OutlineOptions {
-  int order = 4;                      ///< degree + 1, 2 … 8
-  std::optional<int> control_points;  ///< exactly this many; omitted: by tolerance, at most 40
-  double tolerance = 0.3;             ///< px, RMS, between a silhouette's edge and the spline
-  int lines = 24;                     ///< measurement lines
-  double min_height = 8;              ///< px; smaller targets get no outline
+  int order = 4;                           ///< degree + 1, 2 … 8
+  std::optional<int> control_points;       ///< exactly this many; omitted: by tolerance, at most 40
+  double tolerance = 0.3;                  ///< px, RMS, between a silhouette's edge and the spline
+  int lines = 24;                          ///< measurement lines
+  double min_height = 8;                   ///< px; smaller targets get no outline
+  Labelling labelling = Labelling::votes;  ///< of the pixels of a region
 };
 
 /// Follows the outlines of the targets of another tracker: identities stay that tracker's task. A frame takes two calls:
@@ -44,6 +47,9 @@ class ContourTracker {
 
   /// Valid until the next call. Frames come in order; `foreground` may be empty (then light alone is searched).
   std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections);
+
+  /// A network that is asked for the pixels of every target, as one more likelihood; empty: none.
+  void use_masks(FindBodyMasks find);
 
   /// `tracks` of the frame last observed, whose `observation` counts detections first, then the observations `observe` returned.
   /// Valid until the next call. A track without an outline (not seen twice yet, too small, no usable silhouette) is returned as

@@ -24,6 +24,8 @@ constexpr double kAcceleration = 0.4, kGrowthDrift = 0.15;
 constexpr double kGate = 3.5;                               // standard deviations
 constexpr double kMinReachPx = 4, kMaxReachHeights = 0.25;  // of a line: px; heights
 constexpr double kObserved = 0.6, kPartly = 0.25;           // shares of the lines found
+constexpr double kMaxGrowthRate = 0.5;                      // 1/s: physical, one who runs at the camera from ten metres grows so
+constexpr double kRelevant = 0.25;        // weight of a line at a control point, from which on it says something of it: numerical
 constexpr double kHiddenFraction = 0.75;  // of the foreground typical within the outline: below, the scene hides some of it
 
 }  // namespace
@@ -32,7 +34,7 @@ void LineCorrection::predict(ContourTarget& target, double dt) {
   const bool held = target.state == Outline::State::held;
   const double stiff = target.state == Outline::State::detected && !target.crowded ? 1 : kStiff;
   const double step = std::sqrt(dt) * target.height;
-  const double growth = held ? 0 : std::clamp(dt * target.motion.growth(), -0.2, 0.2);
+  const double growth = held ? 0 : std::clamp(target.motion.growth(), -kMaxGrowthRate, kMaxGrowthRate) * dt;
   const ShapeNoise noise{.bend = held ? 0 : kBend * stiff * step,
                          .together = held ? 0 : kTogether * stiff * step,
                          .shift = dt * target.motion.velocity_deviation().mean(),
@@ -135,6 +137,25 @@ int LineCorrection::trust_lines(ContourTarget& target) {
   return trusted;
 }
 
+/// Control points next to which no line found the edge.
+void LineCorrection::note_hidden(ContourTarget& target) {
+  const int count = target.shape.spline().count();
+  requested_.assign(static_cast<std::size_t>(count), 0);
+  answered_.assign(static_cast<std::size_t>(count), 0);
+  for (std::size_t i = 0; i < target.lines.size(); ++i) {
+    for (int j = 0; j < target.shape.spline().order(); ++j) {
+      if (weights_[i].value[j] < kRelevant) continue;
+      const auto point = static_cast<std::size_t>((weights_[i].first + j) % count);
+      ++requested_[point];
+      answered_[point] += target.lines[i].finding == Finding::found ? 1 : 0;
+    }
+  }
+  for (int point = 0; point < count; ++point) {
+    if (requested_[static_cast<std::size_t>(point)] > 0 && answered_[static_cast<std::size_t>(point)] == 0)
+      target.hidden.push_back(point);
+  }
+}
+
 void LineCorrection::correct_shape(ContourTarget& target, int found, int askable, double dt) {
   const bool hidden = target.fraction < kHiddenFraction * target.default_fraction;
   const double part = askable > 0 ? static_cast<double>(found) / askable : 0;
@@ -144,6 +165,7 @@ void LineCorrection::correct_shape(ContourTarget& target, int found, int askable
   }
   const double predicted_area = target.shape.spline().area();
   const int trusted = trust_lines(target);
+  note_hidden(target);
   target.state = trusted >= kObserved * askable && !hidden && !target.knotted ? Outline::State::detected
                  : trusted >= kPartly * askable                               ? Outline::State::partly
                                                                               : Outline::State::held;

@@ -30,12 +30,14 @@ class LineCorrection {
   void position_lines(ContourTarget& target);
   void correct_shape(ContourTarget& target, int found, int askable, double dt);
   int trust_lines(ContourTarget& target);
+  void note_hidden(ContourTarget& target);
 
   // What a frame needs, kept so that it is allocated once.
   std::vector<const Footprint*> others_;
   std::vector<double> locations_, deviations_;
   std::vector<geometry::SplineWeights> weights_;
   std::vector<Vector<2>> polygon_;
+  std::vector<int> requested_, answered_;  // by control point: lines that say something of it
 };
 
 }  // namespace marey::track::contour

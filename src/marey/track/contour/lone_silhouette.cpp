@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "marey/track/contour/body_share.h"
 #include "marey/track/contour/edge_matting.h"
+#include "marey/track/contour/seen_edge.h"
 #include "marey/track/contour/shared_outlines.h"
 #include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
@@ -59,16 +61,18 @@ bool LoneSilhouettes::has_colours() const {
 }
 
 std::optional<geometry::ClosedSpline> LoneSilhouettes::fitted(const Detection& detected, const geometry::SplineFitOptions& options,
-                                                              const ContourTarget* target) {
+                                                              const ContourTarget* target, const BodyMask* mask) {
   fraction_.release();
   if (!has_colours() || detected.outline.size() < 4) return fit_silhouette(detected, image_.luma(), options);
   const double height = detected.box.height;
-  const bool known = target != nullptr && target->learned >= kKnown && target->held < kHeldTooLong && is_smeared(height);
+  const bool known =
+      target != nullptr && target->learned >= kKnown && target->held < kHeldTooLong && (is_smeared(height) || mask != nullptr);
   Box about = bounds(detected.outline);
   if (known) about = geometry::hull(about, target->predicted.box());
   patch_ = cut_patch(image_, mask_, grown(about, 2 + kNextTo * height), cell_step(height), scene_);
   if (patch_.colour.empty()) return fit_silhouette(detected, image_.luma(), options);
-  fraction_ = known ? known_fraction(*target, detected) : body_fraction(patch_, cells_within(detected.outline, patch_), height);
+  fraction_ =
+      known ? known_fraction(*target, detected, mask) : body_fraction(patch_, cells_within(detected.outline, patch_), height);
   const std::vector<Vector<2>> edge = half_level_curve(fraction_, patch_);
   const double typical = known ? target->default_area : geometry::polygon_area(detected.outline);
   if (geometry::polygon_area(edge) < kMinOfSilhouette * typical) {
@@ -86,7 +90,7 @@ bool LoneSilhouettes::is_smeared(double height) const {
   return scene_ != nullptr && scene_->smear() > kSmeared * height;
 }
 
-cv::Mat LoneSilhouettes::known_fraction(const ContourTarget& target, const Detection& detected) const {
+cv::Mat LoneSilhouettes::known_fraction(const ContourTarget& target, const Detection& detected, const BodyMask* mask) const {
   RegionMember member;
   member.body = &target.body;
   member.polygon = target.predicted.polygon(4);
@@ -95,17 +99,18 @@ cv::Mat LoneSilhouettes::known_fraction(const ContourTarget& target, const Detec
   member.foot = detected.box.bottom();
   member.shifts = {Vector<2>::Zero()};
   member.typical = kTypical;
-  const cv::Mat ground = divide_region(patch_, {&member, 1});
+  if (mask != nullptr) member.network = chances_in(*mask, patch_);
+  const cv::Mat ground = divide_region(patch_, {&member, 1}, labelling_);
   return matted_edge(patch_, member.whole, {}, ground, target.height);
 }
 
-bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, const Track<2>& track) {
+bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, const Track<2>& track, const BodyMask* mask) {
   const int count = target.shape.spline().count();
   geometry::SplineFitOptions options = fit_;  // never fewer than it had: a shape that is seen again keeps its detail
   options.minimum = count;
   options.maximum = std::max(count, options.maximum);
   options.rounds = kRounds;
-  const auto spline = fitted(detected, options, &target);
+  const auto spline = fitted(detected, options, &target, mask);
   if (!spline || spline->count() < count) return false;
   const double growth = std::sqrt(spline->area() / target.default_area);
   const bool known = target.state == Outline::State::detected || target.learned > 0;
@@ -115,14 +120,28 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   if ((centre - target.motion.centre()).norm() > kLeft * target.height) {
     target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthAmbiguity);
   }
-  target.shape = ShapeFilter(*spline, kSilhouetteNoise);
+  set_shape(target, *spline);
   target.state = Outline::State::detected;
   target.knotted = false;
   target.measured = {centre, Vector<2>::Constant(kSilhouetteNoise) + target.height * Vector<2>(kGaitAcross, kGaitDown)};
   target.default_area += kFractionMemory * (spline->area() - target.default_area);
+  const Vector<2> extent(spline->box().width, spline->box().height);
+  target.extent += (target.extent.y() > 0 ? kFractionMemory : 1) * (extent - target.extent);
   if (track.box) target.tracked_height += kFractionMemory * (track.box->height - target.tracked_height);
   learn(target, centre, track);
   return true;
+}
+
+/// The shape that was found, as well as its edge is seen.
+void LoneSilhouettes::set_shape(ContourTarget& target, const geometry::ClosedSpline& spline) const {
+  if (fraction_.empty()) {
+    target.shape = ShapeFilter(spline, kSilhouetteNoise);
+    target.hidden = image_.empty() ? std::vector<int>{} : at_border(spline, image_.size());
+    return;
+  }
+  SeenEdge edge = seen_edge(spline, patch_, {}, image_.size(), prior_deviation(target.height));
+  target.shape = ShapeFilter(spline, edge.deviations);
+  target.hidden = std::move(edge.hidden);
 }
 
 /// The target's appearance, from the last observation of it alone.

@@ -8,8 +8,10 @@
 #include "marey/core/image.h"
 #include "marey/core/track.h"
 #include "marey/geometry/bspline.h"
+#include "marey/track/contour/body_mask.h"
 #include "marey/track/contour/colour_patch.h"
 #include "marey/track/contour/contour_target.h"
+#include "marey/track/contour/labelling.h"
 
 namespace marey::track::contour {
 
@@ -17,7 +19,8 @@ namespace marey::track::contour {
 class LoneSilhouettes {
  public:
   /// `fit` says how the first silhouette of a target is fitted; later ones get as many control points or more.
-  explicit LoneSilhouettes(const geometry::SplineFitOptions& fit) : fit_(fit) {}
+  explicit LoneSilhouettes(const geometry::SplineFitOptions& fit, Labelling labelling = Labelling::votes)
+      : fit_(fit), labelling_(labelling) {}
 
   /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
   /// `scene` stays with its owner; it may be null.
@@ -27,19 +30,22 @@ class LoneSilhouettes {
   /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
   /// `target`, if its colours are known, says what to expect.
   std::optional<geometry::ClosedSpline> fitted(const Detection& detected, const geometry::SplineFitOptions& options,
-                                               const ContourTarget* target = nullptr);
+                                               const ContourTarget* target = nullptr, const BodyMask* mask = nullptr);
 
   /// The tracker says that `seen` is this target: its whole edge shows more than the lines, which a leg that swings leaves behind.
   /// False, and nothing is changed, where the silhouette is unlike the target (cut, or grown by something else).
-  bool take(ContourTarget& target, const Detection& detected, const Track<2>& track);
+  /// `mask`, which may be null, is a network's of it.
+  bool take(ContourTarget& target, const Detection& detected, const Track<2>& track, const BodyMask* mask = nullptr);
 
  private:
   bool is_smeared(double height) const;
   /// What share of each of the patch's cells shows the target, by its learned colours and the scene's.
-  cv::Mat known_fraction(const ContourTarget& target, const Detection& detected) const;
+  cv::Mat known_fraction(const ContourTarget& target, const Detection& detected, const BodyMask* mask) const;
+  void set_shape(ContourTarget& target, const geometry::ClosedSpline& spline) const;
   void learn(ContourTarget& target, const Vector<2>& centre, const Track<2>& track);
 
   geometry::SplineFitOptions fit_;
+  Labelling labelling_;
   Image image_;
   cv::Mat mask_;
   const SceneImage* scene_ = nullptr;

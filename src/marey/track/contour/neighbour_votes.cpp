@@ -10,7 +10,6 @@ constexpr float kEdge = 12;             // levels between neighbours, from which
 constexpr float kEdgeChroma = 0.1F;     // weight of squared differences of chroma, whose edges are blurred; unswept
 constexpr float kSceneEdge = 5;         // levels between neighbours in the scene, from which on an edge is the scene's; unswept
 constexpr float kOneOfNine = 1.0F / 9;  // of one cell among nine; by definition
-constexpr std::array<std::array<int, 2>, 4> kToNeighbour{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
 
 float step_of(const cv::Vec3f& a, const cv::Vec3f& b) {
   const cv::Vec3f step = a - b;

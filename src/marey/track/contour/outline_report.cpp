@@ -2,6 +2,7 @@
 #include "marey/track/contour/outline_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -29,11 +30,30 @@ std::shared_ptr<Outline>& free_slot(ContourTarget& target) {
   return *slot;
 }
 
+/// How high an outline is as a rule, against the tracker's box: as outlines of the target alone are.
+double typical_height(const ContourTarget& target, const Box& own) {
+  const double part = target.extent.y() > 0 && target.tracked_height > 0 ? target.extent.y() / target.tracked_height : 1;
+  return std::min(1.0, part) * own.height;
+}
+
+geometry::ClosedSpline scaled(const geometry::ClosedSpline& spline, double by) {
+  const Vector<2> centre = spline.centroid();
+  std::vector<Vector<2>> points = spline.control_points();
+  for (Vector<2>& point : points) point = centre + by * (point - centre);
+  return {spline.order(), std::move(points)};
+}
+
 }  // namespace
 
 void bring_back(ContourTarget& target, const Track<2>& track) {
   const Vector<2> centre = target.motion.centre();
   const Box& box = *track.box;
+  const double height = target.shape.spline().box().height, typical = typical_height(target, box);
+  if (height > kMaxHigher * typical) {  // it has grown beyond its target
+    target.shape = ShapeFilter(scaled(target.shape.spline(), typical / height), kBend * target.height);
+    target.state = Outline::State::held;
+    target.lines.clear();
+  }
   if (centre.x() >= box.left && centre.x() < box.right() && centre.y() >= box.top && centre.y() < box.bottom()) return;
   target.shape = ShapeFilter(moved_to(target.shape.spline(), box.centre()), kBend * target.height);
   target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthAmbiguity);

@@ -15,9 +15,16 @@ constexpr double kAlikeOver = 1.5;  // control points: how far along the curve n
 
 }  // namespace
 
-ShapeFilter::ShapeFilter(geometry::ClosedSpline spline, double deviation) : spline_(std::move(spline)) {
+ShapeFilter::ShapeFilter(geometry::ClosedSpline spline, double deviation)
+    : ShapeFilter(spline, std::vector<double>(static_cast<std::size_t>(spline.count()), deviation)) {}
+
+ShapeFilter::ShapeFilter(geometry::ClosedSpline spline, std::span<const double> deviations) : spline_(std::move(spline)) {
   const int count = spline_.count();
-  P_ = deviation * deviation * Eigen::MatrixXd::Identity(2 * count, 2 * count);
+  P_ = Eigen::MatrixXd::Zero(2 * count, 2 * count);
+  for (int i = 0; i < count; ++i) {
+    const double deviation = deviations[static_cast<std::size_t>(i)];
+    P_(i, i) = P_(count + i, count + i) = deviation * deviation;
+  }
   gain_.resize(2 * count);
   out_.resize(2 * count);
   alike_.resize(count);

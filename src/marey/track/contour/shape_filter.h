@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,8 @@ class ShapeFilter {
  public:
   /// Begins at `spline`, each coordinate known to `deviation` px.
   ShapeFilter(geometry::ClosedSpline spline, double deviation);
+  /// The same with a deviation for each control point.
+  ShapeFilter(geometry::ClosedSpline spline, std::span<const double> deviations);
 
   /// x ← x + shift + growth (x − centre), the paper's prediction; `shift` in px, `growth` relative.
   void predict(const Vector<2>& shift, double growth, const Vector<2>& centre, const ShapeNoise& noise);

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
 #include "marey/track/contour/body_share.h"
 #include "marey/track/contour/colour_patch.h"
 #include "marey/track/contour/edge_matting.h"
+#include "marey/track/contour/seen_edge.h"
 #include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
 
@@ -93,27 +96,27 @@ void guess_colours(const ColourPatch& patch, std::span<const RegionMember> membe
 void hold(ContourTarget& target, const Vector<2>& shift) {
   std::vector<Vector<2>> points(std::as_const(target.predicted).control_points());
   for (Vector<2>& point : points) point += shift;
-  target.shape = ShapeFilter(geometry::ClosedSpline(target.predicted.order(), std::move(points)), 0.05 * target.height);
+  target.shape = ShapeFilter(geometry::ClosedSpline(target.predicted.order(), std::move(points)),
+                             std::sqrt(1.0 + target.held) * prior_deviation(target.height));
   target.state = Outline::State::held;
 }
 
-void note_hidden(const ColourPatch& patch, std::span<const RegionMember> members, const RegionMember& own,
-                 std::span<const SharedTarget> targets) {
-  ContourTarget& target = *targets[static_cast<std::size_t>(&own - members.data())].target;
+void note_behind(ContourTarget& target, const RegionMember& own, std::span<const SharedTarget> targets) {
   for (const int j : own.behind) target.behind.push_back(targets[static_cast<std::size_t>(j)].target->id);
   std::sort(target.behind.begin(), target.behind.end());
-  const auto points = target.shape.spline().control_points();
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    const Vector<2> cell = patch.cell(points[static_cast<std::size_t>(i)]);
-    const int x = static_cast<int>(std::lround(cell.x())), y = static_cast<int>(std::lround(cell.y()));
-    if (x < 0 || y < 0 || x >= patch.size().width || y >= patch.size().height) continue;
-    const bool hidden = std::any_of(own.behind.begin(), own.behind.end(),
-                                    [&](int j) { return members[static_cast<std::size_t>(j)].detected.at<float>(y, x) > 0.5F; });
-    if (hidden) target.hidden.push_back(i);
-  }
 }
 
-void take_part(ContourTarget& target, const Box& box, const RegionMember& member, const ColourPatch& patch) {
+/// What takes the cells that are not a member's.
+cv::Mat taken_by_others(std::span<const RegionMember> members, const RegionMember& own) {
+  cv::Mat taken = own.whole - own.detected;
+  for (const RegionMember& other : members) {
+    if (&other != &own) cv::max(taken, other.detected, taken);
+  }
+  return taken;
+}
+
+void take_part(ContourTarget& target, const Box& box, const RegionMember& member, const ColourPatch& patch, const cv::Mat& blocked,
+               cv::Size image) {
   const Vector<2> review_item = target.height * Vector<2>(kGaitAcross, kGaitDown);
   hold(target, member.shift);
   target.measured.reset();
@@ -129,7 +132,9 @@ void take_part(ContourTarget& target, const Box& box, const RegionMember& member
     target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * review_item + Vector<2>::Constant(1)};
     return;
   }
-  target.shape = ShapeFilter(*spline, kSilhouetteNoise);
+  SeenEdge edge = seen_edge(*spline, patch, blocked, image, prior_deviation(target.height));
+  target.shape = ShapeFilter(*spline, edge.deviations);
+  target.hidden = std::move(edge.hidden);
   target.state = member.visible > kWhollyVisible ? Outline::State::detected : Outline::State::partly;
   target.measured = {spline->centroid(), hidden_factor * review_item + Vector<2>::Constant(kSilhouetteNoise)};
   target.knotted = false;
@@ -138,10 +143,7 @@ void take_part(ContourTarget& target, const Box& box, const RegionMember& member
 /// Where a member borders on ground, its edge is where its colours end.
 void refine_edges(const ColourPatch& patch, const cv::Mat& ground, std::span<RegionMember> members) {
   for (RegionMember& member : members) {
-    cv::Mat blocked = member.whole - member.detected;
-    for (const RegionMember& other : members) {
-      if (&other != &member) cv::max(blocked, other.detected, blocked);
-    }
+    cv::Mat blocked = taken_by_others(members, member);
     cv::dilate(blocked, blocked, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
     member.whole = matted_edge(patch, member.whole, blocked, ground, member.height);
   }
@@ -153,27 +155,31 @@ int cell_step(double height) {
   return height <= 100 ? 1 : height <= 220 ? 2 : 4;
 }
 
-void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets) {
+void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets,
+                           Labelling labelling) {
   const ColourPatch patch = patch_about(image, mask, scene, targets);
   if (patch.colour.empty()) return;
   std::vector<RegionMember> members;
   for (const SharedTarget& one : targets) members.push_back(member_of(one));
   for (std::size_t k = 0; k < members.size(); ++k) {
+    if (targets[k].mask != nullptr) members[k].network = chances_in(*targets[k].mask, patch);
     if (!targets[k].target->body.knows_colours()) guess_colours(patch, members, k, targets[k].target->body);
   }
-  const cv::Mat ground = divide_region(patch, members);
+  const cv::Mat ground = divide_region(patch, members, labelling);
+  std::vector<cv::Mat> taken;
+  for (const RegionMember& member : members) taken.push_back(taken_by_others(members, member));
   refine_edges(patch, ground, members);
   for (std::size_t k = 0; k < members.size(); ++k) {
     ContourTarget& target = *targets[k].target;
     target.lines.clear();
-    take_part(target, targets[k].box, members[k], patch);
+    take_part(target, targets[k].box, members[k], patch, taken[k], image.size());
     if (rarely_known(target) && target.state != Outline::State::held && members[k].visible > 0.5) {
       const Vector<2> centre = members[k].centre + members[k].shift;
       target.body.learn_colours(patch, members[k].detected, centre, target.height, kLearnInRegion);
       target.default_area += kLearnInRegion * (target.shape.spline().area() - target.default_area);
       target.tracked_height += kLearnInRegion * (targets[k].box.height - target.tracked_height);
     }
-    note_hidden(patch, members, members[k], targets);
+    note_behind(target, members[k], targets);
   }
 }
 

@@ -13,7 +13,9 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "marey/track/contour/body_mask.h"
 #include "marey/track/contour/body_share.h"
+#include "marey/track/contour/graph_cut.h"
 #include "marey/track/contour/ground_likelihood.h"
 #include "marey/track/contour/neighbour_votes.h"
 
@@ -25,6 +27,7 @@ constexpr float kMinChance = 0.004F;    // that a member covers a pixel, or does
 constexpr double kTempered = 0.5;       // exponent of likelihoods: neighbouring pixels err alike
 constexpr float kVote = 8;              // of all neighbours together, in log-odds
 constexpr int kVotingRounds = 5;
+constexpr double kSoft = 0.6;  // cells by which the border of labels that were cut is blurred: numerical, about one
 constexpr double kLargeStep = 0.1, kMiddleStep = 0.05, kSmallStep = 0.02;  // heights, of the search for a place
 constexpr int kSteps = 3;                                                  // of each size, at most
 constexpr double kShiftAmbiguity = 0.12;                                   // heights, standard deviation of a predicted place
@@ -56,9 +59,8 @@ class RegionDivision {
     decide_order();
   }
 
-  void divide() {
-    const auto labels = members_.size() + 1;
-    std::vector<cv::Mat> odds(labels), votes(labels), fractions(labels);
+  void divide(Labelling labelling) {
+    std::vector<cv::Mat> odds(members_.size() + 1);
     for (cv::Mat& one : odds) one.create(patch_.size(), CV_32FC1);
     for (int y = 0; y < patch_.size().height; ++y) {
       for (int x = 0; x < patch_.size().width; ++x) {
@@ -71,9 +73,44 @@ class RegionDivision {
         odds.back().at<float>(y, x) = std::log(left) + log_likelihood(ground_.at<float>(y, x));
       }
     }
+    for (std::size_t k = 0; k < members_.size(); ++k) add_network(members_[k], odds[k]);
     const NeighbourVotes neighbours(patch_, ground_colours_);
+    hand_out(labelling == Labelling::cuts ? by_cuts(odds, neighbours) : by_votes(odds, neighbours));
+  }
+
+  const cv::Mat& ground_colours() const { return ground_colours_; }
+
+ private:
+  /// A network's mask of a member is one more likelihood of its cells.
+  static void add_network(const RegionMember& member, cv::Mat& odds) {
+    if (member.network.empty()) return;
+    for (int y = 0; y < odds.rows; ++y) {
+      const float* chance = member.network.ptr<float>(y);
+      float* sum = odds.ptr<float>(y);
+      for (int x = 0; x < odds.cols; ++x) sum[x] += static_cast<float>(kTempered) * evidence_of(chance[x]);
+    }
+  }
+
+  /// The labels of least energy, one for each cell, made soft along their borders.
+  static std::vector<cv::Mat> by_cuts(const std::vector<cv::Mat>& odds, const NeighbourVotes& neighbours) {
+    std::vector<cv::Mat> costs, fractions;
+    for (const cv::Mat& one : odds) costs.emplace_back(-one);
+    const cv::Mat labels = cut_labels(costs, neighbours, kVote);
+    for (std::size_t l = 0; l < odds.size(); ++l) {
+      cv::Mat fraction;
+      cv::Mat(labels == static_cast<double>(l)).convertTo(fraction, CV_32F, 1.0 / 255);
+      cv::GaussianBlur(fraction, fraction, {}, kSoft);
+      fractions.push_back(fraction);
+    }
+    return fractions;
+  }
+
+  /// Mean field: every cell's chances, given its neighbours'.
+  static std::vector<cv::Mat> by_votes(const std::vector<cv::Mat>& odds, const NeighbourVotes& neighbours) {
+    const std::size_t labels = odds.size();
+    std::vector<cv::Mat> votes(labels), fractions(labels);
     for (int round = 0; round <= kVotingRounds; ++round) {
-      cv::Mat sum = cv::Mat::zeros(patch_.size(), CV_32FC1), maximum = odds[0].clone();
+      cv::Mat sum = cv::Mat::zeros(odds.front().size(), CV_32FC1), maximum = odds[0].clone();
       for (std::size_t l = 0; l < labels; ++l) {
         fractions[l] = round == 0 ? odds[l].clone() : cv::Mat(odds[l] + kVote * votes[l]);
         cv::max(maximum, fractions[l], maximum);
@@ -88,12 +125,9 @@ class RegionDivision {
         if (round < kVotingRounds) votes[l] = neighbours.of(fractions[l]);
       }
     }
-    hand_out(fractions);
+    return fractions;
   }
 
-  const cv::Mat& ground_colours() const { return ground_colours_; }
-
- private:
   static float log_likelihood(float value) { return static_cast<float>(kTempered) * std::log(value); }
 
   void inspect_ground() {
@@ -256,11 +290,11 @@ class RegionDivision {
 
 }  // namespace
 
-cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members) {
+cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members, Labelling labelling) {
   if (members.empty() || patch.colour.empty()) return {};
   RegionDivision division(patch, members);
   division.find_positions();
-  division.divide();
+  division.divide(labelling);
   return division.ground_colours();
 }
 

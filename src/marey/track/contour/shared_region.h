@@ -8,6 +8,7 @@
 #include "marey/core/geometry.h"
 #include "marey/track/contour/body_model.h"
 #include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/labelling.h"
 
 namespace marey::track::contour {
 
@@ -19,6 +20,7 @@ struct RegionMember {
   double height = 0;               ///< px
   double foot = 0;                 ///< px; the row of its feet, by which who stands nearer is known
   std::vector<Vector<2>> shifts;   ///< px; where it may be, against the polygon; at least one
+  cv::Mat network = {};            ///< CV_32FC1: the chance that a cell shows it, by a network; empty: none was asked
   double typical = 0.4;            ///< share of its typical coverage in its prior, the rest being the polygon's
 
   Vector<2> shift = Vector<2>::Zero();  ///< px; where it is
@@ -30,6 +32,6 @@ struct RegionMember {
 
 /// Divides the patch among the members and the ground, and says where each is. Returns the ground's colours (CV_32FC3), empty if
 /// there is nothing to divide.
-cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members);
+cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members, Labelling labelling = Labelling::votes);
 
 }  // namespace marey::track::contour
