@@ -13,7 +13,7 @@
 
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/colour_patch.h"
-#include "marey/track/contour/outline_follower.h"
+#include "marey/track/contour/contour_tracker.h"
 #include "marey/track/contour/silhouette_spline.h"
 
 namespace marey::track::contour {
