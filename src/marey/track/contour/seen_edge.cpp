@@ -40,8 +40,8 @@ std::optional<float> contrast_at(const Vector<2>& location, const Vector<2>& nor
   if (!blocked.empty() && std::max(blocked.at<float>(*here), blocked.at<float>(*outside)) > kTaken) return std::nullopt;
   const bool known = !patch.scene.empty() && patch.known.at<float>(*inside) >= 1 && patch.known.at<float>(*outside) >= 1;
   const float contrast = step_between(patch.colour.at<cv::Vec3f>(*inside), patch.colour.at<cv::Vec3f>(*outside));
-  if (known && step_between(patch.scene.at<cv::Vec3f>(*inside), patch.scene.at<cv::Vec3f>(*outside)) > contrast / 2)
-    return std::nullopt;  // most of the step is the scene's own
+  if (known && step_between(patch.scene.at<cv::Vec3f>(*inside), patch.scene.at<cv::Vec3f>(*outside)) > contrast / 3)
+    return std::nullopt;  // much of the step is the scene's own
   return contrast > kAlike ? std::optional(contrast) : std::nullopt;
 }
 

@@ -58,7 +58,7 @@ TEST(SeenEdge, IsHiddenByAnotherBody) {
 }
 
 TEST(SeenEdge, EndsAtTheBorderOfTheImage) {
-  const auto curve = round_curve({20.5, 40}, 20);
+  const auto curve = round_curve({19.5, 40}, 20);
   const std::vector<int> hidden = at_border(curve, {100, 80});
   ASSERT_FALSE(hidden.empty());
   for (const int i : hidden) EXPECT_LT(curve.at(i).x(), 2);
