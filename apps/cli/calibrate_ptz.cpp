@@ -33,7 +33,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 pipeline::calibrate::PtzSide side_named(const std::string& name) {
   if (name == "near") return pipeline::calibrate::PtzSide::near;
   if (name == "far") return pipeline::calibrate::PtzSide::far;
-  throw Error("--side {}: near or far", name);
+  throw Error("{}: near or far", name);
 }
 
 /// From where to where it turned and zoomed.

@@ -263,6 +263,28 @@ int lines_observed(const Search& search, const Tested& tested) {
   return count;
 }
 
+/// Whether a line of the model that ought to be in view is in no image: the pitch is another sport's, or the view is wrong.
+bool lacks_a_line(const Search& search, const Tested& tested) {
+  constexpr int kInView = 60;  // pieces of a line in all images together; numerical: with fewer nothing is said
+  for (const geometry::PitchLine& line : search.lines) {
+    int expected = 0, agreeing = 0;
+    for (std::size_t i = 0; i < tested.views.size(); ++i) {
+      if (!tested.views[i]) continue;
+      const Aim& aim = tested.views[i]->fit.aim;
+      PaintOptions how;
+      how.reach = 4 * std::max(1.0, search.size().width / 1280.0);
+      const Paint paint = find_paint(search.images[i].image.luma(), tested.tripod, aim.heading,
+                                     std::span<const geometry::PitchLine>(&line, 1), how);
+      expected += paint.expected;
+      agreeing += static_cast<int>(
+          agreeing_paint(paint.detected, tested.tripod, aim, search.size(), AimOptions{}.cut_off / 2, paint.detected.size())
+              .size());
+    }
+    if (expected >= kInView && agreeing < search.options.line_present * expected) return true;
+  }
+  return false;
+}
+
 bool same_answer(const Search& search, const Tested& a, const Tested& b) {
   for (std::size_t i = 0; i < a.views.size(); ++i) {
     if (a.views[i] && b.views[i])
@@ -330,7 +352,7 @@ SearchedTripod search_tripod(std::span<const SearchImage> images, const geometry
   }
   if (best.explained < std::min(images.size(), options.lowest_images) ||
       static_cast<double>(best.explained) < options.fraction * static_cast<double>(rich) ||
-      lines_observed(search, best) < options.lines)
+      lines_observed(search, best) < options.lines || lacks_a_line(search, best))
     return result;
   result.verdict = result.rival > options.rival * result.merit ? TripodVerdict::ambiguous : TripodVerdict::found;
   return result;

@@ -46,8 +46,9 @@ struct TripodSearchOptions {
   std::size_t lowest_images = 3;                 ///< that have to be explained,
   double fraction = 0.5;                         ///< and this share of those that show `many_lines` or more
   int many_lines = 4;
-  int lines = 3;        ///< of the model that are seen in one image or another; the centre circle counts as two
-  double rival = 0.75;  ///< another hypothesis may explain at most this share of as much
+  int lines = 3;              ///< of the model that are seen in one image or another; the centre circle counts as two
+  double line_present = 0.2;  ///< of a line in view is paint, at least: without a whole line the pitch is another one
+  double rival = 0.75;        ///< another hypothesis may explain at most this share of as much
 };
 
 /// An image that the tripod explains.
