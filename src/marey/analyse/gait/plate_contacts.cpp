@@ -16,15 +16,15 @@ namespace {
 
 constexpr double kMinForceN = 5;  // numerical: centres of pressure of less are noise
 constexpr double kWindowS = 0.1;
-constexpr double kQuietN = 4;              // deviation within a window in which nothing is on the plate
-constexpr double kFreeN = 60;              // farther from zero nothing is free: the lightest child stands with more on one foot
-constexpr double kReportedN = 5;           // by definition: what is worth a warning
-constexpr double kOverEdgeM = 0.02;        // a marker beyond the edge by more: the foot is not on the plate as a whole
-constexpr double kNearFootM = 0.1;         // corners are in order where the centre of pressure is so near
-constexpr double kTurnedNearFootM = 0.05;  // another order must bring it so near: between two feet it is nearer to none
-constexpr double kStandsM_s = 0.3;         // heel or toe slower than that: the foot stands
-constexpr double kBothFraction = 0.1;      // of a contact in which the other foot stands on the plate too
-constexpr double kCheckedEveryS = 0.01;    // numerical
+constexpr double kQuietN = 4;                 // deviation within a window in which nothing is on the plate
+constexpr double kFreeN = 60;                 // farther from zero nothing is free: the lightest child stands with more on one foot
+constexpr double kReportedN = 5;              // by definition: what is worth a warning
+constexpr double kOverEdgeM = 0.02;           // a marker beyond the edge by more: the foot is not on the plate as a whole
+constexpr double kNearFootM = 0.1;            // corners are in order where the centre of pressure is so near
+constexpr double kReorderedNearFootM = 0.05;  // another order must bring it so near: between two feet it is nearer to none
+constexpr double kStandsM_s = 0.3;            // heel or toe slower than that: the foot stands
+constexpr double kBothFraction = 0.1;         // of a contact in which the other foot stands on the plate too
+constexpr double kCheckedEveryS = 0.01;       // numerical
 
 /// Means of the windows in which nothing is on the plate.
 struct FreeWindow {
@@ -264,7 +264,7 @@ std::optional<std::string> orient(ForcePlate& plate, const FeetOnGround& ground,
     turn_half(turned, axes.col(a));
     if (push_of(turned, options.threshold_n) < 0) reverse(turned);
     const double distance = distance_from_feet(turned, ground, options.threshold_n).value_or(*least);
-    if (distance >= (upside_down ? *least : std::min(kTurnedNearFootM, 0.5 * *least))) continue;
+    if (distance >= (upside_down ? *least : std::min(kReorderedNearFootM, 0.5 * *least))) continue;
     least = distance;
     best = std::move(turned);
   }
