@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 4> kFaceParts{"nose", "eye", "ear", "mout
 // Shares of a box's height and width, and of the face's extent; generous by a half over the proportions above. unswept: the price
 // of too much is pixels beside heads, of too little a face.
 constexpr float kUpper = 0.22F, kWide = 0.28F, kFaceReach = 1.6F, kMinOfBody = 0.075F;
-constexpr double kWithin = 0.3;  // presence of a point
+constexpr double kFacePresence = 0.3;  // presence of a point
 
 bool is_of_face(std::string_view name) {
   return std::ranges::any_of(kFaceParts, [&](std::string_view part) { return name.find(part) != std::string_view::npos; });
@@ -34,7 +34,7 @@ std::optional<cv::Rect2f> round_face(const Sample& sample, const KeypointSet& se
   const std::size_t count = std::min(set.points.size(), sample.keypoints->points.size());
   for (std::size_t i = 0; i < count; ++i) {
     const auto& point = sample.keypoints->points[i];
-    if (point && point->presence >= kWithin && is_of_face(set.points[i]))
+    if (point && point->presence >= kFacePresence && is_of_face(set.points[i]))
       points.emplace_back(static_cast<float>(point->position.x()), static_cast<float>(point->position.y()));
   }
   if (points.size() < 2) return std::nullopt;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMountSpacing = 1.0;  // m along a wall
 constexpr std::size_t kMaxMounts = 400;
-constexpr int kMaxCameras = 64;
+constexpr int kMaxPlanned = 64;
 constexpr double kMaxRoom = 1000;  // m
 
 std::optional<Vector<3>> point_of(const Section& section, const char* key) {
@@ -78,7 +78,7 @@ void read_cameras(const toml::table& table, PlannedRoom& room, Problems& problem
   const Section section(table, "cameras", problems);
   section.only({"count", "size", "field_of_view", "noise_px", "farthest"});
   room.cameras = section.count("count").value_or(room.cameras);
-  if (room.cameras < 2 || room.cameras > kMaxCameras) section.problem("count", fmt::format("count must be 2 to {}", kMaxCameras));
+  if (room.cameras < 2 || room.cameras > kMaxPlanned) section.problem("count", fmt::format("count must be 2 to {}", kMaxPlanned));
   if (const auto size = section.numbers("size", 2, 2, "width and height in px: [1920, 1080]")) {
     room.size = {static_cast<int>((*size)[0]), static_cast<int>((*size)[1])};
     if (room.size.width < 16 || room.size.height < 16 || room.size.width > 32768 || room.size.height > 32768)
