@@ -113,12 +113,12 @@ def main():
                 all_values["alone" if person["visibility"] == "alone" else "overlapping"].append(value)
             row = ", ".join(f"{a['visibility']} {value:.2f}" for a, value in zip(people, values))
             print(f"| {video}, {image['frame_id']} | {row} |", flush=True)
-    everybody = sum(all_values.values(), [])
+    all_people = sum(all_values.values(), [])
     for kind, values in all_values.items():
         if values:
             print(f"{kind}: {sum(values) / len(values):.3f} of {len(values)}")
-    if everybody:
-        print(f"found at 0.5: {sum(value >= 0.5 for value in everybody)} of {len(everybody)}")
+    if all_people:
+        print(f"found at 0.5: {sum(value >= 0.5 for value in all_people)} of {len(all_people)}")
 
 
 if __name__ == "__main__":

@@ -256,7 +256,7 @@ void submit_batch(const SubmitCommand& command) {
 
 // ---- what they take
 
-void add_plan(Command& batch) {
+void add_batch_plan(Command& batch) {
   auto options = std::make_shared<PlanCommand>();
   Command command = batch.subcommand("plan", "Find the recordings of a folder or a table, and write what is to be done with each");
   command
@@ -307,7 +307,7 @@ void add_submit(Command& batch) {
 
 void add_batch(Command& program) {
   Command batch = program.subcommand("batch", "Do the same with many recordings: here, over GNU parallel, or over a cluster");
-  add_plan(batch);
+  add_batch_plan(batch);
   add_run(batch);
   add_reduce(batch);
   add_submit(batch);

@@ -125,7 +125,7 @@ void add_calibrate_ptz(Command& calibrate) {
       "Where a camera over a football pitch looks that pans, tilts and zooms, from clicks in a few frames and the white lines");
   command.input_file("INPUT", options->video, "a video of one main camera").required();
   command.input_file("--points", options->clicks,
-                     "clicked places in 2 to 4 frames that look to different sides: CSV frame,x,y,u,v, or CVAT XML (default: the "
+                     "clicked places in 2 to 4 frames turned to different sides: CSV frame,x,y,u,v, or CVAT XML (default: the "
                      "lines in the images alone)");
   command
       .text("--side", options->side,

@@ -103,7 +103,7 @@ void print_score(const char* name, double value, const char* meaning) {
   fmt::print("  {:<9} {:>9}   {}\n", name, percent(value), meaning);
 }
 
-/// What was lost where.
+/// The losses by kind.
 void print_losses(const evaluate::GameStateEvaluation& all) {
   const auto hota = [&](GameStateDetail detail) { return all.scores(detail).hota; };
   fmt::print("What it would be if less had to be right\n");

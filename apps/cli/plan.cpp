@@ -57,7 +57,7 @@ void print_coverage(const std::string& name, const reconstruct::RoomCoverage& co
 }
 
 void print_plan(const PlanSummary& summary, const PlanCommand& command) {
-  fmt::print("camera        x       y       z   m      looks to (degrees from x, up)\n");
+  fmt::print("camera        x       y       z   m      aimed at (degrees from x, up)\n");
   for (const RigCamera& one : summary.planned.cameras) {
     const auto camera = one.camera();
     const Vector<3> ahead = camera->camera_from_world().rotation.row(2);

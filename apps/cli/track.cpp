@@ -69,7 +69,7 @@ pipeline::people::TrackOutput output_of(const TrackCommand& command) {
                                        .copy = input.copy,
                                        .blur_faces = !input.blur.empty(),
                                        .plot = input.plot,
-                                      .target_masks = command.people.target_masks,
+                                       .target_masks = command.people.target_masks,
                                        .masks = command.people.masks};
   const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
   if (named || !command.format.empty()) {

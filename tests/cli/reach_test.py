@@ -94,7 +94,7 @@ class Reach(unittest.TestCase):
         self.assertEqual((self.folder / "planned.toml").read_text().count("[[camera]]"), 6)
         more = json.loads(self.marey("plan", "room.toml", "--count", 10, "--json").stdout)
         self.assertLess(more["planned"]["median_mm"], done["planned"]["median_mm"])
-        # Of a rig that is there, with the noise that the room says: reached is what was expected.
+        # Of a rig that is there, with the noise that the room says: the expected error is reached.
         self.marey("simulate", "room", "--markers", 30, "--frames", 60, "--cameras", 6, "--noise", 0.1, "-o", "sim", "-q")
         self.marey("reconstruct", "sim/rig.toml", "--observations", "sim/observations.csv", "-o", "walk.marey", "-q")
         found = json.loads(self.marey("plan", "room.toml", "--rig", "sim/rig.toml", "--recording", "walk.marey", "--json").stdout)

@@ -106,7 +106,7 @@ def make(folder, rng):
             stated["predictions"] = []
         if number == 18:
             truth["annotations"] = truth["annotations"][:1]
-        if number == 19:  # nobody is who they are said to be
+        if number == 19:  # every identity is exchanged
             for one in stated["predictions"]:
                 one["attributes"]["role"] = "other"
             for one in truth["annotations"][1:]:

@@ -13,7 +13,7 @@ ENVIRONMENT = {key: value for key, value in os.environ.items() if key not in ("P
     "DEBIAN_FRONTEND": "noninteractive",
     "LC_ALL": "C",
 }
-# The way out, where there is one alone: names, certificates, and the settings of apt and pip.
+# Access to the network, if there is one gateway alone: names, certificates, and the settings of apt and pip.
 KEPT = ("resolv.conf", "ssl/certs/ca-certificates.crt", "pip.conf")
 
 

@@ -92,7 +92,7 @@ class BlenderScene(unittest.TestCase):
         with (self.folder / "points.csv").open() as rows:
             return {(int(row["frame"]), row["label"]): [float(row[axis]) for axis in "xyz"] for row in csv.DictReader(rows)}
 
-    def test_cameras_see_what_pinholes_of_the_rig_see(self):
+    def test_cameras_are_pinholes_of_the_rig(self):
         worst = 0
         for camera in self.rig["camera"]:
             at = self.images[camera["name"]]
@@ -110,7 +110,7 @@ class BlenderScene(unittest.TestCase):
         for name, found in self.backgrounds.items():
             self.assertEqual([[640, 512], "MOVIE", 1, FRAMES], found[0][:4], name)
 
-    def test_a_scene_says_what_is_missing(self):
+    def test_a_scene_reports_missing_files(self):
         (self.folder / "alone").mkdir()
         shutil.copy(self.folder / "walk/rig.toml", self.folder / "alone")  # without its videos
         self.run_in(MAREY, "convert", "walk.marey", "alone/scene.py", "--rig", "alone/rig.toml", "-q")

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kStep = 0.01;       // px: numerical
 constexpr double kFeet = 1.0 / 7;    // of the height: by definition of the leg opening
-constexpr double kMaxHidden = 0.25;  // of the control points: by definition of what is measured
-constexpr double kHighest = 4;       // m: physical, no person is higher
+constexpr double kMaxHidden = 0.25;  // of the control points: by definition of the quantity
+constexpr double kMaxElevation = 4;  // m: physical, no person is higher
 constexpr int kHalvings = 40;        // numerical
 
 enum Measure { kArea, kWidth, kHeight, kLean, kLegOpening, kCount };
@@ -84,9 +84,9 @@ std::optional<double> height_above(const Camera& camera, const Vector<3>& foot, 
     const auto pixel = camera.project(foot + Vector<3>(0, 0, height));
     return pixel ? std::optional(pixel->y()) : std::nullopt;
   };
-  const auto top = row(kHighest);
+  const auto top = row(kMaxElevation);
   if (!top || *top > head_row) return std::nullopt;
-  double low = 0, high = kHighest;
+  double low = 0, high = kMaxElevation;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2;
     const auto seen = row(middle);

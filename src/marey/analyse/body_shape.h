@@ -30,8 +30,8 @@ struct BodyOnGround {
   Figure scale;   ///< m for each px at the feet, upright: widths and openings times this are metres, areas its square
 };
 
-/// From the foot (the lowest point of the contour) and the head (the highest). Nothing where the foot is not on the ground that the
-/// camera sees, or the camera is no whole camera (a homography knows no heights).
+/// From the foot (the lowest point of the contour) and the head (the highest). Nothing if the foot is not on the ground that the
+/// camera sees, or the camera is a homography alone ( knows no heights).
 std::optional<BodyOnGround> body_on_ground(const Outline& outline, const GroundView& view);
 
 /// Whether a contour is good enough to be measured: found in its frame, with at most a quarter of its edge not seen.

@@ -14,7 +14,7 @@
 namespace marey::analyse {
 namespace {
 
-/// An ellipse that leans to the right by so many degrees.
+/// An ellipse that leans to the right by that angle in degrees.
 Outline leaning(double half_width, double half_height, double degrees, double deviation = 0.4) {
   constexpr int kPoints = 24;
   const double angle = degrees * std::numbers::pi / 180;
@@ -77,7 +77,7 @@ TEST(BodyShape, DeviationsAreThoseOfManyTries) {
 }
 
 TEST(BodyShape, HeightOnTheGround) {
-  // A camera 6 m above the ground that looks along y, tilted down by 20 degrees.
+  // A camera 6 m above the ground aimed along y, tilted down by 20 degrees.
   const double tilt = 20 * std::numbers::pi / 180;
   Matrix<3> rotation;
   rotation << 1, 0, 0, 0, -std::sin(tilt), -std::cos(tilt), 0, std::cos(tilt), -std::sin(tilt);

@@ -8,7 +8,7 @@
 
 namespace marey {
 
-/// What someone on a pitch does there, as SoccerNet's game state divides people.
+/// The role of a person on a pitch, as SoccerNet's game state divides people.
 enum class PitchRole : std::uint8_t { player, goalkeeper, referee, other };
 
 /// Whose half is whose: the team that defends the left goal, the right one, none, or the text "nan".

@@ -22,8 +22,8 @@ struct PlannedRoom {
   int cameras = 4;                   ///< how many are to be placed
   cv::Size size = {1920, 1080};      ///< px, of their images
   double field_of_view = 1.15;       ///< rad, across the image
-  double noise_px = 0.5;             ///< standard deviation of what is seen, of each coordinate
-  std::optional<double> farthest_m;  ///< at which a camera still sees what is looked for
+  double noise_px = 0.5;             ///< standard deviation of a detection, of each coordinate
+  std::optional<double> farthest_m;  ///< at which a camera still detects the target
   bool facing = true;                ///< points sit on bodies, which hide them from behind
 };
 

@@ -23,7 +23,7 @@ std::optional<cv::Rect2f> upper_part(const Sample& sample) {
   if (!sample.box) return std::nullopt;
   const auto left = static_cast<float>(sample.box->left), top = static_cast<float>(sample.box->top);
   const auto width = static_cast<float>(sample.box->width), height = static_cast<float>(sample.box->height);
-  // Someone who bends or lies has the head anywhere in the upper half.
+  // A person who bends or lies has the head anywhere in the upper half.
   if (width > 0.8F * height) return cv::Rect2f(left, top - 0.05F * height, width, 0.6F * height);
   const float upper = kUpper * height, wide = std::max(kWide * height, 0.7F * width);
   return cv::Rect2f(left + (width - wide) / 2, top - 0.03F * height, wide, upper + 0.03F * height);

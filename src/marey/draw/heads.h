@@ -15,8 +15,8 @@
 
 namespace marey::draw {
 
-/// The part of the image with someone's head, px: round the points of the face where at least two are known, with the upper part of
-/// the box where there is one; nothing without both. Generous: hair and chin are in it.
+/// The part of the image with a person's head, px: round the points of the face where at least two are known, with the upper part
+/// of the box where there is one; nothing without both. Generous: hair and chin are in it.
 std::optional<cv::Rect2f> head_of(const Sample& sample, const std::optional<KeypointSet>& keypoints);
 
 /// Heads that are to be unrecognisable in each frame: where people are, and for `hold` before a track begins and after it ends

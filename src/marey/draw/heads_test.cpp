@@ -45,13 +45,13 @@ TEST(Heads, AreRoundTheFace) {
   sample.keypoints = std::make_shared<const Keypoints<2>>(body);
   const auto head = head_of(sample, set);
   ASSERT_TRUE(head);
-  EXPECT_NEAR(head->x + head->width / 2, 238.3, 0.1) << "someone who bends: not in the upper part of the box";
+  EXPECT_NEAR(head->x + head->width / 2, 238.3, 0.1) << "a person who bends: not in the upper part of the box";
   EXPECT_NEAR(head->y + head->height / 2, 188, 0.1);
   EXPECT_GT(head->width, 23) << "a head, not a face alone";
   EXPECT_LT(head->height, 60);
   body.points.resize(1);
   sample.keypoints = std::make_shared<const Keypoints<2>>(body);
-  EXPECT_EQ(head_of(sample, set), head_of(sample, std::nullopt)) << "one point of the face is none";
+  EXPECT_EQ(head_of(sample, set), head_of(sample, std::nullopt)) << "one point of the face is too few";
 }
 
 TEST(Heads, AreHeldBeforeAndAfterATrack) {

@@ -18,7 +18,7 @@
 namespace marey::draw {
 
 /// A video of one camera with its targets drawn into the images: positions in the image themselves, others by their boxes in the
-/// camera's view. With `blur_faces` frames wait for those of the next 0.4 s, in which someone may first be found.
+/// camera's view. With `blur_faces` frames wait for those of the next 0.4 s, in which a person may first be found.
 class OverlayVideo final : public Sink {
  public:
   struct View {

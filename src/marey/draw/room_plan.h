@@ -11,7 +11,7 @@ namespace marey::draw {
 struct RoomPlan {
   struct Camera {
     std::string name;
-    Vector<2> at = Vector<2>::Zero(), ahead = Vector<2>::UnitX();  ///< m; where it looks, length 1
+    Vector<2> at = Vector<2>::Zero(), ahead = Vector<2>::UnitX();  ///< m; its direction, length 1
     double height = 0;                                             ///< m
     double field_of_view = 1;                                      ///< rad
   };

@@ -72,7 +72,7 @@ PointGrid grid_of(const PlannedRoom& room) {
   return grid;
 }
 
-/// Whether the way from a to b leads through the box (slabs).
+/// Whether the segment from a to b passes through the box (slabs).
 bool crosses(const RoomBox& box, const Vector<3>& a, const Vector<3>& b) {
   double enter = 0, leave = 1;
   for (int i = 0; i < 3; ++i) {
@@ -142,7 +142,7 @@ struct CandidateCamera {
   std::vector<std::pair<std::size_t, Matrix<3>>> observed;  // points, by number, and what it says of them
 };
 
-/// The directions in which a camera may look: to the middle of the volume and to points round it.
+/// The directions in which a camera may be aimed: to the middle of the volume and to points round it.
 std::vector<Vector<3>> aims_of(const RoomBox& volume) {
   const Vector<3> middle = (volume.from + volume.to) / 2, half = (volume.to - volume.from) / 2 * kAimReach;
   std::vector<Vector<3>> aims{middle};

@@ -9,25 +9,25 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr unsigned kSeed = 38;
+constexpr unsigned kEmgSeed = 38;
 
 TEST(EmgEnvelope, FollowsTheActivityAndIgnoresOffsetAndCables) {
-  constexpr double kRate = 1000;
-  std::mt19937 random(kSeed);
+  constexpr double kEmgRate = 1000;
+  std::mt19937 random(kEmgSeed);
   std::normal_distribution<double> noise;
   std::vector<double> signal;
   for (int i = 0; i < 4000; ++i) {
-    const double time = i / kRate, activity = 0.5 + 0.5 * std::sin(2 * std::numbers::pi * time);
+    const double time = i / kEmgRate, activity = 0.5 + 0.5 * std::sin(2 * std::numbers::pi * time);
     signal.push_back(0.7 + 0.4 * std::sin(2 * std::numbers::pi * 1.3 * time) + 1e-3 * activity * noise(random));
   }
-  const std::vector<double> envelope = emg_envelope(signal, kRate);
+  const std::vector<double> envelope = emg_envelope(signal, kEmgRate);
   double squares = 0, count = 0;
   for (std::size_t i = 300; i + 300 < envelope.size(); ++i) {
-    const double activity = 0.5 + 0.5 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / kRate);
+    const double activity = 0.5 + 0.5 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / kEmgRate);
     squares += std::pow(envelope[i] / 1e-3 - activity * std::sqrt(2 / std::numbers::pi), 2);
     ++count;
   }
-  EXPECT_LT(std::sqrt(squares / count), 0.1) << "of an activity of 1, seed " << kSeed;
+  EXPECT_LT(std::sqrt(squares / count), 0.1) << "of an activity of 1, seed " << kEmgSeed;
   EXPECT_TRUE(emg_envelope(signal, 50).empty());
 }
 

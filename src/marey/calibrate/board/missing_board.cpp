@@ -1,6 +1,6 @@
-// The first of these that the images show: markers of the board's dictionary, the right way round or inverted; markers of another
+// The first of these that the images show: markers of the board's dictionary, upright or inverted; markers of another
 // one, for which the one with the most in any image is taken, the smallest of its family that has them all; a chess board of
-// another grid; squares in which no marker can be read. What is left is how the images are: dark, or smeared.
+// another grid; squares in which no marker can be read. The rest is the state of the images: dark, or smeared.
 #include "marey/calibrate/board/missing_board.h"
 
 #include <algorithm>

@@ -54,7 +54,7 @@ std::string reason(const std::string& searched, const Image& image) {
   return why_missing(board, std::vector<Image>{image});
 }
 
-const std::string kBoard = "charuco:7x5:0.04:0.03:5X5_100";
+const std::string kNamedBoard = "charuco:7x5:0.04:0.03:5X5_100";
 
 TEST(MissingBoard, TheDictionaryThatFitsIsNamed) {
   for (const std::string dictionary : {"5X5_100", "6X6_50", "7X7_50", "APRILTAG_36H11", "ARUCO_ORIGINAL"}) {
@@ -67,28 +67,28 @@ TEST(MissingBoard, TheDictionaryThatFitsIsNamed) {
 
 TEST(MissingBoard, ExchangedColoursAndOtherGridsAreNamed) {
   cv::Mat negative;
-  cv::bitwise_not(board_image(parse_board(kBoard)).luma(), negative);
-  EXPECT_EQ(reason(kBoard, Image(negative)), "black and white are exchanged; give " + kBoard + ":inverted");
+  cv::bitwise_not(board_image(parse_board(kNamedBoard)).luma(), negative);
+  EXPECT_EQ(reason(kNamedBoard, Image(negative)), "black and white are exchanged; give " + kNamedBoard + ":inverted");
   EXPECT_EQ(reason("chess:9x6:0.03", board_image(parse_board("chess:8x5:0.03"))),
             "a chessboard of 8x5 inner corners is detected; give chess:8x5:0.03");
-  EXPECT_EQ(reason(kBoard, board_image(parse_board("chess:8x6:0.04"))),
+  EXPECT_EQ(reason(kNamedBoard, board_image(parse_board("chess:8x6:0.04"))),
             "a chessboard of 8x6 inner corners is detected; give chess:8x6:0.04");
-  const std::string later = reason("charuco:7x5:0.04:0.03:5X5_100", board_image(parse_board(kBoard), 1, 0.7, 60));
+  const std::string later = reason("charuco:7x5:0.04:0.03:5X5_100", board_image(parse_board(kNamedBoard), 1, 0.7, 60));
   EXPECT_NE(later.find("up to number 76 are detected, and the board as given has 17"), std::string::npos) << later;
 }
 
 TEST(MissingBoard, NamesDefectsOfImages) {
-  const Board board = parse_board(kBoard);
-  const std::string small = reason(kBoard, board_image(board, 0.22, 0.5));
+  const Board board = parse_board(kNamedBoard);
+  const std::string small = reason(kNamedBoard, board_image(board, 0.22, 0.5));
   EXPECT_NE(small.find("px"), std::string::npos) << small;
   EXPECT_NE(small.find("nearer"), std::string::npos) << small;
-  const std::string blurred = reason(kBoard, board_image(board, 1, 14));
+  const std::string blurred = reason(kNamedBoard, board_image(board, 1, 14));
   EXPECT_NE(blurred.find("blurred"), std::string::npos) << blurred;
-  const std::string dark = reason(kBoard, Image(cv::Mat(board_image(board).luma() * 0.02)));
+  const std::string dark = reason(kNamedBoard, Image(cv::Mat(board_image(board).luma() * 0.02)));
   EXPECT_NE(dark.find("dark"), std::string::npos) << dark;
   cv::Mat room(480, 640, CV_8UC1, cv::Scalar(90));
   cv::rectangle(room, {100, 100, 200, 150}, cv::Scalar(200), cv::FILLED);
-  EXPECT_NE(reason(kBoard, Image(room)).find("nothing like it is detected"), std::string::npos);
+  EXPECT_NE(reason(kNamedBoard, Image(room)).find("nothing like it is detected"), std::string::npos);
   EXPECT_NE(why_missing(board, {}).find("too small"), std::string::npos);
 }
 

@@ -91,7 +91,9 @@ PaintMask paint_mask(const Image& image, const PaintMaskOptions& options) {
 }
 
 int distinct_lines(const PaintMask& mask) {
-  constexpr double kSameAngle = 0.05, kSameOffset = 9;  // rad, shrunk px; numerical: how finely lines are distinguished, of which only the number counts
+  constexpr double kSameAngle = 0.05,
+                   kSameOffset =
+                       9;  // rad, shrunk px; numerical: how finely lines are distinguished, of which only the number counts
   std::vector<cv::Vec4i> pieces;
   cv::HoughLinesP(mask.paint, pieces, 1, CV_PI / 180, 35, kMaskWidth / 10.0, 6);
   const Vector<2> middle(mask.paint.cols / 2.0, mask.paint.rows / 2.0);

@@ -71,7 +71,7 @@ class PeopleReader {
   }
 
   std::string text_of(const json& value, const char* key) const {
-    if (!value.is_string()) fail(fmt::format("has a {} that is no text", key));
+    if (!value.is_string()) fail(fmt::format("has a {} that is not a text", key));
     return value.get<std::string>();
   }
 
@@ -101,7 +101,7 @@ class PeopleReader {
       return;
     }
     const json& attributes = member(one, "attributes");
-    if (!attributes.is_object()) fail("has attributes that are no object");
+    if (!attributes.is_object()) fail("has attributes that are not an object");
     const std::string role = text_of(member(attributes, "role"), "role");
     if (role == "ball") return;
     PitchPerson& person = state_.people.emplace_back();
@@ -112,7 +112,7 @@ class PeopleReader {
                                            : track.is_number() && track.get<double>() == static_cast<int>(track.get<double>())
                                                ? std::optional<std::int64_t>(static_cast<int>(track.get<double>()))
                                                : std::nullopt;
-    if (!id || *id < 0 || *id > 1'000'000'000) fail("has a track_id that is no whole number from 0");
+    if (!id || *id < 0 || *id > 1'000'000'000) fail("has a track_id that is not a whole number from 0");
     person.id = static_cast<std::int32_t>(*id);
     read_position(member(one, "bbox_pitch"), person);
     describe(attributes, role, person);

@@ -1,4 +1,4 @@
-// Blender's cameras are pinholes with square-based sensors, look along −z with y up, and have their image's middle at
+// Blender's cameras are pinholes with square-based sensors, are aimed along −z with y up, and have their image's middle at
 // ((width − 1) / 2, (height − 1) / 2) of our pixels. Distortion is not transferred: the script says by how much the lens bends.
 #include "marey/format/scene/blender_scene.h"
 
@@ -42,7 +42,7 @@ std::string row_of(const Vector<3>& v) {
   return fmt::format("({:.5f},{:.5f},{:.5f})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
 }
 
-/// px: how far the lens moves the image's corners from where a pinhole has them; nothing where a pinhole has none.
+/// px: how far the lens moves the image's corners from where a pinhole has them; nothing if a pinhole has none.
 std::optional<double> bend_of(const Camera& camera) {
   const auto [focal, principal] = std::visit([](const auto& lens) { return std::pair(lens.focal, lens.principal); }, camera.lens());
   const double right = camera.size().width - 1, bottom = camera.size().height - 1;

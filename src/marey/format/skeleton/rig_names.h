@@ -19,7 +19,7 @@ enum class ArmsAtRest {
   metarig,   ///< as Blender's human metarig has them, 28 to 33° below a T, elbows back
 };
 
-/// One program's way.
+/// One program's convention.
 struct RigScheme {
   std::string_view name;   ///< "mixamo"
   std::string_view title;  ///< "Mixamo"
@@ -37,7 +37,7 @@ const RigScheme& rig_scheme(std::string_view name);
 std::string rig_scheme_names();
 
 /// What the scheme calls a segment of Marey's or OpenSim's human skeleton, or one that it knows by another program's name; `label`
-/// itself where it is none of these.
+/// itself if it is not one of these.
 std::string rig_bone_name(const RigScheme& scheme, const std::string& label);
 
 /// How bones are written. What is empty is as the scheme has it, else as BvhDialect has it.
@@ -55,7 +55,7 @@ bool is_bone_file(const std::string& path);
 std::unique_ptr<Sink> create_bones(const std::string& path, const BoneOutput& output);
 
 /// Gives `inner` the same motion by the scheme's bones: named as there, facing −y, with the scheme's pose where nothing is turned.
-/// Joints are where they were. Bodies that are no skeleton's, and bones that it does not know, keep their names. `begin` throws
+/// Joints are where they were. Bodies without a skeleton, and bones that it does not know, keep their names. `begin` throws
 /// Error if a skeleton has no legs by which up and left are known.
 std::unique_ptr<Sink> with_rig_scheme(std::unique_ptr<Sink> inner, const RigScheme& scheme);
 

@@ -30,7 +30,7 @@ Body bone(int id, const char* label, std::optional<int> parent, const Vector<3>&
   return body;
 }
 
-/// Someone who stands with their arms down, x ahead, y to the left, z up.
+/// A person who stands with their arms down, x ahead, y to the left, z up.
 RecordingHeader person_header() {
   RecordingHeader header;
   header.rate_hz = 100;

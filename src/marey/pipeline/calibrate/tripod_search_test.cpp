@@ -1,6 +1,7 @@
 #include "marey/calibrate/ptz/tripod_search.h"
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "marey/geometry/ground_view.h"
 #include "marey/simulate/match/ptz_match.h"

@@ -9,10 +9,10 @@
 namespace marey::pipeline::jobs {
 
 struct Solve {
-  std::string skeleton = {};                                    ///< a file; empty: the human skeleton
-  std::string up = {};                                          ///< y or z; empty: as `resolved` of the recording states
+  std::string skeleton = {};                   ///< a file; empty: the human skeleton
+  std::string up = {};                         ///< y or z; empty: as `resolved` of the recording states
   std::string skeleton_up = "y", bvh_up = {};  ///< by name; empty: y, or as the rig's names have it
-  bodies::SolveOptions options = {};                            ///< rows without dependent defaults are bound to these
+  bodies::SolveOptions options = {};           ///< rows without dependent defaults are bound to these
 };
 
 Table table_of(Solve& job);

@@ -1,6 +1,7 @@
 #include "marey/pipeline/people/mosaic.h"
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "marey/simulate/match/ptz_match.h"
 

@@ -8,7 +8,7 @@
 namespace marey::pipeline::people {
 
 /// The visible part of every target's contour as a folder of images, one a frame: PNG of 16 bits, each pixel the number of the
-/// target that it shows, 0 where there is none.
+/// target that it shows, 0 for the background.
 class TargetMaskSink final : public Sink {
  public:
   /// The folder is made now. Throws Error if it cannot be made, or holds something.

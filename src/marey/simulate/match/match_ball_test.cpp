@@ -14,7 +14,7 @@ TEST(MatchBall, RollsFliesIsHeldAndGoesOutAsBallsDo) {
   MatchMotion motion(7);
   std::array<int, 4> states{};
   double highest = 0, fastest = 0;
-  int held = 0, away = 0;  // of a held ball's instants, those in which it is still on its way to the holder
+  int held = 0, away = 0;  // of a held ball's instants, those in which it still moves to the holder
   for (int i = 1; i < 25 * 180; ++i) {
     const BallPosition before = motion.ball_position();
     motion.advance(i / 25.0);

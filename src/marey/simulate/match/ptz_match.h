@@ -35,8 +35,8 @@ struct PtzMatchOptions {
   people::ImageDegradation degradation{0.7, 0.2, 2, 1.2, 0, 8};
   double lens_breathes = 0.006;  ///< the radial term changes by this much for each e-fold of the focal length
   bool people = true, scoreboard = true;
-  double screen = 0;                ///< px at 1280: the match is recorded by hand off a screen, and the hand shakes by this deviation
-  std::vector<VideoSpan> cuts;      ///< another camera is shown
+  double screen = 0;            ///< px at 1280: the match is recorded by hand off a screen, and the hand shakes by this deviation
+  std::vector<VideoSpan> cuts;  ///< another camera is shown
   std::vector<VideoSpan> graphics;  ///< the lower half of the image is covered
 };
 
@@ -52,8 +52,8 @@ class PtzMatch {
 
   std::int64_t frame() const { return frame_; }
   double time() const { return static_cast<double>(frame_) / options_.rate_hz; }
-  /// The aim of the main camera; nothing while another is shown. Recorded off a screen: of the camera that comes nearest to what the
-  /// hand makes of it, within some pixels.
+  /// The aim of the main camera; nothing while another is shown. Recorded off a screen: of the camera that comes nearest to what
+  /// the hand makes of it, within some pixels.
   std::optional<geometry::Heading> heading() const;
   /// Whichever camera is shown.
   const Camera& camera() const { return *camera_; }

@@ -1,5 +1,5 @@
-// What contours must bear: whatever is shown, each one is a simple curve of finite numbers, about as large as its target, or is not
-// there.
+// What contours must survive: whatever is shown, each one is a simple curve of finite numbers, about as large as its target, or is
+// not there.
 #include <algorithm>
 #include <array>
 #include <cmath>

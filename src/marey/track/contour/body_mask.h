@@ -14,7 +14,7 @@ namespace marey::track::contour {
 
 /// What a network says of the pixels about one person.
 struct BodyMask {
-  cv::Mat chance;                        ///< CV_32FC1, 0 … 1, that a cell shows the person; empty if there is none
+  cv::Mat chance;                        ///< CV_32FC1, 0 … 1, that a cell shows the person; empty without one
   Vector<2> corner = Vector<2>::Zero();  ///< px of the image: the middle of the first cell
   double scale = 1;                      ///< px of the image from cell to cell
 };

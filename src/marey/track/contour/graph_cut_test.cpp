@@ -30,7 +30,7 @@ std::vector<cv::Mat> random_costs(int labels, int wide, int high, unsigned seed)
 }
 
 /// The least energy of all labellings.
-double least_energy(const std::vector<cv::Mat>& costs, const NeighbourVotes& neighbours, float smoothness) {
+double min_energy(const std::vector<cv::Mat>& costs, const NeighbourVotes& neighbours, float smoothness) {
   const int cells = static_cast<int>(costs.front().total()), labels = static_cast<int>(costs.size());
   double least = 1e9;
   const auto count = static_cast<long>(std::llround(std::pow(labels, cells)));
@@ -51,7 +51,7 @@ TEST(GraphCut, FindsTheLeastEnergyOfTwoLabels) {
     const auto costs = random_costs(2, 4, 3, seed);
     for (const float smoothness : {0.0F, 2.0F, 8.0F}) {
       const cv::Mat labels = cut_labels(costs, neighbours, smoothness);
-      EXPECT_NEAR(label_energy(costs, neighbours, smoothness, labels), least_energy(costs, neighbours, smoothness), 0.02);
+      EXPECT_NEAR(label_energy(costs, neighbours, smoothness, labels), min_energy(costs, neighbours, smoothness), 0.02);
     }
   }
 }
@@ -62,7 +62,7 @@ TEST(GraphCut, ComesNearTheLeastEnergyOfThreeLabels) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const auto costs = random_costs(3, 3, 3, seed);
     const cv::Mat labels = cut_labels(costs, neighbours, 4);
-    EXPECT_LT(label_energy(costs, neighbours, 4, labels), least_energy(costs, neighbours, 4) + 0.3);
+    EXPECT_LT(label_energy(costs, neighbours, 4, labels), min_energy(costs, neighbours, 4) + 0.3);
   }
 }
 

@@ -11,10 +11,10 @@
 
 #include "marey/track/contour/body_share.h"
 #include "marey/track/contour/edge_matting.h"
-#include "marey/track/contour/seen_edge.h"
 #include "marey/track/contour/shared_outlines.h"
 #include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
+#include "marey/track/contour/visible_edge.h"
 
 namespace marey::track::contour {
 namespace {
@@ -139,7 +139,7 @@ void LoneSilhouettes::set_shape(ContourTarget& target, const geometry::ClosedSpl
     target.hidden = image_.empty() ? std::vector<int>{} : at_border(spline, image_.size());
     return;
   }
-  SeenEdge edge = seen_edge(spline, patch_, {}, image_.size(), prior_deviation(target.height));
+  VisibleEdge edge = visible_edge(spline, patch_, {}, image_.size(), prior_deviation(target.height));
   target.shape = ShapeFilter(spline, edge.deviations);
   target.hidden = std::move(edge.hidden);
 }

@@ -12,9 +12,9 @@
 #include "marey/track/contour/body_share.h"
 #include "marey/track/contour/colour_patch.h"
 #include "marey/track/contour/edge_matting.h"
-#include "marey/track/contour/seen_edge.h"
 #include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
+#include "marey/track/contour/visible_edge.h"
 
 namespace marey::track::contour {
 namespace {
@@ -132,7 +132,7 @@ void take_part(ContourTarget& target, const Box& box, const RegionMember& member
     target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * review_item + Vector<2>::Constant(1)};
     return;
   }
-  SeenEdge edge = seen_edge(*spline, patch, blocked, image, prior_deviation(target.height));
+  VisibleEdge edge = visible_edge(*spline, patch, blocked, image, prior_deviation(target.height));
   target.shape = ShapeFilter(*spline, edge.deviations);
   target.hidden = std::move(edge.hidden);
   target.state = member.visible > kWhollyVisible ? Outline::State::detected : Outline::State::partly;

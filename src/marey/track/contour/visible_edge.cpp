@@ -1,7 +1,7 @@
 // The position of an edge is known to the noise of light over its slope, and the slope is the contrast over the width of the blur:
 // an edge of 40 levels, blurred over 2 px, in noise of 6 levels, to 0.3 px. Something of the scene that hides a body ends it along
 // an edge that the scene has itself, which is why such an edge counts as seen only where the scene is even.
-#include "marey/track/contour/seen_edge.h"
+#include "marey/track/contour/visible_edge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ float step_between(const cv::Vec3f& a, const cv::Vec3f& b) {
   return std::sqrt(step[0] * step[0] + kChromaPart * (step[1] * step[1] + step[2] * step[2]));
 }
 
-/// The contrast of the edge at a place of the curve, levels; nothing where it is not the body's edge that is seen.
+/// The contrast of the edge at a place of the curve, levels; nothing if the visible edge is not the body's.
 std::optional<float> contrast_at(const Vector<2>& location, const Vector<2>& normal, const ColourPatch& patch,
                                  const cv::Mat& blocked) {
   const Vector<2> across = kReach * patch.step * normal;
@@ -60,9 +60,9 @@ std::vector<int> at_border(const geometry::ClosedSpline& spline, cv::Size image)
   return hidden;
 }
 
-SeenEdge seen_edge(const geometry::ClosedSpline& spline, const ColourPatch& patch, const cv::Mat& blocked, cv::Size image,
-                   double prior) {
-  SeenEdge edge;
+VisibleEdge visible_edge(const geometry::ClosedSpline& spline, const ColourPatch& patch, const cv::Mat& blocked, cv::Size image,
+                         double prior) {
+  VisibleEdge edge;
   const double least = std::min(kMinDeviation, prior);
   for (int i = 0; i < spline.count(); ++i) {
     const Vector<2> location = spline.at(i);
