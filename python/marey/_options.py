@@ -185,8 +185,12 @@ class SolveOptions(TypedDict, total=False):
     r"""first fit the skeleton's sizes and its markers' places to the person, from RECORDING itself"""
     smooth: bool | None
     r"""a second pass over the whole motion: what was hidden is bent to both ends"""
+    calibration_take: Sequence[str] | None
+    r"""another recording of the same person with the same markers, for --calibrate; may be given often"""
+    mass: float | None
+    r"""kg in [1, 500]: the person's mass, for the masses of --write-skeleton's .osim"""
     write_skeleton: Path | None
-    r"""skeleton.toml of the skeleton that was used"""
+    r"""the skeleton that was used: skeleton.toml, or, of an OpenSim model, .osim with its bodies scaled and markers moved"""
     exclude: Sequence[str] | None
     r"""a marker that is not used, by its label; may be given often"""
     up: Literal["y", "z"] | None
@@ -196,13 +200,13 @@ class SolveOptions(TypedDict, total=False):
     skeleton_up: Literal["y", "z"] | None
     r"""the axis that is up in a BVH, ASF or VSK skeleton: y, z (default: y)"""
     bvh_unit: float | None
-    r"""m in (0, 1000]: one unit of a BVH file that is written (default: 0.01)"""
+    r"""m in (0, 1000]: one unit of a BVH file that is written; omitted: 0.01, or as --rig-names has it"""
     bvh_up: Literal["y", "z"] | None
-    r"""the axis that is up in a BVH file that is written: y, z (default: y)"""
+    r"""the axis that is up in a BVH file that is written; omitted: y, or as --rig-names has it: y, z"""
     bvh_order: Literal["ZXY", "ZYX", "XYZ", "XZY", "YXZ", "YZX"] | None
-    r"""the order of its rotations: ZXY, ZYX, XYZ, XZY, YXZ, YZX (default: ZXY)"""
-    bvh_names: str | None
-    r"""the names of its joints: mixamo or motionbuilder; omitted: as in the skeleton"""
+    r"""the order of its rotations; omitted: ZXY, or as --rig-names has it: ZXY, ZYX, XYZ, XZY, YXZ, YZX"""
+    rig_names: str | None
+    r"""whose bones .bvh and .glb have (names, rest pose, BVH's unit, axis and rotation order): mixamo, unreal, vrm, rokoko, rigify, motionbuilder; omitted: the skeleton's own"""
 
 
 class LiveOptions(TypedDict, total=False):

@@ -31,7 +31,7 @@ struct BodyOnGround {
 };
 
 /// From the foot (the lowest point of the contour) and the head (the highest). Nothing if the foot is not on the ground that the
-/// camera sees, or the camera is a homography alone ( knows no heights).
+/// camera sees, or the camera is a homography alone, without heights.
 std::optional<BodyOnGround> body_on_ground(const Outline& outline, const GroundView& view);
 
 /// Whether a contour is good enough to be measured: found in its frame, with at most a quarter of its edge not seen.

@@ -120,14 +120,14 @@ class HardCheck {
     for (std::size_t i = 0; i < bodies.size(); ++i) tracks.push_back(track_of(bodies[i], static_cast<int>(i) + 1, detections));
     for (const Track<2>& track : tracker_.attach(tracks, detections)) {
       const HardBody& body = bodies[static_cast<std::size_t>(number(track.id)) - 1];
-      ++asked;
+      ++requests;
       if (track.outline) inspect(*track.outline, body, frame);
     }
   }
 
   double iou() const { return contours > 0 ? sum_ / contours : 0; }
 
-  int asked = 0, contours = 0;
+  int requests = 0, contours = 0;
 
  private:
   static Track<2> track_of(const HardBody& body, int id, const std::vector<Detection>& detections) {
@@ -189,7 +189,7 @@ TEST(ContourBadInput, ATargetAsLargeAsThePicture) {
     scene.paint(bodies, k);
     check.step(scene, bodies, k);
   }
-  EXPECT_EQ(check.asked, 10);
+  EXPECT_EQ(check.requests, 10);
 }
 
 TEST(ContourBadInput, AMaskOfAModelThatIsNotTheTargets) {
