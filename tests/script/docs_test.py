@@ -20,7 +20,7 @@ ROOT = pathlib.Path(sys.argv[1])
 MAREY = sys.argv[2]
 # Names in the pages that are of other programs, of the system, or of a user's files.
 SOURCES = (".cpp", ".h", ".py", ".ts", ".txt", ".toml", ".ipynb", ".yml", ".json", ".cmake", ".css", ".html", "")
-OTHERS_NAMES = {"PascalCase", "snake_case", "RssAnon", "batch_sched_delay", "camera_frame", "football_left", "left_accuracy", "left_ball", "left_json", "match_main_ptz",
+OTHERS_NAMES = {"LeftShin", "LeftThigh", "PascalCase", "snake_case", "RssAnon", "batch_sched_delay", "camera_frame", "football_left", "left_accuracy", "left_ball", "left_json", "match_main_ptz",
                 "match_metadata", "max_age", "max_iou_distance", "n_init", "pipeline_bodies_test", "rmem_max", "street_masks", "street_tracks", "today_r"}
 
 

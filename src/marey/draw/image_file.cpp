@@ -1,5 +1,6 @@
 #include "marey/draw/image_file.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 
@@ -26,9 +27,32 @@ bool stays_grey(const Image& image) {
   return !image.is_colour() && image.luma().type() == CV_8UC1;
 }
 
+bool is_deep_grey(const Image& image) {
+  return !image.is_colour() && image.luma().type() == CV_16UC1;
+}
+
+/// PNG's 16 bits are big-endian.
+cv::Mat swapped_bytes(const cv::Mat& deep) {
+  cv::Mat swapped(deep.size(), CV_16UC1);
+  for (int y = 0; y < deep.rows; ++y) {
+    for (int x = 0; x < deep.cols; ++x) {
+      const unsigned value = deep.at<std::uint16_t>(y, x);
+      swapped.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(value << 8 | value >> 8);
+    }
+  }
+  return swapped;
+}
+
+AVPixelFormat pixels_of(const Image& image, bool jpeg) {
+  if (jpeg) return AV_PIX_FMT_YUVJ420P;
+  if (is_deep_grey(image)) return AV_PIX_FMT_GRAY16BE;
+  return stays_grey(image) ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_RGB24;
+}
+
 /// The planes that the encoder wants, in the order of AVFrame::data.
 std::vector<cv::Mat> planes_of(const Image& image, bool jpeg) {
   if (!jpeg && stays_grey(image)) return {image.luma()};
+  if (!jpeg && is_deep_grey(image)) return {swapped_bytes(image.luma())};
   const cv::Mat bgr = image.bgr();
   cv::Mat converted;
   if (!jpeg) {
@@ -58,7 +82,7 @@ void write_image(const std::string& path, const Image& image) {
   codec->log_level_offset = AV_LOG_TRACE;  // the host program's log gets nothing of ours
   codec->width = image.size().width;
   codec->height = image.size().height;
-  codec->pix_fmt = jpeg ? AV_PIX_FMT_YUVJ420P : stays_grey(image) ? AV_PIX_FMT_GRAY8 : AV_PIX_FMT_RGB24;
+  codec->pix_fmt = pixels_of(image, jpeg);
   codec->color_range = AVCOL_RANGE_JPEG;
   codec->time_base = {1, 25};
   if (jpeg) {
