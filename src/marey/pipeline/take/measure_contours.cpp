@@ -177,8 +177,10 @@ ContourMeasurement measure_contours(const std::string& take, const std::string& 
     }
   }
   if (people.empty())
-    throw Error("{}: tracks in an image without contours; measure those of `marey track --ground`, or of --contour in a take",
-                take);
+    throw Error(
+        "{}: tracks in px without contours have no world coordinates; measure those of `marey track --ground`, or of --contour in "
+        "a take",
+        take);
   for (const TrackName& name : reader->tracks()) {
     if (const auto person = people.find(name.id); person != people.end()) person->second.label = name.label;
   }
