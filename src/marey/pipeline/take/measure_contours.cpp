@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
@@ -148,7 +149,8 @@ ContourMeasurement summed(const std::map<TrackId, OnePerson>& people, bool metri
 }  // namespace
 
 bool is_of_image(const std::string& path) {
-  if (path == "-") return false;
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) return false;  // a pipe is read once
   const format::Format* format = format::format_of_content(path);
   if (format == nullptr || !format->holds.has(format::Content::image)) return false;
   return format::open_recording(path, *format)->header().frame.kind == FrameOfReference::Kind::image;
