@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
