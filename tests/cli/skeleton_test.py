@@ -25,6 +25,7 @@ DATA = pathlib.Path()
 
 FILES = {
     "walk.trc": "opensim_ik/synthetic/subject01_synthetic_marker_data.trc",
+    "turn.trc": "opensim_ik/synthetic/subject01_synthetic_marker_data.trc",
     "model.osim": "opensim_ik/synthetic/subject01_simbody.osim",
     "walk.c3d": "gait_children/HC002D/straight_HC002D06.c3d",
     "run.c3d": "gait_children/HC002D/turn_HC002D25.c3d",
