@@ -30,6 +30,8 @@ EXAMPLES = {
         "copy": lambda out: out / "copy.mp4",
         "plot": lambda out: out / "plot.svg",
         "foreground-masks": lambda out: out / "masks",
+        "target-masks": lambda out: out / "target_masks",
+        "contour-model": "lite",
         "lag": 0.5,
         "detector": MODELS / "person.toml",
         "detector-interval": 3,
@@ -104,13 +106,15 @@ EXAMPLES["solve"] = {
     "exclude": "P1:left_ankle",
     "unit": 0.0254,
     "bvh-unit": 1,
-    "bvh-names": "mixamo",
+    "rig-names": "mixamo",
+        "calibration-take": "blobs.csv",
+        "mass": 70,
 }
 EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
 WITH = {"blur": ["overlay"], "foreground-masks": ["background"], "detector-interval": ["detector"], "no-background": ["detector"]}
 # Options whose network is made by script/model, which not every machine has.
-MODEL_OPTIONS = {"detector", "detector-interval", "no-background", "model"}
+MODEL_OPTIONS = {"detector", "detector-interval", "no-background", "model", "contour-model"}
 
 
 def shell_words(options):

@@ -21,9 +21,7 @@ void add_image_rows(Table& table, ImageInput& input) {
 void add_blur_rows(Table& table, ImageInput& input) {
   table.choice("blur", input.blur, {"faces"},
                "make heads unrecognisable in --overlay and --copy: those of the people who are tracked");
-  table.output_file("copy", input.copy, "the video again with nothing drawn and faces blurred: FILE.mp4")
-      .ending_in({".mp4"})
-      .needing("blur");
+  table.output_file("copy", input.copy, "the video again with nothing drawn and faces blurred: FILE.mp4").needing("blur");
 }
 
 void add_outline_rows(Table& table, TrackPeople& job) {
@@ -72,6 +70,8 @@ track::contour::OutlineOptions outlines_of(const TrackPeople& job) {
 void check(const ImageInput& input) {
   if (!input.overlay.empty() && !input.overlay.ends_with(".mp4") && !is_stream(input.overlay))
     throw WrongOption("--overlay {}: is an MP4 video; end its name in .mp4", input.overlay);
+  if (!input.copy.empty() && !input.copy.ends_with(".mp4"))
+    throw WrongOption("--copy {}: is an MP4 video; end its name in .mp4", input.copy);
   if (!input.blur.empty() && input.overlay.empty() && input.copy.empty())
     throw WrongOption("--blur {}: blurs in --overlay FILE.mp4 or --copy FILE.mp4; give one of them", input.blur);
 }
