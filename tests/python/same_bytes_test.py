@@ -107,8 +107,8 @@ EXAMPLES["solve"] = {
     "unit": 0.0254,
     "bvh-unit": 1,
     "rig-names": "mixamo",
-        "calibration-take": "blobs.csv",
-        "mass": 70,
+    "calibration-take": "blobs.csv",
+    "mass": 70,
 }
 EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
