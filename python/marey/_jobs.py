@@ -114,7 +114,7 @@ def _rows(job: str, options: Mapping[str, Any]) -> dict[str, Any]:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)
             raise Error(f"{name} is not an option of this job ({job}); {f'did you mean {near[0]}?' if near else 'help() lists them'}")
-        values = value if known[name] == "texts" and not isinstance(value, str) else [value]
+        values = value if known[name] == "texts" and not isinstance(value, (str, os.PathLike)) else [value]
         rows += [(name.replace("_", "-"), _text(name, each)) for each in values]
     return {"rows": rows, **own}
 
