@@ -43,52 +43,56 @@ std::array<Vector<3>, 4> rotated_corners() {
   return corners;
 }
 
+/// The parameters of a file whose data begin in `block`; `path` is for errors.
+std::string plate_parameters(const std::string& path, const PlateOfFile& plate, const std::array<Vector<3>, 4>& corners,
+                             int channels_named, std::int64_t block) {
+  const std::size_t n = plate.channels() + 1;
+  C3dSection section;
+  section.group("POINT");
+  section.word("USED", 1);
+  section.real("SCALE", -0.1);
+  section.real("RATE", 100);
+  section.word("DATA_START", block);
+  section.text("UNITS", "mm");
+  section.texts("LABELS", std::array<std::string, 1>{"A"});
+  section.group("ANALOG");
+  section.word("USED", static_cast<std::int64_t>(n));
+  section.real("GEN_SCALE", 0.5);
+  section.real("RATE", 100.0 * kPlateSamples);
+  section.words("OFFSET", std::vector<std::int64_t>(n, 3));
+  section.reals("SCALE", std::vector<double>(n, 2), {n});
+  std::vector<std::string> labels = {"L Rect"}, units = {"V"};
+  for (std::size_t c = 1; c < n; ++c) {
+    labels.push_back("Channel" + std::to_string(c));
+    units.push_back(plate.type == 4             ? "V"
+                    : plate.type == 3 || c <= 3 ? "N"
+                    : plate.moment_unit_m == 1  ? "Nm"
+                    : plate.type == 1 && c < 6  ? "mm"
+                                                : "Nmm");
+  }
+  section.texts("LABELS", labels);
+  section.texts("UNITS", units);
+  section.group("FORCE_PLATFORM");
+  section.word("USED", 1);
+  section.words("TYPE", std::array<std::int64_t, 1>{plate.type});
+  std::vector<std::int64_t> numbers;
+  for (std::size_t c = 1; c < n; ++c) numbers.push_back(channels_named != 0 ? channels_named : static_cast<std::int64_t>(c) + 1);
+  section.words("CHANNEL", numbers);
+  std::vector<double> flat;
+  for (const Vector<3>& corner : corners) {
+    for (const double value : corner) flat.push_back(1000 * value);
+  }
+  section.reals("CORNERS", flat, {3, 4, 1});
+  section.reals("ORIGIN", std::array<double, 3>{1000 * plate.origin.x(), 1000 * plate.origin.y(), 1000 * plate.origin.z()}, {3, 1});
+  if (plate.type == 4)
+    section.reals("CAL_MATRIX", std::vector<double>(plate.calibration.data(), plate.calibration.data() + 36), {6, 6, 1});
+  return section.blocks(path);
+}
+
 void write_plate(const std::string& path, const PlateOfFile& plate, const std::array<Vector<3>, 4>& corners,
                  int channels_named = 0) {
   const std::size_t n = plate.channels() + 1;
-  const auto parameters = [&](std::int64_t block) {
-    C3dSection section;
-    section.group("POINT");
-    section.word("USED", 1);
-    section.real("SCALE", -0.1);
-    section.real("RATE", 100);
-    section.word("DATA_START", block);
-    section.text("UNITS", "mm");
-    section.texts("LABELS", std::array<std::string, 1>{"A"});
-    section.group("ANALOG");
-    section.word("USED", static_cast<std::int64_t>(n));
-    section.real("GEN_SCALE", 0.5);
-    section.real("RATE", 100.0 * kPlateSamples);
-    section.words("OFFSET", std::vector<std::int64_t>(n, 3));
-    section.reals("SCALE", std::vector<double>(n, 2), {n});
-    std::vector<std::string> labels = {"L Rect"}, units = {"V"};
-    for (std::size_t c = 1; c < n; ++c) {
-      labels.push_back("Channel" + std::to_string(c));
-      units.push_back(plate.type == 4             ? "V"
-                      : plate.type == 3 || c <= 3 ? "N"
-                      : plate.moment_unit_m == 1  ? "Nm"
-                      : plate.type == 1 && c < 6  ? "mm"
-                                                  : "Nmm");
-    }
-    section.texts("LABELS", labels);
-    section.texts("UNITS", units);
-    section.group("FORCE_PLATFORM");
-    section.word("USED", 1);
-    section.words("TYPE", std::array<std::int64_t, 1>{plate.type});
-    std::vector<std::int64_t> numbers;
-    for (std::size_t c = 1; c < n; ++c) numbers.push_back(channels_named != 0 ? channels_named : static_cast<std::int64_t>(c) + 1);
-    section.words("CHANNEL", numbers);
-    std::vector<double> flat;
-    for (const Vector<3>& corner : corners) {
-      for (const double value : corner) flat.push_back(1000 * value);
-    }
-    section.reals("CORNERS", flat, {3, 4, 1});
-    section.reals("ORIGIN", std::array<double, 3>{1000 * plate.origin.x(), 1000 * plate.origin.y(), 1000 * plate.origin.z()},
-                  {3, 1});
-    if (plate.type == 4)
-      section.reals("CAL_MATRIX", std::vector<double>(plate.calibration.data(), plate.calibration.data() + 36), {6, 6, 1});
-    return section.blocks(path);
-  };
+  const auto parameters = [&](std::int64_t block) { return plate_parameters(path, plate, corners, channels_named, block); };
   const auto block = static_cast<std::int64_t>(2 + parameters(2).size() / kC3dBlock);
   std::string bytes("\x02\x50", 2);
   for (const std::size_t word : {std::size_t{1}, n * kPlateSamples, static_cast<std::size_t>(kPlateFirst) + 1,
