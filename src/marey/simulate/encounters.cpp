@@ -34,7 +34,7 @@ double meet(Random& random, double time, const EncounterOptions& options, Path& 
   const Encounter drawn = kinds[static_cast<std::size_t>(random.integer(0, 2))];
   const Encounter kind = options.kind.value_or(drawn);
   const double side = options.side;
-  const Vector<2> centre(random.uniform(0.3, 0.7) * side, random.uniform(0.3, 0.7) * side);
+  const Vector<2> centre = random.uniform_pair(0.3 * side, 0.7 * side, 0.3 * side, 0.7 * side);
   const double heading = random.uniform(0, 2 * std::numbers::pi);
   const double lasts = kind == Encounter::cross ? 0.0 : random.uniform(0.7, 2.5);
   const double spacing = kind == Encounter::cross ? random.uniform(0, 0.5) : random.uniform(0.7, 1.2);

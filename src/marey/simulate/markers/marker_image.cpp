@@ -38,8 +38,10 @@ void lay(MarkerStage& stage, MarkerSetting setting) {
   switch (setting) {
     case MarkerSetting::levels:
       return lay_levels(stage, stage.random.integer(3, 5));
-    case MarkerSetting::bar:
-      return lay_bar(stage, stage.ground.cols * stage.random.uniform(0.15, 0.4), stage.random.uniform(40, 110));
+    case MarkerSetting::bar: {
+      const double level = stage.random.uniform(40, 110), width = stage.ground.cols * stage.random.uniform(0.15, 0.4);
+      return lay_bar(stage, width, level);
+    }
     case MarkerSetting::texture:
       lay_texture(stage);
       return strew_specks(stage, stage.random.integer(20, 80));
@@ -65,8 +67,10 @@ void lay(MarkerStage& stage, MarkerSetting setting) {
     case MarkerSetting::dots:
       return lay_gradient(stage, stage.random.uniform(60, 110));
     case MarkerSetting::shaded:
-      for (int i = stage.random.integer(1, 4); i > 0; --i)
-        lay_bar(stage, stage.random.uniform(2, 5), stage.random.uniform(60, 250));
+      for (int i = stage.random.integer(1, 4); i > 0; --i) {
+        const double level = stage.random.uniform(60, 250), width = stage.random.uniform(2, 5);
+        lay_bar(stage, width, level);
+      }
       return strew_specks(stage, stage.random.integer(100, 2000), 7, 240);
   }
 }
@@ -200,9 +204,10 @@ void draw_plate(MarkerStage& stage, MarkerImage& drawn) {
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const Vector<2> at(stage.ground.cols * (column + 1.0) / (columns + 1), stage.ground.rows * (row + 1.0) / (rows + 1));
-      const Vector<2> location = at + Vector<2>(random.uniform(-3, 3), tilt * at.x() + random.uniform(-3, 3));
+      const Vector<2> location = at + Vector<2>(0, tilt * at.x()) + random.uniform_pair(-3, 3, -3, 3);
       if (location.y() < 20 || location.y() > stage.ground.rows - 20) continue;
-      draw_sphere(stage.ground, location, radius * random.uniform(0.9, 1.1), level * random.uniform(0.85, 1.0), light);
+      const double bright = level * random.uniform(0.85, 1.0), size = radius * random.uniform(0.9, 1.1);
+      draw_sphere(stage.ground, location, size, bright, light);
       drawn.markers.push_back(location);
     }
   }

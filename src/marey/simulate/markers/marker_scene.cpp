@@ -54,7 +54,7 @@ constexpr ZigzagMotion kRapidZigzag{{16, 28}, 3, 5, {1.2, 2.2}};
 
 Path zigzag(const ZigzagMotion& motion, int frames, const cv::Size& size, Random& random) {
   const double speed = motion.speed.draw(random);
-  Vector<2> location(random.uniform(0.19, 0.81) * size.width, random.uniform(0.25, 0.75) * size.height);
+  Vector<2> location = random.uniform_pair(0.19 * size.width, 0.81 * size.width, 0.25 * size.height, 0.75 * size.height);
   double heading = random.uniform(0, 2 * kPi);
   double side = 1;
   double course = 0;
@@ -84,7 +84,7 @@ Path accelerating(int frames, const cv::Size& size, Random& random) {
   constexpr Range kTurn{1.2, 2.8};          // rad
   constexpr int kShortestLeg = 12, kLongestLeg = 20;
   const double acceleration = kAcceleration.draw(random);
-  Vector<2> location(random.uniform(0.25, 0.75) * size.width, random.uniform(0.29, 0.71) * size.height);
+  Vector<2> location = random.uniform_pair(0.25 * size.width, 0.75 * size.width, 0.29 * size.height, 0.71 * size.height);
   double course = random.uniform(0, 2 * kPi);
   double speed = kStart.draw(random);
   int left = random.integer(kShortestLeg, kLongestLeg);
@@ -213,9 +213,10 @@ std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& siz
     const Vector<2> crossing = middle(size) + random.uniform_pair(-60, 60, -40, 40);
     const double course = random.uniform(0, 2 * kPi);
     const Vector<2> miss = random.uniform(0, radius) * direction(random.uniform(0, 2 * kPi));
-    Path first = through(crossing, course, kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
-    Path second =
-        through(crossing + miss, course + kAngle.draw(random), kSpeed.draw(random), kBend.draw(random), frames / 2, frames);
+    const double first_bend = kBend.draw(random), first_speed = kSpeed.draw(random);
+    Path first = through(crossing, course, first_speed, first_bend, frames / 2, frames);
+    const double second_bend = kBend.draw(random), second_speed = kSpeed.draw(random), angle = kAngle.draw(random);
+    Path second = through(crossing + miss, course + angle, second_speed, second_bend, frames / 2, frames);
     const bool apart_at_first = (first.front() - second.front()).norm() > 8 * radius;
     const bool apart_at_last = (first.back() - second.back()).norm() > 8 * radius;
     if (apart_at_first && apart_at_last && stays_inside(first, size) && stays_inside(second, size)) {
@@ -231,9 +232,9 @@ std::array<Path, 2> crossing_pair(int frames, double radius, const cv::Size& siz
 
 /// A Lissajous curve: smooth, bounded, and another one for every draw.
 Path plain(int frames, const cv::Size& size, Random& random) {
-  const Vector<2> reach(random.uniform(0.1, 0.4) * size.width, random.uniform(0.1, 0.4) * size.height);
-  const Vector<2> rate(random.uniform(0.02, 0.06), random.uniform(0.02, 0.06));  // rad a frame
-  const Vector<2> phase(random.uniform(0, 2 * kPi), random.uniform(0, 2 * kPi));
+  const Vector<2> reach = random.uniform_pair(0.1 * size.width, 0.4 * size.width, 0.1 * size.height, 0.4 * size.height);
+  const Vector<2> rate = random.uniform_pair(0.02, 0.06, 0.02, 0.06);  // rad a frame
+  const Vector<2> phase = random.uniform_pair(0, 2 * kPi, 0, 2 * kPi);
   Path path;
   for (int i = 0; i < frames; ++i) {
     path.push_back(middle(size) +

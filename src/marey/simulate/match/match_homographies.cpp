@@ -59,7 +59,7 @@ double error_of(const Matrix<3>& ground_from_image, const std::vector<ObservedGr
 Matrix<3> off_by(const std::vector<ObservedGround>& detected, const cv::Size& size, const geometry::PitchSize& pitch,
                  double required, Random& random) {
   std::vector<Vector<2>> terms;
-  for (int i = 0; i < 5; ++i) terms.emplace_back(random.gaussian(), random.gaussian());
+  for (int i = 0; i < 5; ++i) terms.push_back(random.gaussian_pair());
   double strength = required;
   Matrix<3> H;
   for (int turn = 0; turn < 6; ++turn) {

@@ -132,7 +132,7 @@ std::vector<MatchClick> match_clicks(const GroundView& view, const Matrix<3>& wo
   for (const Vector<2>& location : known_positions(pitch)) {
     const Vector<2> at = in_world(world_from_pitch, location);
     const auto pixel = view.pixel(at);
-    const Vector<2> slip(noise * random.gaussian(), noise * random.gaussian());
+    const Vector<2> slip = random.gaussian_pair(noise);
     if (!pixel || !view.camera()->in_image(*pixel)) continue;
     if (view.camera()->in_image(*pixel + slip)) clicks.push_back({location, *pixel + slip});  // no person clicks beside the image
   }

@@ -184,7 +184,7 @@ std::vector<LabelledBox> detect_match(std::span<const ObservedPerson> detected, 
   constexpr int kAttempts = 200;  // to find a place that the camera sees
   for (int left = poisson(options.false_alarms, random); left > 0; --left) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      const Vector<3> at(random.uniform(-kMargin, pitch.length + kMargin), random.uniform(-kMargin, pitch.width + kMargin), 1);
+      const Vector<3> at = random.uniform_pair(-kMargin, pitch.length + kMargin, -kMargin, pitch.width + kMargin).homogeneous();
       const auto box = box_at(view, (world_from_pitch * at).head<2>(), random.uniform(1.5, 2));
       if (!box) continue;
       const double score = std::clamp(random.gaussian(0.55, 0.15), 0.1, 1.0);

@@ -148,7 +148,7 @@ std::vector<geometry::PitchLine> junior_lines(const geometry::PitchSize& pitch, 
 geometry::PitchLine other_paint(const geometry::PitchSize& pitch, Random& random) {
   const double length = random.uniform(8, 30),
                angle = random.chance(0.7) ? M_PI / 2 * random.integer(0, 1) : random.uniform(0, M_PI);
-  const Vector<2> along(std::cos(angle), std::sin(angle)), middle(random.uniform(0, pitch.length), random.uniform(0, pitch.width));
+  const Vector<2> along(std::cos(angle), std::sin(angle)), middle = random.uniform_pair(0, pitch.length, 0, pitch.width);
   geometry::PitchLine line;
   line.name = "other";
   for (double at = 0; at <= length; at += 0.5) {
@@ -163,7 +163,8 @@ void draw_boards(cv::Mat wall, Random& random) {
   for (int x = 0; x < wall.cols;) {
     const int width = random.integer(60, 110);
     const cv::Rect board = cv::Rect(x, top, width, wall.rows - top) & cv::Rect({}, wall.size());
-    const cv::Scalar back(random.uniform(20, 200), random.uniform(20, 200), random.uniform(20, 200));
+    const double red = random.uniform(20, 200), green = random.uniform(20, 200), blue = random.uniform(20, 200);
+    const cv::Scalar back(blue, green, red);
     const double bright = back[0] + back[1] + back[2] > 330 ? 30 : 225;
     wall(board) = back;
     std::string word;
@@ -185,9 +186,8 @@ void draw_stand(cv::Mat wall, Random& random) {
       if (std::fmod(along, 14) < 1.2 || random.chance(0.25)) continue;
       const cv::Point at(static_cast<int>((along + random.uniform(-0.1, 0.1)) / kWallTexel), row_of(high));
       const double bright = random.uniform(0.4, 1);
-      cv::ellipse(wall, at, {3, 4}, 0, 0, 360,
-                  cv::Scalar(bright * random.uniform(30, 230), bright * random.uniform(30, 210), bright * random.uniform(30, 230)),
-                  cv::FILLED, cv::LINE_AA);
+      const double red = random.uniform(30, 230), green = random.uniform(30, 210), blue = random.uniform(30, 230);
+      cv::ellipse(wall, at, {3, 4}, 0, 0, 360, bright * cv::Scalar(blue, green, red), cv::FILLED, cv::LINE_AA);
     }
   }
 }

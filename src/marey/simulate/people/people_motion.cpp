@@ -166,7 +166,8 @@ void Director::crossing() {
   const double column = camera_.size.width * random_.uniform(0.4, 0.6);
   const double height = height_at(row);
   const Vector<2> far_at = ground(column, row);
-  const Vector<2> near_at = ground(column + random_.gaussian(0, 0.08 * height), row + random_.uniform(0.15, 0.5) * height);
+  const double nearer = random_.uniform(0.15, 0.5) * height, aside = random_.gaussian(0, 0.08 * height);
+  const Vector<2> near_at = ground(column + aside, row + nearer);
   // Both widths are passed in the time of the overlap.
   const double px_per_m = camera_(Vector<3>(far_at.x(), far_at.y(), 0))->scale;
   const double apart = 2 * kWide * height / px_per_m / (options_.overlap_frames * dt_);

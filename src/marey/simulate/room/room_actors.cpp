@@ -70,8 +70,9 @@ RoomProp drawn_prop(int number, Random& random) {
   prop.body.id = BodyId{number};
   prop.body.label = fmt::format("prop{}", number);
   while (std::ssize(prop.body.markers) < kPropMarkers) {
-    const Vector<3> location(random.uniform(-kPropReach, kPropReach), random.uniform(-kPropReach, kPropReach),
-                             random.uniform(-kPropReach, kPropReach));
+    const double z = random.uniform(-kPropReach, kPropReach);
+    const Vector<2> across = random.uniform_pair(-kPropReach, kPropReach, -kPropReach, kPropReach);
+    const Vector<3> location(across.x(), across.y(), z);
     const bool free = std::all_of(prop.body.markers.begin(), prop.body.markers.end(),
                                   [&](const auto& other) { return (other.position - location).norm() > kPropApart; });
     if (free) prop.body.markers.push_back({fmt::format("{}_{}", prop.body.label, prop.body.markers.size() + 1), location});

@@ -85,7 +85,7 @@ void SquareMotion::arrive() {
   first.group = next_group_++;
   const Vector<2> start = at_side(from);
   const bool stops = !runs && random_.chance(options_.stopping);
-  Vector<2> middle(random_.uniform(1, options_.length - 1), random_.uniform(1, options_.width - 1));
+  Vector<2> middle = random_.uniform_pair(1, options_.length - 1, 1, options_.width - 1);
   if (stops && !benches_.empty() && random_.chance(0.5))
     middle = benches_[static_cast<std::size_t>(random_.integer(0, static_cast<int>(benches_.size()) - 1))] +
              random_.uniform_pair(-1, 1, -0.3, 0.3);
