@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStep = 0.01;       // px: numerical
 constexpr double kFeet = 1.0 / 7;    // of the height: by definition of the leg opening
-constexpr double kMaxHidden = 0.25;  // of the control points: by definition of the quantity
+constexpr double kMaxHidden = 0.25;  // of the control points; unswept
 constexpr double kMaxElevation = 4;  // m: physical, no person is higher
 constexpr int kHalvings = 40;        // numerical
 

@@ -51,7 +51,7 @@ class LearnedNoise {
   static constexpr double kFirst = 0.5, kMinValue = 0.03, kMaxCount = 2;  // px
   static constexpr int kMinCount = 4;                                     // points
   static constexpr double kFarOff = 6;                                    // times the median
-  static constexpr double kTail = 2.08;      // what 90 % of three rays' ratios stay below, of a plain Gaussian
+  static constexpr double kTail = 2.08;      // by definition: what 90 % of three rays' ratios stay below, of a plain Gaussian
   static constexpr double kFraction = 0.02;  // a frame
 
   double px_;

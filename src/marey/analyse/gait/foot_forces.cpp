@@ -13,7 +13,7 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kReplacedWithinS = 0.15;   // physical: a third of the shortest stance; the same event
+constexpr double kReplacedWithinS = 0.15;   // a third of the shortest stance: the same event; unswept
 constexpr double kForceDeviationS = 0.002;  // by definition: of an event by force: the threshold's crossing, two samples of 1 kHz
 
 /// Sums of one foot's loads on several plates at one sample.

@@ -14,11 +14,11 @@
 namespace marey::analyse::gait {
 namespace {
 
-constexpr double kMinForceN = 5;  // numerical: centres of pressure of less are noise
+constexpr double kMinForceN = 5;  // centres of pressure of less are noise; unswept
 constexpr double kWindowS = 0.1;
 constexpr double kQuietN = 4;                 // deviation within a window in which nothing is on the plate
 constexpr double kFreeN = 60;                 // farther from zero nothing is free: the lightest child stands with more on one foot
-constexpr double kReportedN = 5;              // by definition: what is worth a warning
+constexpr double kReportedN = 5;              // what is worth a warning; unswept
 constexpr double kOverEdgeM = 0.02;           // a marker beyond the edge by more: the foot is not on the plate as a whole
 constexpr double kNearFootM = 0.1;            // corners are in order where the centre of pressure is so near
 constexpr double kReorderedNearFootM = 0.05;  // another order must bring it so near: between two feet it is nearer to none

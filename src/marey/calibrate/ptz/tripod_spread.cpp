@@ -13,7 +13,7 @@ namespace {
 constexpr int kNumbers = geometry::Tripod::numbers;
 constexpr double kMaxShift = 1;      // m: larger errors are scaled from this; numerical
 constexpr double kMinEffect = 0.02;  // px at 1280, of an error: smaller effects are omitted; numerical
-constexpr double kLoose = 12;        // of the cut-off, with outliers removed before; numerical
+constexpr double kLoose = 12;        // of the cut-off, with outliers removed before; unswept
 constexpr double kMaxRange = 150;    // m: farther ground is not used; numerical
 
 struct ShiftedTripod {

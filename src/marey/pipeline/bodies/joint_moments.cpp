@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kMissingFraction = 0.1;  // by definition: of the weight
 constexpr double kUneven = 0.01;          // numerical: of a frame
-constexpr double kToeM = 0.18;            // physical: from a heel's body to the toe, where the model has no toes
+constexpr double kToeM = 0.18;            // from a heel's body to the toe, where the model has no toes; unswept
 
 using solve::skeleton::CoordinateMotion;
 using solve::skeleton::SegmentLoad;

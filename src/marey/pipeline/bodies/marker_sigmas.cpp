@@ -14,7 +14,7 @@ struct MarkerKind {
   double sigma_m;
 };
 
-constexpr double kCluster_m = 0.05;  // physical: anywhere on the limb
+constexpr double kCluster_m = 0.05;  // anywhere on the limb; unswept
 
 /// Between examiners, root mean square by axis: pelvis 6 to 21 mm, knee 11 to 22, ankle 8 to 15, foot 7 to 16 (Della Croce,
 /// Leardini, Chiari, Cappozzo 2005, Gait & Posture 21, table 2); shoulder, elbow and wrist 7 to 15 (de Groot 1997, Clinical
@@ -31,7 +31,7 @@ constexpr std::array<MarkerKind, 58> kKinds = {
      {"wra", 0.012},        {"wrb", 0.012},      {"fin", 0.015},     {"sternum", 0.015},    {"strn", 0.015},     {"clav", 0.015},
      {"thigh", kCluster_m}, {"thi", kCluster_m}, {"th", kCluster_m}, {"shank", kCluster_m}, {"tib", kCluster_m}, {"tb", kCluster_m},
      {"bicep", kCluster_m}, {"ua", kCluster_m},  {"fa", kCluster_m}, {"upa", kCluster_m}}};
-constexpr double kOther_m = 0.02;  // physical: the loosest landmark of the table
+constexpr double kOther_m = 0.02;  // the loosest landmark of the table; unswept
 
 /// Letters alone, small; the side's first letter is omitted: "R.Knee.Lat" is "kneelat".
 std::string bare_label(std::string_view label) {

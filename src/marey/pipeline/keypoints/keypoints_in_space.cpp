@@ -33,7 +33,7 @@ constexpr double kWorstNoise = 2.5;      // times what the files state: the rig 
 constexpr double kFewLocated = 0.5;      // share of views
 constexpr double kMaxLocated = 0.75;     // share of views below which it is asked why
 constexpr double kWorstCamera = 2.5;     // times the median of all cameras
-constexpr double kMedianLength = 1.177;  // of a vector of two standard normal variables
+constexpr double kMedianLength = 1.177;  // by definition: of a vector of two standard normal variables
 
 /// The steps of the job, which share the cameras and their frames.
 class KeypointJob {

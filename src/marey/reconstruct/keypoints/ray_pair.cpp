@@ -3,7 +3,7 @@
 namespace marey::reconstruct::keypoints {
 namespace {
 
-constexpr double kMinCrossing = 1e-4;  // squared sine of the angle between the two
+constexpr double kMinCrossing = 1e-4;  // squared sine of the angle between the two, numerical: no division by 0
 
 }  // namespace
 

@@ -190,7 +190,7 @@ double BodyInitialiser::expected_by_chance(std::span<const Vector<3>> points, co
   const Vector<3> centre = point_of(matched.front());
   const auto near = std::count_if(points.begin(), points.end(), [&](const Vector<3>& p) { return (p - centre).norm() < kAroundM; });
   const auto all = static_cast<double>(points.size()), own = static_cast<double>(matched.size());
-  constexpr double kBall = 4 * std::numbers::pi / 3;
+  constexpr double kBall = 4 * std::numbers::pi / 3;  // by definition
   const double density = std::max(0.0, static_cast<double>(near) - own) / (kBall * kAroundM * kAroundM * kAroundM) +
                          (all - own) / (kBall * kRoomM * kRoomM * kRoomM);
   const double fraction = std::min(1.0, off / (2 * tolerance_));

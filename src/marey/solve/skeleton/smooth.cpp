@@ -13,7 +13,7 @@ namespace marey::solve::skeleton {
 namespace {
 
 constexpr double kOtherM = 0.1;  // a marker so far off is another
-constexpr double kHeld = 1e-3;   // 1/rad², 1/m²: what nothing determines stays where it is
+constexpr double kHeld = 1e-3;   // 1/rad², 1/m²; numerical: what nothing determines stays where it is
 
 /// A symmetric system of n × n blocks with two beside the diagonal: L D Lᵀ, block by block.
 class BandedSystem {
