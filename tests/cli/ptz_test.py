@@ -80,6 +80,69 @@ class Ptz(unittest.TestCase):
         said = self.run_marey("calibrate", "ptz", "film/main.mp4", "--points", "odd.csv", "-o", "odd.toml").stderr
         self.assertRegex(said, rf"frame {frame}: the click on .* px from where the other clicks place it")
 
+    def off(self, truth, found):
+        """For each frame that both know: the larger of the rotation's error (degrees) and the focal length's (percent)."""
+        off = []
+        for is_, was in zip(self.rows(truth), self.rows(found)):
+            if is_["pan"] and was["pan"]:
+                turned = max(abs(float(is_[axis]) - float(was[axis])) for axis in ("pan", "tilt"))
+                off.append(max(turned, 100 * abs(float(was["focal"]) / float(is_["focal"]) - 1)))
+        return off
+
+    def filmed(self, name, filters):
+        """The film once more as FILTERS of ffmpeg change it."""
+        subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", "film/main.mp4", "-vf", filters, name], cwd=self.folder, check=True)
+        return name
+
+    def test_another_camera_between_is_lost_and_the_first_is_found_again(self):
+        self.run_marey("simulate", "ptz", "-o", "cut", "--seconds", "8", "--size", "640", "360", "--cut", "3", "-q")
+        for name, clicks in (("clicked", ["--points", "cut/clicks.csv"]), ("alone", [])):
+            with self.subTest(name):
+                self.run_marey("calibrate", "ptz", "cut/main.mp4", *clicks, "-o", f"cut/{name}.toml")
+                truth, found = self.rows("cut/rig_main_ptz.csv"), self.rows(f"cut/{name}_main_ptz.csv")
+                away = [i for i, row in enumerate(truth) if not row["pan"]]
+                self.assertGreater(len(away), 30)
+                self.assertEqual([i for i in away if found[i]["pan"]], [])
+                after = [row["pan"] != "" for row in found[away[-1] + 1:]]
+                self.assertGreater(sum(after), 0.8 * len(after))
+                self.assertLess(max(self.off("cut/rig_main_ptz.csv", f"cut/{name}_main_ptz.csv")), 3)
+
+    def test_graphics_over_half_of_the_image_give_no_wrong_frame(self):
+        self.run_marey("simulate", "ptz", "-o", "covered", "--seconds", "8", "--size", "640", "360", "--graphics", "2", "-q")
+        for name, clicks in (("clicked", ["--points", "covered/clicks.csv"]), ("alone", [])):
+            with self.subTest(name):
+                self.run_marey("calibrate", "ptz", "covered/main.mp4", *clicks, "-o", f"covered/{name}.toml")
+                off = self.off("covered/rig_main_ptz.csv", f"covered/{name}_main_ptz.csv")
+                self.assertGreater(len(off), 80)
+                self.assertLess(max(off), 3)
+
+    def test_an_interview_before_the_pitch_is_refused_or_lost(self):
+        # The camera stands; a coat and a head fill the middle of the image.
+        person = ("trim=end_frame=1,loop=loop=99:size=1,setpts=N/25/TB,drawbox=x=200:y=130:w=260:h=230:color=0x302838:t=fill,"
+                  "drawbox=x=280:y=20:w=110:h=130:color=0xb08878:t=fill")
+        said = self.run_marey("calibrate", "ptz", self.filmed("interview.mp4", person), "-o", "interview.toml", code=1).stderr
+        self.assertRegex(said, r"interview\.mp4: .*(click in frame|is it a video)")
+        self.assertFalse((self.folder / "interview.toml").exists())
+
+    def test_a_video_of_the_stand_is_refused(self):
+        stand = self.filmed("stand.mp4", "crop=iw/4:ih/8:0:0,scale=640:360")
+        for clicks in ([], ["--points", "film/clicks.csv"]):
+            said = self.run_marey("calibrate", "ptz", stand, *clicks, "-o", "stand.toml", code=1).stderr
+            self.assertRegex(said, r"stand\.mp4: .*is it a video")
+            self.assertFalse((self.folder / "stand.toml").exists())
+
+    def test_clicks_on_the_wrong_half_are_named_with_their_frame(self):
+        lines = (self.folder / "film/clicks.csv").read_text().splitlines()
+        last = lines[-1].split(",")[0]
+        turned = [lines[0]]
+        for line in lines[1:]:
+            frame, x, y, u, v = line.split(",")
+            turned.append(",".join([frame, str(105 - float(x)) if frame == last else x, y, u, v]))
+        (self.folder / "half.csv").write_text("\n".join(turned) + "\n")
+        done = subprocess.run([MAREY, "calibrate", "ptz", "film/main.mp4", "--points", "half.csv", "-o", "half.toml"], capture_output=True,
+                              text=True, cwd=self.folder, timeout=280)
+        self.assertRegex(done.stderr, rf"frame {last}\b")
+
     def test_rigs_of_earlier_versions_are_read(self):
         rig = (self.folder / "film/rig.toml").read_text()
         earlier = rig

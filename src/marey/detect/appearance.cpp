@@ -19,6 +19,7 @@ struct Rows {
 };
 
 constexpr Rows kChest{0.2, 0.5};
+constexpr Rows kMiddleOfChest{0.22, 0.45, 0.38, 0.62};  // where no mask tells the person from the scene
 constexpr Rows kThighs{0.52, 0.8};
 constexpr Rows kShanks{0.8, 0.94, 0, 1};
 constexpr int max_samples = 100;
@@ -62,12 +63,13 @@ struct Quad {
   bool detected = false;
 };
 
+/// An empty mask: all is the person's.
 Quad quad_at(const cv::Mat& luma, const cv::Mat& mask, int column, int row) {
   int sum = 0, detected = 0, all = 0;
   for (int y = 2 * row; y < std::min(2 * row + 2, luma.rows); ++y) {
     for (int x = 2 * column; x < std::min(2 * column + 2, luma.cols); ++x) {
       sum += luma.at<std::uint8_t>(y, x);
-      detected += mask.at<std::uint8_t>(y, x) != 0 ? 1 : 0;
+      detected += mask.empty() || mask.at<std::uint8_t>(y, x) != 0 ? 1 : 0;
       ++all;
     }
   }
@@ -132,31 +134,31 @@ class Samples {
 std::optional<Appearance> colour_in(const Rows& rows, const Image& image, const Foreground& foreground,
                                     std::span<const Detection> detections, std::size_t which) {
   const Detection& detection = detections[which];
-  if (!image.is_colour() || foreground.mask.empty() || detection.box.top < 1) return std::nullopt;
+  if (!image.is_colour() || detection.box.top < 1) return std::nullopt;
   Samples samples;
   samples.take(image, foreground.covered.empty() ? foreground.mask : foreground.covered,
                grid_of(detection.box, rows, image.cb().size()), boxes_before(detections, detection));
-  return samples.middle(detection.group.has_value());
+  return samples.middle(detection.group.has_value() || foreground.mask.empty());
 }
 
 }  // namespace
 
 std::optional<Appearance> upper_body(const Image& image, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which) {
-  return colour_in(kChest, image, foreground, detections, which);
+  return colour_in(foreground.mask.empty() ? kMiddleOfChest : kChest, image, foreground, detections, which);
 }
 
 std::optional<Appearance> lower_body(const Image& image, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which) {
   const cv::Mat& mask = foreground.mask;
-  if (!mask.empty() && detections[which].box.bottom() > mask.rows - 1) return std::nullopt;
+  if (mask.empty() || detections[which].box.bottom() > mask.rows - 1) return std::nullopt;
   return colour_in(kThighs, image, foreground, detections, which);
 }
 
 std::optional<Appearance> shanks(const Image& image, const Foreground& foreground, std::span<const Detection> detections,
                                  std::size_t which) {
   const cv::Mat& mask = foreground.mask;
-  if (!mask.empty() && detections[which].box.bottom() > mask.rows - 1) return std::nullopt;
+  if (mask.empty() || detections[which].box.bottom() > mask.rows - 1) return std::nullopt;
   return colour_in(kShanks, image, foreground, detections, which);
 }
 

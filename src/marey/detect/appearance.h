@@ -19,13 +19,13 @@
 namespace marey::detect {
 
 /// The colour of the upper body of the person that detections[which] shows. Where others share the region, what lies in the box of
-/// a person who stands nearer is omitted, and the rest is trusted less. Nothing if the image is grey, no foreground is
-/// given, the head is outside the image, or too few pixels are seen.
+/// a person who stands nearer is omitted, and the rest is trusted less; likewise where no foreground is given, and the middle of the
+/// chest alone is inspected. Nothing if the image is grey, the head is outside the image, or too few pixels are seen.
 std::optional<Appearance> upper_body(const Image& image, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which);
 
 /// The same of the legs, from below the hips to the knees: trousers, skirt or shorts. Nothing if the feet are outside the
-/// image.
+/// image, or without a foreground: the scene shows between the legs.
 std::optional<Appearance> lower_body(const Image& image, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which);
 

@@ -68,6 +68,17 @@ TEST(UpperBody, IgnoresBackgroundPixels) {
   EXPECT_NEAR(detected->b, lab_of(shirt)[2], 6);
 }
 
+TEST(UpperBody, WithoutAMaskTheMiddleOfTheChestIsInspectedAndTrustedLess) {
+  for (const int height : {60, 101, 300}) {
+    const Scene scene(height);
+    const auto detected = upper_body(Image::from_bgr(scene.bgr), {}, {&scene.person, 1}, 0);
+    ASSERT_TRUE(detected) << height;
+    EXPECT_NEAR(detected->lightness, lab_of(shirt)[0], 5) << height;
+    EXPECT_NEAR(detected->b, lab_of(shirt)[2], 6) << height;
+    EXPECT_GT(detected->deviation, scene.detected()->deviation) << height;
+  }
+}
+
 TEST(UpperBody, NoColourIsToldWhereNoneIsSeen) {
   EXPECT_FALSE(Scene(8).detected()) << "too small";
   EXPECT_FALSE(Scene(200, 100, 0).detected()) << "the head may be outside the image";
@@ -78,7 +89,7 @@ TEST(UpperBody, NoColourIsToldWhereNoneIsSeen) {
   cv::Mat luma;
   cv::cvtColor(grey.bgr, luma, cv::COLOR_BGR2GRAY);
   EXPECT_FALSE(upper_body(Image(luma), {.mask = grey.mask}, {&grey.person, 1}, 0));
-  EXPECT_FALSE(upper_body(Image::from_bgr(grey.bgr), {}, {&grey.person, 1}, 0));
+  EXPECT_FALSE(lower_body(Image::from_bgr(grey.bgr), {}, {&grey.person, 1}, 0));
 }
 
 TEST(UpperBody, FindsPersonPartlyOccluded) {

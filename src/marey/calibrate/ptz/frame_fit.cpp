@@ -67,6 +67,21 @@ std::vector<PaintSighting> agreeing_paint(const std::vector<PaintSighting>& pain
   return kept;
 }
 
+double lines_present(const Correction& detected, const geometry::Tripod& tripod, cv::Size size, double cut_off, int in_view,
+                     double present) {
+  std::vector<int> agreeing(detected.paint.expected_of.size(), 0);
+  const auto& paint = detected.paint.detected;
+  for (const PaintSighting& one : agreeing_paint(paint, tripod, detected.fit.aim, size, cut_off / 2, paint.size()))
+    ++agreeing[static_cast<std::size_t>(one.line)];
+  int lines = 0, there = 0;
+  for (std::size_t i = 0; i < agreeing.size(); ++i) {
+    if (detected.paint.expected_of[i] < in_view) continue;
+    ++lines;
+    there += agreeing[i] >= present * detected.paint.expected_of[i] ? 1 : 0;
+  }
+  return lines == 0 ? 1 : static_cast<double>(there) / lines;
+}
+
 std::vector<PaintSighting> click_sightings(std::span<const ClickedPosition> clicks, double sigma) {
   std::vector<PaintSighting> sightings;
   std::int16_t line = kFirstClick;

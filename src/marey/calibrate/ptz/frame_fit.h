@@ -33,6 +33,11 @@ Correction correct_aim(const cv::Mat& luma, const geometry::Tripod& tripod, std:
 std::vector<PaintSighting> agreeing_paint(const std::vector<PaintSighting>& paint, const geometry::Tripod& tripod, const Aim& aim,
                                           cv::Size size, double cut_off, std::size_t maximum);
 
+/// Of the lines of which `in_view` samples or more lie within the image, how many are there: at least the fraction `present` of those
+/// samples agrees. 1 where no line has so many.
+double lines_present(const Correction& detected, const geometry::Tripod& tripod, cv::Size size, double cut_off, int in_view,
+                     double present);
+
 /// Clicks as sightings of a place along each axis; `sigma` px.
 std::vector<PaintSighting> click_sightings(std::span<const ClickedPosition> clicks, double sigma);
 

@@ -121,6 +121,7 @@ class Sampler {
 Paint find_paint(const cv::Mat& luma, const geometry::Tripod& tripod, const geometry::Heading& heading,
                  std::span<const geometry::PitchLine> lines, const PaintOptions& options) {
   Paint paint;
+  paint.expected_of.assign(lines.size(), 0);
   const Sampler inside(tripod, heading, luma.size(), 2);
   for (std::size_t line = 0; line < lines.size(); ++line) {
     Vector<2> last = Vector<2>::Constant(-1e6);
@@ -135,7 +136,7 @@ Paint find_paint(const cv::Mat& luma, const geometry::Tripod& tripod, const geom
       if (crossing->pixel.x() < swing.x() || crossing->pixel.y() < swing.y() || crossing->pixel.x() > luma.cols - 2 - swing.x() ||
           crossing->pixel.y() > luma.rows - 2 - swing.y())
         continue;
-      ++paint.expected;
+      ++paint.expected, ++paint.expected_of[line];
       const auto ridge = ridge_of(luma, *crossing, options);
       if (!ridge) continue;
       const Vector<2> pixel = crossing->pixel + ridge->offset * crossing->normal;

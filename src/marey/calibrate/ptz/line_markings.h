@@ -39,7 +39,8 @@ struct PaintOptions {
 
 struct Paint {
   std::vector<PaintSighting> detected;
-  int expected = 0;  ///< samples of lines that lie within the image
+  int expected = 0;              ///< samples of lines that lie within the image,
+  std::vector<int> expected_of;  ///< and of each line
 };
 
 /// `lines` in the world, evenly sampled; `luma` CV_8UC1.

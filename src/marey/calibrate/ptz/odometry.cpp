@@ -39,11 +39,15 @@ Odometry::Odometry(cv::Size size, const OdometryOptions& options) : options_(opt
 void Odometry::refer(const geometry::Tripod& tripod, const geometry::Heading& heading) {
   reference_ = pyramid_;
   reference_tripod_ = tripod;
-  reference_heading_ = chained_ = heading;
+  reference_heading_ = heading;
+  chains_ = {heading};
   age_ = 0;
   corners_.clear();
   locations_.clear();
-  cv::goodFeaturesToTrack(reference_[0], corners_, options_.corners, 0.01, 8);
+  cv::Mat free(size_, CV_8UC1, cv::Scalar(255));
+  for (const cv::Point2f& at : standing_) cv::circle(free, at, options_.graphics_reach, 0, cv::FILLED);
+  cv::goodFeaturesToTrack(reference_[0], corners_, options_.corners, 0.01, 8, free);
+  corners_.insert(corners_.end(), standing_.begin(), standing_.end());  // letters must not take the places of what moves
   const auto numbers = tripod.as_numbers();
   const Vector<3> rotated = heading.as_vector();
   const geometry::TripodFrame<double> frame(numbers.data(), rotated.data());
@@ -121,8 +125,8 @@ OdometryFit fit_heading(const geometry::Tripod& tripod, const Matches& matches, 
 
 }  // namespace
 
-std::optional<Rotated> Odometry::fit(const geometry::Tripod& tripod, const std::vector<Match>& matches,
-                                     const geometry::Heading& start) const {
+std::optional<Rotated> Odometry::fit(const geometry::Tripod& tripod, const std::vector<Match>& matches) {
+  const geometry::Heading& start = chains_.front();
   if (std::ssize(matches) < options_.lowest_count) return std::nullopt;
   const int tracked = static_cast<int>(matches.size());
   std::vector<Match> moving;
@@ -130,19 +134,37 @@ std::optional<Rotated> Odometry::fit(const geometry::Tripod& tripod, const std::
     if (!match.still) moving.push_back(match);
   }
   OdometryFit best = fit_heading(tripod, matches, start, size_, options_.agree_px);
+  std::optional<Vector<3>> otherwise;
   if (std::ssize(moving) >= options_.lowest_count && moving.size() < matches.size()) {
-    const OdometryFit other = fit_heading(tripod, moving, start, size_, options_.agree_px);
+    OdometryFit other = fit_heading(tripod, moving, start, size_, options_.agree_px);
     const auto still = static_cast<double>(matches.size() - moving.size());
-    if (other.agreeing >= options_.lowest_count && other.agreeing >= 0.6 * static_cast<double>(moving.size()) &&
-        other.agreeing > kMovingFraction * still)
-      best = other;
+    if (other.agreeing >= options_.lowest_count && other.agreeing >= 0.6 * static_cast<double>(moving.size())) {
+      if (other.agreeing > kMovingFraction * still) std::swap(best, other);
+      const Vector<2> apart = (best.heading - other.heading).head<2>();
+      if (std::exp(start.log_focal) * size_.width / 2.0 * apart.norm() > options_.agree_px) otherwise = other.heading;
+    }
   }
   if (best.agreeing < options_.lowest_count || best.agreeing < options_.fraction * tracked) return std::nullopt;
+  // Each group's step is from where the nearer of the two was before.
+  const auto step_to = [this](const Vector<3>& heading) {
+    const auto nearest = std::min_element(chains_.begin(), chains_.end(), [&](const auto& a, const auto& b) {
+      return (a.as_vector() - heading).norm() < (b.as_vector() - heading).norm();
+    });
+    return Vector<3>(heading - nearest->as_vector());
+  };
   Rotated rotated;
-  rotated.by = best.heading - chained_.as_vector();
+  rotated.by = step_to(best.heading);
+  if (otherwise) rotated.otherwise = step_to(*otherwise);
   rotated.log_focal = reference_heading_.log_focal;
   rotated.agreeing = best.agreeing, rotated.tracked = tracked;
+  chains_ = {geometry::Heading::of(best.heading)};
+  if (otherwise) chains_.push_back(geometry::Heading::of(*otherwise));
   return rotated;
+}
+
+void Odometry::prefer_other(Rotated& rotated, const geometry::Heading& last) {
+  std::swap(rotated.by, *rotated.otherwise);
+  if (age_ == 0) refer(reference_tripod_, geometry::Heading::of(last.as_vector() + rotated.by));
 }
 
 std::optional<Rotated> Odometry::step(const cv::Mat& luma, const geometry::Tripod& tripod, const geometry::Heading& last) {
@@ -158,17 +180,22 @@ std::optional<Rotated> Odometry::step(const cv::Mat& luma, const geometry::Tripo
     refer(tripod, last);
     return std::nullopt;
   }
-  const auto rotated = fit(reference_tripod_, run_tracker(), chained_);
+  const std::vector<Match> matches = run_tracker();
+  const auto rotated = fit(reference_tripod_, matches);
+  standing_.clear();
+  for (std::size_t i = 0; rotated && rotated->otherwise && i < matches.size(); ++i) {
+    if (matches[i].still) standing_.push_back(now_[i]);
+  }
   if (!rotated) {
     refer(tripod, last);
     return std::nullopt;
   }
-  chained_ = geometry::Heading::of(chained_.as_vector() + rotated->by);
   ++age_;
+  const geometry::Heading& chained = chains_.front();
   const double method =
-      std::exp(chained_.log_focal) / 2 * std::hypot(chained_.pan - reference_heading_.pan, chained_.tilt - reference_heading_.tilt);
+      std::exp(chained.log_focal) / 2 * std::hypot(chained.pan - reference_heading_.pan, chained.tilt - reference_heading_.tilt);
   const bool spent = age_ >= options_.longest || method > kMaxTrajectory ||
-                     std::abs(chained_.log_focal - reference_heading_.log_focal) > kMaxZoom || 2 * corners_.size() < begun_with_ ||
+                     std::abs(chained.log_focal - reference_heading_.log_focal) > kMaxZoom || 2 * corners_.size() < begun_with_ ||
                      rotated->agreeing < 3 * options_.lowest_count;
   if (spent) refer(tripod, geometry::Heading::of(last.as_vector() + rotated->by));
   return rotated;

@@ -24,12 +24,17 @@ struct OdometryOptions {
   int lowest_count = 24;   ///< corners that have to agree,
   double fraction = 0.25;  ///< and the share of those that could be followed
   int longest = 40;        ///< frames that one reference serves
+  int graphics_reach = 12;  ///< shrunk px round a corner that may be of graphics, where no other is taken
 };
 
 struct Rotated {
   Vector<3> by = Vector<3>::Zero();  ///< pan, tilt (rad) and ln f since the last frame
   double log_focal = 0;              ///< that was assumed: pan and tilt are right for this focal length
   int agreeing = 0, tracked = 0;
+  /// What the other of two groups of corners says, where some stand on the image, others move together, and numbers do not decide
+  /// which of them are graphics.
+  std::optional<Vector<3>> otherwise = std::nullopt;
+  Vector<3> doubt = Vector<3>::Zero();  ///< how far the two are apart, where paint does not decide either
 };
 
 class Odometry {
@@ -39,6 +44,8 @@ class Odometry {
   /// `luma` CV_8UC1, the next frame; `last` is where the camera faced in the one before, as far as is known. Nothing at the first
   /// frame and where the image does not continue from the last (a cut).
   std::optional<Rotated> step(const cv::Mat& luma, const geometry::Tripod& tripod, const geometry::Heading& last);
+  /// The last step was as the other group says: the two change places in `rotated`. `last` as it was given there.
+  void prefer_other(Rotated& rotated, const geometry::Heading& last);
 
  private:
   struct Match {
@@ -48,8 +55,7 @@ class Odometry {
   };
   void refer(const geometry::Tripod& tripod, const geometry::Heading& heading);
   std::vector<Match> run_tracker();
-  std::optional<Rotated> fit(const geometry::Tripod& tripod, const std::vector<Match>& matches,
-                             const geometry::Heading& start) const;
+  std::optional<Rotated> fit(const geometry::Tripod& tripod, const std::vector<Match>& matches);
 
   OdometryOptions options_;
   cv::Size size_;  // shrunk
@@ -57,7 +63,9 @@ class Odometry {
   std::vector<cv::Point2f> corners_, now_;
   std::vector<Vector<3>> locations_;
   geometry::Tripod reference_tripod_;  // a tripod that is refined in the meantime must not move the places
-  geometry::Heading reference_heading_, chained_;
+  geometry::Heading reference_heading_;
+  std::vector<geometry::Heading> chains_;  // where each group says that the last image was aimed; one where they agree
+  std::vector<cv::Point2f> standing_;  // in the last image, where others contradict them: they may be graphics
   int age_ = 0;
   std::size_t begun_with_ = 0;
 };

@@ -80,8 +80,27 @@ std::optional<Aim> PtzTracker::predicted(const std::optional<Rotated>& rotated) 
   return next_aim(*aim_, *rotated, smooth_options(options_));
 }
 
+/// Graphics over much of the image stand still while the camera turns: which group of corners goes with it, by the paint. Where
+/// that does not decide, either may be right.
+void PtzTracker::choose_corners(Rotated& rotated, const cv::Mat& luma, const geometry::Heading& last) {
+  const auto merit = [&](const Vector<3>& by) {
+    Rotated one = rotated;
+    one.by = by;
+    return correct_aim(luma, tripod_, lines_, *predicted(one), {}, options_.aim).merit();
+  };
+  const double as_given = merit(rotated.by), other = merit(*rotated.otherwise);
+  if (other > options_.prefers * as_given)
+    odometry_.prefer_other(rotated, last);
+  else if (as_given <= options_.prefers * other)
+    rotated.doubt = rotated.by - *rotated.otherwise;
+}
+
 bool PtzTracker::missing(const Correction& detected) const {
-  return detected.paint.expected >= kMinExpected && detected.fit.agreeing < options_.fraction * detected.paint.expected;
+  if (detected.paint.expected < kMinExpected) return false;
+  if (detected.fit.agreeing < options_.fraction * detected.paint.expected) return true;
+  // One touchline along the whole image is most of the paint, and says nothing of the pan.
+  const double present = lines_present(detected, tripod_, size_, options_.aim.cut_off, options_.line_in_view, options_.line_present);
+  return present <= options_.lines_present;
 }
 
 /// Whether what ought to be seen is there; a few frames without it are forgiven.
@@ -157,7 +176,9 @@ void PtzTracker::add(const Image& image, double time_s) {
   const std::size_t frame = records_.size();
   TurnRecord record;
   record.time_s = time_s;
-  record.rotated = odometry_.step(luma, tripod_, aim_ ? aim_->heading : last_);
+  const geometry::Heading before = aim_ ? aim_->heading : last_;
+  record.rotated = odometry_.step(luma, tripod_, before);
+  if (aim_ && record.rotated && record.rotated->otherwise) choose_corners(*record.rotated, luma, before);
   if (!record.rotated && !records_.empty()) ++result_.cuts;
   const bool was_known = aim_.has_value();
   std::optional<Aim> expected = predicted(record.rotated);
@@ -178,6 +199,10 @@ void PtzTracker::add(const Image& image, double time_s) {
     alone = expected.has_value();
   }
   if (!detected && expected) detected = corrected(luma, *expected, frame);
+  if (detected && aim_ && record.rotated && !record.rotated->doubt.isZero()) {
+    const Vector<3> by = detected->fit.aim.heading.as_vector() - aim_->heading.as_vector();
+    if ((by - *record.rotated->otherwise).norm() < (by - record.rotated->by).norm()) odometry_.prefer_other(*record.rotated, before);
+  }
   aim_.reset();
   keep(luma);
   if (detected && plausible(*detected)) {

@@ -54,10 +54,10 @@ Matrix<3> flow_covariance(const Rotated& rotated, double log_focal, const Smooth
   const double angle = options.flow_px / 640 * std::exp(-log_focal), zoom = options.flow_zoom;
   const Vector<3> method = options.moving_fraction * rotated.by;
   const double turned = options.moving_zoom * std::exp(log_focal) * rotated.by.head<2>().norm();
-  return Vector<3>(angle * angle + method.x() * method.x(), angle * angle + method.y() * method.y(),
-                   zoom * zoom + method.z() * method.z() + turned * turned)
-      .asDiagonal()
-      .toDenseMatrix();
+  const Matrix<3> noise = Vector<3>(angle * angle + method.x() * method.x(), angle * angle + method.y() * method.y(),
+                                    zoom * zoom + method.z() * method.z() + turned * turned)
+                              .asDiagonal();
+  return noise + rotated.doubt * rotated.doubt.transpose();
 }
 
 Aim next_aim(const Aim& before, const Rotated& rotated, const SmoothOptions& options) {

@@ -20,6 +20,7 @@ namespace {
 constexpr int kStill = geometry::Tripod::numbers;
 constexpr int kStarts = 6;              // guesses that are refined
 constexpr double kWorstMedian = 0.012;  // of the image's width: clicks that half lie farther off are of no camera
+constexpr double kOtherHand = 0.5;   // a left-handed frame of clicks leaves less than this of a right-handed one's cost; unswept
 constexpr double kOtherHalf = 0.35;  // a frame's clicks belong to the other half where that leaves less than this of the distance
 constexpr double kMinLevel = 1.5;    // m: no camera of a match stands lower
 
@@ -249,7 +250,8 @@ ClickedTripod tripod_from_clicks(const std::vector<ClickedFrame>& clicks, cv::Si
   const auto right = best_solution(clicks, size, pitch, options), left = best_solution(mirrored, size, pitch, options);
   if (!right && !left) throw Error("the clicks do not fit any camera on a tripod; is each with its place on the pitch?");
   ClickedTripod result;
-  result.reflected = !right || (left && left->cost < right->cost);
+  result.reflected = !right || (left && left->cost < kOtherHand * right->cost);
+  result.either_hand = left && right && !result.reflected && left->cost * kOtherHand < right->cost;
   const TripodSolution& found = result.reflected ? *left : *right;
   const std::vector<ClickedFrame>& used = result.reflected ? mirrored : clicks;
   result.tripod = found.tripod;

@@ -53,6 +53,25 @@ TEST(TripodSolve, ALeftHandedFrameIsReflected) {
   EXPECT_LT((found.tripod.location - kClickedTripod.location).norm(), 1.5);
 }
 
+TEST(TripodSolve, ClicksOnOneLineLeaveTheHandOpenAndItIsTheRightOne) {
+  for (const bool turned : {false, true}) {
+    std::vector<ClickedFrame> frames = three_frames();
+    frames[0] = frames[1], frames[0].frame = 20;
+    frames.pop_back();
+    for (ClickedFrame& frame : frames) {
+      std::erase_if(frame.locations, [](const ClickedPosition& click) { return click.ground.x() != 52.5; });
+      ASSERT_GE(frame.locations.size(), 4u);
+      if (!turned) continue;
+      for (ClickedPosition& click : frame.locations) click.pixel.x() = kClickedSize.width - 1 - click.pixel.x();
+    }
+    const ClickedTripod found = tripod_from_clicks(frames, kClickedSize, {});
+    EXPECT_FALSE(found.reflected) << turned;
+    EXPECT_TRUE(found.either_hand) << turned;
+    EXPECT_LT(found.tripod.location.y(), 0) << turned;
+  }
+  EXPECT_FALSE(tripod_from_clicks(three_frames(), kClickedSize, {}).either_hand);
+}
+
 std::string refusal(const std::vector<ClickedFrame>& frames) {
   try {
     tripod_from_clicks(frames, kClickedSize, {});
