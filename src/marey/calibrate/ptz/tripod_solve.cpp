@@ -265,7 +265,9 @@ ClickedTripod tripod_from_clicks(const std::vector<ClickedFrame>& clicks, cv::Si
     worst = std::max(worst, geometry::median(std::vector(result.error_px.back())));
   }
   result.median_px = geometry::median(all);
-  if (worst > 2 * options.click_px * size.width / 1280.0) check_halves(clicks, size, pitch, options, found.cost);
+  // Where most clicks lie on the halfway line, a frame on the wrong half contradicts a single click of the others.
+  const bool one_far_off = *std::max_element(all.begin(), all.end()) > kWorstMedian * size.width;
+  if (one_far_off || worst > 2 * options.click_px * size.width / 1280.0) check_halves(clicks, size, pitch, options, found.cost);
   if (worst > kWorstMedian * size.width)
     throw Error(
         "no camera on one tripod sees the clicked places within {:.0f} px of their clicks; clicks are on the wrong spot or have "
