@@ -92,6 +92,12 @@ class Keypoints(unittest.TestCase):
             for content in (b"", b"no network"):
                 (pathlib.Path(empty) / "pose_landmark_full.onnx").write_bytes(content)
                 self.refused(1, "script/model", *track, models=empty)
+            numbers = ("track", "people.mp4", "--quiet", "--numbers", "numbers.csv")
+            self.refused(1, "script/model --numbers", *numbers, models=empty)
+            for content in (b"", b"no network"):
+                (pathlib.Path(empty) / "shirt_numbers.onnx").write_bytes(content)
+                self.refused(1, "script/model --numbers", *numbers, models=empty)
+        self.refused(2, ".csv", "track", "people.mp4", "--numbers", "numbers.txt")
         self.refused(2, "lite, full or heavy", *track, "--model", "tiny")
         self.refused(2, "--ground", *track, "--ground")
         self.refused(2, "requires --detector", "track", "people.mp4", "--detector-interval", "3")
