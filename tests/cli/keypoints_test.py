@@ -22,7 +22,7 @@ STREET = pathlib.Path("/usr/share/doc/opencv-doc/examples/data/vtest.avi")
 
 def commands_of(page):
     """Lines of the page's code blocks that begin with marey, without what is said about them."""
-    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.S | re.M)
+    blocks = [block for language, block in re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), re.M | re.S) if not language]
     return [line.partition("  #")[0].strip() for block in blocks for line in block.splitlines() if line.startswith("marey track people.mp4")]
 
 
