@@ -5,7 +5,7 @@ turned with the body, squeezed by perspective, bent by folds, shaded as the shir
     shirt_numbers.py MAREY [--seeds 1,2] [--heights 100,150] [--crf 23] [--limits] [--keep FOLDER]
 
 Prints a Markdown table: precision and share of the tracks that are named with the probability that `marey identify` asks for, and by other limits with
---limits. A track's true number is that of the person whom it shows in most of its frames (IoU 0.5 with the truth); a track of less than 2 s does not count.
+--limits. A track's true number is that of the person that it shows in most of its frames (IoU 0.5 with the truth); a track of less than 2 s does not count.
 Needs numpy and Pillow, ffmpeg, and the fonts DejaVu and Liberation.
 """
 
@@ -53,7 +53,7 @@ def truth_of(folder):
 
 
 def facing(folder):
-    """By person, by frame: (share of the shirt's width that shows, its side: 1 back, -1 chest), by where the person goes and how the camera looks."""
+    """By person, by frame: (share of the shirt's width that shows, its side: 1 back, -1 chest), by the person's direction and the camera's."""
     text = (folder / "rig.toml").read_text()
     rotation = np.array(json.loads(re.search(r"rotation = (\[\[.*?\]\])", text, re.S)[1]))
     paths = collections.defaultdict(list)
@@ -87,7 +87,7 @@ def noise(random, shape, width):
     return made / max(1e-6, made.std())
 
 
-def place(frame, mask, box, person, seen, random):
+def draw_on_shirt(frame, mask, box, person, seen, random):
     """Writes a number onto a person, where the silhouette is."""
     left, top, width, height = box
     share, side = seen
@@ -139,7 +139,7 @@ def with_numbers(folder, crf, seed):
         image = np.frombuffer(data, np.uint8).reshape(SIZE[1], SIZE[0], 3).astype(np.float32)
         for person, box in boxes[frame].items():
             if person in masks[frame] and person in seen and frame in seen[person]:
-                place(image, mask_of(masks[frame][person]), box, people[person], seen[person][frame], random)
+                draw_on_shirt(image, mask_of(masks[frame][person]), box, people[person], seen[person][frame], random)
         target.stdin.write(np.clip(image, 0, 255).astype(np.uint8).tobytes())
     target.stdin.close()
     source.stdout.close()
@@ -168,7 +168,7 @@ def overlap(a, b):
 
 
 def shown_by(folder, boxes):
-    """By track that is there for 2 s: the person whom it shows most."""
+    """By track that is there for 2 s: the person that it shows most."""
     shown, length = collections.defaultdict(collections.Counter), collections.Counter()
     for row in rows_of(folder / "tracks.csv"):
         box = [float(row[name]) for name in ("left", "top", "width", "height")]

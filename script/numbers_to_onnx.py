@@ -29,7 +29,7 @@ def fixed(model):
 
 
 def shapes_of(model):
-    """What is known of the sizes of the values that nodes make."""
+    """The known sizes of the values that nodes make."""
     inferred = shape_inference.infer_shapes(model, data_prop=True)
     shapes = {v.name: [d.dim_value for d in v.type.tensor_type.shape.dim] for v in [*inferred.graph.value_info, *inferred.graph.output]}
     return {name: shape for name, shape in shapes.items() if shape and all(shape)} | {model.graph.input[0].name: list(SHAPE)}

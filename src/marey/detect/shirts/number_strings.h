@@ -20,7 +20,7 @@ constexpr int string_index(int tens, int units) {
 std::string string_at(int index);
 
 /// Each string's likelihood, summed over all alignments (CTC: a digit may take several columns, "blank" lies between equal ones).
-/// `columns`: for each column of the image the probabilities of blank and of each digit, which need not sum to 1: what is missing
+/// `columns`: for each column of the image the probabilities of blank and of each digit, which need not sum to 1: the rest
 /// is other characters', so that the sum over all strings is the probability that there is nothing else.
 StringProbabilities string_likelihoods(std::span<const std::array<double, kColumnClasses>> columns);
 

@@ -8,12 +8,12 @@
 namespace marey::detect::shirts {
 namespace {
 
-constexpr int kNumbers = 100;                               // by definition
-constexpr Duration kLook = std::chrono::milliseconds(500);  // chosen on figures in bench/tuning.md
-constexpr double kMinLegible = 0.3;                         // chosen on figures in bench/tuning.md
-constexpr double kOverlooked = 0.05, kInvented = 0.14;      // of a digit
-constexpr double kElsewhere = 0.03;                         // the string is no part of the number
-constexpr double kWithoutNumber = 0.5;                      // share of the people: referees, passers-by
+constexpr int kNumbers = 100;                                // by definition
+constexpr Duration kGroup = std::chrono::milliseconds(500);  // chosen on figures in bench/tuning.md
+constexpr double kMinLegible = 0.3;                          // chosen on figures in bench/tuning.md
+constexpr double kOverlooked = 0.05, kInvented = 0.14;       // of a digit
+constexpr double kElsewhere = 0.03;                          // the string is not a part of the number
+constexpr double kWithoutNumber = 0.5;                       // share of the people: referees, passers-by
 
 // Probability that a digit (row) is read as another one (column), of 1,043 legible crops of rendered shirts of people of 60 to 150
 // px, at least 0.001.
@@ -75,28 +75,28 @@ double log_ratio(int number, const ShirtReading& reading) {
 }  // namespace
 
 void NumberVotes::add(Timestamp time, const ShirtReading& reading) {
-  if (totals_.empty()) totals_.assign(kNumbers, 0), look_.assign(kNumbers, 0);
-  if (in_look_ > 0 && time - look_began_ >= kLook) {
-    totals_ = totals_with(look_, in_look_);
-    std::fill(look_.begin(), look_.end(), 0);
-    in_look_ = 0;
+  if (totals_.empty()) totals_.assign(kNumbers, 0), group_.assign(kNumbers, 0);
+  if (in_group_ > 0 && time - group_began_ >= kGroup) {
+    totals_ = totals_with(group_, in_group_);
+    std::fill(group_.begin(), group_.end(), 0);
+    in_group_ = 0;
   }
-  const bool begins = in_look_ == 0;
-  if (begins) look_began_ = time;
-  ++in_look_;
-  for (int number = 0; number < kNumbers; ++number) look_[static_cast<std::size_t>(number)] += log_ratio(number, reading);
+  const bool begins = in_group_ == 0;
+  if (begins) group_began_ = time;
+  ++in_group_;
+  for (int number = 0; number < kNumbers; ++number) group_[static_cast<std::size_t>(number)] += log_ratio(number, reading);
   if (reading.legibility < kMinLegible) return;
   ++legible_;
-  if (clear_.empty() || clear_.back().time < look_began_) {
+  if (clear_.empty() || clear_.back().time < group_began_) {
     clear_.push_back({time, reading});
   } else if (reading.legibility > clear_.back().read.legibility) {
     clear_.back() = {time, reading};
   }
 }
 
-std::vector<double> NumberVotes::totals_with(const std::vector<double>& look, int count) const {
+std::vector<double> NumberVotes::totals_with(const std::vector<double>& group, int count) const {
   std::vector<double> sums = totals_;
-  for (std::size_t i = 0; i < sums.size() && count > 0; ++i) sums[i] += look[i] / count;
+  for (std::size_t i = 0; i < sums.size() && count > 0; ++i) sums[i] += group[i] / count;
   return sums;
 }
 
@@ -108,7 +108,7 @@ Timestamp NumberVotes::clearest(int number) const {
 
 std::optional<TrackNumber> NumberVotes::result() const {
   if (legible_ == 0) return std::nullopt;
-  const std::vector<double> sums = totals_with(look_, in_look_);
+  const std::vector<double> sums = totals_with(group_, in_group_);
   const auto best = std::max_element(sums.begin(), sums.end());
   const double top = std::max(0.0, *best), prior = (1 - kWithoutNumber) / kNumbers;
   double total = kWithoutNumber * std::exp(-top);

@@ -16,7 +16,7 @@ namespace marey::detect::shirts {
 
 /// What one image says of a shirt's number.
 struct ShirtReading {
-  StringProbabilities strings{};  ///< of what is written there, if only digits are; they sum to 1
+  StringProbabilities strings{};  ///< of the number there, if there are digits alone; they sum to 1
   double legibility = 0;          ///< probability that digits are there and no other characters
 };
 

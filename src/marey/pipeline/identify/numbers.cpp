@@ -63,8 +63,8 @@ std::optional<int> member_of(const ReadNumber& read, const std::string& team, co
   }
   messages.push_back(found.empty()
                          ? fmt::format("{}, which no person in the squads{} has", shirt_of(read), known ? " of " + team : "")
-                         : fmt::format("{}, which {} and {} have; the take does not say of which team the person is",
-                                       shirt_of(read), squads[static_cast<std::size_t>(found[0])].label(),
+                         : fmt::format("{}, which {} and {} have; the take has no team of that person", shirt_of(read),
+                                       squads[static_cast<std::size_t>(found[0])].label(),
                                        squads[static_cast<std::size_t>(found[1])].label()));
   return std::nullopt;
 }
@@ -73,7 +73,7 @@ bool are_together(const TrackColumns& one, const TrackColumns& other) {
   return !one.empty() && !other.empty() && one.at().front() <= other.at().back() && other.at().front() <= one.at().back();
 }
 
-/// Members whom two tracks at the same time would have.
+/// Members that two tracks would be at the same time.
 std::set<int> twice(const std::vector<SquadNaming>& namings, const Recording& recording) {
   std::set<int> members;
   for (std::size_t i = 0; i < namings.size(); ++i) {

@@ -11,20 +11,20 @@ using detect::shirts::ShirtRegion;
 using detect::shirts::ShirtView;
 
 constexpr double kMinStature = 60;                               // px; digits of 9 px and more
-constexpr Duration kReadEvery = std::chrono::milliseconds(500);  // physical: one look of NumberVotes
+constexpr Duration kReadEvery = std::chrono::milliseconds(500);  // physical: one group of NumberVotes
 
 /// A person in one camera's image.
-struct Seen {
+struct VisiblePerson {
   TrackId track{};
   Box box;
   std::optional<ShirtRegion> shirt;  // nothing: too small, filled, or not upright
 };
 
 /// Whether another person, who stands nearer to the camera, covers a part of the shirt.
-bool is_covered(const Seen& person, const std::vector<Seen>& people) {
+bool is_covered(const VisiblePerson& person, const std::vector<VisiblePerson>& people) {
   const double half = person.shirt->part.side / 4, x = person.shirt->part.centre.x(), y = person.shirt->part.centre.y();
   const double foot = person.box.top + person.box.height;
-  return std::any_of(people.begin(), people.end(), [&](const Seen& other) {
+  return std::any_of(people.begin(), people.end(), [&](const VisiblePerson& other) {
     const Box& box = other.box;
     return other.track != person.track && box.top + box.height > foot && box.left < x + half && box.left + box.width > x - half &&
            box.top < y + half && box.top + box.height > y - half;
@@ -42,14 +42,14 @@ Sink::SinkRequirements NumberSink::begin(const RecordingHeader& header) {
 }
 
 bool NumberSink::is_due(TrackId track, CameraId camera, Timestamp time) {
-  const auto [looked, first] = tracks_[track].looked.try_emplace(camera, time);
-  if (!first && time - looked->second < kReadEvery) return false;
-  looked->second = time;
+  const auto [read_at, first] = tracks_[track].read_at.try_emplace(camera, time);
+  if (!first && time - read_at->second < kReadEvery) return false;
+  read_at->second = time;
   return true;
 }
 
 void NumberSink::collect(const Frame& frame, const Instant& instant, std::vector<TrackId>& tracks, std::vector<ShirtView>& views) {
-  std::vector<Seen> people;
+  std::vector<VisiblePerson> people;
   if (by_boxes_) {
     for (const BoxInView& one : instant.boxes) {
       if (one.camera != frame.camera) continue;
@@ -62,7 +62,7 @@ void NumberSink::collect(const Frame& frame, const Instant& instant, std::vector
           {sample.track, *sample.box, sample.measured() ? detect::shirts::shirt_region(sample, keypoints_) : std::nullopt});
     }
   }
-  for (const Seen& person : people) {
+  for (const VisiblePerson& person : people) {
     if (!person.shirt || person.shirt->stature < kMinStature || is_covered(person, people)) continue;
     if (!is_due(person.track, frame.camera, instant.time)) continue;
     tracks.push_back(person.track);

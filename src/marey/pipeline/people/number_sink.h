@@ -11,7 +11,7 @@
 
 namespace marey::pipeline::people {
 
-/// The shirt numbers of tracked people, read twice a second of each in each camera that sees the person large enough and in front
+/// The shirt numbers of tracked people, read twice a second of each in each camera that shows the person large enough and in front
 /// of all others, as CSV: `id,number,probability,readings,time`, a row for each track of which digits were legible. `number` is the
 /// likeliest, `time` (s) that of its clearest reading.
 class NumberSink final : public Sink {
@@ -27,7 +27,7 @@ class NumberSink final : public Sink {
  private:
   struct Track {
     detect::shirts::NumberVotes votes;
-    std::map<CameraId, Timestamp> looked;  // when each camera's image of the person was read last
+    std::map<CameraId, Timestamp> read_at;  // when each camera's image of the person was read last
   };
 
   void collect(const Frame& frame, const Instant& instant, std::vector<TrackId>& tracks,
