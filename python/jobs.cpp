@@ -59,6 +59,7 @@ nb::tuple track_people(nb::dict given) {
   return in_image(options, job.input, rows, [&](const auto& feed, auto output, auto sinks, const Hooks& hooks) {
     output.masks = job.masks;
     output.target_masks = job.target_masks;
+    output.numbers = job.numbers;
     return pipeline::people::track_people(feed, output, std::move(sinks), how, hooks);
   });
 }

@@ -51,6 +51,7 @@ void print_json(const pipeline::people::GroundSummary& summary, const pipeline::
                      {"tracks", output.tracks},
                      {"overlays", path_or_null(output.overlays)},
                      {"copies", path_or_null(output.copies)},
+                     {"numbers", path_or_null(output.numbers)},
                      {"pitch_view", path_or_null(output.pitch_view)}};
   print(json);
 }
@@ -79,6 +80,7 @@ void print_summary(const pipeline::people::GroundSummary& summary, const pipelin
   fmt::print(stderr, "tracks: {}\n", output.tracks);
   if (!output.overlays.empty()) fmt::print(stderr, "overlays: {}\n", output.overlays);
   if (!output.copies.empty()) fmt::print(stderr, "copies: {}\n", output.copies);
+  if (!output.numbers.empty()) fmt::print(stderr, "numbers: {}\n", output.numbers);
   if (!output.pitch_view.empty()) fmt::print(stderr, "pitch view: {}\n", output.pitch_view);
 }
 

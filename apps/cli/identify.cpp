@@ -46,6 +46,8 @@ void report_json(const IdentifyCommand& command, const pipeline::identify::Ident
          {"unidentified_s", summary.unnamed_s},
          {"excluded", summary.excluded},
          {"review", review_items},
+         {"numbered", summary.numbered},
+         {"unused_numbers", summary.unused_numbers},
          {"edits", summary.edits}});
 }
 
@@ -57,6 +59,8 @@ void report(const IdentifyCommand& command, const pipeline::identify::IdentifySu
   fmt::print("{} named; {} uncertain{}; {:.0f} s of others; {}: `marey edit {} --list`\n", summary.people.size(),
              summary.review_items.size(), command.options.review_items.empty() ? "" : ", listed in " + command.options.review_items,
              summary.unnamed_s, edits_of(summary.edits), command.take);
+  if (!command.options.numbers.empty()) fmt::print("{} named by the number of the shirt\n", summary.numbered);
+  for (const std::string& message_text : summary.unused_numbers) fmt::print("{}\n", message_text);
   if (summary.excluded > 0)
     fmt::print("{} place{} deleted: of a person who is elsewhere then, or between two people\n", summary.excluded,
                summary.excluded == 1 ? "" : "s");
@@ -80,8 +84,8 @@ void apply(const IdentifyCommand& command) {
 
 void run(const IdentifyCommand& command) {
   if (!command.answers.empty()) return apply(command);
-  if (command.options.roster.empty() || command.options.names.empty())
-    throw WrongUsage("write --squads and --annotations to name people, or --answers to apply answers");
+  if (command.options.roster.empty() || (command.options.names.empty() && command.options.numbers.empty()))
+    throw WrongUsage("write --squads, and --annotations or --numbers, to name people, or --answers to apply answers");
   const auto summary = with_progress(
       command.quiet, [&](const Hooks& hooks) { return pipeline::identify::name_people(command.take, command.options, hooks); });
   if (command.json) {
@@ -102,12 +106,17 @@ void add_identify(Command& program) {
   command.input_file("--squads", options->options.roster, "who plays: CSV with number,name,team and, if wanted, role,in,out");
   const Option names =
       command.input_file("--annotations", options->options.names, "who was recognised where: CSV with time,id,name");
+  const Option numbers =
+      command.input_file("--numbers", options->options.numbers,
+                         "the shirts' numbers, as \"marey track --ground --numbers\" writes them: each names its "
+                         "person where it is certain enough, and --annotations counts more");
+  command.number("--min-number-probability", options->options.min_number, "P", closed(0, 1), "of a number that names a person");
   const Option review_items = command.output_file("--review", options->options.review_items,
                                                   "what is uncertain, to be answered in its last column: FILE.csv");
   command.number("--min-probability", options->options.minimum, "P", closed(0, 1),
                  "list what is wrong with this probability at least");
   const Option answers = command.input_file("--answers", options->answers, "apply the answers in such a list, all or none");
-  Option(answers).excludes(names).excludes(review_items);
+  Option(answers).excludes(names).excludes(numbers).excludes(review_items);
   command.reports(options->json, options->quiet);
   command.runs([options] { run(*options); });
 }

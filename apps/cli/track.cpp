@@ -70,6 +70,7 @@ pipeline::people::TrackOutput output_of(const TrackCommand& command) {
                                        .blur_faces = !input.blur.empty(),
                                        .plot = input.plot,
                                        .target_masks = command.people.target_masks,
+                                       .numbers = command.people.numbers,
                                        .masks = command.people.masks};
   const bool named = !command.out.empty() && !is_stream(command.out) && !std::filesystem::is_directory(command.out);
   if (named || !command.format.empty()) {

@@ -40,6 +40,7 @@ void print_json(const pipeline::corridor::Summary& summary, const pipeline::peop
                {"overlay", path_or_null(output.overlay)},
                {"copy", path_or_null(output.copy)},
                {"plot", path_or_null(output.plot)}};
+  if (!output.numbers.empty()) json["numbers"] = output.numbers;
   if (!markers) {
     const pipeline::corridor::Dropped& dropped = summary.dropped;
     json["dropped"] = {{"noise", dropped.noise.value_or(0)},
@@ -75,6 +76,7 @@ void print_summary(const pipeline::corridor::Summary& summary, const pipeline::p
   fmt::print(stderr, "tracks: {}\n", output.tracks);
   if (!output.overlay.empty()) fmt::print(stderr, "overlay: {}\n", output.overlay);
   if (!output.copy.empty()) fmt::print(stderr, "copy: {}\n", output.copy);
+  if (!output.numbers.empty()) fmt::print(stderr, "numbers: {}\n", output.numbers);
   if (!output.plot.empty()) fmt::print(stderr, "plot: {}\n", output.plot);
 }
 

@@ -38,6 +38,8 @@ class TrackOptions(TypedDict, total=False):
     r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
     no_background: bool | None
     r"""the network alone"""
+    numbers: Path | None
+    r"""each person's shirt number, read in the images, with its probability: FILE.csv (script/model --numbers makes the network)"""
     contour: bool | None
     r"""track each person's outline too: a closed spline"""
     control_points: int | None
@@ -99,6 +101,8 @@ class GroundOptions(TypedDict, total=False):
     r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
     no_background: bool | None
     r"""the network alone"""
+    numbers: Path | None
+    r"""each person's shirt number, read in the images, with its probability: FILE.csv (script/model --numbers makes the network)"""
     size: str | tuple[float, float] | None
     r"""m, of the pitch, or of any other rectangle from the origin on (default: 105x68 if the rig was calibrated on a pitch, else people count everywhere)"""
     area: str | Sequence[tuple[float, float]] | None

@@ -72,8 +72,8 @@ class Edit(unittest.TestCase):
         self.assertEqual([track["label"] for track in said["tracks"]], ["A", "B", "C"])
 
     def test_the_line_for_those_identify_come_from_elsewhere(self):
-        """As docs/coming_from.md has it, on a take that has these markers and gaps."""
-        page = (pathlib.Path(__file__).resolve().parent.parent.parent / "docs/coming_from.md").read_text()
+        """As docs/reference/coming_from.md has it, on a take that has these markers and gaps."""
+        page = (pathlib.Path(__file__).resolve().parent.parent.parent / "docs/reference/coming_from.md").read_text()
         line = next(line for line in page.splitlines() if "`marey edit walk.marey" in line and "swap" in line)
         words = shlex.split(line[line.index("marey edit"):].split("`")[0])
         marey("edit", self.take, "rename A LKNE", "rename B RKNE")

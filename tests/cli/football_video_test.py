@@ -24,7 +24,7 @@ MATCH = pathlib.Path()
 
 
 def blocks(page):
-    return re.findall(r"^```\n(.*?)^```", page.read_text(), re.M | re.S)
+    return [block for language, block in re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), re.M | re.S) if not language]
 
 
 class FootballVideo(unittest.TestCase):

@@ -104,6 +104,53 @@ class Identify(unittest.TestCase):
             writer.writerows(rows)
         return marey("identify", self.take, "--answers", self.folder / "answers.csv", code=code)
 
+    def numbers(self, rows, *options, code=0):
+        """identify by shirt numbers, id,number,probability,readings,time."""
+        (self.folder / "numbers.csv").write_text("id,number,probability,readings,time\n" + "".join(f"{row}\n" for row in rows))
+        return marey("identify", self.take, "--squads", self.folder / "squads.csv", "--numbers", self.folder / "numbers.csv", *options, code=code)
+
+    def with_teams(self):
+        """The same take with the teams by which equal numbers are distinguished."""
+        for track in range(1, PEOPLE + 1):
+            marey("edit", self.take, f"team #{track} {'Reds' if track < 4 else 'Blues'}")
+
+    def test_shirt_numbers_name_people(self):
+        self.record(lambda who, t: who)
+        self.with_teams()
+        told = json.loads(self.numbers([f"{who},{(who - 1) % 3 + 1},0.99,5,{2 * who}" for who in range(1, PEOPLE + 1)], "--json").stdout)
+        self.assertEqual(told["numbered"], PEOPLE)
+        self.assertEqual(told["unused_numbers"], [])
+        self.assertEqual({person["label"] for person in told["people"]}, {f"{who % 3 + 1} {name}" for who, name in enumerate(NAMES)})
+        self.assertGreater(self.right(), 0.97)
+
+    def test_shirt_numbers_that_decide_nothing(self):
+        self.record(lambda who, t: who)
+        self.with_teams()
+        rows = ["1,1,0.99,5,2", "2,1,0.99,5,2",  # two people with one number
+                "3,34,0.99,5,2",  # a number that the squads lack
+                "4,1,0.90,5,2",  # not certain enough
+                "5,2,0.99,5,2"]
+        told = json.loads(self.numbers(rows, "--json").stdout)
+        self.assertEqual([person["label"] for person in told["people"]], ["2 Evans"])
+        self.assertEqual(len(told["unused_numbers"]), 3)
+        self.assertIn("number 34", " ".join(told["unused_numbers"]))
+        marey("edit", self.take, "--undo-to", 0)
+        said = self.numbers(["1,1,0.99,5,2"], code=1).stderr  # without teams: 1 Adams or 1 Davis
+        self.assertIn("1 Adams and 1 Davis", said)
+        self.assertEqual(said.count("\n"), 1, said)
+        for rows, words in ((["77,1,0.99,5,2"], "#77"), (["1,x,0.99,5,2"], "numbers.csv:2"), (["1,1,7,5,2"], "numbers.csv:2"), ([], "no number")):
+            said = self.numbers(rows, code=1).stderr
+            self.assertEqual(said.count("\n"), 1, said)
+            self.assertIn(words, said)
+
+    def test_annotations_count_more_than_numbers(self):
+        self.record(lambda who, t: who)
+        self.with_teams()
+        self.name(["2,1,Brown"])
+        told = json.loads(self.numbers(["1,1,0.99,5,2", "2,2,0.99,5,2"], "--annotations", self.folder / "names.csv", "--json").stdout)
+        self.assertEqual([(person["label"], person["track"]) for person in told["people"]], [("2 Brown", 1)])
+        self.assertEqual(told["numbered"], 0)
+
     def test_two_identify_were_swapped_get_their_own_names_back(self):
         told = json.loads(self.who("--json", "-q").stdout)
         self.assertEqual(len(told["people"]), PEOPLE)

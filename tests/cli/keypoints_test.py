@@ -22,7 +22,7 @@ STREET = pathlib.Path("/usr/share/doc/opencv-doc/examples/data/vtest.avi")
 
 def commands_of(page):
     """Lines of the page's code blocks that begin with marey, without what is said about them."""
-    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.S | re.M)
+    blocks = [block for language, block in re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), re.M | re.S) if not language]
     return [line.partition("  #")[0].strip() for block in blocks for line in block.splitlines() if line.startswith("marey track people.mp4")]
 
 
@@ -92,6 +92,12 @@ class Keypoints(unittest.TestCase):
             for content in (b"", b"no network"):
                 (pathlib.Path(empty) / "pose_landmark_full.onnx").write_bytes(content)
                 self.refused(1, "script/model", *track, models=empty)
+            numbers = ("track", "people.mp4", "--quiet", "--numbers", "numbers.csv")
+            self.refused(1, "script/model --numbers", *numbers, models=empty)
+            for content in (b"", b"no network"):
+                (pathlib.Path(empty) / "shirt_numbers.onnx").write_bytes(content)
+                self.refused(1, "script/model --numbers", *numbers, models=empty)
+        self.refused(2, ".csv", "track", "people.mp4", "--numbers", "numbers.txt")
         self.refused(2, "lite, full or heavy", *track, "--model", "tiny")
         self.refused(2, "--ground", *track, "--ground")
         self.refused(2, "requires --detector", "track", "people.mp4", "--detector-interval", "3")

@@ -57,7 +57,8 @@ class Keypoints(unittest.TestCase):
 
     def test_the_page_as_it_is_written(self):
         page = (pathlib.Path(__file__).parents[2] / "docs/markerless_space.md").read_text()
-        lines = [line for block in re.findall(r"^```\n(.*?)^```", page, re.S | re.M) for line in block.splitlines() if line.startswith("marey ")]
+        blocks = [block for language, block in re.findall(r"^```(\w*)\n(.*?)^```$", page, re.S | re.M) if not language]
+        lines = [line for block in blocks for line in block.splitlines() if line.startswith("marey ")]
         self.assertGreaterEqual(len(lines), 3)
         for line in lines:
             with self.subTest(line=line):

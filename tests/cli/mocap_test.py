@@ -22,7 +22,7 @@ ROOT = pathlib.Path()
 
 def commands(page):
     """The lines of the page's blocks that call the program, in order."""
-    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.M | re.S)
+    blocks = [block for language, block in re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), re.M | re.S) if not language]
     return [line for block in blocks for line in block.splitlines() if line.startswith("marey ")]
 
 

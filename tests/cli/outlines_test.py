@@ -20,7 +20,7 @@ PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "outlines.md"
 
 def commands_of(page):
     """Lines of the page's code blocks that begin with marey."""
-    blocks = re.findall(r"^```\n(.*?)^```", page.read_text(), re.S | re.M)
+    blocks = [block for language, block in re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), re.M | re.S) if not language]
     return [line for block in blocks for line in block.splitlines() if line.startswith("marey ")]
 
 

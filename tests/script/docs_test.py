@@ -18,6 +18,8 @@ import unittest
 
 ROOT = pathlib.Path(sys.argv[1])
 MAREY = sys.argv[2]
+FIRST_SCREEN = 30  # lines of Markdown
+PROGRAMS = ("marey", "$", "script/model", "pip", "cmake", "import")  # that a first block begins with
 # Names in the pages that are of other programs, of the system, or of a user's files.
 SOURCES = (".cpp", ".h", ".py", ".ts", ".txt", ".toml", ".ipynb", ".yml", ".json", ".cmake", ".css", ".html", "")
 OTHERS_NAMES = {"LeftShin", "LeftThigh", "PascalCase", "snake_case", "RssAnon", "batch_sched_delay", "camera_frame", "football_left", "left_accuracy", "left_ball", "left_json", "match_main_ptz",
@@ -30,6 +32,21 @@ def gallery():
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("gallery", loader))
     loader.exec_module(module)
     return module
+
+
+def wrong_beginning(lines):
+    """What lacks in the first screen of a page, None if nothing."""
+    first_screen = lines[:FIRST_SCREEN]
+    fences = [at for at, line in enumerate(first_screen) if line.startswith("```")]
+    if len(fences) < 2:
+        return "no commands in the first screen"
+    block = [line for line in first_screen[fences[0] + 1 : fences[1]] if line.strip() and not line.startswith("#")]
+    commands = [line for before, line in zip([""] + block, block) if not before.endswith("\\")]
+    if not commands or commands[0].split()[0] not in PROGRAMS:
+        return "no commands in the first screen"
+    if len(commands) > 3:
+        return f"{len(commands)} commands in the first block; three are enough"
+    return None if any(line.startswith("![") for line in first_screen) else "no image in the first screen"
 
 
 class Docs(unittest.TestCase):
@@ -71,6 +88,31 @@ class Docs(unittest.TestCase):
                 if "://" not in target:
                     self.assertTrue((page.parent / target).exists(), f"{page.relative_to(ROOT)}: {target} is not there")
 
+    def test_pages_are_short_and_begin_with_commands_and_an_image(self):
+        """A page has at most 150 lines. One that is not reference begins with a block of at most three commands, and shows an image within its first screen."""
+        for page in sorted((ROOT / "docs").glob("*.md")) + sorted((ROOT / "docs/reference").glob("*.md")):
+            name, lines = page.relative_to(ROOT), page.read_text().splitlines()
+            self.assertLessEqual(len(lines), 150, f"{name}: move what is longer to a page of its own in docs/reference")
+            if page.parent.name == "docs":
+                self.assertIsNone(wrong_beginning(lines), name)
+
+    def test_a_page_that_begins_otherwise(self):
+        block, image = ["```", "marey info a.c3d   # what is in it", "```"], ["![A walk](walk.jpg)"]
+        text = ["# Title", ""] + ["words"] * 40
+        self.assertIsNone(wrong_beginning(["# Title", ""] + block + image))
+        self.assertIsNone(wrong_beginning(["# Title", "", "```", *["marey a \\", "  --b"] * 3, "```", *image]))
+        for page, said in ((text, "no commands"), (text + block + image, "no commands"), (text[:2] + block + text[2:] + image, "no image"),
+                           (["```", *["marey info a.c3d"] * 4, "```", *image], "4 commands"), (["```", "```", *image], "no commands")):
+            self.assertIn(said, wrong_beginning(page) or "nothing is wrong")
+
+    def test_every_page_is_listed(self):
+        listed, site = (ROOT / "docs/pages.md").read_text(), (ROOT / "mkdocs.yml").read_text()
+        for page in [*(ROOT / "docs").glob("*.md"), *(ROOT / "docs/reference").glob("*.md")]:
+            name = str(page.relative_to(ROOT / "docs"))
+            self.assertTrue(name in site, f"mkdocs.yml: {name} is not listed")
+            if name != "pages.md":
+                self.assertTrue(f"]({name}" in listed, f"docs/pages.md: {name} is not listed")
+
     def test_names_in_code_are_in_the_sources(self):
         listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
         if listed.returncode != 0:
@@ -89,7 +131,7 @@ class Docs(unittest.TestCase):
                     self.assertTrue(name in known, f"{page.relative_to(ROOT)}: no source has {name}")
 
     def test_options_are_known(self):
-        for file in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for file in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
             page, text = file.name, file.read_text().replace("\\\n", "")
             for line in re.findall(r"`(marey [^`|]+)`|^(marey [^\n|>]+)$", text, re.M):
                 words = "".join(line).split()[1:]

@@ -1,13 +1,17 @@
 #include "marey/pipeline/identify/identify.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/edit/edited.h"
 #include "marey/files/whole_file.h"
 #include "marey/format/take/take_file.h"
 #include "marey/pipeline/identify/effects.h"
+#include "marey/pipeline/identify/numbers.h"
 
 namespace marey::pipeline::identify {
 namespace {
@@ -58,10 +62,9 @@ std::size_t naming_on(std::size_t path, const track::ground::offline::GroundIden
   return namings.size();
 }
 
-/// No person is two people at once: where no exchange leads from one naming to another, one of them is wrong.
-void require_one_each(const track::ground::offline::GroundIdentities& found,
-                      const std::vector<track::ground::offline::IdentityAnnotation>& namings, const std::vector<SquadNaming>& given,
-                      const std::vector<SquadMember>& squads) {
+/// Two rows that make one person two people at once: no exchange leads from one to the other.
+std::optional<std::pair<std::size_t, std::size_t>> contradiction(
+    const track::ground::offline::GroundIdentities& found, const std::vector<track::ground::offline::IdentityAnnotation>& namings) {
   const auto together = [&](std::size_t a, std::size_t b) {
     for (const int one : found.paths[a].segments) {
       for (const int other : found.paths[b].segments) {
@@ -78,13 +81,42 @@ void require_one_each(const track::ground::offline::GroundIdentities& found,
       if (!together(a, b)) continue;
       const std::size_t one = naming_on(a, found, namings), other = naming_on(b, found, namings);
       if (one == namings.size() || other == namings.size()) continue;
-      const SquadNaming &first = given[std::min(one, other)], &second = given[std::max(one, other)];
-      throw Error(
-          "{}: {} is #{} at {} here and, by {}, #{} at {}; both are there at the same time, and no meeting is found at which "
-          "they may have been exchanged",
-          second.where, squads[static_cast<std::size_t>(second.member)].label(), second.track,
-          format::match::clock_of_seconds(second.time_s), first.where, first.track, format::match::clock_of_seconds(first.time_s));
+      return std::pair(std::min(one, other), std::max(one, other));
     }
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void fail_contradiction(const SquadNaming& first, const SquadNaming& second, const std::vector<SquadMember>& squads) {
+  throw Error(
+      "{}: {} is #{} at {} here and, by {}, #{} at {}; both are there at the same time, and no meeting is found at which "
+      "they may have been exchanged",
+      second.where, squads[static_cast<std::size_t>(second.member)].label(), second.track,
+      format::match::clock_of_seconds(second.time_s), first.where, first.track, format::match::clock_of_seconds(first.time_s));
+}
+
+/// Who is who by the rows of a hand and those of read numbers. A number that contradicts another row is dropped, with a message;
+/// two rows of a hand that do are an Error.
+track::ground::offline::GroundIdentities identities_of(const std::vector<SquadNaming>& given, NumberNamings& numbers,
+                                                       const std::vector<SquadMember>& squads, const Recording& recording,
+                                                       const TrackedPeople& people) {
+  while (true) {
+    std::vector<SquadNaming> rows = given;
+    rows.insert(rows.end(), numbers.namings.begin(), numbers.namings.end());
+    std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+    const auto namings = namings_of(rows, squads, recording, people);
+    auto found = track::ground::offline::identify(people.tracklets, people.teams, people.times, namings);
+    const auto pair = contradiction(found, namings);
+    if (!pair) return found;
+    const std::size_t before = numbers.namings.size();
+    std::erase_if(numbers.namings, [&](const SquadNaming& read) {
+      const bool is_one = read.where == rows[pair->first].where || read.where == rows[pair->second].where;
+      if (is_one)
+        numbers.messages.push_back(fmt::format("#{} has the number of {}, who is another person at the same time: it is not used",
+                                               read.track, squads[static_cast<std::size_t>(read.member)].label()));
+      return is_one;
+    });
+    if (numbers.namings.size() == before) fail_contradiction(rows[pair->first], rows[pair->second], squads);
   }
 }
 
@@ -113,16 +145,23 @@ IdentifySummary summary_of(const track::ground::offline::GroundIdentities& found
 
 IdentifySummary name_people(const std::string& path, const IdentifyOptions& options, const Hooks& hooks) {
   const std::vector<SquadMember> squads = format::match::read_squads(options.roster);
-  const std::vector<SquadNaming> given = format::match::read_namings(options.names, squads);
+  std::vector<SquadNaming> given;
+  if (!options.names.empty()) given = format::match::read_namings(options.names, squads);
+  std::vector<ReadNumber> numbers;
+  if (!options.numbers.empty()) numbers = read_numbers(options.numbers);
   const EditedTake take = edited_take(path);
   require_unnamed(take, path, squads);
+  NumberNamings by_number = namings_by_numbers(numbers, options.min_number, squads, given, take.recording);
+  if (given.empty() && by_number.namings.empty())
+    throw Error("{}: no number names a person{}", options.numbers,
+                by_number.messages.empty() ? "" : fmt::format(" ({})", by_number.messages.front()));
   const TrackedPeople people = tracked_people(take.recording);
-  const auto namings = namings_of(given, squads, take.recording, people);
   hooks.advance({.step = "finding who is who", .done = 0, .total = 1});
-  const auto found = track::ground::offline::identify(people.tracklets, people.teams, people.times, namings);
-  require_one_each(found, namings, given, squads);
+  const auto found = identities_of(given, by_number, squads, take.recording, people);
   const NamedPaths named = named_paths(found, people, take.recording, squads, take.initiated);
   IdentifySummary summary = summary_of(found, named, take.recording, squads);
+  summary.unused_numbers = by_number.messages;
+  summary.numbered = std::ssize(by_number.namings);
   summary.review_items = review_items_of(found, people, named, take.recording, squads, options.minimum);
   std::optional<WholeFile> list;
   if (!options.review_items.empty()) list.emplace(options.review_items);

@@ -13,7 +13,9 @@ namespace marey::pipeline::identify {
 
 struct IdentifyOptions {
   std::string roster;        ///< CSV: number,name,team
-  std::string names;         ///< CSV: time,id,name
+  std::string names;         ///< CSV: time,id,name; may be empty if `numbers` is given
+  std::string numbers;       ///< CSV of read shirt numbers: id,number,probability,readings,time; may be empty
+  double min_number = 0.95;  ///< a number that is less probable names no person
   std::string review_items;  ///< CSV to be written; empty: not
   double minimum = 0.02;     ///< what is less probable to be wrong is not listed
 };
@@ -29,11 +31,13 @@ struct IdentifySummary {
   double unnamed_s = 0;        ///< that others are there for, together
   std::int64_t excluded = 0;   ///< places that were deleted: of a person who is elsewhere then, or between two people
   std::vector<ReviewItem> review_items;
+  std::vector<std::string> unused_numbers;  ///< a sentence for each number that is probable enough and names no person
+  std::int64_t numbered = 0;                ///< people that were named by a number
   std::int64_t edits = 0;
 };
 
-/// Names people and carries the names on. Throws Error, and changes nothing, for what does not fit: see format/match/squads.h and
-/// people.h.
+/// Names people and carries the names on. Throws Error, and changes nothing, for what does not fit: see format/match/squads.h,
+/// people.h and numbers.h.
 IdentifySummary name_people(const std::string& take, const IdentifyOptions& options, const Hooks& hooks = {});
 
 struct AnswerSummary {

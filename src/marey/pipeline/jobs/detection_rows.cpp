@@ -105,6 +105,14 @@ detect::markers::MarkerOptions detector_of(const MarkerDetection& detection) {
   return markers;
 }
 
+void add_number_row(Table& table, std::string& numbers) {
+  table
+      .output_file("numbers", numbers,
+                   "each person's shirt number, read in the images, with its probability: FILE.csv (script/model --numbers makes "
+                   "the network)")
+      .ending_in({".csv"});
+}
+
 void add_filter_row(Table& table, std::string& filter) {
   std::vector<std::string> names;
   for (const filter::NamedFilter& named : filter::named_filters()) names.emplace_back(named.name);

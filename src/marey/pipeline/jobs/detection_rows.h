@@ -45,6 +45,9 @@ void add_marker_rows(Table& table, MarkerDetection& detection);
 /// Reads the mask. Throws Error if it cannot be read.
 detect::markers::MarkerOptions detector_of(const MarkerDetection& detection);
 
+/// --numbers: a file for the numbers of people's shirts.
+void add_number_row(Table& table, std::string& numbers);
+
 /// --filter.
 void add_filter_row(Table& table, std::string& filter);
 

@@ -104,6 +104,7 @@ Table table_of(TrackGround& job) {
              "the camera shakes (wind, steps): stabilise its images first; results are in the pixels of its rest");
   table.group("Options for --targets people");
   add_people_rows(table, job.detection);
+  add_number_row(table, job.output.numbers);
   table.group("Options for --ground");
   add_ground_rows(table, job.ground);
   table.flag("ball", job.ball, "track the ball too: a track named \"ball\", with its height").needing("ground");

@@ -107,6 +107,7 @@ Table table_of(TrackPeople& job) {
   table.flag("measured-only", job.options.observed_only, "omit the rows of people who were not detected in that frame");
   table.group("Options for --targets people");
   add_people_rows(table, job.detection);
+  add_number_row(table, job.numbers);
   add_outline_rows(table, job);
   if (job.keypoints) add_keypoint_rows(table, job);
   return table;

@@ -27,6 +27,7 @@ struct TrackPeople {
   bool outline = false;
   std::optional<int> control_points = {}, order = {}, lines = {};
   std::optional<double> delay = {};
+  std::string numbers = {};                 ///< a CSV file; empty: none
   std::string target_masks = {};            ///< a folder; empty: none
   std::string masks = {};                   ///< a folder; empty: none
   people::ImagePeopleOptions options = {};  ///< rows without dependent defaults are bound to these

@@ -20,6 +20,7 @@
 #include "marey/pipeline/corridor/stabilised_camera.h"
 #include "marey/pipeline/people/ground_again.h"
 #include "marey/pipeline/people/ground_offsets.h"
+#include "marey/pipeline/people/number_sink.h"
 
 namespace marey::pipeline::people {
 namespace {
@@ -34,6 +35,8 @@ void check(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptio
   const std::string& videos = output.overlays.empty() ? output.copies : output.overlays;
   if (!videos.empty() && std::none_of(rig.cameras.begin(), rig.cameras.end(), has_images))
     throw Error("{}: no camera has images to draw into; ask for a pitch view instead", videos);
+  if (!output.numbers.empty() && std::none_of(rig.cameras.begin(), rig.cameras.end(), has_images))
+    throw Error("{}: numbers are read in images, and no camera has any", output.numbers);
 }
 
 CameraId id_of(const Rig& rig, const std::string& name) {
@@ -75,6 +78,7 @@ corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const Peopl
   if (!output.overlays.empty()) add_videos(sinks, output.overlays, drawn, feeds);
   drawn.bare = true;
   if (!output.copies.empty()) add_videos(sinks, output.copies, drawn, feeds);
+  if (!output.numbers.empty()) sinks.add(std::make_unique<NumberSink>(output.numbers));
   if (!output.pitch_view.empty()) {
     const reconstruct::GroundArea area = area_of(rig, options);
     const draw::ShownGround shown{area.pitch(), area.margin(), area.mirrored()};

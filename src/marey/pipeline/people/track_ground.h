@@ -21,6 +21,7 @@ struct GroundOutput {
   std::string blur = {};        ///< "faces": heads are made unrecognisable in `overlays`
   std::string copies = {};      ///< a folder for the same videos with faces blurred and nothing drawn
   std::string overlays = {};    ///< a folder: <camera>.mp4, a video of each camera that has images
+  std::string numbers = {};     ///< a CSV file of people's shirt numbers (number_sink.h)
   std::string pitch_view = {};  ///< a video of the ground from above
 };
 

@@ -13,6 +13,7 @@
 #include "marey/pipeline/corridor/stabilised_camera.h"
 #include "marey/pipeline/keypoints/keypoint_recording.h"
 #include "marey/pipeline/people/mask_sink.h"
+#include "marey/pipeline/people/number_sink.h"
 #include "marey/pipeline/people/target_mask_sink.h"
 #include "marey/source/open_source.h"
 
@@ -41,6 +42,10 @@ corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<
     if (!feed.has_images() || feed.detector() != nullptr)
       throw Error("{}: masks are of the background model, and detections are given", output.masks);
     sinks.add(std::make_unique<MaskSink>(output.masks));
+  }
+  if (!output.numbers.empty()) {
+    if (!feed.has_images()) throw Error("{}: numbers are read in images, and only detections are given", output.numbers);
+    sinks.add(std::make_unique<NumberSink>(output.numbers));
   }
   if (!output.target_masks.empty()) sinks.add(std::make_unique<TargetMaskSink>(output.target_masks));
   const draw::OverlayVideo::View view{

@@ -25,6 +25,7 @@ struct TrackOutput {
   bool blur_faces = false;        ///< in `overlay`
   std::string plot = {};          ///< an SVG image of the trajectories, in the coordinates of the image
   std::string target_masks = {};  ///< a folder for the visible pixels of each target's contour (target_mask_sink.h)
+  std::string numbers = {};       ///< of people: a CSV file of their shirts' numbers (number_sink.h)
   std::string masks = {};         ///< of people: a folder for the foreground of each frame (draw/mask_folder.h)
 };
 

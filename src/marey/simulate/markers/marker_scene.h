@@ -66,7 +66,7 @@ struct MarkerScene {
 
 /// Draws one video of a situation from `seed`: the same one on every machine.
 /// The paper leaves the speeds open. Ours were chosen, and then frozen, so that its alpha-beta and Kalman filters err by what its
-/// tables II–IV say; `docs/experiments.md` shows both.
+/// tables II–IV say; `docs/reference/experiments.md` shows both.
 MarkerScene simulate_markers(MarkerSituation situation, std::uint64_t seed, const MarkerSceneOptions& options = {});
 
 /// Frame `index` of the scene as a camera gives it: CV_8UC1. Bright discs over a dark ground, each before those of lower number,
