@@ -47,6 +47,7 @@ def main():
     try:
         if source.suffix == ".bvh":
             bpy.ops.import_anim.bvh(filepath=str(source), global_scale=0.01, axis_forward="-Z", axis_up="Y", rotate_mode="NATIVE",
+                                    frame_start=0,  # as GLB's time 0
                                     update_scene_fps=False, update_scene_duration=True)
         else:
             bpy.ops.import_scene.gltf(filepath=str(source))

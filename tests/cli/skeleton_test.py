@@ -33,6 +33,11 @@ FILES = {
     "range.c3d": "gait_children/HC002D/turn_HC002D25.c3d",
     "other_walk.c3d": "gait_children/HC044A/straight_HC044A15.c3d",
     "other.c3d": "gait_children/HC044A/static_HC044A01.c3d",
+    "earlier.c3d": "gait_children/HC002D/turn_HC002D25.c3d",
+    "earlier_standing.c3d": "gait_children/HC002D/static_HC002D02.c3d",
+    "controls/HC030A/straight.c3d": "gait_children/HC030A/straight_HC030A05.c3d",
+    "controls/HC031A/straight.c3d": "gait_children/HC031A/straight_HC031A06.c3d",
+    "controls/HC033A/straight.c3d": "gait_children/HC033A/straight_HC033A10.c3d",
     "triads.trc": "opensim_models/gait2354/subject01_walk1.trc",
     "triads_standing.trc": "opensim_models/gait2354/subject01_static.trc",
     "punches.c3d": "cmu_02_05/cmu_02_05.c3d",
@@ -55,6 +60,7 @@ class Skeleton(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_skeleton_"))
         self.addCleanup(shutil.rmtree, self.folder)
         for name, source in FILES.items():
+            (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(DATA / source, self.folder / name)
 
     def marey(self, *arguments, code=0):

@@ -25,6 +25,7 @@ svg { display: block; width: 100%; height: auto } svg text { fill: currentColor 
 details { margin: .5em 0; border-bottom: 1px solid var(--line) } summary { cursor: pointer; font-weight: 600; padding: .3em 0 }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 24em), 1fr)); gap: 1.2em } .four { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18em), 1fr)); gap: 1em }
 figure { margin: 0 } figcaption { color: var(--faint); font-size: .93em; margin-top: .3em } svg .axis { fill: var(--faint) } .grid { stroke: var(--line) } .zero { stroke: var(--faint) }
+.before { stroke: var(--text) } .panels { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 16em), 1fr)); gap: .8em } .sheet h2 small { font-weight: 400; font-size: .7em; color: var(--faint); margin-left: .8em }
 .speed { stroke: var(--text) } .sprint { fill: var(--mark); fill-opacity: .25 }
 @media screen and (max-width: 46em) {
   body { padding: 1em 1em 3em } table { min-width: 100% } th, td, th button { padding-left: .4em; padding-right: .4em }
@@ -40,6 +41,7 @@ figure { margin: 0 } figcaption { color: var(--faint); font-size: .93em; margin-
   body { max-width: none; margin: 0; padding: 0; font-size: 11px; print-color-adjust: exact; -webkit-print-color-adjust: exact }
   .scroll { overflow: visible } table.cards { font-size: 9px } th { font-size: 1em } th, td, th.group, th button { padding: 2px 3px } td { padding-bottom: 5px } td.n { background-size: calc(100% - .8em) 2px } th.group { white-space: normal }
   details, figure, tr { break-inside: avoid } h2, h3, summary { break-after: avoid } thead { display: table-header-group } .four { grid-template-columns: repeat(3, 1fr) } .two { grid-template-columns: repeat(2, 1fr) }
+  .sheet ~ .sheet { break-before: page } .sheet h2 { margin: .6em 0 .3em } .sheet ~ .sheet > h2:first-child { margin-top: 0 } .sheet p { margin: .3em 0; max-width: none } .panels { grid-template-columns: repeat(var(--columns), 1fr); gap: 1.5mm 2mm }
 }
 )";
 

@@ -21,12 +21,13 @@ struct Triple {
 
 /// Our joints and the names of Plug-in Gait's outputs. Its spine, shoulders and wrists turn about other axes than the ISB's: those
 /// have names of their own. Its ankle's second angle grows to the other side.
-constexpr std::array<Triple, 9> kTriples = {{{"pelvis", "PelvisAngles"},
+constexpr std::array<Triple, 10> kTriples = {{{"pelvis", "PelvisAngles"},
                                              {"trunk", "ThoraxAngles"},
                                              {"spine", "SpineAnglesISB"},
                                              {"hip", "HipAngles"},
                                              {"knee", "KneeAngles"},
                                              {"ankle", "AnkleAngles", "eversion"},
+                                             {"foot", "FootProgressAngles"},
                                              {"shoulder", "ShoulderAnglesISB"},
                                              {"elbow", "ElbowAngles"},
                                              {"wrist", "WristAnglesISB"}}};
