@@ -3,6 +3,7 @@
 Usage: gait_report_test.py MAREY ROOT [unittest options]; exits 77 (skipped) where the recordings are not here.
 """
 
+import csv
 import json
 import os
 import pathlib
@@ -140,6 +141,35 @@ class GaitReport(unittest.TestCase):
             shutil.copy(file, group / child.name)
         said = json.loads(self.gait("--reference", group, "--json").stdout)
         self.assertGreaterEqual(said["reference"]["turning_cycles"], 1)
+
+    def test_a_person_who_cannot_be(self):
+        self.assertIn("5 kg at a height of 1.45 m are not a person's (body mass index 2.4)", self.gait("--mass", 5).stderr)
+        self.assertNotIn("body mass index", self.gait().stderr)
+
+    def test_a_static_trial_in_a_crouch(self):
+        self.gait("--angles", "walk.csv", "-q")
+        with (self.folder / "walk.csv").open() as rows:
+            bent = [float(row["left_knee_flexion"] or 0) for row in csv.DictReader(rows)]
+        frame = 123 + bent.index(max(bent))  # the walk begins at frame 123, from 0
+        self.marey("convert", self.walk, "bent.csv", "--frames", f"{frame}:{frame}", "-q")
+        said = self.marey("gait", self.walk, "--static-trial", "bent.csv").stderr
+        self.assertRegex(said, r"bent.csv: the left knee is bent by [56]\d° in the static trial; does the person stand in a crouch\?")
+        self.assertNotIn("crouch", self.gait().stderr)
+
+    def test_a_leg_that_is_missing(self):
+        self.marey("convert", self.walk, "both.csv", "-q")
+        head, *rows = (self.folder / "both.csv").read_text().splitlines()
+        kept = [row for row in rows if not re.search(r",R(TIB|ANK|HEE|TOE|KNE|THI),", row)]
+        (self.folder / "left.csv").write_text("\n".join([head, *kept]) + "\n")
+        done = self.marey("gait", "left.csv", "--reference", "group", "--report", "left.html", "--json")
+        said = json.loads(done.stdout)
+        self.assertIn("right", done.stderr)
+        self.assertIn("never known: markers are missing", done.stderr)
+        self.assertIsNotNone(said["profile"]["left_deg"])
+        self.assertIsNone(said["profile"]["right_deg"])
+        page = (self.folder / "left.html").read_text()
+        self.assertIn("Left side", page)
+        self.assertIn("No Gait Profile Score of both sides: a variable is not known", page)
 
 
 if __name__ == "__main__":

@@ -270,6 +270,13 @@ class Skeleton(unittest.TestCase):
         self.assertLess(max(steps), 10)
         self.assertIn("at times no marker shows these to 10°: ", self.marey(*solve).stderr)
 
+    def test_two_people_in_one_calibration_are_named(self):
+        models = DATA / "arnold_synthetic"
+        solve = ("solve", models / "subject01/markers.trc", "--up", "y", "--skeleton", models / "unscaled_generic.osim", "--calibrate", "-o", "a.mot", "-q")
+        other = self.marey(*solve, "--calibration-take", models / "subject02/markers.trc").stderr
+        self.assertIn("another person, or markers that were put on again? A calibration is of one", other)
+        self.assertNotIn("another person", self.marey(*solve, "--calibration-take", models / "subject01/markers.trc").stderr)
+
     def test_gait_of_identify_stands_is_refused(self):
         done = self.marey("gait", "standing.c3d", code=1)
         self.assertIn("standing.c3d: no steps were found", done.stderr)

@@ -88,10 +88,6 @@ class GaitPage {
   }
 
  private:
-  bool has_reference() const {
-    const auto has = [](const GaitReport::Panel& panel) { return !panel.reference.mean.empty(); };
-    return std::any_of(report_.legs.begin(), report_.legs.end(), has);
-  }
   bool has_before() const {
     const auto has = [](const GaitReport::Panel& panel) { return !panel.sides[0].before.mean.empty() || !panel.sides[1].before.mean.empty(); };
     return std::any_of(report_.legs.begin(), report_.legs.end(), has);
@@ -104,12 +100,12 @@ class GaitPage {
   }
   void end_sheet() { page_.add_html("</section>\n"); }
 
-  void write_legend(GaitSides sides) {
+  void write_legend(GaitSides sides, bool with_reference, bool with_before) {
     std::vector<std::pair<std::string, std::string>> legend;
     if (sides != GaitSides::right) legend.emplace_back("left", kGaitLeft);
     if (sides != GaitSides::left) legend.emplace_back("right", kGaitRight);
-    if (has_reference()) legend.emplace_back("control group", "#7f8c8d59");
-    if (sides != GaitSides::both && has_before()) legend.emplace_back("before (dashed)", "var(--text)");
+    if (with_reference) legend.emplace_back("control group", "#7f8c8d59");
+    if (with_before && has_before()) legend.emplace_back("before (dashed)", "var(--text)");
     page_.add_legend(legend);
   }
 
@@ -132,7 +128,7 @@ class GaitPage {
     if (report_.scores.empty()) return;
     page_.add_heading("Movement Analysis Profile and Gait Profile Score");
     page_.add_html("<figure>" + gait_profile_chart(report_) + "</figure>\n");
-    write_legend(GaitSides::both);
+    write_legend(GaitSides::both, true, true);
     std::string overall = report_.overall_score ? fmt::format("Gait Profile Score of both sides: {:.1f}°", *report_.overall_score)
                                                 : "No Gait Profile Score of both sides: a variable is not known";
     if (report_.overall_before) overall += fmt::format(", before {:.1f}°", *report_.overall_before);
@@ -159,7 +155,9 @@ class GaitPage {
                           ? "Mean over the cycles, from a strike of the foot to its next; the band is one standard deviation over the "
                             "cycles. Dotted: the foot leaves the ground."
                           : "Each cycle (thin), their mean and one standard deviation. Dotted: the foot leaves the ground.");
-    write_legend(sides);
+    const bool reference =
+        std::any_of(panels.begin(), panels.end(), [](const GaitReport::Panel* panel) { return !panel->reference.mean.empty(); });
+    write_legend(sides, reference, sides != GaitSides::both);
     page_.add_html(fmt::format("<div class=\"panels\" style=\"--columns:{}\">", columns));
     for (const GaitReport::Panel* panel : panels) page_.add_html("<figure>" + gait_panel(*panel, sides, report_) + "</figure>");
     page_.add_html("</div>\n");

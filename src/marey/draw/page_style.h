@@ -13,7 +13,7 @@ body { font: 15px/1.45 system-ui, sans-serif; margin: 0 auto; max-width: 84em; p
 h1 { font-size: 1.7em; line-height: 1.2; margin: 0 0 .2em } h2 { margin: 2em 0 .6em; font-size: 1.25em } h3 { margin: 1em 0 .4em; font-size: 1em } p, ul { max-width: 50em } h1 + p { margin-top: 0; color: var(--faint) }
 .scroll { overflow-x: auto } table { border-collapse: collapse; min-width: min(100%, 34em); font-variant-numeric: tabular-nums } table.wide { width: 100% }
 th, td { padding: .34em .6em; border-bottom: 1px solid var(--line); text-align: left }
-td.n, th.n { text-align: right } table.wide th.n { width: 5% } td.n { white-space: nowrap; background: linear-gradient(90deg, var(--bar) var(--w, 0), transparent var(--w, 0)) .4em calc(100% - 2px) / calc(100% - .8em) 3px no-repeat }
+td.n, th.n { text-align: right } table.wide th.n { width: 5% } td.n { white-space: nowrap } td.n[style] { background: linear-gradient(90deg, var(--bar) var(--w, 0), transparent var(--w, 0)) .4em calc(100% - 2px) / calc(100% - .8em) 3px no-repeat }
 th { background: var(--head); padding: 0; vertical-align: bottom; font-size: .87em; line-height: 1.25; font-weight: 600; hyphens: manual }
 th.group { padding: .34em .7em 0; border: 0; text-align: left; color: var(--faint); font-weight: 400; white-space: nowrap } .from { border-left: 1px solid var(--line) }
 th button { all: unset; box-sizing: border-box; cursor: pointer; padding: .34em .7em; display: block; width: 100% } th button:focus-visible { outline: 2px solid var(--mark) }
@@ -35,7 +35,7 @@ figure { margin: 0 } figcaption { color: var(--faint); font-size: .93em; margin-
   table.cards td:not(.n) { font-weight: 600 }
   table.cards td::before { content: attr(data-label); display: block; color: var(--faint); font-size: .72em; font-weight: 400; line-height: 1.25 } table.cards td:empty { display: none }
 }
-@page { margin: 12mm }
+@page { size: A4; margin: 12mm }
 @media print {
   :root { --ground: #fff; --text: #000; --faint: #444; --line: #bbb; --bar: #777; --head: #eee }
   body { max-width: none; margin: 0; padding: 0; font-size: 11px; print-color-adjust: exact; -webkit-print-color-adjust: exact }

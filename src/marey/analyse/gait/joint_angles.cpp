@@ -39,7 +39,8 @@ class SideAngles {
           {"rotation", 1});
     three(take, "ankle", cardan(of(SegmentId::left_shank), of(SegmentId::left_foot)), {"dorsiflexion", -1}, {"inversion", 1},
           {"rotation", 1});
-    foot(take);
+    // In the walking direction's frame: toes up, turned about the line to the toes, toes inwards.
+    three(take, "foot", cardan(walking_, of(SegmentId::left_foot)), {"pitch", -1}, {"roll", 1}, {"progression", 1});
     shoulder(take);
     three(take, "elbow", cardan(of(SegmentId::left_upper_arm), of(SegmentId::left_forearm)), {"flexion", -1}, {"adduction", 1},
           {"pronation", 1});
@@ -64,23 +65,6 @@ class SideAngles {
     one(sideways, 0, 1);
     one(floating, 1, mirror_);
     one(along, 2, mirror_);
-  }
-
-  /// Of the foot in the walking direction's frame: its line from heel to toe on the ground (progression, toes inwards positive) and
-  /// above it (pitch, toes up positive), and its turn about that line.
-  template <typename Take>
-  void foot(Take&& take) const {
-    const auto& foot = of(SegmentId::left_foot);
-    std::optional<double> pitch, roll, progression;
-    if (walking_ && foot) {
-      const Matrix<3> r = walking_->rotation.transpose() * foot->rotation;  // Rz(progression)·Ry(−pitch)·Rx(roll)
-      pitch = std::asin(std::clamp(r(2, 0), -1.0, 1.0));
-      roll = mirror_ * std::atan2(r(2, 1), r(2, 2));
-      progression = mirror_ * std::atan2(r(1, 0), r(0, 0));
-    }
-    take("foot", "pitch", pitch);
-    take("foot", "roll", roll);
-    take("foot", "progression", progression);
   }
 
   /// R = Rz(plane)·Rx(elevation)·Rz(rotation): the ISB's Y-X-Y, whose y is up.

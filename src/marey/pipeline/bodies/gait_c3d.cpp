@@ -27,7 +27,7 @@ constexpr std::array<Triple, 10> kTriples = {{{"pelvis", "PelvisAngles"},
                                              {"hip", "HipAngles"},
                                              {"knee", "KneeAngles"},
                                              {"ankle", "AnkleAngles", "eversion"},
-                                             {"foot", "FootProgressAngles"},
+                                             {"foot", "FootAngles"},
                                              {"shoulder", "ShoulderAnglesISB"},
                                              {"elbow", "ElbowAngles"},
                                              {"wrist", "WristAnglesISB"}}};

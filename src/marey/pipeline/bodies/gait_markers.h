@@ -76,7 +76,7 @@ struct BodySize {
 BodySize body_size_in_c3d(const std::string& path);
 
 /// How the feet stood in Vicon's own static trial, where a C3D file says so (PROCESSING, StaticPlantFlex): so far is the sole's
-/// line above the one from ankle to toe.
+/// line above the one from ankle to toe, and inwards of it (StaticRotOff).
 void take_soles(const std::string& path, gait::GaitSubject& subject);
 
 }  // namespace marey::pipeline::bodies

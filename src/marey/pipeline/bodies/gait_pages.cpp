@@ -246,7 +246,7 @@ class ReportOfWalk {
     std::vector<std::string>& sentences = report_.quality;
     sentences.push_back(fmt::format("Markers: {} of the set in the file, {} of them missing at some time.", quality.markers,
                                     quality.gaps.size()));
-    if (!quality.absent.empty()) sentences.push_back(fmt::format("Never there: {}.", fmt::join(quality.absent, ", ")));
+    if (!quality.absent.empty()) sentences.push_back(fmt::format("Of the full set these are not in the file, and not all of them are needed: {}.", fmt::join(quality.absent, ", ")));
     if (measure_.forces.feet[0].empty()) {
       sentences.emplace_back("Events are by kinematics: there are no force plates.");
     } else {
@@ -255,8 +255,8 @@ class ReportOfWalk {
       sentences.push_back(fmt::format("Force plates: {} contacts, {} of one whole foot.", measure_.forces.contacts.size(), own));
       const auto& strikes = measure_.by_force.strikes;
       if (strikes.count > 0)
-        sentences.push_back(fmt::format("Strikes by kinematics came {:+.0f} ms after those by force ({}), which replace them.",
-                                        1000 * strikes.mean_s, strikes.count));
+        sentences.push_back(fmt::format("Strikes by kinematics came {:.0f} ms {} those by force ({}), which replace them.",
+                                        std::abs(1000 * strikes.mean_s), strikes.mean_s < 0 ? "before" : "after", strikes.count));
     }
     if (!measure_.ground.empty())
       sentences.push_back(fmt::format("The ground's force is in the walking direction, to the other foot, and upwards, of cycles whose "

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace gait = analyse::gait;
 
 // Six children's twelve walks (bench/tuning.md): cycles of straight walks turn by less, those within a turn by more.
-constexpr double kMaxReferenceTurn = 20 * std::numbers::pi / 180;  // rad
+constexpr double kMaxReferenceTurn = 10 * std::numbers::pi / 180;  // rad
 
 struct PersonFiles {
   std::string name;

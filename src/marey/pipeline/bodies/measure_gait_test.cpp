@@ -208,7 +208,7 @@ TEST(MeasureGait, FootProgressionAndForcesAgreeWithPlugInGait) {
           ++count;
         }
         std::printf("%s %s progression: %.2f deg RMSE over %.0f\n", fs::path(walk).filename().c_str(), side, std::sqrt(squares / count), count);
-        EXPECT_LT(std::sqrt(squares / count), 4) << walk << " " << side;
+        EXPECT_LT(std::sqrt(squares / count), 3) << walk << " " << side;
       }
       for (const gait::SignalCurve& curve : measure.ground) {
         if (curve.label != "up") continue;
@@ -232,7 +232,8 @@ TEST(MeasureGait, CyclesOfStraightWalksDoNotTurn) {
       const GaitMeasure measure = measure_gait(walk, {.static_trial = child.static_trial});
       for (const auto& cycle : measure.cycles.cycles) {
         std::printf("%s: turns by %.1f deg\n", fs::path(walk).filename().c_str(), cycle.turn.value_or(9) * 180 / std::numbers::pi);
-        if (walk.find("straight") != std::string::npos) EXPECT_LT(std::abs(cycle.turn.value_or(9)), max_reference_turn()) << walk;
+        if (walk.find("straight") == std::string::npos) continue;
+        EXPECT_LT(std::abs(cycle.turn.value_or(9)), max_reference_turn()) << walk;
       }
     }
   }
