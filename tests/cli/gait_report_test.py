@@ -142,7 +142,7 @@ class GaitReport(unittest.TestCase):
         said = json.loads(self.gait("--reference", group, "--json").stdout)
         self.assertGreaterEqual(said["reference"]["turning_cycles"], 1)
 
-    def test_a_person_who_cannot_be(self):
+    def test_an_impossible_person(self):
         self.assertIn("5 kg at a height of 1.45 m are not a person's (body mass index 2.4)", self.gait("--mass", 5).stderr)
         self.assertNotIn("body mass index", self.gait().stderr)
 

@@ -33,9 +33,9 @@ void walk(marey::format::FileReader& reader) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  for (const auto read : {marey::format::motion::read_trc, marey::format::motion::read_tidy_csv,
-                          marey::format::motion::read_motive_csv, marey::format::motion::read_nexus_csv,
-                          marey::format::motion::read_qualisys_tsv}) {
+  for (const auto read :
+       {marey::format::motion::read_trc, marey::format::motion::read_tidy_csv, marey::format::motion::read_motive_csv,
+        marey::format::motion::read_nexus_csv, marey::format::motion::read_qualisys_tsv}) {
     try {
       walk(*read(text, "file"));
     } catch (const marey::Error& error) {

@@ -31,7 +31,8 @@ class PanelChart {
   }
 
   std::string write() const {
-    Svg svg({{"viewBox", fmt::format("0 0 {:g} {:g}", size_.width, size_.height)}, {"font-family", "sans-serif"}, {"font-size", 11}});
+    Svg svg(
+        {{"viewBox", fmt::format("0 0 {:g} {:g}", size_.width, size_.height)}, {"font-family", "sans-serif"}, {"font-size", 11}});
     svg.text({4, 14}, panel_.title + ", " + panel_.unit, {{"font-weight", "bold"}});
     draw_axes(svg);
     draw_band(svg, panel_.reference, kReferenceGrey, "0.28", "0");
@@ -42,9 +43,7 @@ class PanelChart {
   }
 
  private:
-  bool is_drawn(std::size_t side) const {
-    return sides_ == GaitSides::both || (sides_ == GaitSides::left) == (side == 0);
-  }
+  bool is_drawn(std::size_t side) const { return sides_ == GaitSides::both || (sides_ == GaitSides::left) == (side == 0); }
 
   void find_range() {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -69,7 +68,9 @@ class PanelChart {
   }
 
   double x(double fraction) const { return kPanelLeft + (size_.width - kPanelLeft - kPanelRight) * fraction; }
-  double y(double value) const { return size_.height - kPanelBottom - (size_.height - kPanelTop - kPanelBottom) * (value - low_) / (high_ - low_); }
+  double y(double value) const {
+    return size_.height - kPanelBottom - (size_.height - kPanelTop - kPanelBottom) * (value - low_) / (high_ - low_);
+  }
 
   void draw_axes(Svg& svg) const {
     for (double v = low_; v <= high_ + 0.01 * step_; v += step_) {
@@ -86,7 +87,8 @@ class PanelChart {
   std::vector<Vector<2>> points_of(const std::vector<double>& values) const {
     std::vector<Vector<2>> points;
     for (std::size_t i = 0; i < values.size(); ++i)
-      points.emplace_back(x(static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(values.size(), 2) - 1)), y(values[i]));
+      points.emplace_back(x(static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(values.size(), 2) - 1)),
+                          y(values[i]));
     return points;
   }
 
@@ -113,7 +115,8 @@ class PanelChart {
     const bool alone = sides_ != GaitSides::both;
     if (report_.off_percent[s] && !side.now.mean.empty()) {
       const double at = x(*report_.off_percent[s] / 100);
-      svg.line({at, kPanelTop}, {at, size_.height - kPanelBottom}, {{"stroke", kSideColours[s]}, {"stroke-width", 0.8}, {"stroke-dasharray", "2 3"}});
+      svg.line({at, kPanelTop}, {at, size_.height - kPanelBottom},
+               {{"stroke", kSideColours[s]}, {"stroke-width", 0.8}, {"stroke-dasharray", "2 3"}});
     }
     for (std::size_t c = 0; alone && c < std::min(side.cycles.size(), kMaxDrawnCycles); ++c)
       svg.polyline(points_of(side.cycles[c]), {{"stroke", kSideColours[s]}, {"stroke-width", 0.5}, {"stroke-opacity", 0.55}});

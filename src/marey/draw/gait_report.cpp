@@ -23,7 +23,8 @@ int decimals_of(double value) {
 
 std::string with_deviation(const std::optional<double>& mean, const std::optional<double>& deviation, int decimals) {
   if (!mean) return kUnknownFigure;
-  return deviation ? fmt::format("{:.{}f} ± {:.{}f}", *mean, decimals, *deviation, decimals) : fmt::format("{:.{}f}", *mean, decimals);
+  return deviation ? fmt::format("{:.{}f} ± {:.{}f}", *mean, decimals, *deviation, decimals)
+                   : fmt::format("{:.{}f}", *mean, decimals);
 }
 
 int decimals_of(const GaitReport::Figure& figure) {
@@ -31,11 +32,17 @@ int decimals_of(const GaitReport::Figure& figure) {
   return decimals_of(largest);
 }
 
+/// "+1.2", and "0.0" without a sign.
+std::string signed_tenths(double value) {
+  const double rounded = std::round(10 * value) / 10;
+  return rounded == 0 ? "0.0" : fmt::format("{:+.1f}", rounded);
+}
+
 /// (left − right) over the mean of both, in % (Robinson, Herzog, Nigg 1987).
 std::string asymmetry(const GaitReport::Figure& figure) {
   if (!figure.mean[0] || !figure.mean[1]) return kUnknownFigure;
   const double mean = 0.5 * (*figure.mean[0] + *figure.mean[1]);
-  return std::abs(mean) < 1e-9 ? kUnknownFigure : fmt::format("{:+.1f}", 100 * (*figure.mean[0] - *figure.mean[1]) / mean);
+  return std::abs(mean) < 1e-9 ? kUnknownFigure : signed_tenths(100 * (*figure.mean[0] - *figure.mean[1]) / mean);
 }
 
 /// Columns that no row has are empty, and the page omits them.
@@ -50,8 +57,8 @@ PageTable figures_table(const std::string& title, const std::vector<GaitReport::
     const auto before = [&](std::size_t side) {
       return figure.before[side] ? fmt::format("{:.{}f}", *figure.before[side], decimals) : std::string();
     };
-    const std::string difference = percent ? asymmetry(figure)
-                                   : figure.mean[0] && figure.mean[1] ? fmt::format("{:+.1f}", *figure.mean[0] - *figure.mean[1])
+    const std::string difference = percent                            ? asymmetry(figure)
+                                   : figure.mean[0] && figure.mean[1] ? signed_tenths(*figure.mean[0] - *figure.mean[1])
                                                                       : kUnknownFigure;
     table.rows.push_back({figure.unit.empty() ? figure.name : figure.name + ", " + figure.unit,
                           with_deviation(figure.mean[0], figure.deviation[0], decimals),
@@ -89,7 +96,9 @@ class GaitPage {
 
  private:
   bool has_before() const {
-    const auto has = [](const GaitReport::Panel& panel) { return !panel.sides[0].before.mean.empty() || !panel.sides[1].before.mean.empty(); };
+    const auto has = [](const GaitReport::Panel& panel) {
+      return !panel.sides[0].before.mean.empty() || !panel.sides[1].before.mean.empty();
+    };
     return std::any_of(report_.legs.begin(), report_.legs.end(), has);
   }
 
@@ -132,10 +141,11 @@ class GaitPage {
     std::string overall = report_.overall_score ? fmt::format("Gait Profile Score of both sides: {:.1f}°", *report_.overall_score)
                                                 : "No Gait Profile Score of both sides: a variable is not known";
     if (report_.overall_before) overall += fmt::format(", before {:.1f}°", *report_.overall_before);
-    page_.add_message(overall +
-                      ". A score is the RMS difference from the control group's mean over the cycle; the Gait Profile Score is the RMS of "
-                      "a side's nine (Baker et al. 2009). Grey: what people of the group score against the others of it, mean and one "
-                      "deviation. A change of 1.6° is held to matter to patients (Baker et al. 2012).");
+    page_.add_message(
+        overall +
+        ". A score is the RMS difference from the control group's mean over the cycle; the Gait Profile Score is the RMS of "
+        "a side's nine (Baker et al. 2009). Grey: what people of the group score against the others of it, mean and one "
+        "deviation. A change of 1.6° is held to matter to patients (Baker et al. 2012).");
     page_.add(figures_table("Scores, degrees", report_.scores, false));
   }
 
@@ -148,13 +158,15 @@ class GaitPage {
       }
     }
     if (panels.empty()) return;
-    const std::size_t of_side = panels.size() <= kPanelsInFour ? kColumnsOfSide : kColumnsOfSide + (panels.size() <= kPanelsInFive ? 1 : 2);
+    const std::size_t of_side =
+        panels.size() <= kPanelsInFour ? kColumnsOfSide : kColumnsOfSide + (panels.size() <= kPanelsInFive ? 1 : 2);
     const std::size_t columns = sides == GaitSides::both ? kColumnsOfBoth : of_side;
     begin_sheet(heading);
-    page_.add_message(sides == GaitSides::both
-                          ? "Mean over the cycles, from a strike of the foot to its next; the band is one standard deviation over the "
-                            "cycles. Dotted: the foot leaves the ground."
-                          : "Each cycle (thin), their mean and one standard deviation. Dotted: the foot leaves the ground.");
+    page_.add_message(
+        sides == GaitSides::both
+            ? "Mean over the cycles, from a strike of the foot to its next; the band is one standard deviation over the "
+              "cycles. Dotted: the foot leaves the ground."
+            : "Each cycle (thin), their mean and one standard deviation. Dotted: the foot leaves the ground.");
     const bool reference =
         std::any_of(panels.begin(), panels.end(), [](const GaitReport::Panel* panel) { return !panel->reference.mean.empty(); });
     write_legend(sides, reference, sides != GaitSides::both);

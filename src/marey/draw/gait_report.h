@@ -39,9 +39,9 @@ struct GaitReport {
   std::string title;
   std::vector<std::string> lead;  ///< the measurement, and its comparisons
   std::vector<Figure> figures;
-  std::vector<Figure> scores;          ///< Movement Analysis Profile; the last is the sides' Gait Profile Score
+  std::vector<Figure> scores;  ///< Movement Analysis Profile; the last is the sides' Gait Profile Score
   std::optional<double> overall_score, overall_before;
-  std::vector<Panel> legs, trunk, forces;       ///< forces: the ground's, joint moments, powers
+  std::vector<Panel> legs, trunk, forces;  ///< forces: the ground's, joint moments, powers
   std::vector<Panel> muscles;
   std::array<std::optional<double>, 2> off_percent;  ///< where the foot leaves the ground
   std::vector<std::string> warnings;

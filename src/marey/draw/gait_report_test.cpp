@@ -32,7 +32,8 @@ TEST(GaitReport, TheLastPerCentEndsWithinItsPanel) {
 TEST(GaitReport, HasASheetForEachPartThatItHas) {
   GaitReport report;
   report.legs.push_back(knee());
-  EXPECT_EQ(count(to_html(report), "class=\"sheet\""), 4U) << "summary, left and right, left, quality: nothing of the right is known";
+  EXPECT_EQ(count(to_html(report), "class=\"sheet\""), 4U)
+      << "summary, left and right, left, quality: nothing of the right is known";
   report.legs[0].sides[1] = report.legs[0].sides[0];
   report.trunk.push_back(knee());
   EXPECT_EQ(count(to_html(report), "class=\"sheet\""), 6U);
@@ -53,8 +54,13 @@ TEST(GaitReport, ShowsScoresAndWhatTheyMean) {
   GaitReport report;
   report.legs.push_back(knee());
   EXPECT_EQ(to_html(report).find("Gait Profile Score"), std::string::npos) << "without a control group";
-  report.scores.push_back({.name = "knee flexion", .unit = "", .mean = {7.25, std::nullopt}, .deviation = {1.0, std::nullopt},
-                           .before = {9.5, std::nullopt}, .reference = 4.4, .reference_deviation = 1.1});
+  report.scores.push_back({.name = "knee flexion",
+                           .unit = "",
+                           .mean = {7.25, std::nullopt},
+                           .deviation = {1.0, std::nullopt},
+                           .before = {9.5, std::nullopt},
+                           .reference = 4.4,
+                           .reference_deviation = 1.1});
   report.overall_score = 6.3;
   const std::string html = to_html(report);
   for (const char* text : {"Gait Profile Score of both sides: 6.3°", "7.2 ± 1.0", "4.4 ± 1.1", ">9.5<"})
@@ -63,7 +69,12 @@ TEST(GaitReport, ShowsScoresAndWhatTheyMean) {
 
 TEST(GaitReport, StatesDifferencesOfSidesInPerCent) {
   GaitReport report;
-  report.figures.push_back({.name = "step length", .unit = "m", .mean = {0.55, 0.45}, .deviation = {}, .before = {}, .reference = {},
+  report.figures.push_back({.name = "step length",
+                            .unit = "m",
+                            .mean = {0.55, 0.45},
+                            .deviation = {},
+                            .before = {},
+                            .reference = {},
                             .reference_deviation = {}});
   const std::string html = to_html(report);
   EXPECT_NE(html.find(">+20.0<"), std::string::npos);

@@ -213,15 +213,15 @@ SignalCurve signal_over_cycles(std::string label, Side side, std::span<const std
   return curve;
 }
 
-GaitCycles gait_cycles(std::span<const GaitEvent> events, std::span<const AngleCurve> angles, const FeetPaths& feet,
-                       double rate_hz, const GaitCycleOptions& options) {
+GaitCycles gait_cycles(std::span<const GaitEvent> events, std::span<const AngleCurve> angles, const FeetPaths& feet, double rate_hz,
+                       const GaitCycleOptions& options) {
   using Cycle = GaitCycles::Cycle;
   GaitCycles result;
   result.cycles = find_cycles(events);
   for (Cycle& cycle : result.cycles) cycle.turn = turn_of(cycle, feet.sacrum, rate_hz);
   if (options.max_turn)
-    result.curved = std::erase_if(
-        result.cycles, [&](const Cycle& cycle) { return !cycle.turn || std::abs(*cycle.turn) > *options.max_turn; });
+    result.curved =
+        std::erase_if(result.cycles, [&](const Cycle& cycle) { return !cycle.turn || std::abs(*cycle.turn) > *options.max_turn; });
   for (const AngleCurve& angle : angles) result.curves.push_back(curve_of(angle, result.cycles, rate_hz));
   const CycleMeasure measure(events, feet, rate_hz);
   const auto time = [](const Cycle& c) { return c.end_s - c.begin_s; };

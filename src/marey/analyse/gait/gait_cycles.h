@@ -26,10 +26,10 @@ using CyclePoints = std::array<double, kCyclePoints>;
 /// One angle over the cycles of its side.
 struct CycleCurve {
   std::string name;
-  std::vector<CyclePoints> cycles;          ///< rad; of a cycle in which it is known throughout, and does not jump
-  CyclePoints mean{}, deviation{};          ///< over the cycles
-  std::size_t unknown = 0, jumping = 0;     ///< cycles of its side that are omitted
-  std::vector<std::size_t> cycle_of = {};   ///< which of `GaitCycles::cycles` each of `cycles` is
+  std::vector<CyclePoints> cycles;         ///< rad; of a cycle in which it is known throughout, and does not jump
+  CyclePoints mean{}, deviation{};         ///< over the cycles
+  std::size_t unknown = 0, jumping = 0;    ///< cycles of its side that are omitted
+  std::vector<std::size_t> cycle_of = {};  ///< which of `GaitCycles::cycles` each of `cycles` is
 };
 
 /// Another signal over the cycles of its side, in its own unit: a force, a moment, a muscle's activity.
@@ -65,8 +65,8 @@ struct GaitCycleOptions {
 };
 
 /// Cycles that last 0.4 to 3 s. Feet are for lengths: a stride is where the heel is at one strike and at the next.
-GaitCycles gait_cycles(std::span<const GaitEvent> events, std::span<const AngleCurve> angles, const FeetPaths& feet,
-                       double rate_hz, const GaitCycleOptions& options = {});
+GaitCycles gait_cycles(std::span<const GaitEvent> events, std::span<const AngleCurve> angles, const FeetPaths& feet, double rate_hz,
+                       const GaitCycleOptions& options = {});
 
 /// The side that a curve's name begins with, and the rest: "left_knee_flexion".
 Side side_of_curve(std::string_view name);

@@ -58,7 +58,8 @@ std::vector<std::string> names_of_curves(std::span<const ReferencePerson> people
   std::vector<std::string> names;
   for (const ReferencePerson& person : people) {
     for (const CycleCurve& curve : person.curves) {
-      if (std::find(names.begin(), names.end(), without_side(curve.name)) == names.end()) names.emplace_back(without_side(curve.name));
+      if (std::find(names.begin(), names.end(), without_side(curve.name)) == names.end())
+        names.emplace_back(without_side(curve.name));
     }
   }
   return names;

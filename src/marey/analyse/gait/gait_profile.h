@@ -1,6 +1,6 @@
 // Gait Profile Score and Movement Analysis Profile (Baker, McGinley, Schwartz, Beynon, Rozumalski, Graham, Tirosh 2009, "The gait
-// profile score and movement analysis profile", Gait & Posture 30:265-269). A gait variable score (GVS) is the RMS difference of one
-// variable over a cycle from the mean of a reference group (their equation 1); the GPS of a side is the RMS of its nine GVS
+// profile score and movement analysis profile", Gait & Posture 30:265-269). A gait variable score (GVS) is the RMS difference of
+// one variable over a cycle from the mean of a reference group (their equation 1); the GPS of a side is the RMS of its nine GVS
 // (equation 2), the overall GPS that of fifteen: both sides' own six, and the pelvis' three of the left cycles. The profile is the
 // nine GVS side by side.
 //
@@ -20,9 +20,9 @@
 namespace marey::analyse::gait {
 
 /// The nine variables of a side, in the order of the paper's figure; the first three are the pelvis'.
-inline constexpr std::array<std::string_view, 9> kProfileVariables = {
-    "pelvis_tilt",  "pelvis_obliquity", "pelvis_rotation",     "hip_flexion",     "hip_adduction",
-    "hip_rotation", "knee_flexion",     "ankle_dorsiflexion", "foot_progression"};
+inline constexpr std::array<std::string_view, 9> kProfileVariables = {"pelvis_tilt",  "pelvis_obliquity",   "pelvis_rotation",
+                                                                      "hip_flexion",  "hip_adduction",      "hip_rotation",
+                                                                      "knee_flexion", "ankle_dorsiflexion", "foot_progression"};
 inline constexpr std::size_t kPelvisVariables = 3;  ///< by definition of the score
 
 /// One person of a reference group: all cycles of both sides, from one recording or several.
@@ -55,7 +55,7 @@ struct VariableScore {
 };
 
 struct GaitProfile {
-  std::vector<VariableScore> variables;  ///< of `kProfileVariables`
+  std::vector<VariableScore> variables;                         ///< of `kProfileVariables`
   std::array<std::optional<double>, 2> score, score_deviation;  ///< GPS of each side; nothing if one of its variables is not known
   std::optional<double> overall;
 };

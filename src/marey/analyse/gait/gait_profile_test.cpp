@@ -139,7 +139,8 @@ TEST(GaitProfile, ScoresPeopleOfTheGroupAgainstTheOthers) {
 
 TEST(GaitProfile, CountsEveryPersonOnceInFigures) {
   const auto person = [](double left, double right) {
-    return ReferencePerson{.name = "", .curves = {}, .figures = {{.name = "speed", .unit = "m/s", .mean = {left, right}, .deviation = {}}}};
+    return ReferencePerson{
+        .name = "", .curves = {}, .figures = {{.name = "speed", .unit = "m/s", .mean = {left, right}, .deviation = {}}}};
   };
   const std::vector<ReferencePerson> people = {person(1, 1.2), person(1.3, 1.3)};
   const std::vector<ReferenceFigure> figures = reference_figures(people);

@@ -180,7 +180,8 @@ MatValue read_matrix(MatBytes bytes, std::size_t depth) {
 }  // namespace
 
 const MatValue* MatValue::field(std::string_view field_name) const {
-  const auto found = std::find_if(children.begin(), children.end(), [&](const MatValue& child) { return child.name == field_name; });
+  const auto found =
+      std::find_if(children.begin(), children.end(), [&](const MatValue& child) { return child.name == field_name; });
   return found == children.end() ? nullptr : &*found;
 }
 

@@ -1,5 +1,5 @@
-// MATLAB's MAT-files of level 5, as much of them as motion capture exports: numbers, texts, cells and structures, compressed or not.
-// Reference: MathWorks, "MAT-File Format", level 5. Files of version 7.3 are HDF5, and refused with the hint.
+// MATLAB's MAT-files of level 5, as much of them as motion capture exports: numbers, texts, cells and structures, compressed or
+// not. Reference: MathWorks, "MAT-File Format", level 5. Files of version 7.3 are HDF5, and refused with the hint.
 #pragma once
 
 #include <cstddef>

@@ -96,7 +96,8 @@ class MotiveHead : private WideTableHead {
 
   /// A rotation X, Y, Z, W and the position that follows it, of one name. Turns as three angles are not read.
   void find_body(std::size_t i) {
-    if (i + 6 >= axes_.size() || axes_[i + 3] != "W" || cell(kinds_, i + 4) != "Position" || cell(names_, i + 4) != cell(names_, i)) {
+    if (i + 6 >= axes_.size() || axes_[i + 3] != "W" || cell(kinds_, i + 4) != "Position" ||
+        cell(names_, i + 4) != cell(names_, i)) {
       if (!std::exchange(angles_, true))
         warn("rotations of its bodies are not quaternions; they are omitted, export with the rotation type Quaternion");
       return;

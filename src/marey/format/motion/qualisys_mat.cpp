@@ -1,6 +1,6 @@
-// Qualisys Track Manager's MAT export: one structure with FrameRate, Frames, Trajectories.Labeled {Count, Labels, Data of markers × 4
-// × frames: x, y, z, residual} and RigidBodies {Name, Positions of bodies × 3 × frames, Rotations of bodies × 9 × frames, column by
-// column}. mm; missing values are NaN. Reference: QTM user manual, "MAT file format".
+// Qualisys Track Manager's MAT export: one structure with FrameRate, Frames, Trajectories.Labeled {Count, Labels, Data of markers ×
+// 4 × frames: x, y, z, residual} and RigidBodies {Name, Positions of bodies × 3 × frames, Rotations of bodies × 9 × frames, column
+// by column}. mm; missing values are NaN. Reference: QTM user manual, "MAT file format".
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -17,7 +17,7 @@
 namespace marey::format::motion {
 namespace {
 
-constexpr double kMatUnitM = 0.001;        // format: mm
+constexpr double kMatUnitM = 0.001;         // format: mm
 constexpr double kMatRotationError = 0.01;  // format: six printed digits are far within it
 
 /// Rows × columns × frames of numbers.
@@ -64,7 +64,8 @@ class QualisysMatReader : public FileReader {
     const std::vector<MatValue> variables = read_mat(bytes, name);
     const MatValue* measurement = nullptr;
     for (const MatValue& variable : variables) {
-      if (variable.field("FrameRate") != nullptr && (variable.field("Trajectories") != nullptr || variable.field("RigidBodies") != nullptr))
+      if (variable.field("FrameRate") != nullptr &&
+          (variable.field("Trajectories") != nullptr || variable.field("RigidBodies") != nullptr))
         measurement = &variable;
     }
     if (measurement == nullptr)
@@ -77,8 +78,8 @@ class QualisysMatReader : public FileReader {
     if (const MatValue* positions = measurement->at("RigidBodies.Positions"); positions != nullptr && !positions->numbers.empty()) {
       const MatValue* rotations = measurement->at("RigidBodies.Rotations");
       if (rotations == nullptr) throw Error("{}: its rigid bodies have no Rotations", name);
-      find_bodies(MatCube(*positions, 3, "positions of rigid bodies", name), MatCube(*rotations, 9, "rotations of rigid bodies", name),
-                  texts_of(measurement->at("RigidBodies.Name")), name);
+      find_bodies(MatCube(*positions, 3, "positions of rigid bodies", name),
+                  MatCube(*rotations, 9, "rotations of rigid bodies", name), texts_of(measurement->at("RigidBodies.Name")), name);
     }
     if (frames() == 0) throw Error("{}: has neither labelled trajectories nor rigid bodies", name);
     if (markers_.frames() > 0 && positions_.frames() > 0 && markers_.frames() != positions_.frames())
@@ -126,7 +127,8 @@ class QualisysMatReader : public FileReader {
     if (at_ >= markers_.frames()) return;
     Sample sample;
     sample.track = info_.tracks[i].id;
-    for (std::size_t axis = 0; axis < 3; ++axis) sample.position[static_cast<Eigen::Index>(axis)] = kMatUnitM * markers_.at(i, axis, at_);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sample.position[static_cast<Eigen::Index>(axis)] = kMatUnitM * markers_.at(i, axis, at_);
     if (!sample.position.allFinite() || sample.position.cwiseAbs().maxCoeff() > 1e6) return;
     const double residual = markers_.at(i, 3, at_);
     if (std::isfinite(residual) && residual > 0) sample.residual_m = kMatUnitM * residual;
@@ -135,7 +137,8 @@ class QualisysMatReader : public FileReader {
 
   void add_body(Instant& instant, std::size_t i) const {
     Matrix<3> rotation;
-    for (std::size_t k = 0; k < 9; ++k) rotation(static_cast<Eigen::Index>(k % 3), static_cast<Eigen::Index>(k / 3)) = rotations_.at(i, k, at_);
+    for (std::size_t k = 0; k < 9; ++k)
+      rotation(static_cast<Eigen::Index>(k % 3), static_cast<Eigen::Index>(k / 3)) = rotations_.at(i, k, at_);
     BodyPose pose;
     pose.body = info_.header.bodies[i].id;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -167,8 +170,9 @@ Format qualisys_mat_format() {
           .title = "a MAT-file of Qualisys Track Manager's",
           .endings = {},
           .holds = Content::space,
-          .detail = "mm; labelled markers and rigid bodies' poses, as Qualisys Track Manager exports them (MAT-file up to version 7). "
-                    "Untested on a maker's file",
+          .detail =
+              "mm; labelled markers and rigid bodies' poses, as Qualisys Track Manager exports them (MAT-file up to version 7). "
+              "Untested on a maker's file",
           .is = [](const Beginning& file) { return file.bytes.starts_with("MATLAB 5.0") || file.bytes.starts_with("MATLAB 7.3"); },
           .open = [](const std::string& path, const ReadOptions&) { return motion::open_qualisys_mat(path); },
           .poses = true};

@@ -1,7 +1,7 @@
-// Qualisys Track Manager's TSV export: lines of a name and its values, "NO_OF_FRAMES 100", then perhaps a line of column headings, then
-// the rows. 3D data are x, y, z of each of MARKER_NAMES; 6D data x, y, z, three angles, the residual and the nine numbers of the
-// rotation matrix, column by column, of each of BODY_NAMES. mm and degrees. A missing point is blank or three zeros, as was chosen.
-// Reference: QTM user manual, "TSV file formats".
+// Qualisys Track Manager's TSV export: lines of a name and its values, "NO_OF_FRAMES 100", then perhaps a line of column headings,
+// then the rows. 3D data are x, y, z of each of MARKER_NAMES; 6D data x, y, z, three angles, the residual and the nine numbers of
+// the rotation matrix, column by column, of each of BODY_NAMES. mm and degrees. A missing point is blank or three zeros, as was
+// chosen. Reference: QTM user manual, "TSV file formats".
 #include <algorithm>
 #include <array>
 #include <map>
@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t kBodyColumns = 16;  // format
 constexpr std::size_t kBodyMatrix = 7;    // format: the first of its nine columns
 constexpr std::array<std::string_view, 13> kTsvKeys = {
-    "NO_OF_FRAMES",  "NO_OF_CAMERAS", "NO_OF_MARKERS", "NO_OF_BODIES", "FREQUENCY",        "NO_OF_ANALOG", "ANALOG_FREQUENCY",
-    "DESCRIPTION",   "TIME_STAMP",    "DATA_INCLUDED", "EVENT",        "TRAJECTORY_TYPES", "REFERENCE"};
+    "NO_OF_FRAMES", "NO_OF_CAMERAS", "NO_OF_MARKERS", "NO_OF_BODIES", "FREQUENCY",        "NO_OF_ANALOG", "ANALOG_FREQUENCY",
+    "DESCRIPTION",  "TIME_STAMP",    "DATA_INCLUDED", "EVENT",        "TRAJECTORY_TYPES", "REFERENCE"};
 
 class QualisysHead : private WideTableHead {
  public:
@@ -85,9 +85,9 @@ class QualisysHead : private WideTableHead {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::size_t first = lead_ + width * i;
       if (bodies_) {
-        add_body(names_[i], {.position_column = first,
-                             .rotation_column = first + kBodyMatrix,
-                             .rotation = WideBody::Rotation::matrix_by_columns});
+        add_body(
+            names_[i],
+            {.position_column = first, .rotation_column = first + kBodyMatrix, .rotation = WideBody::Rotation::matrix_by_columns});
       } else {
         add_marker(names_[i], first);
       }
@@ -111,14 +111,15 @@ std::unique_ptr<FileReader> read_qualisys_tsv(std::string_view text, const std::
 }
 
 Format qualisys_tsv_format() {
-  return {.name = "qualisys-tsv",
-          .title = "a TSV file of Qualisys Track Manager's",
-          .endings = {},
-          .holds = Content::space,
-          .detail = "mm; markers (3D) or rigid bodies' poses (6D), as Qualisys Track Manager exports them. Untested on a maker's file",
-          .is = [](const Beginning& file) { return file.text().starts_with("NO_OF_FRAMES"); },
-          .open = [](const std::string& path, const ReadOptions&) { return motion::open_qualisys_tsv(path); },
-          .poses = true};
+  return {
+      .name = "qualisys-tsv",
+      .title = "a TSV file of Qualisys Track Manager's",
+      .endings = {},
+      .holds = Content::space,
+      .detail = "mm; markers (3D) or rigid bodies' poses (6D), as Qualisys Track Manager exports them. Untested on a maker's file",
+      .is = [](const Beginning& file) { return file.text().starts_with("NO_OF_FRAMES"); },
+      .open = [](const std::string& path, const ReadOptions&) { return motion::open_qualisys_tsv(path); },
+      .poses = true};
 }
 
 }  // namespace marey::format::motion

@@ -19,27 +19,12 @@ struct TheiaSegment {
   std::string_view name, parent;
 };
 // Names of Theia3D 2020 to 2023; newer files have pelvis_shifted and abdomen too.
-constexpr std::array<TheiaSegment, 21> kTheiaSegments = {{{"pelvis", ""},
-                                                          {"abdomen", "pelvis"},
-                                                          {"torso", "abdomen"},
-                                                          {"neck", "torso"},
-                                                          {"head", "neck"},
-                                                          {"l_clavicle", "torso"},
-                                                          {"l_uarm", "l_clavicle"},
-                                                          {"l_larm", "l_uarm"},
-                                                          {"l_hand", "l_larm"},
-                                                          {"r_clavicle", "torso"},
-                                                          {"r_uarm", "r_clavicle"},
-                                                          {"r_larm", "r_uarm"},
-                                                          {"r_hand", "r_larm"},
-                                                          {"l_thigh", "pelvis"},
-                                                          {"l_shank", "l_thigh"},
-                                                          {"l_foot", "l_shank"},
-                                                          {"l_toes", "l_foot"},
-                                                          {"r_thigh", "pelvis"},
-                                                          {"r_shank", "r_thigh"},
-                                                          {"r_foot", "r_shank"},
-                                                          {"r_toes", "r_foot"}}};
+constexpr std::array<TheiaSegment, 21> kTheiaSegments = {
+    {{"pelvis", ""},           {"abdomen", "pelvis"},    {"torso", "abdomen"},  {"neck", "torso"},      {"head", "neck"},
+     {"l_clavicle", "torso"},  {"l_uarm", "l_clavicle"}, {"l_larm", "l_uarm"},  {"l_hand", "l_larm"},   {"r_clavicle", "torso"},
+     {"r_uarm", "r_clavicle"}, {"r_larm", "r_uarm"},     {"r_hand", "r_larm"},  {"l_thigh", "pelvis"},  {"l_shank", "l_thigh"},
+     {"l_foot", "l_shank"},    {"l_toes", "l_foot"},     {"r_thigh", "pelvis"}, {"r_shank", "r_thigh"}, {"r_foot", "r_shank"},
+     {"r_toes", "r_foot"}}};
 constexpr std::array<std::string_view, 5> kNeeded = {"pelvis", "l_thigh", "r_thigh", "l_shank", "r_shank"};
 
 std::string_view parent_name(std::string_view name) {

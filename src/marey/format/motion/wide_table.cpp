@@ -165,9 +165,9 @@ std::optional<BodyPose> WideTableReader::pose_at(const std::vector<std::string_v
   const Eigen::Quaterniond turn = quaternion ? Eigen::Quaterniond(rotation[3], rotation[0], rotation[1], rotation[2])
                                              : Eigen::Quaterniond(Matrix<3>(Eigen::Map<const Matrix<3>>(rotation.data())));
   const Matrix<3> given = Eigen::Map<const Matrix<3>>(rotation.data());
-  const bool is_rotation = quaternion ? std::abs(turn.norm() - 1) < kRotationError
-                                      : (given.transpose() * given - Matrix<3>::Identity()).norm() < kRotationError &&
-                                            given.determinant() > 0;
+  const bool is_rotation =
+      quaternion ? std::abs(turn.norm() - 1) < kRotationError
+                 : (given.transpose() * given - Matrix<3>::Identity()).norm() < kRotationError && given.determinant() > 0;
   if (!is_rotation) return std::nullopt;  // zeros: not tracked
   pose.world_from_body.rotation = turn.normalized().toRotationMatrix();
   return pose;

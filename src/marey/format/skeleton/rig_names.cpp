@@ -106,10 +106,12 @@ std::string side_word(const RigScheme& scheme, Flank side) {
   return left ? "Left" : "Right";
 }
 
-/// Where bones have the names of the joints that they begin at (Xsens MVN, Poser), a shoulder is an upper arm: the collar is by itself.
+/// Where bones have the names of the joints that they begin at (Xsens MVN, Poser), a shoulder is an upper arm: the collar is by
+/// itself.
 void name_shoulders(std::vector<Body>& bodies, const std::string& skeleton) {
   const auto has = [&](std::string_view word) {
-    return std::ranges::any_of(bodies, [&](const Body& body) { return body.skeleton == skeleton && bare(body.label).ends_with(word); });
+    return std::ranges::any_of(bodies,
+                               [&](const Body& body) { return body.skeleton == skeleton && bare(body.label).ends_with(word); });
   };
   if (!has("collar") || !has("elbow")) return;
   for (Body& body : bodies) {

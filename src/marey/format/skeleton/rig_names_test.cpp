@@ -180,8 +180,11 @@ TEST(RigNames, KnowBonesThatHaveJointsNames) {
 
 TEST(RigNames, KnowTheiasSegments) {
   const RigScheme& unreal = rig_scheme("unreal");
-  for (const auto& [theia, name] : std::vector<std::pair<std::string, std::string>>{
-           {"l_uarm", "upperarm_l"}, {"r_larm", "lowerarm_r"}, {"l_larm", "lowerarm_l"}, {"torso", "spine_01"}, {"r_toes", "ball_r"}})
+  for (const auto& [theia, name] : std::vector<std::pair<std::string, std::string>>{{"l_uarm", "upperarm_l"},
+                                                                                    {"r_larm", "lowerarm_r"},
+                                                                                    {"l_larm", "lowerarm_l"},
+                                                                                    {"torso", "spine_01"},
+                                                                                    {"r_toes", "ball_r"}})
     EXPECT_EQ(rig_bone_name(unreal, theia), name) << theia;
 }
 

@@ -62,8 +62,9 @@ solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, co
   for (const std::string& take : options.calibration_takes) {
     std::vector<solve::skeleton::ObservedMarkers> more = all_observed(take, skeleton, options);
     if (const auto differs = other_size(skeleton, std::span(frames).first(own), more))
-      warnings.push_back(fmt::format("{}: {} than in {}: another person, or markers that were put on again? A calibration is of one",
-                                     take, *differs, recording));
+      warnings.push_back(
+          fmt::format("{}: {} than in {}: another person, or markers that were put on again? A calibration is of one", take,
+                      *differs, recording));
     frames.insert(frames.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   solve::skeleton::CalibrateOptions how;

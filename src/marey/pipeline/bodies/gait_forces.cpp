@@ -98,7 +98,7 @@ format::motion::AnalogData read_plates(const std::string& recording, const GaitM
 }
 
 std::vector<gait::SignalCurve> emg_curves(const format::motion::AnalogData& analog, double begin_s,
-                                       std::span<const gait::GaitCycles::Cycle> cycles) {
+                                          std::span<const gait::GaitCycles::Cycle> cycles) {
   std::vector<gait::SignalCurve> curves;
   for (const format::motion::AnalogChannel& channel : analog.channels) {
     const auto side = gait::side_of_label(channel.label);

@@ -123,7 +123,8 @@ GaitKinetics kinetics_in_c3d(const std::string& recording, double rate_hz, std::
       if (found == points.end()) continue;
       std::vector<std::optional<double>> signal;
       for (const auto& row : found->second) signal.push_back(row ? std::optional(one.scale * (*row)[one.axis]) : std::nullopt);
-      gait::SignalCurve curve = gait::signal_over_cycles(std::string(one.title), side, std::span(std::as_const(signal)), rate_hz, 0, cycles);
+      gait::SignalCurve curve =
+          gait::signal_over_cycles(std::string(one.title), side, std::span(std::as_const(signal)), rate_hz, 0, cycles);
       curve.unit = one.unit;
       if (!curve.cycles.empty()) kinetics.curves.push_back(std::move(curve));
     }
@@ -151,7 +152,8 @@ GaitKinetics kinetics_in_tables(std::span<const std::string> paths, double begin
       if (!curve.cycles.empty()) kinetics.curves.push_back(std::move(curve));
     }
     if (!any)
-      throw Error("{}: has no column of a leg's moment or power (hip_flexion_l_moment, …); what marey moments writes is wanted", path);
+      throw Error("{}: has no column of a leg's moment or power (hip_flexion_l_moment, …); what marey moments writes is wanted",
+                  path);
     if (kinetics.curves.empty() && !cycles.empty())
       throw Error("{}: is from {:.2f} to {:.2f} s and holds no whole gait cycle of the walk: not of the same walk?", path,
                   table.times.front(), table.times.back());

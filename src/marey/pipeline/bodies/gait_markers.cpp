@@ -268,7 +268,8 @@ void take_soles(const std::string& path, gait::GaitSubject& subject) {
     const auto above =
         head.number(std::string(side == gait::Side::left ? "PROCESSING:L" : "PROCESSING:R").append("STATICPLANTFLEX"));
     if (!above || *above == 0) continue;
-    const double inwards = head.number(std::string(side == gait::Side::left ? "PROCESSING:L" : "PROCESSING:R").append("STATICROTOFF")).value_or(0);
+    const double inwards =
+        head.number(std::string(side == gait::Side::left ? "PROCESSING:L" : "PROCESSING:R").append("STATICROTOFF")).value_or(0);
     subject.sole_from_ankle_toe[static_cast<std::size_t>(side)] =
         (Eigen::AngleAxisd(-*above, Vector<3>::UnitY()) *
          Eigen::AngleAxisd(side == gait::Side::left ? -inwards : inwards, Vector<3>::UnitZ()))

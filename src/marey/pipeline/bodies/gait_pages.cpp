@@ -18,7 +18,7 @@ namespace {
 using draw::GaitReport;
 
 constexpr double kToDegrees = 180 / std::numbers::pi;  // by definition
-constexpr std::size_t kShownPairs = 8;  // by definition of the page
+constexpr std::size_t kShownPairs = 8;                 // by definition of the page
 
 /// "walks/a.c3d: …": the page names the file, not its folder.
 std::string without_folder(const std::string& sentence) {
@@ -56,7 +56,8 @@ GaitReport::Panel& panel_titled(std::vector<GaitReport::Panel>& panels, const st
 
 /// Whole turns that an angle of another recording is off: its middle is within half a turn of this one's.
 double revolutions_to(const gait::CyclePoints& near, const gait::CyclePoints& points) {
-  return 2 * std::numbers::pi * std::round((near[gait::kCyclePoints / 2] - points[gait::kCyclePoints / 2]) / (2 * std::numbers::pi));
+  return 2 * std::numbers::pi *
+         std::round((near[gait::kCyclePoints / 2] - points[gait::kCyclePoints / 2]) / (2 * std::numbers::pi));
 }
 
 gait::CyclePoints shifted(gait::CyclePoints points, double turns) {
@@ -138,14 +139,15 @@ class ReportOfWalk {
       if (measure_.reference && panel.reference.mean.empty()) {
         for (const gait::ReferenceBand& band : measure_.reference->bands) {
           if (band.name == name)
-            panel.reference = curve_of(shifted(band.mean, revolutions_to(curve.mean, band.mean)), band.deviation, band.people, kToDegrees);
+            panel.reference =
+                curve_of(shifted(band.mean, revolutions_to(curve.mean, band.mean)), band.deviation, band.people, kToDegrees);
         }
       }
       if (before() == nullptr) continue;
       for (const gait::CycleCurve& earlier : before()->cycles.curves) {
         if (earlier.name == curve.name && !earlier.cycles.empty())
-          side.before = curve_of(shifted(earlier.mean, revolutions_to(curve.mean, earlier.mean)), earlier.deviation, earlier.cycles.size(),
-                                 kToDegrees);
+          side.before = curve_of(shifted(earlier.mean, revolutions_to(curve.mean, earlier.mean)), earlier.deviation,
+                                 earlier.cycles.size(), kToDegrees);
       }
     }
   }
@@ -178,12 +180,12 @@ class ReportOfWalk {
   void add_figures() {
     for (const gait::GaitFigure& figure : measure_.cycles.figures) {
       GaitReport::Figure& row = report_.figures.emplace_back(GaitReport::Figure{.name = figure.name,
-                                                                               .unit = figure.unit,
-                                                                               .mean = figure.mean,
-                                                                               .deviation = figure.deviation,
-                                                                               .before = {},
-                                                                               .reference = {},
-                                                                               .reference_deviation = {}});
+                                                                                .unit = figure.unit,
+                                                                                .mean = figure.mean,
+                                                                                .deviation = figure.deviation,
+                                                                                .before = {},
+                                                                                .reference = {},
+                                                                                .reference_deviation = {}});
       if (measure_.reference) {
         for (const gait::ReferenceFigure& of : measure_.reference->figures) {
           if (of.name != figure.name) continue;
@@ -213,12 +215,12 @@ class ReportOfWalk {
   void add_score(const std::string& name, const std::string& title, const std::array<std::optional<double>, 2>& mean,
                  const std::array<std::optional<double>, 2>& deviation, const std::array<std::optional<double>, 2>& earlier) {
     GaitReport::Figure& row = report_.scores.emplace_back(GaitReport::Figure{.name = title,
-                                                                            .unit = "",
-                                                                            .mean = degrees(mean),
-                                                                            .deviation = degrees(deviation),
-                                                                            .before = degrees(earlier),
-                                                                            .reference = {},
-                                                                            .reference_deviation = {}});
+                                                                             .unit = "",
+                                                                             .mean = degrees(mean),
+                                                                             .deviation = degrees(deviation),
+                                                                             .before = degrees(earlier),
+                                                                             .reference = {},
+                                                                             .reference_deviation = {}});
     for (const gait::ReferenceScore& of : measure_.reference->scores) {
       if (of.name != name) continue;
       row.reference = of.mean * kToDegrees;
@@ -244,9 +246,11 @@ class ReportOfWalk {
   void add_quality() {
     const GaitQuality& quality = measure_.quality;
     std::vector<std::string>& sentences = report_.quality;
-    sentences.push_back(fmt::format("Markers: {} of the set in the file, {} of them missing at some time.", quality.markers,
-                                    quality.gaps.size()));
-    if (!quality.absent.empty()) sentences.push_back(fmt::format("Of the full set these are not in the file, and not all of them are needed: {}.", fmt::join(quality.absent, ", ")));
+    sentences.push_back(
+        fmt::format("Markers: {} of the set in the file, {} of them missing at some time.", quality.markers, quality.gaps.size()));
+    if (!quality.absent.empty())
+      sentences.push_back(fmt::format("Of the full set these are not in the file, and not all of them are needed: {}.",
+                                      fmt::join(quality.absent, ", ")));
     if (measure_.forces.feet[0].empty()) {
       sentences.emplace_back("Events are by kinematics: there are no force plates.");
     } else {
@@ -259,9 +263,10 @@ class ReportOfWalk {
                                         std::abs(1000 * strikes.mean_s), strikes.mean_s < 0 ? "before" : "after", strikes.count));
     }
     if (!measure_.ground.empty())
-      sentences.push_back(fmt::format("The ground's force is in the walking direction, to the other foot, and upwards, of cycles whose "
-                                      "stance is one contact with a plate{}.",
-                                      measure_.mass_kg ? fmt::format("; the mass is {:.1f} kg", *measure_.mass_kg) : ""));
+      sentences.push_back(
+          fmt::format("The ground's force is in the walking direction, to the other foot, and upwards, of cycles whose "
+                      "stance is one contact with a plate{}.",
+                      measure_.mass_kg ? fmt::format("; the mass is {:.1f} kg", *measure_.mass_kg) : ""));
     if (!measure_.kinetics.source.empty()) sentences.push_back(measure_.kinetics.source);
     if (!measure_.muscles.empty())
       sentences.emplace_back("Muscles: rectified above 20 Hz, low-passed at 6 Hz, in the channel's unit.");
@@ -273,7 +278,8 @@ class ReportOfWalk {
 
   /// Of each joint how many cycles are in its mean.
   void add_cycle_table() {
-    draw::PageTable table{.title = "Cycles in the means", .head = {"", "left", "right", "omitted, left", "omitted, right"}, .rows = {}};
+    draw::PageTable table{
+        .title = "Cycles in the means", .head = {"", "left", "right", "omitted, left", "omitted, right"}, .rows = {}};
     table.bars_end = 0;
     for (const gait::CycleCurve& curve : measure_.cycles.curves) {
       if (gait::side_of_curve(curve.name) != gait::Side::left) continue;

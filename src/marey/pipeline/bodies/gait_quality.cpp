@@ -17,8 +17,13 @@ std::optional<GaitQuality::Pair> pair_of(const GaitMarkers& walk, const gait::Ma
   }
   if (distances.empty()) return std::nullopt;
   std::sort(distances.begin(), distances.end());
-  const auto at = [&](double fraction) { return distances[static_cast<std::size_t>(fraction * static_cast<double>(distances.size() - 1))]; };
-  GaitQuality::Pair pair{.first = std::string(first), .second = std::string(second), .distance_m = at(0.5), .range_m = at(0.95) - at(0.05),
+  const auto at = [&](double fraction) {
+    return distances[static_cast<std::size_t>(fraction * static_cast<double>(distances.size() - 1))];
+  };
+  GaitQuality::Pair pair{.first = std::string(first),
+                         .second = std::string(second),
+                         .distance_m = at(0.5),
+                         .range_m = at(0.95) - at(0.05),
                          .to_static_m = {}};
   const auto a = standing.find(first), b = standing.find(second);
   if (a != standing.end() && b != standing.end()) pair.to_static_m = pair.distance_m - (a->second - b->second).norm();

@@ -18,9 +18,9 @@ struct GaitQuality {
   /// Two markers of one segment: skin moves over bone by some millimetres, a swapped or moved marker shows as more.
   struct Pair {
     std::string first, second;
-    double distance_m = 0;               ///< median over the walk
-    double range_m = 0;                  ///< between the 5th and the 95th percentile
-    std::optional<double> to_static_m;   ///< the walk's median less the static trial's distance
+    double distance_m = 0;              ///< median over the walk
+    double range_m = 0;                 ///< between the 5th and the 95th percentile
+    std::optional<double> to_static_m;  ///< the walk's median less the static trial's distance
   };
 
   std::size_t markers = 0;          ///< of the set that are in the recording

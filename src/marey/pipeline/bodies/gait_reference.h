@@ -1,7 +1,7 @@
 // A control group to compare a walk with: a folder of recordings, read as the walk itself is.
 //
-// Each folder within it is a person: walks, and a static trial whose name begins with "static" or "standing". Recordings directly in
-// it are one person each, without a static trial. A cycle that turns is omitted: the group is of straight walking.
+// Each folder within it is a person: walks, and a static trial whose name begins with "static" or "standing". Recordings directly
+// in it are one person each, without a static trial. A cycle that turns is omitted: the group is of straight walking.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +25,8 @@ struct GaitReference {
   std::vector<std::string> warnings;                  ///< recordings that are omitted, and why
 };
 
-/// With the axis that is up, and the steps' options, of `options`. Throws Error if the folder has no walk that can be used, with the
-/// reason of its first file.
+/// With the axis that is up, and the steps' options, of `options`. Throws Error if the folder has no walk that can be used, with
+/// the reason of its first file.
 GaitReference read_gait_reference(const std::string& folder, const GaitOptions& options, const Hooks& hooks = {});
 
 /// Rad; a cycle that turns by more is not in a reference.

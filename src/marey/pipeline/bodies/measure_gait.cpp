@@ -25,7 +25,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 // kg/m², physical: beyond what living people have been reported with.
 constexpr double kMinBodyMassIndex = 7, kMaxBodyMassIndex = 110;
 constexpr double kMaxStandingFlexion = 20 * std::numbers::pi / 180;  // rad: bench/tuning.md
-constexpr double kStandardGravity = 9.80665;  // m/s², by definition
+constexpr double kStandardGravity = 9.80665;                         // m/s², by definition
 
 /// Where the person walks to: the middle of the hips, over half a second on either side.
 Vector<2> heading_at(const gait::MarkerPath& sacrum, std::size_t row, double rate_hz) {
@@ -201,10 +201,10 @@ void warn_of_crouch(const gait::MarkerPositions& standing, const std::string& pa
   for (std::size_t a = 0; a < angles.size(); ++a) {
     const std::string& name = gait::angle_names()[a];
     if (!name.ends_with("_knee_flexion") || !angles[a] || *angles[a] < kMaxStandingFlexion) continue;
-    measure.warnings.push_back(fmt::format("{}: the {} knee is bent by {:.0f}° in the static trial; does the person stand in a crouch? "
-                                           "Hips' centres follow from legs' lengths, which are too short then: give --leg-length",
-                                           path, gait::side_of_curve(name) == gait::Side::left ? "left" : "right",
-                                           *angles[a] * kDegrees));
+    measure.warnings.push_back(
+        fmt::format("{}: the {} knee is bent by {:.0f}° in the static trial; does the person stand in a crouch? "
+                    "Hips' centres follow from legs' lengths, which are too short then: give --leg-length",
+                    path, gait::side_of_curve(name) == gait::Side::left ? "left" : "right", *angles[a] * kDegrees));
   }
 }
 
@@ -215,9 +215,10 @@ void add_kinetics(const std::string& recording, const gait::FeetPaths& feet, con
   measure.mass_kg = options.mass_kg ? options.mass_kg : size.mass_kg;
   if (const double index = size.height_m ? measure.mass_kg.value_or(0) / (*size.height_m * *size.height_m) : 0;
       index > 0 && (index < kMinBodyMassIndex || index > kMaxBodyMassIndex))
-    measure.warnings.push_back(fmt::format("{}: {:g} kg at a height of {:.2f} m are not a person's (body mass index {:.1f}); forces in % "
-                                           "of weight and moments per kg are wrong by as much",
-                                           recording, *measure.mass_kg, *size.height_m, index));
+    measure.warnings.push_back(
+        fmt::format("{}: {:g} kg at a height of {:.2f} m are not a person's (body mass index {:.1f}); forces in % "
+                    "of weight and moments per kg are wrong by as much",
+                    recording, *measure.mass_kg, *size.height_m, index));
   measure.ground = gait::ground_reaction_curves(measure.forces, measure.forces_begin_s - measure.begin_s, measure.cycles.cycles,
                                                 feet.sacrum, measure.rate_hz);
   if (measure.mass_kg) {
@@ -249,8 +250,9 @@ void add_comparison(const std::string& recording, const GaitOptions& options, co
       return cycle.turn && std::abs(*cycle.turn) > max_reference_turn();
     });
     if (turning > 0)
-      measure.warnings.push_back(fmt::format("{}: {} of {} cycles turn by more than {:.0f}°; the reference has straight walking alone",
-                                             recording, turning, measure.cycles.cycles.size(), max_reference_turn() * kDegrees));
+      measure.warnings.push_back(
+          fmt::format("{}: {} of {} cycles turn by more than {:.0f}°; the reference has straight walking alone", recording, turning,
+                      measure.cycles.cycles.size(), max_reference_turn() * kDegrees));
   }
   if (options.before.empty()) return;
   GaitOptions earlier = options;

@@ -26,11 +26,11 @@ struct GaitOptions {
   analyse::gait::GaitSubject subject = {};  ///< given measures; a C3D file's own measures (PROCESSING) fill in the rest
   analyse::gait::GaitEventOptions events = {};
   analyse::gait::GaitCycleOptions cycles = {};
-  std::optional<double> mass_kg = {};  ///< the person's; a C3D file's own (PROCESSING) where it is not given
+  std::optional<double> mass_kg = {};           ///< the person's; a C3D file's own (PROCESSING) where it is not given
   std::vector<std::string> joint_moments = {};  ///< tables of joint moments and powers; empty: the C3D file's own
-  std::string reference = {};             ///< a folder of a control group; empty: none
-  std::string before = {};                ///< a walk of the same person at an earlier session; empty: none
-  std::string before_static = {};         ///< its static trial
+  std::string reference = {};                   ///< a folder of a control group; empty: none
+  std::string before = {};                      ///< a walk of the same person at an earlier session; empty: none
+  std::string before_static = {};               ///< its static trial
 };
 
 struct GaitOutput {
@@ -51,9 +51,9 @@ struct GaitMeasure {
   std::vector<analyse::gait::AngleCurve> angles;
   std::vector<analyse::gait::GaitEvent> events;
   analyse::gait::GaitCycles cycles;
-  analyse::gait::FootForces forces;              ///< of force plates; empty if it has no plates
-  double forces_begin_s = 0;                     ///< the recording's time of their first sample
-  analyse::gait::PreferredEvents by_force;       ///< how events by force differ from those by kinematics, which they replace
+  analyse::gait::FootForces forces;                 ///< of force plates; empty if it has no plates
+  double forces_begin_s = 0;                        ///< the recording's time of their first sample
+  analyse::gait::PreferredEvents by_force;          ///< how events by force differ from those by kinematics, which they replace
   std::vector<analyse::gait::SignalCurve> muscles;  ///< over the cycles
   std::vector<analyse::gait::SignalCurve> ground;   ///< the ground's force, N, or % of the body's weight where its mass is known
   GaitKinetics kinetics;
