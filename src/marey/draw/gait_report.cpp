@@ -52,6 +52,7 @@ PageTable figures_table(const std::string& title, const std::vector<GaitReport::
                   .rows = {}};
   table.groups = {"", "", "", "", "", "before", "before"};
   table.bars_end = 0;
+  table.cards = true;
   for (const GaitReport::Figure& figure : figures) {
     const int decimals = percent ? decimals_of(figure) : 1;
     const auto before = [&](std::size_t side) {

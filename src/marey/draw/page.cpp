@@ -78,9 +78,10 @@ class TableHtml {
     const std::string title = xml_escaped(table_.title);
     text_ = table_.folded ? fmt::format("<details><summary>{}: {}</summary>", title, table_.rows.size())
                           : fmt::format("<h2>{}</h2>", title);
-    text_ += fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMaxHalf     ? " class=\"wide cards\""
-                                                                   : columns_.size() > kMaxNarrow ? " class=\"cards\""
-                                                                                                  : "");
+    text_ +=
+        fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMaxHalf ? " class=\"wide cards\""
+                                                              : columns_.size() > kMaxNarrow || table_.cards ? " class=\"cards\""
+                                                                                                             : "");
     write_groups();
     write_head();
     text_ += "</thead><tbody>\n";

@@ -46,35 +46,47 @@ std::optional<Vector<3>> median_offset(std::size_t parent, std::size_t child, st
   return Vector<3>(geometry::median(along[0]), geometry::median(along[1]), geometry::median(along[2]));
 }
 
+/// In the order that they have, but each behind its parent.
+void parents_first(std::vector<Body>& bodies) {
+  std::vector<Body> ordered;
+  std::vector<bool> placed(bodies.size(), false);
+  const auto is_placed = [&](BodyId id) {
+    return std::any_of(ordered.begin(), ordered.end(), [&](const Body& b) { return b.id == id; });
+  };
+  while (ordered.size() < bodies.size()) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (placed[i] || (bodies[i].parent && !is_placed(*bodies[i].parent))) continue;
+      placed[i] = true;
+      ordered.push_back(bodies[i]);
+    }
+  }
+  bodies = std::move(ordered);
+}
+
 }  // namespace
 
 bool hang_theia_segments(std::vector<Body>& bodies, std::size_t frames, const PoseInFrame& pose) {
   std::map<std::string, std::size_t, std::less<>> index;
   for (std::size_t i = 0; i < bodies.size(); ++i) index.emplace(bodies[i].label, i);
   if (!std::all_of(kNeeded.begin(), kNeeded.end(), [&](std::string_view name) { return index.contains(name); })) return false;
-  std::vector<Body> hung;
-  std::vector<bool> taken(bodies.size(), false);
-  for (const TheiaSegment& segment : kTheiaSegments) {
+  std::vector<bool> hung(bodies.size(), false);
+  for (const TheiaSegment& segment : kTheiaSegments) {  // parents before children
     const auto found = index.find(segment.name);
     if (found == index.end()) continue;
+    Body& body = bodies[found->second];
     std::string_view above = segment.parent;
     while (!above.empty() && !index.contains(above)) above = parent_name(above);  // a torso without an abdomen hangs on the pelvis
-    Body body = bodies[found->second];
-    body.skeleton = "theia";
     if (!above.empty()) {
       const std::size_t parent = index.find(above)->second;
-      const auto offset = taken[parent] ? median_offset(parent, found->second, frames, pose) : std::nullopt;
+      const auto offset = hung[parent] ? median_offset(parent, found->second, frames, pose) : std::nullopt;
       if (!offset) continue;
       body.parent = bodies[parent].id;
       body.offset = *offset;
     }
-    hung.push_back(std::move(body));
-    taken[found->second] = true;
+    body.skeleton = "theia";
+    hung[found->second] = true;
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!taken[i]) hung.push_back(std::move(bodies[i]));
-  }
-  bodies = std::move(hung);
+  parents_first(bodies);
   return true;
 }
 

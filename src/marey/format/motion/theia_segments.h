@@ -16,8 +16,8 @@ namespace marey::format::motion {
 using PoseInFrame = std::function<std::optional<Rigid3>(std::size_t frame, std::size_t body)>;
 
 /// Hangs the bodies that are Theia's segments on each other, parents first, with the median offset over the frames. False, and
-/// nothing is changed, if pelvis, thighs and shanks of both sides are not all there. Bodies of other names stay by themselves,
-/// behind.
+/// nothing is changed, if pelvis, thighs and shanks of both sides are not all there. Bodies of other names stay by themselves.
+/// The order stays, if parents come before children.
 bool hang_theia_segments(std::vector<Body>& bodies, std::size_t frames, const PoseInFrame& pose);
 
 }  // namespace marey::format::motion

@@ -281,6 +281,7 @@ class ReportOfWalk {
     draw::PageTable table{
         .title = "Cycles in the means", .head = {"", "left", "right", "omitted, left", "omitted, right"}, .rows = {}};
     table.bars_end = 0;
+    table.cards = true;
     for (const gait::CycleCurve& curve : measure_.cycles.curves) {
       if (gait::side_of_curve(curve.name) != gait::Side::left) continue;
       const std::string_view name = gait::without_side(curve.name);
@@ -307,6 +308,7 @@ class ReportOfWalk {
                           .head = {"markers", "distance, mm", "90 % of the walk within, mm", "walk − static trial, mm"},
                           .rows = {}};
     pairs.bars_end = 0;
+    pairs.cards = true;
     for (std::size_t i = 0; i < std::min(kShownPairs, measure_.quality.pairs.size()); ++i) {
       const GaitQuality::Pair& pair = measure_.quality.pairs[i];
       pairs.rows.push_back({pair.first + " to " + pair.second, fmt::format("{:.0f}", 1000 * pair.distance_m),
