@@ -43,7 +43,7 @@ std::vector<fs::path> entries_of(const fs::path& folder, bool folders) {
 bool is_static_trial(const fs::path& file) {
   std::string name = file.filename().string();
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name.starts_with("static") || name.starts_with("standing");
+  return name.find("static") != std::string::npos || name.find("standing") != std::string::npos;
 }
 
 std::vector<PersonFiles> people_in(const std::string& folder) {

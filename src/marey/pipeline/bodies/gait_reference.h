@@ -1,6 +1,6 @@
 // A control group to compare a walk with: a folder of recordings, read as the walk itself is.
 //
-// Each folder within it is a person: walks, and a static trial whose name begins with "static" or "standing". Recordings directly
+// Each folder within it is a person: walks, and a static trial whose name contains "static" or "standing". Recordings directly
 // in it are one person each, without a static trial. A cycle that turns is omitted: the group is of straight walking.
 #pragma once
 
