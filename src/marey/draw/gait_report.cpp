@@ -48,7 +48,8 @@ std::string asymmetry(const GaitReport::Figure& figure) {
 /// Columns that no row has are empty, and the page omits them.
 PageTable figures_table(const std::string& title, const std::vector<GaitReport::Figure>& figures, bool percent) {
   PageTable table{.title = title,
-                  .head = {"", "left", "right", percent ? "left − right, %" : "left − right", "control group", "left", "right"},
+                  .head = {percent ? "figure" : "variable", "left", "right", percent ? "left − right, %" : "left − right",
+                           "control group", "left", "right"},
                   .rows = {}};
   table.groups = {"", "", "", "", "", "before", "before"};
   table.bars_end = 0;

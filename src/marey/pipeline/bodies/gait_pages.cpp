@@ -279,7 +279,7 @@ class ReportOfWalk {
   /// Of each joint how many cycles are in its mean.
   void add_cycle_table() {
     draw::PageTable table{
-        .title = "Cycles in the means", .head = {"", "left", "right", "omitted, left", "omitted, right"}, .rows = {}};
+        .title = "Cycles in the means", .head = {"angle", "left", "right", "omitted, left", "omitted, right"}, .rows = {}};
     table.bars_end = 0;
     table.cards = true;
     for (const gait::CycleCurve& curve : measure_.cycles.curves) {
