@@ -271,7 +271,7 @@ class Skeleton(unittest.TestCase):
         self.assertIn("at times no marker shows these to 10°: ", self.marey(*solve).stderr)
 
     def test_two_people_in_one_calibration_are_named(self):
-        """Subjects 01 and 02 are within 13 mm of each other in every segment, and are not told apart; 04 is 40 mm off."""
+        """Subjects 01 and 02 are within 13 mm of each other in every segment, and are not distinguished; 04 is 40 mm off."""
         models = DATA / "arnold_synthetic"
         solve = ("solve", models / "subject01/markers.trc", "--up", "y", "--skeleton", models / "unscaled_generic.osim", "--calibrate", "-o", "a.mot", "-q")
         other = self.marey(*solve, "--calibration-take", models / "subject04/markers.trc").stderr
