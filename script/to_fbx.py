@@ -33,6 +33,16 @@ def rate_of_glb(path):
     return (times["count"] - 1) / span if span > 0 else 30
 
 
+def begin_at_zero(actions):
+    """Blender puts the first frame of a BVH file on 1, and a GLB file's time 0 on frame 0."""
+    first = min((action.frame_range[0] for action in actions), default=0)
+    for action in actions:
+        for curve in action.fcurves:
+            for key in curve.keyframe_points:
+                for point in (key.co, key.handle_left, key.handle_right):
+                    point.x -= first
+
+
 def main():
     source, target = map(pathlib.Path, sys.argv[1:])
     try:
@@ -52,6 +62,7 @@ def main():
             bpy.ops.import_scene.gltf(filepath=str(source))
     except RuntimeError as problem:
         fail(f"{source}: Blender does not read it: {str(problem).strip()}")
+    begin_at_zero(bpy.data.actions)
     actions = [action.frame_range for action in bpy.data.actions]
     if not actions:
         fail(f"{source}: holds no motion")

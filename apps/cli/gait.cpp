@@ -1,6 +1,7 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,6 +66,54 @@ Json forces_json(const pipeline::bodies::GaitMeasure& measure) {
           {"kinematic_offs_against_force", difference(measure.by_force.offs)}};
 }
 
+constexpr double kDegreesOfRadian = 180 / std::numbers::pi;
+
+void print_profile(const pipeline::bodies::GaitMeasure& measure) {
+  if (!measure.profile) return;
+  const gait::GaitProfile& profile = *measure.profile;
+  const auto degrees = [](const std::optional<double>& score) {
+    return score ? fmt::format("{:.1f}", *score * kDegreesOfRadian) : std::string("-");
+  };
+  for (const gait::VariableScore& variable : profile.variables)
+    fmt::print("{:<22} {:>10} {:>10} deg RMS\n", variable.name, degrees(variable.mean[0]), degrees(variable.mean[1]));
+  fmt::print("{:<22} {:>10} {:>10} deg, of both {}{}\n", "Gait Profile Score", degrees(profile.score[0]), degrees(profile.score[1]),
+             degrees(profile.overall),
+             measure.before && measure.before->profile ? ", before " + degrees(measure.before->profile->overall) : "");
+}
+
+Json profile_json(const pipeline::bodies::GaitMeasure& measure) {
+  if (!measure.profile) return nullptr;
+  const auto degrees = [](const std::optional<double>& score) -> Json {
+    return score ? Json(*score * kDegreesOfRadian) : Json(nullptr);
+  };
+  const auto sides = [&](const auto& mean, const auto& deviation) {
+    return Json{{"left_deg", degrees(mean[0])},
+                {"right_deg", degrees(mean[1])},
+                {"left_deviation_deg", degrees(deviation[0])},
+                {"right_deviation_deg", degrees(deviation[1])}};
+  };
+  Json variables = Json::object();
+  for (const gait::VariableScore& variable : measure.profile->variables)
+    variables[variable.name] = sides(variable.mean, variable.deviation);
+  Json json = sides(measure.profile->score, measure.profile->score_deviation);
+  json["overall_deg"] = degrees(measure.profile->overall);
+  json["variables"] = std::move(variables);
+  return json;
+}
+
+Json reference_json(const pipeline::bodies::GaitMeasure& measure) {
+  if (!measure.reference) return nullptr;
+  const pipeline::bodies::GaitReference& group = *measure.reference;
+  Json scores = Json::object();
+  for (const gait::ReferenceScore& score : group.scores)
+    scores[score.name] = {{"mean_deg", score.mean * kDegreesOfRadian}, {"deviation_deg", score.deviation * kDegreesOfRadian}};
+  return {{"people", group.people.size()},
+          {"walks", group.walks},
+          {"cycles", group.cycles},
+          {"turning_cycles", group.curved},
+          {"scores", scores}};
+}
+
 void print_gait(const pipeline::bodies::GaitMeasure& measure) {
   int strikes = 0, offs = 0;
   for (const gait::GaitEvent& event : measure.events) ++(event.strike ? strikes : offs);
@@ -78,6 +127,19 @@ void print_gait(const pipeline::bodies::GaitMeasure& measure) {
     };
     fmt::print("{:<22} {:>10} {:>10} {}\n", figure.name, shown(0), shown(1), figure.unit);
   }
+  print_profile(measure);
+}
+
+/// The earlier session's figures and scores.
+Json before_json(const pipeline::bodies::GaitMeasure& measure) {
+  if (!measure.before) return nullptr;
+  Json figures = Json::object();
+  for (const gait::GaitFigure& figure : measure.before->cycles.figures)
+    figures[figure.name] = {{"left", figure.mean[0]}, {"right", figure.mean[1]}, {"unit", figure.unit}};
+  return {{"recording", measure.before_name},
+          {"cycles", measure.before->cycles.cycles.size()},
+          {"figures", figures},
+          {"profile", profile_json(*measure.before)}};
 }
 
 Json gait_json(const pipeline::bodies::GaitMeasure& measure) {
@@ -96,6 +158,9 @@ Json gait_json(const pipeline::bodies::GaitMeasure& measure) {
           {"events", events},
           {"figures", figures},
           {"force_plates", forces_json(measure)},
+          {"profile", profile_json(measure)},
+          {"reference", reference_json(measure)},
+          {"before", before_json(measure)},
           {"warnings", measure.warnings}};
 }
 
@@ -146,10 +211,19 @@ void add_gait(Command& program) {
   using Axis = std::optional<format::UpAxis>;
   constexpr std::array<std::pair<const char*, Axis>, 2> kAxes{{{"y", format::UpAxis::y}, {"z", format::UpAxis::z}}};
   command.choice("--up", options->options.up, kAxes, "the axis that is up in RECORDING; as it says where this is omitted, else z");
+  command.input_files("--moments", options->options.joint_moments,
+                      "joint moments and powers of the walk for --report (.sto of marey moments); omitted: the C3D file's own");
+  command.group("Compared with");
+  command.input_file("--reference", options->options.reference,
+                     "a control group: a folder for each person, with walks and a static trial (static….c3d); gives its band, the "
+                     "Gait Profile Score and the Movement Analysis Profile");
+  const Option before = command.input_file("--before", options->options.before, "a walk of the same person at an earlier session");
+  command.input_file("--before-static", options->options.before_static, "the static trial of that session").needs(before);
   command.group("The person, where the files do not specify");
   command.number("--leg-length", options->leg_length, "m", above(0, 2), "from the hip's front spine to the inner ankle");
   command.number("--knee-width", options->knee_width, "m", above(0, 0.5), "across its sides");
   command.number("--ankle-width", options->ankle_width, "m", above(0, 0.5), "across its sides");
+  command.number("--mass", options->options.mass_kg, "kg", {1, 500}, "for forces in % of weight, and moments per kg");
   command.group("");
   command.reports(options->json, options->quiet, "figures");
   command.runs([options] { run(*options); });

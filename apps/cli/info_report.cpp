@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include <fmt/core.h>
@@ -102,6 +104,17 @@ std::vector<std::string> cameras_of(const Recording& recording) {
   return names;
 }
 
+/// "theia (20 segments)".
+std::string skeletons_of(const std::vector<Body>& bodies) {
+  std::map<std::string, int> segments;
+  for (const Body& body : bodies) {
+    if (!body.skeleton.empty()) ++segments[body.skeleton];
+  }
+  std::string text;
+  for (const auto& [name, count] : segments) text += fmt::format("{}{} ({} segments)", text.empty() ? "" : ", ", name, count);
+  return text;
+}
+
 }  // namespace
 
 std::string files_that_are_known() {
@@ -168,6 +181,7 @@ void print_recording(const std::string& path, const format::Format& format, cons
                                   percent(predicted, summary.samples)));
   if (format.name == "take") print_row("observations", counted(summary.detected));
   if (!info.header.bodies.empty()) print_row("bodies", names_of(info.header.bodies));
+  print_row("skeletons", skeletons_of(info.header.bodies));
   if (info.next_to.channels > 0) print_row("analog", fmt::format("{} channels", info.next_to.channels));
   if (info.next_to.events > 0) print_row("events", fmt::format("{}", info.next_to.events));
   print_row("positions", to_string(info.header.frame) + (y_grows_down(info.header) ? "; y grows downwards" : ""));

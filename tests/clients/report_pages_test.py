@@ -58,7 +58,8 @@ def make_pages(marey, folder):
         return pages
     static = next(iter(sorted(walk.parent.glob("static*.c3d"))))
     run("gait", walk, "--static-trial", static, "-o", "cycles.csv", "--report", "gait.html")
-    return pages | {"gait": folder / "gait.html"}
+    run("gait", walk, "--static-trial", static, "--reference", walks, "--before", next(iter(sorted(walk.parent.glob("turn*.c3d")))), "--before-static", static, "--report", "compared.html")
+    return pages | {"gait": folder / "gait.html", "compared": folder / "compared.html"}
 
 
 def main(marey, folder):

@@ -1,4 +1,4 @@
-// TRC and the three kinds of CSV: whatever a file holds, reading it ends in frames or in one Error, by growing index, each marker
+// TRC and the kinds of CSV and TSV: whatever a file holds, reading it ends in frames or in one Error, by growing index, each marker
 // once.
 #include <array>
 #include <cstdint>
@@ -33,8 +33,9 @@ void walk(marey::format::FileReader& reader) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  for (const auto read : {marey::format::motion::read_trc, marey::format::motion::read_tidy_csv,
-                          marey::format::motion::read_motive_csv, marey::format::motion::read_nexus_csv}) {
+  for (const auto read :
+       {marey::format::motion::read_trc, marey::format::motion::read_tidy_csv, marey::format::motion::read_motive_csv,
+        marey::format::motion::read_nexus_csv, marey::format::motion::read_qualisys_tsv}) {
     try {
       walk(*read(text, "file"));
     } catch (const marey::Error& error) {

@@ -39,6 +39,13 @@ for frame in range(int(sys.argv[4])):
 print('PLACES ' + json.dumps(places))
 """
 
+FIRST = """
+import bpy, sys
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.ops.import_scene.fbx(filepath=sys.argv[1])
+print('FIRST', min(round(action.frame_range[0], 3) for action in bpy.data.actions))
+"""
+
 
 class InBlender(unittest.TestCase):
     @classmethod
@@ -74,13 +81,16 @@ class InBlender(unittest.TestCase):
             self.assertLess(self.farthest(path), 0.1)
 
     def test_fbx_has_them_too(self):
+        firsts = []
         for path in ("walk.bvh", "walk.glb"):
             said = self.run_in(ROOT / "script/to-fbx", path, "walk.fbx").stderr
             self.assertIn(f"{FRAMES} frames at {RATE} Hz", said)
             self.assertLess(self.farthest("walk.fbx"), 0.1)
+            firsts.append(self.run_in(PYTHON, "-c", FIRST, "walk.fbx").stdout.split("FIRST ")[1].split()[0])
+        self.assertEqual(firsts, ["1.0", "1.0"], "Blender imports an FBX file's frame 0 as frame 1")
 
     def test_what_is_no_motion_is_stated(self):
-        for name, content, words in (("a.bvh", "HIERARCHY\nROOT a\n{\n}\n", "holds no motion"), ("a.glb", "glTF", "is damaged"), ("b.glb", "x", "no GLB file"),
+        for name, content, words in (("a.bvh", "HIERARCHY\nROOT a\n{\n}\n", "holds no motion"), ("a.glb", "glTF", "is damaged"), ("b.glb", "x", "is not a GLB file"),
                                      ("b.bvh", "Frame Time: zero\n", "is damaged")):
             (self.folder / name).write_text(content)
             self.assertIn(words, self.run_in(ROOT / "script/to-fbx", name, "x.fbx", code=1).stderr)

@@ -5,110 +5,197 @@
 
 #include <fmt/format.h>
 
+#include "marey/draw/gait_charts.h"
 #include "marey/draw/page.h"
-#include "marey/draw/svg.h"
+#include "marey/files/text_safety.h"
 
 namespace marey::draw {
 namespace {
 
-constexpr double kPanelWidth = 300, kPanelHeight = 190, kPanelLeft = 44, kPanelTop = 26, kPanelBottom = 28, kPanelRight = 8;
-constexpr const char* kLeftColour = "#c0392b";
-constexpr const char* kRightColour = "#1f77b4";
+constexpr const char* kUnknownFigure = "–";
+constexpr std::size_t kColumnsOfBoth = 3, kColumnsOfSide = 4;
+constexpr std::size_t kPanelsInFour = 32, kPanelsInFive = 50;  // that fit on a sheet in four and in five columns
 
-struct PanelScale {
-  double low = 0, high = 1;
-  std::size_t points = 1;
-  double x(std::size_t i) const {
-    return kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * static_cast<double>(i) /
-                            static_cast<double>(std::max<std::size_t>(points, 2) - 1);
-  }
-  double y(double value) const {
-    return kPanelHeight - kPanelBottom - (kPanelHeight - kPanelTop - kPanelBottom) * (value - low) / (high - low);
-  }
-};
-
-void add_band(Svg& svg, const std::vector<std::pair<double, double>>& curve, const PanelScale& scale, const char* colour) {
-  if (curve.empty()) return;
-  std::vector<Vector<2>> band, middle;
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    middle.emplace_back(scale.x(i), scale.y(curve[i].first));
-    band.emplace_back(scale.x(i), scale.y(curve[i].first + curve[i].second));
-  }
-  for (std::size_t i = curve.size(); i-- > 0;) band.emplace_back(scale.x(i), scale.y(curve[i].first - curve[i].second));
-  svg.polygon(band, {{"fill", colour}, {"fill-opacity", "0.18"}});
-  svg.polyline(middle, {{"stroke", colour}, {"stroke-width", 1.6}});
+/// Three digits, as many as the measurement has.
+int decimals_of(double value) {
+  return std::clamp(2 - static_cast<int>(std::floor(std::log10(std::max(std::abs(value), 1e-9)))), 0, 3);
 }
 
-std::string panel_svg(const GaitReport::Panel& panel) {
-  PanelScale scale{.low = 1e9, .high = -1e9, .points = std::max(panel.left.size(), panel.right.size())};
-  for (const auto* curve : {&panel.left, &panel.right}) {
-    for (const auto& [mean, deviation] : *curve) {
-      scale.low = std::min(scale.low, mean - deviation);
-      scale.high = std::max(scale.high, mean + deviation);
-    }
-  }
-  const double step = round_step(std::max(scale.high - scale.low, 1.0) / 5);
-  scale.low = step * std::floor(scale.low / step);
-  scale.high = std::max(scale.low + step, step * std::ceil(scale.high / step));
-  Svg svg({{"viewBox", fmt::format("0 0 {} {}", kPanelWidth, kPanelHeight)}, {"font-family", "sans-serif"}, {"font-size", 11}});
-  svg.text({kPanelLeft, 16}, panel.title + ", °", {{"font-weight", "bold"}});
-  for (double v = scale.low; v <= scale.high + 1e-9; v += step) {
-    const double y = scale.y(v);
-    svg.line({kPanelLeft, y}, {kPanelWidth - kPanelRight, y}, {{"class", std::abs(v) < 1e-9 ? "zero" : "grid"}});
-    svg.text({kPanelLeft - 5, y + 4}, fmt::format("{:g}", std::round(v * 1000) / 1000 + 0.0), {{"text-anchor", "end"}});
-  }
-  for (const int percent : {0, 25, 50, 75, 100}) {
-    const bool last = percent == 100;  // ends at the panel's edge: about its middle it would be cut off
-    const double x = last ? kPanelWidth - 2 : kPanelLeft + (kPanelWidth - kPanelLeft - kPanelRight) * percent / 100.0;
-    svg.text({x, kPanelHeight - 12}, fmt::format("{}{}", percent, last ? " %" : ""), {{"text-anchor", last ? "end" : "middle"}});
-  }
-  add_band(svg, panel.left, scale, kLeftColour);
-  add_band(svg, panel.right, scale, kRightColour);
-  return svg.str();
+std::string with_deviation(const std::optional<double>& mean, const std::optional<double>& deviation, int decimals) {
+  if (!mean) return kUnknownFigure;
+  return deviation ? fmt::format("{:.{}f} ± {:.{}f}", *mean, decimals, *deviation, decimals)
+                   : fmt::format("{:.{}f}", *mean, decimals);
 }
 
-std::string figure_cell(const GaitReport::Figure& figure, std::size_t side) {
-  if (!figure.mean[side]) return "–";
-  const double mean = *figure.mean[side];
-  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(std::max(std::abs(mean), 1e-9)))), 0, 3);
-  return figure.deviation[side] ? fmt::format("{:.{}f} ± {:.{}f}", mean, decimals, *figure.deviation[side], decimals)
-                                : fmt::format("{:.{}f}", mean, decimals);
+int decimals_of(const GaitReport::Figure& figure) {
+  const auto largest = std::max(std::abs(figure.mean[0].value_or(0)), std::abs(figure.mean[1].value_or(0)));
+  return decimals_of(largest);
 }
 
-PageTable figures_of(const GaitReport& report) {
-  PageTable table{.title = "The walk", .head = {"", "left", "right"}, .rows = {}};
+/// "+1.2", and "0.0" without a sign.
+std::string signed_tenths(double value) {
+  const double rounded = std::round(10 * value) / 10;
+  return rounded == 0 ? "0.0" : fmt::format("{:+.1f}", rounded);
+}
+
+/// (left − right) over the mean of both, in % (Robinson, Herzog, Nigg 1987).
+std::string asymmetry(const GaitReport::Figure& figure) {
+  if (!figure.mean[0] || !figure.mean[1]) return kUnknownFigure;
+  const double mean = 0.5 * (*figure.mean[0] + *figure.mean[1]);
+  return std::abs(mean) < 1e-9 ? kUnknownFigure : signed_tenths(100 * (*figure.mean[0] - *figure.mean[1]) / mean);
+}
+
+/// Columns that no row has are empty, and the page omits them.
+PageTable figures_table(const std::string& title, const std::vector<GaitReport::Figure>& figures, bool percent) {
+  PageTable table{.title = title,
+                  .head = {percent ? "figure" : "variable", "left", "right", percent ? "left − right, %" : "left − right",
+                           "control group", "left", "right"},
+                  .rows = {}};
+  table.groups = {"", "", "", "", "", "before", "before"};
   table.bars_end = 0;
-  for (const GaitReport::Figure& figure : report.figures)
-    table.rows.push_back(
-        {figure.unit.empty() ? figure.name : figure.name + ", " + figure.unit, figure_cell(figure, 0), figure_cell(figure, 1)});
+  table.cards = true;
+  for (const GaitReport::Figure& figure : figures) {
+    const int decimals = percent ? decimals_of(figure) : 1;
+    const auto before = [&](std::size_t side) {
+      return figure.before[side] ? fmt::format("{:.{}f}", *figure.before[side], decimals) : std::string();
+    };
+    const std::string difference = percent                            ? asymmetry(figure)
+                                   : figure.mean[0] && figure.mean[1] ? signed_tenths(*figure.mean[0] - *figure.mean[1])
+                                                                      : kUnknownFigure;
+    table.rows.push_back({figure.unit.empty() ? figure.name : figure.name + ", " + figure.unit,
+                          with_deviation(figure.mean[0], figure.deviation[0], decimals),
+                          with_deviation(figure.mean[1], figure.deviation[1], decimals), difference,
+                          figure.reference ? with_deviation(figure.reference, figure.reference_deviation, decimals) : std::string(),
+                          before(0), before(1)});
+  }
   return table;
 }
 
-PageTable events_of(const GaitReport& report) {
+PageTable events_table(const GaitReport& report) {
   PageTable table{.title = "Events", .head = {"time, s", "side", "event", "deviation, ms"}, .rows = {}};
   table.bars_end = 0;
+  table.folded = true;
   for (const GaitReport::Event& event : report.events)
     table.rows.push_back(
         {fmt::format("{:.3f}", event.time_s), event.side, event.kind, fmt::format("{:.0f}", 1000 * event.deviation_s)});
   return table;
 }
 
+class GaitPage {
+ public:
+  explicit GaitPage(const GaitReport& report) : report_(report), page_(report.title) {}
+
+  std::string write() {
+    write_summary();
+    if (!report_.legs.empty()) write_curves("Left and right", GaitSides::both, {&report_.legs});
+    write_curves("Left side", GaitSides::left, {&report_.legs, &report_.forces, &report_.muscles});
+    write_curves("Right side", GaitSides::right, {&report_.legs, &report_.forces, &report_.muscles});
+    write_curves("Forces and moments, left and right", GaitSides::both, {&report_.forces});
+    write_curves("Trunk and arms", GaitSides::both, {&report_.trunk});
+    write_quality();
+    return page_.html();
+  }
+
+ private:
+  bool has_before() const {
+    const auto has = [](const GaitReport::Panel& panel) {
+      return !panel.sides[0].before.mean.empty() || !panel.sides[1].before.mean.empty();
+    };
+    return std::any_of(report_.legs.begin(), report_.legs.end(), has);
+  }
+
+  void begin_sheet(const std::string& heading) {
+    page_.add_html("<section class=\"sheet\">\n");
+    if (!heading.empty())
+      page_.add_html(fmt::format("<h2>{}<small>{}</small></h2>\n", xml_escaped(heading), xml_escaped(report_.title)));
+  }
+  void end_sheet() { page_.add_html("</section>\n"); }
+
+  void write_legend(GaitSides sides, bool with_reference, bool with_before) {
+    std::vector<std::pair<std::string, std::string>> legend;
+    if (sides != GaitSides::right) legend.emplace_back("left", kGaitLeft);
+    if (sides != GaitSides::left) legend.emplace_back("right", kGaitRight);
+    if (with_reference) legend.emplace_back("control group", "#7f8c8d59");
+    if (with_before && has_before()) legend.emplace_back("before (dashed)", "var(--text)");
+    page_.add_legend(legend);
+  }
+
+  void write_summary() {
+    begin_sheet("");
+    for (const std::string& sentence : report_.lead) page_.add_message(sentence);
+    page_.add(figures_table("Times and lengths", report_.figures, true));
+    page_.add_message(
+        "± is one standard deviation over the cycles (n − 1): how much the walk varies, not how exact the measurement is. Of the "
+        "control group it is the deviation over people, each person counts once. A figure without ± has one cycle. Left − right is "
+        "in % of the mean of both: 0 is symmetric.");
+    write_profile();
+    if (!report_.warnings.empty())
+      page_.add_message(fmt::format("{} {} on the last sheet.", report_.warnings.size(),
+                                    report_.warnings.size() == 1 ? "warning is" : "warnings are"));
+    end_sheet();
+  }
+
+  void write_profile() {
+    if (report_.scores.empty()) return;
+    page_.add_heading("Movement Analysis Profile and Gait Profile Score");
+    page_.add_html("<figure>" + gait_profile_chart(report_) + "</figure>\n");
+    write_legend(GaitSides::both, true, true);
+    std::string overall = report_.overall_score ? fmt::format("Gait Profile Score of both sides: {:.1f}°", *report_.overall_score)
+                                                : "No Gait Profile Score of both sides: a variable is not known";
+    if (report_.overall_before) overall += fmt::format(", before {:.1f}°", *report_.overall_before);
+    page_.add_message(
+        overall +
+        ". A score is the RMS difference from the control group's mean over the cycle; the Gait Profile Score is the RMS of "
+        "a side's nine (Baker et al. 2009). Grey: what people of the group score against the others of it, mean and one "
+        "deviation. A change of 1.6° is held to matter to patients (Baker et al. 2012).");
+    page_.add(figures_table("Scores, degrees", report_.scores, false));
+  }
+
+  void write_curves(const std::string& heading, GaitSides sides, const std::vector<const std::vector<GaitReport::Panel>*>& groups) {
+    std::vector<const GaitReport::Panel*> panels;
+    for (const auto* group : groups) {
+      for (const GaitReport::Panel& panel : *group) {
+        const bool left = !panel.sides[0].now.mean.empty(), right = !panel.sides[1].now.mean.empty();
+        if (sides == GaitSides::both ? left || right : sides == GaitSides::left ? left : right) panels.push_back(&panel);
+      }
+    }
+    if (panels.empty()) return;
+    const std::size_t of_side =
+        panels.size() <= kPanelsInFour ? kColumnsOfSide : kColumnsOfSide + (panels.size() <= kPanelsInFive ? 1 : 2);
+    const std::size_t columns = sides == GaitSides::both ? kColumnsOfBoth : of_side;
+    begin_sheet(heading);
+    page_.add_message(
+        sides == GaitSides::both
+            ? "Mean over the cycles, from a strike of the foot to its next; the band is one standard deviation over the "
+              "cycles. Dotted: the foot leaves the ground."
+            : "Each cycle (thin), their mean and one standard deviation. Dotted: the foot leaves the ground.");
+    const bool reference =
+        std::any_of(panels.begin(), panels.end(), [](const GaitReport::Panel* panel) { return !panel->reference.mean.empty(); });
+    write_legend(sides, reference, sides != GaitSides::both);
+    page_.add_html(fmt::format("<div class=\"panels\" style=\"--columns:{}\">", columns));
+    for (const GaitReport::Panel* panel : panels) page_.add_html("<figure>" + gait_panel(*panel, sides, report_) + "</figure>");
+    page_.add_html("</div>\n");
+    end_sheet();
+  }
+
+  void write_quality() {
+    begin_sheet("Quality");
+    page_.add_list(report_.quality);
+    if (!report_.warnings.empty()) page_.add_html("<h3>Warnings</h3>\n");
+    page_.add_list(report_.warnings);
+    for (const PageTable& table : report_.tables) page_.add(table);
+    page_.add(events_table(report_));
+    end_sheet();
+  }
+
+  const GaitReport& report_;
+  Page page_;
+};
+
 }  // namespace
 
 std::string to_html(const GaitReport& report) {
-  Page page(report.title);
-  page.add_message(
-      "Angles over the gait cycle: mean over the cycles, from a strike of the foot to its next; the band is one standard "
-      "deviation.");
-  page.add_legend({{"left", kLeftColour}, {"right", kRightColour}});
-  page.add_list(report.notes);
-  page.add(figures_of(report));
-  page.add_heading("Angles");
-  page.add_html("<div class=\"four\">");
-  for (const GaitReport::Panel& panel : report.panels) page.add_html("<figure>" + panel_svg(panel) + "</figure>");
-  page.add_html("</div>\n");
-  page.add(events_of(report));
-  return page.html();
+  return GaitPage(report).write();
 }
 
 }  // namespace marey::draw

@@ -20,7 +20,8 @@ constexpr std::string_view kUnknown = "–", kPlusMinus = " ± ";
 /// The number of "7.5" and "7.5 ± 0.2".
 std::optional<double> number_of(const std::string& cell) {
   double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const std::size_t sign = cell.starts_with('+') ? 1 : 0;
+  const auto [end, error] = std::from_chars(cell.data() + sign, cell.data() + cell.size(), value);
   if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
   const std::string_view rest(end, static_cast<std::size_t>(cell.data() + cell.size() - end));
   return rest.empty() || rest.starts_with(kPlusMinus) ? std::optional(value) : std::nullopt;
@@ -77,9 +78,10 @@ class TableHtml {
     const std::string title = xml_escaped(table_.title);
     text_ = table_.folded ? fmt::format("<details><summary>{}: {}</summary>", title, table_.rows.size())
                           : fmt::format("<h2>{}</h2>", title);
-    text_ += fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMaxHalf     ? " class=\"wide cards\""
-                                                                   : columns_.size() > kMaxNarrow ? " class=\"cards\""
-                                                                                                  : "");
+    text_ +=
+        fmt::format("<div class=\"scroll\"><table{}><thead>", columns_.size() > kMaxHalf ? " class=\"wide cards\""
+                                                              : columns_.size() > kMaxNarrow || table_.cards ? " class=\"cards\""
+                                                                                                             : "");
     write_groups();
     write_head();
     text_ += "</thead><tbody>\n";

@@ -21,6 +21,7 @@ struct PageTable {
   int bars_from = 0, bars_end = 1000;          ///< columns outside these have no bars: they are names, or places
   std::vector<std::string> groups = {};        ///< of each column what stands above its head and its neighbours'; may be shorter
   bool folded = false;                         ///< its title alone is shown until its reader opens it: many rows
+  bool cards = false;                          ///< a card a row on a phone, though its columns are few: their cells are long
   std::map<std::string, std::string> colours = {};  ///< CSS colours of texts that are shown with one, such as teams
 };
 

@@ -13,7 +13,7 @@ body { font: 15px/1.45 system-ui, sans-serif; margin: 0 auto; max-width: 84em; p
 h1 { font-size: 1.7em; line-height: 1.2; margin: 0 0 .2em } h2 { margin: 2em 0 .6em; font-size: 1.25em } h3 { margin: 1em 0 .4em; font-size: 1em } p, ul { max-width: 50em } h1 + p { margin-top: 0; color: var(--faint) }
 .scroll { overflow-x: auto } table { border-collapse: collapse; min-width: min(100%, 34em); font-variant-numeric: tabular-nums } table.wide { width: 100% }
 th, td { padding: .34em .6em; border-bottom: 1px solid var(--line); text-align: left }
-td.n, th.n { text-align: right } table.wide th.n { width: 5% } td.n { white-space: nowrap; background: linear-gradient(90deg, var(--bar) var(--w, 0), transparent var(--w, 0)) .4em calc(100% - 2px) / calc(100% - .8em) 3px no-repeat }
+td.n, th.n { text-align: right } table.wide th.n { width: 5% } td.n { white-space: nowrap } td.n[style] { background: linear-gradient(90deg, var(--bar) var(--w, 0), transparent var(--w, 0)) .4em calc(100% - 2px) / calc(100% - .8em) 3px no-repeat }
 th { background: var(--head); padding: 0; vertical-align: bottom; font-size: .87em; line-height: 1.25; font-weight: 600; hyphens: manual }
 th.group { padding: .34em .7em 0; border: 0; text-align: left; color: var(--faint); font-weight: 400; white-space: nowrap } .from { border-left: 1px solid var(--line) }
 th button { all: unset; box-sizing: border-box; cursor: pointer; padding: .34em .7em; display: block; width: 100% } th button:focus-visible { outline: 2px solid var(--mark) }
@@ -25,6 +25,7 @@ svg { display: block; width: 100%; height: auto } svg text { fill: currentColor 
 details { margin: .5em 0; border-bottom: 1px solid var(--line) } summary { cursor: pointer; font-weight: 600; padding: .3em 0 }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 24em), 1fr)); gap: 1.2em } .four { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 18em), 1fr)); gap: 1em }
 figure { margin: 0 } figcaption { color: var(--faint); font-size: .93em; margin-top: .3em } svg .axis { fill: var(--faint) } .grid { stroke: var(--line) } .zero { stroke: var(--faint) }
+.before { stroke: var(--text) } .panels { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 16em), 1fr)); gap: .8em } .sheet h2 small { font-weight: 400; font-size: .7em; color: var(--faint); margin-left: .8em }
 .speed { stroke: var(--text) } .sprint { fill: var(--mark); fill-opacity: .25 }
 @media screen and (max-width: 46em) {
   body { padding: 1em 1em 3em } table { min-width: 100% } th, td, th button { padding-left: .4em; padding-right: .4em }
@@ -34,12 +35,13 @@ figure { margin: 0 } figcaption { color: var(--faint); font-size: .93em; margin-
   table.cards td:not(.n) { font-weight: 600 }
   table.cards td::before { content: attr(data-label); display: block; color: var(--faint); font-size: .72em; font-weight: 400; line-height: 1.25 } table.cards td:empty { display: none }
 }
-@page { margin: 12mm }
+@page { size: A4; margin: 12mm }
 @media print {
   :root { --ground: #fff; --text: #000; --faint: #444; --line: #bbb; --bar: #777; --head: #eee }
   body { max-width: none; margin: 0; padding: 0; font-size: 11px; print-color-adjust: exact; -webkit-print-color-adjust: exact }
   .scroll { overflow: visible } table.cards { font-size: 9px } th { font-size: 1em } th, td, th.group, th button { padding: 2px 3px } td { padding-bottom: 5px } td.n { background-size: calc(100% - .8em) 2px } th.group { white-space: normal }
   details, figure, tr { break-inside: avoid } h2, h3, summary { break-after: avoid } thead { display: table-header-group } .four { grid-template-columns: repeat(3, 1fr) } .two { grid-template-columns: repeat(2, 1fr) }
+  .sheet ~ .sheet { break-before: page } .sheet h2 { margin: .6em 0 .3em } .sheet ~ .sheet > h2:first-child { margin-top: 0 } .sheet p { margin: .3em 0; max-width: none } .panels { grid-template-columns: repeat(var(--columns), 1fr); gap: 1.5mm 2mm }
 }
 )";
 

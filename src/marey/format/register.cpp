@@ -22,6 +22,8 @@
   row(format::motion, trc) \
   row(format::motion, motive) \
   row(format::motion, nexus) \
+  row(format::motion, qualisys_tsv) \
+  row(format::motion, qualisys_mat) \
   row(format::tracks, blobs) \
   row(format::tracks, image_csv) \
   row(format::tracks, jsonl) \

@@ -48,28 +48,4 @@ std::optional<Side> side_of_label(std::string_view label) {
   return std::nullopt;
 }
 
-EmgCurve emg_over_cycles(std::string label, Side side, std::span<const double> envelope, double rate_hz, double begin_s,
-                         std::span<const GaitCycles::Cycle> cycles) {
-  EmgCurve curve{.label = std::move(label), .side = side, .cycles = {}};
-  for (const GaitCycles::Cycle& cycle : cycles) {
-    const double first = (cycle.begin_s - begin_s) * rate_hz, last = (cycle.end_s - begin_s) * rate_hz;
-    if (cycle.side != side || first < 0 || envelope.size() < 2 || last > static_cast<double>(envelope.size() - 1)) continue;
-    auto& points = curve.cycles.emplace_back();
-    for (std::size_t p = 0; p < kCyclePoints; ++p) {
-      const double at = first + (last - first) * static_cast<double>(p) / (kCyclePoints - 1);
-      const auto below = std::min(static_cast<std::size_t>(at), envelope.size() - 2);
-      const double fraction = at - static_cast<double>(below);
-      points[p] = (1 - fraction) * envelope[below] + fraction * envelope[below + 1];
-    }
-  }
-  const auto count = static_cast<double>(curve.cycles.size());
-  for (std::size_t p = 0; p < kCyclePoints && count > 0; ++p) {
-    double squares = 0;
-    for (const auto& cycle : curve.cycles) curve.mean[p] += cycle[p] / count;
-    for (const auto& cycle : curve.cycles) squares += (cycle[p] - curve.mean[p]) * (cycle[p] - curve.mean[p]);
-    curve.deviation[p] = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
-  }
-  return curve;
-}
-
 }  // namespace marey::analyse::gait

@@ -2,8 +2,6 @@
 // what is below 20 Hz (movement of the cables) are removed, the rest is rectified and low-passed at 6 Hz, forwards and backwards.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,19 +20,7 @@ struct EmgOptions {
 /// Of an electromyogram at a rate of 60 Hz or more; empty below it, which cannot hold one.
 std::vector<double> emg_envelope(std::span<const double> signal, double rate_hz, const EmgOptions& options = {});
 
-/// The envelope over the cycles of its muscle's side, in the signal's unit.
-struct EmgCurve {
-  std::string label;
-  Side side = Side::left;
-  std::vector<std::array<double, kCyclePoints>> cycles;
-  std::array<double, kCyclePoints> mean{}, deviation{};
-};
-
 /// The side that a channel's label names: "Voltage.L Rect", "RGastroc", "left_tibialis"; nothing if it names none.
 std::optional<Side> side_of_label(std::string_view label);
-
-/// `signal` has `rate_hz` samples per second and begins `begin_s` after the time from which the cycles count.
-EmgCurve emg_over_cycles(std::string label, Side side, std::span<const double> envelope, double rate_hz, double begin_s,
-                         std::span<const GaitCycles::Cycle> cycles);
 
 }  // namespace marey::analyse::gait

@@ -44,7 +44,7 @@ TEST(EmgEnvelope, IsTakenOverTheCyclesOfItsSide) {
   for (std::size_t i = 0; i < envelope.size(); ++i) envelope[i] = static_cast<double>(i);
   const std::vector<GaitCycles::Cycle> cycles = {
       {Side::left, 0.5, 1.5, {}}, {Side::right, 1, 2, {}}, {Side::left, 1.5, 2.5, {}}, {Side::left, 2.5, 3.5, {}}};
-  const EmgCurve curve = emg_over_cycles("L", Side::left, envelope, 1000, 0.25, cycles);
+  const SignalCurve curve = signal_over_cycles("L", Side::left, envelope, 1000, 0.25, cycles);
   ASSERT_EQ(curve.cycles.size(), 2U) << "the last ends after the signal";
   EXPECT_NEAR(curve.cycles[0][0], 250, 1e-9);
   EXPECT_NEAR(curve.cycles[1][100], 2250, 1e-9);

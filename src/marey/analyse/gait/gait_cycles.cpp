@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace marey::analyse::gait {
 namespace {
@@ -13,17 +14,13 @@ constexpr double kJump = 0.5 * std::numbers::pi;  // between two frames
 
 /// Between rows, straight; nothing if one of them is not known.
 template <typename T>
-std::optional<T> value_at(const std::vector<std::optional<T>>& values, double row) {
+std::optional<T> value_at(std::span<const std::optional<T>> values, double row) {
   if (row < 0 || row > static_cast<double>(values.size()) - 1 + 1e-6) return std::nullopt;
   const auto i = std::min(static_cast<std::size_t>(row + 1e-6), values.size() - 1);
   const double fraction = row - static_cast<double>(i);
   if (fraction < 1e-6) return values[i];
   if (!values[i] || !values[i + 1]) return std::nullopt;
   return T((1 - fraction) * *values[i] + fraction * *values[i + 1]);
-}
-
-Side side_of(const std::string& name) {
-  return name.starts_with("left_") ? Side::left : Side::right;
 }
 
 std::vector<GaitCycles::Cycle> find_cycles(std::span<const GaitEvent> events) {
@@ -58,7 +55,7 @@ std::optional<std::array<double, kCyclePoints>> points_of(const AngleCurve& angl
   std::array<double, kCyclePoints> points{};
   for (std::size_t p = 0; p < kCyclePoints; ++p) {
     const double time = cycle.begin_s + (cycle.end_s - cycle.begin_s) * static_cast<double>(p) / (kCyclePoints - 1);
-    const auto value = value_at(angle.values, time * rate_hz);
+    const auto value = value_at(std::span(angle.values), time * rate_hz);
     if (!value) return std::nullopt;
     points[p] = *value;
   }
@@ -66,7 +63,7 @@ std::optional<std::array<double, kCyclePoints>> points_of(const AngleCurve& angl
 }
 
 /// An angle that continued over half a turn between two cycles is whole turns off in the second.
-void remove_ptz(std::span<std::array<double, kCyclePoints>> cycles) {
+void remove_revolutions(std::span<CyclePoints> cycles) {
   const auto mean = [](const auto& points) { return std::accumulate(points.begin(), points.end(), 0.0) / kCyclePoints; };
   for (auto& points : cycles) {
     const double turn = 2 * std::numbers::pi, rotations = turn * std::round((mean(cycles.front()) - mean(points)) / turn);
@@ -76,27 +73,31 @@ void remove_ptz(std::span<std::array<double, kCyclePoints>> cycles) {
 
 CycleCurve curve_of(const AngleCurve& angle, std::span<const GaitCycles::Cycle> cycles, double rate_hz) {
   CycleCurve curve{.name = angle.name, .cycles = {}};
-  for (const GaitCycles::Cycle& cycle : cycles) {
-    if (cycle.side != side_of(angle.name)) continue;
-    const auto points = points_of(angle, cycle, rate_hz);
+  for (std::size_t c = 0; c < cycles.size(); ++c) {
+    if (cycles[c].side != side_of_curve(angle.name)) continue;
+    const auto points = points_of(angle, cycles[c], rate_hz);
     if (!points) {
       ++curve.unknown;
-    } else if (jumps(angle, cycle, rate_hz)) {
+    } else if (jumps(angle, cycles[c], rate_hz)) {
       ++curve.jumping;
     } else {
       curve.cycles.push_back(*points);
+      curve.cycle_of.push_back(c);
     }
   }
-  remove_ptz(curve.cycles);
-  const auto count = static_cast<double>(curve.cycles.size());
-  for (std::size_t p = 0; p < kCyclePoints && count > 0; ++p) {
-    double sum = 0, squares = 0;
-    for (const auto& cycle : curve.cycles) sum += cycle[p];
-    curve.mean[p] = sum / count;
-    for (const auto& cycle : curve.cycles) squares += (cycle[p] - curve.mean[p]) * (cycle[p] - curve.mean[p]);
-    curve.deviation[p] = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
-  }
+  remove_revolutions(curve.cycles);
+  summarise(curve.cycles, curve.mean, curve.deviation);
   return curve;
+}
+
+/// Between the paths of the cycle's two halves, so that the pelvis' sway from foot to foot remains in it (a few degrees).
+std::optional<double> turn_of(const GaitCycles::Cycle& cycle, const MarkerPath& sacrum, double rate_hz) {
+  const auto at = [&](double time) { return value_at(std::span(sacrum), time * rate_hz); };
+  const auto from = at(cycle.begin_s), middle = at(0.5 * (cycle.begin_s + cycle.end_s)), to = at(cycle.end_s);
+  if (!from || !middle || !to) return std::nullopt;
+  const Vector<2> first = (*middle - *from).head<2>(), second = (*to - *middle).head<2>();
+  if (!(first.norm() > 1e-6) || !(second.norm() > 1e-6)) return std::nullopt;
+  return std::atan2(first.x() * second.y() - first.y() * second.x(), first.dot(second));
 }
 
 /// Mean and deviation of what each cycle of a side gives.
@@ -148,7 +149,7 @@ class CycleMeasure {
 
  private:
   std::optional<Vector<2>> heel(Side side, double time) const {
-    const auto location = value_at(feet_.heel[static_cast<std::size_t>(side)], time * rate_hz_);
+    const auto location = value_at(std::span(feet_.heel[static_cast<std::size_t>(side)]), time * rate_hz_);
     return location ? std::optional(Vector<2>(location->head<2>())) : std::nullopt;
   }
   std::optional<double> other(const GaitCycles::Cycle& cycle, bool strike) const {
@@ -166,11 +167,61 @@ class CycleMeasure {
 
 }  // namespace
 
-GaitCycles gait_cycles(std::span<const GaitEvent> events, std::span<const AngleCurve> angles, const FeetPaths& feet,
-                       double rate_hz) {
+Side side_of_curve(std::string_view name) {
+  return name.starts_with("left_") ? Side::left : Side::right;
+}
+
+std::string_view without_side(std::string_view name) {
+  return name.substr(name.starts_with("left_") ? 5 : name.starts_with("right_") ? 6 : 0);
+}
+
+void summarise(std::span<const CyclePoints> cycles, CyclePoints& mean, CyclePoints& deviation) {
+  const auto count = static_cast<double>(cycles.size());
+  mean.fill(0);
+  deviation.fill(0);
+  for (std::size_t p = 0; p < kCyclePoints && count > 0; ++p) {
+    double sum = 0, squares = 0;
+    for (const CyclePoints& cycle : cycles) sum += cycle[p];
+    mean[p] = sum / count;
+    for (const CyclePoints& cycle : cycles) squares += (cycle[p] - mean[p]) * (cycle[p] - mean[p]);
+    deviation[p] = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
+  }
+}
+
+SignalCurve signal_over_cycles(std::string label, Side side, std::span<const double> signal, double rate_hz, double begin_s,
+                               std::span<const GaitCycles::Cycle> cycles) {
+  const std::vector<std::optional<double>> known(signal.begin(), signal.end());
+  return signal_over_cycles(std::move(label), side, std::span(known), rate_hz, begin_s, cycles);
+}
+
+SignalCurve signal_over_cycles(std::string label, Side side, std::span<const std::optional<double>> signal, double rate_hz,
+                               double begin_s, std::span<const GaitCycles::Cycle> cycles) {
+  SignalCurve curve{.label = std::move(label), .side = side, .cycles = {}};
+  for (const GaitCycles::Cycle& cycle : cycles) {
+    if (cycle.side != side || signal.empty()) continue;
+    CyclePoints points{};
+    bool whole = true;
+    for (std::size_t p = 0; p < kCyclePoints && whole; ++p) {
+      const double time = cycle.begin_s + (cycle.end_s - cycle.begin_s) * static_cast<double>(p) / (kCyclePoints - 1);
+      const auto value = value_at(signal, (time - begin_s) * rate_hz);
+      whole = value.has_value();
+      points[p] = value.value_or(0);
+    }
+    if (whole) curve.cycles.push_back(points);
+  }
+  summarise(curve.cycles, curve.mean, curve.deviation);
+  return curve;
+}
+
+GaitCycles gait_cycles(std::span<const GaitEvent> events, std::span<const AngleCurve> angles, const FeetPaths& feet, double rate_hz,
+                       const GaitCycleOptions& options) {
   using Cycle = GaitCycles::Cycle;
   GaitCycles result;
   result.cycles = find_cycles(events);
+  for (Cycle& cycle : result.cycles) cycle.turn = turn_of(cycle, feet.sacrum, rate_hz);
+  if (options.max_turn)
+    result.curved =
+        std::erase_if(result.cycles, [&](const Cycle& cycle) { return !cycle.turn || std::abs(*cycle.turn) > *options.max_turn; });
   for (const AngleCurve& angle : angles) result.curves.push_back(curve_of(angle, result.cycles, rate_hz));
   const CycleMeasure measure(events, feet, rate_hz);
   const auto time = [](const Cycle& c) { return c.end_s - c.begin_s; };

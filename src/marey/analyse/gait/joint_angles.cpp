@@ -39,6 +39,8 @@ class SideAngles {
           {"rotation", 1});
     three(take, "ankle", cardan(of(SegmentId::left_shank), of(SegmentId::left_foot)), {"dorsiflexion", -1}, {"inversion", 1},
           {"rotation", 1});
+    // In the walking direction's frame: toes up, turned about the line to the toes, toes inwards.
+    three(take, "foot", cardan(walking_, of(SegmentId::left_foot)), {"pitch", -1}, {"roll", 1}, {"progression", 1});
     shoulder(take);
     three(take, "elbow", cardan(of(SegmentId::left_upper_arm), of(SegmentId::left_forearm)), {"flexion", -1}, {"adduction", 1},
           {"pronation", 1});

@@ -331,6 +331,8 @@ TEST(C3dKinds, OthersFilesKeepTheirChannelsAndBodies) {
   EXPECT_EQ(reader->info().frame_count, 340);
   ASSERT_EQ(reader->header().bodies.size(), 21U);
   EXPECT_EQ(reader->header().bodies[1].label, "pelvis");
+  EXPECT_EQ(reader->header().bodies[2].parent, reader->header().bodies[1].id) << "a thigh hangs on it";
+  EXPECT_TRUE(reader->header().bodies[0].skeleton.empty()) << "worldbody is by itself";
   std::size_t poses = 0;
   while (const auto instant = reader->next()) poses += instant->bodies.size();
   EXPECT_EQ(poses, 340U * 21 - 78) << "78 are NaN in the file";

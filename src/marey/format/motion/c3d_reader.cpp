@@ -17,6 +17,7 @@
 #include "marey/format/motion/c3d_parameters.h"
 #include "marey/format/motion/c3d_points.h"
 #include "marey/format/motion/c3d_zeros.h"
+#include "marey/format/motion/theia_segments.h"
 
 namespace marey::format::motion {
 namespace {
@@ -166,6 +167,10 @@ class C3dReader : public FileReader {
       body.label = std::move(label);
       info_.header.bodies.push_back(std::move(body));
     }
+    hang_theia_segments(info_.header.bodies, layout_.frames, [this](std::size_t frame, std::size_t i) -> std::optional<Rigid3> {
+      const auto pose = pose_at(frame, i);
+      return pose ? std::optional(pose->world_from_body) : std::nullopt;
+    });
   }
 
   /// The first of a frame's matrices of this body; nothing if it is absent, or it is not a rigid motion.

@@ -74,10 +74,35 @@ class MotiveHead : private WideTableHead {
     if (axes_.size() > 1 && axes_[1].starts_with("Time")) table_.time_column = 1;
     for (std::size_t i = 2; i + 2 < axes_.size(); ++i) {
       if (axes_[i] != "X" || axes_[i + 1] != "Y" || axes_[i + 2] != "Z") continue;
-      if (cell(kinds_, i) == "Rotation" || !is_marker(cell(types_, i))) continue;
-      add_marker(cell(names_, i), i);
+      const std::string type = cell(types_, i);
+      if (cell(kinds_, i) == "Rotation") {
+        if (type == "Rigid Body" || type == "Bone") find_body(i);
+      } else if (is_marker(type)) {
+        add_marker(cell(names_, i), i);
+      }
     }
-    if (table_.x_columns.empty()) warn("holds no marker");
+    if (table_.x_columns.empty()) add_body_markers();
+    if (table_.x_columns.empty() && table_.bodies.empty()) warn("holds no marker");
+  }
+
+  /// Where no marker was exported as measured: those of bodies and bones as they were solved.
+  void add_body_markers() {
+    for (std::size_t i = 2; i + 2 < axes_.size(); ++i) {
+      if (cell(types_, i).ends_with(" Marker") && axes_[i] == "X" && axes_[i + 1] == "Y" && axes_[i + 2] == "Z")
+        add_marker(cell(names_, i), i);
+    }
+    if (!table_.x_columns.empty()) warn("has no measured markers; those of its bodies as they were solved are read");
+  }
+
+  /// A rotation X, Y, Z, W and the position that follows it, of one name. Turns as three angles are not read.
+  void find_body(std::size_t i) {
+    if (i + 6 >= axes_.size() || axes_[i + 3] != "W" || cell(kinds_, i + 4) != "Position" ||
+        cell(names_, i + 4) != cell(names_, i)) {
+      if (!std::exchange(angles_, true))
+        warn("rotations of its bodies are not quaternions; they are omitted, export with the rotation type Quaternion");
+      return;
+    }
+    add_body(cell(names_, i), {.position_column = i + 4, .rotation_column = i, .rotation = WideBody::Rotation::quaternion_xyzw});
   }
 
   /// What is on a body is written twice by some versions, as measured and as solved; the measured one is the marker.
@@ -88,6 +113,7 @@ class MotiveHead : private WideTableHead {
   static std::string cell(const Cells& cells, std::size_t i) { return i < cells.size() ? cells[i] : std::string(); }
 
   Cells types_, names_, kinds_, axes_;
+  bool angles_ = false;  // a body without a quaternion was met
 };
 
 class MotiveWriter : public WideTableWriter {
@@ -148,7 +174,7 @@ Format motive_format() {
           .title = "a CSV file of Motive's",
           .endings = {},
           .holds = Content::space,
-          .detail = "m; points, as OptiTrack's Motive exports them: one row a frame",
+          .detail = "m; points and bodies' poses, as OptiTrack's Motive exports them: one row a frame. Points are written",
           .is = [](const Beginning& file) { return file.text().starts_with("Format Version"); },
           .open = [](const std::string& path, const ReadOptions&) { return motion::open_motive_csv(path); },
           .create = [](const std::string& path, const WritePlan& plan) { return motion::create_motive_csv(path, plan); }};

@@ -1,10 +1,13 @@
 #include "marey/format/motion/wide_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
@@ -13,6 +16,8 @@ namespace marey::format::motion {
 namespace {
 
 constexpr double kMaxSeconds = 1e9;
+constexpr double kMaxCoordinate = 1e9;
+constexpr double kRotationError = 0.01;  // format: six printed digits are far within it
 
 bool is_missing(std::string_view field) {
   if (field.empty() || field == "\"\"") return true;
@@ -51,6 +56,15 @@ void WideTableHead::set_rate(std::optional<double> rate_hz, const std::string& o
 void WideTableHead::add_marker(std::string label, std::size_t x_column) {
   info_.tracks.push_back({TrackId(static_cast<int>(info_.tracks.size()) + 1), std::move(label), {}});
   table_.x_columns.push_back(x_column);
+}
+
+void WideTableHead::add_body(std::string label, WideBody body) {
+  body.body = BodyId(static_cast<int>(info_.header.bodies.size()) + 1);
+  Body named;
+  named.id = body.body;
+  named.label = std::move(label);
+  info_.header.bodies.push_back(std::move(named));
+  table_.bodies.push_back(body);
 }
 
 void WideTableHead::fail(const std::string& what) const {
@@ -92,12 +106,15 @@ std::optional<Instant> WideTableReader::next() {
 }
 
 Instant WideTableReader::frame_of(const std::vector<std::string_view>& fields) {
-  const std::size_t needed = table_.x_columns.empty() ? 1 : table_.x_columns.back() + 3;
+  std::size_t needed = table_.x_columns.empty() ? 1 : table_.x_columns.back() + 3;
+  for (const WideBody& body : table_.bodies) needed = std::max(needed, body.position_column + 3);
   if (!lines_.ended() && fields.size() < needed) {
     fail(fmt::format("ends within its row ({} of {} columns); the file is cut off", fields.size(), needed));
   }
   Instant frame;
-  const auto number = table_.frame_column < fields.size() ? whole_number_of(fields[table_.frame_column]) : std::nullopt;
+  std::optional<std::int64_t> number = read_ + table_.first_frame_number;
+  if (table_.frame_column)
+    number = *table_.frame_column < fields.size() ? whole_number_of(fields[*table_.frame_column]) : std::nullopt;
   if (!number) fail(fmt::format("{} is no number of a frame", shown(fields.front())));
   if (*number < table_.first_frame_number && !last_index_) table_.first_frame_number = *number;
   frame.index = *number - table_.first_frame_number;
@@ -116,7 +133,44 @@ Instant WideTableReader::frame_of(const std::vector<std::string_view>& fields) {
   for (std::size_t track = 0; track < table_.x_columns.size(); ++track) {
     if (auto point = point_at(fields, track)) frame.samples.push_back(*point);
   }
+  for (const WideBody& body : table_.bodies) {
+    if (auto pose = pose_at(fields, body)) frame.bodies.push_back(*pose);
+  }
   return frame;
+}
+
+std::optional<double> WideTableReader::number_at(const std::vector<std::string_view>& fields, std::size_t column) const {
+  const std::string_view field = column < fields.size() ? fields[column] : std::string_view();
+  if (is_missing(field)) return std::nullopt;
+  const auto value = number_of(field);
+  if (!value) fail(fmt::format("{} in column {} is no number", shown(field), column + 1));
+  return value;
+}
+
+std::optional<BodyPose> WideTableReader::pose_at(const std::vector<std::string_view>& fields, const WideBody& body) const {
+  const bool quaternion = body.rotation == WideBody::Rotation::quaternion_xyzw;
+  std::array<double, 9> rotation{};
+  for (std::size_t i = 0; i < (quaternion ? 4U : 9U); ++i) {
+    const auto value = number_at(fields, body.rotation_column + i);
+    if (!value) return std::nullopt;
+    rotation[i] = *value;
+  }
+  BodyPose pose;
+  pose.body = body.body;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto value = number_at(fields, body.position_column + axis);
+    if (!value || std::abs(*value) > kMaxCoordinate) return std::nullopt;
+    pose.world_from_body.translation[static_cast<Eigen::Index>(axis)] = *value * table_.unit_m;
+  }
+  const Eigen::Quaterniond turn = quaternion ? Eigen::Quaterniond(rotation[3], rotation[0], rotation[1], rotation[2])
+                                             : Eigen::Quaterniond(Matrix<3>(Eigen::Map<const Matrix<3>>(rotation.data())));
+  const Matrix<3> given = Eigen::Map<const Matrix<3>>(rotation.data());
+  const bool is_rotation =
+      quaternion ? std::abs(turn.norm() - 1) < kRotationError
+                 : (given.transpose() * given - Matrix<3>::Identity()).norm() < kRotationError && given.determinant() > 0;
+  if (!is_rotation) return std::nullopt;  // zeros: not tracked
+  pose.world_from_body.rotation = turn.normalized().toRotationMatrix();
+  return pose;
 }
 
 std::optional<Sample> WideTableReader::point_at(const std::vector<std::string_view>& fields, std::size_t track) const {
@@ -134,7 +188,7 @@ std::optional<Sample> WideTableReader::point_at(const std::vector<std::string_vi
     if (!value) fail(fmt::format("{} in column {} is no number", shown(field), column + axis + 1));
     point.position[static_cast<Eigen::Index>(axis)] = *value * table_.unit_m;
   }
-  if (missing == 3) return std::nullopt;
+  if (missing == 3 || (missing == 0 && table_.zeros_are_missing && point.position.isZero(0))) return std::nullopt;
   if (missing > 0) fail(fmt::format("marker {} has {} of its 3 coordinates", shown(info_.tracks[track].label), 3 - missing));
   return point;
 }

@@ -17,10 +17,23 @@
 
 namespace marey::format::motion {
 
+/// Where a body's pose lies in a row: three columns of its place, and its rotation.
+struct WideBody {
+  enum class Rotation {
+    quaternion_xyzw,    ///< four columns
+    matrix_by_columns,  ///< nine: the first column of the matrix, the second, the third
+  };
+  BodyId body{};
+  std::size_t position_column = 0, rotation_column = 0;
+  Rotation rotation = Rotation::quaternion_xyzw;
+};
+
 /// How such a text lies.
 struct WideTable {
   char separator = ',';
-  std::size_t frame_column = 0;
+  std::optional<std::size_t> frame_column = 0;  ///< nothing: rows follow each other
+  bool zeros_are_missing = false;               ///< a point at exactly (0, 0, 0)
+  std::vector<WideBody> bodies;
   std::optional<std::size_t> time_column;
   std::vector<std::size_t> x_columns;  ///< of each of the info's tracks; y and z stand beside it
   double unit_m = 0.001;
@@ -43,6 +56,7 @@ class WideTableHead {
   /// Throws Error, which says `otherwise`, where it is not a rate.
   void set_rate(std::optional<double> rate_hz, const std::string& otherwise);
   void add_marker(std::string label, std::size_t x_column);
+  void add_body(std::string label, WideBody body);
   void warn(const std::string& message_text) { warnings_.push_back(name_ + ": " + message_text); }
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -72,6 +86,9 @@ class WideTableReader : public FileReader {
  private:
   Instant frame_of(const std::vector<std::string_view>& fields);
   std::optional<Sample> point_at(const std::vector<std::string_view>& fields, std::size_t track) const;
+  /// Nothing if a cell of it is blank, or the rotation is not one.
+  std::optional<BodyPose> pose_at(const std::vector<std::string_view>& fields, const WideBody& body) const;
+  std::optional<double> number_at(const std::vector<std::string_view>& fields, std::size_t column) const;
   [[noreturn]] void fail(const std::string& what) const;
 
   std::unique_ptr<MappedFile> file_;

@@ -44,13 +44,13 @@ constexpr std::array<HumanBone, 13> kBones{{
     {"chest", "chest thorax spine1", {"Spine1", "spine_02", "chest", "Spine2", "spine.002"}},
     {"neck", "neck", {"Neck", "neck_01", "neck", "Neck", "spine.004"}},
     {"head", "head", {"Head", "head", "head", "Head", "spine.006"}},
-    {"?_thigh", "thigh femur upleg upperleg", {"?UpLeg", "thigh_?", "?UpperLeg", "?Thigh", "thigh.?"}},
-    {"?_shank", "shank tibia leg lowerleg shin", {"?Leg", "calf_?", "?LowerLeg", "?Shin", "shin.?"}},
+    {"?_thigh", "thigh femur upleg upperleg hip", {"?UpLeg", "thigh_?", "?UpperLeg", "?Thigh", "thigh.?"}},
+    {"?_shank", "shank tibia leg lowerleg shin knee", {"?Leg", "calf_?", "?LowerLeg", "?Shin", "shin.?"}},
     {"?_foot", "foot talus ankle", {"?Foot", "foot_?", "?Foot", "?Foot", "foot.?"}},
     {"?_toes", "toes toe toebase", {"?ToeBase", "ball_?", "?Toes", "?Toe", "toe.?"}},
     {"?_clavicle", "clavicle shoulder collar", {"?Shoulder", "clavicle_?", "?Shoulder", "?Shoulder", "shoulder.?"}},
-    {"?_upper_arm", "upperarm humerus arm", {"?Arm", "upperarm_?", "?UpperArm", "?Arm", "upper_arm.?"}},
-    {"?_forearm", "forearm ulna lowerarm", {"?ForeArm", "lowerarm_?", "?LowerArm", "?ForeArm", "forearm.?"}},
+    {"?_upper_arm", "upperarm humerus arm uarm", {"?Arm", "upperarm_?", "?UpperArm", "?Arm", "upper_arm.?"}},
+    {"?_forearm", "forearm ulna lowerarm elbow larm", {"?ForeArm", "lowerarm_?", "?LowerArm", "?ForeArm", "forearm.?"}},
     {"?_hand", "hand wrist", {"?Hand", "hand_?", "?Hand", "?Hand", "hand.?"}},
 }};
 
@@ -104,6 +104,20 @@ std::string side_word(const RigScheme& scheme, Flank side) {
   if (scheme.name == "rigify") return left ? "L" : "R";
   if (scheme.name == "vrm") return left ? "left" : "right";
   return left ? "Left" : "Right";
+}
+
+/// Where bones have the names of the joints that they begin at (Xsens MVN, Poser), a shoulder is an upper arm: the collar is by
+/// itself.
+void name_shoulders(std::vector<Body>& bodies, const std::string& skeleton) {
+  const auto has = [&](std::string_view word) {
+    return std::ranges::any_of(bodies,
+                               [&](const Body& body) { return body.skeleton == skeleton && bare(body.label).ends_with(word); });
+  };
+  if (!has("collar") || !has("elbow")) return;
+  for (Body& body : bodies) {
+    const std::string word = bare(body.label);
+    if (body.skeleton == skeleton && word.ends_with("shoulder")) body.label = word.substr(0, word.find("shoulder")) + "_upper_arm";
+  }
 }
 
 /// Where a bone of the arm points at rest, in axes x to the left, y backwards, z up; nothing: as it is.
@@ -211,8 +225,9 @@ class NamedSink final : public Sink {
       if (!body.skeleton.empty() && std::ranges::find(skeletons, body.skeleton) == skeletons.end())
         skeletons.push_back(body.skeleton);
     }
+    for (const std::string& skeleton : skeletons) name_shoulders(named.bodies, skeleton);
     for (const std::string& skeleton : skeletons)
-      rotations_.merge(std::map(RestPose(header.bodies, skeleton, scheme_, name()).rotations()));
+      rotations_.merge(std::map(RestPose(named.bodies, skeleton, scheme_, name()).rotations()));
     for (Body& body : named.bodies) turn(body);
     for (const std::string& skeleton : skeletons) rename(skeleton, named.bodies);
     if (!scheme_.root.empty()) add_roots(skeletons, named.bodies);

@@ -160,5 +160,33 @@ TEST(RigNames, RejectsSkeletonsWithoutLegs) {
   EXPECT_THROW(create_bones("x.bvh", {.rig_names = "vrm", .bvh_order = "XXY"}), Error);
 }
 
+TEST(RigNames, KnowBonesThatHaveJointsNames) {
+  RecordingHeader header;  // as Xsens MVN's BVH files call them
+  header.rate_hz = 60;
+  header.bodies = {bone(1, "Hips", {}, {0, 0, 0}),           bone(2, "Chest", 1, {0, 0, 0.1}),
+                   bone(3, "LeftCollar", 2, {0, 0.05, 0.4}), bone(4, "LeftShoulder", 3, {0, 0.15, 0}),
+                   bone(5, "LeftElbow", 4, {0, 0.3, 0}),     bone(6, "LeftWrist", 5, {0, 0.25, 0}, Vector<3>(0, 0.1, 0)),
+                   bone(7, "LeftHip", 1, {0, 0.1, 0}),       bone(8, "LeftKnee", 7, {0, 0, -0.42}),
+                   bone(9, "LeftAnkle", 8, {0, 0, -0.4}),    bone(10, "RightHip", 1, {0, -0.1, 0})};
+  auto listener = std::make_unique<Listener>();
+  Listener& heard = *listener;
+  const auto sink = with_rig_scheme(std::move(listener), rig_scheme("motionbuilder"));
+  sink->begin(header);
+  std::vector<std::string> names;
+  for (const Body& body : heard.bodies) names.push_back(body.label);
+  EXPECT_EQ(names, (std::vector<std::string>{"Hips", "Spine", "LeftShoulder", "LeftArm", "LeftForeArm", "LeftHand", "LeftUpLeg",
+                                             "LeftLeg", "LeftFoot", "RightUpLeg"}));
+}
+
+TEST(RigNames, KnowTheiasSegments) {
+  const RigScheme& unreal = rig_scheme("unreal");
+  for (const auto& [theia, name] : std::vector<std::pair<std::string, std::string>>{{"l_uarm", "upperarm_l"},
+                                                                                    {"r_larm", "lowerarm_r"},
+                                                                                    {"l_larm", "lowerarm_l"},
+                                                                                    {"torso", "spine_01"},
+                                                                                    {"r_toes", "ball_r"}})
+    EXPECT_EQ(rig_bone_name(unreal, theia), name) << theia;
+}
+
 }  // namespace
 }  // namespace marey::format::skeleton

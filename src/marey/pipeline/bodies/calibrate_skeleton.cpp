@@ -1,7 +1,10 @@
 #include "marey/pipeline/bodies/calibrate_skeleton.h"
 
 #include <iterator>
+#include <span>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "marey/core/error.h"
 #include "marey/files/whole_file.h"
@@ -10,6 +13,7 @@
 #include "marey/format/register.h"
 #include "marey/format/skeleton/scaled_osim.h"
 #include "marey/pipeline/bodies/marker_sigmas.h"
+#include "marey/pipeline/bodies/same_person.h"
 #include "marey/pipeline/markers/skeleton_in_space.h"
 
 namespace marey::pipeline::bodies {
@@ -52,10 +56,15 @@ std::unique_ptr<format::FileReader> open_markers(const std::string& path, const 
 }
 
 solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool generic,
-                                                const SolveOptions& options) {
+                                                const SolveOptions& options, std::vector<std::string>& warnings) {
   std::vector<solve::skeleton::ObservedMarkers> frames = all_observed(recording, skeleton, options);
+  const std::size_t own = frames.size();
   for (const std::string& take : options.calibration_takes) {
     std::vector<solve::skeleton::ObservedMarkers> more = all_observed(take, skeleton, options);
+    if (const auto differs = other_size(skeleton, std::span(frames).first(own), more))
+      warnings.push_back(
+          fmt::format("{}: {} than in {}: another person, or markers that were put on again? A calibration is of one", take,
+                      *differs, recording));
     frames.insert(frames.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   solve::skeleton::CalibrateOptions how;

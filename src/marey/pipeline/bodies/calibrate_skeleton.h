@@ -15,9 +15,9 @@ namespace marey::pipeline::bodies {
 std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options);
 
 /// From the recording and the options' other takes. Markers of a `generic` model have the deviations of `marker_sigmas` on their
-/// segments, left and right tied; those of others 10 mm.
+/// segments, left and right tied; those of others 10 mm. Warns of a take of another person.
 solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool generic,
-                                                const SolveOptions& options);
+                                                const SolveOptions& options, std::vector<std::string>& warnings);
 
 /// skeleton.toml, or by its ending the .osim that `source` is, calibrated. Throws Error if there is no such model, or no
 /// calibration.

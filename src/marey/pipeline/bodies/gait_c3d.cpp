@@ -21,15 +21,16 @@ struct Triple {
 
 /// Our joints and the names of Plug-in Gait's outputs. Its spine, shoulders and wrists turn about other axes than the ISB's: those
 /// have names of their own. Its ankle's second angle grows to the other side.
-constexpr std::array<Triple, 9> kTriples = {{{"pelvis", "PelvisAngles"},
-                                             {"trunk", "ThoraxAngles"},
-                                             {"spine", "SpineAnglesISB"},
-                                             {"hip", "HipAngles"},
-                                             {"knee", "KneeAngles"},
-                                             {"ankle", "AnkleAngles", "eversion"},
-                                             {"shoulder", "ShoulderAnglesISB"},
-                                             {"elbow", "ElbowAngles"},
-                                             {"wrist", "WristAnglesISB"}}};
+constexpr std::array<Triple, 10> kTriples = {{{"pelvis", "PelvisAngles"},
+                                              {"trunk", "ThoraxAngles"},
+                                              {"spine", "SpineAnglesISB"},
+                                              {"hip", "HipAngles"},
+                                              {"knee", "KneeAngles"},
+                                              {"ankle", "AnkleAngles", "eversion"},
+                                              {"foot", "FootAngles"},
+                                              {"shoulder", "ShoulderAnglesISB"},
+                                              {"elbow", "ElbowAngles"},
+                                              {"wrist", "WristAnglesISB"}}};
 
 /// Three curves as one; a row in which one of them is not known is not one.
 format::AngleTriple triple_of(std::string label, std::span<const analyse::gait::AngleCurve> curves, const Triple& of,

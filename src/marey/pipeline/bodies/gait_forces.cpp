@@ -97,14 +97,16 @@ format::motion::AnalogData read_plates(const std::string& recording, const GaitM
   return analog;
 }
 
-std::vector<gait::EmgCurve> emg_curves(const format::motion::AnalogData& analog, double begin_s,
-                                       std::span<const gait::GaitCycles::Cycle> cycles) {
-  std::vector<gait::EmgCurve> curves;
+std::vector<gait::SignalCurve> emg_curves(const format::motion::AnalogData& analog, double begin_s,
+                                          std::span<const gait::GaitCycles::Cycle> cycles) {
+  std::vector<gait::SignalCurve> curves;
   for (const format::motion::AnalogChannel& channel : analog.channels) {
     const auto side = gait::side_of_label(channel.label);
     if (!side || !is_voltage(channel.unit)) continue;
-    gait::EmgCurve curve = gait::emg_over_cycles(channel.label, *side, gait::emg_envelope(channel.values, analog.rate_hz),
-                                                 analog.rate_hz, analog.begin_s - begin_s, cycles);
+    const std::vector<double> envelope = gait::emg_envelope(channel.values, analog.rate_hz);
+    gait::SignalCurve curve =
+        gait::signal_over_cycles(channel.label, *side, envelope, analog.rate_hz, analog.begin_s - begin_s, cycles);
+    curve.unit = channel.unit;
     if (!curve.cycles.empty()) curves.push_back(std::move(curve));
   }
   return curves;

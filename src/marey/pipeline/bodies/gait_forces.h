@@ -18,8 +18,8 @@ namespace marey::pipeline::bodies {
 format::motion::AnalogData read_plates(const std::string& recording, const GaitMarkers& markers, const std::string& plates);
 
 /// Envelopes of the channels whose label names a side and whose unit is a voltage, over the cycles.
-std::vector<gait::EmgCurve> emg_curves(const format::motion::AnalogData& analog, double begin_s,
-                                       std::span<const gait::GaitCycles::Cycle> cycles);
+std::vector<gait::SignalCurve> emg_curves(const format::motion::AnalogData& analog, double begin_s,
+                                          std::span<const gait::GaitCycles::Cycle> cycles);
 
 /// Feet's loads as OpenSim has external loads, low-passed at `cutoff_hz` unless it is 0. Between contacts the points rest.
 std::vector<format::skeleton::ExternalLoad> external_loads(const gait::FootForces& forces, double begin_s, const std::string& left,

@@ -208,6 +208,10 @@ QuietTimeStep quietest_time_step(const GaitMarkers& markers, const std::string& 
   return time_step;
 }
 
+std::span<const std::pair<std::string_view, std::string_view>> rigid_marker_pairs() {
+  return kRigidPairs;
+}
+
 std::optional<std::string> other_person(const gait::MarkerPositions& standing, const GaitMarkers& walk) {
   double worst = kSamePersonM;
   std::optional<std::string> stated;
@@ -245,6 +249,17 @@ void take_measures(const std::string& path, gait::GaitSubject& subject) {
     subject.marker_radius = *diameter / 2000;
 }
 
+BodySize body_size_in_c3d(const std::string& path) {
+  BodySize size;
+  if (format::format_to_read(path, format::Content::space).name != "c3d") return size;
+  const format::MappedFile file(path);
+  const auto head = format::motion::read_c3d_head(file.bytes(), path);
+  const auto mass = head.number("PROCESSING:BODYMASS"), height = head.number("PROCESSING:HEIGHT");
+  if (mass && *mass > 0) size.mass_kg = mass;
+  if (height && *height > 0) size.height_m = *height / 1000;
+  return size;
+}
+
 void take_soles(const std::string& path, gait::GaitSubject& subject) {
   if (format::format_to_read(path, format::Content::space).name != "c3d") return;
   const format::MappedFile file(path);
@@ -253,7 +268,12 @@ void take_soles(const std::string& path, gait::GaitSubject& subject) {
     const auto above =
         head.number(std::string(side == gait::Side::left ? "PROCESSING:L" : "PROCESSING:R").append("STATICPLANTFLEX"));
     if (!above || *above == 0) continue;
-    subject.sole_from_ankle_toe[static_cast<std::size_t>(side)] = Eigen::AngleAxisd(-*above, Vector<3>::UnitY()).toRotationMatrix();
+    const double inwards =
+        head.number(std::string(side == gait::Side::left ? "PROCESSING:L" : "PROCESSING:R").append("STATICROTOFF")).value_or(0);
+    subject.sole_from_ankle_toe[static_cast<std::size_t>(side)] =
+        (Eigen::AngleAxisd(-*above, Vector<3>::UnitY()) *
+         Eigen::AngleAxisd(side == gait::Side::left ? -inwards : inwards, Vector<3>::UnitZ()))
+            .toRotationMatrix();
   }
 }
 

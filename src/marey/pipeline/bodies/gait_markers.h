@@ -2,7 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "marey/analyse/gait/body_marker_sets.h"
@@ -60,11 +63,20 @@ QuietTimeStep quietest_time_step(const GaitMarkers& markers, const std::string& 
 /// differently far apart in the walk. Nothing if all pairs agree.
 std::optional<std::string> other_person(const gait::MarkerPositions& standing, const GaitMarkers& walk);
 
+/// Pairs of Plug-in Gait's markers that sit on one segment.
+std::span<const std::pair<std::string_view, std::string_view>> rigid_marker_pairs();
+
 /// What Vicon keeps of a person in its C3D files, where `subject` does not have it.
 void take_measures(const std::string& path, gait::GaitSubject& subject);
 
+/// Mass (kg) and height (m) of the person that Vicon keeps in its C3D files; nothing in other files.
+struct BodySize {
+  std::optional<double> mass_kg, height_m;
+};
+BodySize body_size_in_c3d(const std::string& path);
+
 /// How the feet stood in Vicon's own static trial, where a C3D file says so (PROCESSING, StaticPlantFlex): so far is the sole's
-/// line above the one from ankle to toe.
+/// line above the one from ankle to toe, and inwards of it (StaticRotOff).
 void take_soles(const std::string& path, gait::GaitSubject& subject);
 
 }  // namespace marey::pipeline::bodies

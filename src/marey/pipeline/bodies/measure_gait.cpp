@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -10,17 +9,23 @@
 
 #include <fmt/format.h>
 
+#include "marey/analyse/gait/emg_envelope.h"
+#include "marey/analyse/gait/force_curves.h"
 #include "marey/core/error.h"
-#include "marey/draw/gait_report.h"
 #include "marey/files/whole_file.h"
 #include "marey/pipeline/bodies/gait_c3d.h"
 #include "marey/pipeline/bodies/gait_forces.h"
 #include "marey/pipeline/bodies/gait_markers.h"
+#include "marey/pipeline/bodies/gait_pages.h"
 
 namespace marey::pipeline::bodies {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+// kg/m², physical: beyond what living people have been reported with.
+constexpr double kMinBodyMassIndex = 7, kMaxBodyMassIndex = 110;
+constexpr double kMaxStandingFlexion = 20 * std::numbers::pi / 180;  // rad: bench/tuning.md
+constexpr double kStandardGravity = 9.80665;                         // m/s², by definition
 
 /// Where the person walks to: the middle of the hips, over half a second on either side.
 Vector<2> heading_at(const gait::MarkerPath& sacrum, std::size_t row, double rate_hz) {
@@ -65,7 +70,7 @@ std::string csv_name(std::string text) {
 }
 
 /// Muscles' curves have their file's unit where angles have degrees.
-void write_cycles(const std::string& path, const gait::GaitCycles& cycles, std::span<const gait::EmgCurve> muscles) {
+void write_cycles(const std::string& path, const gait::GaitCycles& cycles, std::span<const gait::SignalCurve> muscles) {
   WholeFile file(path);
   std::string text = "angle,percent,mean_deg,deviation_deg,cycles\n";
   for (const gait::CycleCurve& curve : cycles.curves) {
@@ -74,7 +79,7 @@ void write_cycles(const std::string& path, const gait::GaitCycles& cycles, std::
       fmt::format_to(std::back_inserter(text), "{},{},{:.4f},{:.4f},{}\n", curve.name, p, curve.mean[p] * kDegrees,
                      curve.deviation[p] * kDegrees, curve.cycles.size());
   }
-  for (const gait::EmgCurve& curve : muscles) {
+  for (const gait::SignalCurve& curve : muscles) {
     for (std::size_t p = 0; p < gait::kCyclePoints; ++p)
       fmt::format_to(std::back_inserter(text), "emg_{},{},{:.6g},{:.6g},{}\n", csv_name(curve.label), p, curve.mean[p],
                      curve.deviation[p], curve.cycles.size());
@@ -97,35 +102,6 @@ void write_angles(const std::string& path, const GaitMeasure& measure) {
     text += '\n';
   }
   file.write(text);
-  file.finish();
-}
-
-/// "left_knee_flexion" on the page: knee flexion, of the left.
-void write_gait_report(const std::string& path, const std::string& recording, const GaitMeasure& measure) {
-  draw::GaitReport report;
-  report.title = std::filesystem::path(recording).filename().string();
-  for (const std::string& warning : measure.warnings) {  // "walks/a.c3d: …": the page names the file, not its folder
-    const std::size_t end = std::min(warning.find(": "), warning.size());
-    report.notes.push_back(std::filesystem::path(warning.substr(0, end)).filename().string() + warning.substr(end));
-  }
-  for (const gait::CycleCurve& curve : measure.cycles.curves) {
-    if (curve.cycles.empty()) continue;
-    const bool left = curve.name.starts_with("left_");
-    std::string joint = curve.name.substr(left ? 5 : 6);
-    std::replace(joint.begin(), joint.end(), '_', ' ');
-    const auto panel = std::find_if(report.panels.begin(), report.panels.end(), [&](const auto& p) { return p.title == joint; });
-    draw::GaitReport::Panel& at =
-        panel != report.panels.end() ? *panel : report.panels.emplace_back(draw::GaitReport::Panel{joint, {}, {}});
-    std::vector<std::pair<double, double>>& band = left ? at.left : at.right;
-    for (std::size_t p = 0; p < gait::kCyclePoints; ++p) band.emplace_back(curve.mean[p] * kDegrees, curve.deviation[p] * kDegrees);
-  }
-  for (const gait::GaitFigure& figure : measure.cycles.figures)
-    report.figures.push_back({figure.name, figure.unit, figure.mean, figure.deviation});
-  for (const gait::GaitEvent& event : measure.events)
-    report.events.push_back({event.side == gait::Side::left ? "left" : "right", event.strike ? "strike" : "off",
-                             measure.begin_s + event.time_s, event.deviation_s});
-  WholeFile file(path);
-  file.write(draw::to_html(report));
   file.finish();
 }
 
@@ -219,6 +195,80 @@ void add_forces(const format::motion::AnalogData& analog, const gait::FeetPaths&
   measure.events = measure.by_force.events;
 }
 
+/// A static trial with bent knees: legs' lengths and the feet's neutral position are of that posture.
+void warn_of_crouch(const gait::MarkerPositions& standing, const std::string& path, GaitMeasure& measure) {
+  const auto angles = gait::angles_of(gait::pose_of(standing, measure.subject), Vector<2>::UnitX());
+  for (std::size_t a = 0; a < angles.size(); ++a) {
+    const std::string& name = gait::angle_names()[a];
+    if (!name.ends_with("_knee_flexion") || !angles[a] || *angles[a] < kMaxStandingFlexion) continue;
+    measure.warnings.push_back(
+        fmt::format("{}: the {} knee is bent by {:.0f}° in the static trial; does the person stand in a crouch? "
+                    "Hips' centres follow from legs' lengths, which are too short then: give --leg-length",
+                    path, gait::side_of_curve(name) == gait::Side::left ? "left" : "right", *angles[a] * kDegrees));
+  }
+}
+
+/// Forces, moments and powers over those cycles whose stance is on a plate.
+void add_kinetics(const std::string& recording, const gait::FeetPaths& feet, const GaitOptions& options, GaitMeasure& measure) {
+  const std::vector<gait::GaitCycles::Cycle> on_plates = gait::cycles_on_plates(measure.forces, measure.cycles.cycles);
+  const BodySize size = body_size_in_c3d(recording);
+  measure.mass_kg = options.mass_kg ? options.mass_kg : size.mass_kg;
+  if (const double index = size.height_m ? measure.mass_kg.value_or(0) / (*size.height_m * *size.height_m) : 0;
+      index > 0 && (index < kMinBodyMassIndex || index > kMaxBodyMassIndex))
+    measure.warnings.push_back(
+        fmt::format("{}: {:g} kg at a height of {:.2f} m are not a person's (body mass index {:.1f}); forces in % "
+                    "of weight and moments per kg are wrong by as much",
+                    recording, *measure.mass_kg, *size.height_m, index));
+  measure.ground = gait::ground_reaction_curves(measure.forces, measure.forces_begin_s - measure.begin_s, measure.cycles.cycles,
+                                                feet.sacrum, measure.rate_hz);
+  if (measure.mass_kg) {
+    for (gait::SignalCurve& curve : measure.ground) {
+      const double per_cent = 100 / (*measure.mass_kg * kStandardGravity);
+      curve.unit = "% of weight";
+      for (auto& cycle : curve.cycles) {
+        for (double& value : cycle) value *= per_cent;
+      }
+      gait::summarise(curve.cycles, curve.mean, curve.deviation);
+    }
+  }
+  if (options.joint_moments.empty()) {
+    measure.kinetics = kinetics_in_c3d(recording, measure.rate_hz, on_plates);
+  } else {
+    measure.kinetics = kinetics_in_tables(options.joint_moments, measure.begin_s, measure.mass_kg,
+                                          measure.forces.feet[0].empty() ? measure.cycles.cycles : on_plates);
+  }
+}
+
+/// The control group and the earlier session.
+void add_comparison(const std::string& recording, const GaitOptions& options, const Hooks& hooks, GaitMeasure& measure) {
+  if (!options.reference.empty()) {
+    measure.reference = read_gait_reference(options.reference, options, hooks);
+    const GaitReference& group = *measure.reference;
+    measure.warnings.insert(measure.warnings.end(), group.warnings.begin(), group.warnings.end());
+    measure.profile = gait::gait_profile(measure.cycles.curves, group.bands);
+    const auto turning = std::count_if(measure.cycles.cycles.begin(), measure.cycles.cycles.end(), [](const auto& cycle) {
+      return cycle.turn && std::abs(*cycle.turn) > max_reference_turn();
+    });
+    if (turning > 0)
+      measure.warnings.push_back(
+          fmt::format("{}: {} of {} cycles turn by more than {:.0f}°; the reference has straight walking alone", recording, turning,
+                      measure.cycles.cycles.size(), max_reference_turn() * kDegrees));
+  }
+  if (options.before.empty()) return;
+  GaitOptions earlier = options;
+  earlier.before.clear();
+  earlier.reference.clear();
+  earlier.plates.clear();
+  earlier.joint_moments.clear();
+  earlier.static_trial = options.before_static;
+  auto before = std::make_shared<GaitMeasure>(measure_gait(options.before, earlier, {.stop = hooks.stop}));
+  if (before->cycles.cycles.empty()) throw Error("{}: no whole gait cycle was found in the earlier session", options.before);
+  if (measure.reference) before->profile = gait::gait_profile(before->cycles.curves, measure.reference->bands);
+  measure.warnings.insert(measure.warnings.end(), before->warnings.begin(), before->warnings.end());
+  measure.before_name = options.before;
+  measure.before = std::move(before);
+}
+
 void need_a_cycle(const std::string& recording, const GaitMeasure& measure, const GaitOutput& output) {
   need_steps(recording, measure, output);
   if (std::any_of(measure.cycles.curves.begin(), measure.cycles.curves.end(), [](const auto& c) { return !c.cycles.empty(); }))
@@ -242,13 +292,15 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
   measure.begin_s = markers.begin_s;
   measure.first_index = markers.first_index;
   take_measures(recording, measure.subject);
+  gait::MarkerPositions standing;
   if (!options.static_trial.empty()) {
     take_measures(options.static_trial, measure.subject);
-    const auto standing = standing_positions(read_gait_markers(options.static_trial, options.up, hooks), options.static_trial);
+    standing = standing_positions(read_gait_markers(options.static_trial, options.up, hooks), options.static_trial);
     if (const auto pair = other_person(standing, markers))
       measure.warnings.push_back(
           fmt::format("{}: {}: another person's static trial, or markers that were put on again?", options.static_trial, *pair));
     measure.subject.learn_from(standing);
+    warn_of_crouch(standing, options.static_trial, measure);
   } else {
     if (!measure.subject.leg_length[0] && !markers.rows.empty()) measure.subject.learn_from(markers.rows.front());
     measure.warnings.push_back(
@@ -256,6 +308,7 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
     measure.subject.sole_from_ankle_toe = options.subject.sole_from_ankle_toe;
   }
   take_soles(recording, measure.subject);
+  measure.quality = gait_quality(markers, standing);
   if (auto across = up_across(recording, options.up, markers, measure.subject)) {
     measure.lies = true;
     measure.warnings.push_back(std::move(*across));
@@ -275,9 +328,11 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
   add_forces(analog, feet, recording, measure);
   if (measure.events.empty())
     measure.warnings.push_back(fmt::format("{}: no steps were found: HEE and TOE of a side are needed, and a walk", recording));
-  measure.cycles = gait::gait_cycles(measure.events, measure.angles, feet, measure.rate_hz);
+  measure.cycles = gait::gait_cycles(measure.events, measure.angles, feet, measure.rate_hz, options.cycles);
   measure.muscles = emg_curves(analog, measure.begin_s, measure.cycles.cycles);
+  add_kinetics(recording, feet, options, measure);
   warn_of_gaps(recording, measure);
+  add_comparison(recording, options, hooks, measure);
   return measure;
 }
 

@@ -172,6 +172,77 @@ TEST(MeasureGait, AgreesWithPlugInGait) {
   }
 }
 
+/// The file's own third coordinate, in its own number.
+std::vector<double> third_in(const std::string& path, const std::string& label) {
+  std::vector<double> values;
+  const auto reader = format::motion::open_c3d(path, format::motion::C3dPoints::all);
+  std::optional<TrackId> track;
+  for (const TrackName& name : reader->tracks()) {
+    if (name.label == label) track = name.id;
+  }
+  while (const auto instant = reader->next()) {
+    for (const Sample& sample : instant->samples) {
+      if (sample.track == track) values.push_back(1000 * sample.position.z());
+    }
+  }
+  return values;
+}
+
+TEST(MeasureGait, FootProgressionAndForcesAgreeWithPlugInGait) {
+  const std::vector<Child> all = children();
+  if (all.empty()) GTEST_SKIP() << test::data("gait_children") << " is not here";
+  int forces = 0;
+  for (const Child& child : all) {
+    for (const std::string& walk : child.walks) {
+      if (walk.find("straight") == std::string::npos) continue;
+      const GaitMeasure measure = measure_gait(walk, {.static_trial = child.static_trial});
+      for (const char* side : {"left", "right"}) {
+        const std::vector<double> theirs =
+            third_in(walk, side == std::string("left") ? "LFootProgressAngles" : "RFootProgressAngles");
+        const auto ours = std::find_if(measure.angles.begin(), measure.angles.end(),
+                                       [&](const auto& curve) { return curve.name == std::string(side) + "_foot_progression"; });
+        ASSERT_NE(ours, measure.angles.end());
+        double squares = 0, count = 0;
+        for (std::size_t r = 0; r < std::min(theirs.size(), ours->values.size()); ++r) {
+          if (!ours->values[r]) continue;
+          squares += std::pow(*ours->values[r] * 180 / std::numbers::pi - theirs[r], 2);
+          ++count;
+        }
+        std::printf("%s %s progression: %.2f deg RMSE over %.0f\n", fs::path(walk).filename().c_str(), side,
+                    std::sqrt(squares / count), count);
+        // Plug-in Gait measures against the laboratory's axis: HC030A walks 2° across it.
+        EXPECT_LT(std::sqrt(squares / count), walk.find("HC030A") == std::string::npos ? 2.5 : 5) << walk << " " << side;
+      }
+      for (const gait::SignalCurve& curve : measure.ground) {
+        if (curve.label != "up") continue;
+        const std::vector<double> theirs = third_in(walk, curve.side == gait::Side::left ? "LNormalisedGRF" : "RNormalisedGRF");
+        const double most = *std::max_element(theirs.begin(), theirs.end()),
+                     found = *std::max_element(curve.mean.begin(), curve.mean.end());
+        std::printf("%s up: %.1f %% of weight, the file has %.1f\n", fs::path(walk).filename().c_str(), found, most);
+        EXPECT_NEAR(found, most, 2) << walk;
+        EXPECT_EQ(curve.unit, "% of weight");
+        ++forces;
+      }
+    }
+  }
+  EXPECT_GE(forces, 6);
+}
+
+TEST(MeasureGait, CyclesOfStraightWalksDoNotTurn) {
+  const std::vector<Child> all = children();
+  if (all.empty()) GTEST_SKIP() << test::data("gait_children") << " is not here";
+  for (const Child& child : all) {
+    for (const std::string& walk : child.walks) {
+      const GaitMeasure measure = measure_gait(walk, {.static_trial = child.static_trial});
+      for (const auto& cycle : measure.cycles.cycles) {
+        std::printf("%s: turns by %.1f deg\n", fs::path(walk).filename().c_str(), cycle.turn.value_or(9) * 180 / std::numbers::pi);
+        if (walk.find("straight") == std::string::npos) continue;
+        EXPECT_LT(std::abs(cycle.turn.value_or(9)), max_reference_turn()) << walk;
+      }
+    }
+  }
+}
+
 TEST(MeasureGait, ArmsDoNotTurnOver) {
   const std::vector<Child> all = children();
   if (all.empty()) GTEST_SKIP() << test::data("gait_children") << " is not here";

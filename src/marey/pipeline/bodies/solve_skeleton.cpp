@@ -254,7 +254,7 @@ SolvedRecording solve_with_skeleton(const std::string& recording, const std::str
   options.up = up_of(format::format_to_read(recording, Content::space), skeleton, options);
   std::optional<solve::skeleton::Calibration> calibration;
   if (options.calibrate) {
-    calibration = calibrate_skeleton(recording, file.skeleton, skeleton.ends_with(".osim"), options);
+    calibration = calibrate_skeleton(recording, file.skeleton, skeleton.ends_with(".osim"), options, file.warnings);
     file.skeleton = calibration->skeleton;
   }
   SolvedRecording solved = solve_recording(recording, file, options, hooks);
