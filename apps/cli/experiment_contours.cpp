@@ -17,7 +17,6 @@ namespace {
 
 struct ExperimentContours {
   experiments::ContourExperimentOptions options;
-  bool cuts = false;
   bool json = false;
   bool markdown = false;
   bool quiet = false;
@@ -36,7 +35,6 @@ Json as_json(const experiments::ContourExperiment& experiment) {
 }
 
 void run(ExperimentContours& command) {
-  if (command.cuts) command.options.outlines.labelling = track::contour::Labelling::cuts;
   const experiments::ContourExperiment experiment =
       with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_contour_experiment(command.options, hooks); });
   if (experiment.rows.empty()) throw Error("--only {}: no case of that name; see docs/reference/experiments.md", command.options.only);
@@ -59,7 +57,6 @@ void add_experiment_contours(Command& experiment) {
   command.whole("--videos", options->options.videos, "N", 1, 10'000, "per case");
   command.seed(options->options.seed, "of the first video; the others follow");
   command.text("--only", options->options.only, "cases whose name contains this text");
-  command.flag("--graph-cuts", options->cuts, "labels of pixels by graph cuts in place of neighbours' votes");
   command.reports(options->json, options->quiet, "tables", &options->markdown);
   command.runs([options] { run(*options); });
 }

@@ -17,6 +17,8 @@ import xml.etree.ElementTree
 MAREY = ""
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "outlines.md"
 
+STREET = pathlib.Path("/usr/share/doc/opencv-doc/examples/data/vtest.avi")
+
 
 def commands_of(page):
     """Lines of the page's code blocks that begin with marey."""
@@ -59,6 +61,46 @@ def crosses_itself(curve):
             if side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0:
                 return True
     return False
+
+
+def cut_off(rows):
+    """How many outlines there are, and how many end more than 15 % of their box's height within it: legs or heads are missing."""
+    count = cut = 0
+    for row in rows:
+        if "outline" not in row:
+            continue
+        ys = [y for _, y in curve_of(row["outline"])]
+        top, height = row["top"] - 0.5, row["height"]
+        count += 1
+        cut += top + height - max(ys) > 0.15 * height or min(ys) - top > 0.15 * height
+    return count, cut
+
+
+class WholeBodies(unittest.TestCase):
+    """Contours over seconds reach from head to feet: an error of one frame must not become the shape of the next."""
+
+    def tracked(self, folder, video):
+        done = subprocess.run([MAREY, "track", str(video), "--contour", "--live", "-o", "out.jsonl", "-q"], cwd=folder, capture_output=True, text=True, timeout=600)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return cut_off([json.loads(line) for line in (folder / "out.jsonl").read_text().splitlines()])
+
+    def test_of_simulated_walkers(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            made = subprocess.run([MAREY, *"simulate people --situation crowd --people 8 --frames 150 --seed 1 -o people -q".split()], cwd=folder, timeout=600)
+            self.assertEqual(made.returncode, 0)
+            count, cut = self.tracked(folder, folder / "people" / "video.mp4")
+            self.assertGreater(count, 900)
+            self.assertLess(cut, 0.08 * count)  # 66 of 1035; more than 200 before
+
+    @unittest.skipUnless(STREET.exists() and shutil.which("ffmpeg"), f"{STREET} or ffmpeg is not there")
+    def test_of_people_in_a_street(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            subprocess.run(["ffmpeg", "-v", "error", "-t", "8", "-i", STREET, "-c", "copy", folder / "street.avi"], check=True)
+            count, cut = self.tracked(folder, folder / "street.avi")
+            self.assertGreater(count, 300)
+            self.assertLess(cut, 0.06 * count)  # 15 of 339; 39 before
 
 
 class Outlines(unittest.TestCase):

@@ -22,7 +22,7 @@ inline constexpr double kSilhouetteNoise = 0.5;  // px, of a control point from 
 inline constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
                         kHiddenCentre = 4;  // how the centre swings with the steps; the last: factor where a part is hidden
 
-inline constexpr double kMaxHigher = 1.25;  // of the tracker's box, from which on an outline has grown beyond its target
+inline constexpr double kStrideWidth = 0.4;  // heights: physical, a body in a stride is as wide, whatever its box
 
 inline constexpr double kFractionMemory = 0.05;  // what a frame counts in what is typical of a target
 
@@ -47,16 +47,16 @@ struct ContourTarget {
   TrackId id;
   ShapeFilter shape;
   MotionFilter motion;
-  double height;                     ///< px
-  double default_area;               ///< px²
-  double tracked_height;             ///< px; of the tracker's box while `default_area` was seen
-  geometry::ClosedSpline predicted;  ///< of this frame, before anything was seen of it
-  Vector<2> extent = {0, 0};         ///< px; width and height of its outlines while it was alone; 0 before
-  BodyModel body = {};               ///
-  int learned = 0;                   ///< frames that `body` was learned from
-  int held = 0;                      ///< frames since it was seen, or a part of it
-  Vector<2> centre_in_box = {0, 0};  ///< heights, from the middle of the tracker's box to the outline's centre
-  double default_fraction = 1;       ///< of the pixels within the outline that are foreground
+  double height;                                          ///< px
+  double default_area;                                    ///< px²
+  double tracked_height;                                  ///< px; of the tracker's box while `default_area` was seen
+  geometry::ClosedSpline predicted;                       ///< of this frame, before anything was seen of it
+  std::optional<geometry::ClosedSpline> body_shape = {};  ///< the last that filled the tracker's box; in heights, from its foot
+  BodyModel body = {};                                    ///
+  int learned = 0;                                        ///< frames that `body` was learned from
+  int held = 0;                                           ///< frames since it was seen, or a part of it
+  Vector<2> centre_in_box = {0, 0};                       ///< heights, from the middle of the tracker's box to the outline's centre
+  double default_fraction = 1;                            ///< of the pixels within the outline that are foreground
   double fraction = 1;
   Box box = {};
   Outline::State state = Outline::State::detected;

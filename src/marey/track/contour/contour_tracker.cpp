@@ -13,6 +13,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
+#include "marey/track/contour/colour_patch.h"
 #include "marey/track/contour/contour_target.h"
 #include "marey/track/contour/line_correction.h"
 #include "marey/track/contour/lone_silhouette.h"
@@ -23,16 +24,16 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kExplained = 0.3;  // IoU of a detection that explains an outline
-constexpr double kHintScore = 0.3;  // continues a track, begins none
-constexpr double kMeets = 0.03;     // share of its box from which on another's box meets it
+constexpr double kExplained = 0.3;     // IoU of a detection that explains an outline
+constexpr double kHintScore = 0.3;     // continues a track, begins none
+constexpr double kSceneMargin = 0.15;  // heights: physical, a walker's step in a frame of 7 Hz and an arm
+constexpr double kMeets = 0.03;        // share of its box from which on another's box meets it
 
 }  // namespace
 
 class ContourTracker::Implementation {
  public:
-  explicit Implementation(const OutlineOptions& options)
-      : options_(options), lines_(options.lines), lone_(fit_options(options), options.labelling) {
+  explicit Implementation(const OutlineOptions& options) : options_(options), lines_(options.lines), lone_(fit_options(options)) {
     check(options);
   }
 
@@ -41,7 +42,7 @@ class ContourTracker::Implementation {
     now_ = frame.time;
     image_ = frame.image;
     mask_ = foreground.mask;
-    scene_.observe(image_, mask_);
+    learn_scene();
     lone_.inspect_at(image_, mask_, &scene_);
     hints_.clear();
     for (ContourTarget& target : targets_) {
@@ -80,7 +81,7 @@ class ContourTracker::Implementation {
       ContourTarget* target = target_of(track.id);
       if (target == nullptr) continue;
       const Detection* raw = detection_of(track, detections);
-      if (track.box) bring_back(*target, track);
+      if (track.box) bring_back(*target, track, raw);
       if (target->measured) target->motion.correct_centre(target->measured->centre, target->measured->deviation);
       target->held = target->state == Outline::State::held ? target->held + 1 : 0;
       track.outline = report(*target, raw != nullptr && !raw->group ? raw : nullptr, track, mask_.size());
@@ -92,6 +93,16 @@ class ContourTracker::Implementation {
   void use_masks(FindBodyMasks find) { find_masks_ = std::move(find); }
 
  private:
+  /// From what lies beyond all targets, as the tracker had them in the frame before: between two frames no person leaves that
+  /// margin.
+  void learn_scene() {
+    target_boxes_.clear();
+    for (const Track<2>& track : tracks_) {
+      if (track.box) target_boxes_.push_back(grown(*track.box, kSceneMargin * track.box->height));
+    }
+    scene_.observe(image_, mask_, target_boxes_);
+  }
+
   /// A network's masks of all targets whose box is known.
   void request_masks() {
     masks_.clear();
@@ -187,7 +198,7 @@ class ContourTracker::Implementation {
       std::vector<SharedTarget> targets;
       for (const std::size_t k : members)
         targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed, mask_of(shared_[k].id)});
-      outline_shared_region(image_, mask_, &scene_, targets, options_.labelling);
+      outline_shared_region(image_, mask_, &scene_, targets);
     }
   }
 
@@ -259,6 +270,7 @@ class ContourTracker::Implementation {
   std::vector<Track<2>> tracks_;
   // What a frame needs, kept so that it is allocated once.
   std::vector<int> nearest_first_;
+  std::vector<Box> target_boxes_;
 };
 
 ContourTracker::ContourTracker(const OutlineOptions& options) : self_(std::make_unique<Implementation>(options)) {}

@@ -12,18 +12,16 @@
 #include "marey/core/outline.h"
 #include "marey/core/track.h"
 #include "marey/track/contour/body_mask.h"
-#include "marey/track/contour/labelling.h"
 
 namespace marey::track::contour {
 
 /// Lengths in px; noises in heights of the target, so that the same hold near the camera and far from it.
 struct OutlineOptions {
-  int order = 4;                           ///< degree + 1, 2 … 8
-  std::optional<int> control_points;       ///< exactly this many; omitted: by tolerance, at most 40
-  double tolerance = 0.3;                  ///< px, RMS, between a silhouette's edge and the spline
-  int lines = 24;                          ///< measurement lines
-  double min_height = 8;                   ///< px; smaller targets get no outline
-  Labelling labelling = Labelling::votes;  ///< of the pixels of a region
+  int order = 4;                      ///< degree + 1, 2 … 8
+  std::optional<int> control_points;  ///< exactly this many; omitted: by tolerance, at most 40
+  double tolerance = 0.3;             ///< px, RMS, between a silhouette's edge and the spline
+  int lines = 24;                     ///< measurement lines
+  double min_height = 8;              ///< px; smaller targets get no outline
 };
 
 /// Follows the outlines of the targets of another tracker: identities stay that tracker's task. A frame takes two calls:

@@ -134,5 +134,20 @@ TEST(SceneImage, IsWhatNobodyCovers) {
   }
 }
 
+TEST(SceneImage, LearnsNothingWithinTargets) {
+  // A person stands before a dark scene, and the foreground has lost them.
+  const cv::Mat half(24, 32, CV_8UC1, cv::Scalar(128)), nothing = cv::Mat::zeros(48, 64, CV_8UC1);
+  const cv::Rect body(20, 10, 8, 30);
+  const Box box{18, 8, 12, 34};
+  SceneImage learned;
+  for (int frame = 0; frame < 120; ++frame) {
+    cv::Mat luma(48, 64, CV_8UC1, cv::Scalar(60));
+    const bool is_there = frame >= 20 && frame < 110;
+    if (is_there) luma(body).setTo(220);
+    learned.observe(Image(luma, half, half, Image::Range::limited), nothing, std::span(&box, is_there ? 1 : 0));
+    EXPECT_NEAR(cv::mean(learned.luma(body))[0], 60, 1) << frame;
+  }
+}
+
 }  // namespace
 }  // namespace marey::track::contour

@@ -25,7 +25,6 @@ constexpr int kRounds = 3;                // of the fit, in every frame
 constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
 constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
-constexpr double kMinWidth = 0.4;         // heights: what counts as narrow; unswept
 constexpr double kSmeared = 0.015;        // heights; at crf 18, 35 and recorded, 60 px: 0.006, 0.025, 0.035; 120 px: 0.016
 constexpr int kKnown = 10;                // frames that a target's colours were learned from, from which on they decide; unswept
 constexpr double kTypical = 0.35;         // weight of the typical coverage in the prior
@@ -45,7 +44,7 @@ Box bounds(std::span<const Vector<2>> polygon) {
 /// A body does not grow by half from one frame to the next: a shadow, or a neighbour, came with it.
 bool is_of_size(const Box& box, const ContourTarget& target) {
   const Box before = target.predicted.box();
-  return box.height < kMaxGrowth * before.height && box.width < kMaxGrowth * std::max(before.width, kMinWidth * target.height);
+  return box.height < kMaxGrowth * before.height && box.width < kMaxGrowth * std::max(before.width, kStrideWidth * target.height);
 }
 
 }  // namespace
@@ -100,7 +99,7 @@ cv::Mat LoneSilhouettes::known_fraction(const ContourTarget& target, const Detec
   member.shifts = {Vector<2>::Zero()};
   member.typical = kTypical;
   if (mask != nullptr) member.network = chances_in(*mask, patch_);
-  const cv::Mat ground = divide_region(patch_, {&member, 1}, labelling_);
+  const cv::Mat ground = divide_region(patch_, {&member, 1});
   return matted_edge(patch_, member.whole, {}, ground, target.height);
 }
 
@@ -125,8 +124,6 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   target.knotted = false;
   target.measured = {centre, Vector<2>::Constant(kSilhouetteNoise) + target.height * Vector<2>(kGaitAcross, kGaitDown)};
   target.default_area += kFractionMemory * (spline->area() - target.default_area);
-  const Vector<2> extent(spline->box().width, spline->box().height);
-  target.extent += (target.extent.y() > 0 ? kFractionMemory : 1) * (extent - target.extent);
   if (track.box) target.tracked_height += kFractionMemory * (track.box->height - target.tracked_height);
   learn(target, centre, track);
   return true;

@@ -11,7 +11,6 @@
 #include "marey/track/contour/body_mask.h"
 #include "marey/track/contour/colour_patch.h"
 #include "marey/track/contour/contour_target.h"
-#include "marey/track/contour/labelling.h"
 
 namespace marey::track::contour {
 
@@ -19,8 +18,7 @@ namespace marey::track::contour {
 class LoneSilhouettes {
  public:
   /// `fit` says how the first silhouette of a target is fitted; later ones get as many control points or more.
-  explicit LoneSilhouettes(const geometry::SplineFitOptions& fit, Labelling labelling = Labelling::votes)
-      : fit_(fit), labelling_(labelling) {}
+  explicit LoneSilhouettes(const geometry::SplineFitOptions& fit) : fit_(fit) {}
 
   /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
   /// `scene` stays with its owner; it may be null.
@@ -45,7 +43,6 @@ class LoneSilhouettes {
   void learn(ContourTarget& target, const Vector<2>& centre, const Track<2>& track);
 
   geometry::SplineFitOptions fit_;
-  Labelling labelling_;
   Image image_;
   cv::Mat mask_;
   const SceneImage* scene_ = nullptr;

@@ -19,20 +19,6 @@ class NeighbourVotes {
   /// The weighted mean of `chance` (CV_32FC1) over each cell and its neighbours, with nothing beyond the patch.
   cv::Mat of(const cv::Mat& chance) const;
 
-  /// Every pair of neighbours with its weight, where that is above 0: visit(cell, cell, weight).
-  template <typename Visit>
-  void for_pairs(const Visit& visit) const {
-    for (std::size_t i = 0; i < kToNeighbour.size(); ++i) {
-      const auto [right, below] = kToNeighbour[i];
-      for (int y = 0; y < weights_[i].rows; ++y) {
-        const auto* weight = weights_[i].ptr<float>(y);
-        for (int x = 0; x < weights_[i].cols; ++x) {
-          if (weight[x] > 0) visit(cv::Point(x, y), cv::Point(x + right, y + below), weight[x]);
-        }
-      }
-    }
-  }
-
  private:
   static constexpr std::array<std::array<int, 2>, 4> kToNeighbour{{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
   std::array<cv::Mat, 4> weights_;  ///< CV_32FC1: of the neighbour at the right, below, below right, below left

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,10 @@
 
 namespace marey::track::contour {
 namespace {
+
+constexpr double kMaxMissingPart = 0.12;  // heights by which an outline may be lower than the tracker's box
+constexpr double kMaxHigher = 1.25;       // of the tracker's box, from which on an outline has grown beyond its target
+constexpr double kMaxWider = 1.8;         // likewise
 
 geometry::ClosedSpline moved_to(const geometry::ClosedSpline& spline, const Vector<2>& centre) {
   std::vector<Vector<2>> points = spline.control_points();
@@ -30,29 +35,68 @@ std::shared_ptr<Outline>& free_slot(ContourTarget& target) {
   return *slot;
 }
 
-/// How high an outline is as a rule, against the tracker's box: as outlines of the target alone are.
-double typical_height(const ContourTarget& target, const Box& own) {
-  const double part = target.extent.y() > 0 && target.tracked_height > 0 ? target.extent.y() / target.tracked_height : 1;
-  return std::min(1.0, part) * own.height;
+/// px: the middle of a box's lower edge, between pixels.
+Vector<2> foot_of(const Box& box) {
+  return {box.left + box.width / 2 - 0.5, box.bottom() - 0.5};
 }
 
-geometry::ClosedSpline scaled(const geometry::ClosedSpline& spline, double by) {
-  const Vector<2> centre = spline.centroid();
+geometry::ClosedSpline moved_and_scaled(const geometry::ClosedSpline& spline, const Vector<2>& from, double by,
+                                        const Vector<2>& to) {
   std::vector<Vector<2>> points = spline.control_points();
-  for (Vector<2>& point : points) point = centre + by * (point - centre);
+  for (Vector<2>& point : points) point = to + by * (point - from);
   return {spline.order(), std::move(points)};
+}
+
+double width_of(const Box& box) {
+  return std::max(box.width, kStrideWidth * box.height);
+}
+
+/// Whether a silhouette that no person shares explains what is unlike the tracker's box: a body that bends or squats keeps its
+/// feet.
+bool is_explained(const Box& own, const Box& box, const Detection* raw) {
+  if (raw == nullptr || raw->group) return false;
+  const bool cut = box.bottom() - own.bottom() > kMaxMissingPart * box.height;
+  return !cut && own.height < kMaxHigher * raw->box.height && own.width < kMaxWider * width_of(raw->box);
+}
+
+/// The end of a cut shape that is nearer to the box's is where the body's is.
+Vector<2> shift_to_visible_end(const Box& body, const Box& own, const Box& box) {
+  const double top = own.top - box.top, bottom = own.bottom() - box.bottom();
+  const double down = std::abs(top) < std::abs(bottom) ? own.top - body.top : own.bottom() - body.bottom();
+  return {own.centre().x() - body.centre().x(), std::clamp(down, -kMaxMissingPart * box.height, kMaxMissingPart * box.height)};
 }
 
 }  // namespace
 
-void bring_back(ContourTarget& target, const Track<2>& track) {
+bool is_as_large(const geometry::ClosedSpline& spline, const Box& box) {
+  const Box own = spline.box();
+  return own.height > (1 - kMaxMissingPart) * box.height && own.height < kMaxHigher * box.height &&
+         own.width < kMaxWider * width_of(box);
+}
+
+std::optional<geometry::ClosedSpline> body_in(const ContourTarget& target, const Box& box) {
+  if (!target.body_shape) return std::nullopt;
+  geometry::ClosedSpline body = moved_and_scaled(*target.body_shape, Vector<2>::Zero(), box.height, foot_of(box));
+  return is_as_large(body, box) ? std::optional(std::move(body)) : std::nullopt;
+}
+
+void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw) {
   const Vector<2> centre = target.motion.centre();
   const Box& box = *track.box;
-  const double height = target.shape.spline().box().height, typical = typical_height(target, box);
-  if (height > kMaxHigher * typical) {  // it has grown beyond its target
-    target.shape = ShapeFilter(scaled(target.shape.spline(), typical / height), kBend * target.height);
+  const geometry::ClosedSpline& spline = target.shape.spline();
+  const Box own = spline.box();
+  if (is_as_large(spline, box)) {
+    if (target.state == Outline::State::detected)
+      target.body_shape = moved_and_scaled(spline, foot_of(own), 1 / box.height, Vector<2>::Zero());
+  } else if (!is_explained(own, box, raw)) {
+    auto body = body_in(target, box);
+    if (!body) body = standing_body(box, {spline.order(), spline.count(), spline.count()});
+    const Vector<2> shift = body ? shift_to_visible_end(body->box(), own, box) : Vector<2>(0, 0);
+    if (body) target.shape = ShapeFilter(moved_and_scaled(*body, Vector<2>::Zero(), 1, shift), 2 * prior_deviation(target.height));
     target.state = Outline::State::held;
     target.lines.clear();
+    target.hidden.resize(static_cast<std::size_t>(target.shape.spline().count()));
+    std::iota(target.hidden.begin(), target.hidden.end(), 0);
   }
   if (centre.x() >= box.left && centre.x() < box.right() && centre.y() >= box.top && centre.y() < box.bottom()) return;
   target.shape = ShapeFilter(moved_to(target.shape.spline(), box.centre()), kBend * target.height);

@@ -1,17 +1,26 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <opencv2/core.hpp>
 
 #include "marey/core/detection.h"
 #include "marey/core/track.h"
+#include "marey/geometry/bspline.h"
 #include "marey/track/contour/contour_target.h"
 
 namespace marey::track::contour {
 
-/// Where the motion left the tracker's box, the tracker is right: the outline is moved there with its shape held.
-void bring_back(ContourTarget& target, const Track<2>& track);
+/// Where the outline left the tracker's box, or is cut off or larger than a body in it, the tracker is right: the last shape that
+/// filled the box is held in it, with all of its edge hidden. `raw` is the detection that the tracker used; null: none.
+void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw);
+
+/// The last shape of the target that filled the tracker's box, put into `box`, px; nothing before there was one.
+std::optional<geometry::ClosedSpline> body_in(const ContourTarget& target, const Box& box);
+
+/// Whether a curve is about as high as `box`, px, and not much wider.
+bool is_as_large(const geometry::ClosedSpline& spline, const Box& box);
 
 /// The target's outline as it is written; nothing if the contour is not an outline of a target of this size. `seen` is the
 /// silhouette that no person shares, if any; `picture` its frame's size, px, empty if that is not known.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace marey::track::contour {
@@ -32,7 +33,7 @@ cv::Mat levels(const cv::Mat& plane, const cv::Rect& area) {
 
 }  // namespace
 
-void SceneImage::observe(const Image& image, const cv::Mat& foreground) {
+void SceneImage::observe(const Image& image, const cv::Mat& foreground, std::span<const Box> targets) {
   if (foreground.empty() || foreground.size() != image.size() || image.luma().type() != CV_8UC1) return;
   if (!has(image.size())) {
     const cv::Size size = image.size(), half((size.width + 1) / 2, (size.height + 1) / 2);
@@ -43,12 +44,21 @@ void SceneImage::observe(const Image& image, const cv::Mat& foreground) {
     next_ = -1;
   }
   shift_.observe(image, foreground);
-  for (int row = std::max(0, next_); row < frames_.rows; row += next_ < 0 ? 1 : kInterleave) learn_row(image, foreground, row);
+  foreground.copyTo(taken_);
+  const Box all{0, 0, static_cast<double>(taken_.cols), static_cast<double>(taken_.rows)};
+  for (const Box& target : targets) {
+    const Box part = geometry::intersection(target, all);
+    if (part.empty()) continue;
+    const cv::Point from(static_cast<int>(part.left), static_cast<int>(part.top)),
+        to(static_cast<int>(std::ceil(part.right())), static_cast<int>(std::ceil(part.bottom())));
+    taken_(cv::Rect(from, to)) = 255;
+  }
+  for (int row = std::max(0, next_); row < frames_.rows; row += next_ < 0 ? 1 : kInterleave) learn_row(image, taken_, row);
   next_ = (next_ + 1) % kInterleave;
 }
 
-void SceneImage::learn_row(const Image& image, const cv::Mat& foreground, int row) {
-  const std::uint8_t* taken = foreground.ptr<std::uint8_t>(row);
+void SceneImage::learn_row(const Image& image, const cv::Mat& scene_taken, int row) {
+  const std::uint8_t* taken = scene_taken.ptr<std::uint8_t>(row);
   const std::uint8_t* level = image.luma().ptr<std::uint8_t>(row);
   std::uint8_t* frames = frames_.ptr<std::uint8_t>(row);
   std::uint16_t* mean = luma_.ptr<std::uint16_t>(row);

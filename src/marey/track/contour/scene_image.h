@@ -1,7 +1,10 @@
 #pragma once
 
+#include <span>
+
 #include <opencv2/core.hpp>
 
+#include "marey/core/geometry.h"
 #include "marey/core/image.h"
 #include "marey/track/contour/chroma_shift.h"
 
@@ -11,9 +14,10 @@ namespace marey::track::contour {
 /// like.
 class SceneImage {
  public:
-  /// A frame and its foreground (CV_8UC1, of the image's size; other sizes are ignored). Every fourth row is learned per frame, all
-  /// of them in the first. Cost: a pass over a quarter of the pixels.
-  void observe(const Image& image, const cv::Mat& foreground);
+  /// A frame and its foreground (CV_8UC1, of the image's size; other sizes are ignored). Nothing is learned within the boxes of
+  /// `targets` (px): the foreground of a person who stands has holes. Every fourth row is learned per frame, all of them in the
+  /// first. Cost: a pass over a quarter of the pixels.
+  void observe(const Image& image, const cv::Mat& foreground, std::span<const Box> targets = {});
 
   /// Whether the scene has this size and has been learned from at least one frame.
   bool has(const cv::Size& size) const { return !frames_.empty() && frames_.size() == size; }
@@ -30,9 +34,10 @@ class SceneImage {
   double smear() const { return shift_.smear(); }
 
  private:
-  void learn_row(const Image& image, const cv::Mat& foreground, int row);
+  void learn_row(const Image& image, const cv::Mat& scene_taken, int row);
 
   ChromaShift shift_;
+  cv::Mat taken_;           // CV_8UC1: not 0 where this frame shows no scene
   int next_ = -1;           // rows of this remainder are learned next; −1: all
   cv::Mat frames_;          // CV_8UC1: frames that a pixel was learned from, at most 255
   cv::Mat luma_, cb_, cr_;  // CV_16UC1: levels × 128

@@ -12,6 +12,7 @@
 #include "marey/track/contour/body_share.h"
 #include "marey/track/contour/colour_patch.h"
 #include "marey/track/contour/edge_matting.h"
+#include "marey/track/contour/outline_report.h"
 #include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
 #include "marey/track/contour/visible_edge.h"
@@ -155,17 +156,20 @@ int cell_step(double height) {
   return height <= 100 ? 1 : height <= 220 ? 2 : 4;
 }
 
-void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets,
-                           Labelling labelling) {
+void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets) {
   const ColourPatch patch = patch_about(image, mask, scene, targets);
   if (patch.colour.empty()) return;
   std::vector<RegionMember> members;
-  for (const SharedTarget& one : targets) members.push_back(member_of(one));
+  for (const SharedTarget& one : targets) {
+    const bool usable = is_as_large(one.target->predicted, one.box);  // else it is cut off, or has grown
+    if (auto body = usable ? std::nullopt : body_in(*one.target, one.box)) one.target->predicted = std::move(*body);
+    members.push_back(member_of(one));
+  }
   for (std::size_t k = 0; k < members.size(); ++k) {
     if (targets[k].mask != nullptr) members[k].network = chances_in(*targets[k].mask, patch);
     if (!targets[k].target->body.knows_colours()) guess_colours(patch, members, k, targets[k].target->body);
   }
-  const cv::Mat ground = divide_region(patch, members, labelling);
+  const cv::Mat ground = divide_region(patch, members);
   std::vector<cv::Mat> taken;
   for (const RegionMember& member : members) taken.push_back(taken_by_others(members, member));
   refine_edges(patch, ground, members);

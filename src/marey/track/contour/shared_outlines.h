@@ -5,7 +5,6 @@
 #include "marey/core/image.h"
 #include "marey/track/contour/body_mask.h"
 #include "marey/track/contour/contour_target.h"
-#include "marey/track/contour/labelling.h"
 #include "marey/track/contour/scene_image.h"
 
 namespace marey::track::contour {
@@ -21,8 +20,7 @@ struct SharedTarget {
 /// Divides the region that `targets` share among them by their colours and predicted shapes, and gives each the outline of its own
 /// part, the rest of it shaped as it was; if too little of a target is seen, its whole shape is kept. `mask` is CV_8UC1.
 /// `scene` may be null.
-void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets,
-                           Labelling labelling = Labelling::votes);
+void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets);
 
 /// The size of a patch's cells for a target, px.
 int cell_step(double height);

@@ -15,7 +15,6 @@
 
 #include "marey/track/contour/body_mask.h"
 #include "marey/track/contour/body_share.h"
-#include "marey/track/contour/graph_cut.h"
 #include "marey/track/contour/ground_likelihood.h"
 #include "marey/track/contour/neighbour_votes.h"
 
@@ -27,7 +26,6 @@ constexpr float kMinChance = 0.004F;    // that a member covers a pixel, or does
 constexpr double kTempered = 0.5;       // exponent of likelihoods: neighbouring pixels err alike
 constexpr float kVote = 8;              // of all neighbours together, in log-odds
 constexpr int kVotingRounds = 5;
-constexpr double kSoft = 0.6;  // cells by which the border of labels that were cut is blurred: numerical, about one
 constexpr double kLargeStep = 0.1, kMiddleStep = 0.05, kSmallStep = 0.02;  // heights, of the search for a place
 constexpr int kSteps = 3;                                                  // of each size, at most
 constexpr double kShiftAmbiguity = 0.12;                                   // heights, standard deviation of a predicted place
@@ -59,7 +57,7 @@ class RegionDivision {
     decide_order();
   }
 
-  void divide(Labelling labelling) {
+  void divide() {
     std::vector<cv::Mat> odds(members_.size() + 1);
     for (cv::Mat& one : odds) one.create(patch_.size(), CV_32FC1);
     for (int y = 0; y < patch_.size().height; ++y) {
@@ -75,7 +73,7 @@ class RegionDivision {
     }
     for (std::size_t k = 0; k < members_.size(); ++k) add_network(members_[k], odds[k]);
     const NeighbourVotes neighbours(patch_, ground_colours_);
-    hand_out(labelling == Labelling::cuts ? by_cuts(odds, neighbours) : by_votes(odds, neighbours));
+    hand_out(by_votes(odds, neighbours));
   }
 
   const cv::Mat& ground_colours() const { return ground_colours_; }
@@ -89,20 +87,6 @@ class RegionDivision {
       float* sum = odds.ptr<float>(y);
       for (int x = 0; x < odds.cols; ++x) sum[x] += static_cast<float>(kTempered) * evidence_of(chance[x]);
     }
-  }
-
-  /// The labels of least energy, one for each cell, made soft along their borders.
-  static std::vector<cv::Mat> by_cuts(const std::vector<cv::Mat>& odds, const NeighbourVotes& neighbours) {
-    std::vector<cv::Mat> costs, fractions;
-    for (const cv::Mat& one : odds) costs.emplace_back(-one);
-    const cv::Mat labels = cut_labels(costs, neighbours, kVote);
-    for (std::size_t l = 0; l < odds.size(); ++l) {
-      cv::Mat fraction;
-      cv::Mat(labels == static_cast<double>(l)).convertTo(fraction, CV_32F, 1.0 / 255);
-      cv::GaussianBlur(fraction, fraction, {}, kSoft);
-      fractions.push_back(fraction);
-    }
-    return fractions;
   }
 
   /// Mean field: every cell's chances, given its neighbours'.
@@ -290,11 +274,11 @@ class RegionDivision {
 
 }  // namespace
 
-cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members, Labelling labelling) {
+cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members) {
   if (members.empty() || patch.colour.empty()) return {};
   RegionDivision division(patch, members);
   division.find_positions();
-  division.divide(labelling);
+  division.divide();
   return division.ground_colours();
 }
 

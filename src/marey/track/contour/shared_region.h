@@ -8,7 +8,6 @@
 #include "marey/core/geometry.h"
 #include "marey/track/contour/body_model.h"
 #include "marey/track/contour/colour_patch.h"
-#include "marey/track/contour/labelling.h"
 
 namespace marey::track::contour {
 
@@ -32,6 +31,6 @@ struct RegionMember {
 
 /// Divides the patch among the members and the ground, and says where each is. Returns the ground's colours (CV_32FC3), empty if
 /// there is nothing to divide.
-cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members, Labelling labelling = Labelling::votes);
+cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members);
 
 }  // namespace marey::track::contour

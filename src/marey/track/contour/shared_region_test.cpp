@@ -164,14 +164,16 @@ TEST(IsOutlineOf, NeitherLoopsNorGiants) {
   const geometry::ClosedSpline plain(4, ellipse({50, 50}, 10, 30));
   const Box box{38, 18, 24, 64};
   EXPECT_TRUE(is_outline_of(plain, box));
-  EXPECT_FALSE(is_outline_of(plain, {45, 18, 9, 64})) << "more than twice as wide";
+  EXPECT_TRUE(is_outline_of(plain, {45, 18, 9, 64})) << "narrower than a stride";
+  const geometry::ClosedSpline wide(4, ellipse({50, 50}, 60, 30));
+  EXPECT_FALSE(is_outline_of(wide, {45, 18, 9, 64})) << "more than twice as wide";
   EXPECT_FALSE(is_outline_of(plain, {38, 18, 24, 36})) << "more than 1.6 times as high";
   const geometry::ClosedSpline eight(
       4, {{0, 0}, {10, 0}, {10, 10}, {-10, 20}, {-10, 30}, {0, 30}, {10, 30}, {10, 20}, {-10, 10}, {-10, 0}});
   EXPECT_FALSE(is_simple(eight));
   const cv::Size image(55, 100);
-  EXPECT_FALSE(is_outline_of(plain, {40, 18, 7, 64}, &image));
-  EXPECT_TRUE(is_outline_of(plain, {40, 18, 15, 64}, &image)) << "what lies outside does not count";
+  EXPECT_FALSE(is_outline_of(wide, {40, 18, 7, 64}, &image));
+  EXPECT_TRUE(is_outline_of(wide, {20, 18, 35, 64}, &image)) << "what lies outside does not count";
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "marey/core/error.h"
+#include "marey/track/contour/contour_target.h"
 #include "marey/track/contour/intensity_edge.h"
 
 namespace marey::track::contour {
@@ -116,7 +117,8 @@ bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size
     const Box detected{0, 0, static_cast<double>(image->width), static_cast<double>(image->height)};
     own = geometry::intersection(own, detected);
   }
-  return own.width <= kMostWide * box.width && own.height <= kMostHigh * box.height && is_simple(spline);
+  const double width = std::max(box.width, kStrideWidth * box.height);
+  return own.width <= kMostWide * width && own.height <= kMostHigh * box.height && is_simple(spline);
 }
 
 namespace {

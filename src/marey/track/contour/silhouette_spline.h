@@ -34,7 +34,8 @@ std::optional<geometry::ClosedSpline> standing_body(const Box& box, const geomet
 /// Whether the curve does not cross itself.
 bool is_simple(const geometry::ClosedSpline& spline);
 
-/// Whether the outline of a target in `box` (px) may be this curve: simple, and at most twice as wide and 1.6 times as high.
+/// Whether the outline of a target in `box` (px) may be this curve: simple, and at most twice as wide as the box or a
+/// stride, and 1.6 times as high.
 /// With `picture`, what lies outside an image of that size does not count.
 bool is_outline_of(const geometry::ClosedSpline& spline, Box box, const cv::Size* image = nullptr);
 
