@@ -89,8 +89,8 @@ class Ptz(unittest.TestCase):
                 off.append(max(turned, 100 * abs(float(was["focal"]) / float(is_["focal"]) - 1)))
         return off
 
-    def filmed(self, name, filters):
-        """The film once more as FILTERS of ffmpeg change it."""
+    def changed(self, name, filters):
+        """The video once more as FILTERS of ffmpeg change it."""
         subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", "film/main.mp4", "-vf", filters, name], cwd=self.folder, check=True)
         return name
 
@@ -120,12 +120,12 @@ class Ptz(unittest.TestCase):
         # The camera stands; a coat and a head fill the middle of the image.
         person = ("trim=end_frame=1,loop=loop=99:size=1,setpts=N/25/TB,drawbox=x=200:y=130:w=260:h=230:color=0x302838:t=fill,"
                   "drawbox=x=280:y=20:w=110:h=130:color=0xb08878:t=fill")
-        said = self.run_marey("calibrate", "ptz", self.filmed("interview.mp4", person), "-o", "interview.toml", code=1).stderr
+        said = self.run_marey("calibrate", "ptz", self.changed("interview.mp4", person), "-o", "interview.toml", code=1).stderr
         self.assertRegex(said, r"interview\.mp4: .*(click in frame|is it a video)")
         self.assertFalse((self.folder / "interview.toml").exists())
 
     def test_a_video_of_the_stand_is_refused(self):
-        stand = self.filmed("stand.mp4", "crop=iw/4:ih/8:0:0,scale=640:360")
+        stand = self.changed("stand.mp4", "crop=iw/4:ih/8:0:0,scale=640:360")
         for clicks in ([], ["--points", "film/clicks.csv"]):
             said = self.run_marey("calibrate", "ptz", stand, *clicks, "-o", "stand.toml", code=1).stderr
             self.assertRegex(said, r"stand\.mp4: .*is it a video")

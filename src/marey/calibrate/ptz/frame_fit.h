@@ -34,7 +34,7 @@ std::vector<PaintSighting> agreeing_paint(const std::vector<PaintSighting>& pain
                                           cv::Size size, double cut_off, std::size_t maximum);
 
 /// Of the lines of which `in_view` samples or more lie within the image, how many are there: at least the fraction `present` of those
-/// samples agrees. 1 where no line has so many.
+/// samples agrees. 1 where no line has as many.
 double lines_present(const Correction& detected, const geometry::Tripod& tripod, cv::Size size, double cut_off, int in_view,
                      double present);
 

@@ -43,7 +43,7 @@ struct TrackingOptions {
   double fraction = 0.3;           ///< of the paint that ought to be seen: with less the lines are not those of the pitch;
   double line_present = 0.15;      ///< of the samples of a line: with less it is not there;
   int line_in_view = 15;           ///< samples: lines with fewer do not count;
-  double lines_present = 0.5;      ///< of the lines in view: where no more than so many are there,
+  double lines_present = 0.5;      ///< of the lines in view: where no more than this fraction is there,
   int patience = 8;                ///< for this many frames in a row, the camera is lost
   int inspect_again = 5;           ///< frames between attempts to find it again
   double model_px = 0.4;           ///< px at 1280: what no such camera explains (a lens that breathes), in every frame,
@@ -53,7 +53,7 @@ struct TrackingOptions {
   int contact_about = 6;           ///< and of one where two directions meet and contradict each other
   double click_advantage = 0.8;    ///< ratio of merits from which frames before clicks replace earlier aims,
   double image_advantage = 1.2;    ///< and frames before one that was found from its image alone
-  double prefers = 1.15;           ///< ratio of merits from which one of two groups of corners is believed
+  double prefers = 1.15;           ///< ratio of merits from which one of two groups of corners is used
   double image_over_clicks = 2;    ///< ratio of merits from which an image overrules its clicks, which are reported
   int inspect_everywhere = 3;      ///< attempts to find it again of which one is not about the last heading alone
   double kept_mb = 160;            ///< of images, for walking back
