@@ -37,7 +37,8 @@ Json as_json(const experiments::ContourExperiment& experiment) {
 void run(ExperimentContours& command) {
   const experiments::ContourExperiment experiment =
       with_progress(command.quiet, [&](const Hooks& hooks) { return experiments::run_contour_experiment(command.options, hooks); });
-  if (experiment.rows.empty()) throw Error("--only {}: no case of that name; see docs/reference/experiments.md", command.options.only);
+  if (experiment.rows.empty())
+    throw Error("--only {}: no case of that name; see docs/reference/experiments.md", command.options.only);
   if (command.json) {
     print(as_json(experiment));
   } else if (command.markdown) {

@@ -19,7 +19,7 @@ struct Rows {
 };
 
 constexpr Rows kChest{0.2, 0.5};
-constexpr Rows kMiddleOfChest{0.22, 0.45, 0.38, 0.62};  // where no mask tells the person from the scene
+constexpr Rows kMiddleOfChest{0.22, 0.45, 0.38, 0.62};  // where no mask separates the person from the scene
 constexpr Rows kThighs{0.52, 0.8};
 constexpr Rows kShanks{0.8, 0.94, 0, 1};
 constexpr int max_samples = 100;

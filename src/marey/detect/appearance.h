@@ -19,8 +19,8 @@
 namespace marey::detect {
 
 /// The colour of the upper body of the person that detections[which] shows. Where others share the region, what lies in the box of
-/// a person who stands nearer is omitted, and the rest is trusted less; likewise where no foreground is given, and the middle of the
-/// chest alone is inspected. Nothing if the image is grey, the head is outside the image, or too few pixels are seen.
+/// a person who stands nearer is omitted, and the rest is trusted less; likewise where no foreground is given, and the middle of
+/// the chest alone is inspected. Nothing if the image is grey, the head is outside the image, or too few pixels are seen.
 std::optional<Appearance> upper_body(const Image& image, const Foreground& foreground, std::span<const Detection> detections,
                                      std::size_t which);
 

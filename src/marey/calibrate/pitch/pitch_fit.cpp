@@ -276,7 +276,8 @@ double news_of(const std::vector<ObservedPitch>& detected, const PitchState& sta
 
 /// What the richest model leaves is noise.
 Noise learned(const std::vector<ObservedPitch>& detected, const PitchModel& richest) {
-  constexpr double kOfPlane = 1.1774, kOfLine = 0.6745;  // by definition: medians of |error| for a deviation of 1, in two dimensions and in one
+  // Medians of |error| for a deviation of 1, in two dimensions and in one: by definition.
+  constexpr double kOfPlane = 1.1774, kOfLine = 0.6745;
   std::vector<double> clicks, paint;
   for (std::size_t camera = 0; camera < detected.size(); ++camera) {
     for (const ObservedPosition& click : detected[camera].clicks) clicks.push_back(error_of(click, richest.state, camera).norm());

@@ -33,8 +33,8 @@ Correction correct_aim(const cv::Mat& luma, const geometry::Tripod& tripod, std:
 std::vector<PaintSighting> agreeing_paint(const std::vector<PaintSighting>& paint, const geometry::Tripod& tripod, const Aim& aim,
                                           cv::Size size, double cut_off, std::size_t maximum);
 
-/// Of the lines of which `in_view` samples or more lie within the image, how many are there: at least the fraction `present` of those
-/// samples agrees. 1 where no line has as many.
+/// Of the lines of which `in_view` samples or more lie within the image, how many are there: at least the fraction `present` of
+/// those samples agrees. 1 where no line has as many.
 double lines_present(const Correction& detected, const geometry::Tripod& tripod, cv::Size size, double cut_off, int in_view,
                      double present);
 

@@ -19,11 +19,11 @@ namespace marey::calibrate::ptz {
 
 struct OdometryOptions {
   int corners = 280;
-  int width = 640;         ///< px: images are shrunk to about this
-  double agree_px = 1.2;   ///< of the shrunk image: corners that fit better go with the camera
-  int lowest_count = 24;   ///< corners that have to agree,
-  double fraction = 0.25;  ///< and the share of those that could be followed
-  int longest = 40;        ///< frames that one reference serves
+  int width = 640;          ///< px: images are shrunk to about this
+  double agree_px = 1.2;    ///< of the shrunk image: corners that fit better go with the camera
+  int lowest_count = 24;    ///< corners that have to agree,
+  double fraction = 0.25;   ///< and the share of those that could be followed
+  int longest = 40;         ///< frames that one reference serves
   int graphics_reach = 12;  ///< shrunk px round a corner that may be of graphics, where no other is taken
 };
 
@@ -34,7 +34,7 @@ struct Rotated {
   /// What the other of two groups of corners says, where some stand on the image, others move together, and numbers do not decide
   /// which of them are graphics.
   std::optional<Vector<3>> otherwise = std::nullopt;
-  Vector<3> doubt = Vector<3>::Zero();  ///< how far the two are apart, where paint does not decide either
+  Vector<3> ambiguity = Vector<3>::Zero();  ///< how far the two are apart, where paint does not decide either
 };
 
 class Odometry {
@@ -65,7 +65,7 @@ class Odometry {
   geometry::Tripod reference_tripod_;  // a tripod that is refined in the meantime must not move the places
   geometry::Heading reference_heading_;
   std::vector<geometry::Heading> chains_;  // where each group says that the last image was aimed; one where they agree
-  std::vector<cv::Point2f> standing_;  // in the last image, where others contradict them: they may be graphics
+  std::vector<cv::Point2f> standing_;      // in the last image, where others contradict them: they may be graphics
   int age_ = 0;
   std::size_t begun_with_ = 0;
 };

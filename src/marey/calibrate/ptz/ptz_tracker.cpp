@@ -92,14 +92,15 @@ void PtzTracker::choose_corners(Rotated& rotated, const cv::Mat& luma, const geo
   if (other > options_.prefers * as_given)
     odometry_.prefer_other(rotated, last);
   else if (as_given <= options_.prefers * other)
-    rotated.doubt = rotated.by - *rotated.otherwise;
+    rotated.ambiguity = rotated.by - *rotated.otherwise;
 }
 
 bool PtzTracker::missing(const Correction& detected) const {
   if (detected.paint.expected < kMinExpected) return false;
   if (detected.fit.agreeing < options_.fraction * detected.paint.expected) return true;
   // One touchline along the whole image is most of the paint, and says nothing of the pan.
-  const double present = lines_present(detected, tripod_, size_, options_.aim.cut_off, options_.line_in_view, options_.line_present);
+  const double present =
+      lines_present(detected, tripod_, size_, options_.aim.cut_off, options_.line_in_view, options_.line_present);
   return present <= options_.lines_present;
 }
 
@@ -199,9 +200,10 @@ void PtzTracker::add(const Image& image, double time_s) {
     alone = expected.has_value();
   }
   if (!detected && expected) detected = corrected(luma, *expected, frame);
-  if (detected && aim_ && record.rotated && !record.rotated->doubt.isZero()) {
+  if (detected && aim_ && record.rotated && !record.rotated->ambiguity.isZero()) {
     const Vector<3> by = detected->fit.aim.heading.as_vector() - aim_->heading.as_vector();
-    if ((by - *record.rotated->otherwise).norm() < (by - record.rotated->by).norm()) odometry_.prefer_other(*record.rotated, before);
+    if ((by - *record.rotated->otherwise).norm() < (by - record.rotated->by).norm())
+      odometry_.prefer_other(*record.rotated, before);
   }
   aim_.reset();
   keep(luma);

@@ -57,7 +57,7 @@ Matrix<3> flow_covariance(const Rotated& rotated, double log_focal, const Smooth
   const Matrix<3> noise = Vector<3>(angle * angle + method.x() * method.x(), angle * angle + method.y() * method.y(),
                                     zoom * zoom + method.z() * method.z() + turned * turned)
                               .asDiagonal();
-  return noise + rotated.doubt * rotated.doubt.transpose();
+  return noise + rotated.ambiguity * rotated.ambiguity.transpose();
 }
 
 Aim next_aim(const Aim& before, const Rotated& rotated, const SmoothOptions& options) {

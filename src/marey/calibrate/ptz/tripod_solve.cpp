@@ -20,7 +20,7 @@ namespace {
 constexpr int kStill = geometry::Tripod::numbers;
 constexpr int kStarts = 6;              // guesses that are refined
 constexpr double kWorstMedian = 0.012;  // of the image's width: clicks that half lie farther off are of no camera
-constexpr double kOtherHand = 0.5;   // a left-handed frame of clicks leaves less than this of a right-handed one's cost; unswept
+constexpr double kOtherHand = 0.5;      // a left-handed frame of clicks leaves less than this of a right-handed one's cost; unswept
 constexpr double kOtherHalf = 0.35;  // a frame's clicks belong to the other half where that leaves less than this of the distance
 constexpr double kMinLevel = 1.5;    // m: no camera of a match stands lower
 

@@ -54,7 +54,7 @@ TripodSolution solve_tripod(const geometry::Tripod& start, std::span<const Tripo
 struct ClickedTripod {
   geometry::Tripod tripod;
   std::vector<geometry::Heading> headings;
-  bool reflected = false;  ///< the clicks' frame is left-handed: the world's y is the pitch's width less theirs
+  bool reflected = false;    ///< the clicks' frame is left-handed: the world's y is the pitch's width less theirs
   bool either_hand = false;  ///< the clicks fit a frame of the other hand as well: they lie on one line
   Matrix<geometry::Tripod::numbers> covariance;  ///< of the tripod's numbers
   std::vector<std::vector<double>> error_px;     ///< for each frame and click

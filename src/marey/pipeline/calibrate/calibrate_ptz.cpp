@@ -224,7 +224,7 @@ Vector<2> start_with_clicks(PtzRun& run, const corridor::Feed& feed, const PtzRu
   warn_of_odd_clicks(run, options, feed.info().size);
   if (run.clicked.either_hand)
     run.warnings.push_back(
-        "all clicks lie on one line, which looks the same in a pitch whose left and right are exchanged: y is taken to grow to the "
+        "all clicks lie on one line, which is the same in a pitch whose left and right are exchanged: y is taken to grow to the "
         "left of x; click a place beside that line to be sure");
   return corner;
 }
