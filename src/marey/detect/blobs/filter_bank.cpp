@@ -11,6 +11,7 @@ namespace {
 
 // Of the two Gaussians of which the Mexican hat is the difference: by definition (Marr & Hildreth 1980).
 constexpr double kHatRatio = 1.6;
+
 constexpr float kBlack = 16, kWhite = 235, kFull = 255;  // of luma in video
 
 /// Blurs a plane and writes the responses at the grid's points as channels `blurred` and `hat`. `scale`: the plane's px in one of

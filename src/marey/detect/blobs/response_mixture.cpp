@@ -14,6 +14,7 @@ namespace {
 
 // Standard deviations of a normal distribution in its median absolute deviation: by definition.
 constexpr float kDeviation = 1.4826F;
+
 constexpr double kSecondFraction = 0.25;  // of the frames, in which another thing must be seen at a point to belong to the scene
 constexpr float kOutlying = 4;            // standard deviations from the median, from which on it is another thing
 constexpr double kShadowFraction = 0.05;  // of a point's time, in which a person's shadow may lie on it

@@ -18,6 +18,7 @@ constexpr std::size_t kMinInstantCount = 3;
 constexpr int kRounds = 12;
 // Of the median distance; by definition: 95 % efficient on normal noise (Beaton & Tukey 1974).
 constexpr double kTukey = 4.685 * 1.4826;
+
 constexpr double kMinLoose = 0.001;  // m: what varies less is not loose, however still the others are
 
 using Locations = std::vector<std::optional<Vector<3>>>;  // of one instant, by marker
