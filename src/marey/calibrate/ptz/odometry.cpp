@@ -15,10 +15,10 @@ namespace marey::calibrate::ptz {
 namespace {
 
 constexpr int kWindow = 15, kLevels = 3;
-constexpr double kMaxDistance = 110;      // m: objects above the ground are this far away
-constexpr double kStillPixels = 0.35;     // shrunk px: what moved less on the image stands still
-constexpr double kMovingFraction = 0.35;  // of those that stand: so many that move together are the scene
-constexpr double kMaxTrajectory = 0.3;    // of the image's width: then there is a new reference
+constexpr double kMaxDistance = 110;    // m: objects above the ground are this far away
+constexpr double kStillPixels = 0.35;   // shrunk px: what moved less on the image stands still
+constexpr double kMovingFraction = 1;   // of those that stand: more that move together are the scene
+constexpr double kMaxTrajectory = 0.3;  // of the image's width: then there is a new reference
 constexpr double kMaxZoom = 0.1;
 
 /// What a pixel shows: the ground, or something far away.
@@ -46,7 +46,7 @@ void Odometry::refer(const geometry::Tripod& tripod, const geometry::Heading& he
   locations_.clear();
   cv::Mat free(size_, CV_8UC1, cv::Scalar(255));
   for (const cv::Point2f& at : standing_) cv::circle(free, at, options_.graphics_reach, 0, cv::FILLED);
-  cv::goodFeaturesToTrack(reference_[0], corners_, options_.corners, 0.01, 8, free);
+  cv::goodFeaturesToTrack(reference_[0], corners_, options_.corners, options_.quality, 8, free);
   corners_.insert(corners_.end(), standing_.begin(), standing_.end());  // letters must not take the places of what moves
   const auto numbers = tripod.as_numbers();
   const Vector<3> rotated = heading.as_vector();

@@ -19,6 +19,7 @@ namespace marey::calibrate::ptz {
 
 struct OdometryOptions {
   int corners = 280;
+  double quality = 0.001;   ///< of the strongest corner: weaker ones are not followed. Grass is weak beside a scoreboard's letters
   int width = 640;          ///< px: images are shrunk to about this
   double agree_px = 1.2;    ///< of the shrunk image: corners that fit better go with the camera
   int lowest_count = 24;    ///< corners that have to agree,
