@@ -280,17 +280,9 @@ void need_a_cycle(const std::string& recording, const GaitMeasure& measure, cons
       recording);
 }
 
-}  // namespace
-
-GaitMeasure measure_gait(const std::string& recording, const GaitOptions& options, const Hooks& hooks) {
-  GaitMeasure measure;
-  measure.subject = options.subject;
-  const GaitMarkers markers = read_gait_markers(recording, options.up, hooks);
-  measure.warnings = markers.warnings;
-  measure.frames = std::ssize(markers.rows);
-  measure.rate_hz = markers.rate_hz;
-  measure.begin_s = markers.begin_s;
-  measure.first_index = markers.first_index;
+/// The person's measures, from the files and the static trial; the markers of that trial, empty without one.
+gait::MarkerPositions learn_person(const std::string& recording, const GaitMarkers& markers, const GaitOptions& options,
+                                   const Hooks& hooks, GaitMeasure& measure) {
   take_measures(recording, measure.subject);
   gait::MarkerPositions standing;
   if (!options.static_trial.empty()) {
@@ -308,6 +300,21 @@ GaitMeasure measure_gait(const std::string& recording, const GaitOptions& option
     measure.subject.sole_from_ankle_toe = options.subject.sole_from_ankle_toe;
   }
   take_soles(recording, measure.subject);
+  return standing;
+}
+
+}  // namespace
+
+GaitMeasure measure_gait(const std::string& recording, const GaitOptions& options, const Hooks& hooks) {
+  GaitMeasure measure;
+  measure.subject = options.subject;
+  const GaitMarkers markers = read_gait_markers(recording, options.up, hooks);
+  measure.warnings = markers.warnings;
+  measure.frames = std::ssize(markers.rows);
+  measure.rate_hz = markers.rate_hz;
+  measure.begin_s = markers.begin_s;
+  measure.first_index = markers.first_index;
+  const gait::MarkerPositions standing = learn_person(recording, markers, options, hooks, measure);
   measure.quality = gait_quality(markers, standing);
   if (auto across = up_across(recording, options.up, markers, measure.subject)) {
     measure.lies = true;
