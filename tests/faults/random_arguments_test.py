@@ -64,8 +64,9 @@ def main():
         words = line(random_, vocabulary)
         done = subprocess.run([marey, *(os.fsencode(word) for word in words)], capture_output=True, cwd=folder, timeout=60, stdin=subprocess.DEVNULL,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)))
-        # A page's address is reported before its cameras are opened.
-        said = "".join(text for text in done.stderr.decode(errors="replace").splitlines(True) if not text.startswith("marey: open http"))
+        # A page's address is reported before its cameras are opened, and an option without effect before the input is read.
+        said = "".join(text for text in done.stderr.decode(errors="replace").splitlines(True)
+                       if not text.startswith(("marey: open http", "marey: warning: ")))
         left = sorted(path.name for path in folder.iterdir())
         wrong = []
         if done.returncode not in (0, 1, 2):
