@@ -36,10 +36,10 @@ struct CostModel {
 
 /// Of one thread.
 CostModel model_of(const std::string& job) {
-  if (job == "ground") return {90, 3, 28.5, 0.85, 7200, 0, 7, 3e5, 0};     // frames with 25 people
-  if (job == "reconstruct") return {85, 2, 14.3, 0, 45000, 0, 9, 3e5, 0};  // frames with 50 markers
-  if (job == "measure") return {74, 0, 0, 0, 0, 1.3, 0, 0, 12};
-  return {94, 3, 23, 3.2, 0, 0, 5, 1e6, 0};
+  if (job == "ground") return {90, 3, 48, 3.2, 7200, 0, 7, 3e5, 0};        // frames with 25 people
+  if (job == "reconstruct") return {91, 2, 14.3, 0, 45000, 0, 9, 3e5, 0};  // frames with 50 markers
+  if (job == "measure") return {82, 0, 0, 0, 0, 1.3, 0, 0, 12};
+  return {96, 3, 24, 3.2, 0, 0, 5, 1e6, 0};
 }
 
 /// How many frames of a video the background is learned from (pipeline::corridor::Feed::sample_beginning): up to 30, evenly out of
