@@ -151,7 +151,7 @@ void print_network_cost(const detect::DetectorOptions& detector, const std::stri
   fmt::print(stderr,
              "network: {:.0f} ms per tile with {} thread{}; searching a whole frame of {}x{} px takes about {} tiles ({:.1f} s), "
              "every {:g} to {:g} s of the video; in between, a tile around each group of people\n",
-             1000 * cost.tile_s, cost.threads, cost.threads == 1 ? "" : "s", size.width, size.height, cost.tiles, cost.inspect_s(),
+             1000 * cost.tile_s, cost.threads, cost.threads == 1 ? "" : "s", size.width, size.height, cost.tiles, cost.frame_s(),
              network->everywhere_s, 4 * network->everywhere_s);
 }
 

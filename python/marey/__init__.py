@@ -25,6 +25,7 @@ from ._frames import Frames
 from ._instant import Instant
 from ._jobs import Warning, reconstruct, solve, threads, track, track_ground
 from ._live import live
+from ._provenance import PROVENANCE
 from ._recording import Recording, Track
 from ._rig import Camera, Rig
 
@@ -38,6 +39,7 @@ __all__ = [
     "Filter",
     "Frames",
     "Instant",
+    "PROVENANCE",
     "Recording",
     "Rig",
     "Track",

@@ -8,16 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-#: Of each sample, by its number in `Instant.provenance` and `Track.provenance`.
-PROVENANCE = ("measured", "filled", "predicted", "solved")
-
 
 @dataclass(frozen=True)
 class Instant:
     """Who is where at one instant. Rows of all arrays belong together, by growing id.
 
     index: counts from 0 at the beginning; some may be omitted. time: s from the beginning.
-    id: N. position: N×2 (px, or m on the ground) or N×3 (m). provenance: N, indices of `marey._instant.PROVENANCE`.
+    id: N. position: N×2 (px, or m on the ground) or N×3 (m). provenance: N, indices of `marey.PROVENANCE`.
     score: N, in [0, 1], NaN where none is known. box: N×4, left, top, right, bottom in px, NaN where there is none.
     labels, teams: of each id that was named so far.
     frames: the images of the instant (H×W×3, blue first), where the sink asked for them.

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core, _interop
 from ._core import Error
-from ._instant import PROVENANCE
+from ._provenance import PROVENANCE
 from ._rig import Rig
 
 if TYPE_CHECKING:

@@ -52,9 +52,9 @@ TEST(PointGrid, LooksAtFewOfMany) {
   for (auto& point : points) point = {location(random), location(random)};
   PointGrid<2> grid;
   grid.build(points, 100);
-  int inspected_at = 0;
-  for (const auto& point : points) grid.for_each_near(point, 100, [&](int) { ++inspected_at; });
-  EXPECT_LT(inspected_at / 10000, 20);
+  int visited = 0;
+  for (const auto& point : points) grid.for_each_near(point, 100, [&](int) { ++visited; });
+  EXPECT_LT(visited / 10000, 20);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 using Path = std::vector<Vector<3>>;
 
-constexpr double kAround_s = 20;          // of the recording on either side of a gap, that is inspected
+constexpr double kAround_s = 20;          // of the recording on either side of a gap, that is used
 constexpr std::size_t kMaxFrames = 4000;  // of it
 
 /// A gap by the recording's instants, both ends included.

@@ -11,7 +11,7 @@
 namespace marey::reconstruct {
 
 /// Everything that the cameras of a rig saw at one instant, as sight lines: those of one camera side by side, and within a camera
-/// those of one cell of a grid over its image, so that the blobs near a pixel are found by inspecting a few cells.
+/// those of one cell of a grid over its image, so that the blobs near a pixel are found in a few cells.
 /// Steady state allocates nothing. Cost: one lens inversion a blob, and a counting sort.
 class FrameRays {
  public:

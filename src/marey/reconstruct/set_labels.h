@@ -51,7 +51,7 @@ class SetLabels {
 
  private:
   static constexpr double kMaxWidth = 0.03, kMinWidth = 0.001;  // m
-  static constexpr int kFrames = 2000;                          // that are inspected
+  static constexpr int kFrames = 2000;                          // that are used
 
   MarkerSet set_;
   std::string none_;

@@ -48,7 +48,7 @@ struct TriangulateOptions {
   bool reject = true;         ///< omit wrong rays; else they make the whole point disagree
 };
 
-/// Triangulates again and again under the same options. At most 64 rays: those after them are not inspected. Deterministic, and
+/// Triangulates again and again under the same options. At most 64 rays: those after them are not used. Deterministic, and
 /// allocates nothing.
 class Triangulator {
  public:

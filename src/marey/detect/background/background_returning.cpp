@@ -4,7 +4,7 @@
 // each plane by itself: of a wall before which several people stood in grey and black it takes the light's level and their colour.
 // What comes back is then trusted of the pixels round it too, at the times when it was seen: of two who stood there in black one
 // after the other, neither was there then.
-// Cost: the samples are read once; only pixels where fewer than half of them agree with the scene are inspected closely.
+// Cost: the samples are read once; only pixels where fewer than half of them agree with the scene are examined.
 #include "marey/detect/background/background_returning.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kTile = MarkerThresholds::kTile;
 constexpr int kGrid = 8;             // samples per tile, in each direction
-constexpr int kFraction = 32;        // frames in which every tile is inspected once
+constexpr int kFraction = 32;        // frames in which every tile is measured once
 constexpr double kSigmas = 6;        // a million pixels of pure noise: one false pixel in a thousand frames
 constexpr double kMinValue = 0.03;   // of white; of what was compressed or rounded to 8 bits
 constexpr double kMinRaw = 0.01;     // of an image of more bits

@@ -10,7 +10,7 @@
 
 namespace marey::detect::markers {
 
-/// The blobs of a frame, filed by cells, so that those near another are found without inspecting all.
+/// The blobs of a frame, filed by cells, so that those near another are found without a search through all.
 class MarkerNeighbours {
  public:
   /// Files blobs[i] for each i of `chosen`. They lie within an image of `size`.

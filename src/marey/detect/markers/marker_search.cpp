@@ -1,9 +1,9 @@
-// The automatic threshold, as seen from above. The first inspection passes whatever stands out of a tile's ground by more than its
+// The automatic threshold, as seen from above. The first pass lets through whatever stands out of a tile's ground by more than its
 // noise: markers, but texture, specks, the pixels of a bar too. Each blob is then measured against what lies round it. Of those
 // that stand out, the bright and large ones say what a marker's contrast is; three tenths of that is asked of all, and more where
 // the dim ones are so many that the brightest of them would pass. What is too large or too long for a marker, and noise on
 // something wide, says where the ground is not plain: there the image less what is wide is searched. After each such finding the
-// image is inspected again, at most four times in all; in a video that is the first image, and one where something comes into view.
+// image is searched again, at most four times in all; in a video that is the first image, and one where something comes into view.
 #include "marey/detect/markers/marker_search.h"
 
 #include <algorithm>
@@ -152,7 +152,7 @@ void MarkerSearch::mask_more(const MarkerMask& learned) {
   if (!mask_.empty()) masked_fraction_ = static_cast<double>(excluded) / mask_.size().area();
 }
 
-/// One inspection: the blobs of what is searched.
+/// One pass: the blobs of what is searched.
 void MarkerSearch::inspect(const Image& image) {
   if (!options_.colour) {
     const bool cluttered = clutter_.any();

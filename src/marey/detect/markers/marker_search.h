@@ -16,7 +16,7 @@
 
 namespace marey::detect::markers {
 
-/// Finds what stands out in an image: blobs, and by how much. The automatic threshold is more than one inspection at the first
+/// Finds what stands out in an image: blobs, and by how much. The automatic threshold is more than one pass over the first
 /// image, and at one in which something is new: what markers stand out by, and where the ground is not plain, is known only when
 /// blobs were seen. Later images take over the learned values.
 class MarkerSearch {
@@ -45,7 +45,7 @@ class MarkerSearch {
 
  private:
   enum class Standing : char {
-    unobserved,  ///< too small to be inspected
+    unobserved,  ///< too small to be measured
     faint,       ///< as what lies round it, or nearly
     clutter,     ///< as many others do, and markers do not
     out,

@@ -11,7 +11,7 @@ struct NetworkCost {
   double tile_s = 0;  ///< a tile of the image, where all threads have one each: wall time over tiles
   int tiles = 0;      ///< all over an image, while the size of people is not known
   int threads = 1;
-  double inspect_s() const { return tile_s * tiles; }
+  double frame_s() const { return tile_s * tiles; }
 };
 
 /// Loads the network and runs it on a few grey tiles. Throws Error as the detector does.

@@ -107,7 +107,7 @@ std::vector<cv::Rect> NetworkDetector::tiles_of(cv::Size image) const {
   return tiles;
 }
 
-std::vector<Detection> NetworkDetector::inspect_at(const Frame& frame, std::span<const cv::Rect> tiles) {
+std::vector<Detection> NetworkDetector::people_in(const Frame& frame, std::span<const cv::Rect> tiles) {
   const cv::Mat bgr = frame.image.bgr();
   std::vector<cv::Mat> parts;
   for (const cv::Rect& tile : tiles) parts.push_back(pixels_in(bgr, tile));
@@ -148,8 +148,8 @@ void NetworkDetector::learn(std::span<const Detection> found, cv::Size image) {
   if (sizes_.needs_fit()) sizes_.fit();
 }
 
-std::vector<Detection> NetworkDetector::inspect(const Frame& frame) {
-  std::vector<Detection> people = inspect_at(frame, tiles_of(frame.image.size()));
+std::vector<Detection> NetworkDetector::people_everywhere(const Frame& frame) {
+  std::vector<Detection> people = people_in(frame, tiles_of(frame.image.size()));
   learn(people, frame.image.size());
   return people;
 }
@@ -208,9 +208,9 @@ std::vector<Box> NetworkDetector::requested(const ImageCells& cells, std::span<c
 std::vector<Detection> NetworkDetector::search(const Frame& frame, const ImageCells& cells, std::span<const Expected> expected,
                                                std::span<const Detection> moving) {
   const cv::Size image = frame.image.size();
-  const bool everywhere = !inspected_everywhere_ || seconds(frame.time - *inspected_everywhere_) >= until_everywhere_;
+  const bool everywhere = !last_everywhere_ || seconds(frame.time - *last_everywhere_) >= until_everywhere_;
   const std::vector<cv::Rect> tiles = everywhere ? tiles_of(image) : tiles_round(image, requested(cells, expected, moving, image));
-  std::vector<Detection> people = tiles.empty() ? std::vector<Detection>() : inspect_at(frame, tiles);
+  std::vector<Detection> people = tiles.empty() ? std::vector<Detection>() : people_in(frame, tiles);
   learn(people, image);
   const auto is_new = [&](const Detection& found) {
     const auto there = [&](const auto& one) { return geometry::iou(one.box, found.box) > kThere; };
@@ -218,9 +218,9 @@ std::vector<Detection> NetworkDetector::search(const Frame& frame, const ImageCe
            std::none_of(moving.begin(), moving.end(), there);
   };
   if (everywhere) {
-    const bool news = !inspected_everywhere_ || std::any_of(people.begin(), people.end(), is_new);
+    const bool news = !last_everywhere_ || std::any_of(people.begin(), people.end(), is_new);
     until_everywhere_ = news ? options_.everywhere_s : std::min(2 * until_everywhere_, kRareInterval * options_.everywhere_s);
-    inspected_everywhere_ = frame.time;
+    last_everywhere_ = frame.time;
     standing_.clear();
   }
   // Who stands where this search did not reach is there as before.

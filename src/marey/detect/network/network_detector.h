@@ -32,7 +32,7 @@ class NetworkDetector final : public Detector {
   std::int64_t tiles_searched() const { return tiles_; }
 
   /// What the network alone sees in the image, searching everywhere. Learns nothing but the size of people.
-  std::vector<Detection> inspect(const Frame& frame);
+  std::vector<Detection> people_everywhere(const Frame& frame);
 
  private:
   /// The people that the network found, and the image in which it did.
@@ -43,7 +43,7 @@ class NetworkDetector final : public Detector {
 
   std::optional<people::PersonSize> size_at(double x, double y) const;
   std::vector<cv::Rect> tiles_of(cv::Size image) const;
-  std::vector<Detection> inspect_at(const Frame& frame, std::span<const cv::Rect> tiles);
+  std::vector<Detection> people_in(const Frame& frame, std::span<const cv::Rect> tiles);
   void learn(std::span<const Detection> found, cv::Size image);
   std::vector<Detection> search(const Frame& frame, const ImageCells& cells, std::span<const Expected> expected,
                                 std::span<const Detection> moving);
@@ -58,7 +58,7 @@ class NetworkDetector final : public Detector {
   LoadedNetwork network_;
   std::unique_ptr<people::PeopleDetector> moving_;  // none without a background model
   people::PersonSizeModel sizes_;
-  std::optional<Timestamp> inspected_everywhere_;
+  std::optional<Timestamp> last_everywhere_;
   double until_everywhere_;         // s from then on
   std::vector<Standing> standing_;  // those found last, as long as their pixels are the same
   ImageCells before_;               // of the last frame that was searched

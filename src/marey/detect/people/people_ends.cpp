@@ -14,7 +14,7 @@
 namespace marey::detect::people {
 namespace {
 
-// Chosen by bench/sweep/feet on people of 20 to 200 px, with halos and smears of two kinds, and inspected on the football clip.
+// Chosen by bench/sweep/feet on people of 20 to 200 px, with halos and smears of two kinds, and checked on the football clip.
 constexpr double kFootDepth = 0.1, kHeadDepth = 0.03;          // of the height: how far inside the contrast is searched for,
 constexpr double kMinFootDepth = 2, kMinHeadDepth = 1;         // px: at least,
 constexpr double kMaxDepth = 14;                               // px: and at most, inside of where the body may end
@@ -73,7 +73,7 @@ std::vector<std::optional<double>> lengths_of(const cv::Mat& contrast, const std
     if (last[static_cast<std::size_t>(x)] < 0 || inside < kMinBodyContrast) continue;
     const float half = fraction * inside;
     int y = std::min(last[static_cast<std::size_t>(x)] + kOutside, contrast.rows - 1);
-    if (contrast.at<float>(y, x) >= half) continue;  // continues beyond what is inspected
+    if (contrast.at<float>(y, x) >= half) continue;  // continues beyond what is searched
     while (y > 0 && contrast.at<float>(y - 1, x) < half) --y;
     if (y == 0) continue;  // halo alone
     const float in = contrast.at<float>(y - 1, x), out = contrast.at<float>(y, x);

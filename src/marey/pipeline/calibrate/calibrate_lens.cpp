@@ -24,7 +24,7 @@ LensRun calibrate_lens(const std::string& input, const marey::calibrate::board::
   how.every = std::max<std::int64_t>(1, feed.info().frame_count.value_or(0) / kFramesInspectedAt);
   const BoardSightings found = find_boards(feed, marey::calibrate::board::BoardDetector(board), how, hooks);
   if (found.sightings.empty())
-    throw Error("{}: the board {} is in none of the {} images inspected: {}", input, marey::calibrate::board::to_string(board),
+    throw Error("{}: the board {} is in none of the {} images searched: {}", input, marey::calibrate::board::to_string(board),
                 found.frames, found.why_missing);
   LensRun run;
   run.calibration = lens_by_sightings(board, found, options.max_views, options.lens);

@@ -16,7 +16,7 @@ struct LensRunOptions {
 
 struct LensRun {
   marey::calibrate::LensCalibration calibration;
-  std::int64_t frames = 0;  ///< inspected
+  std::int64_t frames = 0;  ///< searched for the board
   int sightings = 0;        ///< frames that show the board
 };
 

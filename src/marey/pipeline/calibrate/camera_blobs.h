@@ -21,7 +21,7 @@ struct CameraBlobs {
 /// other.
 CameraBlobs read_blobs(const std::string& observations, const Rig& rig);
 
-/// Finds markers in the cameras' sources, cameras in parallel; live cameras are inspected for three seconds (live_blobs.h). Sets
+/// Finds markers in the cameras' sources, cameras in parallel; live cameras are observed for three seconds (live_blobs.h). Sets
 /// the sizes that the rig lacks. Throws Error if a source cannot be read, or its image does not have the camera's size;
 /// Stopped.
 CameraBlobs find_blobs(Rig& rig, const detect::markers::MarkerOptions& options, const Hooks& hooks);

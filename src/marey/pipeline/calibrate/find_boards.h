@@ -27,7 +27,7 @@ struct BoardSighting {
 /// All that one camera saw of a board.
 struct BoardSightings {
   cv::Size size;                         ///< px
-  std::int64_t frames = 0;               ///< inspected
+  std::int64_t frames = 0;               ///< searched for the board
   std::vector<BoardSighting> sightings;  ///< in the order of time
   std::vector<std::string> warnings;     ///< the feed's
   std::string why_missing;               ///< in no frame: what the images show in its place (calibrate/board/missing_board.h)

@@ -15,7 +15,7 @@ namespace marey::pipeline::calibrate {
 /// Whether any of its cameras is live, as `marey live` takes them.
 bool has_live_cameras(const Rig& rig);
 
-/// While cameras are inspected.
+/// While cameras are observed.
 struct BlobPreview {
   const CameraBlobs& blobs;  ///< what came so far
   std::span<const corridor::Feed> feeds;
@@ -28,7 +28,7 @@ struct LiveBlobsOptions {
   detect::markers::MarkerOptions markers;
   live::CameraSettings* camera_settings = nullptr;  ///< by which cameras are set in the meantime; else they stay as the rig says
   double patience_s = 5;                            ///< that cameras are waited for at the beginning
-  double for_s = 3;                                 ///< they are inspected for this long, from when the first frame came
+  double for_s = 3;                                 ///< they are observed for this long, from when the first frame came
   std::function<bool(const BlobPreview&)> will_do = {};  ///< called ten times a second: whether that is enough; may be empty
 };
 

@@ -50,7 +50,7 @@ struct StabilisedCamera::Shared {
   std::shared_ptr<source::stabilise::StabilisationLog> log = std::make_shared<source::stabilise::StabilisationLog>();
   std::mutex opening;
   bool opened = false;
-  std::size_t found = 0, inspected_at = 0;  // images of the beginning: stabilised, and all
+  std::size_t found = 0, images = 0;  // images of the beginning: stabilised, and all
 };
 
 StabilisedCamera::StabilisedCamera(const RigCamera& camera, const FeedOptions& options, bool live)
@@ -70,13 +70,13 @@ StabilisedCamera::StabilisedCamera(const RigCamera& camera, const FeedOptions& o
                                               "out --stabilise",
                                               camera.source)));
   source::stabilise::StandingScene trial = *shared_->scene;
-  shared_->inspected_at = images.size();
+  shared_->images = images.size();
   shared_->found = static_cast<std::size_t>(
       std::count_if(images.begin(), images.end(), [&](const Image& image) { return trial.find(image).has_value(); }));
 }
 
 bool StabilisedCamera::steadies() const {
-  return static_cast<double>(shared_->found) >= kMinGain * static_cast<double>(shared_->inspected_at);
+  return static_cast<double>(shared_->found) >= kMinGain * static_cast<double>(shared_->images);
 }
 
 FeedOptions StabilisedCamera::feed_options() const {
@@ -100,7 +100,7 @@ void StabilisedCamera::report(Summary& summary) const {
     summary.warnings.push_back(stated_of(
         camera_, fmt::format("--stabilise would omit too many images ({} of {} of the beginning could not be stabilised): "
                              "they were tracked as they are",
-                             shared_->inspected_at - shared_->found, shared_->inspected_at)));
+                             shared_->images - shared_->found, shared_->images)));
     return;
   }
   const auto counts = shared_->log->report();

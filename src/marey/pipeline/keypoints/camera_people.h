@@ -36,7 +36,7 @@ class CameraPeople {
   /// How urgently the detector should run in the image of `now`: seconds overdue; nothing if it need not. `full`: all people that
   /// are wanted are in the image.
   std::optional<double> search_due(Timestamp now, bool full) const;
-  /// The detector ran: regions of people who are in none yet are inspected from the next `regions` on.
+  /// The detector ran: regions of people who are in none yet are searched from the next `regions` on.
   void searched(std::span<const Box> boxes, Timestamp now);
   /// A person that other cameras see should be here. Searched at most every `expect_s` until they are seen.
   void expect(const detect::keypoints::PersonRegion& region, Timestamp now);

@@ -130,7 +130,7 @@ class KeypointsLive final : public corridor::Stage {
   KeypointsLiveOptions options_;
   std::vector<rk::LocatedPerson> located_;
   std::vector<Look> appearances_;
-  std::vector<std::size_t> detected_in_;  // camera of each inspection
+  std::vector<std::size_t> detected_in_;  // camera of each frame given to the network
   std::vector<char> has_frame_;
   std::optional<Timestamp> before_;
   Instant instant_;

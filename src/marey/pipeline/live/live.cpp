@@ -106,7 +106,7 @@ std::string nothing_came(const corridor::LiveStatus& status) {
   return why;
 }
 
-/// What a user would not like to find out later: that much of what cameras saw was never inspected.
+/// What a user would not like to find out later: that much of what cameras saw was never processed.
 void warn_of_losses(LiveSummary& summary) {
   constexpr double kMuch = 0.2;
   for (const CameraHealth& camera : summary.last.cameras) {

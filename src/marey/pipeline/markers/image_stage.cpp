@@ -115,7 +115,7 @@ class ImageMarkerStage final : public corridor::Stage {
   }
 
  private:
-  /// A first inspection at the beginning of the recording, to learn how the markers move and how well they are seen.
+  /// A first pass over the beginning of the recording, to learn how the markers move and how well they are seen.
   void fit(corridor::Feed feed) {
     corridor::TunedMarkers detector(corridor::markers_of(feed.camera(), options_.markers), nullptr);
     const auto tracker = track::roster::make_roster_tracker<2>(options_.tracker);

@@ -2,7 +2,7 @@
 // is read.
 //
 // Names are found from nothing over the last half second and more, in a task of its own: frames go by in the meantime. Its answer
-// counts from half a second after it began; from then on a LabelTracker names every frame. Now and then the task inspects again the
+// counts from half a second after it began; from then on a LabelTracker names every frame. Now and then the task searches again the
 // last seconds, and what it then finds otherwise is corrected.
 //
 // Each search ends with the check that a whole recording gets (solve/labels/check_names.h), over the last seconds. A name that

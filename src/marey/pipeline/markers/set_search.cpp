@@ -75,7 +75,7 @@ void SetSearch::begin_if_due(Timestamp now, std::size_t points, std::optional<st
 bool SetSearch::is_due(Timestamp now, std::size_t points, std::optional<std::size_t> held) const {
   if (seconds(now - *enough_since_) < options_.first_after_s) return false;
   if (searches_ == 0) return true;
-  double pause = options_.inspected_again_s;
+  double pause = options_.search_again_s;
   if (!held) {
     pause = std::min<double>(failures_, kMaxAgainS);
   } else if (searches_ - failures_ <= (set_->moves ? 1 : kStaticSearches) ||

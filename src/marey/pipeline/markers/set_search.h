@@ -31,7 +31,7 @@ struct SetInSpaceOptions {
   double first_after_s = 0.5;  ///< of points, that names are searched for in first
   double answer_after_s = 0.5;    ///< from when on it counts
   double remembered_s = 3;        ///< of points, that they are searched for in
-  double inspected_again_s = 10;  ///< this often, once they are found
+  double search_again_s = 10;  ///< this often, once they are found
 };
 
 /// The points of the last seconds, about a hundred times per second.

@@ -66,7 +66,7 @@ GroundCamera::GroundCamera(const corridor::Feed& feed, std::shared_ptr<const Gro
   if (view_) next_to.run([this, samples] { view_->inspect_at_beginning(samples); });
   if (ball_) next_to.run([this, samples] { ball_->prime(samples); });
   for (Frame& frame : samples) {
-    frame.image = inspected_at(frame.image);
+    frame.image = observed_part(frame.image);
     if (options.without) frame.image = options.without->without_them(frame.image);
   }
   detector_->prime(samples);
@@ -90,7 +90,7 @@ std::optional<Box> GroundCamera::box_at(const Vector<2>& ground, Timestamp time)
 track::ground::CameraObservations GroundCamera::observe(const CameraFrame& given, std::span<const Track<2>> expected) {
   ++frames_;
   Frame frame = given.frame;
-  if (!frame.image.empty()) frame.image = inspected_at(frame.image);
+  if (!frame.image.empty()) frame.image = observed_part(frame.image);
   corridor::NextTo next_to;
   if (view_) next_to.run([&] { view_->add(given.frame); });
   if (standing_) next_to.run([&] { standing_->inspect(frame); });

@@ -67,7 +67,7 @@ class GroundCamera {
 
  private:
   cv::Point corner() const { return part_ ? part_->tl() : cv::Point(); }
-  Image inspected_at(const Image& image) const { return part_ ? image.part(*part_) : image; }
+  Image observed_part(const Image& image) const { return part_ ? image.part(*part_) : image; }
   detect::Detections detect(const Frame& frame, std::span<const Track<2>> expected, corridor::NextTo& next_to);
   void learn_sizes(const std::vector<Detection>& detections, const cv::Size& size);
   void location(const Frame& frame, detect::Detections& found);

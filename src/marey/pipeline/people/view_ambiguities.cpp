@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kCutsNamed = 5;
 constexpr double kScrolls = 0.04;     // of the images inspected
-constexpr double kInspectMore = 1.1;  // times as many images as at the last inspection: all of them are gone through each time
+constexpr double kSearchMore = 1.1;  // times as many images as at the last inspection: all of them are gone through each time
 
 std::string time_steps(const std::vector<double>& cuts) {
   std::string text;
@@ -88,8 +88,8 @@ std::vector<std::string> ViewAmbiguities::news() {
     notify(cut_reported_,
            fmt::format("the video is cut at {:.1f} s: the scene is another from there on; all cuts are named at the end",
                        view_.cuts().front()));
-  if (view_.inspected_at() < next_inspect_ || moved_reported_) return all;
-  next_inspect_ = 1 + static_cast<std::int64_t>(kInspectMore * static_cast<double>(view_.inspected_at()));
+  if (view_.images() < next_search_ || moved_reported_) return all;
+  next_search_ = 1 + static_cast<std::int64_t>(kSearchMore * static_cast<double>(view_.images()));
   const source::stabilise::ViewReport report = view_.report();
   if (report.scrolling > kScrolls) {
     notify(moved_reported_, stated_of_scrolling(report.scrolling));

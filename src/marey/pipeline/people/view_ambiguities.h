@@ -36,7 +36,7 @@ class ViewAmbiguities {
   source::stabilise::ViewWatch view_;
   std::optional<std::string> shaking_;  // what to say of a camera that was not stabilised
   bool cut_reported_ = false, moved_reported_ = false, shaking_reported_ = false;
-  std::int64_t next_inspect_ = 20;  // images whose motion is known
+  std::int64_t next_search_ = 20;  // images whose motion is known
 };
 
 }  // namespace marey::pipeline::people

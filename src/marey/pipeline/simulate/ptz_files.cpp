@@ -31,7 +31,7 @@ class ClickedFrames {
   explicit ClickedFrames(const PtzFilesOptions& options)
       : noise_(options.click_noise), from_(options.clicked_from), frames_(options.clicked_frames), max_clicks_(options.clicks) {}
 
-  void inspect_at(const marey::simulate::match::PtzMatch& match) {
+  void add(const marey::simulate::match::PtzMatch& match) {
     const auto heading = match.heading();
     if (!heading || std::ssize(pans_) >= frames_ || match.time() < from_) return;
     if (std::any_of(pans_.begin(), pans_.end(), [&](double pan) { return std::abs(pan - heading->pan) < kClickedApart; })) return;
@@ -129,7 +129,7 @@ void write_ptz_match(const PtzFilesOptions& options, const std::string& folder, 
     truth.write(truth_of(match));
     if (match.heading()) boxes.write(box_rows(match.detect(options.detector)));
     ptz.rotations.push_back({match.time(), match.heading(), Matrix<3>::Zero(), {}});
-    clicks.inspect_at(match);
+    clicks.add(match);
     hooks.advance({"frames", i + 1, frames});
   }
   movie.finish();

@@ -89,7 +89,7 @@ std::string words_of(const DoneEdit& done, const NamesThen& names) {
   return words + frames_of(operation.frames);
 }
 
-/// What tracks are called when one edit after the other is inspected: each follows its parent, mostly the one before it.
+/// What tracks are called as one edit follows the other: each follows its parent, mostly the one before it.
 class NamesOnBranches {
  public:
   explicit NamesOnBranches(const EditHistory& history) : history_(&history), names_(history.tracks) {

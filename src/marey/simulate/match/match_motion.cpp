@@ -167,7 +167,7 @@ void MatchMotion::advance(double time) {
       now_[i].phase += seconds * body.gait;
     }
   };
-  assert(time >= static_cast<double>(steps_) * kStep && "a match is inspected forwards");
+  assert(time >= static_cast<double>(steps_) * kStep && "time goes forwards");
   while (static_cast<double>(steps_ + 1) * kStep <= time) {
     after(kStep);
     begin_ = now_;

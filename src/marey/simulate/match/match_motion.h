@@ -26,7 +26,7 @@ struct MatchPerson {
 std::string match_label(int index);
 std::string_view match_team(int index);
 
-/// 22 players and 3 referees of a football match: the same for the same seed, at whatever rate it is inspected.
+/// 22 players and 3 referees of a football match: the same for the same seed, at whatever rate it is sampled.
 ///
 /// They are stepped at a fixed 50 Hz; within a step each acceleration is constant, so that places and velocities are exact
 /// at any time. Accelerations stay within what people have (the faster, the less), change smoothly, and keep bodies apart: the

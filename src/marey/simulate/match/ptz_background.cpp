@@ -247,7 +247,7 @@ PtzBackground::PtzBackground(const geometry::PitchSize& pitch, std::uint64_t see
   cv::GaussianBlur(wall.clone(), wall, {3, 3}, 0.6);
 }
 
-cv::Mat PtzBackground::inspected_up(const Camera& camera) const {
+cv::Mat PtzBackground::texture_of(const Camera& camera) const {
   const cv::Size size = camera.size();
   const Lookup lookup(pitch_, camera.centre());
   const Matrix<3> to_world = camera.camera_from_world().rotation.transpose();
@@ -309,7 +309,7 @@ cv::Mat PtzBackground::paint(const Camera& camera) const {
 }
 
 cv::Mat PtzBackground::draw(const Camera& camera) const {
-  cv::Mat image = inspected_up(camera);
+  cv::Mat image = texture_of(camera);
   const cv::Mat fraction = paint(camera);
   for (int y = 0; y < image.rows; ++y) {
     auto* row = image.ptr<cv::Vec3b>(y);

@@ -38,7 +38,7 @@ class PtzBackground {
   cv::Mat draw(const Camera& camera) const;
 
  private:
-  cv::Mat inspected_up(const Camera& camera) const;
+  cv::Mat texture_of(const Camera& camera) const;
   cv::Mat paint(const Camera& camera) const;
 
   geometry::PitchSize pitch_;

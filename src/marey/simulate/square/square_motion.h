@@ -12,7 +12,7 @@
 namespace marey::simulate::square {
 
 struct SquareOptions {
-  double length = 36, width = 12;  ///< m, of the part that is inspected: x in [0, length], y in [0, width]
+  double length = 36, width = 12;  ///< m, of the observed part: x in [0, length], y in [0, width]
   double around = 4;               ///< m beyond it, where people come from and go to
   double arrivals = 1.1;           ///< groups a second
   double runners = 0.04;           ///< share of groups that run
@@ -28,7 +28,7 @@ struct SquarePerson {
   double height = 1.72;  ///< m
 };
 
-/// The same for the same seed, at whatever rate it is inspected: stepped at a fixed 25 Hz, between steps people go straight on.
+/// The same for the same seed, at whatever rate it is sampled: stepped at a fixed 25 Hz, between steps people go straight on.
 class SquareMotion {
  public:
   SquareMotion(std::uint64_t seed, const SquareOptions& options = {});
@@ -37,7 +37,7 @@ class SquareMotion {
   void advance(double time);
 
   std::span<const SquarePerson> people() const { return now_; }
-  /// Whether a place lies in the part that is inspected.
+  /// Whether a place lies in the observed part.
   bool holds(const Vector<2>& location) const;
 
  private:

@@ -18,7 +18,7 @@ namespace marey::source::live {
 
 /// A frame as its camera gave it. When it was taken is reported by `taken`, else by `device_time`, else it is when it came.
 struct Shot {
-  CameraFrame given;                          ///< its image or its detections; index and time are not inspected
+  CameraFrame given;                          ///< its image or its detections; index and time are not used
   std::optional<Timestamp> taken = {};        ///< by the run's clock
   std::optional<Duration> device_time = {};   ///< by the camera's own clock, from any origin
   std::optional<std::int64_t> sequence = {};  ///< by the camera's own count: what it omits was lost in transit

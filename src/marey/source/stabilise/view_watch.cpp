@@ -294,7 +294,7 @@ void ViewWatch::run_tracker(const cv::Mat& small, double time) {
 ViewReport ViewWatch::report() const {
   ViewReport report;
   report.cuts = cuts_;
-  report.inspected_at = std::ssize(locations_);
+  report.images = std::ssize(locations_);
   if (locations_.empty() || size_.empty()) return report;
   report.scrolling = static_cast<double>(scrolled_) / static_cast<double>(locations_.size());
   const std::vector<Stood> stood = mean_stands(locations_);

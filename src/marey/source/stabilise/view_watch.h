@@ -29,8 +29,8 @@ struct ViewReport {
   std::vector<double> cuts;  ///< s: from here on another scene is shown
   std::optional<Turn> turn;  ///< the first, and how far it went in all
   double shake_px = 0;       ///< root mean square, px of the whole image, about where the camera stood of late
-  double scrolling = 0;  ///< share of the images inspected in which a part moves upwards or downwards as one, while the rest stands
-  std::int64_t inspected_at = 0;  ///< images whose motion is known
+  double scrolling = 0;  ///< share of the measured images in which a part moves upwards or downwards as one, while the rest stands
+  std::int64_t images = 0;  ///< images whose motion is known
 };
 
 class ViewWatch {
@@ -40,7 +40,7 @@ class ViewWatch {
   ViewReport report() const;
   /// The same as in the report, which takes longer.
   const std::vector<double>& cuts() const { return cuts_; }
-  std::int64_t inspected_at() const { return std::ssize(locations_); }
+  std::int64_t images() const { return std::ssize(locations_); }
 
  private:
   /// How far the scene has moved at the image's middle, shrunk px, and how much larger it is seen, ln.

@@ -71,7 +71,7 @@ TEST(ViewWatch, SaysNothingOfACameraThatStands) {
     EXPECT_FALSE(report.turn);
     EXPECT_LT(report.shake_px, 0.5);
     EXPECT_EQ(report.scrolling, 0);
-    EXPECT_GT(report.inspected_at, 20);
+    EXPECT_GT(report.images, 20);
   }
 }
 
