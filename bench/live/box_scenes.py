@@ -24,7 +24,7 @@ class Scene:
     camera: tuple         # where it stands, m
     aim: tuple            # what it shows at first, m
     focal: float          # px
-    follow: float = 0     # share of the play's displacement that the operator pans after
+    pan_fraction: float = 0     # share of the play's displacement that the operator pans after
     pan: float = 0        # degrees, amplitude of a slow pan to and fro
     period: float = 14    # s, of that pan and of the zoom
     zoom: float = 0       # amplitude of the logarithm of the focal length
@@ -42,12 +42,12 @@ SCENES = [
     street("street, slow pan", pan=7),
     street("street, zoom", zoom=0.2),
     street("street, shaken", shake=3, roll=0.5),
-    Scene("basketball, panned", 20, 25, 10, True, (28, 15), (14, -13, 5), (14, 6, 0.8), 1150, follow=0.8),
-    Scene("football, panned", 20, 25, 16, True, (60, 40), (30, -30, 12), (30, 18, 0.8), 2000, follow=0.9),
-    Scene("football, panned and zoomed, 30 Hz", 20, 30, 16, True, (60, 40), (30, -30, 12), (30, 18, 0.8), 2000, follow=0.9,
+    Scene("basketball, panned", 20, 25, 10, True, (28, 15), (14, -13, 5), (14, 6, 0.8), 1150, pan_fraction=0.8),
+    Scene("football, panned", 20, 25, 16, True, (60, 40), (30, -30, 12), (30, 18, 0.8), 2000, pan_fraction=0.9),
+    Scene("football, panned and zoomed, 30 Hz", 20, 30, 16, True, (60, 40), (30, -30, 12), (30, 18, 0.8), 2000, pan_fraction=0.9,
           zoom=0.25, period=9),
-    Scene("volleyball, jumps", 20, 25, 12, True, (18, 9), (-9, 4.5, 4), (9, 4.5, 1), 1100, follow=0.2, jumps=0.12),
-    Scene("basketball, by hand", 20, 30, 10, True, (28, 15), (14, -13, 3), (14, 6, 0.8), 1150, follow=0.8, shake=2.5, roll=1.5),
+    Scene("volleyball, jumps", 20, 25, 12, True, (18, 9), (-9, 4.5, 4), (9, 4.5, 1), 1100, pan_fraction=0.2, jumps=0.12),
+    Scene("basketball, by hand", 20, 30, 10, True, (28, 15), (14, -13, 3), (14, 6, 0.8), 1150, pan_fraction=0.8, shake=2.5, roll=1.5),
 ]
 
 
@@ -151,7 +151,7 @@ class Operator:
 
     def step(self, time, play):
         scene = self.scene
-        goal = self.first + scene.follow * np.append(play - np.array(scene.size) / 2, 0)
+        goal = self.first + scene.pan_fraction * np.append(play - np.array(scene.size) / 2, 0)
         goal[1] = self.first[1] + 0.5 * (goal[1] - self.first[1])
         self.speed += (4 * (goal - self.aim) - 3.2 * self.speed) * self.dt   # late, and a little over the mark
         self.aim = self.aim + self.speed * self.dt

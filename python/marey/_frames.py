@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ._core import Error
 
-Picture = NDArray[np.uint8]
+Image = NDArray[np.uint8]
 
 
 class Frames:
@@ -27,7 +27,7 @@ class Frames:
 
     def __init__(
         self,
-        pictures: NDArray[np.uint8] | Sequence[Picture] | Iterable[Any] | Callable[[], Iterable[Any]],
+        pictures: NDArray[np.uint8] | Sequence[Image] | Iterable[Any] | Callable[[], Iterable[Any]],
         rate: float,
         *,
         colour: str = "bgr",
@@ -58,7 +58,7 @@ class Frames:
             raise Error(f"{name}: there is no image in it")
         self.size: tuple[int, int] = (first[1].shape[0], first[1].shape[1])
 
-    def _first(self) -> Iterator[tuple[float | None, Picture]]:
+    def _first(self) -> Iterator[tuple[float | None, Image]]:
         """The first image, without losing it where images can be had only once."""
         pictures = _Images(self)
         given = pictures.next()
@@ -88,7 +88,7 @@ class _Images:
         self._index = -1
         self._time: float | None = None
 
-    def next(self) -> tuple[float | None, Picture] | None:
+    def next(self) -> tuple[float | None, Image] | None:
         try:
             given = next(self._left)
         except StopIteration:
@@ -111,7 +111,7 @@ class _Images:
     def _error(self, what: str) -> Error:
         return Error(f"{self._frames.name}: image {self._index}: {what}")
 
-    def _checked(self, given: Any) -> Picture:
+    def _checked(self, given: Any) -> Image:
         if not isinstance(given, np.ndarray):
             raise self._error(f"is a {type(given).__name__}; give a NumPy array, H×W×3 or H×W, uint8")
         if given.dtype != np.uint8:

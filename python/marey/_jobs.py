@@ -60,8 +60,10 @@ def _sinks(given: Iterable[Sink]) -> dict[str, Any]:
     for sink in given:
         if isinstance(sink, (str, os.PathLike)):
             files.append((os.fspath(sink), ""))
+        elif hasattr(sink, "pictures"):
+            raise Error(f"{sink!r}: write `images = True` in place of `pictures`")
         elif callable(sink) or hasattr(sink, "write"):
-            objects.append((_Sink(sink), bool(getattr(sink, "pictures", False))))
+            objects.append((_Sink(sink), bool(getattr(sink, "images", False))))
         else:
             raise Error(f"{sink!r} is not a sink; give a file's name, a function of an Instant, or an object with write")
     return {"files": files, "sinks": objects}
@@ -191,7 +193,7 @@ def track(
         exception of it ends the run and is raised.
     labels: of markers, a file or names, from left to right in the first frame.
     sinks: files to write, functions of an `Instant`, or objects with `write(instant)` and, optionally, `begin(header)`, `finish()` and
-        `pictures = True`. They are called on threads of the run, one call at a time each.
+        `images = True`. They are called on threads of the run, one call at a time each.
     keep: False for a run into sinks alone: the recording that is returned is empty, and memory does not grow with a live one.
     progress: called now and then with (step, done, total or None).
 

@@ -138,7 +138,7 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertGreater(right, 0.95 * len(truth))
         self.assertLess(wrong, 0.01 * len(truth))
 
-    def named_share(self, name):
+    def named_fraction(self, name):
         """Of the points of a table those whose label is the truth's, those with another, and all."""
         truth = {(row["frame"], row["label"]): [float(row[axis]) for axis in "xyz"] for row in self.rows("walk/truth.csv")}
         right = wrong = points = 0
@@ -162,7 +162,7 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertGreater(told[0]["set"]["named"], 0.99 * told[0]["set"]["points"])
         self.assertLess(told[0]["skeleton"]["rms_mm"], 2)
         self.marey("convert", "one.marey", "one.csv", "-q")
-        right, wrong, points = self.named_share("one.csv")  # a track bears its name over its whole life
+        right, wrong, points = self.named_fraction("one.csv")  # a track bears its name over its whole life
         self.assertGreater(right, 0.99 * points)
         self.assertLess(wrong, 0.003 * points)
         self.assertEqual(len({row["id"] for row in self.rows("one.csv") if row["label"]}), 40, "each name is one track")

@@ -43,7 +43,7 @@ class Edit(unittest.TestCase):
         marey("convert", self.take, self.folder / name, "-q", *options)
         return (self.folder / name).read_bytes()
 
-    def places(self, label):
+    def positions(self, label):
         """The x of a label, by frame."""
         lines = self.exported("now.csv").decode().splitlines()
         names = lines[0].split(",")
@@ -52,8 +52,8 @@ class Edit(unittest.TestCase):
 
     def test_what_is_exported_has_the_edits_and_the_recording_does_not(self):
         marey("edit", self.take, "swap A B 20:29", "rename C knee")
-        self.assertEqual({frame: x for frame, x in self.places("A").items() if x == 2}, {frame: 2 for frame in range(20, 30)})
-        self.assertEqual(len(self.places("knee")), FRAMES - 5)
+        self.assertEqual({frame: x for frame, x in self.positions("A").items() if x == 2}, {frame: 2 for frame in range(20, 30)})
+        self.assertEqual(len(self.positions("knee")), FRAMES - 5)
         self.assertEqual(self.exported("raw.csv", "--without-edits"), self.before)
 
     def test_info_states_what_the_edits_have_left_and_what_they_are(self):
@@ -79,8 +79,8 @@ class Edit(unittest.TestCase):
         marey("edit", self.take, "rename A LKNE", "rename B RKNE")
         said = marey(*words[1:], cwd=self.folder).stderr
         self.assertIn("5 edits count", said)
-        self.assertEqual(len(self.places("C")), FRAMES)
-        self.assertAlmostEqual(self.places("LKNE")[150], 2, places=2)
+        self.assertEqual(len(self.positions("C")), FRAMES)
+        self.assertAlmostEqual(self.positions("LKNE")[150], 2, places=2)
 
     def test_a_copy_keeps_the_edits_to_be_undone(self):
         marey("edit", self.take, "rename A ankle")
@@ -112,14 +112,14 @@ class Edit(unittest.TestCase):
         self.assertEqual(self.exported("now.csv"), self.before)
         script.write_text("rename A left # the \"left\" one\nrename B \"right # 2\" #\nrename \"right # 2\" right\n")
         marey("edit", self.take, "--script", script)
-        self.assertEqual(len(self.places("right")), FRAMES)
+        self.assertEqual(len(self.positions("right")), FRAMES)
 
     def test_a_gap_is_filled_and_states_how_far_it_may_be_off(self):
         run = marey("edit", self.take, "fill C", "--json")
         gap = json.loads(run.stdout)["edits"][0]["gaps"][0]
         self.assertEqual((gap["first"], gap["last"], gap["track"]), (50, 54, "C"))
         self.assertLess(gap["expected_mm"], 1)
-        self.assertEqual(len(self.places("C")), FRAMES)
+        self.assertEqual(len(self.positions("C")), FRAMES)
 
     def test_a_fill_without_a_gap_is_no_error_and_states_so(self):
         marey("edit", self.take, "fill C")
@@ -127,7 +127,7 @@ class Edit(unittest.TestCase):
         script.write_text("fill all\nrename A knee\nfill all\n")
         run = marey("edit", self.take, "--script", script)
         self.assertEqual(run.stderr.count("there is no gap to fill; nothing was filled"), 2, run.stderr)
-        self.assertEqual(len(self.places("knee")), FRAMES)
+        self.assertEqual(len(self.positions("knee")), FRAMES)
         before = self.take.read_bytes()
         run = marey("edit", self.take, "fill all")
         self.assertIn("\"fill all\": there is no gap to fill; nothing was filled\n", run.stderr)

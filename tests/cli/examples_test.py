@@ -19,13 +19,13 @@ class Examples(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
-    def film(self):
+    def video(self):
         self.run_in_folder(MAREY, "simulate", "people", "--situation", "crowd", "--people", "3", "--frames", "80", "--seed", "4",
                            "-o", "film", "-q")
         return "film/video.mp4"
 
     def test_people_in_a_video(self):
-        said = self.run_in_folder(EXAMPLES / "people_in_a_video", self.film())
+        said = self.run_in_folder(EXAMPLES / "people_in_a_video", self.video())
         self.assertIn("3 people in", said)
         self.assertEqual(said.count(" px"), 3, said)
 

@@ -46,7 +46,7 @@ class FootballVideo(unittest.TestCase):
         for line in lines:
             self.marey(line)
         self.the_cameras_are_out_of_step()
-        self.everybody_is_followed()
+        self.all_players_are_tracked()
         for name in ("overlays/left.mp4", "overlays/right.mp4", "above.mp4", "pictures/left.jpg", "report/report.html"):
             self.assertGreater((self.folder / name).stat().st_size, 10_000, name)
         self.marey("marey convert match.csv match.dat --rig pitch.toml")
@@ -77,7 +77,7 @@ class FootballVideo(unittest.TestCase):
             cameras = {camera["name"]: camera for camera in tomllib.load(file)["camera"]}
         self.assertAlmostEqual(cameras["right"]["offset_s"] - cameras["left"]["offset_s"], 0.16, delta=0.06)
 
-    def everybody_is_followed(self):
+    def all_players_are_tracked(self):
         """22 players, a referee, and his two assistants, who stand at the touchlines and are hard to see.
 
         With the right camera's clock moved by up to 8 ms, 21 to 24 people stay (bench/tuning.md): the bounds are of the clock

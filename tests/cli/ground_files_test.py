@@ -114,20 +114,20 @@ class GroundFiles(unittest.TestCase):
         row = list(csv.DictReader((self.folder / "summary.csv").read_text().splitlines()))[0]
         self.assertEqual((float(row["distance_m"]), float(row["max_mps"]), row["sprints"]), (0, 0, "0"))
 
-    def judged(self, *options):
+    def evaluated(self, *options):
         return json.loads(self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5, "--json", *options).stdout)
 
     def test_evaluated_in_metres(self):
         self.write_run("truth.csv", 25)
         self.write_run("tracks.csv", 25, shift=0.4)
-        result = self.judged()
+        result = self.evaluated()
         self.assertEqual((result["mota"], result["idf1"], result["idsw"], result["tracked_fraction"], result["found"]), (1, 1, 0, 1, 1))
         self.assertAlmostEqual(result["position_rms_m"], 0.4, delta=1e-6)
         self.assertAlmostEqual(result["distance_error"], 0, delta=1e-6)
         self.assertEqual(result["warnings"], [])
         for rate in (5, 12.5, 100):
             self.write_run("tracks.csv", rate, shift=0.4)
-            result = self.judged()
+            result = self.evaluated()
             self.assertEqual((result["paired_by"], result["mota"]), ("time", 1), rate)
             self.assertIn("every", result["warnings"][0])
         table = self.marey("evaluate", "--truth", "truth.csv", "--tracks", "tracks.csv", "--distance", 1.5).stdout
@@ -139,13 +139,13 @@ class GroundFiles(unittest.TestCase):
         self.write_run("tracks.csv", 50)
         for columns in ("frame,id,x,y", "time,id,x,y"):
             self.write_run("truth.csv", 50, columns=columns)
-            result = self.judged()
+            result = self.evaluated()
             self.assertEqual((result["paired_by"], result["mota"], result["tracked_fraction"]), ("frame", 1, 1), columns)
 
     def test_none_is_evaluated_with_a_warning(self):
         self.write_run("truth.csv", 25)
         (self.folder / "tracks.csv").write_text("frame,time,id,x,y\n")
-        result = self.judged()
+        result = self.evaluated()
         self.assertEqual((result["found"], result["mota"], result["position_rms_m"]), (0, 0, None))
         self.assertIn("tracks.csv: no person is in it", result["warnings"])
 

@@ -65,12 +65,12 @@ class Identify(unittest.TestCase):
     def name(self, rows):
         (self.folder / "names.csv").write_text("time,id,name\n" + "\n".join(rows) + "\n")
 
-    def who(self, *options, code=0):
+    def identify(self, *options, code=0):
         return marey("identify", self.take, "--squads", self.folder / "squads.csv", "--annotations", self.folder / "names.csv", "--review",
                      self.folder / "doubts.csv", *options, code=code)
 
     def refused(self, *words):
-        said = self.who(code=1).stderr
+        said = self.identify(code=1).stderr
         self.assertEqual(said.count("\n"), 1, said)
         for word in words:
             self.assertIn(word, said)
@@ -90,12 +90,12 @@ class Identify(unittest.TestCase):
                         self.assertEqual(row["team"], "Reds" if who < 4 else "Blues")
         return right / (SECONDS * RATE * PEOPLE)
 
-    def doubts(self):
+    def ambiguities(self):
         with open(self.folder / "doubts.csv", newline="") as file:
             return list(csv.DictReader(file))
 
     def answer(self, answers, code=0):
-        rows = self.doubts()
+        rows = self.ambiguities()
         for row, given in zip(rows, answers):
             row["answer"] = given
         with open(self.folder / "answers.csv", "w", newline="") as file:
@@ -152,15 +152,15 @@ class Identify(unittest.TestCase):
         self.assertEqual(told["numbered"], 0)
 
     def test_two_identify_were_swapped_get_their_own_names_back(self):
-        told = json.loads(self.who("--json", "-q").stdout)
+        told = json.loads(self.identify("--json", "-q").stdout)
         self.assertEqual(len(told["people"]), PEOPLE)
         self.assertGreater(self.right(), 0.97)
         marey("edit", self.take, "--undo-to", "0", "-q")
         self.assertEqual(self.right(), 0, "all of it can be taken back")
 
     def test_review_lists_of_earlier_versions_are_read(self):
-        self.who("--min-probability", "0", "-q")
-        self.answer(["yes" if row["kind"] == "swap" else "" for row in self.doubts()])
+        self.identify("--min-probability", "0", "-q")
+        self.answer(["yes" if row["kind"] == "swap" else "" for row in self.ambiguities()])
         wanted = self.converted()
         marey("edit", self.take, "--undo", "-q")
         text = (self.folder / "answers.csv").read_text()
@@ -173,15 +173,15 @@ class Identify(unittest.TestCase):
     def test_names_go_over_gaps(self):
         self.record(lambda who, t: who, left_out=lambda track, t: track == 5 and 100 < t < 106,
                     moved=lambda track, t: 7 if track == 5 and t > 100 else track)
-        self.who("-q")
+        self.identify("-q")
         self.assertGreater(self.right(), 0.97)
 
     def test_what_is_in_ambiguity_is_listed_and_answers_are_edits(self):
-        self.who("--min-probability", "0", "-q")
-        rows = [row for row in self.doubts() if row["kind"] == "swap"]
+        self.identify("--min-probability", "0", "-q")
+        rows = [row for row in self.ambiguities() if row["kind"] == "swap"]
         self.assertTrue(any("Adams" in row["question"] and "Brown" in row["question"] for row in rows), rows)
         before = self.right()
-        asked = self.doubts()
+        asked = self.ambiguities()
         wrongly = ["yes" if "Adams" in row["question"] and row["kind"] == "swap" else "" for row in asked]
         only = wrongly.index("yes")
         self.answer(["yes" if i == only else "" for i in range(len(asked))])
@@ -192,8 +192,8 @@ class Identify(unittest.TestCase):
         self.assertIn("0 answered", said)
 
     def test_answers_that_were_applied_before_are_left_alone(self):
-        self.who("--min-probability", "0", "-q")
-        asked = self.doubts()
+        self.identify("--min-probability", "0", "-q")
+        asked = self.ambiguities()
         exchanges = [i for i, row in enumerate(asked) if row["kind"] == "swap"]
         first = next(i for i in exchanges if "Adams" in asked[i]["question"])
         answers = ["yes" if i == first else "" for i in range(len(asked))]
@@ -215,8 +215,8 @@ class Identify(unittest.TestCase):
         self.assertEqual(self.converted(), by_hand)
 
     def test_a_row_given_twice_is_applied_once(self):
-        self.who("--min-probability", "0", "-q")
-        rows = self.doubts()
+        self.identify("--min-probability", "0", "-q")
+        rows = self.ambiguities()
         row = next(row for row in rows if row["kind"] == "swap")
         row["answer"] = "yes"
         with open(self.folder / "answers.csv", "w", newline="") as file:
@@ -231,8 +231,8 @@ class Identify(unittest.TestCase):
         return (self.folder / "now.csv").read_text()
 
     def test_an_answer_that_no_longer_fits_is_refused_and_nothing_is_done(self):
-        self.who("--min-probability", "0", "-q")
-        asked = self.doubts()
+        self.identify("--min-probability", "0", "-q")
+        asked = self.ambiguities()
         self.assertIn("is no answer", self.answer(["perhaps"] * len(asked), code=1).stderr)
         marey("edit", self.take, "--undo-to", "0", "-q")
         said = self.answer(["yes"] * len(asked), code=1).stderr
@@ -242,8 +242,8 @@ class Identify(unittest.TestCase):
 
     def test_identify_is_not_named_is_requested_for(self):
         self.name([f"2,{who},{name}" for who, name in enumerate(NAMES, 1) if who != 6])
-        self.who("-q")
-        asked = self.doubts()
+        self.identify("-q")
+        asked = self.ambiguities()
         nobody = [i for i, row in enumerate(asked) if row["kind"] == "identity"]
         self.assertEqual(len(nobody), 1, asked)
         self.assertEqual(float(asked[nobody[0]]["probability"]), 1, "Foster is in the roster, and no person was called so")
@@ -261,13 +261,13 @@ class Identify(unittest.TestCase):
             self.take.unlink(missing_ok=True)
             self.record(lambda who, t: who, seconds=61, left_out=lambda track, t: track < 3 and t > end)
             self.name([f"2,{who},{name}" for who, name in enumerate(NAMES, 1)])
-            told = json.loads(self.who("--min-probability", "0", "--json", "-q").stdout)["review"]
+            told = json.loads(self.identify("--min-probability", "0", "--json", "-q").stdout)["review"]
             exchanges = [one for one in told if one["kind"] == "swap" and one["time"] > 58]
             self.assertEqual(len(exchanges), 0 if end < 58.3 else 1, f"lost at {end} s: {told}")
             if not exchanges:
                 continue
             before = self.labels()
-            rows = self.doubts()
+            rows = self.ambiguities()
             self.answer(["yes" if row["kind"] == "swap" and float(row["time"]) > 58 else "" for row in rows])
             now = self.labels()
             self.assertAlmostEqual(sum(now[key] != before[key] for key in before) / RATE, exchanges[0]["changes_s"])
@@ -275,7 +275,7 @@ class Identify(unittest.TestCase):
         self.assertEqual(changed, sorted(changed, reverse=True))
 
     def test_what_is_gained_max_by_is_requested_first(self):
-        self.who("--min-probability", "0", "-q")
+        self.identify("--min-probability", "0", "-q")
         told = json.loads(self.again("--min-probability", "0", "--json", "-q").stdout)["review"]
         gains = [one["probability"] * one["changes_s"] for one in told]
         self.assertTrue(gains)
@@ -283,7 +283,7 @@ class Identify(unittest.TestCase):
 
     def again(self, *options):
         marey("edit", self.take, "--undo-to", "0", "-q")
-        return self.who(*options)
+        return self.identify(*options)
 
     def labels(self):
         marey("convert", self.take, self.folder / "now.csv", "-q")
@@ -331,8 +331,8 @@ class Identify(unittest.TestCase):
         squads = self.folder / "squads.csv"
         squads.write_text("\n".join(ROSTER.split("\n")[:-2]) + "\n")
         self.name([f"2,{who},{name}" for who, name in enumerate(NAMES, 1) if who != 6])
-        self.who("--min-probability", "1", "-q")
-        self.assertEqual([row for row in self.doubts() if row["kind"] == "identity"], [])
+        self.identify("--min-probability", "1", "-q")
+        self.assertEqual([row for row in self.ambiguities() if row["kind"] == "identity"], [])
 
     def test_what_is_deleted_is_counted(self):
         self.record(lambda who, t: who, left_out=lambda track, t: track == 5 and t > 103)
@@ -344,13 +344,13 @@ class Identify(unittest.TestCase):
         path.write_text(rows)
         marey("convert", path, self.take, "-q")
         before = self.converted().count("\n")
-        excluded = json.loads(self.who("--json", "-q").stdout)["excluded"]
+        excluded = json.loads(self.identify("--json", "-q").stdout)["excluded"]
         self.assertGreater(excluded, 0)
         self.assertEqual(excluded, before - self.converted().count("\n"))
 
     def test_names_are_given_once(self):
-        self.who("-q")
-        said = self.who(code=1).stderr
+        self.identify("-q")
+        said = self.identify(code=1).stderr
         self.assertIn("called 1 Adams already", said)
         self.assertIn("--undo-to 0", said)
 
@@ -379,7 +379,7 @@ class Identify(unittest.TestCase):
                           f"{'referee' if person > 22 else 'keeper' if person in (1, 12) else 'player'}")
         (self.folder / "names.csv").write_text("\n".join(names) + "\n")
         (self.folder / "squads.csv").write_text("\n".join(roster) + "\n")
-        told = json.loads(self.who("--json", "-q").stdout)
+        told = json.loads(self.identify("--json", "-q").stdout)
         self.assertEqual(len(told["people"]), 25)
         marey("convert", self.take, self.folder / "now.csv", "-q")
         right = total = referees = 0

@@ -48,7 +48,7 @@ GLib.MainLoop().run()
 
 class JpegCamera(http.server.BaseHTTPRequestHandler):
     """What many network cameras do: one JPEG after the other, without end."""
-    pictures = []
+    jpegs = []
 
     def do_GET(self):
         self.send_response(200)
@@ -56,7 +56,7 @@ class JpegCamera(http.server.BaseHTTPRequestHandler):
         self.end_headers()
         with contextlib.suppress(OSError):
             for number in range(1_000_000):
-                picture = self.pictures[number % len(self.pictures)]
+                picture = self.jpegs[number % len(self.jpegs)]
                 self.wfile.write(b"--l-frame\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n" % len(picture) + picture + b"\r\n")
                 time.sleep(0.04)
 
@@ -333,7 +333,7 @@ class LiveCameras(unittest.TestCase):
             self.skipTest("ffmpeg is not here")
         subprocess.run(["ffmpeg", "-v", "error", "-f", "lavfi", "-i", "testsrc=size=160x120:rate=25", "-frames:v", "10", "picture%02d.jpg"],
                        cwd=self.folder, check=True)
-        JpegCamera.pictures = [path.read_bytes() for path in sorted(self.folder.glob("picture*.jpg"))]
+        JpegCamera.jpegs = [path.read_bytes() for path in sorted(self.folder.glob("picture*.jpg"))]
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), JpegCamera)
         server.daemon_threads = True
         port = server.server_address[1]

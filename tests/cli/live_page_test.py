@@ -44,22 +44,22 @@ class Page(unittest.TestCase):
             self.assertEqual((dials["exposure"]["unit"], dials["exposure"]["max"], dials["exposure"]["now"]), ("ms", 50, 2))
             self.assertFalse(status["unsaved"])
             for line in ("dial 0 exposure 1.5", "dial 0 gain 2", "threshold 1 90", "mask 1 10 20 30 40", "mask 1 50 60 7 8", "unmask 1 10 20 30 40", "mask 1 9 9 90 9 50 80", "mask 1 1 1 2 2 3 9", "unmask 1 1 1 2 2 3 9"):
-                page.say(line)
+                page.send(line)
             status = receive_until(page, "status", lambda s: s["unsaved"] and len(s["cameras"][1].get("masks", [])) == 2 and [d["now"] for d in s["cameras"][0]["dials"]] == [1.5, 2])
             self.assertEqual(status["cameras"][1]["masks"], [[50, 60, 7, 8], [9, 9, 90, 9, 50, 80]])
             self.assertEqual(status["cameras"][1]["threshold"], 90)
             self.assertIsNone(status["cameras"][0]["threshold"])
-            page.say("dial 0 exposure 500")
+            page.send("dial 0 exposure 500")
             refused = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]
             self.assertTrue(refused["refused"].startswith("cam1: does not take that exposure; it must be 0.02 to 50 ms"), refused["refused"])
             self.assertEqual(refused["dials"][0]["now"], 1.5)
             for level in ("99999", "-1", "0"):
-                page.say(f"threshold 1 {level}")
+                page.send(f"threshold 1 {level}")
                 self.assertIn("cam2: does not take that threshold; it must be a grey level above 0", receive_until(page, "said", lambda text: text != ""))
-            page.say("lit 0")
+            page.send("lit 0")
             receive_until(page, "status", lambda s: s["cameras"][0]["learning"])
             receive_until(page, "status", lambda s: not s["cameras"][0]["learning"] and len(s["cameras"][0]["masks"]) >= 2)
-            page.say("save")
+            page.send("save")
             receive_until(page, "status", lambda s: not s["unsaved"])
         one, two = self.rig()
         self.assertEqual((one["exposure"], one["gain"]), (1.5, 2))
@@ -76,7 +76,7 @@ class Page(unittest.TestCase):
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(c["dials"] and c["dials"][0]["now"] == 0.7 for c in s["cameras"]))
             self.assertEqual(status["cameras"][0]["threshold"], 33)
             self.assertFalse(status["unsaved"])
-            page.say("watch 0 320")
+            page.send("watch 0 320")
             picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
             self.assertEqual(int.from_bytes(picture[28:32], "little"), 0, "markers are found under the mask")
         self.write_rig("masks = [[0, 0, 320]]\n")
@@ -105,10 +105,10 @@ class Page(unittest.TestCase):
             page = WebSocket(shown)
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["frames"] > 5)
             self.assertEqual(status["cameras"][0]["dials"], [], "points have no exposure")
-            page.say("watch 0 320")
+            page.send("watch 0 320")
             detected = lambda: next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
             self.assertGreater(max(detected() for _ in range(5)), 2)
-            page.say("mask 0 0 0 320 240")
+            page.send("mask 0 0 0 320 240")
             for _ in range(50):
                 if detected() == 0:
                     break
@@ -126,13 +126,13 @@ class Page(unittest.TestCase):
                     break
                 time.sleep(0.1)
             one, two = tracks[0]["id"], tracks[1]["id"]
-            page.say(f"name {one} left knee")
+            page.send(f"name {one} left knee")
             receive_until(page, "said", lambda text: text == "")
-            page.say(f"name {two} left knee")
+            page.send(f"name {two} left knee")
             self.assertIn("is called left knee and is seen now", receive_until(page, "said"))
-            page.say("name 999999 no person")
+            page.send("name 999999 no person")
             self.assertIn("there is no track 999999", receive_until(page, "said"))
-            page.say("save")
+            page.send("save")
             self.assertIn("there is no rig file", receive_until(page, "said", lambda text: "rig" in text))
             for _ in range(100):
                 if any(track["label"] == "left knee" for track in shown.scene()["tracks"]):
@@ -150,9 +150,9 @@ class Page(unittest.TestCase):
                 self.assertEqual(shown.scene()["can_change"], allowed)
                 page = WebSocket(shown)
                 receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
-                page.say("mask 0 1 2 3 4")
-                page.say("dial 0 gain 3")
-                page.say("save")
+                page.send("mask 0 1 2 3 4")
+                page.send("dial 0 gain 3")
+                page.send("save")
                 time.sleep(0.6)
                 receive_until(page, "status")
                 status = receive_until(page, "status")
@@ -167,13 +167,13 @@ class Page(unittest.TestCase):
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
             for _ in range(3000):
-                page.say(" ".join(generator.choices(words, k=generator.randint(0, 7))))
+                page.send(" ".join(generator.choices(words, k=generator.randint(0, 7))))
             for i in range(400):
-                page.say(f"mask 0 {i} 0 1 1")
+                page.send(f"mask 0 {i} 0 1 1")
             self.assertIn("256 masks already", receive_until(page, "said", lambda text: "masks" in text))
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and len(s["cameras"][0].get("masks", [])) == 256)
             self.assertEqual(len(status["cameras"]), 2)
-            page.say("lit 63")
+            page.send("lit 63")
             self.assertIn("there is no camera 64", receive_until(page, "said", lambda text: "camera" in text))
         self.assertEqual((self.folder / "rig.toml").read_text(), before, "no person said save")
 
@@ -202,31 +202,31 @@ class OtherComputer(unittest.TestCase):
             page = WebSocket(shown)
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [1.5, 1])
             self.assertEqual([camera_control["name"] for camera_control in status["cameras"][0]["dials"]], ["exposure", "gain"])
-            page.say("watch 0 320")
+            page.send("watch 0 320")
             self.assertGreater(found(page), 2)
-            page.say("dial 0 exposure 2.5")
-            page.say("dial 0 gain 2")
+            page.send("dial 0 exposure 2.5")
+            page.send("dial 0 gain 2")
             receive_until(page, "status", lambda s: now(s) == [2.5, 2])
-            page.say("dial 0 exposure 500")
+            page.send("dial 0 exposure 500")
             refused = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
             self.assertTrue(refused.startswith("mine1: does not take that exposure; it must be 0.02 to 50 ms"), refused)
-            page.say("threshold 0 254")
+            page.send("threshold 0 254")
             receive_until(page, "status", lambda s: s["cameras"][0]["threshold"] == 254 and "refused" not in s["cameras"][0])
             for _ in range(50):
                 if found(page) < 2:
                     break
             else:
                 self.fail("the node finds as many markers as before")
-            page.say("save")
+            page.send("save")
             receive_until(page, "status", lambda s: not s["unsaved"])
         kept = tomllib.loads((self.folder / "rig.toml").read_text())["camera"][0]
         self.assertEqual((kept["exposure"], kept["gain"], kept["threshold"]), (2.5, 2, 254))
         with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
             page = WebSocket(shown)
             receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [2.5, 2] and s["cameras"][0]["threshold"] == 254)
-            page.say("threshold 0 auto")
+            page.send("threshold 0 auto")
             receive_until(page, "status", lambda s: s["cameras"][0]["threshold"] is None)
-            page.say("watch 0 320")
+            page.send("watch 0 320")
             for _ in range(50):
                 if found(page) > 2:
                     break
@@ -239,7 +239,7 @@ class OtherComputer(unittest.TestCase):
             with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
                 page = WebSocket(shown)
                 receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
-                page.say("dial 0 exposure 3")
+                page.send("dial 0 exposure 3")
                 if refused:
                     why = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
                     self.assertEqual(why, "cam1: its exposure cannot be set from here: marey node there was started without --allow-control")
@@ -267,11 +267,11 @@ class MachineVision(unittest.TestCase):
             camera_control = lambda s, name: next(each for each in s["cameras"][0]["dials"] if each["name"] == name)
             status = receive_until(page, "status", lambda s: len(s["cameras"][0]["dials"]) == 2)
             self.assertAlmostEqual(camera_control(status, "exposure")["now"], 4, places=2)
-            page.say("dial 0 exposure 7.5")
+            page.send("dial 0 exposure 7.5")
             receive_until(page, "status", lambda s: abs(camera_control(s, "exposure")["now"] - 7.5) < 0.01)
-            page.say(f"dial 0 gain {camera_control(status, 'gain')['max'] / 2}")
+            page.send(f"dial 0 gain {camera_control(status, 'gain')['max'] / 2}")
             receive_until(page, "status", lambda s: abs(camera_control(s, "gain")["now"] - camera_control(s, "gain")["max"] / 2) < 0.51)
-            page.say("save")
+            page.send("save")
             receive_until(page, "status", lambda s: not s["unsaved"])
         self.assertEqual(tomllib.loads((folder / "rig.toml").read_text())["camera"][0]["exposure"], 7.5)
 

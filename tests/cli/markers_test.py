@@ -115,13 +115,13 @@ class Markers(unittest.TestCase):
         self.assertEqual({row["label"] for row in self.rows("t.csv")}, {"only", ""})
 
     def test_no_marker_in_view(self):
-        self.film("black.mp4", "color=black:size=320x240:rate=25")
+        self.record("black.mp4", "color=black:size=320x240:rate=25")
         done = self.marey("track", "black.mp4", "--targets", "markers", "-o", "t.csv")
         self.assertIn("no marker was seen in any frame", done.stderr)
         self.assertEqual(self.rows("t.csv"), [])
 
     def test_a_saturated_image(self):
-        self.film("white.mp4", "color=white:size=320x240:rate=25")
+        self.record("white.mp4", "color=white:size=320x240:rate=25")
         self.assertIn("no marker was seen", self.marey("track", "white.mp4", "--targets", "markers", "-o", "t.csv").stderr)
 
     def test_glare_is_bounded(self):
@@ -145,7 +145,7 @@ class Markers(unittest.TestCase):
         marey = [line for line in done.stdout.splitlines() if line.startswith("Marey ")][0]
         self.assertEqual(marey.split()[1:], ["0"] * 5, "Marey's own tracker lost a name")
 
-    def film(self, name, source):
+    def record(self, name, source):
         subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-f", "lavfi", "-i", source, "-t", "1", self.folder / name], check=True)
 
 

@@ -59,7 +59,7 @@ class Masks(unittest.TestCase):
             self.assertEqual(boxes.returncode, 0, boxes.stderr)
             self.assertEqual(len(pathlib.Path(folder, "boxes.csv").read_text().splitlines()), len(rows) + 1)
 
-    def test_malformed_masks_end_in_one_sentence(self):
+    def test_malformed_masks_are_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             bad = pathlib.Path(folder, "bad.txt")
             bad.write_text("1 5 2 4 3 534\n2 5 2 4 3 53\n")

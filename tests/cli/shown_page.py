@@ -54,7 +54,7 @@ class Shown:
         self.wires.append(socket.create_connection(("127.0.0.1", self.port), timeout=5))
         return self.wires[-1]
 
-    def ask(self, path, method="GET", token=True, **headers):
+    def request(self, path, method="GET", token=True, **headers):
         """Status, headers by lower-case name, body."""
         lines = {"Host": self.host, "Connection": "close", **{name.replace("_", "-"): value for name, value in headers.items()}}
         if token:
@@ -72,7 +72,7 @@ class Shown:
     def scene(self):
         """When all of it was read."""
         for _ in range(100):
-            said = json.loads(self.ask("/scene")[2])
+            said = json.loads(self.request("/scene")[2])
             if said["kind"] == "live" or said["complete"]:
                 return said
             time.sleep(0.05)
@@ -121,13 +121,13 @@ class WebSocket:
             head += part
         self.status = int(head.split()[1])
 
-    def say(self, text, masked=True):
+    def send(self, text, masked=True):
         data = text.encode()
         length = bytes([len(data)]) if len(data) < 126 else b"\x7e" + struct.pack(">H", len(data))
         head = b"\x81" + (bytes([length[0] | 0x80]) + length[1:] if masked else length)
         self.wire.sendall(head + (b"\0\0\0\0" if masked else b"") + data)
 
-    def hear(self):
+    def receive(self):
         """Text or bytes; answers pings."""
         head = self.exactly(2)
         length = head[1] & 127
@@ -139,7 +139,7 @@ class WebSocket:
         kind = head[0] & 15
         if kind == 9:
             self.wire.sendall(bytes([0x8A, 0x80 | len(data)]) + b"\0\0\0\0" + data)
-            return self.hear()
+            return self.receive()
         return data.decode() if kind == 1 else data
 
     def exactly(self, count):
@@ -173,7 +173,7 @@ def receive_until(page, word, holds=lambda rest: True, patience_s=20):
     end = time.monotonic() + patience_s
     page.wire.settimeout(max(5, patience_s))  # while a rig is computed nothing is said
     while time.monotonic() < end:
-        line = page.hear()
+        line = page.receive()
         if isinstance(line, str) and line.split(" ")[0] == word:
             rest = line[len(word) + 1:]
             rest = json.loads(rest) if word in ("status", "wand") else rest

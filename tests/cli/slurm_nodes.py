@@ -78,7 +78,7 @@ class SlurmNodes:
                 daemon.wait()
         shutil.rmtree(self.place, ignore_errors=True)
 
-    def ask(self, *words):
+    def output_of(self, *words):
         """What a command of Slurm's says."""
         return subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=60).stdout.strip()
 
@@ -92,7 +92,7 @@ class SlurmNodes:
 
     def wait_until_empty(self, seconds=240):
         """Until no job is left in the queue."""
-        self.wait_for(lambda: self.ask("squeue", "-h", "-o", "%i") == "", seconds)
+        self.wait_for(lambda: self.output_of("squeue", "-h", "-o", "%i") == "", seconds)
 
     def lose(self, node):
         """As if the machine went down: its tasks with it."""
@@ -100,9 +100,9 @@ class SlurmNodes:
         self.daemons[node].wait()
 
     def restore(self, node):
-        self.ask("scontrol", "update", f"NodeName={node}", "State=DOWN", "Reason=lost")
+        self.output_of("scontrol", "update", f"NodeName={node}", "State=DOWN", "Reason=lost")
         self._start_node(node)
-        self.ask("scontrol", "update", f"NodeName={node}", "State=RESUME")
+        self.output_of("scontrol", "update", f"NodeName={node}", "State=RESUME")
 
     def _configure(self):
         for name in ("munge", "ctld", "log", *NODES):
@@ -124,7 +124,7 @@ class SlurmNodes:
         self._start("slurmctld", "slurmctld", "-D")
         for node in NODES:
             self._start_node(node)
-        self.wait_for(lambda: self.ask("sinfo", "-h", "-o", "%D %t") == "2 idle", 60)
+        self.wait_for(lambda: self.output_of("sinfo", "-h", "-o", "%D %t") == "2 idle", 60)
 
     def _start_node(self, node):
         self._start(node, "slurmd", "-D", "-N", node)

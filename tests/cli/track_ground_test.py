@@ -62,7 +62,7 @@ class TrackGround(unittest.TestCase):
         self.addCleanup(path.unlink)
         return path
 
-    def judged(self, tracks):
+    def evaluated(self, tracks):
         told = self.marey("evaluate", "--truth", self.made / "boxes" / "truth.csv", "--tracks", tracks, "--distance", 1.5, "--json")
         return json.loads(told.stdout)
 
@@ -73,7 +73,7 @@ class TrackGround(unittest.TestCase):
         self.assertEqual(len({(r["frame"], r["id"]) for r in rows}), len(rows))
         self.assertEqual({c for r in rows for c in r["cameras"].split()}, {"cam1", "cam2", "cam3", "cam4"})
         self.assertTrue(all(-2 <= float(r["x"]) <= 107 and -2 <= float(r["y"]) <= 70 for r in rows))
-        self.assertGreater(self.judged("match.csv")["idf1"], 0.9)
+        self.assertGreater(self.evaluated("match.csv")["idf1"], 0.9)
 
     def test_people_of_an_open_square_come_and_leave(self):
         subprocess.run([MAREY, "simulate", "square", "-o", "square", "-q", "--seconds", "30"], cwd=self.folder, check=True, timeout=120)
@@ -95,7 +95,7 @@ class TrackGround(unittest.TestCase):
     def test_live_writes_what_it_knows(self):
         for associate in ("gnn", "jpda", "mht"):
             told = self.track(self.made / "boxes" / "rig.toml", "-o", "live.csv", "--live", "--association", associate, "--json")
-            self.assertGreater(self.judged("live.csv")["idf1"], 0.8, associate)
+            self.assertGreater(self.evaluated("live.csv")["idf1"], 0.8, associate)
             self.assertEqual(json.loads(told.stdout)["rows"], len(rows_of(self.folder / "live.csv")))
 
     def test_coordinates_are_the_users(self):

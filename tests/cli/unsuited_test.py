@@ -132,7 +132,7 @@ class Room(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="marey_room_"))
         cls.addClassCleanup(shutil.rmtree, cls.folder)
 
-    def test_a_person_who_comes_near_is_one_person(self):
+    def test_a_person_coming_near_is_one_person(self):
         for options in ((), ("--live",), ("--stabilise",)):
             with self.subTest(options):
                 report = json.loads(run("track", self.video, "-o", self.folder / "room.csv", "--json", *options).stdout)

@@ -19,9 +19,9 @@ class Edit(unittest.TestCase):
 
     def answer(self, page, line):
         """What the page is reported that asked, and the words before."""
-        page.say(line)
+        page.send(line)
         before = []
-        while not (heard := page.hear()).split()[0] in ("done", "refused"):
+        while not (heard := page.receive()).split()[0] in ("done", "refused"):
             before.append(heard)
         return heard, before
 
@@ -30,18 +30,18 @@ class Edit(unittest.TestCase):
             self.assertTrue(shown.scene()["can_edit"])
             page, other = WebSocket(shown), WebSocket(shown)
             a, b = (track["id"] for track in shown.scene()["tracks"][:2])
-            before = {track: shown.ask(f"/course?track={track}")[2] for track in (a, b)}
-            self.assertEqual(json.loads(shown.ask("/edits")[2]), {"edits": [], "head": 0, "newest": 0})
+            before = {track: shown.request(f"/course?track={track}")[2] for track in (a, b)}
+            self.assertEqual(json.loads(shown.request("/edits")[2]), {"edits": [], "head": 0, "newest": 0})
             said, told = self.answer(page, f"edit 0 0 swap #{a} #{b} 0:149")
             self.assertEqual(said, "done")
-            self.assertEqual({other.hear(), other.hear()}, {"scene", "edits"})
-            self.assertEqual(shown.ask(f"/course?track={a}")[2], before[b])
+            self.assertEqual({other.receive(), other.receive()}, {"scene", "edits"})
+            self.assertEqual(shown.request(f"/course?track={a}")[2], before[b])
             self.assertEqual([track["version"] for track in shown.scene()["tracks"][:3]], [1, 1, 0])
-            history = json.loads(shown.ask("/edits")[2])
+            history = json.loads(shown.request("/edits")[2])
             listed = json.loads(marey("edit", self.take, "--list", "--json").stdout)
             self.assertEqual((history["head"], history["edits"]), (listed["head"], listed["edits"]))
             self.assertEqual(self.answer(page, "undo 1 1")[0], "done")
-            self.assertEqual(shown.ask(f"/course?track={a}")[2], before[a])
+            self.assertEqual(shown.request(f"/course?track={a}")[2], before[a])
             self.assertEqual(self.answer(page, "redo 0 1")[0], "done")
             self.assertEqual(self.answer(page, "go 1 1 0")[0], "done")
 
@@ -59,7 +59,7 @@ class Edit(unittest.TestCase):
             track = shown.scene()["tracks"][0]["id"]
             page = WebSocket(shown)
             marey("edit", self.take, f"rename #{track} hip", "-q")
-            self.assertEqual({page.hear(), page.hear()}, {"scene", "edits"})
+            self.assertEqual({page.receive(), page.receive()}, {"scene", "edits"})
             self.assertEqual(shown.scene()["tracks"][0]["label"], "hip")
             marey("edit", self.take, "rename hip thigh", "-q")
             said, _ = self.answer(page, "edit 1 1 rename hip knee")
@@ -70,15 +70,15 @@ class Edit(unittest.TestCase):
         before = self.take.read_bytes()
         with self.shown() as shown:
             self.assertFalse(shown.scene()["can_edit"])
-            self.assertEqual(shown.ask("/edits")[0], 404)
+            self.assertEqual(shown.request("/edits")[0], 404)
             page = WebSocket(shown)
             for line in ("edit 0 0 filter all", "undo 0 0", "redo 0 0", "go 0 0 0"):
                 self.assertIn("--edit", self.answer(page, line)[0])
         with self.shown("--edit") as shown:
             shown.scene()
-            self.assertEqual(shown.ask("/edits", token=False)[0], 401)
-            self.assertEqual(shown.ask("/edits", Origin="http://evil.example")[0], 403)
-            self.assertEqual(shown.ask("/edits", method="POST")[0], 405)
+            self.assertEqual(shown.request("/edits", token=False)[0], 401)
+            self.assertEqual(shown.request("/edits", Origin="http://evil.example")[0], 403)
+            self.assertEqual(shown.request("/edits", method="POST")[0], 405)
         self.assertEqual(self.take.read_bytes(), before)
         marey("convert", "walk.marey", "view_edit.csv", "-q")
         said = marey("view", "view_edit.csv", "--edit", code=1).stderr
@@ -105,7 +105,7 @@ class Edit(unittest.TestCase):
                 stays = line.split() == ["go", "0", "0", "0"]  # bent into the one line that is no untrusted client's: the head goes where it is
                 self.assertEqual(said.split(" ")[0].rstrip(":"), "done" if stays else "refused", f"{line!r}: {said!r}, seed {seed}")
                 self.assertNotRegex(said, r"[\x00-\x1f]", f"{line!r}, seed {seed}")
-            self.assertEqual(json.loads(shown.ask("/edits")[2])["edits"], [])
+            self.assertEqual(json.loads(shown.request("/edits")[2])["edits"], [])
             if not shown_page.SANITIZED:
                 self.assertLess(shown.memory_mb() - before, 30, f"seed {seed}")
 

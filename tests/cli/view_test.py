@@ -37,7 +37,7 @@ class View(unittest.TestCase):
             self.assertEqual(len(scene["cameras"][0]["corners"]), 4)
             found = {}
             for number in range(len(scene["stretches"])):
-                stretch = TimeChunk(shown.ask(f"/stretch?n={number}")[2])
+                stretch = TimeChunk(shown.request(f"/stretch?n={number}")[2])
                 self.assertEqual(stretch.kind, 1)
                 row = 0
                 for index, end in zip(stretch.index, stretch.row_end):
@@ -47,17 +47,17 @@ class View(unittest.TestCase):
             self.assertEqual(found.keys(), wanted.keys())
             self.assertLess(max(abs(found[key] - wanted[key]) for key in wanted), 1e-5)
             track = scene["tracks"][3]
-            course = shown.ask(f"/course?track={track['id']}")[2]
+            course = shown.request(f"/course?track={track['id']}")[2]
             self.assertEqual(struct.unpack_from("<I", course, 24)[0], track["rows"])
             self.assertEqual(track["rows"], sum(1 for _, id in wanted if id == track["id"]))
             for path in ("/stretch?n=99", "/stretch?n=-1", "/stretch?n=x", "/stretch", "/course?track=", "/../../etc/passwd", "//", "/page.js/x"):
-                self.assertEqual(shown.ask(path)[0], 404, path)
+                self.assertEqual(shown.request(path)[0], 404, path)
             for path, kind in (("/", "text/html"), ("/page.js", "text/javascript"), ("/page.css", "text/css")):
-                status, headers, body = shown.ask(path)
+                status, headers, body = shown.request(path)
                 self.assertEqual((status, headers["content-type"].split(";")[0]), (200, kind))
                 self.assertGreater(len(body), 1000)
                 self.assertIn("frame-ancestors 'none'", headers["content-security-policy"])
-                self.assertEqual(shown.ask(path, method="HEAD")[2], b"")
+                self.assertEqual(shown.request(path, method="HEAD")[2], b"")
 
     def test_every_kind_of_recording(self):
         marey("convert", "walk.marey", "walk.c3d", "-q")
@@ -75,16 +75,16 @@ class View(unittest.TestCase):
     def test_only_identify_has_the_token_and_queries_this_machine_may_inspect(self):
         with Shown(shown_page.MAREY, "view", "walk.marey", "--port", "0", "-q") as shown:
             for path in ("/", "/scene", "/page.js", "/stretch?n=0"):
-                self.assertEqual(shown.ask(path, token=False)[0], 401, path)
-                self.assertEqual(shown.ask(path, Host="evil.example")[0], 403, path)
-                self.assertEqual(shown.ask(path, Host=None)[0], 403, path)
-                self.assertEqual(shown.ask(path, Origin="http://evil.example")[0], 403, path)
-                self.assertEqual(shown.ask(path, method="POST")[0], 405, path)
-                self.assertNotIn("access-control-allow-origin", shown.ask(path)[1])
-            status, headers, _ = shown.ask(f"/?token={shown.token}", token=False)
+                self.assertEqual(shown.request(path, token=False)[0], 401, path)
+                self.assertEqual(shown.request(path, Host="evil.example")[0], 403, path)
+                self.assertEqual(shown.request(path, Host=None)[0], 403, path)
+                self.assertEqual(shown.request(path, Origin="http://evil.example")[0], 403, path)
+                self.assertEqual(shown.request(path, method="POST")[0], 405, path)
+                self.assertNotIn("access-control-allow-origin", shown.request(path)[1])
+            status, headers, _ = shown.request(f"/?token={shown.token}", token=False)
             self.assertEqual(status, 200)
             self.assertEqual(headers["set-cookie"], f"marey_{shown.port}={shown.token}; Path=/; HttpOnly; SameSite=Strict")
-            self.assertEqual(shown.ask("/scene", token=False, Cookie=headers["set-cookie"].split(";")[0])[0], 200)
+            self.assertEqual(shown.request("/scene", token=False, Cookie=headers["set-cookie"].split(";")[0])[0], 200)
             self.assertEqual(WebSocket(shown).status, 101)
             self.assertEqual(WebSocket(shown, Origin="http://evil.example").status, 403)
             self.assertEqual(WebSocket(shown, Host="evil.example", Origin="http://evil.example").status, 403)
@@ -127,12 +127,12 @@ class View(unittest.TestCase):
                     pass
             page = WebSocket(shown)
             for line in ("film", "video x y", "video 0 0", "video 99999999999 640", "watch " + "9 " * 1000, "record on", "ping", "\0\0", "sleep" * 700):
-                page.say(line)
+                page.send(line)
             crowd = [shown.connect() for _ in range(300)]
             time.sleep(0.2)
             for wire in crowd:
                 wire.close()
-            self.assertEqual(shown.ask("/scene")[0], 200, f"seed {seed}")
+            self.assertEqual(shown.request("/scene")[0], 200, f"seed {seed}")
             if not shown_page.SANITIZED:
                 self.assertLess(shown.memory_mb() - before, 30, f"seed {seed}")
 
@@ -202,13 +202,13 @@ class Live(unittest.TestCase):
         with Shown(LIVE_SCENE, "walk.marey", "100") as shown:
             self.assertEqual(shown.scene()["kind"], "live")
             page = WebSocket(shown)
-            page.say("watch 0 160 2 64")
-            page.say("ping 7")
+            page.send("watch 0 160 2 64")
+            page.send("ping 7")
             kinds, texts, cameras = {}, set(), {}
             states = []
             begin = time.monotonic()
             while (passed := time.monotonic() - begin) < 2 or (kinds.get(2, 0) <= 60 and passed < 60):
-                heard = page.hear()
+                heard = page.receive()
                 if isinstance(heard, str):
                     texts.add(heard.split()[0])
                     continue
@@ -225,13 +225,13 @@ class Live(unittest.TestCase):
             self.assertGreater(kinds[2], 60)
             self.assertLess(kinds[3], 25 * passed)
             self.assertTrue(all(a.sequence < b.sequence for a, b in zip(states, states[1:])))
-            page.say("sleep")
+            page.send("sleep")
             page.wire.settimeout(1.5)
             asleep = 0
             end = time.monotonic() + 2
             try:
                 while time.monotonic() < end:
-                    heard = page.hear()
+                    heard = page.receive()
                     asleep += isinstance(heard, bytes)
             except TimeoutError:
                 pass
@@ -241,9 +241,9 @@ class Live(unittest.TestCase):
         with Shown(LIVE_SCENE, "walk.marey", "50") as shown:
             page = WebSocket(shown)
             for word in ("on", "off"):
-                page.say(f"record {word}")
+                page.send(f"record {word}")
                 self.assertEqual(shown.process.stdout.readline().strip(), f"record {word}")
-                while not (isinstance(heard := page.hear(), str) and heard.startswith(f"recording {word}")):
+                while not (isinstance(heard := page.receive(), str) and heard.startswith(f"recording {word}")):
                     pass
 
     def test_a_page_that_stops_reading_costs_none_anything(self):
@@ -251,17 +251,17 @@ class Live(unittest.TestCase):
             pages = [WebSocket(shown) for _ in range(3)]
             stalled, *others = pages
             for page in pages:
-                page.say("watch 0 320 1 320 2 320 3 320")
+                page.send("watch 0 320 1 320 2 320 3 320")
             stalled.wire.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
             for page in others:
                 for _ in range(50):
-                    page.hear()
+                    page.receive()
             before = shown.memory_mb()
             counts, late, last = [0, 0], [], [time.monotonic()] * 2
             begin = time.monotonic()
             while (passed := time.monotonic() - begin) < 6 or (min(counts) <= 200 and passed < 60):
                 for i, page in enumerate(others):
-                    if isinstance(heard := page.hear(), bytes) and heard[0] == 2:
+                    if isinstance(heard := page.receive(), bytes) and heard[0] == 2:
                         counts[i] += 1
                         late.append(time.monotonic() - last[i])
                         last[i] = time.monotonic()

@@ -34,15 +34,15 @@ class Wand(unittest.TestCase):
             page = WebSocket(shown)
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 4 and s["cameras"][3]["frames"] > 0)
             self.assertEqual((status["cameras"][0]["threshold"], status["cameras"][0]["dials"]), (None, []), "points have no exposure")
-            page.say("mask 3 0 0 20 0 0 20")
-            page.say("threshold 3 90")
+            page.send("mask 3 0 0 20 0 0 20")
+            page.send("threshold 3 90")
             receive_until(page, "status", lambda s: s["cameras"][3]["masks"] == [[0, 0, 20, 0, 0, 20]] and s["cameras"][3]["threshold"] == 90)
             early = receive_until(page, "wand", lambda w: w.get("cameras") and all(c["parts"] for c in w["cameras"]), 60)
             self.assertEqual((early["across"], early["down"]), (10, 8))
             for camera in early["cameras"]:
                 self.assertAlmostEqual(camera["coverage"], len(camera["parts"]) / 80)
             self.assertEqual([(pair["a"], pair["b"]) for pair in early["shared"]], [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
-            page.say("watch 0 320")
+            page.send("watch 0 320")
             picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3 and int.from_bytes(data[28:32], "little") == 3)
             tracks = [int.from_bytes(picture[64 + 4 * i:68 + 4 * i], "little") for i in range(3)]
             self.assertEqual(sorted(tracks), [1, 2, 3], "the wand's markers are distinguished from others")
@@ -65,8 +65,8 @@ class Wand(unittest.TestCase):
         with LivePage(self.folder, *self.write_rig("ground")) as shown:
             page = WebSocket(shown)
             receive_until(page, "wand", lambda w: w.get("cameras") and w["seconds"] > 0.5)
-            page.say("mask 0 1 2 3 4")
-            page.say("enough")
+            page.send("mask 0 1 2 3 4")
+            page.send("enough")
             failed = receive_until(page, "wand", lambda w: w["phase"] == "failed", 60)
             self.assertGreater(len(failed["why"]), 20)
             self.assertEqual(shown.process.wait(timeout=20), 1)
@@ -75,10 +75,10 @@ class Wand(unittest.TestCase):
     def test_the_ground_is_set_by_an_l_frame(self):
         with LivePage(self.folder, *self.write_rig("wand", "&frame")) as shown:
             page = WebSocket(shown)
-            page.say("ground")  # there is no rig yet
+            page.send("ground")  # there is no rig yet
             receive_until(page, "wand", lambda w: w["phase"] == "done", 180)
             before = tomllib.loads((self.folder / "waved.toml").read_text())["camera"]
-            page.say("ground")
+            page.send("ground")
             receive_until(page, "wand", lambda w: w.get("ground", {}).get("phase") == "looking")
             told = receive_until(page, "wand", lambda w: w["ground"]["phase"] != "looking", 60)["ground"]
             self.assertEqual(told["phase"], "set", told)

@@ -230,7 +230,7 @@ class Interacting(Reference):
         D = self.D
         self.shares = np.array([p["share_0"], p["share_1"], p["share_2"], 0])
         filters = []
-        for model in (self.steady, self.pull, self.turn, self.swerve):
+        for model in (self.constant_velocity, self.pull, self.turn, self.swerve):
             f = KalmanFilter(dim_x=3 * D, dim_z=D)
             f.x = np.concatenate([z, np.zeros(2 * D)])
             f.P = kron(np.diag([0.0, p["initial_speed"] ** 2, p["acceleration"] ** 2]), D)
@@ -246,7 +246,7 @@ class Interacting(Reference):
             filters.append(f)
         self.f = IMMEstimator(filters, self.shares.copy(), np.full((4, 4), 0.25))
 
-    def steady(self, f):
+    def constant_velocity(self, f):
         F, Q = np.zeros((3, 3)), np.zeros((3, 3))
         F[:2, :2], Q[:2, :2] = white(2, self.p["steady_noise"] ** 2, self.dt)
         Q[2, 2] = self.sigma ** 2

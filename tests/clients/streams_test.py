@@ -297,12 +297,12 @@ class FoxgloveClient:
                 break
             self.head += byte
 
-    def say(self, message):
+    def send(self, message):
         text, mask = json.dumps(message).encode(), os.urandom(4)
         head = bytes([0x81, 0x80 | len(text)]) if len(text) < 126 else b"\x81\xfe" + struct.pack(">H", len(text))
         self.socket.sendall(head + mask + bytes(b ^ mask[i % 4] for i, b in enumerate(text)))
 
-    def hear(self):
+    def receive(self):
         first, size = self.file.read(2)
         if size == 126:
             size = struct.unpack(">H", self.file.read(2))[0]
@@ -323,13 +323,13 @@ def foxglove_schemas():
         for protocol in ("foxglove.sdk.v1", "foxglove.websocket.v1"):
             client = FoxgloveClient(player.port["foxglove"], protocol)
             assert f"Sec-WebSocket-Protocol: {protocol}\r\n".encode() in client.head, client.head
-        assert json.loads(client.hear()[1])["op"] == "serverInfo"
-        channels = {channel["topic"]: channel for channel in json.loads(client.hear()[1])["channels"]}
+        assert json.loads(client.receive()[1])["op"] == "serverInfo"
+        channels = {channel["topic"]: channel for channel in json.loads(client.receive()[1])["channels"]}
         compare_descriptors(base64.b64decode(channels["/marey/points"]["schema"]), descriptor_pb2, (PointCloud, FrameTransforms, SceneUpdate))
-        client.say({"op": "subscribe", "subscriptions": [{"id": 10 + c["id"], "channelId": c["id"]} for c in channels.values()]})
+        client.send({"op": "subscribe", "subscriptions": [{"id": 10 + c["id"], "channelId": c["id"]} for c in channels.values()]})
         messages = {}
         while len(messages) < 4:
-            opcode, payload = client.hear()
+            opcode, payload = client.receive()
             assert opcode == 2
             _, subscription, _ = struct.unpack_from("<BIQ", payload)
             messages[subscription - 10] = payload[13:]

@@ -223,7 +223,7 @@ class Faults:
             err += b"\nHUNG"
         return subprocess.CompletedProcess(arguments, process.returncode, out, err)
 
-    def judge(self, command, what, done, killed=(), may_leave_parts=False):
+    def check(self, command, what, done, killed=(), may_leave_parts=False):
         name, _, outputs, (whole, said), _ = command
         problem = None
         there = without_fragments(content(self.folder, outputs), whole)
@@ -273,22 +273,22 @@ class Faults:
         if self.random.random() < 0.3:
             environment["FAULT_SHORT"] = "1"
         what = "failing disk"
-        self.judge(command, what, self.run(command[1], environment), may_leave_parts=True)
+        self.check(command, what, self.run(command[1], environment), may_leave_parts=True)
         if self.found and self.found[-1].startswith(f"{command[0]}, {what}"):
             self.found[-1] += f"\n    {environment}, {calls} calls"
 
     def little_memory(self, command):
-        self.judge(command, "little memory", self.run(command[1], megabytes=self.random.choice((200, 400, 600, 800, 1000, 1200, 1600))))
+        self.check(command, "little memory", self.run(command[1], megabytes=self.random.choice((200, 400, 600, 800, 1000, 1200, 1600))))
 
     def closed_pipe(self, command):
         done = self.run(command[1], closed=True)
         if done.returncode == 0 and command[3][1]:
             self.found.append(f"{command[0]}, closed pipe: exit 0, and its standard output is lost")
-        self.judge(command, "closed pipe", done, killed=(signal.SIGPIPE,))
+        self.check(command, "closed pipe", done, killed=(signal.SIGPIPE,))
 
     def jumping_clock(self, command):
         done = self.run(command[1], {"FAULT_CLOCK": "1"})
-        self.judge(command, "jumping clock", done)
+        self.check(command, "jumping clock", done)
         if done.returncode != 0:
             self.found.append(f"{command[0]}, jumping clock: exit {done.returncode}: {done.stderr.decode()[-300:]}")
 
@@ -297,7 +297,7 @@ class Faults:
         self.run(command[1])
         length = time.monotonic() - began
         done = self.run(command[1], stop=(which, self.random.uniform(0, length)))
-        self.judge(command, which.name, done, killed=(which,), may_leave_parts=which == signal.SIGKILL)
+        self.check(command, which.name, done, killed=(which,), may_leave_parts=which == signal.SIGKILL)
 
     def campaign(self, runs, signals):
         ways = [self.failing_disk] * 6 + [self.little_memory, self.closed_pipe, self.jumping_clock]

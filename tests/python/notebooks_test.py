@@ -69,7 +69,7 @@ class Notebooks(unittest.TestCase):
         self.assertTrue(found, f"{pattern!r} is not in:\n{text}")
         return float(found[1])
 
-    def assert_picture(self, name):
+    def assert_image(self, name):
         picture = cv2.imread(str(self.folder / name))
         self.assertIsNotNone(picture, name)
         self.assertGreater(picture.std(), 10, name)
@@ -100,7 +100,7 @@ class Notebooks(unittest.TestCase):
         self.assertTrue(5 <= len(people.tracks) <= 8, people)
         self.assertEqual(len(pandas.read_csv(self.folder / "street.csv")), sum(map(len, people.tracks)))
         self.assertEqual(len((self.folder / "street.txt").read_text().splitlines()), sum(map(len, people.tracks)))
-        self.assert_picture("street.png")
+        self.assert_image("street.png")
 
     def test_street_video_of_ones_own(self):
         os.environ["MAREY_FILM"] = "own.mp4"
@@ -121,7 +121,7 @@ class Notebooks(unittest.TestCase):
             places = read["data"]["points"][:3, names.index(name)].T / 1000
             true = truth[truth.label == name].sort_values("frame")[["x", "y", "z"]].to_numpy()
             self.assertLess(np.nanmedian(np.linalg.norm(places - true, axis=1)), 0.002, name)
-        self.assert_picture("walk.png")
+        self.assert_image("walk.png")
 
     def assert_skeleton_of(self, text, frames, spread):
         for bone, least, most in (("thigh", 330, 520), ("shank", 330, 500), ("forearm", 180, 320)):
@@ -136,7 +136,7 @@ class Notebooks(unittest.TestCase):
         self.assertEqual(len(rows), frames)
         self.assertGreaterEqual(len(rows[0].split()), 3 * joints)
         self.assertGreater((self.folder / "person.toml").stat().st_size, 0)
-        self.assert_picture("dance.png")
+        self.assert_image("dance.png")
 
     def test_videos_to_bvh(self):
         self.assert_skeleton_of(self.run_notebook("videos_to_bvh"), 300, 25)
@@ -165,7 +165,7 @@ class Notebooks(unittest.TestCase):
         self.assertTrue(figures.max_mps.max() < 10)
         self.assertIn("<svg", (self.folder / "report/report.html").read_text())
         self.assertEqual(len(marey.read(self.folder / "match.dat").tracks), len(figures))
-        self.assert_picture("match.png")
+        self.assert_image("match.png")
 
 
 if __name__ == "__main__":

@@ -86,7 +86,7 @@ class OwnParts(SimulatedVideo):
         instants = []
 
         class Whole:
-            pictures = True
+            images = True
 
             def __init__(self):
                 self.said = []

@@ -37,7 +37,7 @@ def three_players():
 class Loading(unittest.TestCase):
     """What a user reads where the compiled part of the package is missing, or was built for another Python."""
 
-    def said(self, *built):
+    def import_error(self, *built):
         with tempfile.TemporaryDirectory(prefix="marey_loading_") as folder:
             package = pathlib.Path(folder, "marey")
             package.mkdir()
@@ -51,13 +51,13 @@ class Loading(unittest.TestCase):
             return done.stderr.splitlines()[-1]
 
     def test_the_sources_alone(self):
-        self.assertIn("holds the sources only; import the package from build/release/python", self.said())
+        self.assertIn("holds the sources only; import the package from build/release/python", self.import_error())
 
     def test_another_version_of_python(self):
-        self.assertIn("was built for another Python than this one", self.said("_core.cpython-399-x86_64-linux-gnu.so"))
+        self.assertIn("was built for another Python than this one", self.import_error("_core.cpython-399-x86_64-linux-gnu.so"))
 
     def test_a_library_that_is_none(self):
-        self.assertIn("cannot be loaded", self.said(f"_core.cpython-{sys.version_info.major}{sys.version_info.minor}-x86_64-linux-gnu.so"))
+        self.assertIn("cannot be loaded", self.import_error(f"_core.cpython-{sys.version_info.major}{sys.version_info.minor}-x86_64-linux-gnu.so"))
 
 
 class Recordings(unittest.TestCase):
@@ -71,7 +71,7 @@ class Recordings(unittest.TestCase):
             three_players(), rate=25, frame="user_ground", labels=["Anna", "Béla", "Chloé"], teams=["home", "home", "away"]
         )
 
-    def film(self):
+    def tracks_of_video(self):
         subprocess.run([MAREY, "simulate", "people", "--people", "3", "--frames", "40", "--seed", "4", "-o", "film", "-q"], cwd=self.folder, check=True)
         return marey.track(self.folder / "film" / "video.mp4", measured_only=True)
 
@@ -99,7 +99,7 @@ class Recordings(unittest.TestCase):
         self.assertEqual(len(table), 130)
         self.assertEqual(set(table.provenance), {"measured"})
         self.assertEqual(list(table[table.frame == 30].label), ["Anna", "Béla", "Chloé"])
-        boxes = self.film().to_pandas()
+        boxes = self.tracks_of_video().to_pandas()
         self.assertTrue({"left", "top", "width", "height"} <= set(boxes.columns))
         self.assertIn("<svg", people._repr_html_())
         self.assertIn("Chlo", people._repr_html_())
@@ -149,7 +149,7 @@ class Recordings(unittest.TestCase):
     # ---- others
 
     def test_movement(self):
-        boxes = self.film().to_xarray()
+        boxes = self.tracks_of_video().to_xarray()
         self.assertEqual(boxes.position.dims, ("time", "space", "individuals"))
         points = marey.Recording.from_arrays(np.random.default_rng(3).normal(size=(20, 4, 3)), rate=100, frame="space", labels=list("abcd"))
         poses = points.to_xarray()
@@ -164,7 +164,7 @@ class Recordings(unittest.TestCase):
         self.assertEqual(speed.dims, ("time", "keypoints", "individuals"))
 
     def test_supervision(self):
-        people = self.film()
+        people = self.tracks_of_video()
         instant = int(np.argmax(~np.isnan(people.to_numpy()[..., 0]).any(axis=0)))
         given = people.to_supervision(30)
         self.assertIsInstance(given, supervision.Detections)
@@ -188,7 +188,7 @@ class Recordings(unittest.TestCase):
         model.fit(teams["away"])
         self.assertEqual(float(np.nanmax(model.velocity().property)), 0)
         with self.assertRaises(marey.Error):
-            self.film().to_floodlight()
+            self.tracks_of_video().to_floodlight()
 
     def test_kloppy_by_file(self):
         from kloppy import tracab
@@ -209,7 +209,7 @@ class Recordings(unittest.TestCase):
         np.testing.assert_allclose(tracks[0], [1, 0, 20, 10])  # id, frame, y, x
 
     def test_evaluate(self):
-        people = self.film()
+        people = self.tracks_of_video()
         same = marey.evaluate(people, people)
         self.assertEqual((same.mota, same.idf1, same.switches), (1.0, 1.0, 0))
         people.write(self.folder / "t.txt")

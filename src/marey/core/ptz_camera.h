@@ -16,7 +16,7 @@ struct PtzCamera {
     Matrix<3> covariance = Matrix<3>::Zero();  ///< of pan, tilt, rad, and ln of the focal length
     /// The same for a camera on an exact tripod that errs as much on the pitch in view: by it the places seen are judged. The
     /// tripod's error turns pan and tilt along with it, so `covariance` would say too much of them. Nothing: `covariance`.
-    std::optional<Matrix<3>> place_covariance;
+    std::optional<Matrix<3>> position_covariance;
   };
 
   geometry::Tripod tripod;

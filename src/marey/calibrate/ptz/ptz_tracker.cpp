@@ -334,7 +334,7 @@ PtzResult PtzTracker::finish() {
       const Matrix<3> own =
           smooth[i]->covariance + Vector<3>(angle * angle, angle * angle, zoom * zoom).asDiagonal().toDenseMatrix();
       turn.covariance = own + spread[i].heading;
-      turn.place_covariance = own + spread[i].location;
+      turn.position_covariance = own + spread[i].location;
     }
     result_.lost += sure ? 0 : 1;
   }

@@ -61,7 +61,7 @@ PtzCamera::Turn turn_of(const std::vector<double>& row, cv::Size size) {
   turn.time_s = row[0];
   turn.heading = geometry::Heading{row[1] * kTurnDegree, row[2] * kTurnDegree, std::log(row[3] / (size.width / 2.0))};
   turn.covariance = covariance_in(row, 4);
-  if (row.size() == kAllColumns) turn.place_covariance = covariance_in(row, kPtzColumns);
+  if (row.size() == kAllColumns) turn.position_covariance = covariance_in(row, kPtzColumns);
   return turn;
 }
 
@@ -171,7 +171,7 @@ std::vector<PtzCamera::Turn> parse_ptz(std::string_view text, const std::string&
 
 std::string ptz_text(const PtzCamera& camera, cv::Size size) {
   const bool positions = std::any_of(camera.rotations.begin(), camera.rotations.end(),
-                                     [](const PtzCamera::Turn& turn) { return turn.place_covariance.has_value(); });
+                                     [](const PtzCamera::Turn& turn) { return turn.position_covariance.has_value(); });
   std::string text(kPtzHeader);
   if (positions) text += kPositionHeader;
   text += '\n';
@@ -184,7 +184,7 @@ std::string ptz_text(const PtzCamera& camera, cv::Size size) {
       fmt::format_to(std::back_inserter(text), ",{:.5f},{:.5f},{:.3f}", turn.heading->pan / kTurnDegree,
                      turn.heading->tilt / kTurnDegree, focal);
       add_covariance(text, turn.covariance, focal);
-      if (positions) add_covariance(text, turn.place_covariance.value_or(turn.covariance), focal);
+      if (positions) add_covariance(text, turn.position_covariance.value_or(turn.covariance), focal);
     }
     text += '\n';
   }

@@ -38,13 +38,13 @@ TEST(RigTurns, BothCovariancesOfAFrameAreReadAsTheyWereWritten) {
   ASSERT_EQ(read.size(), 3u);
   EXPECT_FALSE(read[1].heading);
   for (const std::size_t i : {std::size_t{0}, std::size_t{2}}) {
-    ASSERT_TRUE(read[i].heading && read[i].place_covariance) << i;
+    ASSERT_TRUE(read[i].heading && read[i].position_covariance) << i;
     const PtzCamera::Turn& turn = camera.rotations[i];
     EXPECT_LT((read[i].heading->as_vector() - turn.heading->as_vector()).norm(), 1e-6);
     for (const double ratio :
          {largest_ratio(read[i].covariance, turn.covariance), largest_ratio(turn.covariance, read[i].covariance),
-          largest_ratio(*read[i].place_covariance, *turn.place_covariance),
-          largest_ratio(*turn.place_covariance, *read[i].place_covariance)})
+          largest_ratio(*read[i].position_covariance, *turn.position_covariance),
+          largest_ratio(*turn.position_covariance, *read[i].position_covariance)})
       EXPECT_NEAR(ratio, 1, 0.03) << i;
   }
 }
@@ -68,7 +68,7 @@ TEST(RigTurns, WithoutPlacesTheFileHasTheFirstSixColumnsAlone) {
   EXPECT_EQ(text.find("place"), std::string::npos);
   const auto read = parse_ptz(text, "turns.csv", size);
   ASSERT_EQ(read.size(), 1u);
-  EXPECT_FALSE(read[0].place_covariance);
+  EXPECT_FALSE(read[0].position_covariance);
   EXPECT_NEAR(largest_ratio(read[0].covariance, camera.rotations[0].covariance), 1, 0.03);
 }
 

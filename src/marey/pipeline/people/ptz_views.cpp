@@ -79,7 +79,7 @@ Matrix<2> aim_covariance(const RigCamera& camera, const PtzCamera& ptz, Timestam
     if (!here || !there) return Matrix<2>::Zero();
     by_heading.col(i) = (there->ground - here->ground) / kStep;
   }
-  return by_heading * turn->place_covariance.value_or(turn->covariance) * by_heading.transpose();
+  return by_heading * turn->position_covariance.value_or(turn->covariance) * by_heading.transpose();
 }
 
 }  // namespace marey::pipeline::people

@@ -29,11 +29,11 @@ double overlaps(const Track<2>& track) {
 }
 
 /// Place and box of a target.
-using PlaceAndBox = Eigen::Matrix<double, 1, 6>;
+using PositionAndBox = Eigen::Matrix<double, 1, 6>;
 
-PlaceAndBox place_and_box(const Vector<2>& location, const std::optional<Box>& box) {
+PositionAndBox position_and_box(const Vector<2>& location, const std::optional<Box>& box) {
   const Box known = box.value_or(Box{});
-  return (PlaceAndBox() << location.x(), location.y(), known.left, known.top, known.width, known.height).finished();
+  return (PositionAndBox() << location.x(), location.y(), known.left, known.top, known.width, known.height).finished();
 }
 
 const Track<2>* find_track(std::span<const Track<2>> tracks, TrackId id) {
@@ -130,10 +130,10 @@ std::optional<Sample> LiveTracks::filled(const TimeStep& time_step, const Track<
   for (const TimeStep& later : time_steps_) {
     const Track<2>* again = find_track(later.tracks, track.id);
     if (again == nullptr || !again->measured()) continue;
-    const filter::Bridge<filter::RandomWalk, 6> gap(place_and_box(detected.reported->position.head<2>(), detected.reported->box), 0,
-                                                    place_and_box(again->position, again->box),
+    const filter::Bridge<filter::RandomWalk, 6> gap(position_and_box(detected.reported->position.head<2>(), detected.reported->box), 0,
+                                                    position_and_box(again->position, again->box),
                                                     seconds(later.time - detected.reported_time));
-    const PlaceAndBox here = gap.at(seconds(time_step.time - detected.reported_time));
+    const PositionAndBox here = gap.at(seconds(time_step.time - detected.reported_time));
     Sample sample = sample_of(track);
     sample.provenance = Provenance::filled;
     sample.position.head<2>() = here.head<2>();
