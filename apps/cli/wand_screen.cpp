@@ -67,7 +67,7 @@ WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipel
                .enough = options.enough,
                .ground = [this] { ground_required_ = true; }}),
       sink_(viewer_.make_sink()) {
-  reported_ = {{"wanted", WandCoverage::required(pipeline::calibrate::knows_lenses(rig))},
+  reported_ = {{"required", WandCoverage::required(pipeline::calibrate::knows_lenses(rig))},
                {"across", WandCoverage::kPartsAcross},
                {"down", WandCoverage::kPartsDown},
                {"needed", WandCoverage::kEnoughShared}};

@@ -177,7 +177,7 @@ void RecordingViewer::Core::received(PageId page, std::string_view line) {
     if (edits_) return edits_->request(page, line);
     return answer(page, "refused editing was not asked for; \"marey view TAKE --edit\" allows it");
   }
-  if (next_word(line) != "film" || !video_) return;
+  if (next_word(line) != "video" || !video_) return;
   const auto frame = whole_in(next_word(line), 0, std::numeric_limits<std::int32_t>::max());
   const auto width = whole_in(next_word(line), 16, 4096);
   if (frame && width) video_->request(page, *frame, static_cast<int>(*width));

@@ -160,20 +160,20 @@ std::string scene_text(const RecordingHeader& header, const RecordingState& stat
                        const SceneCan& can) {
   Json scene = header_json(header);
   scene["kind"] = "recording";
-  scene["film"] = can.show_video;
+  scene["video"] = can.show_video;
   scene["can_edit"] = can.edit;
   scene["instants"] = state.instants;
   scene["last"] = state.last_s;
   scene["complete"] = state.complete;
   scene["warnings"] = Json(state.warnings);
-  scene["stretches"] = Json::array();
+  scene["chunks"] = Json::array();
   for (const RecordingState::TimeChunk& segment : state.segments) {
     Json one = Json::array();
     one.push_back(segment.first_s);
     one.push_back(segment.instants);
     one.push_back(segment.rows);
     one.push_back(segment.version);
-    scene["stretches"].push_back(one);
+    scene["chunks"].push_back(one);
   }
   scene["tracks"] = Json::array();
   for (const RecordingState::Course& course : state.tracks) scene["tracks"].push_back(json_of(course));

@@ -8,9 +8,9 @@ namespace {
 
 cli::Json camera_json(const LiveReport::Camera& camera) {
   cli::Json reported = cli::page_json_of(camera.health);
-  reported["dials"] = cli::Json::array();
+  reported["controls"] = cli::Json::array();
   for (const auto& camera_control : camera.controls) {
-    reported["dials"].push_back({{"name", camera_control.name},
+    reported["controls"].push_back({{"name", camera_control.name},
                                  {"unit", camera_control.unit},
                                  {"min", camera_control.minimum},
                                  {"max", camera_control.maximum},

@@ -186,8 +186,8 @@ TEST(Scene, NamesFromOutsideStayText) {
 }
 
 TEST(PageWords, TakeNumbersAndNothingElse) {
-  std::string_view line = "  film 12 640x";
-  EXPECT_EQ(next_word(line), "film");
+  std::string_view line = "  video 12 640x";
+  EXPECT_EQ(next_word(line), "video");
   EXPECT_EQ(whole_in(next_word(line), 0, 100), 12);
   EXPECT_EQ(whole_in(next_word(line), 0, 1000), std::nullopt);
   EXPECT_EQ(next_word(line), "");

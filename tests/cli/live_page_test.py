@@ -39,20 +39,20 @@ class Page(unittest.TestCase):
             self.assertTrue(scene["can_change"])
             self.assertEqual(scene["rig_file"], "rig.toml")
             page = WebSocket(shown)
-            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(len(c["dials"]) == 2 for c in s["cameras"]))
-            dials = {camera_control["name"]: camera_control for camera_control in status["cameras"][0]["dials"]}
-            self.assertEqual((dials["exposure"]["unit"], dials["exposure"]["max"], dials["exposure"]["now"]), ("ms", 50, 2))
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(len(c["controls"]) == 2 for c in s["cameras"]))
+            controls = {camera_control["name"]: camera_control for camera_control in status["cameras"][0]["controls"]}
+            self.assertEqual((controls["exposure"]["unit"], controls["exposure"]["max"], controls["exposure"]["now"]), ("ms", 50, 2))
             self.assertFalse(status["unsaved"])
             for line in ("dial 0 exposure 1.5", "dial 0 gain 2", "threshold 1 90", "mask 1 10 20 30 40", "mask 1 50 60 7 8", "unmask 1 10 20 30 40", "mask 1 9 9 90 9 50 80", "mask 1 1 1 2 2 3 9", "unmask 1 1 1 2 2 3 9"):
                 page.send(line)
-            status = receive_until(page, "status", lambda s: s["unsaved"] and len(s["cameras"][1].get("masks", [])) == 2 and [d["now"] for d in s["cameras"][0]["dials"]] == [1.5, 2])
+            status = receive_until(page, "status", lambda s: s["unsaved"] and len(s["cameras"][1].get("masks", [])) == 2 and [d["now"] for d in s["cameras"][0]["controls"]] == [1.5, 2])
             self.assertEqual(status["cameras"][1]["masks"], [[50, 60, 7, 8], [9, 9, 90, 9, 50, 80]])
             self.assertEqual(status["cameras"][1]["threshold"], 90)
             self.assertIsNone(status["cameras"][0]["threshold"])
             page.send("dial 0 exposure 500")
             refused = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]
             self.assertTrue(refused["refused"].startswith("cam1: does not take that exposure; it must be 0.02 to 50 ms"), refused["refused"])
-            self.assertEqual(refused["dials"][0]["now"], 1.5)
+            self.assertEqual(refused["controls"][0]["now"], 1.5)
             for level in ("99999", "-1", "0"):
                 page.send(f"threshold 1 {level}")
                 self.assertIn("cam2: does not take that threshold; it must be a grey level above 0", receive_until(page, "said", lambda text: text != ""))
@@ -73,7 +73,7 @@ class Page(unittest.TestCase):
         self.write_rig("exposure = 0.7\nthreshold = 33\nmasks = [[0, 0, 320, 240]]\n")
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(c["dials"] and c["dials"][0]["now"] == 0.7 for c in s["cameras"]))
+            status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and all(c["controls"] and c["controls"][0]["now"] == 0.7 for c in s["cameras"]))
             self.assertEqual(status["cameras"][0]["threshold"], 33)
             self.assertFalse(status["unsaved"])
             page.send("watch 0 320")
@@ -104,7 +104,7 @@ class Page(unittest.TestCase):
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["frames"] > 5)
-            self.assertEqual(status["cameras"][0]["dials"], [], "points have no exposure")
+            self.assertEqual(status["cameras"][0]["controls"], [], "points have no exposure")
             page.send("watch 0 320")
             detected = lambda: next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
             self.assertGreater(max(detected() for _ in range(5)), 2)
@@ -149,7 +149,7 @@ class Page(unittest.TestCase):
             with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0, "--listen", "0.0.0.0", *["--allow-control"] * allowed) as shown:
                 self.assertEqual(shown.scene()["can_change"], allowed)
                 page = WebSocket(shown)
-                receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
+                receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["controls"])
                 page.send("mask 0 1 2 3 4")
                 page.send("dial 0 gain 3")
                 page.send("save")
@@ -197,11 +197,11 @@ class OtherComputer(unittest.TestCase):
         where = self.node()
         (self.folder / "rig.toml").write_text("".join(f'[[camera]]\nname = "mine{c}"\nsource = "{where}/cam{c}"\nexposure = 1.5\n' for c in (1, 2)))
         found = lambda page: max(next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3) for _ in range(4))
-        now = lambda s: [camera_control["now"] for camera_control in s["cameras"][0].get("dials", [])]
+        now = lambda s: [camera_control["now"] for camera_control in s["cameras"][0].get("controls", [])]
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and now(s) == [1.5, 1])
-            self.assertEqual([camera_control["name"] for camera_control in status["cameras"][0]["dials"]], ["exposure", "gain"])
+            self.assertEqual([camera_control["name"] for camera_control in status["cameras"][0]["controls"]], ["exposure", "gain"])
             page.send("watch 0 320")
             self.assertGreater(found(page), 2)
             page.send("dial 0 exposure 2.5")
@@ -238,13 +238,13 @@ class OtherComputer(unittest.TestCase):
             where = self.node("--listen", "0.0.0.0", *options)
             with LivePage(self.folder, "live", where, "--view", "--port", 0) as shown:
                 page = WebSocket(shown)
-                receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["dials"])
+                receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["controls"])
                 page.send("dial 0 exposure 3")
                 if refused:
                     why = receive_until(page, "status", lambda s: "refused" in s["cameras"][0])["cameras"][0]["refused"]
                     self.assertEqual(why, "cam1: its exposure cannot be set from here: marey node there was started without --allow-control")
                 else:
-                    receive_until(page, "status", lambda s: s["cameras"][0]["dials"][0]["now"] == 3)
+                    receive_until(page, "status", lambda s: s["cameras"][0]["controls"][0]["now"] == 3)
 
 
 class MachineVision(unittest.TestCase):
@@ -264,8 +264,8 @@ class MachineVision(unittest.TestCase):
         (folder / "rig.toml").write_text('[[camera]]\nname = "eye"\nsource = "gige:EYE"\nexposure = 4.0\n')
         with LivePage(folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)
-            camera_control = lambda s, name: next(each for each in s["cameras"][0]["dials"] if each["name"] == name)
-            status = receive_until(page, "status", lambda s: len(s["cameras"][0]["dials"]) == 2)
+            camera_control = lambda s, name: next(each for each in s["cameras"][0]["controls"] if each["name"] == name)
+            status = receive_until(page, "status", lambda s: len(s["cameras"][0]["controls"]) == 2)
             self.assertAlmostEqual(camera_control(status, "exposure")["now"], 4, places=2)
             page.send("dial 0 exposure 7.5")
             receive_until(page, "status", lambda s: abs(camera_control(s, "exposure")["now"] - 7.5) < 0.01)

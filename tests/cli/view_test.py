@@ -36,7 +36,7 @@ class View(unittest.TestCase):
             self.assertEqual((scene["frame"], scene["name"], scene["instants"], len(scene["cameras"])), ("space", "walk.marey", 150, 4))
             self.assertEqual(len(scene["cameras"][0]["corners"]), 4)
             found = {}
-            for number in range(len(scene["stretches"])):
+            for number in range(len(scene["chunks"])):
                 stretch = TimeChunk(shown.request(f"/stretch?n={number}")[2])
                 self.assertEqual(stretch.kind, 1)
                 row = 0
@@ -126,7 +126,7 @@ class View(unittest.TestCase):
                 except OSError:
                     pass
             page = WebSocket(shown)
-            for line in ("film", "video x y", "video 0 0", "video 99999999999 640", "watch " + "9 " * 1000, "record on", "ping", "\0\0", "sleep" * 700):
+            for line in ("film", "video x y", "video 0 0", "film 0 640", "video 99999999999 640", "watch " + "9 " * 1000, "record on", "ping", "\0\0", "sleep" * 700):
                 page.send(line)
             crowd = [shown.connect() for _ in range(300)]
             time.sleep(0.2)

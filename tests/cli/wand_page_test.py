@@ -33,7 +33,7 @@ class Wand(unittest.TestCase):
             self.assertTrue(scene["can_change"])
             page = WebSocket(shown)
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 4 and s["cameras"][3]["frames"] > 0)
-            self.assertEqual((status["cameras"][0]["threshold"], status["cameras"][0]["dials"]), (None, []), "points have no exposure")
+            self.assertEqual((status["cameras"][0]["threshold"], status["cameras"][0]["controls"]), (None, []), "points have no exposure")
             page.send("mask 3 0 0 20 0 0 20")
             page.send("threshold 3 90")
             receive_until(page, "status", lambda s: s["cameras"][3]["masks"] == [[0, 0, 20, 0, 0, 20]] and s["cameras"][3]["threshold"] == 90)

@@ -33,8 +33,8 @@ function parts_of(track: Track): [string, string] {
 }
 
 /** How opaque a keypoint in space is drawn, in [0, 1], by how well its position is known. */
-export function certainty(stretch: TimeChunk, row: number): number {
-  const sigma = stretch.sigma ? stretch.sigma[row] : NaN;
+export function certainty(chunk: TimeChunk, row: number): number {
+  const sigma = chunk.sigma ? chunk.sigma[row] : NaN;
   if (Number.isNaN(sigma)) return 1;
   const vagueness = Math.log(sigma / CERTAIN_M) / Math.log(VAGUE_M / CERTAIN_M);
   return Math.max(FAINTEST, Math.min(1, 1 - (1 - FAINTEST) * vagueness));
@@ -42,10 +42,10 @@ export function certainty(stretch: TimeChunk, row: number): number {
 
 /** A row's keypoints and the bones between them, on a canvas: the less they are visible, the fainter. */
 export function draw_body(
-  draw: CanvasRenderingContext2D, stretch: TimeChunk, row: number, bones: [number, number][],
+  draw: CanvasRenderingContext2D, chunk: TimeChunk, row: number, bones: [number, number][],
   place: (x: number, y: number) => [number, number], colour: (alpha: number) => string, alpha: number, wide: number,
 ): void {
-  const { keypoint_x, keypoint_y, confidence, keypoints } = stretch;
+  const { keypoint_x, keypoint_y, confidence, keypoints } = chunk;
   if (keypoints === 0) return;
   const base = row * keypoints;
   const of = (i: number) => confidence[base + i] / 255;

@@ -16,7 +16,7 @@ export interface CameraStatus extends Changeable {
 }
 
 /** Draws over a camera's image: the canvas' size and its px a px of the page. */
-export type Adorn = (draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: CameraImage) => void;
+export type Adorn = (draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, shown_image: CameraImage) => void;
 
 class Tile {
   readonly element = document.createElement("figure");
@@ -25,7 +25,7 @@ class Tile {
   private state = document.createElement("b");
   private facts = document.createElement("span");
   visible = false;
-  shown: { picture: CameraImage; image: ImageBitmap | null } | null = null;
+  shown: { shown_image: CameraImage; image: ImageBitmap | null } | null = null;
   private decoding = false;
   private next: CameraImage | null = null;
   private controls: Controls | null = null;
@@ -35,7 +35,7 @@ class Tile {
   /** Between keypoints, by their tracks' ids. */
   bones: [number, number][] = [];
 
-  constructor(readonly number: number, private name: string, private size: [number, number] | undefined, private colours: Colours, private drawn: (picture: CameraImage) => void) {
+  constructor(readonly number: number, private name: string, private size: [number, number] | undefined, private colours: Colours, private drawn: (shown_image: CameraImage) => void) {
     this.element.className = "camera";
     const label = document.createElement("em");
     label.textContent = name;
@@ -79,8 +79,8 @@ class Tile {
   }
 
   /** Of images that come faster than they are decoded the newest counts. */
-  async take(picture: CameraImage): Promise<void> {
-    this.next = picture;
+  async take(shown_image: CameraImage): Promise<void> {
+    this.next = shown_image;
     if (this.decoding) return;
     this.decoding = true;
     while (this.next) {
@@ -88,7 +88,7 @@ class Tile {
       this.next = null;
       const image = now.jpeg ? await createImageBitmap(now.jpeg).catch(() => null) : null;
       this.shown?.image?.close();
-      this.shown = { picture: now, image };
+      this.shown = { shown_image: now, image };
       requestAnimationFrame(() => {
         this.draw();
         this.drawn(now);
@@ -97,9 +97,9 @@ class Tile {
     this.decoding = false;
   }
 
-  private draw_bones(draw: CanvasRenderingContext2D, picture: CameraImage, scale: number): void {
+  private draw_bones(draw: CanvasRenderingContext2D, shown_image: CameraImage, scale: number): void {
     if (this.bones.length === 0) return;
-    const { x, y, track } = picture.points;
+    const { x, y, track } = shown_image.points;
     const at = new Map<number, number>();
     track.forEach((id, i) => at.set(id, i));
     for (const [from, to] of this.bones) {
@@ -116,9 +116,9 @@ class Tile {
 
   draw(): void {
     if (!this.shown) return;
-    const { picture, image } = this.shown;
-    const width = picture.width || image?.width || (this.size?.[0] ?? 640);
-    const height = picture.height || image?.height || (this.size?.[1] ?? 480);
+    const { shown_image: shown_image, image } = this.shown;
+    const width = shown_image.width || image?.width || (this.size?.[0] ?? 640);
+    const height = shown_image.height || image?.height || (this.size?.[1] ?? 480);
     this.canvas.style.aspectRatio = `${width} / ${height}`;
     const ratio = Math.min(devicePixelRatio, 2);
     const wide = Math.max(16, Math.round(this.canvas.clientWidth * ratio));
@@ -134,12 +134,12 @@ class Tile {
       draw.fillStyle = "#0b0e12";
       draw.fillRect(0, 0, wide, tall);
     }
-    this.covered.add(picture.points.x, picture.points.y, width, height);
-    if (this.over) this.over(draw, wide, tall, ratio, { ...picture, width, height });
+    this.covered.add(shown_image.points.x, shown_image.points.y, width, height);
+    if (this.over) this.over(draw, wide, tall, ratio, { ...shown_image, width, height });
     else if (this.element.classList.contains("large")) this.covered.draw(draw, wide, tall);
     draw.lineWidth = 1.25 * ratio;
-    const { points, boxes } = picture;
-    this.draw_bones(draw, picture, scale);
+    const { points, boxes } = shown_image;
+    this.draw_bones(draw, shown_image, scale);
     for (let i = 0; i < points.x.length; ++i) {
       draw.strokeStyle = points.track[i] ? this.colours.css(points.track[i]) : "#ff5d5d";
       draw.beginPath();
@@ -165,7 +165,7 @@ export class Cameras {
   also: { camera: number; width: number } | null = null;
   private watcher: IntersectionObserver;
 
-  constructor(private chosen: State, private colours: Colours, private say: (line: string) => void, private drawn: (picture: CameraImage) => void) {
+  constructor(private chosen: State, private colours: Colours, private say: (line: string) => void, private drawn: (shown_image: CameraImage) => void) {
     this.watcher = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const tile = this.tiles.find((each) => each.element === entry.target);
@@ -202,8 +202,8 @@ export class Cameras {
     this.tiles[camera]?.show_state(state);
   }
 
-  picture(picture: CameraImage): void {
-    this.tiles[picture.camera]?.take(picture);
+  shown_image(shown_image: CameraImage): void {
+    this.tiles[shown_image.camera]?.take(shown_image);
   }
   status(cameras: CameraStatus[], unsaved: boolean): void {
     this.save_bar.take(this.scene?.can_change ?? false, this.scene?.rig_file, unsaved);

@@ -14,7 +14,7 @@ export interface CameraControl {
   now: number;
 }
 export interface Changeable {
-  dials?: CameraControl[];
+  controls?: CameraControl[];
   /** Missing where no markers are searched for. */
   threshold?: number | null;
   masks?: Mask[];
@@ -73,15 +73,15 @@ export class Controls {
   }
 
   take(status: Changeable): void {
-    for (const dial of status.dials ?? []) {
-      let slider = this.sliders.get(dial.name);
+    for (const control of status.controls ?? []) {
+      let slider = this.sliders.get(control.name);
       if (!slider) {
-        slider = new Slider(dial.name, dial.unit, (value) => this.say(`dial ${this.camera} ${dial.name} ${value}`));
-        this.sliders.set(dial.name, slider);
+        slider = new Slider(control.name, control.unit, (value) => this.say(`dial ${this.camera} ${control.name} ${value}`));
+        this.sliders.set(control.name, slider);
         this.marker_rows.before(slider.element);
       }
-      slider.span(dial.min, dial.max);
-      slider.show(dial.now);
+      slider.span(control.min, control.max);
+      slider.show(control.now);
     }
     this.marker_rows.hidden = status.threshold === undefined;
     this.threshold.show(status.threshold ?? null);

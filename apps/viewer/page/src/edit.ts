@@ -16,7 +16,7 @@ const KEYS: Record<string, Kind> = { n: "rename", w: "swap", s: "split", j: "joi
 /** What the rest of the page does for it. */
 interface Around {
   /** False where no person is there to receive it. */
-  say(line: string): boolean;
+  send(line: string): boolean;
   seek(time: number): void;
   show_tab(tab: string): void;
 }
@@ -106,21 +106,21 @@ export class Editor {
   }
 
   private answered(refused: string): void {
-    const asked = this.pending;
+    const pending = this.pending;
     this.pending = null;
     const head = this.history.edits.find((edit) => edit.id === this.history.head);
     const now = head ? `as after ${head.id}: ${head.description}` : "as it was recorded";
     if (refused) this.said(`Not done. ${capital(refused)}${/[.?!]$/.test(refused) ? "" : "."}`, false);
-    else this.said(asked === "edit" && head ? `Done: ${head.description}.` : `Now ${now}.`, true);
+    else this.said(pending === "edit" && head ? `Done: ${head.description}.` : `Now ${now}.`, true);
     if (!refused) this.kind = null;
     this.tell();
   }
 
   private said(text: string, good: boolean): void {
-    const place = element("edit_said");
-    place.textContent = text;
-    place.hidden = text === "";
-    place.classList.toggle("refused", !good);
+    const message = element("edit_said");
+    message.textContent = text;
+    message.hidden = text === "";
+    message.classList.toggle("refused", !good);
   }
 
   // -- what is shown
@@ -133,7 +133,7 @@ export class Editor {
     return { space: "markers", ground: "people", image: "tracks" }[this.motion().scene.frame];
   }
 
-  private wish(kind: Kind): ControlRequest {
+  private request(kind: Kind): ControlRequest {
     const { scene } = this.motion();
     const by_id = new Map(scene.tracks.map((track) => [track.id, track]));
     const tracks = [...this.state.selected].flatMap((id) => by_id.get(id) ?? []);
@@ -165,7 +165,7 @@ export class Editor {
     for (const each of KINDS) {
       const button = element(`do_${each}`);
       button.classList.toggle("on", kind === each);
-      button.classList.toggle("dim", missing({ ...this.wish(each), name: "x" }) !== "");
+      button.classList.toggle("dim", missing({ ...this.request(each), name: "x" }) !== "");
       button.setAttribute("aria-pressed", `${kind === each}`);
     }
     element("edit_hint").hidden = kind !== null || !element("edit_said").hidden;
@@ -178,11 +178,11 @@ export class Editor {
   }
 
   private tell_act(kind: Kind): void {
-    const wish = this.wish(kind);
-    const lacks = missing(wish);
-    put(element("act_words"), lacks || message_text(wish, this.what));
+    const request = this.request(kind);
+    const lacks = missing(request);
+    put(element("act_words"), lacks || message_text(request, this.what));
     element("act_words").classList.toggle("lacks", lacks !== "");
-    put(element("act_command"), lacks ? "" : `marey edit ${shell(this.motion().scene.name)} ${shell(command(wish))}`);
+    put(element("act_command"), lacks ? "" : `marey edit ${shell(this.motion().scene.name)} ${shell(command(request))}`);
     element("act_command").hidden = lacks !== "";
     for (const part of document.querySelectorAll<HTMLElement>("#act [data-of]")) part.hidden = !part.dataset.of!.split(" ").includes(kind);
     field("new_name").placeholder = kind === "split" ? "its name, where it is to have one" : "its new name";
@@ -243,15 +243,15 @@ export class Editor {
 
   private act(): void {
     if (!this.kind) return;
-    const wish = this.wish(this.kind);
-    if (missing(wish) === "") this.ask("edit", ` ${command(wish)}`);
+    const request = this.request(this.kind);
+    if (missing(request) === "") this.ask("edit", ` ${command(request)}`);
   }
 
   private ask(word: "edit" | "undo" | "redo" | "go", rest = ""): void {
     if (!this.allowed || this.pending) return;
     const line = `${word} ${this.history.head} ${this.history.newest}${rest}`;
     if (new TextEncoder().encode(line).length > MAX_BYTES) return this.said("Not done. This many names are more than the page can send; write it as marey edit on the command line.", false);
-    if (!this.around.say(line)) return this.said("Not done. The program that shows this does not answer.", false);
+    if (!this.around.send(line)) return this.said("Not done. The program that shows this does not answer.", false);
     this.pending = word;
     (document.activeElement as HTMLElement | null)?.blur?.();
     this.tell();

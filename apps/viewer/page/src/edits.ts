@@ -59,60 +59,60 @@ const names_of = (tracks: Track[]): string => {
 /** A word as a shell takes it. */
 export const shell = (word: string): string => (/^[\w./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
-const is_all = (wish: ControlRequest): boolean => wish.tracks.length === 0 || wish.tracks.length === wish.all.length;
+const is_all = (request: ControlRequest): boolean => request.tracks.length === 0 || request.tracks.length === request.all.length;
 const quoted = (name: string): string => (/^[\w.-]+$/.test(name) ? name : `"${name}"`);
 
 /** Why it cannot be done yet; empty if it can. What only the take knows, the program says. */
-export function missing(wish: ControlRequest): string {
-  const [least, most] = REQUIRED[wish.kind];
-  const count = wish.tracks.length;
-  if (count < least || count > most) {
-    const how_many = least === most ? (least === 1 ? "one" : "two") : "at least one";
-    return `Select ${how_many} in the view or in the list${count > most ? `; ${count} are selected` : ""}.`;
+export function missing(request: ControlRequest): string {
+  const [min_tracks, max_tracks] = REQUIRED[request.kind];
+  const count = request.tracks.length;
+  if (count < min_tracks || count > max_tracks) {
+    const how_many = min_tracks === max_tracks ? (min_tracks === 1 ? "one" : "two") : "at least one";
+    return `Select ${how_many} in the view or in the list${count > max_tracks ? `; ${count} are selected` : ""}.`;
   }
-  if (wish.name.includes('"')) return 'A name cannot hold a ".';
-  if (wish.kind === "rename" && wish.name.trim() === "") return `What is ${called(wish.tracks[0])} to be called?`;
+  if (request.name.includes('"')) return 'A name cannot hold a ".';
+  if (request.kind === "rename" && request.name.trim() === "") return `What is ${called(request.tracks[0])} to be called?`;
   return "";
 }
 
 /** The edit as `marey edit` takes it. */
-export function command(wish: ControlRequest): string {
-  const { tracks, all, kind } = wish;
-  const range = wish.range ? ` ${wish.range.first}:${wish.range.last}` : "";
+export function command(request: ControlRequest): string {
+  const { tracks, all, kind } = request;
+  const range = request.range ? ` ${request.range.first}:${request.range.last}` : "";
   const several = () => tracks.map((track) => reference(track, all)).join(",");
-  const name = wish.name.trim();
+  const name = request.name.trim();
   if (kind === "rename") return `rename ${several()} ${quoted(name)}`;
   if (kind === "swap") return `swap ${reference(tracks[0], all)} ${reference(tracks[1], all)}${range}`;
-  if (kind === "split") return `split ${several()} ${wish.frame}${name ? ` ${quoted(name)}` : ""}`;
+  if (kind === "split") return `split ${several()} ${request.frame}${name ? ` ${quoted(name)}` : ""}`;
   if (kind === "join") return `join ${reference(tracks[0], all)} ${reference(tracks[1], all)}`;
   if (kind === "delete") return `delete ${several()}${range}`;
-  const whose = is_all(wish) ? "all" : several();
-  if (kind === "filter") return `filter ${whose} ${wish.cutoff.trim() || "auto"}${range}`;
-  const settings = [wish.method, wish.longest.trim() && `longest=${wish.longest.trim()}`, wish.within.trim() && `within=${wish.within.trim()}`];
-  return `fill ${whose}${range}${settings.filter(Boolean).map((word) => ` ${word}`).join("")}`;
+  const tracks_or_all = is_all(request) ? "all" : several();
+  if (kind === "filter") return `filter ${tracks_or_all} ${request.cutoff.trim() || "auto"}${range}`;
+  const settings = [request.method, request.longest.trim() && `longest=${request.longest.trim()}`, request.within.trim() && `within=${request.within.trim()}`];
+  return `fill ${tracks_or_all}${range}${settings.filter(Boolean).map((word) => ` ${word}`).join("")}`;
 }
 
 /** What will be done, in a sentence. */
-export function message_text(wish: ControlRequest, what: string): string {
-  const { tracks, range } = wish;
+export function message_text(request: ControlRequest, what: string): string {
+  const { tracks, range } = request;
   const frames = range ? (range.first === range.last ? `in frame ${range.first}` : `in frames ${range.first} to ${range.last}`) : "in all frames";
-  const whose = is_all(wish) ? `all ${wish.all.length} ${what}` : names_of(tracks);
-  switch (wish.kind) {
+  const tracks_or_all = is_all(request) ? `all ${request.all.length} ${what}` : names_of(tracks);
+  switch (request.kind) {
     case "rename":
-      return `${called(tracks[0])} is called ${wish.name.trim()}, in all frames.`;
+      return `${called(tracks[0])} is called ${request.name.trim()}, in all frames.`;
     case "swap":
       return `${called(tracks[0])} and ${called(tracks[1])} exchange what they have ${frames}.`;
     case "split":
-      return `From frame ${wish.frame} on, which is shown, ${called(tracks[0])} is a track of its own${wish.name.trim() ? `, called ${wish.name.trim()}` : ""}.`;
+      return `From frame ${request.frame} on, which is shown, ${called(tracks[0])} is a track of its own${request.name.trim() ? `, called ${request.name.trim()}` : ""}.`;
     case "join":
       return `${called(tracks[0])} gets all that ${called(tracks[1])} has, which is there no more.`;
     case "delete":
       return range ? `What ${names_of(tracks)} ${tracks.length > 1 ? "have" : "has"} ${frames} is left out.` : `${names_of(tracks)} ${tracks.length > 1 ? "are" : "is"} left out of the take.`;
     case "fill": {
-      const how = wish.method ? `by ${wish.method}` : "each by the method that does best on holes like it";
-      return `Gaps of ${whose} ${frames} are filled, ${how}; those over ${wish.longest.trim() || 1} s, or expected to be off by over ${wish.within.trim() || 50} mm, stay open.`;
+      const how = request.method ? `by ${request.method}` : "each by the method that does best on holes like it";
+      return `Gaps of ${tracks_or_all} ${frames} are filled, ${how}; those over ${request.longest.trim() || 1} s, or expected to be off by over ${request.within.trim() || 50} mm, stay open.`;
     }
     case "filter":
-      return `The ${is_all(wish) || tracks.length > 1 ? "paths" : "path"} of ${whose} ${is_all(wish) || tracks.length > 1 ? "are" : "is"} smoothed ${frames}, with ${wish.cutoff.trim() ? `a cut-off of ${wish.cutoff.trim()} Hz` : "the cut-off that fits the noise of each"}.`;
+      return `The ${is_all(request) || tracks.length > 1 ? "paths" : "path"} of ${tracks_or_all} ${is_all(request) || tracks.length > 1 ? "are" : "is"} smoothed ${frames}, with ${request.cutoff.trim() ? `a cut-off of ${request.cutoff.trim()} Hz` : "the cut-off that fits the noise of each"}.`;
   }
 }

@@ -3,8 +3,8 @@ import { time_of, type Motion } from "./motion";
 import type { Range } from "./state";
 
 export function frame_at(motion: Motion, time: number): number {
-  const moment = motion.at(time);
-  if (moment) return moment.stretch.index[moment.k];
+  const step = motion.at(time);
+  if (step) return step.chunk.index[step.k];
   return Math.max(0, Math.round((time - motion.first) * motion.scene.rate)); // it is not here yet
 }
 
@@ -12,10 +12,10 @@ export function time_of_frame(motion: Motion, frame: number): number {
   const rate = Math.max(0.1, motion.scene.rate);
   let time = motion.first + (frame - frame_at(motion, motion.first)) / rate;
   for (let tries = 0; tries < 4; ++tries) {
-    const moment = motion.at(Math.max(motion.first, Math.min(motion.last, time)));
-    if (!moment) break;
-    const off = frame - moment.stretch.index[moment.k];
-    time = time_of(moment) + off / rate;
+    const step = motion.at(Math.max(motion.first, Math.min(motion.last, time)));
+    if (!step) break;
+    const off = frame - step.chunk.index[step.k];
+    time = time_of(step) + off / rate;
     if (off === 0) break;
   }
   return time;

@@ -34,12 +34,12 @@ export class Live implements Motion {
     this.on_change();
   }
 
-  add(stretch: TimeChunk): void {
-    if (stretch.time[0] < this.last - 1) this.forget(); // another run
-    this.place.set(stretch, this.gone + this.here.length);
-    this.times.push(stretch.time[0]);
-    this.here.push(stretch);
-    for (const track of stretch.track) this.seen_at.set(track, stretch.time[0]);
+  add(chunk: TimeChunk): void {
+    if (chunk.time[0] < this.last - 1) this.forget(); // another run
+    this.place.set(chunk, this.gone + this.here.length);
+    this.times.push(chunk.time[0]);
+    this.here.push(chunk);
+    for (const track of chunk.track) this.seen_at.set(track, chunk.time[0]);
     if (this.here.length > MAX_KEPT || (this.here.length > 400 && this.times[200] < this.last - KEPT_S)) {
       const drop = 200;
       for (const old of this.here.splice(0, drop)) this.place.delete(old);
@@ -51,13 +51,13 @@ export class Live implements Motion {
 
   at(time: number): TimeStep | null {
     const i = Math.max(0, last_at_or_before(this.times, time + 1e-9));
-    return i < this.here.length ? { stretch: this.here[i], k: 0 } : null;
+    return i < this.here.length ? { chunk: this.here[i], k: 0 } : null;
   }
 
-  beside(moment: TimeStep, step: 1 | -1): TimeStep | null {
-    const at = this.place.get(moment.stretch);
-    const stretch = at === undefined ? undefined : this.here[at - this.gone + step];
-    return stretch ? { stretch, k: 0 } : null;
+  neighbour(moment: TimeStep, step: 1 | -1): TimeStep | null {
+    const at = this.place.get(moment.chunk);
+    const chunk = at === undefined ? undefined : this.here[at - this.gone + step];
+    return chunk ? { chunk: chunk, k: 0 } : null;
   }
 
   async course(track: number): Promise<Course> {
@@ -84,13 +84,13 @@ export class Live implements Motion {
   seen(track: number): number | null {
     if (this.here.length === 0) return null;
     let count = 0;
-    let looked = 0;
+    let examined = 0;
     for (let i = Math.max(0, this.here.length - 600); i < this.here.length; ++i) {
-      ++looked;
+      ++examined;
       const row = this.here[i].track.indexOf(track);
       if (row >= 0 && this.here[i].provenance(row) === 0) ++count;
     }
-    return count / looked;
+    return count / examined;
   }
 
   /** s since it was in an instant. */

@@ -32,7 +32,7 @@ class Page {
   private colours = new Colours();
   private motion: Motion;
   private view: View;
-  private moment: TimeStep | null = null;
+  private current_step: TimeStep | null = null;
   private socket: Socket;
   private timeline: Timeline;
   private table: Table;
@@ -49,7 +49,7 @@ class Page {
   private recording_into = "";
   private latency = new Latency();
   private latest: TimeChunk | null = null;
-  private film_asked = { frame: -1, at: 0 };
+  private image_requested = { frame: -1, at: 0 };
 
   constructor(scene: Scene) {
     const { state } = this;
@@ -58,7 +58,7 @@ class Page {
     this.motion.on_change = redraw;
     this.view = view_of(scene, state, this.colours, redraw);
     this.socket = new Socket(
-      { opened: () => this.opened(), text: (line) => this.text(line), bytes: (data) => this.bytes(data), lost: () => this.editor.lost(), said: (message_text) => this.said(message_text) },
+      { opened: () => this.opened(), text: (line) => this.text(line), bytes: (data) => this.bytes(data), lost: () => this.editor.lost(), server_message: (message_text) => this.said(message_text) },
       scene.kind === "live",
     );
     element("view").append(this.view.element);
@@ -66,10 +66,10 @@ class Page {
     this.timeline = new Timeline(state, () => this.motion, (by) => this.step(by));
     this.table = new Table(state, this.colours);
     this.plots = new Plots(state, this.colours, () => this.motion, (time) => this.seek(time));
-    this.cameras = new Cameras(state, this.colours, (line) => this.say(line), (picture) => this.latency.drawn(picture.sent_ms));
+    this.cameras = new Cameras(state, this.colours, (line) => this.say(line), (decoded) => this.latency.drawn(decoded.sent_ms));
     this.names = new Names(element("stage"), state, (line) => this.say(line));
     this.words = new Words(() => this.motion, this.colours, this.latency);
-    this.editor = new Editor(state, () => this.motion, { say: (line) => this.say(line), seek: (time) => this.seek(time), show_tab: (tab) => this.show_tab(tab) });
+    this.editor = new Editor(state, () => this.motion, { send: (line) => this.say(line), seek: (time) => this.seek(time), show_tab: (tab) => this.show_tab(tab) });
     if (scene.job === "wand") this.wand = new Wand(this.cameras, (line) => this.say(line));
     state.on_change(redraw);
     state.on_change(() => this.plots.update());
@@ -107,7 +107,7 @@ class Page {
   }
 
   private say(line: string): boolean {
-    return this.socket.say(line);
+    return this.socket.send(line);
   }
 
   private text(line: string): void {
@@ -130,10 +130,10 @@ class Page {
       this.latest = new TimeChunk(data);
       this.motion.add(this.latest);
     } else if (kind === 3) {
-      const picture = image_of(data);
+      const decoded = image_of(data);
       const { scene } = this.motion;
-      if (scene.kind === "live") this.cameras.picture(picture);
-      if (scene.kind === "recording" || (scene.frame === "image" && picture.camera === (scene.camera ?? 0))) this.take_film(picture);
+      if (scene.kind === "live") this.cameras.shown_image(decoded);
+      if (scene.kind === "recording" || (scene.frame === "image" && decoded.camera === (scene.camera ?? 0))) this.take_video_image(decoded);
     }
   }
 
@@ -179,7 +179,7 @@ class Page {
     this.names.take(scene);
     this.plots.update();
     this.editor.take(scene);
-    this.words.tell();
+    this.words.update();
     this.draw_soon();
   }
 
@@ -203,15 +203,15 @@ class Page {
     button.title = this.recording ? `into ${this.recording_into}; R ends it` : "Record (R)";
   }
 
-  private async take_film(picture: CameraImage): Promise<void> {
-    this.film_asked.at = 0;
-    if (!picture.jpeg || !(this.view instanceof PlaneView)) return;
-    const image = await createImageBitmap(picture.jpeg);
-    this.view.film?.image.close();
-    this.view.film = { image, frame: picture.frame };
+  private async take_video_image(decoded: CameraImage): Promise<void> {
+    this.image_requested.at = 0;
+    if (!decoded.jpeg || !(this.view instanceof PlaneView)) return;
+    const image = await createImageBitmap(decoded.jpeg);
+    this.view.video_image?.image.close();
+    this.view.video_image = { image, frame: decoded.frame };
     const { scene } = this.motion;
     if (!scene.size) {
-      scene.size = [picture.width, picture.height];
+      scene.size = [decoded.width, decoded.height];
       this.view.take(scene);
     }
     this.draw_soon();
@@ -237,15 +237,15 @@ class Page {
       this.words.legend();
     }
     if (motion.scene.kind === "live") {
-      if (state.following) state.time = motion.last;
+      if (state.stays_at_end) state.time = motion.last;
       else if (state.time < motion.first) state.time = motion.first;
     } else if (state.playing) {
       this.play_on(passed);
       this.draw_soon();
     }
-    const moment = motion.at(state.time);
-    if (moment) this.moment = moment;
-    this.ask_for_film();
+    const current_step = motion.at(state.time);
+    if (current_step) this.current_step = current_step;
+    this.request_video_image();
     this.view.draw(motion, this.shown_moment());
     if (this.latest) {
       this.latency.drawn(this.latest.sent_ms);
@@ -258,7 +258,7 @@ class Page {
     this.show_buttons();
     // For tests: attributes that no rule of the style looks at.
     document.body.dataset.time = state.time.toFixed(4);
-    document.body.dataset.rows = `${moment ? moment.stretch.row_end[moment.k] - moment.stretch.begin(moment.k) : ""}`;
+    document.body.dataset.rows = `${current_step ? current_step.chunk.row_end[current_step.k] - current_step.chunk.begin(current_step.k) : ""}`;
   }
 
   private play_on(passed: number): void {
@@ -272,21 +272,21 @@ class Page {
 
   /** With a video behind it, what was tracked in the frame that is shown. */
   private shown_moment(): TimeStep | null {
-    const film = this.view instanceof PlaneView ? this.view.film : null;
-    if (!film || !this.moment) return this.moment;
-    const near = this.motion.at(this.state.time + (film.frame - this.moment.stretch.index[this.moment.k]) / Math.max(0.1, this.motion.scene.rate));
-    return near && Math.abs(near.stretch.index[near.k] - film.frame) < 2 ? near : this.moment;
+    const video_image = this.view instanceof PlaneView ? this.view.video_image : null;
+    if (!video_image || !this.current_step) return this.current_step;
+    const near = this.motion.at(this.state.time + (video_image.frame - this.current_step.chunk.index[this.current_step.k]) / Math.max(0.1, this.motion.scene.rate));
+    return near && Math.abs(near.chunk.index[near.k] - video_image.frame) < 2 ? near : this.current_step;
   }
 
-  private ask_for_film(): void {
-    const { moment, view } = this;
-    if (!this.motion.scene.film || !moment || !(view instanceof PlaneView)) return;
-    const frame = moment.stretch.index[moment.k];
+  private request_video_image(): void {
+    const { current_step, view } = this;
+    if (!this.motion.scene.video || !current_step || !(view instanceof PlaneView)) return;
+    const frame = current_step.chunk.index[current_step.k];
     const now = performance.now();
-    const waiting = this.film_asked.at > 0 && now - this.film_asked.at < 1000;
-    if (frame === this.film_asked.frame || waiting) return;
-    this.film_asked = { frame, at: now };
-    this.say(`film ${frame} ${Math.max(320, Math.min(1920, 160 * Math.ceil(view.pixels_wide / 160)))}`);
+    const waiting = this.image_requested.at > 0 && now - this.image_requested.at < 1000;
+    if (frame === this.image_requested.frame || waiting) return;
+    this.image_requested = { frame, at: now };
+    this.say(`video ${frame} ${Math.max(320, Math.min(1920, 160 * Math.ceil(view.pixels_wide / 160)))}`);
   }
 
   private show_buttons(): void {
@@ -302,9 +302,9 @@ class Page {
   }
 
   private said(text: string): void {
-    const place = element("said");
-    place.textContent = text;
-    place.hidden = text === "";
+    const message = element("said");
+    message.textContent = text;
+    message.hidden = text === "";
   }
 
   private ping(): void {
@@ -323,15 +323,15 @@ class Page {
 
   private seek(time: number): void {
     this.state.time = Math.max(this.motion.first, Math.min(this.motion.last, time));
-    this.state.following = false;
+    this.state.stays_at_end = false;
     this.state.changed();
   }
 
   private step(by: number): void {
     this.state.playing = false;
-    this.state.following = false;
-    const moment = this.motion.at(this.state.time);
-    const next = moment && this.motion.beside(moment, by > 0 ? 1 : -1);
+    this.state.stays_at_end = false;
+    const current_step = this.motion.at(this.state.time);
+    const next = current_step && this.motion.neighbour(current_step, by > 0 ? 1 : -1);
     if (next) this.seek(time_of(next));
     else this.state.changed();
   }
@@ -370,7 +370,7 @@ class Page {
     toggle("theme", () => (state.dark = !state.dark));
     toggle("trails", () => (state.trail_s = TRAILS[(TRAILS.indexOf(state.trail_s) + 1) % TRAILS.length]));
     click("reset", () => this.view.reset());
-    for (const side of ["top", "front", "side"] as const) click(side, () => this.view.look_from?.(side));
+    for (const side of ["top", "front", "side"] as const) click(side, () => this.view.view_from?.(side));
     click("help", () => element<HTMLDialogElement>("keys").showModal());
     click("record", () => this.say(`record ${this.recording ? "off" : "on"}`));
     for (const tab of document.querySelectorAll<HTMLElement>("#tabs button")) tab.addEventListener("click", () => this.show_tab(tab.dataset.tab!));
@@ -386,7 +386,7 @@ async function begin(): Promise<void> {
 }
 
 begin().catch((error: unknown) => {
-  const place = element("said");
-  place.hidden = false;
-  place.textContent = `Nothing to show: ${error instanceof Error ? error.message : String(error)}`;
+  const message = element("said");
+  message.hidden = false;
+  message.textContent = `Nothing to show: ${error instanceof Error ? error.message : String(error)}`;
 });

@@ -26,7 +26,7 @@ export class MaskEditor {
   private size: [number, number] = [0, 0];
 
   /** `say`: "mask" or "unmask", and which. */
-  constructor(private canvas: HTMLCanvasElement, private say: (word: "mask" | "unmask", mask: Mask) => void, private redraw: () => void) {
+  constructor(private canvas: HTMLCanvasElement, private send: (word: "mask" | "unmask", mask: Mask) => void, private redraw: () => void) {
     canvas.addEventListener("click", (event) => this.active && event.stopPropagation());
     canvas.addEventListener("dblclick", () => this.close());
     canvas.addEventListener("pointerdown", (event) => this.pressed(event));
@@ -106,7 +106,7 @@ export class MaskEditor {
   }
 
   /** A place on the canvas in px of the camera. */
-  private place(event: PointerEvent): Location {
+  private location_of(event: PointerEvent): Location {
     const rect = this.canvas.getBoundingClientRect();
     const inside = (at: number, low: number, size: number, most: number) => Math.max(0, Math.min(most, ((at - low) / size) * most));
     return [inside(event.clientX, rect.left, rect.width, this.size[0]), inside(event.clientY, rect.top, rect.height, this.size[1])];
@@ -117,17 +117,17 @@ export class MaskEditor {
     event.preventDefault();
     (document.activeElement as HTMLElement | null)?.blur(); // of a number's field: Enter and Escape are for the mask now
     this.canvas.setPointerCapture(event.pointerId);
-    const from = this.place(event);
+    const from = this.location_of(event);
     this.drag = { from, to: from, begun: [event.clientX, event.clientY], far: false };
   }
 
   private moved(event: PointerEvent): void {
-    this.pointer = this.active ? this.place(event) : null;
+    this.pointer = this.active ? this.location_of(event) : null;
     if (this.drag) {
       const { begun } = this.drag;
       // While corners are set there is no dragging.
       this.drag.far ||= this.corners.length === 0 && Math.hypot(event.clientX - begun[0], event.clientY - begun[1]) >= MIN_DRAG;
-      this.drag.to = this.place(event);
+      this.drag.to = this.location_of(event);
     }
     if (this.drag || this.corners.length) this.redraw();
   }
@@ -152,7 +152,7 @@ export class MaskEditor {
       draw.resetTransform();
       const hit = this.masks.find((mask) => draw.isPointInPath(outline(mask, 1), x, y, "evenodd"));
       draw.restore();
-      if (hit) return this.say("unmask", hit);
+      if (hit) return this.send("unmask", hit);
     } else if (this.corners.length >= 3 && near(this.corners[0], CLOSE_BY)) {
       return this.close();
     } else if (near(this.corners[this.corners.length - 1], MIN_DRAG)) {
@@ -174,7 +174,7 @@ export class MaskEditor {
 
   private add(mask: Mask): void {
     this.masks = [...this.masks, mask]; // as it will be said in a moment
-    this.say("mask", mask);
+    this.send("mask", mask);
   }
 
   /** Before the page's keys: Enter closes a polygon, Escape leaves it. */

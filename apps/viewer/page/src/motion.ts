@@ -4,11 +4,11 @@ import type { Course, TimeChunk } from "./wire";
 
 /** Instant k of a stretch. */
 export interface TimeStep {
-  stretch: TimeChunk;
+  chunk: TimeChunk;
   k: number;
 }
 
-export const time_of = (moment: TimeStep): number => moment.stretch.time[moment.k];
+export const time_of = (moment: TimeStep): number => moment.chunk.time[moment.k];
 
 export interface Motion {
   scene: Scene;
@@ -22,7 +22,7 @@ export interface Motion {
   /** The last instant at or before `time`; null where it is not here yet, and is then asked for. */
   at(time: number): TimeStep | null;
   /** The instant before, or after; null at the ends and where it is not here yet. */
-  beside(moment: TimeStep, step: 1 | -1): TimeStep | null;
+  neighbour(moment: TimeStep, step: 1 | -1): TimeStep | null;
   /** A track over the whole time that is known. */
   course(track: number): Promise<Course>;
   /** How much was there over time, for the strip: [time (s), rows an instant], by growing time. */

@@ -108,14 +108,14 @@ export class Overlay {
   private place(mark: Mark, width: number, taken: Taken, must: boolean): Area | null {
     const gap = mark.radius + 3;
     const at = (x: number, y: number): Area => ({ left: x, top: y, right: x + width, bottom: y + HEIGHT });
-    const places = [
+    const positions = [
       at(mark.x + gap, mark.y - HEIGHT / 2),
       at(mark.x - gap - width, mark.y - HEIGHT / 2),
       at(mark.x - width / 2, mark.y - gap - HEIGHT),
       at(mark.x - width / 2, mark.y + gap),
     ];
     const inside = (a: Area) => a.left >= 2 && a.top >= 2 && a.right <= this.width - 2 && a.bottom <= this.height - 2;
-    return places.find((area) => inside(area) && taken.free(area)) ?? (must ? places[0] : null);
+    return positions.find((area) => inside(area) && taken.free(area)) ?? (must ? positions[0] : null);
   }
 
   private tag(mark: Mark, area: Area, chosen: boolean): void {

@@ -26,7 +26,7 @@ export class PlaneView implements View {
   private fitted = true;
   private fingers = new Map<number, [number, number]>();
   /** The newest image of the video, and of which frame it is. */
-  film: { image: ImageBitmap; frame: number } | null = null;
+  video_image: { image: ImageBitmap; frame: number } | null = null;
 
   constructor(private state: State, private colours: Colours, private redraw: () => void) {
     this.overlay = new Overlay(state, colours);
@@ -142,7 +142,7 @@ export class PlaneView implements View {
     const [width, height] = [this.scale * (this.high[0] - this.low[0]), this.scale * (this.high[1] - this.low[1])];
     draw.fillStyle = this.state.dark ? "#171c22" : "#e6e9ed";
     draw.fillRect(left, top, width, height);
-    if (this.film) draw.drawImage(this.film.image, left, top, width, height);
+    if (this.video_image) draw.drawImage(this.video_image.image, left, top, width, height);
   }
 
   private draw_ground(draw: CanvasRenderingContext2D): void {
@@ -226,15 +226,15 @@ export class PlaneView implements View {
     const feet = this.scene?.frame === "image";
     draw.lineCap = "round";
     draw.lineWidth = feet ? 2 : Math.max(1.5, 0.28 * this.scale);
-    for (const { stretch, k } of time_steps_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
-      const time = stretch.time[k];
+    for (const { chunk: chunk, k } of time_steps_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
+      const time = chunk.time[k];
       const alpha = 0.7 * (1 - (now - time) / this.state.trail_s);
-      for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
-        const id = stretch.track[row];
+      for (let row = chunk.begin(k); row < chunk.row_end[k]; ++row) {
+        const id = chunk.track[row];
         if (this.state.hidden.has(id) || this.dimmed(id)) continue;
-        const box = feet && stretch.box && stretch.has_box(row) ? stretch.box : null;
-        const x = this.x(box ? box[0][row] + box[2][row] / 2 : stretch.x[row]);
-        const y = this.y(box ? box[1][row] + box[3][row] : stretch.y[row]);
+        const box = feet && chunk.box && chunk.has_box(row) ? chunk.box : null;
+        const x = this.x(box ? box[0][row] + box[2][row] / 2 : chunk.x[row]);
+        const y = this.y(box ? box[1][row] + box[3][row] : chunk.y[row]);
         const last = before.get(id);
         if (last && last[2] - time < 1) {
           draw.strokeStyle = this.colours.css(id, alpha);
@@ -249,32 +249,32 @@ export class PlaneView implements View {
   }
 
   private draw_people(moment: TimeStep): void {
-    const { stretch, k } = moment;
+    const { chunk: chunk, k } = moment;
     const draw = this.overlay.draw;
     const radius = Math.max(7.5, Math.min(15, 1.25 * this.scale));
     const marks: Mark[] = [];
     draw.textAlign = "center";
     draw.textBaseline = "middle";
-    for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
-      const id = stretch.track[row];
+    for (let row = chunk.begin(k); row < chunk.row_end[k]; ++row) {
+      const id = chunk.track[row];
       if (this.state.hidden.has(id)) continue;
-      const [x, y] = [this.x(stretch.x[row]), this.y(stretch.y[row])];
-      const seen = stretch.provenance(row) === 0;
+      const [x, y] = [this.x(chunk.x[row]), this.y(chunk.y[row])];
+      const measured = chunk.provenance(row) === 0;
       const selected = this.state.selected.has(id) || this.state.hover === id;
       const name = name_of(this.tracks.get(id), id);
       const inside = name.length <= 3 && radius >= 7;
       draw.globalAlpha = this.dimmed(id) ? 0.35 : 1;
       draw.beginPath();
       draw.arc(x, y, radius, 0, 7);
-      draw.fillStyle = seen ? this.colours.css(id) : this.state.dark ? "#15291c" : "#d8ead8";
+      draw.fillStyle = measured ? this.colours.css(id) : this.state.dark ? "#15291c" : "#d8ead8";
       draw.fill();
       draw.lineWidth = selected ? 3 : 1.5;
-      draw.strokeStyle = selected ? (this.state.dark ? "#fff" : "#111") : seen ? "rgba(10,14,18,.55)" : this.colours.css(id);
+      draw.strokeStyle = selected ? (this.state.dark ? "#fff" : "#111") : measured ? "rgba(10,14,18,.55)" : this.colours.css(id);
       draw.stroke();
       if (inside) {
         draw.font = `600 ${Math.round(Math.min(11, radius))}px ${TYPEFACE}`;
-        draw.fillStyle = seen && this.colours.is_light(id) ? "#10151a" : "#fff";
-        if (!seen && !this.state.dark) draw.fillStyle = "#222";
+        draw.fillStyle = measured && this.colours.is_light(id) ? "#10151a" : "#fff";
+        if (!measured && !this.state.dark) draw.fillStyle = "#222";
         draw.fillText(name, x, y + 0.5);
       }
       draw.globalAlpha = 1;
@@ -285,20 +285,20 @@ export class PlaneView implements View {
   }
 
   private draw_boxes(moment: TimeStep): void {
-    const { stretch, k } = moment;
+    const { chunk: chunk, k } = moment;
     const draw = this.overlay.draw;
     const marks: Mark[] = [];
-    for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
-      const id = stretch.track[row];
+    for (let row = chunk.begin(k); row < chunk.row_end[k]; ++row) {
+      const id = chunk.track[row];
       if (this.state.hidden.has(id)) continue;
       const selected = this.state.selected.has(id) || this.state.hover === id;
-      const seen = stretch.provenance(row) === 0;
+      const measured = chunk.provenance(row) === 0;
       const alpha = this.dimmed(id) ? 0.35 : 1;
       const name = name_of(this.tracks.get(id), id);
-      draw_body(draw, stretch, row, this.scene?.bones ?? [], (x, y) => [this.x(x), this.y(y)], (opacity) => this.colours.css(id, opacity), alpha, selected ? 3.5 : 2);
+      draw_body(draw, chunk, row, this.scene?.bones ?? [], (x, y) => [this.x(x), this.y(y)], (opacity) => this.colours.css(id, opacity), alpha, selected ? 3.5 : 2);
       draw.strokeStyle = this.colours.css(id, alpha);
-      if (!stretch.box || !stretch.has_box(row)) {
-        const [x, y] = [this.x(stretch.x[row]), this.y(stretch.y[row])];
+      if (!chunk.box || !chunk.has_box(row)) {
+        const [x, y] = [this.x(chunk.x[row]), this.y(chunk.y[row])];
         draw.lineWidth = selected ? 3 : 1.75;
         draw.beginPath();
         draw.arc(x, y, 5, 0, 7);
@@ -306,10 +306,10 @@ export class PlaneView implements View {
         marks.push({ id, x, y, radius: 5, text: name, depth: row });
         continue;
       }
-      const [left, top] = [this.x(stretch.box[0][row] - 0.5), this.y(stretch.box[1][row] - 0.5)];
-      const [width, height] = [this.scale * stretch.box[2][row], this.scale * stretch.box[3][row]];
+      const [left, top] = [this.x(chunk.box[0][row] - 0.5), this.y(chunk.box[1][row] - 0.5)];
+      const [width, height] = [this.scale * chunk.box[2][row], this.scale * chunk.box[3][row]];
       draw.lineWidth = selected ? 3.5 : 2;
-      draw.setLineDash(seen ? [] : [5, 4]);
+      draw.setLineDash(measured ? [] : [5, 4]);
       draw.beginPath();
       draw.roundRect(left, top, width, height, 3);
       draw.stroke();

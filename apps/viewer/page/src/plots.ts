@@ -39,19 +39,19 @@ function with_gaps(course: Course, values: ArrayLike<number | null>, gap: number
 }
 
 /** What was not seen there: filled, predicted. */
-const unseen = (course: Course, i: number): boolean => (course.state[i] & 7) === FILLED || (course.state[i] & 7) === PREDICTED;
+const unmeasured = (course: Course, i: number): boolean => (course.state[i] & 7) === FILLED || (course.state[i] & 7) === PREDICTED;
 
 /** The values that were seen, and where some were not those: up to the ones beside them, so that the line continues. */
 function by_observed(course: Course, values: ArrayLike<number | null>): ArrayLike<number | null>[] {
   const n = course.time.length;
-  const missed = Array.from({ length: n }, (_, i) => unseen(course, i));
+  const missed = Array.from({ length: n }, (_, i) => unmeasured(course, i));
   if (!missed.includes(true)) return [values];
-  const beside = (i: number) => missed[i] || (i > 0 && missed[i - 1]) || (i + 1 < n && missed[i + 1]);
-  return [missed.map((gone, i) => (gone ? null : values[i])), missed.map((_, i) => (beside(i) ? values[i] : null))];
+  const adjacent = (i: number) => missed[i] || (i > 0 && missed[i - 1]) || (i + 1 < n && missed[i + 1]);
+  return [missed.map((gone, i) => (gone ? null : values[i])), missed.map((_, i) => (adjacent(i) ? values[i] : null))];
 }
 
 export class Plots {
-  private place = document.querySelector<HTMLElement>("#plots")!;
+  private container = document.querySelector<HTMLElement>("#plots")!;
   private hint = document.querySelector<HTMLElement>("#plot_hint")!;
   private key = document.querySelector<HTMLElement>("#plot_key")!;
   private buttons = new Map<Coordinate, HTMLButtonElement>();
@@ -76,7 +76,7 @@ export class Plots {
       this.buttons.set(coordinate, button);
       bar.append(button);
     }
-    new ResizeObserver(() => this.update()).observe(this.place);
+    new ResizeObserver(() => this.update()).observe(this.container);
   }
 
   private forget(): void {
@@ -96,8 +96,8 @@ export class Plots {
     const live = motion.scene.kind === "live";
     if (live && performance.now() - this.refreshed > 250) this.forget();
     const versions = new Map(motion.scene.tracks.map((track) => [track.id, `${track.rows}.${track.version}`]));
-    const wanted = `${ids.map((id) => `${id}:${versions.get(id)}`)} ${coordinates} ${this.place.clientWidth} ${this.place.clientHeight} ${this.state.dark} ${motion.last}`;
-    if (wanted === this.built_for || this.place.clientWidth === 0) return this.draw();
+    const required = `${ids.map((id) => `${id}:${versions.get(id)}`)} ${coordinates} ${this.container.clientWidth} ${this.container.clientHeight} ${this.state.dark} ${motion.last}`;
+    if (required === this.built_for || this.container.clientWidth === 0) return this.draw();
     this.busy = true;
     this.refreshed = performance.now();
     for (const id of ids) {
@@ -105,13 +105,13 @@ export class Plots {
       if (this.courses.get(id)?.version !== version) this.courses.set(id, { course: await motion.course(id), version });
     }
     this.busy = false;
-    this.built_for = wanted;
+    this.built_for = required;
     this.key.replaceChildren(...ids.map((id) => this.key_of(id)));
     const zoom = this.zoom();
     for (const plot of this.plots) plot.destroy();
     this.plots = [];
     if (ids.length === 0) return;
-    const height = Math.max(96, Math.floor(this.place.clientHeight / Math.max(1, coordinates.length)) - 4);
+    const height = Math.max(96, Math.floor(this.container.clientHeight / Math.max(1, coordinates.length)) - 4);
     for (const coordinate of coordinates) this.plots.push(this.build(coordinate, ids, height));
     if (zoom && !live) for (const plot of this.plots) plot.setScale("x", zoom);
     this.draw();
@@ -182,7 +182,7 @@ export class Plots {
     const axis = { stroke: css("--muted"), grid: { stroke: css("--line"), width: 1 }, ticks: { show: false }, font: `10px ${style.fontFamily}` };
     const plot = new uPlot(
       {
-        width: this.place.clientWidth, height, legend: { show: false }, padding: [8, 10, 0, 0],
+        width: this.container.clientWidth, height, legend: { show: false }, padding: [8, 10, 0, 0],
         cursor: { sync: { key: "marey" }, drag: { x: true, y: false }, points: { show: false } },
         scales: { x: { time: false } },
         hooks: { draw: [() => this.draw()] }, // places on its scale are known by then
@@ -193,7 +193,7 @@ export class Plots {
         series: [{}, ...lines],
       },
       tables.length > 1 ? uPlot.join(tables) : tables[0],
-      this.place,
+      this.container,
     );
     for (const name of ["marked", "playhead"]) plot.over.append(Object.assign(document.createElement("div"), { className: name }));
     plot.over.addEventListener("click", (event) => event.shiftKey || this.seek(plot.posToVal(event.offsetX, "x")));

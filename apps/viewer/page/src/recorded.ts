@@ -12,7 +12,7 @@ export class Recorded implements Motion {
   on_change = () => {};
   private begins: number[] = [];
   revision = 0;
-  private here = new Map<number, { stretch: TimeChunk; version: number }>(); // in the order of their last use
+  private here = new Map<number, { chunk: TimeChunk; version: number }>(); // in the order of their last use
   private asked = new Set<number>();
 
   constructor(scene: Scene) {
@@ -29,7 +29,7 @@ export class Recorded implements Motion {
 
   take(scene: Scene): void {
     this.scene = scene;
-    this.begins = (scene.stretches ?? []).map((stretch) => stretch[0]);
+    this.begins = (scene.chunks ?? []).map((chunk) => chunk[0]);
     const count = Math.min(this.begins.length, AT_ONCE);
     for (let n = 0; n < count; ++n) this.fetch(n);
     this.on_change();
@@ -39,18 +39,18 @@ export class Recorded implements Motion {
     const n = Math.max(0, last_at_or_before(this.begins, time + 1e-9));
     if (n >= this.begins.length) return null;
     for (let ahead = 1; ahead <= AHEAD && n + ahead < this.begins.length; ++ahead) this.fetch(n + ahead);
-    const stretch = this.stretch(n);
-    if (!stretch) return null;
-    return { stretch, k: Math.max(0, last_at_or_before(stretch.time, time + 1e-9)) };
+    const chunk = this.chunk(n);
+    if (!chunk) return null;
+    return { chunk: chunk, k: Math.max(0, last_at_or_before(chunk.time, time + 1e-9)) };
   }
 
-  beside(moment: TimeStep, step: 1 | -1): TimeStep | null {
+  neighbour(moment: TimeStep, step: 1 | -1): TimeStep | null {
     const k = moment.k + step;
-    if (k >= 0 && k < moment.stretch.time.length) return { stretch: moment.stretch, k };
-    const n = last_at_or_before(this.begins, moment.stretch.time[0] + 1e-9) + step;
+    if (k >= 0 && k < moment.chunk.time.length) return { chunk: moment.chunk, k };
+    const n = last_at_or_before(this.begins, moment.chunk.time[0] + 1e-9) + step;
     if (n < 0 || n >= this.begins.length) return null;
-    const stretch = this.stretch(n);
-    return stretch ? { stretch, k: step > 0 ? 0 : stretch.time.length - 1 } : null;
+    const chunk = this.chunk(n);
+    return chunk ? { chunk: chunk, k: step > 0 ? 0 : chunk.time.length - 1 } : null;
   }
 
   async course(track: number): Promise<Course> {
@@ -59,27 +59,27 @@ export class Recorded implements Motion {
   }
 
   density(): [number, number][] {
-    const list = this.scene.stretches ?? [];
+    const list = this.scene.chunks ?? [];
     if (list.length > AT_ONCE || this.here.size < list.length) return list.map(([time, n, rows]) => [time, rows / Math.max(1, n)]);
     const fine: [number, number][] = [];
     for (let n = 0; n < list.length; ++n) {
-      const { stretch } = this.here.get(n)!;
-      for (let k = 0; k < stretch.time.length; ++k) fine.push([stretch.time[k], stretch.row_end[k] - stretch.begin(k)]);
+      const { chunk: chunk } = this.here.get(n)!;
+      for (let k = 0; k < chunk.time.length; ++k) fine.push([chunk.time[k], chunk.row_end[k] - chunk.begin(k)]);
     }
     return fine;
   }
 
-  private stretch(n: number): TimeChunk | null {
+  private chunk(n: number): TimeChunk | null {
     const held = this.here.get(n);
     if (!held || held.version !== this.version(n)) this.fetch(n);
     if (!held) return null;
     this.here.delete(n);
     this.here.set(n, held);
-    return held.stretch; // the one from before an edit, until the new one is here
+    return held.chunk; // the one from before an edit, until the new one is here
   }
 
   private version(n: number): number {
-    return this.scene.stretches?.[n]?.[3] ?? 0;
+    return this.scene.chunks?.[n]?.[3] ?? 0;
   }
 
   private async fetch(n: number): Promise<void> {
@@ -90,7 +90,7 @@ export class Recorded implements Motion {
     try {
       const answer = await fetch(`stretch?n=${n}`);
       if (!answer.ok) return;
-      this.here.set(n, { stretch: new TimeChunk(await answer.arrayBuffer()), version });
+      this.here.set(n, { chunk: new TimeChunk(await answer.arrayBuffer()), version });
       if (held) ++this.revision;
       if (this.here.size > MAX_KEPT) this.here.delete(this.here.keys().next().value!);
       this.on_change();

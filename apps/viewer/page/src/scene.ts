@@ -64,13 +64,13 @@ export interface Scene {
   low?: Vector;
   high?: Vector;
   // of a recording
-  film?: boolean;
+  video?: boolean;
   instants?: number;
   last?: number;
   complete?: boolean;
   warnings?: string[];
   /** First time (s), instants, rows, version: its bytes are others where that has grown. */
-  stretches?: [number, number, number, number][];
+  chunks?: [number, number, number, number][];
   /** The page may change the take. */
   can_edit?: boolean;
   // of a live run

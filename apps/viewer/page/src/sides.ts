@@ -21,10 +21,10 @@ function spelt_out(name: string): Side {
 /** The side of each of `labels`. */
 export function sides_of(labels: string[]): Map<string, Side> {
   const names = new Set(labels.map((label) => bare(label).toLowerCase()));
-  const beside_its_twin = (name: string): Side => {
+  const as_its_twin = (name: string): Side => {
     const lower = name.toLowerCase();
     if (!/^[lr][a-z]{2}/.test(lower)) return null;
     return names.has((lower[0] === "l" ? "r" : "l") + lower.slice(1)) ? side_named(lower) : null;
   };
-  return new Map(labels.map((label) => [label, spelt_out(bare(label)) ?? beside_its_twin(bare(label))]));
+  return new Map(labels.map((label) => [label, spelt_out(bare(label)) ?? as_its_twin(bare(label))]));
 }

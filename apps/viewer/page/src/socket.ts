@@ -6,19 +6,19 @@ export interface Received {
   text(line: string): void;
   bytes(data: ArrayBuffer): void;
   lost(): void;
-  said(message_text: string): void;
+  server_message(message_text: string): void;
 }
 
 export class Socket {
   private socket: WebSocket | null = null;
   private ever = false;
 
-  constructor(private heard: Received, private live: boolean) {}
+  constructor(private received: Received, private live: boolean) {}
 
   connect(): void {
     if (typeof WebSocket === "undefined") {
-      this.heard.lost();
-      this.heard.said(`This browser has no WebSockets${this.without("take a current one")}`);
+      this.received.lost();
+      this.received.server_message(`This browser has no WebSockets${this.without("take a current one")}`);
       return;
     }
     const socket = new WebSocket(`ws://${location.host}/socket`);
@@ -26,15 +26,15 @@ export class Socket {
     socket.onopen = () => {
       this.socket = socket;
       this.ever = true;
-      this.heard.said("");
-      this.heard.opened();
+      this.received.server_message("");
+      this.received.opened();
     };
-    socket.onmessage = ({ data }) => (typeof data === "string" ? this.heard.text(data) : this.heard.bytes(data as ArrayBuffer));
+    socket.onmessage = ({ data }) => (typeof data === "string" ? this.received.text(data) : this.received.bytes(data as ArrayBuffer));
     socket.onclose = () => {
-      if (this.socket === socket) this.heard.said("The program that showed this has ended.");
-      else if (!this.ever) this.heard.said(`The program cannot be heard: a proxy or an extension may let no WebSocket through${this.without("open the page without it")}`);
+      if (this.socket === socket) this.received.server_message("The program that showed this has ended.");
+      else if (!this.ever) this.received.server_message(`The program cannot be heard: a proxy or an extension may let no WebSocket through${this.without("open the page without it")}`);
       this.socket = null;
-      this.heard.lost();
+      this.received.lost();
       setTimeout(() => this.connect(), AGAIN_MS);
     };
   }
@@ -44,13 +44,13 @@ export class Socket {
   }
 
   /** False where no person is there to receive it. */
-  say(line: string): boolean {
+  send(line: string): boolean {
     if (!this.socket || !this.open) return false;
     this.socket.send(line);
     return true;
   }
 
   private without(remedy: string): string {
-    return this.live ? `, by which a live run comes: ${remedy}.` : `; the recording is shown, but neither its film nor edits: ${remedy} for those.`;
+    return this.live ? `, by which a live run comes: ${remedy}.` : `; the recording is shown, but neither its video nor edits: ${remedy} for those.`;
   }
 }

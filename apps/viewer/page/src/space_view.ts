@@ -26,10 +26,10 @@ class Lines {
   private position: Float32Array;
   private colour: Float32Array;
   private used = 0;
-  constructor(private most: number) {
+  constructor(private capacity: number) {
     const geometry = new BufferGeometry();
-    this.position = new Float32Array(most * 6);
-    this.colour = new Float32Array(most * 8);
+    this.position = new Float32Array(capacity * 6);
+    this.colour = new Float32Array(capacity * 8);
     geometry.setAttribute("position", new BufferAttribute(this.position, 3).setUsage(DynamicDrawUsage));
     geometry.setAttribute("color", new BufferAttribute(this.colour, 4).setUsage(DynamicDrawUsage));
     this.object = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }));
@@ -39,7 +39,7 @@ class Lines {
     this.used = 0;
   }
   add(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number, rgb: ArrayLike<number>, a0: number, a1: number): void {
-    if (this.used === this.most) return;
+    if (this.used === this.capacity) return;
     this.position.set([x0, y0, z0, x1, y1, z1], 6 * this.used);
     this.colour.set([rgb[0], rgb[1], rgb[2], a0, rgb[0], rgb[1], rgb[2], a1], 8 * this.used);
     ++this.used;
@@ -125,7 +125,7 @@ export class SpaceView implements View {
   reset(): void {
     this.look(new Vector3(0.75, -1, 0.42));
   }
-  look_from(side: "top" | "front" | "side"): void {
+  view_from(side: "top" | "front" | "side"): void {
     this.look(side === "top" ? new Vector3(0, -0.001, 1) : side === "front" ? new Vector3(0, -1, 0.06) : new Vector3(1, 0, 0.06));
   }
   private look(direction: Vector3): void {
@@ -161,9 +161,9 @@ export class SpaceView implements View {
   }
 
   private place_markers(moment: TimeStep): Mark[] {
-    const { stretch, k } = moment;
-    const end = stretch.row_end[k];
-    const begin = stretch.begin(k);
+    const { chunk: chunk, k } = moment;
+    const end = chunk.row_end[k];
+    const begin = chunk.begin(k);
     if (end - begin > this.capacity) this.markers = this.make_markers(2 * (end - begin));
     const { matrix, colour, v } = this.scratch;
     const marks: Mark[] = [];
@@ -171,20 +171,20 @@ export class SpaceView implements View {
     const focal = this.overlay.height / 2 / Math.tan((this.camera.fov * Math.PI) / 360);
     let count = 0;
     for (let row = begin; row < end; ++row) {
-      const id = stretch.track[row];
+      const id = chunk.track[row];
       if (this.state.hidden.has(id)) continue;
       const selected = this.state.selected.has(id);
       const radius = scale * (selected || this.state.hover === id ? 1.5 : 1);
-      const z = stretch.z ? stretch.z[row] : 0;
-      matrix.makeScale(radius, radius, radius).setPosition(stretch.x[row], stretch.y[row], z);
+      const z = chunk.z ? chunk.z[row] : 0;
+      matrix.makeScale(radius, radius, radius).setPosition(chunk.x[row], chunk.y[row], z);
       this.markers.setMatrixAt(count, matrix);
       colour.setRGB(...this.colours.rgb(id), "srgb");
-      const how = stretch.provenance(row);
-      if (stretch.sigma) colour.lerp(this.background, 1 - certainty(stretch, row));
+      const how = chunk.provenance(row);
+      if (chunk.sigma) colour.lerp(this.background, 1 - certainty(chunk, row));
       if (how === FILLED || how === PREDICTED) colour.lerp(this.background, 0.6); // not seen at this instant
       if (this.state.selected.size > 0 && !selected) colour.lerp(this.background, 0.35);
       this.markers.setColorAt(count++, colour);
-      v.set(stretch.x[row], stretch.y[row], z);
+      v.set(chunk.x[row], chunk.y[row], z);
       const away = v.distanceTo(this.camera.position);
       v.project(this.camera);
       if (v.z > 1 || Math.abs(v.x) > 1 || Math.abs(v.y) > 1) continue;
@@ -205,17 +205,17 @@ export class SpaceView implements View {
       const now = time_of(moment);
       const before = new Map<number, [number, number, number, number]>();
       const chosen = this.state.selected.size > 0;
-      for (const { stretch, k } of time_steps_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
-        const time = stretch.time[k];
+      for (const { chunk: chunk, k } of time_steps_back(motion, moment, this.state.trail_s, TRAIL_STEPS)) {
+        const time = chunk.time[k];
         const alpha = 0.75 * (1 - (now - time) / this.state.trail_s);
-        for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
-          const id = stretch.track[row];
+        for (let row = chunk.begin(k); row < chunk.row_end[k]; ++row) {
+          const id = chunk.track[row];
           if (this.state.hidden.has(id) || (chosen && !this.state.selected.has(id))) continue;
-          const z = stretch.z ? stretch.z[row] : 0;
+          const z = chunk.z ? chunk.z[row] : 0;
           const last = before.get(id);
           if (last && last[3] - time < 0.25)
-            this.trails.add(stretch.x[row], stretch.y[row], z, last[0], last[1], last[2], this.linear(id), alpha, alpha + 0.02);
-          before.set(id, [stretch.x[row], stretch.y[row], z, time]);
+            this.trails.add(chunk.x[row], chunk.y[row], z, last[0], last[1], last[2], this.linear(id), alpha, alpha + 0.02);
+          before.set(id, [chunk.x[row], chunk.y[row], z, time]);
         }
       }
     }
@@ -231,12 +231,12 @@ export class SpaceView implements View {
   private place_bones(moment: TimeStep | null): void {
     this.bones.begin(this.camera, this.overlay.height);
     if (moment && this.scene && this.scene.bodies.length > 0) {
-      const { stretch, k } = moment;
+      const { chunk: chunk, k } = moment;
       const at = new Map<number, number>();
-      for (let p = stretch.pose_begin(k); p < stretch.pose_end[k]; ++p) at.set(stretch.body[p], p);
-      const origin = (p: number) => new Vector3(stretch.pose[0][p], stretch.pose[1][p], stretch.pose[2][p]);
-      const turned = (p: number, v: Vector3) =>
-        v.applyQuaternion(this.scratch.q.set(stretch.pose[3][p], stretch.pose[4][p], stretch.pose[5][p], stretch.pose[6][p])).add(origin(p));
+      for (let p = chunk.pose_begin(k); p < chunk.pose_end[k]; ++p) at.set(chunk.body[p], p);
+      const origin = (p: number) => new Vector3(chunk.pose[0][p], chunk.pose[1][p], chunk.pose[2][p]);
+      const rotated = (p: number, v: Vector3) =>
+        v.applyQuaternion(this.scratch.q.set(chunk.pose[3][p], chunk.pose[4][p], chunk.pose[5][p], chunk.pose[6][p])).add(origin(p));
       const bone = new Color(this.state.dark ? 0xb4bcc8 : 0x4a5563);
       const faint = bone.clone().lerp(this.background, 0.6);
       const axes = [0xff0000, 0x00aa22, 0x2255ff].map((colour) => new Color(colour));
@@ -244,14 +244,14 @@ export class SpaceView implements View {
       for (const body of this.scene.bodies) {
         const p = at.get(body.id);
         if (p === undefined) continue;
-        const colour = stretch.tracked[p] ? bone : faint;
+        const colour = chunk.tracked[p] ? bone : faint;
         const parent = body.parent === undefined ? undefined : at.get(body.parent);
         if (parent !== undefined) this.bones.add(origin(parent), origin(p), radius, colour);
-        if (body.end) this.bones.add(origin(p), turned(p, new Vector3(...body.end)), radius, colour);
+        if (body.end) this.bones.add(origin(p), rotated(p, new Vector3(...body.end)), radius, colour);
         if (body.skeleton !== "") continue;
-        for (const marker of body.markers) this.bones.add(origin(p), turned(p, new Vector3(...marker)), 0.3 * radius, colour);
+        for (const marker of body.markers) this.bones.add(origin(p), rotated(p, new Vector3(...marker)), 0.3 * radius, colour);
         for (let axis = 0; axis < 3; ++axis)
-          this.bones.add(origin(p), turned(p, new Vector3().setComponent(axis, AXIS_M)), 0.6 * radius, stretch.tracked[p] ? axes[axis] : axes[axis].clone().lerp(this.background, 0.6));
+          this.bones.add(origin(p), rotated(p, new Vector3().setComponent(axis, AXIS_M)), 0.6 * radius, chunk.tracked[p] ? axes[axis] : axes[axis].clone().lerp(this.background, 0.6));
       }
     }
     if (moment) this.place_keypoint_bones(moment);
@@ -261,17 +261,17 @@ export class SpaceView implements View {
   /** Between keypoints that are both here: as faint as the less certain of them. */
   private place_keypoint_bones(moment: TimeStep): void {
     if (this.keypoint_bones.length === 0) return;
-    const { stretch, k } = moment;
+    const { chunk: chunk, k } = moment;
     const rows = new Map<number, number>();
-    for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) rows.set(stretch.track[row], row);
-    const at = (row: number) => new Vector3(stretch.x[row], stretch.y[row], stretch.z ? stretch.z[row] : 0);
+    for (let row = chunk.begin(k); row < chunk.row_end[k]; ++row) rows.set(chunk.track[row], row);
+    const at = (row: number) => new Vector3(chunk.x[row], chunk.y[row], chunk.z ? chunk.z[row] : 0);
     const radius = 0.6 * this.room() * BONE_M;
     for (const [from, to] of this.keypoint_bones) {
       const a = rows.get(from);
       const b = rows.get(to);
       if (a === undefined || b === undefined || this.state.hidden.has(from) || this.state.hidden.has(to)) continue;
       const colour = new Color().setRGB(...this.colours.rgb(from), "srgb");
-      colour.lerp(this.background, 1 - Math.min(certainty(stretch, a), certainty(stretch, b)));
+      colour.lerp(this.background, 1 - Math.min(certainty(chunk, a), certainty(chunk, b)));
       this.bones.add(at(a), at(b), radius, colour);
     }
   }
@@ -279,17 +279,17 @@ export class SpaceView implements View {
   /** From each camera that saw a marker to it: of those that are selected, or of all. */
   private place_rays(moment: TimeStep | null): void {
     this.rays.begin();
-    if (moment && this.state.rays && moment.stretch.cameras) {
-      const { stretch, k } = moment;
+    if (moment && this.state.rays && moment.chunk.cameras) {
+      const { chunk: chunk, k } = moment;
       const centres = (this.scene?.cameras ?? []).map((camera) => camera.centre);
       const chosen = this.state.selected.size > 0;
-      for (let row = stretch.begin(k); row < stretch.row_end[k]; ++row) {
-        const id = stretch.track[row];
-        if (this.state.hidden.has(id) || (chosen && !this.state.selected.has(id)) || stretch.provenance(row) !== MEASURED) continue;
+      for (let row = chunk.begin(k); row < chunk.row_end[k]; ++row) {
+        const id = chunk.track[row];
+        if (this.state.hidden.has(id) || (chosen && !this.state.selected.has(id)) || chunk.provenance(row) !== MEASURED) continue;
         for (let camera = 0; camera < Math.min(32, centres.length); ++camera) {
           const centre = centres[camera];
-          if (!centre || !(stretch.cameras![row] & (1 << camera))) continue;
-          this.rays.add(centre[0], centre[1], centre[2], stretch.x[row], stretch.y[row], stretch.z![row], this.linear(id), 0.15, chosen ? 0.8 : 0.4);
+          if (!centre || !(chunk.cameras![row] & (1 << camera))) continue;
+          this.rays.add(centre[0], centre[1], centre[2], chunk.x[row], chunk.y[row], chunk.z![row], this.linear(id), 0.15, chosen ? 0.8 : 0.4);
         }
       }
     }

@@ -23,7 +23,7 @@ export class State {
   time = 0;
   playing = false;
   /** Live: the newest is shown. */
-  following = true;
+  stays_at_end = true;
   speed: Speed = 1;
   labels = true;
   trail_s = 1;

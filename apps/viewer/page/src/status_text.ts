@@ -22,12 +22,12 @@ const many = (count: number, word: string) => `${count} ${word}${count === 1 ? "
 
 export class Words {
   status: Status = {};
-  private told = 0;
+  private updated = 0;
 
   constructor(private motion: () => Motion, private colours: Colours, private latency: Latency) {}
 
   /** The scene is another one. */
-  tell(): void {
+  update(): void {
     const { scene } = this.motion();
     const live = scene.kind === "live";
     put(element("list_tab"), { space: "Markers", ground: "People", image: "Tracks" }[scene.frame]);
@@ -57,7 +57,7 @@ export class Words {
 
   /** At most as often as can be read. */
   live_facts(): void {
-    if (this.motion().scene.kind === "live" && performance.now() - this.told > 400) this.facts();
+    if (this.motion().scene.kind === "live" && performance.now() - this.updated > 400) this.facts();
   }
 
   private facts(): void {
@@ -77,7 +77,7 @@ export class Words {
       if (scene.warnings?.length) parts.push(many(scene.warnings.length, "warning"));
     }
     put(element("facts"), parts.join(" · "));
-    this.told = performance.now();
+    this.updated = performance.now();
   }
 
   about(): void {

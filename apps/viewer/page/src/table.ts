@@ -10,7 +10,7 @@ const ROW = 30; // px
 interface Entry {
   track: Track;
   name: string;
-  seen: number | null; // share
+  measured: number | null; // share
   gone: boolean; // of a live run
 }
 
@@ -61,18 +61,18 @@ export class Table {
   }
 
   /** Of a live run those who are gone are omitted after a while, but for who is selected or has a name. */
-  take(scene: Scene, motion: Motion, seen: (track: Track) => number | null): void {
+  take(scene: Scene, motion: Motion, measured: (track: Track) => number | null): void {
     const live = motion instanceof Live ? motion : null;
     const kept = ({ id, label }: Track) => !live || live.is_listed(id) || label !== "" || this.state.selected.has(id);
-    this.entries = scene.tracks.filter(kept).map((track) => ({ track, name: name_of(track, track.id), seen: seen(track), gone: live !== null && !live.is_there(track.id) }));
+    this.entries = scene.tracks.filter(kept).map((track) => ({ track, name: name_of(track, track.id), measured: measured(track), gone: live !== null && !live.is_there(track.id) }));
     this.sift();
   }
 
   private sift(): void {
-    const wanted = this.filter.value.trim().toLowerCase();
-    this.shown = this.entries.filter((entry) => wanted === "" || `${entry.name} ${entry.track.team}`.toLowerCase().includes(wanted));
+    const filter_text = this.filter.value.trim().toLowerCase();
+    this.shown = this.entries.filter((entry) => filter_text === "" || `${entry.name} ${entry.track.team}`.toLowerCase().includes(filter_text));
     const by_name = (a: Entry, b: Entry) => a.track.team.localeCompare(b.track.team) || a.name.localeCompare(b.name, undefined, { numeric: true });
-    const by_choice = this.by === "name" ? by_name : (a: Entry, b: Entry) => (a.seen ?? 0) - (b.seen ?? 0) || by_name(a, b);
+    const by_choice = this.by === "name" ? by_name : (a: Entry, b: Entry) => (a.measured ?? 0) - (b.measured ?? 0) || by_name(a, b);
     this.shown.sort((a, b) => Number(a.gone) - Number(b.gone) || by_choice(a, b));
     document.querySelector("#by_name")!.classList.toggle("on", this.by === "name");
     document.querySelector("#by_seen")!.classList.toggle("on", this.by === "seen");
@@ -95,9 +95,9 @@ export class Table {
 
   /** A row stays the same element while its track is in sight: a press that began on it ends on it, however often the list is drawn in the meantime. */
   private place(entries: Entry[], first: number): void {
-    const wanted = new Set(entries.map((entry) => entry.track.id));
+    const filter_text = new Set(entries.map((entry) => entry.track.id));
     for (const [id, row] of this.rows) {
-      if (wanted.has(id)) continue;
+      if (filter_text.has(id)) continue;
       row.element.remove();
       this.rows.delete(id);
     }
@@ -121,9 +121,9 @@ export class Table {
     if (row.name.textContent !== entry.name) row.name.textContent = entry.name;
     row.name.title = entry.track.team ? `${entry.name}, ${entry.track.team}` : entry.name;
     row.name.setAttribute("aria-pressed", `${selected.has(id)}`);
-    row.bar.hidden = entry.seen === null;
-    row.bar.style.width = `${(100 * (entry.seen ?? 0)).toFixed(1)}%`;
-    row.percent.textContent = entry.seen === null ? "" : entry.seen > 0.9995 ? "100" : (100 * entry.seen).toFixed(1);
+    row.bar.hidden = entry.measured === null;
+    row.bar.style.width = `${(100 * (entry.measured ?? 0)).toFixed(1)}%`;
+    row.percent.textContent = entry.measured === null ? "" : entry.measured > 0.9995 ? "100" : (100 * entry.measured).toFixed(1);
     row.eye.title = hidden.has(id) ? "Show" : "Hide";
     row.eye.setAttribute("aria-label", `${row.eye.title} ${entry.name}`);
   }
@@ -147,10 +147,10 @@ export class Table {
       element.classList.remove("hover");
       this.state.changed_hover();
     });
-    const share = document.createElement("span");
-    share.className = "share";
+    const fraction_cell = document.createElement("span");
+    fraction_cell.className = "share";
     const bar = document.createElement("i");
-    share.append(bar);
+    fraction_cell.append(bar);
     const percent = document.createElement("span");
     percent.className = "percent";
     const eye = document.createElement("button");
@@ -159,7 +159,7 @@ export class Table {
       if (!this.state.hidden.delete(id)) this.state.hidden.add(id);
       this.state.changed();
     });
-    element.append(swatch, name, share, percent, eye);
+    element.append(swatch, name, fraction_cell, percent, eye);
     return { element, swatch, name, bar, percent, eye };
   }
 }

@@ -37,7 +37,7 @@ export class Timeline {
     document.querySelector("#back")!.addEventListener("click", () => step(-1));
     document.querySelector("#forth")!.addEventListener("click", () => step(1));
     this.to_live.addEventListener("click", () => {
-      state.following = true;
+      state.stays_at_end = true;
       state.changed();
     });
     this.strip.addEventListener("pointerdown", (event) => {
@@ -54,7 +54,7 @@ export class Timeline {
     const { state } = this;
     const motion = this.motion();
     if (motion.scene.kind === "live") {
-      state.following = !state.following;
+      state.stays_at_end = !state.stays_at_end;
       state.playing = false;
     } else {
       state.playing = !state.playing;
@@ -75,31 +75,31 @@ export class Timeline {
     const { state } = this;
     const motion = this.motion();
     const live = motion.scene.kind === "live";
-    const running = live ? state.following : state.playing;
+    const running = live ? state.stays_at_end : state.playing;
     this.play.classList.toggle("running", running);
     if (this.ran !== running) {
       this.ran = running;
       this.play.title = running ? "Pause (space)" : "Play (space)";
       this.play.setAttribute("aria-label", running ? "Pause" : "Play");
     }
-    this.to_live.hidden = !live || state.following;
+    this.to_live.hidden = !live || state.stays_at_end;
     this.speed.hidden = live;
     put(this.now, live ? clock(state.time) : clock(state.time - motion.first));
-    put(this.total, live ? (state.following ? "live" : `${clock(motion.last - state.time)} behind`) : clock(motion.last - motion.first));
+    put(this.total, live ? (state.stays_at_end ? "live" : `${clock(motion.last - state.time)} behind`) : clock(motion.last - motion.first));
     this.draw_strip(motion);
   }
 
   private time_at(event: PointerEvent): number {
     const motion = this.motion();
     const rect = this.strip.getBoundingClientRect();
-    const share = Math.max(0, Math.min(1, (event.clientX - rect.left) / rect.width));
-    return motion.first + share * (motion.last - motion.first);
+    const fraction = Math.max(0, Math.min(1, (event.clientX - rect.left) / rect.width));
+    return motion.first + fraction * (motion.last - motion.first);
   }
 
   /** With Shift, where a take is edited, it marks a range of frames. */
   private scrub(event: PointerEvent): void {
     this.state.time = this.time_at(event);
-    this.state.following = false;
+    this.state.stays_at_end = false;
     if (this.marked_from !== null) this.state.range = range_between(this.motion(), this.marked_from, this.state.time);
     this.state.changed();
   }
@@ -157,11 +157,11 @@ export class Timeline {
         ++count[c];
       }
     }
-    let most = 1e-9;
-    for (let c = 0; c < columns; ++c) if (count[c]) most = Math.max(most, sum[c] / count[c]);
+    let highest = 1e-9;
+    for (let c = 0; c < columns; ++c) if (count[c]) highest = Math.max(highest, sum[c] / count[c]);
     const shape = new Path2D();
     for (let c = 0; c < columns; ++c) {
-      const tall = count[c] ? (0.78 * height * (sum[c] / count[c])) / most : 0;
+      const tall = count[c] ? (0.78 * height * (sum[c] / count[c])) / highest : 0;
       shape.rect(2 * c, height - 2 - tall, 2, tall + 2);
     }
     return shape;

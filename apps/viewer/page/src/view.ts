@@ -13,17 +13,17 @@ export interface View {
   /** Everything in sight again. */
   reset(): void;
   /** A preset, "top" or "front", where there are any. */
-  look_from?(side: "top" | "front" | "side"): void;
+  view_from?(side: "top" | "front" | "side"): void;
 }
 
 /** The instants of the last `seconds` before and with this one, the newest first, at most `most` of them. */
 export function time_steps_back(motion: Motion, from: TimeStep, seconds: number, most: number): TimeStep[] {
   const list = [from];
   const begin = time_of(from) - seconds;
-  const least = seconds / most;
+  const min_gap_s = seconds / most;
   let kept = time_of(from);
-  for (let at = motion.beside(from, -1); at && time_of(at) >= begin; at = motion.beside(at, -1)) {
-    if (kept - time_of(at) < least - 1e-9) continue;
+  for (let at = motion.neighbour(from, -1); at && time_of(at) >= begin; at = motion.neighbour(at, -1)) {
+    if (kept - time_of(at) < min_gap_s - 1e-9) continue;
     kept = time_of(at);
     list.push(at);
   }

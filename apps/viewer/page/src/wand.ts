@@ -33,7 +33,7 @@ interface Report {
 interface Waved {
   phase: "waving" | "computing" | "done" | "failed";
   /** Share of an image, views of a pair, and parts of an image. */
-  wanted: number;
+  required: number;
   needed: number;
   across: number;
   down: number;
@@ -74,13 +74,13 @@ class CameraCard {
 
   take(index: number, seen: Detected): void {
     this.seen = seen;
-    const { wanted, needed, shared, cameras } = this.waved();
+    const { required: required, needed, shared, cameras } = this.waved();
     // The bar is full at what is wanted.
-    this.bar.style.width = `${Math.min(100, (100 * seen.coverage) / wanted)}%`;
+    this.bar.style.width = `${Math.min(100, (100 * seen.coverage) / required)}%`;
     this.element.classList.toggle("enough", seen.covered);
     const gives = seen.state === "live" || seen.state === "back";
     if (!gives) put(this.words, `The camera is ${seen.state}`);
-    else put(this.words, seen.covered ? `Enough: ${percent(seen.coverage)} of its picture` : `${percent(seen.coverage)} of its picture; ${percent(wanted)} wanted`);
+    else put(this.words, seen.covered ? `Enough: ${percent(seen.coverage)} of its picture` : `${percent(seen.coverage)} of its picture; ${percent(required)} wanted`);
     const chips = (shared ?? [])
       .filter((pair) => pair.a === index || pair.b === index)
       .map((pair) => {
@@ -137,7 +137,7 @@ export class Wand {
   private grid = document.querySelector<HTMLElement>("#cameras")!;
   private arranged = false;
   private cards: CameraCard[] = [];
-  private waved: Waved = { phase: "waving", wanted: 0.3, needed: 200, across: 10, down: 8 };
+  private waved: Waved = { phase: "waving", required: 0.3, needed: 200, across: 10, down: 8 };
 
   constructor(private cameras: Cameras, say: (line: string) => void) {
     this.main.id = "wand";
@@ -234,12 +234,12 @@ export class Wand {
 
   private tell_floor(): void {
     const { ground } = this.waved;
-    const looking = ground?.phase === "looking";
-    this.set_ground.disabled = looking;
+    const observing = ground?.phase === "looking";
+    this.set_ground.disabled = observing;
     put(this.set_ground, ground?.phase === "set" ? "Set it again" : "Set the ground");
     this.floor.dataset.phase = ground?.phase ?? "";
     if (!ground) put(this.floor_words, "Lay the L-frame down, step back, and set the ground: its first marker becomes the origin, z is up.");
-    else if (looking) put(this.floor_words, "Looking at the L-frame for three seconds …");
+    else if (observing) put(this.floor_words, "Looking at the L-frame for three seconds …");
     else if (ground.phase === "set") put(this.floor_words, [`The ground is set; the L-frame fits to ${(ground.rms_mm ?? 0).toFixed(2)} mm. The rig file has it.`, ...(ground.warnings ?? [])].join(" "));
     else put(this.floor_words, `Not set: ${ground.why ?? ""}`);
   }

@@ -51,7 +51,7 @@ TEST(NetworkModel, SaysWhatItsFileSays) {
   EXPECT_FALSE(model.scale);
 }
 
-TEST(NetworkModel, WhatIsWrongInItsFileIsSaidWithItsLine) {
+TEST(NetworkModel, ReportsAnErrorOfItsFileWithTheLine) {
   EXPECT_EQ(refused_model("input = [300, 300]\n"), "model.toml:1: network is missing: the ONNX file, beside this one");
   EXPECT_EQ(refused_model("network = \"n.onnx\"\n"),
             "model.toml:1: input is missing: [width, height] in px of the image that the network wants");
