@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "marey/format/rig/rig_file.h"
-#include "marey/pipeline/people/track_ground.h"
+#include "marey/pipeline/people/ground/track_ground.h"
 #include "marey/pipeline/simulate/match_files.h"
 #include "marey/source/open_source.h"
 
@@ -50,15 +50,15 @@ void compare(const std::string& folder, cv::Size size) {
   match.seconds = kSeconds, match.boxes = false, match.videos = true;
   marey::pipeline::simulate::write_match(match, folder);
   const marey::Rig rig = marey::format::rig::read_rig(folder + "/rig.toml");
-  marey::pipeline::people::GroundOutput output;
+  marey::pipeline::people::ground::GroundOutput output;
   output.tracks = folder + "/out.csv";
-  marey::pipeline::people::PeopleOnGroundOptions options;
+  marey::pipeline::people::ground::PeopleOnGroundOptions options;
   options.pitch.emplace();
   double whole = std::numeric_limits<double>::infinity(), mog2 = whole, decode = whole, own_decode = whole;
   double frames = 0;
   for (int round = 0; round < kRounds; ++round) {
     whole = std::min(whole, seconds_of([&] {
-                       frames = static_cast<double>(marey::pipeline::people::track_ground(rig, output, options).frames);
+                       frames = static_cast<double>(marey::pipeline::people::ground::track_ground(rig, output, options).frames);
                      }));
     mog2 = std::min(mog2, seconds_of([&] { opencv_decode(rig.cameras[0].source, true); }));
     decode = std::min(decode, seconds_of([&] { opencv_decode(rig.cameras[0].source, false); }));

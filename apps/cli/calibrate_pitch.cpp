@@ -119,7 +119,7 @@ Json as_json(const pipeline::calibrate::PitchRun& run) {
   ClickErrors all;
   for (std::size_t i = 0; i < run.views.size(); ++i) cameras[run.cameras[i]] = camera_json(run, i, all);
   Json offsets = Json::object();
-  for (const pipeline::people::RigOffsets::Camera& camera : run.offsets.cameras) {
+  for (const pipeline::people::ground::RigOffsets::Camera& camera : run.offsets.cameras) {
     Json& entry = offsets[camera.name] = {{"verdict", calibrate::pitch::offset_verdict_name(camera.found.verdict)}};
     if (camera.found.verdict != calibrate::pitch::OffsetVerdict::found) continue;
     entry["offset_s"] = camera.offset_s;

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "marey/pipeline/people/track_ground.h"
+#include "marey/pipeline/people/ground/track_ground.h"
 
 namespace marey::cli {
 
 /// On standard output. `elapsed` in s.
-void print_json(const pipeline::people::GroundSummary& summary, const pipeline::people::GroundOutput& output, double elapsed);
+void print_json(const pipeline::people::ground::GroundSummary& summary, const pipeline::people::ground::GroundOutput& output, double elapsed);
 
 /// On standard error, so that tracks may go to standard output.
-void print_summary(const pipeline::people::GroundSummary& summary, const pipeline::people::GroundOutput& output, double elapsed);
+void print_summary(const pipeline::people::ground::GroundSummary& summary, const pipeline::people::ground::GroundOutput& output, double elapsed);
 
 }  // namespace marey::cli

@@ -156,7 +156,7 @@ void report_of_slots(const LiveCommand& command) {
 }
 
 /// The part of the ground that the page shows.
-viewer::LiveGround ground_of(const pipeline::people::PeopleOnGroundOptions& options) {
+viewer::LiveGround ground_of(const pipeline::people::ground::PeopleOnGroundOptions& options) {
   viewer::LiveGround ground{.pitch = options.pitch, .area = {}};
   for (const Vector<2>& corner : options.area) ground.area.emplace_back(corner.x(), corner.y(), 0);
   return ground;

@@ -31,8 +31,8 @@ void check_boxes(const GroundCommand& command, const std::string& camera) {
     throw WrongUsage("--output {}: mot is written, so its name ends in .txt; or name the format with --format", command.out);
 }
 
-pipeline::people::GroundOutput output_of(const GroundCommand& command) {
-  pipeline::people::GroundOutput output = command.job.output;
+pipeline::people::ground::GroundOutput output_of(const GroundCommand& command) {
+  pipeline::people::ground::GroundOutput output = command.job.output;
   output.tracks = command.out == "-" ? "/dev/stdout" : command.out;
   check_boxes(command, output.boxes_of);
   const std::string stem = std::filesystem::path(command.rig).stem().string();
@@ -55,19 +55,19 @@ pipeline::people::GroundOutput output_of(const GroundCommand& command) {
   return output;
 }
 
-bool is_written_whole(const pipeline::people::GroundOutput& output) {
+bool is_written_whole(const pipeline::people::ground::GroundOutput& output) {
   if (!output.boxes_of.empty()) return false;
   return format::format_named(output.format, format::Content::ground)->create == nullptr;
 }
 
 /// Formats that begin with what only the end gives are written from a take that is gone afterwards.
-pipeline::people::GroundSummary track_to(const Rig& rig, const pipeline::people::GroundOutput& output,
-                                         const pipeline::people::PeopleOnGroundOptions& options, const Hooks& hooks) {
-  if (!is_written_whole(output)) return pipeline::people::track_ground(rig, output, options, hooks);
-  pipeline::people::GroundOutput recorded = output;
+pipeline::people::ground::GroundSummary track_to(const Rig& rig, const pipeline::people::ground::GroundOutput& output,
+                                         const pipeline::people::ground::PeopleOnGroundOptions& options, const Hooks& hooks) {
+  if (!is_written_whole(output)) return pipeline::people::ground::track_ground(rig, output, options, hooks);
+  pipeline::people::ground::GroundOutput recorded = output;
   recorded.tracks = output.tracks + ".part.marey", recorded.format = "take";
   const TemporaryFile take(recorded.tracks);
-  pipeline::people::GroundSummary summary = pipeline::people::track_ground(rig, recorded, options, hooks);
+  pipeline::people::ground::GroundSummary summary = pipeline::people::ground::track_ground(rig, recorded, options, hooks);
   const StopScope keeps_partial_results{{}};  // of a run that was stopped too
   pipeline::take::ConvertOptions how;
   how.format = output.format;
@@ -80,13 +80,13 @@ pipeline::people::GroundSummary track_to(const Rig& rig, const pipeline::people:
 
 std::vector<std::string> ground_files(const GroundCommand& command) {
   std::vector<std::string> files;
-  const pipeline::people::GroundOutput output = output_of(command);
+  const pipeline::people::ground::GroundOutput output = output_of(command);
   if (command.out.empty()) files.push_back(output.tracks);
   if (const std::string second = format::file_next_to(output.tracks); !second.empty() && is_written_whole(output))
     files.push_back(second);
   std::error_code error;
   if (!std::filesystem::is_regular_file(command.rig, error)) return files;
-  const std::vector<std::string> overlays = pipeline::people::overlays_of(format::rig::read_rig(command.rig), command.job.output);
+  const std::vector<std::string> overlays = pipeline::people::ground::overlays_of(format::rig::read_rig(command.rig), command.job.output);
   files.insert(files.end(), overlays.begin(), overlays.end());
   return files;
 }
@@ -94,13 +94,13 @@ std::vector<std::string> ground_files(const GroundCommand& command) {
 void track_on_ground(GroundCommand command) {
   Rig rig = format::rig::read_rig(command.rig);
   set_sources(rig, command.sources);
-  const pipeline::people::GroundOutput output = output_of(command);
+  const pipeline::people::ground::GroundOutput output = output_of(command);
   command.job.rig_name = command.rig;
-  pipeline::people::PeopleOnGroundOptions options = resolved(command.job, rig);
+  pipeline::people::ground::PeopleOnGroundOptions options = resolved(command.job, rig);
   options.ptz = format::rig::read_ptz(command.rig);
   run_with_progress(
       command.quiet, [&](const Hooks& hooks) { return track_to(rig, output, options, hooks); },
-      [&](const pipeline::people::GroundSummary& summary, double elapsed) {
+      [&](const pipeline::people::ground::GroundSummary& summary, double elapsed) {
         if (command.json) {
           print_json(summary, output, elapsed);
         } else if (!command.quiet) {

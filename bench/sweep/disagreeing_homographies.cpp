@@ -28,8 +28,8 @@ void use_homographies(const std::string& folder, std::uint64_t seed) {
   file.finish();
 }
 
-pipeline::people::PeopleOnGroundOptions with(track::ground::GroundAssociation association, bool learns) {
-  pipeline::people::PeopleOnGroundOptions options;
+pipeline::people::ground::PeopleOnGroundOptions with(track::ground::GroundAssociation association, bool learns) {
+  pipeline::people::ground::PeopleOnGroundOptions options;
   options.pitch = geometry::PitchSize{};
   options.tracker.associate = association;
   options.learn.agreement = options.learn.walk = learns;

@@ -128,16 +128,16 @@ Disagreement true_disagreement(const std::vector<track::ground::GroundInstant>& 
   return {std::sqrt(std::max(0.0, lasting / count / 4)), std::sqrt(whole / count / 4)};
 }
 
-pipeline::people::PeopleOnGroundOptions live(const geometry::PitchSize& pitch) {
-  pipeline::people::PeopleOnGroundOptions options;
+pipeline::people::ground::PeopleOnGroundOptions live(const geometry::PitchSize& pitch) {
+  pipeline::people::ground::PeopleOnGroundOptions options;
   options.pitch = pitch;
   options.live = true;
   return options;
 }
 
 /// As the program has it for boxes.
-pipeline::people::PeopleOnGroundOptions offline(const geometry::PitchSize& pitch) {
-  pipeline::people::PeopleOnGroundOptions options;
+pipeline::people::ground::PeopleOnGroundOptions offline(const geometry::PitchSize& pitch) {
+  pipeline::people::ground::PeopleOnGroundOptions options;
   options.pitch = pitch;
   options.tracker.associate = track::ground::GroundAssociation::mht;
   options.learn.association = true;
@@ -168,12 +168,12 @@ void run(Scene scene, int first, int seeds, const std::string& only) {
     const ScratchFolder folder;
     scene.files.seed = static_cast<std::uint64_t>(seed);
     write_scene(scene, folder.path());
-    const auto row = [&](const std::string& name, const pipeline::people::PeopleOnGroundOptions& options) {
+    const auto row = [&](const std::string& name, const pipeline::people::ground::PeopleOnGroundOptions& options) {
       if (only.empty() || only == name) print_scores(seed, name, run_ours(folder.path(), options, kMaxDistance));
     };
     row("live", live(scene.files.cameras.pitch));
     row("offline", offline(scene.files.cameras.pitch));
-    pipeline::people::PeopleOnGroundOptions plain = offline(scene.files.cameras.pitch);
+    pipeline::people::ground::PeopleOnGroundOptions plain = offline(scene.files.cameras.pitch);
     plain.learn.agreement = false;
     row("offline, cameras not learned", plain);
     if (only.empty() || only == "learned") print_learned(folder.path());

@@ -14,7 +14,7 @@
 #include "marey/format/rig/rig_file.h"
 #include "marey/format/tracks/detections.h"
 #include "marey/pipeline/corridor/clock.h"
-#include "marey/pipeline/people/track_ground.h"
+#include "marey/pipeline/people/ground/track_ground.h"
 #include "marey/pipeline/take/evaluate_match.h"
 #include "marey/reconstruct/place_people.h"
 
@@ -114,11 +114,11 @@ void track_naively(double time, const std::vector<Vector<2>>& locations, std::ve
 
 }  // namespace
 
-GroundScores run_ours(const std::string& folder, const pipeline::people::PeopleOnGroundOptions& options, double farthest) {
+GroundScores run_ours(const std::string& folder, const pipeline::people::ground::PeopleOnGroundOptions& options, double farthest) {
   const Rig rig = format::rig::read_rig(folder + "/rig.toml");
-  pipeline::people::GroundOutput output;
+  pipeline::people::ground::GroundOutput output;
   output.tracks = folder + "/ours.csv";
-  pipeline::people::track_ground(rig, output, options);
+  pipeline::people::ground::track_ground(rig, output, options);
   return scores_of(folder, format::match::read_ground(output.tracks), farthest);
 }
 

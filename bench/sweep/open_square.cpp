@@ -20,10 +20,10 @@ void run(int seeds, double rate_hz) {
     scene.seed = static_cast<std::uint64_t>(seed);
     pipeline::simulate::write_square(scene, folder.path());
     print_scores(seed, "naive", run_naive(folder.path()));
-    pipeline::people::PeopleOnGroundOptions quick;
+    pipeline::people::ground::PeopleOnGroundOptions quick;
     quick.tracker.associate = track::ground::GroundAssociation::gnn;
     print_scores(seed, "gnn", run_ours(folder.path(), quick));
-    pipeline::people::PeopleOnGroundOptions late;
+    pipeline::people::ground::PeopleOnGroundOptions late;
     late.tracker.associate = track::ground::GroundAssociation::mht;
     late.tracker.window = 2;
     print_scores(seed, "mht", run_ours(folder.path(), late));

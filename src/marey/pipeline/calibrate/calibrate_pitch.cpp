@@ -151,18 +151,18 @@ void put_in_step(PitchRun& run, const PitchRunOptions& options, const Hooks& hoo
   if (options.synced) {
     for (RigCamera& camera : run.rig.cameras) camera.offset_s = camera.offset_s.value_or(0);
   }
-  if (!people::lacks_offsets(run.rig)) return;
+  if (!people::ground::lacks_offsets(run.rig)) return;
   // A pitch whose corner is elsewhere has no name in the rig yet: then every person counts.
   const bool at_origin = run.calibration.corner.norm() < 0.01;
   const reconstruct::GroundArea area(run.rig.ground_from_world, at_origin ? std::optional(options.pitch.size) : std::nullopt,
                                      kMargin);
   try {
-    run.offsets = people::find_rig_offsets(run.rig, area, {}, hooks);
+    run.offsets = people::ground::find_rig_offsets(run.rig, area, {}, hooks);
   } catch (const Error& error) {
     run.warnings.push_back(fmt::format("when cameras were started was not searched for: {}", error.what()));
     return;
   }
-  people::enter_offsets(run.rig, run.offsets);
+  people::ground::enter_offsets(run.rig, run.offsets);
   run.warnings.insert(run.warnings.end(), run.offsets.warnings.begin(), run.offsets.warnings.end());
 }
 

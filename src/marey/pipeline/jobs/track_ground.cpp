@@ -27,7 +27,7 @@ void check_ground(const TrackGround& job) {
 }
 
 /// A margin belongs to the edge of something.
-void set_part(const TrackGround& job, const Rig& rig, people::PeopleOnGroundOptions& options) {
+void set_part(const TrackGround& job, const Rig& rig, people::ground::PeopleOnGroundOptions& options) {
   const GroundPart& ground = job.ground;
   if (!ground.area.empty()) {
     options.area = parse_area(ground.area);
@@ -43,7 +43,7 @@ void set_part(const TrackGround& job, const Rig& rig, people::PeopleOnGroundOpti
   options.margin = ground.margin.value_or(options.margin);
 }
 
-void set_association(const TrackGround& job, const Rig& rig, people::PeopleOnGroundOptions& options) {
+void set_association(const TrackGround& job, const Rig& rig, people::ground::PeopleOnGroundOptions& options) {
   const bool bramble = job.ground.association == kBramble;
   if (bramble) options.bramble.emplace();
   const bool chosen = !job.ground.association.empty();
@@ -115,9 +115,9 @@ Table table_of(TrackGround& job) {
   return table;
 }
 
-people::PeopleOnGroundOptions resolved(const TrackGround& job, const Rig& rig) {
+people::ground::PeopleOnGroundOptions resolved(const TrackGround& job, const Rig& rig) {
   check_ground(job);
-  people::PeopleOnGroundOptions options = job.options;
+  people::ground::PeopleOnGroundOptions options = job.options;
   options.detector = detector_of(job.detection, false, "--ground");
   if (!job.filter.empty()) options.tracker.filter = filter::filter_for_people_on_ground(job.filter);
   if (job.own_filter) options.tracker.filter = *job.own_filter;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "marey/pipeline/jobs/detection_rows.h"
-#include "marey/pipeline/people/track_ground.h"
+#include "marey/pipeline/people/ground/track_ground.h"
 
 namespace marey::pipeline::jobs {
 
@@ -21,13 +21,13 @@ void add_ground_rows(Table& table, GroundPart& ground);
 
 struct TrackGround {
   std::string rig_name = {};                             ///< for messages
-  people::GroundOutput output = {};                      ///< `tracks` is the front end's
+  people::ground::GroundOutput output = {};                      ///< `tracks` is the front end's
   std::string filter = {};                               ///< by name; empty: the default one, whose noise is learned
   std::optional<filter::FilterOptions> own_filter = {};  ///< of a caller's, in place of a named one
   PeopleDetection detection = {};
   GroundPart ground = {};
   bool ball = false;
-  people::PeopleOnGroundOptions options = {};  ///< rows without dependent defaults are bound to these
+  people::ground::PeopleOnGroundOptions options = {};  ///< rows without dependent defaults are bound to these
 };
 
 Table table_of(TrackGround& job);
@@ -36,6 +36,6 @@ Table table_of(TrackGround& job);
 /// Association: gnn if `live`, which cannot wait for later decisions, otherwise mht, replaced by gnn if the recording has
 /// detections alone and its cameras agree. A rig that was calibrated on a pitch has a pitch of the standard size unless a size or
 /// an area was given. Throws WrongOption for options that exclude each other.
-people::PeopleOnGroundOptions resolved(const TrackGround& job, const Rig& rig);
+people::ground::PeopleOnGroundOptions resolved(const TrackGround& job, const Rig& rig);
 
 }  // namespace marey::pipeline::jobs

@@ -76,7 +76,7 @@ std::unique_ptr<corridor::Stage> stage_of(LiveJob job, const std::vector<corrido
       return markers::with_naming(people::people_in_image(feeds.front(), options.people), options.naming);
     case LiveJob::people_on_ground:
       options.on_ground.live = true;
-      return markers::with_naming(people::people_on_ground(feeds, rig, options.on_ground), options.naming);
+      return markers::with_naming(people::ground::people_on_ground(feeds, rig, options.on_ground), options.naming);
     case LiveJob::keypoints_in_space: {
       auto stage = markers::with_naming(keypoints::keypoints_live(rig, rate_hz, options.keypoints), options.naming);
       if (options.space.skeleton == nullptr) return stage;

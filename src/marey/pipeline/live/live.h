@@ -15,7 +15,7 @@
 #include "marey/pipeline/markers/markers_in_space.h"
 #include "marey/pipeline/markers/track_naming.h"
 #include "marey/pipeline/people/image_stage.h"
-#include "marey/pipeline/people/people_on_ground.h"
+#include "marey/pipeline/people/ground/people_on_ground.h"
 
 namespace marey::pipeline::live {
 
@@ -33,7 +33,7 @@ struct LiveOptions {
   markers::MarkersInSpaceOptions space;
   markers::ImageMarkerOptions markers;
   people::ImagePeopleOptions people;
-  people::PeopleOnGroundOptions on_ground;
+  people::ground::PeopleOnGroundOptions on_ground;
   keypoints::KeypointsLiveOptions keypoints;  ///< of several cameras; of one: `people.keypoints`
   source::LivePolicy policy = {.time = nullptr, .late_s = 0.05, .stalled_s = 0.5, .lost_s = 5};  ///< without a time: the steady one
   std::shared_ptr<CameraSettings> camera_settings =
