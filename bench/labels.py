@@ -50,7 +50,7 @@ def strip(points, options, chance):
     for label, places in sorted(points.items()):
         hidden, piece = set(), {}
         for frame in frames:
-            if chance.random() < options.hidden / options.gap:
+            if chance.random() < options.max_occlusion / options.gap:
                 hidden.update(range(frame, frame + chance.randint(1, 2 * options.gap - 1)))
         for frame in frames:
             if frame in hidden or frame not in places:
