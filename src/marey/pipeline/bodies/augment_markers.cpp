@@ -70,7 +70,7 @@ Vector<2> walking_at(const AugmenterRun& run, std::size_t step) {
   return moved.norm() < kMinWalk_m ? Vector<2>(Vector<2>::Zero()) : moved;
 }
 
-/// What is known at one step: markers from the middle of the hips, angles by name.
+/// The result at one step: markers from the middle of the hips, angles by name.
 struct StepResult {
   AugmentedStep::Markers offsets;
   std::array<Matrix<3>, kAugmentedMarkers> covariances;

@@ -24,7 +24,7 @@ struct AugmentOptions {
 struct AugmentedAngle {
   std::string name;                               ///< "left_hip_flexion", as `analyse::gait::angle_names` has it
   std::vector<std::optional<double>> values;      ///< rad
-  std::vector<std::optional<double>> deviations;  ///< rad, one standard deviation; nothing where keypoints have no covariance
+  std::vector<std::optional<double>> deviations;  ///< rad, one standard deviation; nothing if keypoints have no covariance
 };
 
 struct AugmentedPerson {

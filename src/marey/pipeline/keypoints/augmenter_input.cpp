@@ -83,12 +83,12 @@ class PersonPoints {
     } else if (blaze_) {
       move_hips(step, {0, kBlazeHipInwards_m, kBlazeHipDown_m});
     }
-    if (!small_toes_) place_small_toes(step);
+    if (!small_toes_) add_small_toes(step);
     return step;
   }
 
  private:
-  /// By so much ahead, outwards and up along the trunk.
+  /// By this vector: ahead, outwards and up along the trunk.
   static void move_hips(AugmenterStep& step, const Vector<3>& by) {
     Vector<3>&right = step.position[kSides * kHipPoint], &left = step.position[kSides * kHipPoint + 1];
     const Vector<3> trunk = step.position[0] + step.position[1] - right - left, across = (left - right).normalized();
@@ -99,7 +99,7 @@ class PersonPoints {
     left += alike + by.y() * across;
   }
 
-  static void place_small_toes(AugmenterStep& step) {
+  static void add_small_toes(AugmenterStep& step) {
     for (std::size_t side = 0; side < kSides; ++side) {
       const auto at = [&](std::size_t point) -> const Vector<3>& { return step.position[kSides * point + side]; };
       const Vector<3> foot = at(kBigToePoint) - at(kHeelPoint);

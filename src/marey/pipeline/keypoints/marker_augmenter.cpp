@@ -20,7 +20,7 @@ namespace {
 using detect::network::LstmNetwork;
 
 constexpr std::size_t kHeadings = 8;           // numerical: in steps of 45°
-constexpr std::size_t kDraws = 2 * kHeadings;  // numerical: a deviation of so many is known to 18 %
+constexpr std::size_t kDraws = 2 * kHeadings;  // numerical: a deviation of 16 values is known to 18 %
 constexpr std::size_t kStepsAtOnce = 128;      // numerical: bounds memory
 // Errors of simulated keypoints in space: bench/tuning.md.
 constexpr double kLastingFraction = 0.53;                     // of their variance that stays over seconds: a point's bias
@@ -93,7 +93,7 @@ double facing_of(const AugmenterRun& run) {
   return sum.norm() > 0 ? std::atan2(sum.y(), sum.x()) : 0;
 }
 
-/// Errors of keypoints: a part that stays, and one that goes on from step to step.
+/// Errors of keypoints: a part that stays, and one that changes from step to step.
 class DrawnErrors {
  public:
   DrawnErrors(std::size_t draws, std::uint64_t seed) : random_(seed), lasting_(draws), passing_(draws) {
@@ -137,7 +137,7 @@ class DrawnErrors {
 class Question {
  public:
   Question(const AugmenterPerson& person, double turn)
-      : person_(person), turned_(Eigen::AngleAxisd(turn, Vector<3>::UnitZ()).toRotationMatrix()) {}
+      : person_(person), rotation_(Eigen::AngleAxisd(turn, Vector<3>::UnitZ()).toRotationMatrix()) {}
 
   void legs(const AugmenterStep& step, Eigen::Ref<Eigen::VectorXf> column) const {
     Filler fill{.question = *this, .hips = hips_of(step), .column = column, .at = 0};
@@ -157,7 +157,7 @@ class Question {
   /// Back from a network's answer.
   Vector<3> position(const Eigen::Vector3f& answer, const Vector<3>& hips) const {
     const Vector<3> made = person_.height_m * answer.cast<double>();
-    return turned_.transpose() * Vector<3>(made.x(), -made.z(), made.y()) + hips;
+    return rotation_.transpose() * Vector<3>(made.x(), -made.z(), made.y()) + hips;
   }
 
  private:
@@ -168,7 +168,7 @@ class Question {
     Eigen::Index at;
 
     void point(const Vector<3>& location) {
-      const Vector<3> from = question.turned_ * (location - hips) / question.person_.height_m;
+      const Vector<3> from = question.rotation_ * (location - hips) / question.person_.height_m;
       column.segment<3>(at) = Vector<3>(from.x(), from.z(), -from.y()).cast<float>();
       at += 3;
     }
@@ -179,7 +179,7 @@ class Question {
   };
 
   AugmenterPerson person_;
-  Matrix<3> turned_;
+  Matrix<3> rotation_;
 };
 
 /// The sequences that the networks are asked: the motion in all headings, then the same with drawn errors; a column a step and
@@ -198,17 +198,17 @@ class Sequences {
   const Eigen::MatrixXf& arms() const { return hands_; }
 
   /// In the place of those before.
-  void ask(std::span<const AugmenterStep> steps) {
+  void set_inputs(std::span<const AugmenterStep> steps) {
     const auto columns = static_cast<Eigen::Index>(steps.size() * size());
     legs_.resize(kLegFeatures, columns);
     hands_.resize(kArmFeatures, arms_ ? columns : 0);
-    asked_.clear();
+    inputs_.clear();
     for (const AugmenterStep& step : steps) {
       for (std::size_t s = 0; s < size(); ++s) {
-        const auto column = static_cast<Eigen::Index>(asked_.size());
-        asked_.push_back(s < kHeadings ? step : errors_.drawn(step, s - kHeadings));
-        questions_[s].legs(asked_.back(), legs_.col(column));
-        if (arms_) questions_[s].arms(asked_.back(), hands_.col(column));
+        const auto column = static_cast<Eigen::Index>(inputs_.size());
+        inputs_.push_back(s < kHeadings ? step : errors_.drawn(step, s - kHeadings));
+        questions_[s].legs(inputs_.back(), legs_.col(column));
+        if (arms_) questions_[s].arms(inputs_.back(), hands_.col(column));
       }
       errors_.advance();
     }
@@ -218,7 +218,7 @@ class Sequences {
   AugmentedStep answer(std::size_t step, const Eigen::MatrixXf& legs, const Eigen::MatrixXf& arms) const {
     AugmentedStep made;
     made.mean.fill(Vector<3>::Zero());
-    made.shoulders = {asked_[step * size()].position[0], asked_[step * size()].position[1]};
+    made.shoulders = {inputs_[step * size()].position[0], inputs_[step * size()].position[1]};
     for (std::size_t s = 0; s < size(); ++s) {
       const std::size_t column = step * size() + s;
       const AugmentedStep::Markers markers = markers_at(column, legs, arms);
@@ -227,7 +227,7 @@ class Sequences {
         continue;
       }
       made.draws.push_back(markers);
-      made.drawn_shoulders.push_back({asked_[column].position[0], asked_[column].position[1]});
+      made.drawn_shoulders.push_back({inputs_[column].position[0], inputs_[column].position[1]});
     }
     return made;
   }
@@ -236,7 +236,7 @@ class Sequences {
   AugmentedStep::Markers markers_at(std::size_t column, const Eigen::MatrixXf& legs, const Eigen::MatrixXf& arms) const {
     AugmentedStep::Markers markers;
     markers.fill(Vector<3>::Zero());
-    const Vector<3> hips = hips_of(asked_[column]);
+    const Vector<3> hips = hips_of(inputs_[column]);
     for (std::size_t m = 0; m < (arms_ ? kAugmentedMarkers : kLegMarkers); ++m) {
       const bool leg = m < kLegMarkers;
       const auto row = static_cast<Eigen::Index>(3 * (leg ? m : m - kLegMarkers));
@@ -250,7 +250,7 @@ class Sequences {
   std::size_t draws_;
   DrawnErrors errors_;
   std::vector<Question> questions_;
-  std::vector<AugmenterStep> asked_;
+  std::vector<AugmenterStep> inputs_;
   Eigen::MatrixXf legs_, hands_;
 };
 
@@ -273,7 +273,7 @@ void MarkerAugmenter::augment(const AugmenterRun& run, const AugmenterPerson& pe
   const std::span<const AugmenterStep> all(run.steps);
   for (std::size_t first = 0; first < all.size(); first += kStepsAtOnce) {
     const auto part = all.subspan(first, std::min(kStepsAtOnce, all.size() - first));
-    sequences.ask(part);
+    sequences.set_inputs(part);
     const Eigen::MatrixXf leg_markers = lower_.run(sequences.legs(), legs);
     const Eigen::MatrixXf arm_markers = arms ? upper_.run(sequences.arms(), hands) : Eigen::MatrixXf();
     for (std::size_t k = 0; k < part.size(); ++k) take(first + k, sequences.answer(k, leg_markers, arm_markers));

@@ -37,7 +37,7 @@ struct AugmentedStep {
 
   Markers mean;
   Shoulders shoulders;
-  std::vector<Markers> draws;  ///< empty where the keypoints have no covariance
+  std::vector<Markers> draws;  ///< empty if the keypoints have no covariance
   std::vector<Shoulders> drawn_shoulders;
 };
 
