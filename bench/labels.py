@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """`marey label` on recordings whose names are known: taken away, 5 % hidden in gaps, tracks broken there, 5 % ghosts.
 
-Usage: labels.py MAREY DATA [--subjects HC002D,...] [--max-occlusion 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live]
+Usage: labels.py MAREY DATA [--subjects HC002D,...] [--max-occlusion 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live] [--other-sets]
 
 DATA is the folder that tests call MAREY_DATA. For each child of gait_children the walk straight on is named by a set learned from its turn, and
 by one from its static trial; with --unseen also by one from the other children's walks and turns, scaled. Prints a Markdown table: right and wrong (ghosts
 with a name among them), % of the points that belong to the set; the rest has no name. With --live the points are named within the frame too
 (build/release/bench/live_labels): of those frames that come after the first with a name. The last column is a naive peer, which knows the true names of the first
-frame and hands each on to the nearest point within 50 mm. The labels of HC038A's wrists are exchanged between its turn and its walk in the files themselves.
+frame and hands each on to the nearest point within 50 mm. With --other-sets another table: the set that one person taught names another one's recording, each child's turn the others' walks, and both takes of
+vicon_skeleton; mean over the recordings, how many sets were said not to fit, and the same of those that were not. The labels of HC038A's wrists are exchanged between its turn and its walk in the files themselves.
 """
 import argparse
 import csv
@@ -50,7 +51,7 @@ def strip(points, options, chance):
     for label, places in sorted(points.items()):
         hidden, piece = set(), {}
         for frame in frames:
-            if chance.random() < options.hidden / options.gap:
+            if chance.random() < options.max_occlusion / options.gap:
                 hidden.update(range(frame, frame + chance.randint(1, 2 * options.gap - 1)))
         for frame in frames:
             if frame in hidden or frame not in places:
@@ -99,6 +100,48 @@ def label(marey, train, tracks, truth, work, scaled=False):
     if done.returncode != 0:
         return "none: " + done.stderr.strip().splitlines()[-1].rpartition(": ")[2]
     return assess(rows_of(work / "named.csv"), truth, known)
+
+
+def label_by_other(marey, learned, tracks, truth, known, work):
+    """Right and wrong, %, and whether the set is said not to fit."""
+    write(work / "bare.csv", tracks, 100)
+    done = subprocess.run([marey, "label", work / "bare.csv", "--marker-set", learned, "-o", work / "named.csv", "--json"], capture_output=True, text=True)
+    if done.returncode != 0:
+        return 0.0, 0.0, True
+    right, wrong = (float(value) for value in assess(rows_of(work / "named.csv"), truth, known).split(", "))
+    return right, wrong, "not fit" in done.stderr
+
+
+def other_sets(options, people, work):
+    """people: by name what teaches, and what is named."""
+    found = []
+    for teacher, (lesson, _) in people.items():
+        write(work / "lesson.csv", sorted(lesson.items()), 100)
+        subprocess.run([options.marey, "label", "learn", work / "lesson.csv", "--markers", ",".join(sorted(lesson)), "-o", work / "other.toml", "-q"], check=True, capture_output=True)
+        for other, (_, walk) in people.items():
+            if other != teacher:
+                tracks, truth = strip(walk, options, random.Random(f"{options.seed} {other}"))
+                found.append((teacher, other, *label_by_other(options.marey, work / "other.toml", tracks, truth, set(lesson), work)))
+    return found
+
+
+def print_other_sets(options, name, people, work):
+    found = other_sets(options, people, work)
+    trusted = [row for row in found if not row[4]]
+    mean = lambda rows, i: f"{sum(row[i] for row in rows) / len(rows):.2f}" if rows else "–"
+    print_row([name, str(len(found)), f"{mean(found, 2)}, {mean(found, 3)}", str(len(found) - len(trusted)), f"{mean(trusted, 2)}, {mean(trusted, 3)}"])
+
+
+def all_labels(marey, file, work):
+    """Every label of a C3D file."""
+    out = work / (file.stem + "_all.csv")
+    subprocess.run([marey, "convert", file, out, "-q"], check=True, capture_output=True)
+    points = {}
+    with open(out, newline="") as rows:
+        for row in csv.DictReader(rows):
+            if row["state"] in ("", "measured"):
+                points.setdefault(row["label"].rpartition(":")[2], {})[int(row["frame"])] = tuple(round(float(row[axis]), 6) for axis in "xyz")
+    return points
 
 
 def rows_of(file):
@@ -151,6 +194,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--unseen", action="store_true")
     parser.add_argument("--live", action="store_true")
+    parser.add_argument("--other-sets", action="store_true")
     options = parser.parse_args()
     work = pathlib.Path(tempfile.mkdtemp(prefix="marey_labels_"))
     folder = options.data / "gait_children"
@@ -159,6 +203,13 @@ def main():
     def take(subject, kind):
         return read(options.marey, next((folder / subject).glob(kind + "_*.c3d")), work)
 
+    if options.other_sets:
+        print_row(["whose sets", "recordings", "right, wrong", "said not to fit", "right, wrong of the others"])
+        print_row(["---"] * 5)
+        print_other_sets(options, "children", {subject: (take(subject, "turn"), take(subject, "straight")) for subject in subjects}, work)
+        two = [all_labels(options.marey, options.data / "vicon_skeleton" / name, work) for name in ("nick_freeform_001.c3d", "squat.c3d")]
+        print_other_sets(options, "vicon_skeleton", {str(i): (take, take) for i, take in enumerate(two)}, work)
+        return
     titles = ["subject", "its turn", "its static trial"]
     if options.live:
         titles = ["subject", "its turn", "its turn, live", "its static trial", "its static trial, live"]

@@ -17,6 +17,7 @@ void add_reconstruct(Command& program);
 void add_solve(Command& program);
 void add_gait(Command& program);
 void add_moments(Command& program);
+void add_augment(Command& program);
 void add_convert(Command& program);
 void add_info(Command& program);
 void add_edit(Command& program);

@@ -36,6 +36,7 @@ int run_program(int argc, char** argv) {
   add_label(root);
   add_gait(root);
   add_moments(root);
+  add_augment(root);
   add_experiment(root);
   return program.run(argc, argv);
 }

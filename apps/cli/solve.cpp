@@ -95,6 +95,7 @@ void print_solved(const std::string& recording, const SolveSummary& summary, con
   for (const pipeline::bodies::FoundJoint& joint : summary.joints) fmt::print(stderr, "{}\n", joint.stated);
   if (summary.empty > 0) fmt::print(stderr, "{} frames have none of the markers; the pose is held there\n", summary.empty);
   if (summary.starts > 1) fmt::print(stderr, "lost and found again: {} times\n", summary.starts - 1);
+  if (!summary.unused.empty()) fmt::print(stderr, "of the model, without effect on the pose: {}\n", summary.unused);
   if (!summary.not_recorded.empty())
     fmt::print(stderr, "the skeleton's markers that are not in the recording: {}\n", joined(summary.not_recorded, 8));
   if (!summary.not_known.empty()) fmt::print(stderr, "labels that the skeleton does not have: {}\n", joined(summary.not_known, 8));
@@ -140,6 +141,7 @@ Json as_json(const SolveSummary& summary, const std::vector<std::string>& output
           {"markers", markers},
           {"coordinates", coordinates},
           {"joints", joints},
+          {"unused", summary.unused.empty() ? Json() : Json(summary.unused)},
           {"not_recorded", summary.not_recorded},
           {"not_known", summary.not_known},
           {"outputs", outputs},

@@ -121,6 +121,16 @@ class GaitReport(unittest.TestCase):
         self.assertEqual(len([warning for warning in said["warnings"] if "omitted of the reference" in warning]), 1)
         self.assertIn("broken.c3d", done.stderr)
 
+    def test_the_walker_in_the_group_is_warned_of(self):
+        """In a folder of the group, or as a copy of one of its files; not where another person walks."""
+        group = self.copied("with_walker", self.children[1])
+        said = self.marey("gait", group / self.children[1].name / next(self.children[1].glob("straight_*.c3d")).name, "--reference", group).stderr
+        self.assertIn(f"the walker is {self.children[1].name} of", said)
+        copy = self.folder / "renamed.c3d"
+        shutil.copy(next(self.children[1].glob("straight_*.c3d")), copy)
+        self.assertIn(f"the walker is {self.children[1].name} of", self.marey("gait", copy, "--reference", group).stderr)
+        self.assertNotIn("the walker is", self.gait("--reference", group).stderr)
+
     def test_a_group_of_standing_people(self):
         child = self.children[1]
         (self.folder / "standing_group" / child.name).mkdir(parents=True)

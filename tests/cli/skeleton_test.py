@@ -83,8 +83,10 @@ class Skeleton(unittest.TestCase):
         self.assertIn("walk.trc: the skeleton subject01, solved from 31 markers in 73 frames", done.stderr)
         self.assertIn("mm RMS", done.stderr)
         self.assertIn("not observed, no marker shows them to 10°: mtp_angle_r, mtp_angle_l", done.stderr)
+        self.assertIn("of the model, without effect on the pose: 54 muscles", done.stderr)
         summary = json.loads(self.marey("solve", "walk.trc", "--skeleton", "model.osim", "-o", "walk.mot", "--json").stdout)
         self.assertEqual(summary["frames"], 73)
+        self.assertIn("54 muscles", summary["unused"])
         self.assertLess(summary["rms_mm"], 0.05)
 
     def test_the_same_bytes_again(self):
@@ -277,6 +279,12 @@ class Skeleton(unittest.TestCase):
         other = self.marey(*solve, "--calibration-take", models / "subject04/markers.trc").stderr
         self.assertIn("another person, or markers that were put on again? A calibration is of one", other)
         self.assertNotIn("another person", self.marey(*solve, "--calibration-take", models / "subject01/markers.trc").stderr)
+
+    def test_a_mass_that_is_no_persons(self):
+        models = DATA / "arnold_synthetic"
+        solve = ("solve", models / "subject01/markers.trc", "--up", "y", "--skeleton", models / "unscaled_generic.osim", "--calibrate", "--write-skeleton", "p.osim", "-o", "a.mot", "-q")
+        self.assertIn("is it in kilograms?", self.marey(*solve, "--mass", 17).stderr)
+        self.assertNotIn("is it in kilograms?", self.marey(*solve, "--mass", 72.8).stderr)
 
     def test_gait_of_identify_stands_is_refused(self):
         done = self.marey("gait", "standing.c3d", code=1)

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "marey/analyse/gait/segment_axes.h"
+
 namespace marey::analyse::gait {
 namespace {
 
@@ -24,19 +26,6 @@ std::optional<Vector<3>> location(const MarkerPositions& markers, Side side, std
 std::optional<Vector<3>> middle(const std::optional<Vector<3>>& a, const std::optional<Vector<3>>& b) {
   if (!a || !b) return a ? a : b;
   return Vector<3>(0.5 * (*a + *b));
-}
-
-/// The frame whose first axis is along `first`, and whose third is perpendicular to both.
-std::optional<Matrix<3>> axes_from(int first_axis, const Vector<3>& first, int second_axis, const Vector<3>& second) {
-  const int third_axis = 3 - first_axis - second_axis;
-  const double hand = (second_axis - first_axis + 3) % 3 == 1 ? 1 : -1;
-  const Vector<3> a = first.normalized(), c = hand * a.cross(second);
-  if (!(first.norm() > 1e-6) || !(c.norm() > 1e-6)) return std::nullopt;
-  Matrix<3> axes;
-  axes.col(first_axis) = a;
-  axes.col(third_axis) = c.normalized();
-  axes.col(second_axis) = hand * axes.col(third_axis).cross(a);
-  return axes;
 }
 
 /// The joint's centre below `above`: `offset` from the marker on its outside, with a right angle there, in the plane of a third

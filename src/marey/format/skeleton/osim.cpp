@@ -59,6 +59,7 @@ class OsimModel {
         fail(fmt::format("{} follows from a coordinate that itself follows from another", shown(coordinate.name)));
     }
     for (const pugi::xml_node marker : model_.child("MarkerSet").child("objects").children("Marker")) add_marker(marker);
+    note_unused();
     return std::move(file_);
   }
 
@@ -350,6 +351,26 @@ class OsimModel {
     const CoordinateFunction function =
         function_of(node.child("coupled_coordinates_function"), true).times(number_in(node.child("scale_factor"), 1));
     file_.skeleton.coordinates[static_cast<std::size_t>(*dependent)].coupling = Coordinate::Coupling{*to, function};
+  }
+
+  /// Muscles, other forces and the surfaces that muscles wrap around.
+  void note_unused() {
+    std::size_t muscles = 0, forces = 0, surfaces = 0;
+    for (const pugi::xml_node force : model_.child("ForceSet").child("objects").children()) {
+      if (force.type() == pugi::node_element) ++(std::strstr(force.name(), "Muscle") != nullptr ? muscles : forces);
+    }
+    for (const pugi::xml_node body : model_.child("BodySet").child("objects").children("Body")) {
+      for (const char* name : {"WrapObjectSet", "WrapObjects"}) {
+        for (const pugi::xml_node surface : body.child(name).child("objects").children())
+          surfaces += surface.type() == pugi::node_element ? 1 : 0;
+      }
+    }
+    const auto add = [&](std::size_t count, const char* one, const char* many) {
+      if (count > 0) file_.unused += fmt::format("{}{} {}", file_.unused.empty() ? "" : ", ", count, count == 1 ? one : many);
+    };
+    add(muscles, "muscle", "muscles");
+    add(forces, "other force", "other forces");
+    add(surfaces, "wrapping surface", "wrapping surfaces");
   }
 
   void add_marker(pugi::xml_node node) {

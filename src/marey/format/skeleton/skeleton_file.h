@@ -27,6 +27,7 @@ struct SkeletonFile {
   double unit_m = 1;                     ///< what one unit of the file is: an AMC file's are its ASF's
   std::vector<SegmentMass> masses;       ///< one a segment; empty if the file has none. OpenSim's models have them
   std::vector<std::string> warnings;     ///< one sentence each: what was omitted, what is doubtful
+  std::string unused = {};               ///< of an OpenSim model, what moves nothing here: "92 muscles, 4 wrapping surfaces"
 };
 
 /// Known by its content. Throws Error, with the file and the line where there is one.

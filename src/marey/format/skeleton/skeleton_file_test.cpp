@@ -260,6 +260,16 @@ std::string joint(const std::string& kind, const std::string& parent, const std:
          "</coordinates></" + kind + ">";
 }
 
+TEST(Osim, NamesWhatMovesNothing) {
+  const std::string one = joint("WeldJoint", "ground", "a");
+  EXPECT_EQ(parse_osim(osim(one), "m.osim").unused, "");
+  const std::string forces =
+      "<ForceSet><objects><Thelen2003Muscle name=\"x\"/><Millard2012EquilibriumMuscle name=\"y\"/><BushingForce "
+      "name=\"z\"/></objects></ForceSet><BodySet><objects><Body name=\"a\"><WrapObjectSet><objects><WrapCylinder "
+      "name=\"w\"/></objects></WrapObjectSet></Body></objects></BodySet>";
+  EXPECT_EQ(parse_osim(osim(one, forces), "m.osim").unused, "2 muscles, 1 other force, 1 wrapping surface");
+}
+
 TEST(Osim, RefusesWhatItDoesNotKnow) {
   const auto error = [](const std::string& text) { return error_of([&] { parse_osim(text, "m.osim"); }); };
   EXPECT_NE(error(osim(joint("EllipsoidJoint", "ground", "a"))).find("\"EllipsoidJoint\", which Marey does not know"),

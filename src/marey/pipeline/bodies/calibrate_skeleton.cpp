@@ -1,6 +1,7 @@
 #include "marey/pipeline/bodies/calibrate_skeleton.h"
 
 #include <iterator>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "marey/format/recording_file.h"
 #include "marey/format/register.h"
 #include "marey/format/skeleton/scaled_osim.h"
+#include "marey/pipeline/bodies/body_proportions.h"
 #include "marey/pipeline/bodies/marker_sigmas.h"
 #include "marey/pipeline/bodies/same_person.h"
 #include "marey/pipeline/markers/skeleton_in_space.h"
@@ -41,6 +43,24 @@ std::vector<solve::skeleton::ObservedMarkers> all_observed(const std::string& re
     step *= 2;
   }
   return frames;
+}
+
+/// Where the mass does not fit a person of the model's height, as its legs have it.
+std::optional<std::string> implausible_mass(const Skeleton& skeleton, double mass_kg) {
+  const std::vector<Rigid3> rest = pose_of(skeleton, skeleton.rest());
+  const auto origin = [&](const char* name) -> std::optional<Vector<3>> {
+    const auto segment = skeleton.segment(name);
+    return segment ? std::optional(rest[static_cast<std::size_t>(*segment)].translation) : std::nullopt;
+  };
+  const auto hip = origin("femur_r"), knee = origin("tibia_r"), ankle = origin("talus_r");
+  if (!hip || !knee || !ankle) return std::nullopt;
+  const double height = height_of_legs((*hip - *knee).norm() + (*knee - *ankle).norm()), index = body_mass_index(mass_kg, height);
+  if (is_persons_index(index)) return std::nullopt;
+  return fmt::format(
+      "--mass {:g} kg is not a person's whose legs are as long as the calibrated model's, about {:.2f} m tall (body mass index "
+      "{:.1f}); "
+      "is it in kilograms?",
+      mass_kg, height, index);
 }
 
 }  // namespace
@@ -86,6 +106,8 @@ void write_skeleton_file(const std::string& source, const SolvedRecording& solve
     format::skeleton::ScaledOsim scaled = format::skeleton::scaled_osim(
         format::read_file(source), source, solved.skeleton, solved.scales.empty() ? alike : solved.scales, options.mass_kg);
     warnings.insert(warnings.end(), scaled.warnings.begin(), scaled.warnings.end());
+    if (auto implausible = options.mass_kg ? implausible_mass(solved.skeleton, *options.mass_kg) : std::nullopt)
+      warnings.push_back(std::move(*implausible));
     text = std::move(scaled.text);
   } else {
     text = format::skeleton::to_toml(solved.skeleton);

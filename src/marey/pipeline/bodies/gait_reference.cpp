@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/format/input_hash.h"
 #include "marey/pipeline/bodies/measure_gait.h"
 
 namespace marey::pipeline::bodies {
@@ -136,6 +137,20 @@ class ReferenceReader {
 };
 
 }  // namespace
+
+std::optional<std::string> walker_in_reference(const std::string& folder, const std::string& recording) {
+  const std::string hash = format::input_of(recording).hash;
+  std::error_code problem;
+  const fs::path own = fs::weakly_canonical(recording, problem).parent_path(), group = fs::weakly_canonical(folder, problem);
+  for (const PersonFiles& person : people_in(folder)) {
+    for (const std::string& walk : person.walks) {
+      const fs::path of_person = fs::weakly_canonical(walk, problem).parent_path();
+      if (of_person != group && of_person == own) return person.name;
+      if (!hash.empty() && format::input_of(walk).hash == hash) return person.name;
+    }
+  }
+  return std::nullopt;
+}
 
 double max_reference_turn() {
   return kMaxReferenceTurn;

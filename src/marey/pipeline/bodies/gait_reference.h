@@ -29,6 +29,10 @@ struct GaitReference {
 /// the reason of its first file.
 GaitReference read_gait_reference(const std::string& folder, const GaitOptions& options, const Hooks& hooks = {});
 
+/// The person of the group who walks in the recording, too: it lies in their folder, or is one of their files. Nothing if they are
+/// others, as far as files show.
+std::optional<std::string> walker_in_reference(const std::string& folder, const std::string& recording);
+
 /// Rad; a cycle that turns by more is not in a reference.
 double max_reference_turn();
 

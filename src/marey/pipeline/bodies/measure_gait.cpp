@@ -13,6 +13,7 @@
 #include "marey/analyse/gait/force_curves.h"
 #include "marey/core/error.h"
 #include "marey/files/whole_file.h"
+#include "marey/pipeline/bodies/body_proportions.h"
 #include "marey/pipeline/bodies/gait_c3d.h"
 #include "marey/pipeline/bodies/gait_forces.h"
 #include "marey/pipeline/bodies/gait_markers.h"
@@ -22,8 +23,6 @@ namespace marey::pipeline::bodies {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-// kg/m², physical: beyond what living people have been reported with.
-constexpr double kMinBodyMassIndex = 7, kMaxBodyMassIndex = 110;
 constexpr double kMaxStandingFlexion = 20 * std::numbers::pi / 180;  // rad: bench/tuning.md
 constexpr double kStandardGravity = 9.80665;                         // m/s², by definition
 
@@ -213,8 +212,8 @@ void add_kinetics(const std::string& recording, const gait::FeetPaths& feet, con
   const std::vector<gait::GaitCycles::Cycle> on_plates = gait::cycles_on_plates(measure.forces, measure.cycles.cycles);
   const BodySize size = body_size_in_c3d(recording);
   measure.mass_kg = options.mass_kg ? options.mass_kg : size.mass_kg;
-  if (const double index = size.height_m ? measure.mass_kg.value_or(0) / (*size.height_m * *size.height_m) : 0;
-      index > 0 && (index < kMinBodyMassIndex || index > kMaxBodyMassIndex))
+  if (const double index = size.height_m ? body_mass_index(measure.mass_kg.value_or(0), *size.height_m) : 0;
+      index > 0 && !is_persons_index(index))
     measure.warnings.push_back(
         fmt::format("{}: {:g} kg at a height of {:.2f} m are not a person's (body mass index {:.1f}); forces in % "
                     "of weight and moments per kg are wrong by as much",
@@ -245,6 +244,11 @@ void add_comparison(const std::string& recording, const GaitOptions& options, co
     measure.reference = read_gait_reference(options.reference, options, hooks);
     const GaitReference& group = *measure.reference;
     measure.warnings.insert(measure.warnings.end(), group.warnings.begin(), group.warnings.end());
+    if (const auto walker = walker_in_reference(options.reference, recording))
+      measure.warnings.push_back(
+          fmt::format("{}: the walker is {} of {}, too; a person who counts in the group lies nearer to its mean than one who does "
+                      "not: take that folder out of the reference",
+                      recording, *walker, options.reference));
     measure.profile = gait::gait_profile(measure.cycles.curves, group.bands);
     const auto turning = std::count_if(measure.cycles.cycles.begin(), measure.cycles.cycles.end(), [](const auto& cycle) {
       return cycle.turn && std::abs(*cycle.turn) > max_reference_turn();

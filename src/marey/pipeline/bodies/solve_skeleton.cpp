@@ -126,6 +126,7 @@ SolvedRecording solve_recording(const std::string& recording, const format::skel
   SolveSummary& summary = solved.summary;
   summary.warnings = file.warnings;
   summary.skeleton = file.skeleton.name;
+  summary.unused = file.unused;
   const auto reader = open_markers(recording, options);
   solved.motion.rate_hz = summary.rate_hz = reader->header().rate_hz;
   markers::SkeletonInSpace solver(std::make_shared<const Skeleton>(file.skeleton), solved.motion.rate_hz, options.pose,

@@ -62,6 +62,7 @@ struct SolveSummary {
   std::vector<Coordinate> coordinates;    ///< that move by themselves
   std::vector<std::string> not_recorded;  ///< the skeleton's markers that the recording has not
   std::vector<std::string> not_known;     ///< the recording's labels that the skeleton has not
+  std::string unused = {};                ///< what a model has that moves nothing here: muscles, wrapping surfaces
   std::vector<std::string> warnings;
   std::optional<double> overall_scale;  ///< of a calibration; with what it found:
   double rms_before_m = 0;

@@ -11,6 +11,7 @@
 
 #include "marey/core/error.h"
 #include "marey/geometry/median.h"
+#include "marey/pipeline/keypoints/blazepose_hips.h"
 #include "marey/solve/skeleton/human.h"
 
 namespace marey::pipeline::keypoints {
@@ -24,9 +25,6 @@ constexpr double kMinPositions = 5;      // instants at which something must be 
 constexpr double kMinSine = 0.05;        // of the angle between directions that make a frame
 constexpr double kShinToFloor_m = 0.06;
 constexpr double kHeadAboveNeck = 0.3;  // of the distance from the shoulders' middle to the ears' where the head turns
-
-/// BlazePose's hips: thighs of 377 to 397 mm where OpenPose has 416 on the same videos.
-constexpr double kBlazeHipInwards_m = 0.010, kBlazeHipDown_m = 0.018;
 
 constexpr std::array<const char*, 6> kNeeded{"left_hip", "right_hip", "left_knee", "right_knee", "left_shoulder", "right_shoulder"};
 
