@@ -1,4 +1,4 @@
-"""Shirt numbers as a user has them: in the file of `marey track --numbers` and in its overlay, in `marey live`, and what is said where they cannot be read.
+"""Shirt numbers as a user has them: in the file of `marey track --numbers` and in its overlay, in `marey live`, and the error where they cannot be read.
 
     shirts_test.py MAREY MODELS      exits 77 (skipped) where script/model --numbers has not run, or ffmpeg, Pillow, OpenCV or the fonts are not here
 
