@@ -8,7 +8,8 @@ install(FILES ${words}/marey.fish DESTINATION share/fish/vendor_completions.d CO
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/marey RENAME copyright COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/libmarey-dev RENAME copyright COMPONENT dev)
 set(models ${PROJECT_SOURCE_DIR}/build/models)
-set(model_files ${models}/pose_landmark_lite.onnx ${models}/pose_landmark_full.onnx ${models}/person.onnx ${models}/person.toml)
+set(model_files ${models}/pose_landmark_lite.onnx ${models}/pose_landmark_full.onnx ${models}/person.onnx ${models}/person.toml
+    ${models}/shirt_numbers.onnx)
 install(FILES ${model_files} DESTINATION share/marey/models COMPONENT models OPTIONAL)
 install(FILES ${models}/LICENSE DESTINATION share/doc/marey-models RENAME copyright COMPONENT models OPTIONAL)
 

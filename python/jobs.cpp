@@ -15,6 +15,7 @@
 #include "marey/pipeline/jobs/track_image.h"
 #include "marey/pipeline/live/live_feeds.h"
 #include "marey/pipeline/markers/reconstruct.h"
+#include "marey/source/live/phone.h"
 
 #include "job.h"
 
@@ -196,6 +197,10 @@ nb::tuple live(nb::dict given) {
   pipeline::live::LiveOptions how = rows.resolved([&] { return resolved(job, rig, warnings); });
   how.take = options.get<std::string>("take", {});
   const Outputs outputs(options, format::Content::space, rig.cameras, &rows);
+  const auto phones = source::live::phone_servers_of(rig);  // their pages stay until the run has ended
+  if (const auto invite = options.object("phones")) {
+    for (const auto& server : phones) invite->get()(server->address(), server->fingerprint());
+  }
   Listening listening = rows.listening(options);
   if (how.targets != pipeline::live::LiveTargets::markers)
     listening.options["targets"] = how.targets == pipeline::live::LiveTargets::people ? "people" : "keypoints";

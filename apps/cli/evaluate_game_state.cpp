@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
+#include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
 #include "marey/evaluate/game_state_evaluation.h"
@@ -33,7 +35,33 @@ struct Clip {
 struct EvaluatedClip {
   std::string name;
   evaluate::GameStateEvaluation evaluation;
+  std::vector<std::string> warnings = {};
+  std::exception_ptr failure = nullptr;
 };
+
+EvaluatedClip evaluated(const Clip& clip) {
+  const format::match::TrueGameState known = format::match::read_true_game_state(clip.truth);
+  const GameState stated = format::match::read_predicted_game_state(clip.tracks, known.images);
+  EvaluatedClip result{clip.name, evaluate::evaluate_game_state(known.state.people, stated.people), known.state.warnings};
+  result.warnings.insert(result.warnings.end(), stated.warnings.begin(), stated.warnings.end());
+  return result;
+}
+
+/// All clips, several at a time. Throws what the first that failed threw.
+std::vector<EvaluatedClip> evaluated(const std::vector<Clip>& clips) {
+  std::vector<EvaluatedClip> results(clips.size());
+  tbb::parallel_for(std::size_t{0}, clips.size(), [&](std::size_t i) {
+    try {
+      results[i] = evaluated(clips[i]);
+    } catch (...) {
+      results[i].failure = std::current_exception();
+    }
+  });
+  for (const EvaluatedClip& result : results) {
+    if (result.failure) std::rethrow_exception(result.failure);
+  }
+  return results;
+}
 
 bool is_folder(const std::string& path) {
   std::error_code ignored;
@@ -140,16 +168,12 @@ bool are_game_states(const std::string& truth, const std::string& tracks) {
 }
 
 void evaluate_game_states(const std::string& truth, const std::string& tracks, bool json, bool quiet) {
-  std::vector<EvaluatedClip> clips;
+  const std::vector<EvaluatedClip> clips = evaluated(clips_to_evaluate(truth, tracks));
   evaluate::GameStateEvaluation all;
   std::vector<std::string> warnings;
-  for (const Clip& clip : clips_to_evaluate(truth, tracks)) {
-    const format::match::TrueGameState known = format::match::read_true_game_state(clip.truth);
-    const GameState stated = format::match::read_predicted_game_state(clip.tracks, known.images);
-    clips.push_back({clip.name, evaluate::evaluate_game_state(known.state.people, stated.people)});
-    all += clips.back().evaluation;
-    warnings.insert(warnings.end(), known.state.warnings.begin(), known.state.warnings.end());
-    warnings.insert(warnings.end(), stated.warnings.begin(), stated.warnings.end());
+  for (const EvaluatedClip& clip : clips) {
+    all += clip.evaluation;
+    warnings.insert(warnings.end(), clip.warnings.begin(), clip.warnings.end());
   }
   warn(warnings);
   if (json) {

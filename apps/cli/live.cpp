@@ -68,6 +68,7 @@ Json as_json(const pipeline::live::LiveSummary& summary, const LiveCommand& comm
                {"instants", summary.frames},
                {"targets", summary.tracks},
                {"samples", summary.samples},
+               {"numbers", path_or_null(command.job.numbers)},
                {"take", summary.recorded ? Json(command.out) : Json()},
                {"warnings", summary.warnings}};
   json["dropped"] = {{"superseded", drops.superseded},
@@ -113,6 +114,7 @@ void print_live(const pipeline::live::LiveSummary& summary, const LiveCommand& c
   print_set_figures(summary);
   print_skeleton_figures(summary);
   print_stages(summary);
+  if (!command.job.numbers.empty()) fmt::print(stderr, "numbers: {}\n", command.job.numbers);
   if (!command.out.empty()) fmt::print(stderr, "{}\n", summary.recorded ? "take: " + command.out : "nothing was recorded");
 }
 

@@ -1,6 +1,5 @@
 #include "phones_screen.h"
 
-#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -8,7 +7,6 @@
 #include <unistd.h>
 
 #include "marey/core/error.h"
-#include "marey/files/source_name.h"
 #include "marey/files/text_safety.h"
 #include "marey/source/live/phone.h"
 
@@ -38,13 +36,7 @@ std::string qr_code(const std::string& text) {
   return drawn;
 }
 
-PhonesScreen::PhonesScreen(const Rig& rig) {
-  for (const RigCamera& camera : rig.cameras) {
-    if (scheme_of(camera.source) != "phone") continue;
-    auto server = source::live::phone_server_of(source::live::parse_address(camera.source));
-    if (std::find(servers_.begin(), servers_.end(), server) == servers_.end()) servers_.push_back(std::move(server));
-  }
-}
+PhonesScreen::PhonesScreen(const Rig& rig) : servers_(source::live::phone_servers_of(rig)) {}
 
 void PhonesScreen::invite() const {
   for (const auto& server : servers_) {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import queue
+import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,6 +31,7 @@ def live(
     targets: str | None = None,
     take: Path | None = None,
     sinks: Iterable[Sink] = (),
+    phones: Callable[[str, str], object] | None = None,
     **options: Any,
 ) -> Iterator[Instant]:
     """People or markers, one instant after the other, while cameras observe them: `for instant in marey.live("rig.toml")`. The run ends with the loop.
@@ -40,6 +42,8 @@ def live(
     targets: "markers", "people" or "keypoints" (body points; of several calibrated cameras in space); default: markers of live cameras, people of one video. take: NAME.marey, written as it grows.
     sinks: functions or objects, as in `track`; of live cameras no files: name a take. One that raises is closed, which a `marey.Warning` states at
         the end, and the run continues.
+    phones: of cameras "phone:NAME", called with the address that each phone opens and the SHA-256 of its certificate; default: both are printed to
+        standard error.
 
     Raises what `track` raises, and marey.Error if no camera delivered a frame.
     """
@@ -52,7 +56,7 @@ def live(
         return _time_steps(lambda put, ends: _track_video(source, put, sinks, options), waits=True)
     if targets not in (None, "markers", "people", "keypoints"):
         raise Error(f'targets is "{targets}"; use one of people, markers, keypoints')
-    given = _rows("live", options) | {"targets": targets or "markers", "take": None if take is None else os.fspath(take), "keep": False}
+    given = _rows("live", options) | {"phones": phones or _invite, "targets": targets or "markers", "take": None if take is None else os.fspath(take), "keep": False}
     return _time_steps(lambda put, ends: _track_cameras(cameras | given, put, ends, sinks), waits=False)
 
 
@@ -68,6 +72,10 @@ def _live_cameras(source: Path | Frames | Rig | Sequence[str]) -> dict[str, Any]
     if isinstance(source, Sequence) and source and all(isinstance(each, str) for each in source):
         return {"cameras": list(source)}
     return None
+
+
+def _invite(address: str, fingerprint: str) -> None:
+    print(f"marey: open {address} on each phone, in the same network (the SHA-256 of its certificate is {fingerprint})", file=sys.stderr, flush=True)
 
 
 def _track_video(source: Any, put: Callable[[Instant | None], None], sinks: Iterable[Sink], options: dict[str, Any]) -> list[str]:

@@ -39,7 +39,7 @@ class TrackOptions(TypedDict, total=False):
     no_background: bool | None
     r"""the network alone"""
     numbers: Path | None
-    r"""each person's shirt number, read in the images, with its probability: FILE.csv (script/model --numbers makes the network)"""
+    r"""each person's shirt number, read in the images, with its probability: FILE.csv; from when it is known it is in overlays too (network: script/model --numbers)"""
     contour: bool | None
     r"""track each person's outline too: a closed spline"""
     control_points: int | None
@@ -102,7 +102,7 @@ class GroundOptions(TypedDict, total=False):
     no_background: bool | None
     r"""the network alone"""
     numbers: Path | None
-    r"""each person's shirt number, read in the images, with its probability: FILE.csv (script/model --numbers makes the network)"""
+    r"""each person's shirt number, read in the images, with its probability: FILE.csv; from when it is known it is in overlays too (network: script/model --numbers)"""
     size: str | tuple[float, float] | None
     r"""m, of the pitch, or of any other rectangle from the origin on (default: 105x68 if the rig was calibrated on a pitch, else people count everywhere)"""
     area: str | Sequence[tuple[float, float]] | None
@@ -260,6 +260,8 @@ class LiveOptions(TypedDict, total=False):
     r"""N in [1, 1000]: run the network on every N-th frame (default: 1)"""
     no_background: bool | None
     r"""the network alone"""
+    numbers: Path | None
+    r"""each person's shirt number, read in the images, with its probability: FILE.csv; from when it is known it is in overlays too (network: script/model --numbers)"""
     model: str | None
     r"""the network that finds the points: lite, full or heavy, each slower and more accurate than the one before (script/model), or a FILE.onnx (default: lite)"""
     people: int | None

@@ -2,6 +2,8 @@
 // camera for tests, for which the page must ask its user.
 //
 //   node phones_browser.mjs PAGE_FOLDER ADDRESS SECONDS canvas|device CAMERA...       prints what each page shows at the end, as JSON
+//
+// MAREY_VIEW: the address of the run's own page, which another Chromium shows: how old each image is when it is drawn there, ms.
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
@@ -33,6 +35,37 @@ function draw_clock_as_camera() {
   };
 }
 
+/** In the run's page: every image that it draws is read, as long as it shows a code. */
+function time_what_is_drawn() {
+  const [wide, tall] = [352, 192];
+  const small = new OffscreenCanvas(wide, tall).getContext("2d", { willReadFrequently: true });
+  const seen = new Set();
+  const draw = CanvasRenderingContext2D.prototype.drawImage;
+  window.ages = [];
+  CanvasRenderingContext2D.prototype.drawImage = function (image, ...where) {
+    draw.call(this, image, ...where);
+    const now = Date.now();
+    if (!(image instanceof ImageBitmap) || seen.has(image)) return;
+    seen.add(image);
+    small.drawImage(image, 0, 0, wide, tall);
+    const { data } = small.getImageData(0, 0, wide, tall);
+    const block = (column, row) => data[4 * (wide * (32 * row + 16) + 32 * column + 16) + 1];
+    if (block(1, 0) - block(9, 0) < 100) return;
+    const level = (block(1, 0) + block(9, 0)) / 2;
+    let shown = 0;
+    for (let bit = 0; bit < 44; bit++) if (block(bit % 11, 1 + Math.floor(bit / 11)) > level) shown += 2 ** bit;
+    window.ages.push(now - shown);
+  };
+}
+
+async function viewer(address) {
+  const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
+  const page = await (await browser.newContext({ viewport: { width: 1000, height: 700 } })).newPage();
+  await page.addInitScript(time_what_is_drawn);
+  await page.goto(address);
+  return { browser, page };
+}
+
 async function phone(camera) {
   const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--ignore-certificate-errors", ...(source === "device" ? DEVICE : [])] });
   const context = await browser.newContext({ viewport: { width: 390, height: 844 }, ignoreHTTPSErrors: true });
@@ -49,11 +82,14 @@ async function phone(camera) {
 
 const phones = [];
 for (const camera of cameras) phones.push(await phone(camera));
+const view = process.env.MAREY_VIEW ? await viewer(process.env.MAREY_VIEW) : null;
 await new Promise((done) => setTimeout(done, 1000 * Number(seconds)));
 const shown = [];
 for (const { page, wrong, camera } of phones) {
   shown.push({ camera, wrong, problem: await page.textContent("#problem"), figures: await page.textContent("#figures") });
   if (process.env.MAREY_SHOTS) await page.screenshot({ path: join(process.env.MAREY_SHOTS, `phone_${camera}.png`) });
 }
-console.log(JSON.stringify(shown));
+const ages = view ? await view.page.evaluate(() => window.ages) : [];
+if (view) await view.browser.close();
+console.log(JSON.stringify({ pages: shown, ages }));
 for (const { browser } of phones) await browser.close();

@@ -125,6 +125,19 @@ class OwnParts(SimulatedVideo):
         with self.assertRaises(marey.Error):
             next(iter(marey.live("nothing.mp4")))
 
+    def test_phones_are_given_an_address(self):
+        invited = []
+
+        def invite(address, fingerprint):
+            invited.append((address, fingerprint))
+            raise InterruptedError("no phone is here")
+
+        with self.assertRaises(InterruptedError):
+            next(marey.live("phone:left?port=0", phones=invite))
+        (address, fingerprint), = invited
+        self.assertRegex(address, r"^https://[^/]+:\d+/\?token=\w+")
+        self.assertRegex(fingerprint, r"^[0-9A-Fa-f:]{60,}$")
+
     def test_live_cameras(self):
         room = "sim://room?cameras=4&rate=30&markers=20&blobs"
         seen = []

@@ -8,6 +8,7 @@
 #include "marey/core/error.h"
 #include "marey/detect/keypoints/blazepose.h"
 #include "marey/detect/keypoints/heat_map.h"
+#include "marey/detect/network/image_tensor.h"
 
 namespace marey::detect::keypoints {
 namespace {
@@ -17,19 +18,6 @@ constexpr std::size_t kHips = 33, kRim = 34;  // points that say where the perso
 constexpr int kCells = 64;                    // format of the network: a heat map's side
 const std::array<std::string, 3> kOutputs{"landmarks", "presence", "heatmaps"};
 const std::array<std::string, 2> kPixels{"mask", "presence"};
-
-/// 1 × 3 × h × w of floats in [0, 1], red first.
-cv::Mat red_first(const cv::Mat& crop) {
-  const int sizes[] = {1, 3, crop.rows, crop.cols};
-  cv::Mat blob(4, sizes, CV_32F);
-  const std::size_t plane = crop.total();
-  auto* values = blob.ptr<float>();
-  for (std::size_t i = 0; i < plane; ++i) {
-    const auto& pixel = crop.ptr<cv::Vec3b>()[i];
-    for (std::size_t c = 0; c < 3; ++c) values[c * plane + i] = static_cast<float>(pixel[2 - static_cast<int>(c)]) / 255.0F;
-  }
-  return blob;
-}
 
 double likelihood_of(float logit) {
   return 1 / (1 + std::exp(-static_cast<double>(logit)));
@@ -56,7 +44,7 @@ LandmarkNetwork::LandmarkNetwork(const std::string& onnx)
 std::vector<network::Tensor> LandmarkNetwork::run(network::Inference::Engine& engine, const cv::Mat& crop,
                                                   std::span<const std::string> outputs) const {
   try {
-    return engine.run(red_first(crop), outputs);
+    return engine.run(network::image_tensor(crop, network::ChannelOrder::rgb, {}), outputs);
   } catch (const cv::Exception&) {
     throw Error("{}: is another network than those for keypoints that script/model makes", path_);
   }

@@ -9,6 +9,9 @@
 
 namespace marey::detect::shirts {
 
+/// The probability from which a number names a person, and is shown.
+inline constexpr double kDecisiveNumber = 0.95;  // chosen on figures in bench/tuning.md
+
 /// One track's number.
 struct TrackNumber {
   int number = 0;          ///< the likeliest, 0 … 99

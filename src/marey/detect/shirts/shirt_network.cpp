@@ -9,6 +9,7 @@
 
 #include "marey/core/error.h"
 #include "marey/detect/keypoints/model_folder.h"
+#include "marey/detect/network/image_tensor.h"
 
 namespace marey::detect::shirts {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 // The format of the network (script/numbers_to_onnx.py).
 constexpr int kCropWidth = 96, kCropHeight = 48, kColumns = 12, kClasses = 6625;
 constexpr std::array<std::size_t, kColumnClasses> kClassOf{0, 26, 93, 25, 94, 632, 631, 933, 29, 27, 1109};  // blank, "0" … "9"
+constexpr network::PixelRange kPixels{.divisor = 127.5F, .summand = -1};  // [-1, 1], blue first, as it was trained
 constexpr const char* kFile = "shirt_numbers.onnx";
 
 constexpr double kPartSide = 0.448;  // by definition: the side of a ShirtRegion's square in statures (shirt_region.cpp)
@@ -32,19 +34,6 @@ cv::Mat crop_of(const cv::Mat& part, double height) {
   cv::Mat crop;
   cv::resize(part(where), crop, {kCropWidth, kCropHeight}, 0, 0, cv::INTER_AREA);
   return crop;
-}
-
-/// 1 × 3 × rows × columns in [-1, 1], blue first, as the network was trained.
-cv::Mat blob_of(const cv::Mat& crop) {
-  const int sizes[] = {1, 3, crop.rows, crop.cols};
-  cv::Mat blob(4, sizes, CV_32F);
-  const std::size_t plane = crop.total();
-  auto* values = blob.ptr<float>();
-  for (std::size_t i = 0; i < plane; ++i) {
-    const auto& pixel = crop.ptr<cv::Vec3b>()[i];
-    for (std::size_t c = 0; c < 3; ++c) values[c * plane + i] = static_cast<float>(pixel[static_cast<int>(c)]) / 127.5F - 1;
-  }
-  return blob;
 }
 
 ShirtReading reading_of(const network::Tensor& output) {
@@ -68,7 +57,9 @@ std::string shirt_network_file() {
   try {
     return keypoints::model_file(kFile);
   } catch (const Error&) {
-    throw Error("the network {} is not there; script/model --numbers makes it (MAREY_MODELS names another folder)", kFile);
+    throw Error(
+        "the network {} is not there; script/model --numbers makes it (or install marey-models; MAREY_MODELS names another folder)",
+        kFile);
   }
 }
 
@@ -79,7 +70,7 @@ ShirtNetwork::ShirtNetwork(const std::string& onnx) : path_(onnx), inference_(on
 
 network::Tensor ShirtNetwork::run(network::Inference::Engine& engine, const cv::Mat& crop) const {
   try {
-    return std::move(engine.run(blob_of(crop)).front());
+    return std::move(engine.run(network::image_tensor(crop, network::ChannelOrder::bgr, kPixels)).front());
   } catch (const cv::Exception&) {
     throw Error("{}: is another network than the one for shirt numbers that script/model --numbers makes", path_);
   }

@@ -81,6 +81,13 @@ void attach(std::vector<Frame>& frames, const FrameSet& set) {
   }
 }
 
+/// Whether the instant is of these frames. Live, instants of one camera have the numbers of its frames, and the clock counts from
+/// the first frame that it took.
+bool is_of(const Instant& instant, const FrameSet& frames) {
+  if (instant.index == frames.index) return true;
+  return frames.cameras.size() == 1 && frames.cameras.front() && instant.time == frames.cameras.front()->frame.time;
+}
+
 /// The images of instants that are past, asked of the feeds once more.
 class Images {
  public:
@@ -141,7 +148,7 @@ void first_pass(Stage& stage, Clock& clock, Sinks& sinks, Counter& counter, cons
   while (const std::optional<FrameSet> frames = next_of(clock, hooks, summary)) {
     for (const Instant& known : stage.step(*frames)) {
       Instant instant = known;
-      if (instant.index == frames->index && instant.frames.empty()) attach(instant.frames, *frames);
+      if (is_of(instant, *frames) && instant.frames.empty()) attach(instant.frames, *frames);
       counter.add(instant);
       if (!sinks.write(std::move(instant))) summary.stopped = true;
     }

@@ -7,17 +7,18 @@
 #include <vector>
 
 #include "marey/core/hooks.h"
+#include "marey/detect/shirts/number_votes.h"
 #include "marey/pipeline/identify/review.h"
 
 namespace marey::pipeline::identify {
 
 struct IdentifyOptions {
-  std::string roster;        ///< CSV: number,name,team
-  std::string names;         ///< CSV: time,id,name; may be empty if `numbers` is given
-  std::string numbers;       ///< CSV of read shirt numbers: id,number,probability,readings,time; may be empty
-  double min_number = 0.95;  ///< a number that is less probable names no person
-  std::string review_items;  ///< CSV to be written; empty: not
-  double minimum = 0.02;     ///< what is less probable to be wrong is not listed
+  std::string roster;   ///< CSV: number,name,team
+  std::string names;    ///< CSV: time,id,name; may be empty if `numbers` is given
+  std::string numbers;  ///< CSV of read shirt numbers: id,number,probability,readings,time; may be empty
+  double min_number = detect::shirts::kDecisiveNumber;  ///< a number that is less probable names no person
+  std::string review_items;                             ///< CSV to be written; empty: not
+  double minimum = 0.02;                                ///< what is less probable to be wrong is not listed
 };
 
 struct IdentifySummary {

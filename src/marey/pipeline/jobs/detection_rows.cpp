@@ -108,8 +108,8 @@ detect::markers::MarkerOptions detector_of(const MarkerDetection& detection) {
 void add_number_row(Table& table, std::string& numbers) {
   table
       .output_file("numbers", numbers,
-                   "each person's shirt number, read in the images, with its probability: FILE.csv (script/model --numbers makes "
-                   "the network)")
+                   "each person's shirt number, read in the images, with its probability: FILE.csv; from when it is known it is in "
+                   "overlays too (network: script/model --numbers)")
       .ending_in({".csv"});
 }
 

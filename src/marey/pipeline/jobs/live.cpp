@@ -13,6 +13,7 @@ Table table_of(Live& job) {
   add_blob_rows(table, job.markers);
   table.group("Options for --targets people");
   add_people_rows(table, job.detection);
+  add_number_row(table, job.numbers);
   table.group("Options for --targets keypoints, in addition to --detector and --skeleton");
   add_model_row(table, job.model);
   table.whole("people", job.people, "N", 0, 1000, "of several cameras: track at most N people; 0: all");
@@ -21,6 +22,8 @@ Table table_of(Live& job) {
 
 live::LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::string>& warnings) {
   live::LiveOptions options;
+  if (!job.numbers.empty() && !job.ground && job.targets == live::LiveTargets::markers)
+    throw WrongOption("--numbers {}: reads the shirts of people; add --targets people", job.numbers);
   if (job.ground && job.targets == live::LiveTargets::keypoints)
     throw WrongOption("{}",
                       "--ground localises people by their boxes, --targets keypoints by their body points; remove one of the two");
@@ -42,6 +45,7 @@ live::LiveOptions resolved(const Live& job, const Rig& rig, std::vector<std::str
   options.policy.late_s = job.late_s;
   options.patience_s = job.patience_s;
   options.preroll_s = job.preroll_s;
+  options.numbers = job.numbers;
   return options;
 }
 

@@ -18,6 +18,7 @@ struct Live {
   SpaceNames names = {};
   detect::markers::MarkerOptions markers = {};
   PeopleDetection detection = {};
+  std::string numbers = {};    ///< a CSV file of people's shirt numbers (people/number_sink.h)
   std::string model = "lite";  ///< the network for keypoints
   int people = 0;              ///< who get keypoints in space; 0: all
   GroundPart part = {};

@@ -14,6 +14,7 @@
 #include "marey/pipeline/markers/named_in_take.h"
 #include "marey/pipeline/markers/skeleton_in_space.h"
 #include "marey/pipeline/markers/skeleton_stage.h"
+#include "marey/pipeline/people/number_sink.h"
 
 namespace marey::pipeline::live {
 namespace {
@@ -93,6 +94,7 @@ corridor::Sinks sinks_of(LiveOptions& options) {
   corridor::Sinks sinks(corridor::Sinks::Slow::skipped);
   if (!options.take.empty()) sinks.add(std::make_unique<corridor::Recorder>(options.take, options.recording, options.preroll_s));
   if (!options.images.empty()) sinks.add(std::make_unique<CameraVideos>(options.images, options.recording));
+  if (!options.numbers.empty()) sinks.add(std::make_unique<people::NumberSink>(options.numbers));
   for (std::unique_ptr<Sink>& sink : options.sinks) sinks.add(std::move(sink));
   return sinks;
 }
@@ -196,6 +198,9 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
                 to_string(summary.job));
   if (options.space.learned_set != nullptr && summary.job != LiveJob::markers_in_space)
     throw Error("a set names markers in space, of two calibrated cameras or more; these cameras give {}", to_string(summary.job));
+  if (!options.numbers.empty() && summary.job != LiveJob::people_in_image && summary.job != LiveJob::people_on_ground)
+    throw Error("{}: shirt numbers are read of people in one camera's image or on the ground; these cameras give {}",
+                options.numbers, to_string(summary.job));
   inspect_for_markers(feeds, summary.job, options);
   corridor::LiveMonitor monitor(options.policy.time, options.status);
   monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });

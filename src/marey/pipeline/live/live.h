@@ -42,6 +42,7 @@ struct LiveOptions {
   double patience_s = 3;                              ///< that is waited at the beginning for cameras that are not there
 
   std::string take;                                   ///< the take recorded into, NAME.marey; empty: nothing
+  std::string numbers = {};                           ///< a CSV file of people's shirt numbers; empty: they are not read
   std::string images;                                 ///< a folder for what each camera saw while it was recorded; empty: not kept
   std::shared_ptr<corridor::RecordSwitch> recording;  ///< null: all is recorded
   double preroll_s = 5;                               ///< of what came before recording was switched on

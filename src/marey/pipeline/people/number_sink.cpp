@@ -1,6 +1,7 @@
 #include "marey/pipeline/people/number_sink.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -33,11 +34,18 @@ bool is_covered(const VisiblePerson& person, const std::vector<VisiblePerson>& p
 
 }  // namespace
 
-NumberSink::NumberSink(const std::string& path) : path_(path), file_(path), network_(detect::shirts::shirt_network_file()) {}
+NumberSink::NumberSink(const std::string& path, std::vector<std::unique_ptr<Sink>> drawn)
+    : name_(path), file_(path), network_(detect::shirts::shirt_network_file()) {
+  for (std::unique_ptr<Sink>& sink : drawn) {
+    name_ += ", " + sink->name();
+    drawn_.add(std::move(sink));
+  }
+}
 
 Sink::SinkRequirements NumberSink::begin(const RecordingHeader& header) {
   by_boxes_ = header.frame.metric();
   keypoints_ = header.keypoints;
+  drawn_.begin(header);
   return {.images = true, .boxes = by_boxes_};
 }
 
@@ -70,12 +78,50 @@ void NumberSink::collect(const Frame& frame, const Instant& instant, std::vector
   }
 }
 
-void NumberSink::write(const Instant& instant) {
+/// The tracks whose shown number has changed.
+std::vector<TrackId> NumberSink::read(const Instant& instant) {
   std::vector<TrackId> tracks;
   std::vector<ShirtView> views;
   for (const Frame& frame : instant.frames) collect(frame, instant, tracks, views);
   const auto readings = network_.read(views);
-  for (std::size_t i = 0; i < readings.size(); ++i) tracks_[tracks[i]].votes.add(instant.time, readings[i]);
+  std::vector<TrackId> changed;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    Track& track = tracks_[tracks[i]];
+    track.votes.add(instant.time, readings[i]);
+    const auto found = track.votes.result();
+    std::string shown = found && found->probability >= detect::shirts::kDecisiveNumber ? std::to_string(found->number) : "";
+    if (shown == track.shown) continue;
+    track.shown = std::move(shown);
+    if (std::find(changed.begin(), changed.end(), tracks[i]) == changed.end()) changed.push_back(tracks[i]);
+  }
+  return changed;
+}
+
+/// The label, or else the track's ID, with the shirt's number behind it, if it is known and not in the label ("10 Kane").
+std::string NumberSink::label_with_number(const TrackName& name) const {
+  const auto track = tracks_.find(name.id);
+  if (track == tracks_.end() || track->second.shown.empty()) return name.label;
+  const std::string& number = track->second.shown;
+  if (name.label.starts_with(number + " ")) return name.label;
+  return fmt::format("{} no. {}", name.label.empty() ? std::to_string(marey::number(name.id)) : name.label, number);
+}
+
+/// The instant for sinks that draw: its new names with their numbers, and the names of tracks whose number is new.
+Instant NumberSink::with_numbers(const Instant& instant, const std::vector<TrackId>& changed) {
+  Instant shown = instant;
+  names_.add(instant.named);
+  for (const TrackId id : changed) {
+    TrackName name = names_.of(id);
+    name.id = id;
+    shown.named.push_back(std::move(name));
+  }
+  for (TrackName& name : shown.named) name.label = label_with_number(name);
+  return shown;
+}
+
+void NumberSink::write(const Instant& instant) {
+  const std::vector<TrackId> changed = read(instant);
+  if (!drawn_.write(with_numbers(instant, changed))) drawn_.finish();  // which throws what failed
 }
 
 void NumberSink::finish() {
@@ -87,6 +133,7 @@ void NumberSink::finish() {
                         seconds(found->clearest));
   }
   file_.write(text);
+  drawn_.finish();
   file_.finish();
 }
 

@@ -43,11 +43,10 @@ corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<
       throw Error("{}: masks are of the background model, and detections are given", output.masks);
     sinks.add(std::make_unique<MaskSink>(output.masks));
   }
-  if (!output.numbers.empty()) {
-    if (!feed.has_images()) throw Error("{}: numbers are read in images, and only detections are given", output.numbers);
-    sinks.add(std::make_unique<NumberSink>(output.numbers));
-  }
+  if (!output.numbers.empty() && !feed.has_images())
+    throw Error("{}: numbers are read in images, and only detections are given", output.numbers);
   if (!output.target_masks.empty()) sinks.add(std::make_unique<TargetMaskSink>(output.target_masks));
+  std::vector<std::unique_ptr<Sink>> numbered;
   const draw::OverlayVideo::View view{
       .camera = feed.id(), .size = feed.info().size, .rate_hz = feed.info().rate_hz, .sound_of = feed.sound_source()};
   for (const bool bare : {false, true}) {
@@ -57,8 +56,14 @@ corridor::Sinks sinks_of(const TrackOutput& output, std::vector<std::unique_ptr<
     draw::OverlayOptions options = drawn;
     options.bare = bare;
     options.blur_faces = bare || output.blur_faces;
-    sinks.add(std::make_unique<draw::OverlayVideo>(path, view, options));
+    auto video = std::make_unique<draw::OverlayVideo>(path, view, options);
+    if (bare || output.numbers.empty()) {
+      sinks.add(std::move(video));
+    } else {
+      numbered.push_back(std::move(video));
+    }
   }
+  if (!output.numbers.empty()) sinks.add(std::make_unique<NumberSink>(output.numbers, std::move(numbered)));
   return sinks;
 }
 

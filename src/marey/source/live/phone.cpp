@@ -8,6 +8,7 @@
 #include "marey/core/error.h"
 #include "marey/core/rig.h"
 #include "marey/core/stop.h"
+#include "marey/files/source_name.h"
 #include "marey/source/live/jpeg_decoder.h"
 #include "marey/source/live/phone_server.h"
 
@@ -83,6 +84,16 @@ std::shared_ptr<PhoneServer> phone_server_of(const Address& address) {
   if (address.location.empty() || std::any_of(address.location.begin(), address.location.end(), unfit_for_camera_name))
     throw Error("{}: write phone:NAME, with a name of letters, digits, - and _", address.text);
   return PhoneServer::at(port);
+}
+
+std::vector<std::shared_ptr<PhoneServer>> phone_servers_of(const Rig& rig) {
+  std::vector<std::shared_ptr<PhoneServer>> servers;
+  for (const RigCamera& camera : rig.cameras) {
+    if (scheme_of(camera.source) != "phone") continue;
+    auto server = phone_server_of(parse_address(camera.source));
+    if (std::find(servers.begin(), servers.end(), server) == servers.end()) servers.push_back(std::move(server));
+  }
+  return servers;
 }
 
 }  // namespace marey::source::live

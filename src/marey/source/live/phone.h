@@ -3,7 +3,9 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "marey/core/rig.h"
 #include "marey/source/live/address.h"
 #include "marey/source/live/connection.h"
 #include "marey/source/live/phone_server.h"
@@ -18,5 +20,7 @@ Connect connect_phone(const std::string& name, std::shared_ptr<PhoneServer> serv
 
 /// The page that "phone:left?port=8443" is on. Throws Error as `connect_phone` does, and for an address that names no phone.
 std::shared_ptr<PhoneServer> phone_server_of(const Address& address);
+/// The pages of the rig's cameras that are phones, each once.
+std::vector<std::shared_ptr<PhoneServer>> phone_servers_of(const Rig& rig);
 
 }  // namespace marey::source::live

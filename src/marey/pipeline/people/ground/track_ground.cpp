@@ -48,8 +48,10 @@ std::string video_of(const std::string& folder, const RigCamera& camera) {
   return (fs::path(folder) / (camera.name + ".mp4")).string();
 }
 
-void add_videos(corridor::Sinks& sinks, const std::string& folder, const draw::OverlayOptions& drawn,
-                const std::vector<corridor::Feed>& feeds) {
+std::vector<std::unique_ptr<Sink>> videos_in(const std::string& folder, const draw::OverlayOptions& drawn,
+                                             const std::vector<corridor::Feed>& feeds) {
+  std::vector<std::unique_ptr<Sink>> videos;
+  if (folder.empty()) return videos;
   fs::create_directories(folder);
   for (const corridor::Feed& feed : feeds) {
     if (!feed.has_images()) continue;
@@ -59,8 +61,13 @@ void add_videos(corridor::Sinks& sinks, const std::string& folder, const draw::O
                                         .rate_hz = feed.info().rate_hz,
                                         .sound_of = feed.sound_source(),
                                         .offset = duration_from_seconds(camera.offset_s.value_or(0))};
-    sinks.add(std::make_unique<draw::OverlayVideo>(video_of(folder, camera), view, drawn));
+    videos.push_back(std::make_unique<draw::OverlayVideo>(video_of(folder, camera), view, drawn));
   }
+  return videos;
+}
+
+void add(corridor::Sinks& sinks, std::vector<std::unique_ptr<Sink>> more) {
+  for (std::unique_ptr<Sink>& sink : more) sinks.add(std::move(sink));
 }
 
 corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const PeopleOnGroundOptions& options,
@@ -75,10 +82,14 @@ corridor::Sinks sinks_of(const Rig& rig, const GroundOutput& output, const Peopl
   }
   draw::OverlayOptions drawn{.trail_of_centres = true};
   drawn.blur_faces = !output.blur.empty();
-  if (!output.overlays.empty()) add_videos(sinks, output.overlays, drawn, feeds);
+  std::vector<std::unique_ptr<Sink>> overlays = videos_in(output.overlays, drawn, feeds);
+  if (output.numbers.empty()) {
+    add(sinks, std::move(overlays));
+  } else {
+    sinks.add(std::make_unique<NumberSink>(output.numbers, std::move(overlays)));
+  }
   drawn.bare = true;
-  if (!output.copies.empty()) add_videos(sinks, output.copies, drawn, feeds);
-  if (!output.numbers.empty()) sinks.add(std::make_unique<NumberSink>(output.numbers));
+  add(sinks, videos_in(output.copies, drawn, feeds));
   if (!output.pitch_view.empty()) {
     const reconstruct::GroundArea area = area_of(rig, options);
     const draw::ShownGround shown{area.pitch(), area.margin(), area.mirrored()};
