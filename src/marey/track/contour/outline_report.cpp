@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMaxMissingPart = 0.12;  // heights by which an outline may be lower than the tracker's box
 constexpr double kMaxHigher = 1.25;       // of the tracker's box, from which on an outline has grown beyond its target
-constexpr double kMaxWider = 1.8;         // likewise
+constexpr double kMaxWider = 1.5;         // likewise; by definition: the limit of `marey experiment contours`
 
 geometry::ClosedSpline moved_to(const geometry::ClosedSpline& spline, const Vector<2>& centre) {
   std::vector<Vector<2>> points = spline.control_points();
@@ -51,6 +51,11 @@ double width_of(const Box& box) {
   return std::max(box.width, kStrideWidth * box.height);
 }
 
+/// Whether a body of the box's height may have its centre there: boxes of people who are partly hidden are narrower than they are.
+bool is_within(const Vector<2>& centre, const Box& box) {
+  return std::abs(centre.x() - box.centre().x()) < width_of(box) / 2 && centre.y() >= box.top && centre.y() < box.bottom();
+}
+
 /// Whether a silhouette that no person shares explains what is unlike the tracker's box: a body that bends or squats keeps its
 /// feet.
 bool is_explained(const Box& own, const Box& box, const Detection* raw) {
@@ -66,19 +71,21 @@ Vector<2> shift_to_visible_end(const Box& body, const Box& own, const Box& box) 
   return {own.centre().x() - body.centre().x(), std::clamp(down, -kMaxMissingPart * box.height, kMaxMissingPart * box.height)};
 }
 
-}  // namespace
-
+/// Whether a curve is about as high as the box, px, and not much wider.
 bool is_as_large(const geometry::ClosedSpline& spline, const Box& box) {
   const Box own = spline.box();
   return own.height > (1 - kMaxMissingPart) * box.height && own.height < kMaxHigher * box.height &&
          own.width < kMaxWider * width_of(box);
 }
 
+/// The last shape of the target that filled the tracker's box, put into `box`, px; nothing before there was one.
 std::optional<geometry::ClosedSpline> body_in(const ContourTarget& target, const Box& box) {
   if (!target.body_shape) return std::nullopt;
   geometry::ClosedSpline body = moved_and_scaled(*target.body_shape, Vector<2>::Zero(), box.height, foot_of(box));
   return is_as_large(body, box) ? std::optional(std::move(body)) : std::nullopt;
 }
+
+}  // namespace
 
 void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw) {
   const Vector<2> centre = target.motion.centre();
@@ -98,7 +105,7 @@ void bring_back(ContourTarget& target, const Track<2>& track, const Detection* r
     target.hidden.resize(static_cast<std::size_t>(target.shape.spline().count()));
     std::iota(target.hidden.begin(), target.hidden.end(), 0);
   }
-  if (centre.x() >= box.left && centre.x() < box.right() && centre.y() >= box.top && centre.y() < box.bottom()) return;
+  if (is_within(centre, box)) return;
   target.shape = ShapeFilter(moved_to(target.shape.spline(), box.centre()), kBend * target.height);
   target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthAmbiguity);
   target.state = Outline::State::held;
