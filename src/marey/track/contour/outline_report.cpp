@@ -51,9 +51,11 @@ double width_of(const Box& box) {
   return std::max(box.width, kStrideWidth * box.height);
 }
 
-/// Whether a body of the box's height may have its centre there: boxes of people who are partly hidden are narrower than they are.
+/// Whether a body of the box's height may have its centre there: boxes of people who are partly hidden are narrower than they are;
+/// a body's centre is near the middle of its height.
 bool is_within(const Vector<2>& centre, const Box& box) {
-  return std::abs(centre.x() - box.centre().x()) < width_of(box) / 2 && centre.y() >= box.top && centre.y() < box.bottom();
+  const Vector<2> off = (centre - box.centre()).cwiseAbs();
+  return off.x() < width_of(box) / 2 && off.y() < kStrideWidth / 2 * box.height;
 }
 
 /// Whether a silhouette that no person shares explains what is unlike the tracker's box: a body that bends or squats keeps its

@@ -93,6 +93,14 @@ TEST(BringBack, ShrinksWhatHasGrown) {
   EXPECT_LT(target.shape.spline().box().height, 1.25 * kBox.height);
 }
 
+TEST(BringBack, MovesAShapeThatStandsLowerThanItsBox) {
+  ContourTarget target = target_of(body_of(kBox));
+  const Box above{kBox.left, kBox.top - 0.3 * kBox.height, kBox.width, kBox.height};
+  bring_back(target, track_of(above), nullptr);
+  EXPECT_EQ(target.state, Outline::State::held);
+  EXPECT_NEAR(target.shape.spline().centroid().y(), above.centre().y(), 0.5);
+}
+
 TEST(BringBack, LeavesACentreBesideANarrowBox) {
   // A box of the half that another person leaves visible: 0.13 of the height, as of a pair on a street.
   ContourTarget target = target_of(body_of(kBox));
