@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMaxMissingPart = 0.12;  // heights by which an outline may be lower than the tracker's box
 constexpr double kMaxHigher = 1.25;       // of the tracker's box, from which on an outline has grown beyond its target
-constexpr double kMaxWider = 1.5;         // likewise; by definition: the limit of `marey experiment contours`
+constexpr double kMaxWider = 1.8;         // likewise
 
 geometry::ClosedSpline moved_to(const geometry::ClosedSpline& spline, const Vector<2>& centre) {
   std::vector<Vector<2>> points = spline.control_points();
@@ -49,13 +49,6 @@ geometry::ClosedSpline moved_and_scaled(const geometry::ClosedSpline& spline, co
 
 double width_of(const Box& box) {
   return std::max(box.width, kStrideWidth * box.height);
-}
-
-/// Whether a body of the box's height may have its centre there: boxes of people who are partly hidden are narrower than they are;
-/// a body's centre is near the middle of its height.
-bool is_within(const Vector<2>& centre, const Box& box) {
-  const Vector<2> off = (centre - box.centre()).cwiseAbs();
-  return off.x() < width_of(box) / 2 && off.y() < kStrideWidth / 2 * box.height;
 }
 
 /// Whether a silhouette that no person shares explains what is unlike the tracker's box: a body that bends or squats keeps its
@@ -107,7 +100,7 @@ void bring_back(ContourTarget& target, const Track<2>& track, const Detection* r
     target.hidden.resize(static_cast<std::size_t>(target.shape.spline().count()));
     std::iota(target.hidden.begin(), target.hidden.end(), 0);
   }
-  if (is_within(centre, box)) return;
+  if (centre.x() >= box.left && centre.x() < box.right() && centre.y() >= box.top && centre.y() < box.bottom()) return;
   target.shape = ShapeFilter(moved_to(target.shape.spline(), box.centre()), kBend * target.height);
   target.motion = MotionFilter(box.centre(), track.velocity, 0, kBend * target.height, target.height, kGrowthAmbiguity);
   target.state = Outline::State::held;

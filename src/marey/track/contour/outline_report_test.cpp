@@ -93,29 +93,5 @@ TEST(BringBack, ShrinksWhatHasGrown) {
   EXPECT_LT(target.shape.spline().box().height, 1.25 * kBox.height);
 }
 
-TEST(BringBack, MovesAShapeThatStandsLowerThanItsBox) {
-  ContourTarget target = target_of(body_of(kBox));
-  const Box above{kBox.left, kBox.top - 0.3 * kBox.height, kBox.width, kBox.height};
-  bring_back(target, track_of(above), nullptr);
-  EXPECT_EQ(target.state, Outline::State::held);
-  EXPECT_NEAR(target.shape.spline().centroid().y(), above.centre().y(), 0.5);
-}
-
-TEST(BringBack, LeavesACentreBesideANarrowBox) {
-  // A box of the half that another person leaves visible: 0.13 of the height, as of a pair on a street.
-  ContourTarget target = target_of(body_of(kBox));
-  bring_back(target, track_of(kBox), nullptr);
-  const geometry::ClosedSpline body = target.shape.spline();
-  const Box half{kBox.left + kBox.width / 2 + 4, kBox.top, 0.13 * kBox.height, kBox.height};
-  bring_back(target, track_of(half), nullptr);
-  EXPECT_EQ(target.shape.spline().control_points(), body.control_points());
-  EXPECT_EQ(target.state, Outline::State::detected);
-
-  const Box elsewhere{kBox.left + kBox.width, kBox.top, half.width, half.height};
-  bring_back(target, track_of(elsewhere), nullptr);
-  EXPECT_EQ(target.state, Outline::State::held);
-  EXPECT_NEAR(target.shape.spline().centroid().x(), elsewhere.centre().x(), 0.5);
-}
-
 }  // namespace
 }  // namespace marey::track::contour
