@@ -92,8 +92,9 @@ bool crosses_itself(const std::vector<Vector<2>>& polygon) {
 }  // namespace
 
 void ContourTally::add(const ContourTally& other) {
-  for (Mean ContourTally::* const mean : {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind,
-                                          &ContourTally::found, &ContourTally::bias, &ContourTally::back, &ContourTally::swapped}) {
+  for (Mean ContourTally::* const mean :
+       {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind, &ContourTally::found,
+        &ContourTally::bias, &ContourTally::back, &ContourTally::swapped, &ContourTally::step_s, &ContourTally::processor_s}) {
     (this->*mean).add(other.*mean);
   }
   for (std::size_t i = 0; i < bends.size(); ++i) bends[i].add(other.bends[i]);

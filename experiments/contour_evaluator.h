@@ -43,6 +43,7 @@ struct ContourTally {
   Mean swapped;             ///< 1 where that person has another name then, or within a second, else 0
   std::int64_t curves = 0;  ///< contours reported
   std::int64_t crossed = 0, oversized = 0;  ///< of these: that cross themselves; that exceed 1.5 × their person's size
+  Mean step_s, processor_s;                 ///< s per frame, where that is measured: of time, and of all processors together
   std::array<Mean, 3> bends;                ///< squares of second differences: centre (px²), root of the area (px²), width (px²)
 
   void add(const ContourTally& other);

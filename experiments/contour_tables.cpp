@@ -32,6 +32,7 @@ std::string to_markdown(const ContourExperiment& experiment) {
   titles.emplace_back("samples");
   std::string text = markdown_header(titles);
   for (const ContourRow& row : experiment.rows) {
+    if (row.is_time) continue;
     std::vector<std::string> cells{row.name};
     for (const auto& value : row.values) cells.push_back(markdown_figure(value, row.digits));
     cells.push_back(row.must);

@@ -1,7 +1,9 @@
 #include "experiments/contours.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -64,6 +66,14 @@ std::vector<ContourCase> all_cases(int videos) {
                      .hidden_s = 0.5,
                      .videos = 2 * videos});
   }
+  cases.push_back({.name = "22 players, 3072 px wide",
+                   .situation = Situation::crowd,
+                   .height_px = 120,
+                   .degraded = true,
+                   .frames = 40,
+                   .people = 22,
+                   .size = {3072, 1728},
+                   .timed = true});
   return cases;
 }
 
@@ -100,6 +110,8 @@ Tallies evaluate(const ContourCase& what, std::uint64_t seed, const ContourExper
   scene.height_px = what.height_px;
   scene.same_shirts = what.same_shirts;
   scene.frames = what.frames;
+  scene.people = what.people;
+  scene.size = what.size;
   if (what.hidden_s) scene.hidden_s = *what.hidden_s;
   if (what.degraded) scene.degradation = simulate::people::ImageDegradation::recorded();
   const PeopleVideo people(what.situation, seed, scene);
@@ -112,15 +124,23 @@ Tallies evaluate(const ContourCase& what, std::uint64_t seed, const ContourExper
   }
   for (const auto& method : methods) method->prime(samples);
   std::vector<ContourEvaluator> evaluators(kMethodCount, ContourEvaluator(scene.size));
+  Tallies tallies;
   for (std::size_t i = 0; i < video.images.size(); ++i) {
     const Frame frame = frame_of(video.images[i], static_cast<int>(i), scene.rate_hz);
     for (std::size_t m = 0; m < kMethodCount; ++m) {
-      evaluators[m].observe(static_cast<int>(i), video.truth[i],
-                            methods[m]->step(frame, methods[kSilhouettes]->detections(), video.truth[i]));
+      const auto begin = std::chrono::steady_clock::now();
+      const std::clock_t processor_begin = std::clock();
+      const auto shapes = methods[m]->step(frame, methods[kSilhouettes]->detections(), video.truth[i]);
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+      if (what.timed) {
+        tallies[m].step_s.add(taken.count());
+        tallies[m].processor_s.add(static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC);
+        continue;
+      }
+      evaluators[m].observe(static_cast<int>(i), video.truth[i], shapes);
     }
   }
-  Tallies tallies;
-  for (std::size_t m = 0; m < kMethodCount; ++m) tallies[m] = evaluators[m].tally();
+  for (std::size_t m = 0; m < kMethodCount; ++m) tallies[m].add(evaluators[m].tally());
   return tallies;
 }
 
@@ -137,6 +157,7 @@ class Rows {
     jitter();
     occlusion();
     shape();
+    speed();
     return std::move(rows_);
   }
 
@@ -237,6 +258,23 @@ class Rows {
         [](const ContourTally& one) { return Mean{1000.0 * static_cast<double>(one.crossed), one.curves}; });
     add("contours that exceed 1.5 × their person's size, of 1000", "0", sum,
         [](const ContourTally& one) { return Mean{1000.0 * static_cast<double>(one.oversized), one.curves}; });
+  }
+
+  /// Detection, tracking and contours, of images that are decoded.
+  void speed() {
+    for (std::size_t c = 0; c < cases_.size(); ++c) {
+      if (!cases_[c].timed) continue;
+      ContourRow row{.name = "frames per second, " + cases_[c].name, .must = "≥ 12", .values = {}, .digits = 1, .is_time = true};
+      for (std::size_t m = 0; m < kMethodCount; ++m) {
+        if (const auto seconds = tallies_[c][m].step_s.value()) row.values[m] = 1 / *seconds;
+      }
+      row.samples = tallies_[c][kMarey].step_s.count;
+      rows_.push_back(std::move(row));
+      add(
+          "processor time, ms per frame, " + cases_[c].name, "≤ 167", tallies_[c],
+          [](const ContourTally& one) { return Mean{1000 * one.processor_s.sum, one.processor_s.count}; }, 0);
+      rows_.back().is_time = true;
+    }
   }
 
   std::vector<ContourCase> cases_;

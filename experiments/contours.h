@@ -27,6 +27,9 @@ struct ContourCase {
   std::optional<int> crf = {};          ///< encoded by x264 and decoded
   std::optional<double> hidden_s = {};  ///< longest full occlusion behind a board
   std::optional<int> frames = {};       ///< of each video; the default of the situation without
+  std::optional<int> people = {};       ///< the default of the situation without
+  cv::Size size{768, 576};              ///< px
+  bool timed = false;                   ///< for the speed alone; its shapes are not counted
   int videos = 1;
 };
 
@@ -37,6 +40,7 @@ struct ContourRow {
   std::array<std::optional<double>, kContourMethods.size()> values;
   std::int64_t samples = 0;  ///< of Marey's figure
   int digits = 2;
+  bool is_time = false;  ///< of this machine, and of what else it does: not in Markdown
 };
 
 struct ContourExperiment {

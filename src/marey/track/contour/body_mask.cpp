@@ -8,7 +8,7 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr float kSurest = 0.97F;  // numerical: no cell is certain, so that logarithms are finite
+constexpr float kSurest = 0.97F;  // no cell is certain, so that logarithms are finite; unswept
 constexpr double kCoarser = 1.5;  // cells of the mask in one of the patch, from which on they are averaged: numerical
 
 }  // namespace

@@ -55,7 +55,7 @@ cv::Mat weighted_mean(const cv::Mat& colour, const cv::Mat& weights, int size, c
     const auto* in = sums.ptr<cv::Vec4f>(y);
     auto* out = mean.ptr<cv::Vec3f>(y);
     for (int x = 0; x < colour.cols; ++x) {
-      constexpr float kLittle = 1e-3F;  // of the weight: the fallback's, so that it fades in
+      constexpr float kLittle = 1e-3F;  // of the weight: the fallback's, so that it fades in; numerical
       const float all = in[x][3] + kLittle;
       for (int k = 0; k < 3; ++k) out[x][k] = (in[x][k] + kLittle * fallback[k]) / all;
     }

@@ -28,7 +28,7 @@ cv::Mat in_cells(const cv::Mat& plane, const cv::Size& cells) {
 
 /// A plane moved to the left by this many cells.
 cv::Mat moved_left(const cv::Mat& plane, double by) {
-  constexpr double kLittle = 0.05;
+  constexpr double kLittle = 0.05;  // cells; numerical: less costs a resampling and moves no edge
   if (std::abs(by) < kLittle) return plane;
   cv::Mat moved;
   cv::warpAffine(plane, moved, cv::Matx23d(1, 0, -by, 0, 1, 0), plane.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);

@@ -24,6 +24,9 @@ inline constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
 
 inline constexpr double kStrideWidth = 0.4;  // heights: physical, a body in a stride is as wide, whatever its box
 
+inline constexpr double kTypicalWeight = 0.35;  // of the typical coverage in a prior, the rest being the predicted outline's
+inline constexpr double kAstray = 0.5;          // heights off the predicted centre, from which on the prediction is wrong
+
 inline constexpr double kFractionMemory = 0.05;  // what a frame counts in what is typical of a target
 
 // Doubts of a target that begins, or begins again.

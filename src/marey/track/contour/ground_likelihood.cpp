@@ -13,13 +13,17 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kGroundLuma = 11, kGroundChroma = 4;            // levels, standard deviation of the ground beside people
-constexpr double kLumaDisplaced = 0.3, kChromaDisplaced = 1.5;   // cells, standard deviation
-constexpr double kShadowed = 0.1;                                // share of the ground beside people
-constexpr std::array<double, 4> kLights{0.45, 0.6, 0.75, 0.88};  // that a shadow leaves; unswept
-constexpr double kGroundFloor = 2e-7;                            // per level³
-constexpr float kMaskOnGround = 0.2F, kMaskOnBody = 0.92F;       // chance of foreground
-constexpr float kBlack = 16, kGrey = 128;                        // levels; format
+constexpr float kGroundLuma = 11, kGroundChroma = 4;                // levels, standard deviation of the ground beside people
+constexpr float kLumaDisplaced = 0.3F, kChromaDisplaced = 1.5F;     // cells, standard deviation
+constexpr float kShadowed = 0.1F;                                   // share of the ground beside people
+constexpr std::array<float, 4> kLights{0.45F, 0.6F, 0.75F, 0.88F};  // that a shadow leaves; unswept
+constexpr float kGroundFloor = 2e-7F;                               // per level³
+constexpr float kMaskOnGround = 0.2F, kMaskOnBody = 0.92F;          // chance of foreground
+constexpr float kBlack = 16, kGrey = 128;                           // levels; format
+
+float squared(float value) {
+  return value * value;
+}
 
 struct GroundSlopes {
   float luma = 0, chroma = 0;  ///< levels a cell
@@ -30,7 +34,7 @@ GroundSlopes slopes_at(const cv::Mat& colour, int y, int x) {
   const cv::Vec3f across = 0.5F * (row[std::min(x + 1, colour.cols - 1)] - row[std::max(x - 1, 0)]);
   const cv::Vec3f down =
       0.5F * (colour.at<cv::Vec3f>(std::min(y + 1, colour.rows - 1), x) - colour.at<cv::Vec3f>(std::max(y - 1, 0), x));
-  return {std::hypot(across[0], down[0]),
+  return {std::sqrt(across[0] * across[0] + down[0] * down[0]),
           std::sqrt(across[1] * across[1] + across[2] * across[2] + down[1] * down[1] + down[2] * down[2])};
 }
 
@@ -41,24 +45,28 @@ float mask_chance_on_body(float mask) {
 }
 
 cv::Mat ground_likelihood(const ColourPatch& patch, const cv::Mat& ground) {
+  constexpr auto kTimesNormal = static_cast<float>(1 / (2 * std::numbers::pi * 2.5066282746310002));  // (2π)^(−3/2), by definition
+  const cv::Vec3f zero(kBlack, kGrey, kGrey);
   cv::Mat likelihood(patch.size(), CV_32FC1);
   for (int y = 0; y < ground.rows; ++y) {
+    const auto* colour = patch.colour.ptr<cv::Vec3f>(y);
+    const auto* scene_row = ground.ptr<cv::Vec3f>(y);
+    const float* mask = patch.mask.ptr<float>(y);
+    float* result = likelihood.ptr<float>(y);
     for (int x = 0; x < ground.cols; ++x) {
-      const cv::Vec3f& here = patch.colour.at<cv::Vec3f>(y, x);
-      const cv::Vec3f scene = ground.at<cv::Vec3f>(y, x) - cv::Vec3f(kBlack, kGrey, kGrey);
+      const cv::Vec3f here = colour[x] - zero, scene = scene_row[x] - zero;
       const GroundSlopes slopes = slopes_at(patch.colour, y, x);
-      const double luma = kGroundLuma * kGroundLuma + std::pow(kLumaDisplaced * slopes.luma, 2);
-      const double chroma = kGroundChroma * kGroundChroma + std::pow(kChromaDisplaced * slopes.chroma, 2);
-      const auto fits = [&](double light) {
-        const cv::Vec3f off = here - static_cast<float>(light) * scene - cv::Vec3f(kBlack, kGrey, kGrey);
-        return std::exp(-0.5 * (off[0] * off[0] / luma + (off[1] * off[1] + off[2] * off[2]) / chroma));
+      const float luma = squared(kGroundLuma) + squared(kLumaDisplaced * slopes.luma);
+      const float chroma = squared(kGroundChroma) + squared(kChromaDisplaced * slopes.chroma);
+      const auto fits = [&](float light) {
+        const cv::Vec3f off = here - light * scene;
+        return std::exp(-0.5F * (off[0] * off[0] / luma + (off[1] * off[1] + off[2] * off[2]) / chroma));
       };
-      double shaded = 0;
-      for (const double light : kLights) shaded += fits(light) / kLights.size();
-      const double scale = std::pow(2 * std::numbers::pi, -1.5) / (std::sqrt(luma) * chroma);
-      const double density = scale * ((1 - kShadowed) * fits(1) + kShadowed * shaded) + kGroundFloor;
-      const float mask = patch.mask.at<float>(y, x);
-      likelihood.at<float>(y, x) = static_cast<float>(density) * (mask * kMaskOnGround + (1 - mask) * (1 - kMaskOnGround));
+      float shaded = 0;
+      for (const float light : kLights) shaded += fits(light) / static_cast<float>(kLights.size());
+      const float scale = kTimesNormal / (std::sqrt(luma) * chroma);
+      const float density = scale * ((1 - kShadowed) * fits(1) + kShadowed * shaded) + kGroundFloor;
+      result[x] = density * (mask[x] * kMaskOnGround + (1 - mask[x]) * (1 - kMaskOnGround));
     }
   }
   return likelihood;

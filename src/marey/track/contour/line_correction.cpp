@@ -25,7 +25,7 @@ constexpr double kGate = 3.5;                               // standard deviatio
 constexpr double kMinReachPx = 4, kMaxReachHeights = 0.25;  // of a line: px; heights
 constexpr double kObserved = 0.6, kPartly = 0.25;           // shares of the lines found
 constexpr double kMaxGrowthRate = 0.5;                      // 1/s: physical, one who runs at the camera from ten metres grows so
-constexpr double kRelevant = 0.25;        // weight of a line at a control point, from which on it says something of it: numerical
+constexpr double kRelevant = 0.25;        // weight of a line at a control point, from which on it says something of it; unswept
 constexpr double kHiddenFraction = 0.75;  // of the foreground typical within the outline: below, the scene hides some of it
 
 }  // namespace

@@ -106,7 +106,7 @@ void Footprint::fill(std::span<const Vector<2>> polygon) {
     minimum = minimum.cwiseMin(corner);
     maximum = maximum.cwiseMax(corner);
   }
-  constexpr double kFar = 1e5;
+  constexpr double kFar = 1e5;  // px; numerical: beyond any image, and rows fit into int
   if (!(minimum.minCoeff() > -kFar && maximum.maxCoeff() < kFar)) return;
   left_ = static_cast<int>(std::ceil(minimum.x()));
   top_ = static_cast<int>(std::ceil(minimum.y()));

@@ -20,14 +20,12 @@ namespace marey::track::contour {
 namespace {
 
 constexpr double kMaxUnlike = 1.35;       // factor of a silhouette's size over the typical, from which on it is not trusted
-constexpr double kLeft = 0.5;             // heights from where the centre is predicted: the motion begins again
 constexpr int kRounds = 3;                // of the fit, in every frame
 constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
 constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
 constexpr double kSmeared = 0.015;        // heights; at crf 18, 35 and recorded, 60 px: 0.006, 0.025, 0.035; 120 px: 0.016
 constexpr int kKnown = 10;                // frames that a target's colours were learned from, from which on they decide; unswept
-constexpr double kTypical = 0.35;         // weight of the typical coverage in the prior
 constexpr double kSame = 0.5;             // of a box that the outline's must share; unswept
 constexpr double kLearn = 0.1;            // weight of one frame in a target's appearance
 constexpr int kLearnEvery = 3;            // frames: its colours change little
@@ -97,7 +95,7 @@ cv::Mat LoneSilhouettes::known_fraction(const ContourTarget& target, const Detec
   member.height = target.height;
   member.foot = detected.box.bottom();
   member.shifts = {Vector<2>::Zero()};
-  member.typical = kTypical;
+  member.typical = kTypicalWeight;
   if (mask != nullptr) member.network = chances_in(*mask, patch_);
   const cv::Mat ground = divide_region(patch_, {&member, 1});
   return matted_edge(patch_, member.whole, {}, ground, target.height);
@@ -116,7 +114,7 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   if (known && target.held < kHeldTooLong && (growth < 1 / kMaxUnlike || growth > kMaxUnlike)) return false;
   if (known && !is_of_size(spline->box(), target)) return false;
   const Vector<2> centre = spline->centroid();
-  if ((centre - target.motion.centre()).norm() > kLeft * target.height) {
+  if ((centre - target.motion.centre()).norm() > kAstray * target.height) {
     target.motion = MotionFilter(centre, target.motion.velocity(), 0, kSilhouetteNoise, target.height, kGrowthAmbiguity);
   }
   set_shape(target, *spline);

@@ -66,19 +66,21 @@ Vector<2> shift_to_visible_end(const Box& body, const Box& own, const Box& box) 
   return {own.centre().x() - body.centre().x(), std::clamp(down, -kMaxMissingPart * box.height, kMaxMissingPart * box.height)};
 }
 
-}  // namespace
-
+/// Whether a curve is about as high as the box, px, and not much wider.
 bool is_as_large(const geometry::ClosedSpline& spline, const Box& box) {
   const Box own = spline.box();
   return own.height > (1 - kMaxMissingPart) * box.height && own.height < kMaxHigher * box.height &&
          own.width < kMaxWider * width_of(box);
 }
 
+/// The last shape of the target that filled the tracker's box, put into `box`, px; nothing before there was one.
 std::optional<geometry::ClosedSpline> body_in(const ContourTarget& target, const Box& box) {
   if (!target.body_shape) return std::nullopt;
   geometry::ClosedSpline body = moved_and_scaled(*target.body_shape, Vector<2>::Zero(), box.height, foot_of(box));
   return is_as_large(body, box) ? std::optional(std::move(body)) : std::nullopt;
 }
+
+}  // namespace
 
 void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw) {
   const Vector<2> centre = target.motion.centre();

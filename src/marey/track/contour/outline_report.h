@@ -16,12 +16,6 @@ namespace marey::track::contour {
 /// filled the box is held in it, with all of its edge hidden. `raw` is the detection that the tracker used; null: none.
 void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw);
 
-/// The last shape of the target that filled the tracker's box, put into `box`, px; nothing before there was one.
-std::optional<geometry::ClosedSpline> body_in(const ContourTarget& target, const Box& box);
-
-/// Whether a curve is about as high as `box`, px, and not much wider.
-bool is_as_large(const geometry::ClosedSpline& spline, const Box& box);
-
 /// The target's outline as it is written; nothing if the contour is not an outline of a target of this size. `seen` is the
 /// silhouette that no person shares, if any; `picture` its frame's size, px, empty if that is not known.
 std::shared_ptr<const Outline> report(ContourTarget& target, const Detection* detected, const Track<2>& track,

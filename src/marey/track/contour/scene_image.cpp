@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kInterleave = 4;  // rows: one of this many is learned per frame
 constexpr int kMemory = 16;     // frames of a pixel, on average; unswept
-constexpr int kFixed = 128;     // units per level
+constexpr int kFixed = 128;     // units per level; numerical
 
 constexpr std::array<int, kMemory + 1> kRates = [] {
   std::array<int, kMemory + 1> rates{};

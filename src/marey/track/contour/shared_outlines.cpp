@@ -12,7 +12,6 @@
 #include "marey/track/contour/body_share.h"
 #include "marey/track/contour/colour_patch.h"
 #include "marey/track/contour/edge_matting.h"
-#include "marey/track/contour/outline_report.h"
 #include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
 #include "marey/track/contour/visible_edge.h"
@@ -24,14 +23,11 @@ constexpr double kMargin = 0.15;                          // heights about all m
 constexpr double kMinVisible = 0.18;                      // share of a body, below which its shape is held
 constexpr double kWhollyVisible = 0.92;                   // from which on it is seen as if alone
 constexpr double kMinOfTypical = 0.4, kMaxOfTypical = 2;  // area of an outline, of the typical, that is trusted
-constexpr double kFar = 0.5;  // heights between tracker and motion filter, from which on the tracker is right
-constexpr double kDefault = 0.35,
-                 kDefaultHeld = 0.6;     // weight of the typical coverage: as a rule; where the shape is old or unknown
-constexpr float kUnlikeGround = 22;      // levels from the ground, of a body whose colours are not known yet
-constexpr double kLearnInRegion = 0.15;  // what a frame counts in a body that was never seen alone
-constexpr double kFine = 80;             // px of height, up to which cells are pixels
-constexpr int kLongHeld = 5;             // frames
-constexpr int kFewFrames = 6;            // alone, up to which the silhouettes may have held pixels of others
+constexpr double kTypicalWeightHeld = 0.6;                // of the typical coverage, where the shape is old or unknown
+constexpr float kUnlikeGround = 22;                       // levels from the ground, of a body whose colours are not known yet
+constexpr double kLearnInRegion = 0.15;                   // what a frame counts in a body that was never seen alone
+constexpr double kFine = 80;                              // px of height, up to which cells are pixels
+constexpr int kFewFrames = 6;                             // alone, up to which the silhouettes may have held pixels of others
 
 bool rarely_known(const ContourTarget& target) {
   return target.learned < kFewFrames;
@@ -64,16 +60,16 @@ RegionMember member_of(const SharedTarget& shared) {
   member.height = target.height;
   member.foot = shared.box.bottom();
   const Vector<2> tracked = shared.box.centre() + target.height * target.centre_in_box - member.centre;
-  const bool old = target.held >= kLongHeld;
+  const bool old = target.held >= kHeldTooLong;
   const Vector<2> none = Vector<2>::Zero();
-  if (tracked.norm() > kFar * target.height) {
+  if (tracked.norm() > kAstray * target.height) {
     member.shifts = {tracked};
   } else if (old && shared.observed) {
     member.shifts = {tracked, none};
   } else {
     member.shifts = {none, tracked};
   }
-  member.typical = old || rarely_known(target) ? kDefaultHeld : kDefault;
+  member.typical = old || rarely_known(target) ? kTypicalWeightHeld : kTypicalWeight;
   return member;
 }
 
@@ -160,11 +156,7 @@ void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneI
   const ColourPatch patch = patch_about(image, mask, scene, targets);
   if (patch.colour.empty()) return;
   std::vector<RegionMember> members;
-  for (const SharedTarget& one : targets) {
-    const bool usable = is_as_large(one.target->predicted, one.box);  // else it is cut off, or has grown
-    if (auto body = usable ? std::nullopt : body_in(*one.target, one.box)) one.target->predicted = std::move(*body);
-    members.push_back(member_of(one));
-  }
+  for (const SharedTarget& one : targets) members.push_back(member_of(one));
   for (std::size_t k = 0; k < members.size(); ++k) {
     if (targets[k].mask != nullptr) members[k].network = chances_in(*targets[k].mask, patch);
     if (!targets[k].target->body.knows_colours()) guess_colours(patch, members, k, targets[k].target->body);

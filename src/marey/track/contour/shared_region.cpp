@@ -22,6 +22,7 @@ namespace marey::track::contour {
 namespace {
 
 constexpr double kEdgeSoftness = 0.03;  // heights, of a predicted outline
+constexpr float kFarSteps = 12;         // of that softness, beyond which the edge's sigmoid is 0 or 1 to 1e-5; numerical
 constexpr float kMinChance = 0.004F;    // that a member covers a pixel, or does not
 constexpr double kTempered = 0.5;       // exponent of likelihoods: neighbouring pixels err alike
 constexpr float kVote = 8;              // of all neighbours together, in log-odds
@@ -65,10 +66,10 @@ class RegionDivision {
         float left = 1;
         for (const int k : order_) {
           const float chance = chances_[k].at<float>(y, x);
-          odds[k].at<float>(y, x) = std::log(left * chance) + log_likelihood(likelihoods_[k].at<float>(y, x));
+          odds[k].at<float>(y, x) = log_odds(left * chance, likelihoods_[k].at<float>(y, x));
           left *= 1 - chance;
         }
-        odds.back().at<float>(y, x) = std::log(left) + log_likelihood(ground_.at<float>(y, x));
+        odds.back().at<float>(y, x) = log_odds(left, ground_.at<float>(y, x));
       }
     }
     for (std::size_t k = 0; k < members_.size(); ++k) add_network(members_[k], odds[k]);
@@ -112,7 +113,11 @@ class RegionDivision {
     return fractions;
   }
 
-  static float log_likelihood(float value) { return static_cast<float>(kTempered) * std::log(value); }
+  /// log(prior likelihood^kTempered), with one logarithm.
+  static float log_odds(float prior, float likelihood) {
+    static_assert(kTempered == 0.5);
+    return std::log(prior * std::sqrt(likelihood));
+  }
 
   void inspect_ground() {
     cv::Mat taken = patch_.mask.clone();
@@ -145,8 +150,8 @@ class RegionDivision {
     for (int y = 0; y < chance.rows; ++y) {
       for (int x = 0; x < chance.cols; ++x) {
         const Vector<2> location = (patch_.pixel(Vector<2>(x, y)) - centre) / member.height;
-        const double signed_depth = depth.at<float>(y, x) - distance.at<float>(y, x);
-        const double shape = 1 / (1 + std::exp(static_cast<float>(-signed_depth / softness)));
+        const auto steps = static_cast<float>((depth.at<float>(y, x) - distance.at<float>(y, x)) / softness);
+        const double shape = steps > kFarSteps ? 1 : steps < -kFarSteps ? 0 : 1 / (1 + std::exp(-steps));
         const double typical = member.body->coverage(location);
         chance.at<float>(y, x) =
             std::clamp(static_cast<float>((1 - member.typical) * shape + member.typical * typical), kMinChance, 1 - kMinChance);
@@ -163,9 +168,12 @@ class RegionDivision {
     std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return members_[a].foot > members_[b].foot; });
   }
 
-  /// Of the whole patch, every second cell in each direction, in nats.
+  /// Of the whole patch, every second cell in each direction, in nats. A cell's likelihood is more than 1e-15, so that a product of
+  /// kFactors is far from the smallest number.
   double log_likelihood() const {
-    double sum = 0;
+    constexpr int kFactors = 16;  // numerical
+    double sum = 0, product = 1;
+    int factors = 0;
     for (int y = 0; y < patch_.size().height; y += 2) {
       const float* ground = ground_.ptr<float>(y);
       for (int x = 0; x < patch_.size().width; x += 2) {
@@ -175,9 +183,14 @@ class RegionDivision {
           all += left * chance * likelihoods_[k].at<float>(y, x);
           left *= 1 - chance;
         }
-        sum += std::log(all + left * ground[x]);
+        product *= all + left * ground[x];
+        if (++factors < kFactors) continue;
+        sum += std::log(product);
+        product = 1;
+        factors = 0;
       }
     }
+    sum += std::log(product);
     double review_item = 0;
     for (const RegionMember& member : members_) {
       review_item += (member.shift - member.shifts.front()).squaredNorm() / std::pow(kShiftAmbiguity * member.height, 2);

@@ -69,7 +69,7 @@ geometry::SplineFitOptions fit_options(const OutlineOptions& options) {
 }
 
 bool is_knotted(const geometry::ClosedSpline& spline) {
-  constexpr int kPositions = 4;  // a span
+  constexpr int kPositions = 4;  // a span; numerical
   const int count = kPositions * spline.count();
   double rotated = 0;
   Vector<2> before = spline.derivative(-1.0 / kPositions);

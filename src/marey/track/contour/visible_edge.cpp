@@ -10,10 +10,10 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kReach = 2;            // cells to either side of the curve that are compared: physical, beyond the blur of an edge
-constexpr double kBlurredNoise = 14;    // levels × px: physical, noise of light times the width of an edge
-constexpr double kMinDeviation = 0.35;  // px: physical, what remains of an edge in chroma of half the resolution
-constexpr float kAlike = 9;             // levels: physical, the noise of a difference of two cells
+constexpr double kReach = 2;            // cells to either side of the curve that are compared, beyond the blur of an edge; unswept
+constexpr double kBlurredNoise = 14;    // levels × px: noise of light times the width of an edge; unswept
+constexpr double kMinDeviation = 0.35;  // px: what remains of an edge in chroma of half the resolution; unswept
+constexpr float kAlike = 9;             // levels: the noise of a difference of two cells; unswept
 constexpr float kChromaPart = 0.4F;     // of squared differences: format, chroma has half the resolution
 constexpr float kTaken = 0.5F;          // by definition: more likely another body than not
 constexpr double kBorderBand = 1.5;     // px from the border of the image: numerical
