@@ -77,7 +77,7 @@ class Page(unittest.TestCase):
             self.assertEqual(status["cameras"][0]["threshold"], 33)
             self.assertFalse(status["unsaved"])
             page.send("watch 0 320")
-            picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
+            picture = next(data for data in iter(page.receive, None) if isinstance(data, bytes) and data[0] == 3)
             self.assertEqual(int.from_bytes(picture[28:32], "little"), 0, "markers are found under the mask")
         self.write_rig("masks = [[0, 0, 320]]\n")
         done = subprocess.run([MAREY, "live", "rig.toml"], capture_output=True, text=True, cwd=self.folder, timeout=60)
@@ -106,7 +106,7 @@ class Page(unittest.TestCase):
             status = receive_until(page, "status", lambda s: len(s["cameras"]) == 2 and s["cameras"][0]["frames"] > 5)
             self.assertEqual(status["cameras"][0]["controls"], [], "points have no exposure")
             page.send("watch 0 320")
-            detected = lambda: next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3)
+            detected = lambda: next(int.from_bytes(data[28:32], "little") for data in iter(page.receive, None) if isinstance(data, bytes) and data[0] == 3)
             self.assertGreater(max(detected() for _ in range(5)), 2)
             page.send("mask 0 0 0 320 240")
             for _ in range(50):
@@ -196,7 +196,7 @@ class OtherComputer(unittest.TestCase):
     def test_its_camera_is_set_from_the_hosts_page(self):
         where = self.node()
         (self.folder / "rig.toml").write_text("".join(f'[[camera]]\nname = "mine{c}"\nsource = "{where}/cam{c}"\nexposure = 1.5\n' for c in (1, 2)))
-        found = lambda page: max(next(int.from_bytes(data[28:32], "little") for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3) for _ in range(4))
+        found = lambda page: max(next(int.from_bytes(data[28:32], "little") for data in iter(page.receive, None) if isinstance(data, bytes) and data[0] == 3) for _ in range(4))
         now = lambda s: [camera_control["now"] for camera_control in s["cameras"][0].get("controls", [])]
         with LivePage(self.folder, "live", "rig.toml", "--view", "--port", 0) as shown:
             page = WebSocket(shown)

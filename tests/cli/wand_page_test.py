@@ -43,7 +43,7 @@ class Wand(unittest.TestCase):
                 self.assertAlmostEqual(camera["coverage"], len(camera["parts"]) / 80)
             self.assertEqual([(pair["a"], pair["b"]) for pair in early["shared"]], [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
             page.send("watch 0 320")
-            picture = next(data for data in iter(page.hear, None) if isinstance(data, bytes) and data[0] == 3 and int.from_bytes(data[28:32], "little") == 3)
+            picture = next(data for data in iter(page.receive, None) if isinstance(data, bytes) and data[0] == 3 and int.from_bytes(data[28:32], "little") == 3)
             tracks = [int.from_bytes(picture[64 + 4 * i:68 + 4 * i], "little") for i in range(3)]
             self.assertEqual(sorted(tracks), [1, 2, 3], "the wand's markers are distinguished from others")
             later = receive_until(page, "wand", lambda w: len(w["cameras"][0]["parts"]) > len(early["cameras"][0]["parts"]), 60)
