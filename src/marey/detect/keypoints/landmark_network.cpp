@@ -64,19 +64,19 @@ std::vector<Body> LandmarkNetwork::find(const cv::Mat& bgr, std::span<const Pers
   return bodies;
 }
 
-std::vector<Body> LandmarkNetwork::find(std::span<const Look> appearances) {
-  std::vector<Body> bodies(appearances.size());
-  inference_.each(appearances.size(), [&](network::Inference::Engine& engine, std::size_t i) {
-    bodies[i] = body_of(run(engine, crop_of(appearances[i].image, appearances[i].region), kOutputs), appearances[i].region);
+std::vector<Body> LandmarkNetwork::find(std::span<const ImageRegion> searched) {
+  std::vector<Body> bodies(searched.size());
+  inference_.each(searched.size(), [&](network::Inference::Engine& engine, std::size_t i) {
+    bodies[i] = body_of(run(engine, crop_of(searched[i].image, searched[i].region), kOutputs), searched[i].region);
   });
   return bodies;
 }
 
-std::vector<BodyPixels> LandmarkNetwork::pixels(std::span<const Look> appearances) {
-  std::vector<BodyPixels> found(appearances.size());
-  inference_.each(appearances.size(), [&](network::Inference::Engine& engine, std::size_t i) {
-    const auto outputs = run(engine, crop_of(appearances[i].image, appearances[i].region), kPixels);
-    found[i] = pixels_of(outputs, appearances[i].region);
+std::vector<BodyPixels> LandmarkNetwork::pixels(std::span<const ImageRegion> searched) {
+  std::vector<BodyPixels> found(searched.size());
+  inference_.each(searched.size(), [&](network::Inference::Engine& engine, std::size_t i) {
+    const auto outputs = run(engine, crop_of(searched[i].image, searched[i].region), kPixels);
+    found[i] = pixels_of(outputs, searched[i].region);
   });
   return found;
 }

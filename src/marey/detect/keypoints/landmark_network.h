@@ -27,7 +27,7 @@ struct BodyPixels {
 };
 
 /// A region of one of several cameras' images.
-struct Look {
+struct ImageRegion {
   Image image;  ///< colour or grey
   PersonRegion region;
 };
@@ -41,10 +41,10 @@ class LandmarkNetwork {
   /// Who is in each region of an image, CV_8UC3, blue first. `Keypoints::presence` says whether that is any person.
   std::vector<Body> find(const cv::Mat& bgr, std::span<const PersonRegion> regions);
   /// The same in regions of several images, which share the threads. Only the pixels in a region are converted.
-  std::vector<Body> find(std::span<const Look> appearances);
+  std::vector<Body> find(std::span<const ImageRegion> searched);
 
   /// The pixels of who is in each region, where the body points are not needed.
-  std::vector<BodyPixels> pixels(std::span<const Look> appearances);
+  std::vector<BodyPixels> pixels(std::span<const ImageRegion> searched);
 
   /// What the network says of one crop: "landmarks" (39 × x, y, depth, visibility, presence), "presence", "heatmaps".
   std::vector<network::Tensor> raw(const cv::Mat& crop);

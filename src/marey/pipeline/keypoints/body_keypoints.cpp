@@ -13,7 +13,7 @@ namespace marey::pipeline::keypoints {
 namespace {
 
 using detect::keypoints::Body;
-using detect::keypoints::Look;
+using detect::keypoints::ImageRegion;
 using detect::keypoints::PersonRegion;
 
 constexpr double kNearBox = 0.5;    // of a box's longer side: how far from its centre a region may lie that was found before
@@ -94,7 +94,7 @@ void BodyKeypoints::add(Instant instant, const Image& image) {
 void BodyKeypoints::inspect(const Instant& instant, const Image& image) {
   const auto begin = std::chrono::steady_clock::now();
   std::vector<const Sample*> samples;
-  std::vector<Look> looks;
+  std::vector<ImageRegion> searched;
   std::vector<std::size_t> new_ones;  // whose region a box gives, and not earlier points
   for (const Sample& sample : instant.samples) {
     if (!sample.box || sample.box->empty()) continue;
@@ -109,15 +109,15 @@ void BodyKeypoints::inspect(const Instant& instant, const Image& image) {
     }
     if (!known) new_ones.push_back(samples.size());
     samples.push_back(&sample);
-    looks.push_back({image, region});
+    searched.push_back({image, region});
   }
   if (samples.empty()) return;
-  std::vector<Body> bodies = network_.find(looks);
+  std::vector<Body> bodies = network_.find(searched);
   // Seen in a region that fits, points are surer by far: once more, where the first was only a box.
   std::erase_if(new_ones, [&](std::size_t i) {
     return bodies[i].keypoints.presence < options_.sure || !fits(bodies[i].next, *samples[i]->box);
   });
-  std::vector<Look> closer;
+  std::vector<ImageRegion> closer;
   for (const std::size_t i : new_ones) closer.push_back({image, bodies[i].next});
   std::vector<Body> again = network_.find(closer);
   for (std::size_t i = 0; i < new_ones.size(); ++i) {

@@ -25,7 +25,7 @@ namespace {
 
 namespace rk = reconstruct::keypoints;
 using detect::keypoints::Body;
-using detect::keypoints::Look;
+using detect::keypoints::ImageRegion;
 using detect::keypoints::PersonRegion;
 
 constexpr double kMinLocated = 0.75;     // fraction of people in images below which the reasons are searched: as for recordings
@@ -63,7 +63,7 @@ FindPeople detector_of(const std::string& file) {
 
 FindBodies network_of(const std::string& model) {
   const auto network = std::make_shared<detect::keypoints::LandmarkNetwork>(detect::keypoints::landmark_model(model));
-  return [network](std::span<const Look> appearances) { return network->find(appearances); };
+  return [network](std::span<const ImageRegion> searched) { return network->find(searched); };
 }
 
 /// Which points of a set say how a body lies in an image.
@@ -129,7 +129,7 @@ class KeypointsLive final : public corridor::Stage {
   LocatedPeople people_;
   KeypointsLiveOptions options_;
   std::vector<rk::LocatedPerson> located_;
-  std::vector<Look> appearances_;
+  std::vector<ImageRegion> searched_;
   std::vector<std::size_t> detected_in_;  // camera of each frame given to the network
   std::vector<char> has_frame_;
   std::optional<Timestamp> before_;
@@ -195,21 +195,21 @@ void KeypointsLive::search(const FrameSet& frames) {
 }
 
 void KeypointsLive::inspect(const FrameSet& frames) {
-  appearances_.clear();
+  searched_.clear();
   detected_in_.clear();
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
     for (const PersonRegion& region : in_images_[c].regions()) {
-      appearances_.push_back({frames.cameras[c]->frame.image, region});
+      searched_.push_back({frames.cameras[c]->frame.image, region});
       detected_in_.push_back(c);
     }
   }
   std::vector<Body> bodies;
-  if (!appearances_.empty()) {
+  if (!searched_.empty()) {
     const Stopwatch watch(detecting_);
-    bodies = find_bodies_(appearances_);
+    bodies = find_bodies_(searched_);
   }
-  detector_runs_ += std::ssize(appearances_);
+  detector_runs_ += std::ssize(searched_);
   std::size_t begin = 0;
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
     if (!has_frame_[c]) continue;
@@ -218,7 +218,7 @@ void KeypointsLive::inspect(const FrameSet& frames) {
     begin += count;
     counts_[c].detections += std::ssize(in_images_[c].people());
   }
-  appearances_.clear();  // the images are not kept
+  searched_.clear();  // the images are not kept
 }
 
 void KeypointsLive::location(const FrameSet& frames, double step_s) {

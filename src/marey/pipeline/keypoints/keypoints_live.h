@@ -27,7 +27,7 @@ namespace marey::pipeline::keypoints {
 /// The boxes of the people in an image, px.
 using FindPeople = std::function<std::vector<Box>(const Image& image)>;
 /// Who is in each of several cameras' regions.
-using FindBodies = std::function<std::vector<detect::keypoints::Body>(std::span<const detect::keypoints::Look> appearances)>;
+using FindBodies = std::function<std::vector<detect::keypoints::Body>(std::span<const detect::keypoints::ImageRegion> searched)>;
 
 struct KeypointsLiveOptions {
   std::string model = "lite";   ///< the landmark network: lite, full, heavy, or an ONNX file

@@ -96,16 +96,16 @@ struct LiveRoom {
       for (const Body2D& body : bodies(image)) boxes.push_back(body.hull);
       return boxes;
     };
-    options.find_bodies = [this](std::span<const detect::keypoints::Look> appearances) {
+    options.find_bodies = [this](std::span<const detect::keypoints::ImageRegion> searched) {
       std::vector<detect::keypoints::Body> found;
-      for (const detect::keypoints::Look& inspect : appearances) {
-        const std::vector<Body2D> all = bodies(inspect.image);
+      for (const detect::keypoints::ImageRegion& crop : searched) {
+        const std::vector<Body2D> all = bodies(crop.image);
         detect::keypoints::Body body;
         body.keypoints.points.resize(marey::simulate::room::room_keypoint_set().points.size());
         body.keypoints.presence = 0;
-        double nearest = inspect.region.side / 2;
+        double nearest = crop.region.side / 2;
         for (const Body2D& one : all) {
-          const double distance = (one.hips - inspect.region.centre).norm();
+          const double distance = (one.hips - crop.region.centre).norm();
           if (distance >= nearest) continue;
           nearest = distance;
           body.keypoints = one.points;
@@ -293,9 +293,9 @@ TEST(KeypointsLive, DoesNotSearchThoseWhoAreNotWanted) {
   options.people.maximum = 1;
   std::size_t regions = 0;
   const FindBodies find = options.find_bodies;
-  options.find_bodies = [&](std::span<const detect::keypoints::Look> appearances) {
-    regions += appearances.size();
-    return find(appearances);
+  options.find_bodies = [&](std::span<const detect::keypoints::ImageRegion> searched) {
+    regions += searched.size();
+    return find(searched);
   };
   const auto stage = keypoints_live(room.scene.rig(), kRate, options);
   std::map<TrackId, std::string> labels;

@@ -58,10 +58,10 @@ track::contour::FindBodyMasks masks_by(const std::string& model) {
   const auto network = std::make_shared<detect::keypoints::LandmarkNetwork>(detect::keypoints::landmark_model(model));
   return [network](const Image& image, std::span<const Box> boxes) {
     constexpr double kPresent = 0.5;  // by definition: more likely than not
-    std::vector<detect::keypoints::Look> looks;
-    for (const Box& box : boxes) looks.push_back({image, detect::keypoints::region_of(box)});
+    std::vector<detect::keypoints::ImageRegion> searched;
+    for (const Box& box : boxes) searched.push_back({image, detect::keypoints::region_of(box)});
     std::vector<track::contour::BodyMask> masks;
-    for (detect::keypoints::BodyPixels& one : network->pixels(looks)) {
+    for (detect::keypoints::BodyPixels& one : network->pixels(searched)) {
       if (one.presence < kPresent) one.chance.release();
       masks.push_back(
           {.chance = std::move(one.chance), .corner = one.region.in_image(Vector<2>::Zero()), .scale = one.region.scale()});
