@@ -6,7 +6,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/image.h"
-#include "marey/detect/chroma_shift.h"
+#include "marey/track/contour/chroma_shift.h"
 
 namespace marey::track::contour {
 
