@@ -132,6 +132,8 @@ void add_troubles(Command& room, SimulateRoom& options) {
             "people's body keypoints with a network's errors: keypoints_CAMERA.json (COCO) and keypoints_truth.csv");
   room.number("--swapped", options.files.keypoint_errors.swapped, "fraction", closed(0, 0.99),
               "of time during which arms, or legs, are exchanged in a camera's keypoints");
+  room.number("--drift", options.files.keypoint_errors.drift, "fraction", closed(0, 0.001),
+              "by which cameras' clocks run slower or faster than the first one's at most, in keypoints: 25e-6 is 25 ppm");
   room.flag("--render", options.files.videos, "render a video of each camera too");
 }
 

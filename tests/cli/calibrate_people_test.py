@@ -77,6 +77,19 @@ class CalibratePeople(unittest.TestCase):
         first = {image["id"] for image in coco["images"][:5]}
         (self.folder / "short.json").write_text(json.dumps(coco | {"annotations": [a for a in coco["annotations"] if a["image_id"] in first]}))
         self.assertIn("cam4", self.refused("blind.toml", *self.sources[:3], "cam4=short.json"))
+        # A phone's front camera: left is right, in the image and in the names.
+        width, names = self.truth[1]["size"][0], coco["categories"][0]["keypoints"]
+        other = [names.index(name.replace("left", "?").replace("right", "left").replace("?", "right")) for name in names]
+        second = json.loads((self.folder / "room/keypoints_cam2.json").read_text())
+        for one in second["annotations"]:
+            points = [one["keypoints"][3 * i : 3 * i + 3] for i in other]
+            one["keypoints"] = [value for x, y, seen in points for value in ((width - 1 - x if seen else x), y, seen)]
+        (self.folder / "mirrored.json").write_text(json.dumps(second))
+        self.assertIn("mirrored", self.refused("blind.toml", self.sources[0], "cam2=mirrored.json", *self.sources[2:]))
+        # Cameras in two rooms.
+        self.marey("simulate", "room", "--motion", "wave", "--cameras", 4, "--frames", 300, "--rate", 25, "--keypoints", "--seed", 2, "-o", "elsewhere", "-q")
+        others = [f"{name}=elsewhere/keypoints_{name}.json" for name in ("cam3", "cam4")]
+        self.assertRegex(self.refused("blind.toml", *self.sources[:2], *others), "never show one person|no person is seen by two cameras at the same time")
         self.assertIn("nothing.json", self.refused("blind.toml", *self.sources[:3], "cam4=nothing.json"))
 
 

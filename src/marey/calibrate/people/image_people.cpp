@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -132,6 +133,21 @@ std::vector<ImagePerson> image_people(const KeypointSequence& sequence, double r
   std::stable_sort(done.begin(), done.end(),
                    [](const ImagePerson& a, const ImagePerson& b) { return a.frames.size() > b.frames.size(); });
   return done;
+}
+
+std::vector<ImagePerson> mirrored(std::vector<ImagePerson> people, const KeypointSet& set, int width) {
+  for (ImagePerson& person : people) {
+    for (auto& frame : person.frames) {
+      auto other = frame;
+      for (std::size_t i = 0; i < frame.size(); ++i) {
+        const std::size_t from = i < set.mirrored.size() ? static_cast<std::size_t>(set.mirrored[i]) : i;
+        other[i] = from < frame.size() ? frame[from] : std::nullopt;
+        if (other[i]) other[i]->x() = width - 1 - other[i]->x();
+      }
+      frame = std::move(other);
+    }
+  }
+  return people;
 }
 
 }  // namespace marey::calibrate::people

@@ -25,4 +25,7 @@ struct ImagePerson {
 /// not there for a quarter of a second is another one. Those seen for less than half a second are omitted. The longest first.
 std::vector<ImagePerson> image_people(const KeypointSequence& sequence, double rate_hz);
 
+/// As they would be in the mirrored image, of `width` px: left and right are exchanged, of the places and of the points' names.
+std::vector<ImagePerson> mirrored(std::vector<ImagePerson> people, const KeypointSet& set, int width);
+
 }  // namespace marey::calibrate::people

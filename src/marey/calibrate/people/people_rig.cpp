@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "marey/calibrate/incremental_rig.h"
+#include "marey/calibrate/people/clock_drift.h"
 #include "marey/calibrate/people/image_people.h"
 #include "marey/calibrate/people/people_growth.h"
 #include "marey/calibrate/people/people_pairs.h"
@@ -36,6 +37,7 @@ constexpr std::size_t kMaxPoints = 6000;     // numerical, time against precisio
 constexpr std::size_t kOffsetPoints = 1200;  // numerical, time against precision: while offsets are found
 constexpr int kOffsetRounds = 12;            // numerical, time against precision: at most
 constexpr double kOffsetFound = 0.02;        // numerical, time against precision: frames by which none moves any more
+constexpr double kDriftAfter = 60;           // by definition: s of a recording, in which 50 ppm are 3 ms
 constexpr double kAssumedHeight = 1.75;      // by definition: m, where neither height nor distance is given
 constexpr double kPoorlyKnown = 0.02;        // by definition: of the distances, a camera's deviation that is said
 
@@ -65,10 +67,14 @@ class PeopleCalibration {
 
   void check_input() const;
   void match();
+  void check_mirrored(const PeopleMatch& matched) const;
   void fill(bundle::Bundle& bundle);
   void fit();
+  bool drifts() const;
+  double correct_clocks(const bundle::BundleResult& fitted);
   bundle::BundleResult adjust_until_still(const bundle::BundleOptions& how);
   void prefer_equal_lenses(bundle::BundleOptions how);
+  std::vector<Body3> whole_people();
   void put_into_world();
   void store();
   void report_cameras();
@@ -80,7 +86,8 @@ class PeopleCalibration {
   PeopleRig result_;
   PeopleViews views_;
   std::vector<PointRow> rows_;
-  std::vector<std::size_t> row_of_body_;  // of the bundle
+  std::vector<std::size_t> row_of_body_;         // of the bundle
+  std::vector<double> drift_, drift_deviation_;  // of each camera's clock, relative; 0: as its rate says
   Growth growth_;
   bundle::Bundle bundle_;
   bundle::BundleResult fitted_;
@@ -111,6 +118,7 @@ void PeopleCalibration::match() {
                   camera.name);
   }
   PeopleMatch matched = match_people(views_.cameras, options_.max_offset_s, options_.seed);
+  check_mirrored(matched);
   views_.offsets_s = std::move(matched.offsets_s);
   views_.identity = std::move(matched.identity);
   result_.people = views_.people = matched.people;
@@ -120,6 +128,23 @@ void PeopleCalibration::match() {
         "no person is seen by two cameras at the same time, as far as their motion says: let one person walk through the whole "
         "volume, and turn, where the cameras see the body from head to feet; people who stand still do not show how cameras' "
         "clocks differ");
+}
+
+/// Throws Error for a camera whose people are found in others if its image is mirrored, as those of phones' front cameras are.
+void PeopleCalibration::check_mirrored(const PeopleMatch& matched) const {
+  const auto has_people = [](const std::vector<int>& identity) {
+    return std::any_of(identity.begin(), identity.end(), [](int person) { return person >= 0; });
+  };
+  for (std::size_t c = 0; c < cameras(); ++c) {
+    if (has_people(matched.identity[c])) continue;
+    std::vector<CameraPeople> turned = views_.cameras;
+    turned[c].people = mirrored(std::move(turned[c].people), in_.cameras[c].sequence.set, rig_camera(c).size->width);
+    if (!has_people(match_people(turned, options_.max_offset_s, options_.seed).identity[c])) continue;
+    throw Error(
+        "camera \"{}\": its images are mirrored, as a phone's front camera shows them: use the back camera, or mirror the "
+        "video (ffmpeg -i IN.mp4 -vf hflip OUT.mp4)",
+        rig_camera(c).name);
+  }
 }
 
 void PeopleCalibration::fill(bundle::Bundle& bundle) {
@@ -156,7 +181,9 @@ void PeopleCalibration::fill(bundle::Bundle& bundle) {
 void PeopleCalibration::fit() {
   step("adjusting everything");
   bundle_ = growth_.bundle;
-  const std::vector<PointRow> all = some_of(rows_, kMaxPoints);
+  drift_.assign(cameras(), 0);
+  drift_deviation_.assign(cameras(), 0);
+  const std::vector<PointRow> all = some_of(rows_, kMaxPoints), whole = some_instants(rows_, kMaxPoints);
   bool first = true;
   for (bundle::BundleCamera& camera : bundle_.cameras) {
     const auto c = static_cast<std::size_t>(&camera - bundle_.cameras.data());
@@ -176,11 +203,13 @@ void PeopleCalibration::fit() {
   how.noise_px = std::max(0.5, fitted_.noise_px);
   prefer_equal_lenses(how);
   rows_ = all;
+  if (drifts()) adjust_until_still(how);
   fill(bundle_);
   fitted_ = bundle::adjust(bundle_, how);
   if (fitted_.inliers < kMinShared * static_cast<int>(cameras()) / 2)
     throw Error("only {} views of people's points fit together: let one person walk through the whole volume, and turn",
                 fitted_.inliers);
+  rows_ = whole;
 }
 
 /// Round by round, points taken again at the instants that the offsets name, until none moves.
@@ -195,10 +224,35 @@ bundle::BundleResult PeopleCalibration::adjust_until_still(const bundle::BundleO
     double moved = 0;  // frames
     for (std::size_t c = 0; c < cameras(); ++c) {
       moved = std::max(moved, std::abs(bundle_.cameras[c].offset_s) * views_.cameras[c].rate_hz);
-      views_.offsets_s[c] += std::exchange(bundle_.cameras[c].offset_s, 0);
     }
+    if (drifts()) moved = std::max(moved, correct_clocks(fitted));
+    for (std::size_t c = 0; c < cameras(); ++c) views_.offsets_s[c] += std::exchange(bundle_.cameras[c].offset_s, 0);
     if (moved < kOffsetFound || round == kOffsetRounds) return fitted;
   }
+}
+
+/// Whether clocks' drifts are found: their offsets are, and people are there for long enough.
+bool PeopleCalibration::drifts() const {
+  return options_.max_offset_s > 0 && !rows_.empty() && rows_.back().time_s - rows_.front().time_s > kDriftAfter;
+}
+
+/// Corrects the rates of cameras whose offsets are free; the largest change of a time, in frames.
+double PeopleCalibration::correct_clocks(const bundle::BundleResult& fitted) {
+  std::vector<double> times;
+  for (const std::size_t row : row_of_body_) times.push_back(rows_[row].time_s);
+  const double end = std::max(std::abs(rows_.front().time_s), std::abs(rows_.back().time_s));
+  double moved = 0;
+  const auto corrections = clock_corrections(bundle_, fitted, times, drift_);
+  for (std::size_t c = 0; c < cameras(); ++c) {
+    const ClockCorrection& more = corrections[c];
+    // Frame k at k / rate + offset goes to (1 + drift) of that, and the offset.
+    views_.offsets_s[c] += more.drift * views_.offsets_s[c] + more.offset_s;
+    views_.cameras[c].rate_hz /= 1 + more.drift;
+    drift_[c] += more.drift;
+    drift_deviation_[c] = more.deviation;
+    moved = std::max(moved, (std::abs(more.drift) * end + std::abs(more.offset_s)) * views_.cameras[c].rate_hz);
+  }
+  return moved;
 }
 
 /// Cameras whose lenses are unknown and whose images are of one size are mostly of one make: body points that a network sees where
@@ -212,7 +266,8 @@ void PeopleCalibration::prefer_equal_lenses(bundle::BundleOptions how) {
     makes[{low, high}].push_back(c);
   }
   const bundle::Bundle before = bundle_;
-  const std::vector<double> offsets = views_.offsets_s;
+  const PeopleViews views = views_;
+  const std::vector<double> drift = drift_;
   bool any = false;
   for (const auto& [size, of_make] : makes) {
     if (of_make.size() < 2) continue;
@@ -235,22 +290,35 @@ void PeopleCalibration::prefer_equal_lenses(bundle::BundleOptions how) {
     return;
   }
   bundle_ = before;
-  views_.offsets_s = offsets;
+  views_ = views;
+  drift_ = drift;
 }
 
-void PeopleCalibration::put_into_world() {
+/// Whole people by the cameras that were found: the points of the adjustment are too few of each to stand up in a long recording.
+std::vector<Body3> PeopleCalibration::whole_people() {
+  bundle::Bundle bundle = bundle_;
+  for (bundle::BundleCamera& camera : bundle.cameras) camera.refine_pose = camera.refine_offset = false, camera.freedom = {};
+  fill(bundle);
+  bundle::BundleOptions how;
+  how.noise_px = std::max(0.5, fitted_.noise_px);
+  how.deviations = false;
+  const bundle::BundleResult placed = bundle::adjust(bundle, how);
   std::map<std::pair<int, double>, Body3> bodies;
   const std::size_t points = in_.cameras.front().sequence.set.points.size();
-  for (std::size_t i = 0; i < bundle_.observations.size(); ++i) {
-    const bundle::BundleObservation& detected = bundle_.observations[i];
+  for (std::size_t i = 0; i < bundle.observations.size(); ++i) {
+    const bundle::BundleObservation& detected = bundle.observations[i];
     const PointRow& row = rows_[row_of_body_[static_cast<std::size_t>(detected.body)]];
     Body3& body = bodies[{row.person, row.time_s}];
     if (body.points.empty()) body = {row.person, row.time_s, std::vector<std::optional<Vector<3>>>(points)};
-    if (fitted_.inlier[i]) body.points[row.point] = bundle::marker_position(bundle_, detected);
+    if (placed.inlier[i]) body.points[row.point] = bundle::marker_position(bundle, detected);
   }
   std::vector<Body3> in_order;
   for (auto& [key, body] : bodies) in_order.push_back(std::move(body));
-  const auto world = world_of(in_order, in_.cameras.front().sequence.set);
+  return in_order;
+}
+
+void PeopleCalibration::put_into_world() {
+  const auto world = world_of(whole_people(), in_.cameras.front().sequence.set);
   if (!world)
     throw Error("{}",
                 "no person's shoulders, ankles and eyes are seen by two cameras together: the vertical and the scale "
@@ -289,6 +357,10 @@ void PeopleCalibration::report_cameras() {
       extent = std::max(extent, (a.camera_from_world.inverse().translation - b.camera_from_world.inverse().translation).norm());
   }
   for (std::size_t c = 0; c < cameras(); ++c) {
+    if (std::abs(drift_[c]) > 2 * drift_deviation_[c])
+      result_.notes.push_back(fmt::format("camera \"{}\": its clock is {:.0f} ± {:.0f} ppm {}: its rate is {:.5f} Hz", names[c],
+                                          1e6 * std::abs(drift_[c]), 1e6 * drift_deviation_[c], drift_[c] > 0 ? "slow" : "fast",
+                                          views_.cameras[c].rate_hz));
     const double sigma = fitted_.deviations.empty() ? 0 : fitted_.deviations[c].centre.norm();
     if (sigma > kPoorlyKnown * extent)
       result_.notes.push_back(
@@ -304,6 +376,7 @@ void PeopleCalibration::store() {
     camera.lens = bundle_.cameras[c].lens;
     camera.camera_from_world = bundle_.cameras[c].camera_from_world;
     camera.offset_s = views_.offsets_s[c] + bundle_.cameras[c].offset_s;
+    if (drift_[c] != 0) camera.rate_hz = views_.cameras[c].rate_hz;
     camera.rms_px = result_.report.cameras[c].fit.rms_px;
   }
   const FitQuality& all = result_.report.all;

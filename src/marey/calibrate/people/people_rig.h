@@ -4,7 +4,8 @@
 //   2. of every two cameras' people, who is the same and by how much one camera was started after the other: the body's shape as it
 //      moves up and down agrees at the right shift, and one essential matrix explains all its points (people_pairs)
 //   3. grow the rig over the points, each a free one, for several guesses of the focal length (grow_rig)
-//   4. adjust all: poses, one focal length a camera under a prior, offsets; outliers put out (bundle)
+//   4. adjust all: poses, one focal length a camera under a prior, offsets, over a minute also how fast clocks run (clock_drift);
+//      outliers put out (bundle)
 //   5. put the floor under the feet, upright as people walk, in metres by a height or a distance (people_world)
 // A body point that the network places wrongly in every view alike does no harm: it is another point of the same body.
 // Cost: dominated by 2 (a RANSAC for each shift that is tried) and 4, linear in the points.
@@ -44,7 +45,7 @@ struct PeopleOptions {
 };
 
 struct PeopleRig {
-  Rig rig;  ///< z = 0 is the floor, the origin below the middle of where people were
+  Rig rig;  ///< z = 0 is the floor, the origin below the middle of where people were; rates by the first camera's clock
   RigReport report;
   int people = 0;                  ///< seen by two cameras
   double height = 0;               ///< of the one most seen, by the scale that was taken, m

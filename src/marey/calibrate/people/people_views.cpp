@@ -53,4 +53,20 @@ std::vector<PointRow> some_of(const std::vector<PointRow>& rows, std::size_t max
   return some;
 }
 
+std::vector<PointRow> some_instants(const std::vector<PointRow>& rows, std::size_t number) {
+  if (rows.size() <= number) return rows;
+  std::vector<std::size_t> first;  // row of each instant
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (r == 0 || rows[r].time_s != rows[r - 1].time_s) first.push_back(r);
+  }
+  const std::size_t instants = first.size(), taken = std::max<std::size_t>(1, number * instants / rows.size());
+  first.push_back(rows.size());
+  std::vector<PointRow> some;
+  for (std::size_t k = 0; k < taken; ++k) {
+    const std::size_t instant = (2 * k + 1) * instants / (2 * taken);
+    for (std::size_t r = first[instant]; r < first[instant + 1]; ++r) some.push_back(rows[r]);
+  }
+  return some;
+}
+
 }  // namespace marey::calibrate::people

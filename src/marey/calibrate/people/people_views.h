@@ -32,4 +32,7 @@ struct PeopleViews {
 /// At most `maximum` of them, evenly spread, in an order that takes times and points in turn.
 std::vector<PointRow> some_of(const std::vector<PointRow>& rows, std::size_t maximum);
 
+/// About `number` of them, as whole people: all that is seen at evenly spread instants.
+std::vector<PointRow> some_instants(const std::vector<PointRow>& rows, std::size_t number);
+
 }  // namespace marey::calibrate::people

@@ -98,6 +98,24 @@ TEST(PeopleRig, FindsWhenCamerasWereStarted) {
   EXPECT_LT(rig_errors(found.rig, scene.rig()).offset_s, 0.5 / 25) << "half a frame";
 }
 
+TEST(PeopleRig, FindsHowFastClocksRunInALongRecording) {
+  const RoomScene scene(room_of_walkers(1, 240));
+  const KeypointErrors errors{.drift = 150e-6};
+  PeopleOptions how = with_distance(scene.rig());
+  how.max_offset_s = 0.04;
+  const PeopleRig found = calibrate_people(observations_of_room(scene, errors), how);
+  double largest = 0;
+  for (std::size_t c = 1; c < 4; ++c) {
+    const double truth = clock_drift(scene, static_cast<int>(c), errors);
+    largest = std::max(largest, std::abs(truth));
+    ASSERT_TRUE(found.rig.cameras[c].rate_hz);
+    EXPECT_NEAR(25 / *found.rig.cameras[c].rate_hz - 1, truth, 40e-6) << "camera " << c;
+  }
+  EXPECT_GT(largest, 80e-6) << "the test is none without a drift";
+  EXPECT_FALSE(found.rig.cameras[0].rate_hz) << "its clock is the rig's";
+  EXPECT_LT(rig_errors(found.rig, scene.rig()).rotation, 0.02);
+}
+
 TEST(PeopleRig, KnowsPeopleApart) {
   const RoomScene scene(room_of_walkers(2, 12));
   const PeopleRig found = calibrate_people(observations_of_room(scene, {}), with_distance(scene.rig()));

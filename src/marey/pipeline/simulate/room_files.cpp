@@ -74,9 +74,13 @@ void write_labels(const RoomScene& scene, const fs::path& folder) {
   write_room_text(folder / "labels.csv", text);
 }
 
-void write_room_rigs(const RoomScene& scene, const fs::path& folder, bool videos) {
+void write_room_rigs(const RoomScene& scene, const fs::path& folder, const RoomFilesOptions& options) {
+  const bool videos = options.videos;
   const auto write = [&](const Rig& rig, const char* name) { write_room_text(folder / name, format::rig::rig_text(rig)); };
   Rig truth = with_sources(scene.rig(), videos);
+  for (std::size_t c = 0; c < truth.cameras.size() && options.keypoint_errors.drift > 0; ++c)
+    truth.cameras[c].rate_hz =
+        scene.options().rate_hz / (1 + marey::simulate::room::clock_drift(scene, static_cast<int>(c), options.keypoint_errors));
   truth.calibration = Rig::Calibration{
       .method = "simulated: the exact truth", .mean_px = {}, .rms_px = {}, .inliers = {}, .observations = {}, .grade = {}};
   write(truth, "rig.toml");
@@ -315,7 +319,7 @@ void write_room(const RoomScene& scene, const std::string& folder, const RoomFil
   blobs.finish();
   truth.finish();
   for (const auto& video : videos) video->finish();
-  write_room_rigs(scene, location, options.videos);
+  write_room_rigs(scene, location, options);
   write_labels(scene, location);
   for (int actor = 0; actor < scene.actors(); ++actor)
     write_room_text(of_actor(location, "skeleton", actor, ".toml"), format::skeleton::to_toml(*scene.skeleton(actor)));

@@ -145,15 +145,21 @@ std::vector<Keypoints<2>> keypoints_observed(const RoomScene& scene, int camera,
   return people;
 }
 
+double clock_drift(const RoomScene& scene, int camera, const KeypointErrors& errors) {
+  if (camera == 0) return 0;
+  return Random(keypoint_seed({scene.options().seed, 8, static_cast<std::uint64_t>(camera)})).uniform(-errors.drift, errors.drift);
+}
+
 KeypointSequence keypoints_of_camera(const RoomScene& scene, int camera, const KeypointErrors& errors) {
   KeypointSequence sequence;
   sequence.set = room_keypoint_set();
   sequence.size = scene.options().image;
   sequence.rate_hz = scene.options().rate_hz;
   const double offset = scene.rig().cameras[static_cast<std::size_t>(camera)].offset_s.value_or(0);
+  const double period = (1 + clock_drift(scene, camera, errors)) / scene.options().rate_hz;
   for (std::int64_t frame = 0; frame < scene.options().frames; ++frame)
-    sequence.frames.push_back(keypoints_observed(scene, camera, static_cast<double>(frame) / scene.options().rate_hz + offset,
-                                                 static_cast<std::uint64_t>(frame), errors));
+    sequence.frames.push_back(
+        keypoints_observed(scene, camera, static_cast<double>(frame) * period + offset, static_cast<std::uint64_t>(frame), errors));
   return sequence;
 }
 

@@ -18,6 +18,7 @@ struct KeypointErrors {
   double outliers = 0.05;  ///< share of points that are far off
   double outlier_px = 60;  ///< by this much along each axis, one standard deviation
   double missing = 0.10;   ///< share of points
+  double drift = 0;        ///< relative: cameras' clocks run by up to this much slower or faster than the first one's
   double swapped = 0;      ///< share of time during which arms, or legs, are exchanged in a camera
 };
 
@@ -32,6 +33,9 @@ std::vector<std::vector<Vector<3>>> true_keypoints(const RoomScene& scene, doubl
 /// image, in an order that says nothing. `draw` is that of the noise: the frame's number.
 std::vector<Keypoints<2>> keypoints_observed(const RoomScene& scene, int camera, double time_s, std::uint64_t draw,
                                              const KeypointErrors& errors = {});
+
+/// How much slower a camera's clock runs, relative: frame k is exposed at k (1 + drift) / rate + offset.
+double clock_drift(const RoomScene& scene, int camera, const KeypointErrors& errors);
 
 /// All of a camera's frames.
 KeypointSequence keypoints_of_camera(const RoomScene& scene, int camera, const KeypointErrors& errors = {});
