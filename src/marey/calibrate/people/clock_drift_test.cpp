@@ -6,12 +6,12 @@ namespace marey::calibrate::people {
 namespace {
 
 /// Two cameras see points that move at 300 px/s for ten minutes; the second one's times are late by offset + drift t.
-struct Seen {
+struct Observed {
   bundle::Bundle bundle;
   bundle::BundleResult fitted;
   std::vector<double> times_s;
 
-  Seen(double offset_s, double drift, double speed) {
+  Observed(double offset_s, double drift, double speed) {
     for (int c = 0; c < 2; ++c) {
       bundle::BundleCamera& camera = bundle.cameras.emplace_back();
       camera.lens = geometry::BrownLens{.focal = {1000, 1000}, .principal = {640, 512}};
@@ -33,19 +33,19 @@ struct Seen {
   }
 };
 
-ClockCorrection second_camera(const Seen& seen) {
+ClockCorrection second_camera(const Observed& seen) {
   return clock_corrections(seen.bundle, seen.fitted, seen.times_s, {0, 0})[1];
 }
 
 TEST(ClockDrift, IsFoundByWhatMovesInTheImage) {
-  const ClockCorrection found = second_camera(Seen(0.004, 30e-6, 300));
+  const ClockCorrection found = second_camera(Observed(0.004, 30e-6, 300));
   EXPECT_NEAR(found.drift, 30e-6, 1e-6);
   EXPECT_NEAR(found.offset_s, 0.004, 0.0005);
   EXPECT_LT(found.deviation, 10e-6);
 }
 
 TEST(ClockDrift, IsFoundInOneStepWherePointsLieBetweenTheViews) {
-  Seen seen(0.004, 30e-6, 300);
+  Observed seen(0.004, 30e-6, 300);
   for (std::size_t i = 1; i < seen.bundle.observations.size(); i += 2) {  // as an adjustment leaves them: half of the error each
     const bundle::BundleObservation& late = seen.bundle.observations[i];
     const double depth = 5, focal = 1000;
@@ -59,20 +59,20 @@ TEST(ClockDrift, IsFoundInOneStepWherePointsLieBetweenTheViews) {
 }
 
 TEST(ClockDrift, OfACameraWhoseOffsetIsKnownIsNotTouched) {
-  Seen seen(0.004, 30e-6, 300);
+  Observed seen(0.004, 30e-6, 300);
   seen.bundle.cameras[1].refine_offset = false;
   EXPECT_EQ(second_camera(seen).drift, 0);
   EXPECT_EQ(second_camera(seen).offset_s, 0);
 }
 
 TEST(ClockDrift, IsNoneWhereNothingMoves) {
-  const ClockCorrection found = second_camera(Seen(0, 30e-6, 0));
+  const ClockCorrection found = second_camera(Observed(0, 30e-6, 0));
   EXPECT_EQ(found.drift, 0);
   EXPECT_EQ(found.offset_s, 0);
 }
 
 TEST(ClockDrift, LeavesOutOutliers) {
-  Seen seen(0, 20e-6, 300);
+  Observed seen(0, 20e-6, 300);
   for (std::size_t i = 1; i < seen.bundle.observations.size(); i += 10) {
     seen.bundle.observations[i].pixel += Vector<2>(500, 0);
     seen.fitted.inlier[i] = 0;
