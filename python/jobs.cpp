@@ -85,7 +85,8 @@ nb::tuple track_ground(nb::dict given) {
   job.own_filter = own_filter(options);
   pipeline::people::ground::PeopleOnGroundOptions how = rows.resolved([&] { return resolved(job, rig); });
   if (const auto path = options.path("rig"); !path.empty()) how.ptz = format::rig::read_ptz(path);
-  const Outputs outputs(options, format::Content::ground, rig.cameras, &rows, pipeline::people::ground::overlays_of(rig, job.output));
+  const Outputs outputs(options, format::Content::ground, rig.cameras, &rows,
+                        pipeline::people::ground::overlays_of(rig, job.output));
   return tuple_of(run_job(rows.listening(options), [&](const Hooks& hooks) {
     Result result;
     result.summary = pipeline::people::ground::track_ground(rig, job.output, outputs.open(result.recording), how, hooks);

@@ -19,7 +19,8 @@ std::int64_t camera_frames(const pipeline::people::ground::GroundSummary& summar
 
 }  // namespace
 
-void print_json(const pipeline::people::ground::GroundSummary& summary, const pipeline::people::ground::GroundOutput& output, double elapsed) {
+void print_json(const pipeline::people::ground::GroundSummary& summary, const pipeline::people::ground::GroundOutput& output,
+                double elapsed) {
   Json cameras = Json::array();
   for (const pipeline::corridor::Summary::Camera& camera : summary.cameras) {
     cameras.push_back(
@@ -56,7 +57,8 @@ void print_json(const pipeline::people::ground::GroundSummary& summary, const pi
   print(json);
 }
 
-void print_summary(const pipeline::people::ground::GroundSummary& summary, const pipeline::people::ground::GroundOutput& output, double elapsed) {
+void print_summary(const pipeline::people::ground::GroundSummary& summary, const pipeline::people::ground::GroundOutput& output,
+                   double elapsed) {
   for (const std::string& message_text : summary.notes) fmt::print(stderr, "{}\n", message_text);
   const std::size_t count = summary.cameras.size();
   fmt::print(stderr, "{} {} in {} instants ({:.1f} s), seen by {} {}; {:.0f} frames/s in all\n", summary.tracks,

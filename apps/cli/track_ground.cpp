@@ -62,7 +62,8 @@ bool is_written_whole(const pipeline::people::ground::GroundOutput& output) {
 
 /// Formats that begin with what only the end gives are written from a take that is gone afterwards.
 pipeline::people::ground::GroundSummary track_to(const Rig& rig, const pipeline::people::ground::GroundOutput& output,
-                                         const pipeline::people::ground::PeopleOnGroundOptions& options, const Hooks& hooks) {
+                                                 const pipeline::people::ground::PeopleOnGroundOptions& options,
+                                                 const Hooks& hooks) {
   if (!is_written_whole(output)) return pipeline::people::ground::track_ground(rig, output, options, hooks);
   pipeline::people::ground::GroundOutput recorded = output;
   recorded.tracks = output.tracks + ".part.marey", recorded.format = "take";
@@ -86,7 +87,8 @@ std::vector<std::string> ground_files(const GroundCommand& command) {
     files.push_back(second);
   std::error_code error;
   if (!std::filesystem::is_regular_file(command.rig, error)) return files;
-  const std::vector<std::string> overlays = pipeline::people::ground::overlays_of(format::rig::read_rig(command.rig), command.job.output);
+  const std::vector<std::string> overlays =
+      pipeline::people::ground::overlays_of(format::rig::read_rig(command.rig), command.job.output);
   files.insert(files.end(), overlays.begin(), overlays.end());
   return files;
 }

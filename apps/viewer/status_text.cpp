@@ -11,10 +11,10 @@ cli::Json camera_json(const LiveReport::Camera& camera) {
   reported["controls"] = cli::Json::array();
   for (const auto& camera_control : camera.controls) {
     reported["controls"].push_back({{"name", camera_control.name},
-                                 {"unit", camera_control.unit},
-                                 {"min", camera_control.minimum},
-                                 {"max", camera_control.maximum},
-                                 {"now", camera_control.now}});
+                                    {"unit", camera_control.unit},
+                                    {"min", camera_control.minimum},
+                                    {"max", camera_control.maximum},
+                                    {"now", camera_control.now}});
   }
   if (!camera.refused.empty()) reported["refused"] = camera.refused;
   if (!camera.finds_markers) return reported;

@@ -18,7 +18,8 @@ struct GroundScores {
 };
 
 /// Tracks of a folder with rig.toml, truth.csv and each camera's boxes, evaluated at `farthest` m.
-GroundScores run_ours(const std::string& folder, const pipeline::people::ground::PeopleOnGroundOptions& options, double farthest = 1);
+GroundScores run_ours(const std::string& folder, const pipeline::people::ground::PeopleOnGroundOptions& options,
+                      double farthest = 1);
 
 /// A tracker as one writes in an afternoon: boxes' feet through the calibration, places of one instant within 0.8 m from other
 /// cameras are one if two at least see it, the nearest continues at constant velocity (assignment of least distance, at most 1.2

@@ -83,7 +83,8 @@ FrameOff frame_off(const PtzCamera& truth, const PtzCamera& found, std::size_t f
       if (!a || a->ground.x() < 0 || a->ground.y() < 0 || a->ground.x() > 105 || a->ground.y() > 68) continue;
       const Vector<2> off = b ? Vector<2>(b->ground - a->ground) : Vector<2>(kSaturated, 0);
       result.metres.push_back(std::min<double>(kSaturated, off.norm()));
-      const Matrix<2> covariance = pipeline::people::ground::aim_covariance(camera, found, time, pixel) + 1e-8 * Matrix<2>::Identity();
+      const Matrix<2> covariance =
+          pipeline::people::ground::aim_covariance(camera, found, time, pixel) + 1e-8 * Matrix<2>::Identity();
       result.in_deviations += off.dot(covariance.inverse() * off) / 2;
     }
   }

@@ -16,7 +16,7 @@ struct PitchRun {
   std::vector<marey::calibrate::pitch::PitchView> views;  ///< one for each: what it was calibrated from
   marey::calibrate::pitch::PitchCalibration calibration;  ///< one view for each
   std::vector<std::string> warnings;                      ///< one sentence each
-  people::ground::RigOffsets offsets;                             ///< empty if the rig says all of them, or too few cameras see people
+  people::ground::RigOffsets offsets;                     ///< empty if the rig says all of them, or too few cameras see people
 };
 
 struct PitchRunOptions {

@@ -21,7 +21,7 @@ void add_ground_rows(Table& table, GroundPart& ground);
 
 struct TrackGround {
   std::string rig_name = {};                             ///< for messages
-  people::ground::GroundOutput output = {};                      ///< `tracks` is the front end's
+  people::ground::GroundOutput output = {};              ///< `tracks` is the front end's
   std::string filter = {};                               ///< by name; empty: the default one, whose noise is learned
   std::optional<filter::FilterOptions> own_filter = {};  ///< of a caller's, in place of a named one
   PeopleDetection detection = {};

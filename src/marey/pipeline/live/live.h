@@ -14,8 +14,8 @@
 #include "marey/pipeline/markers/image_stage.h"
 #include "marey/pipeline/markers/markers_in_space.h"
 #include "marey/pipeline/markers/track_naming.h"
-#include "marey/pipeline/people/image_stage.h"
 #include "marey/pipeline/people/ground/people_on_ground.h"
+#include "marey/pipeline/people/image_stage.h"
 
 namespace marey::pipeline::live {
 

@@ -29,9 +29,9 @@ struct SetInSpaceOptions {
   bool wait = false;           ///< for the task, where it takes longer than half a second: results are then the same on any machine
   bool names_hold = true;      ///< what a track is called already it stays
   double first_after_s = 0.5;  ///< of points, that names are searched for in first
-  double answer_after_s = 0.5;    ///< from when on it counts
-  double remembered_s = 3;        ///< of points, that they are searched for in
-  double search_again_s = 10;  ///< this often, once they are found
+  double answer_after_s = 0.5;  ///< from when on it counts
+  double remembered_s = 3;      ///< of points, that they are searched for in
+  double search_again_s = 10;   ///< this often, once they are found
 };
 
 /// The points of the last seconds, about a hundred times per second.

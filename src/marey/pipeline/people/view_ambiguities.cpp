@@ -13,7 +13,7 @@ namespace marey::pipeline::people {
 namespace {
 
 constexpr std::size_t kCutsNamed = 5;
-constexpr double kScrolls = 0.04;     // of the images inspected
+constexpr double kScrolls = 0.04;    // of the images inspected
 constexpr double kSearchMore = 1.1;  // times as many images as at the last inspection: all of them are gone through each time
 
 std::string time_steps(const std::vector<double>& cuts) {

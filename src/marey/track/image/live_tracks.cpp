@@ -130,8 +130,8 @@ std::optional<Sample> LiveTracks::filled(const TimeStep& time_step, const Track<
   for (const TimeStep& later : time_steps_) {
     const Track<2>* again = find_track(later.tracks, track.id);
     if (again == nullptr || !again->measured()) continue;
-    const filter::Bridge<filter::RandomWalk, 6> gap(position_and_box(detected.reported->position.head<2>(), detected.reported->box), 0,
-                                                    position_and_box(again->position, again->box),
+    const filter::Bridge<filter::RandomWalk, 6> gap(position_and_box(detected.reported->position.head<2>(), detected.reported->box),
+                                                    0, position_and_box(again->position, again->box),
                                                     seconds(later.time - detected.reported_time));
     const PositionAndBox here = gap.at(seconds(time_step.time - detected.reported_time));
     Sample sample = sample_of(track);
