@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "marey/core/detection.h"
 #include "marey/core/frame.h"
 #include "marey/core/ground_views.h"
 #include "marey/detect/ball/ball_detector.h"
