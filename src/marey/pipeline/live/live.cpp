@@ -182,6 +182,28 @@ LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground) {
   return targets == LiveTargets::keypoints ? LiveJob::keypoints_in_space : LiveJob::markers_in_space;
 }
 
+namespace {
+
+/// Throws Error where an option is of another job than what these cameras give.
+void check_options(const LiveOptions& options, LiveJob job) {
+  if (options.space.skeleton != nullptr && job != LiveJob::markers_in_space && job != LiveJob::keypoints_in_space)
+    throw Error("a skeleton is solved from markers or keypoints in space, of two calibrated cameras or more; these cameras give {}",
+                to_string(job));
+  if (options.space.learned_set != nullptr && job != LiveJob::markers_in_space)
+    throw Error("a set names markers in space, of two calibrated cameras or more; these cameras give {}", to_string(job));
+  if (!options.numbers.empty() && job != LiveJob::people_in_image && job != LiveJob::people_on_ground)
+    throw Error("{}: shirt numbers are read of people in one camera's image or on the ground; these cameras give {}",
+                options.numbers, to_string(job));
+}
+
+double max_rate_hz(const std::vector<corridor::Feed>& feeds) {
+  double rate_hz = 0;
+  for (const corridor::Feed& feed : feeds) rate_hz = std::max(rate_hz, feed.info().rate_hz.value_or(0));
+  return rate_hz > 0 ? rate_hz : kDefaultRate;
+}
+
+}  // namespace
+
 LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   if (options.policy.time == nullptr) options.policy.time = source::steady_time();
   if (options.recording == nullptr) options.recording = std::make_shared<corridor::RecordSwitch>(true);
@@ -193,14 +215,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
   LiveSummary summary;
   summary.job = live_job(fed, options.targets, options.ground);
   if (options.space.set.labels.empty() && options.space.learned_set == nullptr) options.space.set = names_of_played(fed);
-  if (options.space.skeleton != nullptr && summary.job != LiveJob::markers_in_space && summary.job != LiveJob::keypoints_in_space)
-    throw Error("a skeleton is solved from markers or keypoints in space, of two calibrated cameras or more; these cameras give {}",
-                to_string(summary.job));
-  if (options.space.learned_set != nullptr && summary.job != LiveJob::markers_in_space)
-    throw Error("a set names markers in space, of two calibrated cameras or more; these cameras give {}", to_string(summary.job));
-  if (!options.numbers.empty() && summary.job != LiveJob::people_in_image && summary.job != LiveJob::people_on_ground)
-    throw Error("{}: shirt numbers are read of people in one camera's image or on the ground; these cameras give {}",
-                options.numbers, to_string(summary.job));
+  check_options(options, summary.job);
   inspect_for_markers(feeds, summary.job, options);
   corridor::LiveMonitor monitor(options.policy.time, options.status);
   monitor.set_recording([&] { return !options.take.empty() && options.recording->on(); });
@@ -209,11 +224,7 @@ LiveSummary live(const Rig& rig, LiveOptions options, const Hooks& hooks) {
                                begun = true;
                                monitor.tick();
                              }};
-  const std::vector<corridor::Feed>& watched = feeds;
-  double rate_hz = 0;
-  for (const corridor::Feed& feed : watched) rate_hz = std::max(rate_hz, feed.info().rate_hz.value_or(0));
-  if (rate_hz <= 0) rate_hz = kDefaultRate;
-  auto stage = stage_of(summary.job, feeds, fed, rate_hz, options);
+  auto stage = stage_of(summary.job, feeds, fed, max_rate_hz(feeds), options);
   corridor::Clock clock(std::move(feeds), how);
   corridor::Sinks sinks = sinks_of(options);
   monitor.watch(clock, sinks);
