@@ -26,7 +26,7 @@ class Gait(OnRecordings):
         self.assertGreater(max(float(row["mean_deg"]) for row in rows), 45)
         self.assertTrue(any("left shoulder plane" in warning for warning in said["warnings"]), said["warnings"])
 
-    def test_gait_of_one_who_does_not_walk_is_refused(self):
+    def test_gait_without_walking_is_refused(self):
         done = self.marey("gait", "punches.c3d", "-o", "none.csv", code=1)
         self.assertIn("no steps were found", done.stderr)
         self.assertFalse((self.folder / "none.csv").exists())

@@ -184,7 +184,7 @@ LiveJob live_job(const Rig& rig, LiveTargets targets, bool ground) {
 
 namespace {
 
-/// Throws Error where an option is of another job than what these cameras give.
+/// Throws Error if an option is of another job than what these cameras give.
 void check_options(const LiveOptions& options, LiveJob job) {
   if (options.space.skeleton != nullptr && job != LiveJob::markers_in_space && job != LiveJob::keypoints_in_space)
     throw Error("a skeleton is solved from markers or keypoints in space, of two calibrated cameras or more; these cameras give {}",
