@@ -48,7 +48,7 @@ print('FOUND ' + json.dumps([places, bones, images, hidden, backgrounds, scene.r
 
 # Where markers lie, how large they are, and where cameras see them; Blender gives the file's frames of 1/50 s by its own rate.
 READ_GLB = """
-import bpy, json, sys
+import bpy, json, os, sys
 from bpy_extras.object_utils import world_to_camera_view
 bpy.ops.wm.read_factory_settings(use_empty=True)
 scene = bpy.context.scene
@@ -63,7 +63,8 @@ for frame in range(int(sys.argv[4])):
     at = {name: scene.objects[name].matrix_world for name in labels}
     places.append({name: [*m.translation, m.to_scale().x] for name, m in at.items()})
     images.append({camera.name: {name: [*world_to_camera_view(scene, camera, m.translation)] for name, m in at.items()} for camera in cameras})
-print('FOUND ' + json.dumps([places, images, {camera.name: camera['fx_px'] for camera in cameras}]))
+print('FOUND ' + json.dumps([places, images, {camera.name: camera['fx_px'] for camera in cameras}]), flush=True)
+os._exit(0)  # Blender as a package can crash when Python ends
 """
 
 
@@ -145,8 +146,8 @@ class BlenderScene(unittest.TestCase):
                 own = [sum(r * p for r, p in zip(row, place)) + t for row, t in zip(camera["rotation"], camera["translation"])]
                 if own[2] <= 0.1:
                     continue
-                # The file's cameras are aimed through the middle of the image.
-                pixel = [camera["focal"][i] * own[i] / own[2] + (639, 511)[i] / 2 for i in (0, 1)]
+                # The file's cameras are aimed through the middle of the image; Blender makes their pixels square, by the wider side.
+                pixel = [camera["focal"][0] * own[i] / own[2] + (639, 511)[i] / 2 for i in (0, 1)]
                 x, y, _ = images[f][camera["name"]][label]
                 worst = max(worst, math.dist(pixel, [x * 640 - 0.5, (1 - y) * 512 - 0.5]))
         print(f"glb: cameras: {worst:.4f} px at most")
