@@ -146,8 +146,8 @@ class BlenderScene(unittest.TestCase):
                 own = [sum(r * p for r, p in zip(row, place)) + t for row, t in zip(camera["rotation"], camera["translation"])]
                 if own[2] <= 0.1:
                     continue
-                # The file's cameras are aimed through the middle of the image; Blender makes their pixels square, by the wider side.
-                pixel = [camera["focal"][0] * own[i] / own[2] + (639, 511)[i] / 2 for i in (0, 1)]
+                # The file's cameras are aimed through the middle of the image; Blender makes their pixels square, by the height.
+                pixel = [camera["focal"][1] * own[i] / own[2] + (639, 511)[i] / 2 for i in (0, 1)]
                 x, y, _ = images[f][camera["name"]][label]
                 worst = max(worst, math.dist(pixel, [x * 640 - 0.5, (1 - y) * 512 - 0.5]))
         print(f"glb: cameras: {worst:.4f} px at most")
