@@ -10,13 +10,13 @@
 namespace marey::source {
 namespace {
 
-constexpr double kFilmDiagonal = 43.27;                     // by definition: mm
-constexpr double kShortestFocal = 5, kLongestFocal = 2000;  // physical: mm; cameras write 0 where they do not know
+constexpr double kFrameDiagonal = 43.27;           // by definition: mm
+constexpr double kMinFocal = 5, kMaxFocal = 2000;  // physical: mm; cameras write 0 where they do not know
 
 std::optional<double> lens_of(const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
   const double value = std::strtod(text->c_str(), nullptr);
-  return value >= kShortestFocal && value <= kLongestFocal ? std::optional(value) : std::nullopt;
+  return value >= kMinFocal && value <= kMaxFocal ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ std::optional<double> focal_35mm_of(const std::string& path) {
 }
 
 double focal_px_of(double focal_35mm, cv::Size image) {
-  return focal_35mm / kFilmDiagonal * std::hypot(image.width, image.height);
+  return focal_35mm / kFrameDiagonal * std::hypot(image.width, image.height);
 }
 
 }  // namespace marey::source

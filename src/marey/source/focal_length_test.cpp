@@ -47,7 +47,7 @@ TEST(FocalLength, IsThatOfAPhonesVideo) {
   EXPECT_EQ(focal_35mm_of(folder / "phone.mov"), 24);
 }
 
-TEST(FocalLength, WhatStatesNoneHasNone) {
+TEST(FocalLength, FilesWithoutALensHaveNone) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "unknown.jpg", photo(0));
   EXPECT_FALSE(focal_35mm_of(folder / "unknown.jpg"));
@@ -71,7 +71,7 @@ TEST(FocalLength, DamagedFilesAreNoLens) {
 }
 
 TEST(FocalLength, PixelsAreThoseOfTheDiagonal) {
-  // 43.27 mm of film and of image: the diagonal's half angle is atan(1/2) where the focal length is the diagonal.
+  // Frame and image have one angle of view: the diagonal's half angle is atan(1/2) where the focal length is the diagonal.
   EXPECT_NEAR(focal_px_of(43.27, {1600, 1200}), 2000, 1e-9);
   EXPECT_NEAR(focal_px_of(26, {1920, 1080}), 26 / 43.27 * 2202.9, 0.1);
 }

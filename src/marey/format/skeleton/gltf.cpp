@@ -383,7 +383,7 @@ class GlbSink final : public Sink {
         fmt::join(bones, ","));
   }
 
-  /// The buffer is filled on the way.
+  /// Fills the buffer, too.
   std::string describe() {
     if (!joints_.empty()) add_skeleton();
     const std::string cameras = add_cameras();

@@ -19,7 +19,7 @@ bool is_file_of_images(const std::string& path) {
          source::is_image_pattern(path);
 }
 
-/// What the camera's video or images state of its lens; nothing if they state none, or there are none.
+/// What the camera's video or images state of its lens; nothing if they state no focal length, or are not images.
 std::optional<double> stated_focal_35mm(const RigCamera& camera) {
   if (camera.lens || !is_file_of_images(camera.source)) return std::nullopt;
   try {
@@ -53,7 +53,7 @@ PeopleCalibration calibrate_people(Rig rig, const CalibratePeopleOptions& option
     if (!focal_px) continue;
     const RigCamera& camera = result.found.rig.cameras[c];
     result.found.notes.push_back(
-        fmt::format("camera \"{}\": its file states a focal length of {:.0f} mm (35 mm film), {:.0f} px; found: {:.0f} px",
+        fmt::format("camera \"{}\": its file states a focal length of {:.0f} mm (35 mm equivalent), {:.0f} px; found: {:.0f} px",
                     camera.name, *stated[c], *focal_px, geometry::focal_of(*camera.lens).x()));
   }
   return result;
