@@ -2,7 +2,7 @@
 """`marey calibrate people` on simulated rooms, whose cameras are known: four cameras at 25 Hz, people's keypoints with a network's errors (8 px, 20 mm,
 outliers), started up to 0.2 s apart.
 
-    people_rig.py MAREY [--seeds 1,2,3] [--people 1,3] [--seconds 30] [--drift 25e-6]
+    people_rig.py MAREY [--seeds 1,2,3] [--people 1,3] [--seconds 30] [--drift 25e-6] [--rolling-shutter 0.02]
 
 Prints a Markdown table, a row a room: the worst of the five distances but that of cameras 1 and 2, which gives the scale; of the turns between the first camera
 and another; of the focal lengths; of the offsets between the first camera and another, in the middle of the recording and at its ends; of the rates, ppm, of
@@ -53,11 +53,11 @@ def figures(found, truth, middle_s):
     return distance, rotation, focal, late, 1e6 * drift, 1e6 * np.array(true)
 
 
-def run(marey, seed, people, seconds, drift):
+def run(marey, seed, people, seconds, drift, readout_s):
     with tempfile.TemporaryDirectory(prefix="marey_people_rig_") as name:
         folder = pathlib.Path(name)
         words = ["simulate", "room", "--cameras", 4, "--frames", int(seconds * RATE), "--rate", RATE, "--keypoints", "--markers", 4, "--actors", people,
-                 "--offset", OFFSET_S, "--drift", drift, "--seed", seed, "-o", "room", "-q"]
+                 "--offset", OFFSET_S, "--drift", drift, "--rolling-shutter", readout_s, "--seed", seed, "-o", "room", "-q"]
         subprocess.run([marey, *map(str, words)], cwd=folder, check=True)
         truth = cameras_of(folder / "room/rig.toml")
         blind = [f'[[camera]]\nname = "{c["name"]}"\nsize = {c["size"]}\nrate = {RATE}\n' for c in truth]
@@ -88,11 +88,12 @@ def main():
     parser.add_argument("--people", default="1,3")
     parser.add_argument("--seconds", type=float, default=30)
     parser.add_argument("--drift", type=float, default=0)
+    parser.add_argument("--rolling-shutter", type=float, default=0, help="s from the first row's exposure to the last one's")
     given = parser.parse_args()
     print("| people | s | seed | distances | rotations | focal lengths | offsets, frames | at the ends | rates, ppm | took, s |\n" + "| --- " * 10 + "|")
     for people in map(int, given.people.split(",")):
         for seed in map(int, given.seeds.split(",")):
-            run(pathlib.Path(given.marey).resolve(), seed, people, given.seconds, given.drift)
+            run(pathlib.Path(given.marey).resolve(), seed, people, given.seconds, given.drift, given.rolling_shutter)
 
 
 if __name__ == "__main__":

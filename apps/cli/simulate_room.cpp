@@ -134,6 +134,8 @@ void add_troubles(Command& room, SimulateRoom& options) {
               "of time during which arms, or legs, are exchanged in a camera's keypoints");
   room.number("--drift", options.files.keypoint_errors.drift, "fraction", closed(0, 0.001),
               "by which cameras' clocks run slower or faster than the first one's at most, in keypoints: 25e-6 is 25 ppm");
+  room.number("--rolling-shutter", options.files.keypoint_errors.readout_s, "s", closed(0, 0.1),
+              "from the exposure of the image's first row to that of the last one, in keypoints: phones have 0.01 to 0.03");
   room.flag("--render", options.files.videos, "render a video of each camera too");
 }
 

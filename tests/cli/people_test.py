@@ -93,7 +93,7 @@ class People(unittest.TestCase):
         self.run_marey("simulate", "people", "-o", "film", "--size", "384", "288", "--height", "44", "--frames", "200", "--rate", "10",
                        "--people", "6", "--situation", "standing", "--seed", "3", "-q")
         told = json.loads(self.run_marey("track", "film/rig.toml", "--ground", "-o", "g.csv", "--json", "-q").stdout)
-        self.assertTrue(any("inspected again" in note for note in told["notes"]), told["notes"])
+        self.assertTrue(any("second pass over the video" in note for note in told["notes"]), told["notes"])
         with open(self.folder / "film/positions.csv") as truth, open(self.folder / "g.csv") as tracks:
             places = {(int(row["frame"]), int(row["id"])): (float(row["x"]), float(row["y"])) for row in csv.DictReader(truth)}
             seen = {}

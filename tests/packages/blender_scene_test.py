@@ -1,4 +1,4 @@
-"""A recording as a scene for Blender (`marey convert walk.marey scene.py`): cameras, their videos, markers and skeletons are where they are.
+"""A recording as a scene for Blender (`marey convert walk.marey scene.py`, and `scene.glb`): cameras, their videos, markers and skeletons are where they are.
 
 Usage: blender_scene_test.py MAREY [unittest options]. The Python of MAREY_BLENDER has bpy (`pip install bpy`, Python 3.11, 370 MB); without it
 the test exits 77 (skipped).
@@ -44,6 +44,27 @@ for camera in cameras:
 backgrounds = {camera.name: [[list(b.image.size), b.image.source, b.image_user.frame_start, b.image_user.frame_duration] for b in camera.data.background_images]
                for camera in cameras}
 print('FOUND ' + json.dumps([places, bones, images, hidden, backgrounds, scene.render.fps / scene.render.fps_base]))
+"""
+
+# Where markers lie, how large they are, and where cameras see them; Blender gives the file's frames of 1/50 s by its own rate.
+READ_GLB = """
+import bpy, json, os, sys
+from bpy_extras.object_utils import world_to_camera_view
+bpy.ops.wm.read_factory_settings(use_empty=True)
+scene = bpy.context.scene
+scene.render.fps = int(sys.argv[2])
+bpy.ops.import_scene.gltf(filepath=sys.argv[1])
+scene.render.resolution_x, scene.render.resolution_y = 640, 512
+labels = sys.argv[3].split(',')
+cameras = [thing for thing in scene.objects if thing.type == 'CAMERA']
+places, images = [], []
+for frame in range(int(sys.argv[4])):
+    scene.frame_set(frame)
+    at = {name: scene.objects[name].matrix_world for name in labels}
+    places.append({name: [*m.translation, m.to_scale().x] for name, m in at.items()})
+    images.append({camera.name: {name: [*world_to_camera_view(scene, camera, m.translation)] for name, m in at.items()} for camera in cameras})
+print('FOUND ' + json.dumps([places, images, {camera.name: camera['fx_px'] for camera in cameras}]), flush=True)
+os._exit(0)  # Blender as a package can crash when Python ends
 """
 
 
@@ -105,6 +126,32 @@ class BlenderScene(unittest.TestCase):
                     worst = max(worst, math.dist(pixel, at[frame][label]))
         print(f"cameras: {worst:.4f} px at most")
         self.assertLess(worst, 0.02)
+
+    def test_glb_has_markers_and_cameras_where_they_are(self):
+        marks = self.marks()
+        labels = sorted({label for _, label in marks})
+        self.run_in(MAREY, "convert", "walk.marey", "walk/scene.glb", "--rig", "walk/rig.toml", "-q")
+        told = self.run_in(PYTHON, "-c", READ_GLB, "walk/scene.glb", RATE, ",".join(labels), FRAMES).stdout
+        places, images, focal = json.loads(next(line for line in told.splitlines() if line.startswith("FOUND "))[6:])
+        worst = max(math.dist(places[f][label][:3], at) for (f, label), at in marks.items())
+        print(f"glb: {len(marks)} markers: {1000 * worst:.4f} mm at most")
+        self.assertLess(1000 * worst, 0.1)
+        for f in range(FRAMES):
+            for label in labels:
+                self.assertAlmostEqual(places[f][label][3], 1 if (f, label) in marks else 0, places=5, msg=f"{label} in frame {f}")
+        worst = 0
+        for camera in self.rig["camera"]:
+            self.assertAlmostEqual(focal[camera["name"]], camera["focal"][0], places=3)
+            for (f, label), place in marks.items():
+                own = [sum(r * p for r, p in zip(row, place)) + t for row, t in zip(camera["rotation"], camera["translation"])]
+                if own[2] <= 0.1:
+                    continue
+                # The file's cameras are aimed through the middle of the image; Blender makes their pixels square, by the height.
+                pixel = [camera["focal"][1] * own[i] / own[2] + (639, 511)[i] / 2 for i in (0, 1)]
+                x, y, _ = images[f][camera["name"]][label]
+                worst = max(worst, math.dist(pixel, [x * 640 - 0.5, (1 - y) * 512 - 0.5]))
+        print(f"glb: cameras: {worst:.4f} px at most")
+        self.assertLess(worst, 0.05)
 
     def test_videos_stand_behind_the_cameras(self):
         for name, found in self.backgrounds.items():

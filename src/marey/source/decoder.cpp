@@ -136,6 +136,10 @@ int find_streams(AVFormatContext& format) {
   return code;
 }
 
+struct FreeTags {
+  void operator()(AVDictionary* tags) const { av_dict_free(&tags); }
+};
+
 }  // namespace
 
 struct Decoder::Parts {
@@ -151,6 +155,8 @@ struct Decoder::Parts {
   bool drained = false;
   int errors_while_draining = 0;
   Trouble trouble;
+  std::unique_ptr<AVDictionary, FreeTags> image_tags;  ///< of the first decoded image
+  bool any_decoded = false;
 
   bool receive();
   void feed();
@@ -218,6 +224,13 @@ std::optional<double> Decoder::duration_s() const {
   return std::nullopt;
 }
 
+std::optional<std::string> Decoder::tag(const char* name) const {
+  for (const AVDictionary* tags : {parts_->format->metadata, parts_->stream->metadata, parts_->image_tags.get()}) {
+    if (const AVDictionaryEntry* entry = av_dict_get(tags, name, nullptr, 0)) return entry->value;
+  }
+  return std::nullopt;
+}
+
 const Decoder::Trouble& Decoder::trouble() const {
   return parts_->trouble;
 }
@@ -227,6 +240,7 @@ std::optional<Decoder::Decoded> Decoder::next() {
   while (p.receive()) {
     if (p.frame->decode_error_flags != 0 || (p.frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) ++p.trouble.damaged;
     if (cv::Size(p.frame->width, p.frame->height) != p.coded_size) ++p.trouble.rescaled;
+    if (!std::exchange(p.any_decoded, true)) p.image_tags.reset(std::exchange(p.frame->metadata, nullptr));
     Decoded result{p.maker(*p.frame, p.coded_size), std::nullopt};
     if (const std::int64_t stamp = p.frame->best_effort_timestamp; stamp != AV_NOPTS_VALUE) {
       result.stamp_ns = av_rescale_q(stamp, p.stream->time_base, AVRational{1, 1'000'000'000});

@@ -30,6 +30,9 @@ class Decoder {
   std::optional<std::int64_t> frame_count() const;  ///< where the container counts its frames
   std::optional<double> duration_s() const;         ///< where the container's header, or its rate and count, specify it
 
+  /// What the file, its stream or its first decoded image (EXIF) states under a name of FFmpeg's.
+  std::optional<std::string> tag(const char* name) const;
+
   struct Decoded {
     Image image;
     std::optional<std::int64_t> stamp_ns;  ///< the container's, from any origin

@@ -55,9 +55,10 @@ std::vector<StartingCamera> cameras_with_focal(const PeopleViews& views, const R
     const RigCamera& camera = rig.cameras[c];
     std::vector<double> sigmas;
     for (const ImagePerson& person : views.cameras[c].people) sigmas.push_back(person.sigma_px);
+    const std::optional<double>& stated = views.cameras[c].stated_focal;
     bundle::LensFreedom freedom;
-    if (!camera.lens) freedom.focal = 0.3;
-    cameras.push_back({camera.name, wand::starting_lens(camera, guess), *camera.size, freedom,
+    if (!camera.lens) freedom.focal = stated ? kStatedFocal : 0.3;
+    cameras.push_back({camera.name, wand::starting_lens(camera, stated.value_or(guess)), *camera.size, freedom,
                        kNoiseFactor * geometry::median(std::move(sigmas))});
   }
   return cameras;
@@ -82,7 +83,9 @@ double cost_of(const Growth& growth, const std::vector<StartingCamera>& cameras,
 Growth grow_by_people(const PeopleViews& views, const Rig& rig, const std::vector<PointRow>& rows, std::uint64_t seed) {
   const MarkTable table = table_of(views, some_of(rows, kGrownPoints * rig.cameras.size()));
   require_shared_points(table, rig);
-  const bool any_unknown = std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& c) { return !c.lens; });
+  bool any_unknown = false;
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c)
+    any_unknown = any_unknown || (!rig.cameras[c].lens && !views.cameras[c].stated_focal);
   double best = std::numeric_limits<double>::infinity();
   Growth result;
   std::string cause;

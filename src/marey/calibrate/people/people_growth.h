@@ -12,6 +12,9 @@ namespace marey::calibrate::people {
 /// The fewest points of one person at one time that link two cameras.
 inline constexpr int kMinShared = 40;  // unswept
 
+/// By how much a stated focal length may be wrong: cropped and stabilised videos have a longer one.
+inline constexpr double kStatedFocal = 0.1;  // physical: relative, of videos that are cropped or stabilised
+
 /// Static cameras roughly right, by some of the points, for the focal length of several that explains them best where lenses are
 /// not known. Throws Error, with the cause and what to do, if a camera shares too few points with any other, or no geometry is
 /// found; Stopped.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct CameraPeople {
   std::vector<ImagePerson> people;
   double rate_hz = 0, offset_s = 0;
   bool offset_known = false;
-  Camera lens;  ///< the lens alone, as good as it is known
+  Camera lens;                              ///< the lens alone, as good as it is known
+  std::optional<double> stated_focal = {};  ///< what the camera's file states, of the longer side; only where the rig has no lens
 };
 
 struct PeopleMatch {

@@ -108,11 +108,15 @@ void PeopleCalibration::match() {
   step("comparing people");
   for (std::size_t c = 0; c < cameras(); ++c) {
     const RigCamera& camera = rig_camera(c);
+    std::optional<double> stated;
+    if (const auto& focal_px = in_.cameras[c].focal_px; focal_px && !camera.lens)
+      stated = *focal_px / std::max(camera.size->width, camera.size->height);
     views_.cameras.push_back({.people = image_people(in_.cameras[c].sequence, in_.cameras[c].rate_hz),
                               .rate_hz = in_.cameras[c].rate_hz,
                               .offset_s = camera.offset_s.value_or(0),
                               .offset_known = camera.offset_s.has_value(),
-                              .lens = Camera(wand::starting_lens(camera, kLikelyFocal), Rigid3{}, *camera.size)});
+                              .lens = Camera(wand::starting_lens(camera, stated.value_or(kLikelyFocal)), Rigid3{}, *camera.size),
+                              .stated_focal = stated});
     if (views_.cameras.back().people.empty())
       throw Error("camera \"{}\": no person is followed for half a second; let people walk where all cameras see them",
                   camera.name);
@@ -189,8 +193,9 @@ void PeopleCalibration::fit() {
     const auto c = static_cast<std::size_t>(&camera - bundle_.cameras.data());
     camera.refine_pose = !first;
     if (!rig_camera(c).lens) {
-      camera.freedom = {cameras() > 2 ? kFocalPrior : kFocalOfTwo, 0, 0, {kDistortionPrior}};
-      camera.known = wand::starting_lens(rig_camera(c), kLikelyFocal);
+      const std::optional<double>& stated = views_.cameras[c].stated_focal;
+      camera.freedom = {stated ? kStatedFocal : cameras() > 2 ? kFocalPrior : kFocalOfTwo, 0, 0, {kDistortionPrior}};
+      camera.known = wand::starting_lens(rig_camera(c), stated.value_or(kLikelyFocal));
     }
     camera.refine_offset = !first && options_.max_offset_s > 0 && !rig_camera(c).offset_s;
     first = false;

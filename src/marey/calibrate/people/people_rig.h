@@ -4,7 +4,8 @@
 //   2. of every two cameras' people, who is the same and by how much one camera was started after the other: the body's shape as it
 //      moves up and down agrees at the right shift, and one essential matrix explains all its points (people_pairs)
 //   3. grow the rig over the points, each a free one, for several guesses of the focal length (grow_rig)
-//   4. adjust all: poses, one focal length a camera under a prior, offsets, over a minute also how fast clocks run (clock_drift);
+//   4. adjust all: poses, one focal length a camera under a prior (which is what its file states, where it does), offsets, over a
+//   minute also how fast clocks run (clock_drift);
 //      outliers put out (bundle)
 //   5. put the floor under the feet, upright as people walk, in metres by a height or a distance (people_world)
 // A body point that the network places wrongly in every view alike does no harm: it is another point of the same body.
@@ -30,6 +31,7 @@ namespace marey::calibrate::people {
 struct PeopleCamera {
   KeypointSequence sequence;
   double rate_hz = 0;
+  std::optional<double> focal_px = {};  ///< what the camera's file states, right to about a tenth; for cameras without a lens
 };
 
 struct PeopleInput {

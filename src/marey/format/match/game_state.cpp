@@ -162,7 +162,7 @@ class PeopleReader {
     if (twice != seen.end()) throw Error("{}: track {} is twice in image {}", name_, twice->second, twice->first + 1);
   }
 
-  /// Two people of one team with one number in one image: the first such pair, and in how many images.
+  /// People of one team with one number in one image: those who are so in the most images, in one sentence.
   void warn_of_shared_numbers() {
     using Shirt = std::pair<PitchTeam, std::string>;
     std::map<Shirt, std::pair<int, std::set<std::int32_t>>> shared;
@@ -178,11 +178,18 @@ class PeopleReader {
       ++images;
       tracks.insert({first->second, person.id});
     }
-    for (const auto& [shirt, found] : shared) {
-      state_.warnings.push_back(fmt::format("{}: {} people of the team {} have the number {} (tracks {}), in {} images", name_,
-                                            found.second.size(), shirt.first == PitchTeam::left ? "left" : "right", shirt.second,
-                                            fmt::join(found.second, ", "), found.first));
-    }
+    if (shared.empty()) return;
+    const auto& [shirt, found] = *std::ranges::max_element(shared, {}, [](const auto& one) { return one.second.first; });
+    state_.warnings.push_back(fmt::format("{}: {} people of the team {} have the number {} (tracks {}), in {} image{}{}", name_,
+                                          found.second.size(), shirt.first == PitchTeam::left ? "left" : "right", shirt.second,
+                                          fmt::join(found.second, ", "), found.first, found.first == 1 ? "" : "s",
+                                          more_shared(shared.size() - 1)));
+  }
+
+  static std::string more_shared(std::size_t count) {
+    return count == 0   ? ""
+           : count == 1 ? "; 1 more number is shared by people of one team"
+                        : fmt::format("; {} more numbers are shared by people of one team", count);
   }
 
   const std::string& name_;

@@ -101,13 +101,23 @@ TEST(GameState, TwoWithOneNumberAreTold) {
   const std::vector<std::string> people{
       person("2021000001", 3, "player", "\"left\"", "\"7\""), person("2021000001", 9, "player", "\"left\"", "\"7\""),
       person("2021000003", 3, "player", "\"left\"", "\"7\""), person("2021000003", 8, "player", "\"right\"", "\"7\"")};
-  const std::string sentence = "p.json: 2 people of the team left have the number 7 (tracks 3, 9), in 1 images";
+  const std::string sentence = "p.json: 2 people of the team left have the number 7 (tracks 3, 9), in 1 image";
   const GameState found = parse_predicted_game_state(predictions(people), "p.json", kImages);
   ASSERT_EQ(found.warnings.size(), 1U);
   EXPECT_EQ(found.warnings[0], sentence);
   const GroundMatch match = parse_soccernet(predictions(people), "p.json", {});
   ASSERT_EQ(match.warnings.size(), 1U);
   EXPECT_EQ(match.warnings[0], "p.json: 2 people of the team left have the number 7 at one time (tracks 3, 9)");
+  std::vector<std::string> more = people;
+  for (const char* image : {"2021000001", "2021000003"}) {
+    more.push_back(person(image, 11, "player", "\"right\"", "\"10\""));
+    more.push_back(person(image, 12, "player", "\"right\"", "\"10\""));
+  }
+  const GameState both = parse_predicted_game_state(predictions(more), "p.json", kImages);
+  ASSERT_EQ(both.warnings.size(), 1U) << "one sentence a file, of what is shared most";
+  EXPECT_EQ(both.warnings[0],
+            "p.json: 2 people of the team right have the number 10 (tracks 11, 12), in 2 images; 1 more number is shared by people "
+            "of one team");
   const GroundMatch odd = parse_soccernet(predictions({person("2021000001", 3, "goalie", "\"left\"", "\"7\"")}), "p.json", {});
   ASSERT_EQ(odd.warnings.size(), 1U);
   EXPECT_EQ(odd.warnings[0], "p.json: the role \"goalie\" of 1 entries is unknown; their people are read without one");

@@ -8,7 +8,10 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -31,7 +34,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian");
 
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
-constexpr double kMinBoneM = 1e-3;
+constexpr double kMinBoneM = 1e-3, kMarkerRadiusM = 0.01;
+constexpr double kNearM = 0.01;  // nearer things are not drawn
 constexpr std::array<std::string_view, 21> kVrmBones{
     "hips",         "spine",        "chest",         "neck",          "head",          "leftUpperLeg",  "leftLowerLeg",
     "leftFoot",     "leftToes",     "rightUpperLeg", "rightLowerLeg", "rightFoot",     "rightToes",     "leftShoulder",
@@ -100,8 +104,8 @@ struct GltfJoint {
   bool shifts = false;
 };
 
-/// The stick figure's vertices, all of a bone bound to its segment.
-struct StickFigure {
+/// Vertices of octahedra: bones of the stick figure, all of a bone bound to its segment, or a marker.
+struct Octahedra {
   std::vector<float> positions, normals, weights;
   std::vector<std::uint16_t> joints;
   std::vector<std::uint32_t> indices;
@@ -112,7 +116,18 @@ struct StickFigure {
     const double length = along.norm();
     if (!(length > kMinBoneM)) return;
     const Vector<3> direction = along / length, side = direction.unitOrthogonal() * 0.12 * length, other = direction.cross(side);
-    const Vector<3> middle = from + 0.2 * along;
+    add_octahedron(from, to, from + 0.2 * along, side, other, joint);
+  }
+
+  /// A regular octahedron about the origin.
+  void add_marker(double radius_m) {
+    const Vector<3> up = Vector<3>::UnitY() * radius_m;
+    add_octahedron(-up, up, Vector<3>::Zero(), Vector<3>::UnitX() * radius_m, -Vector<3>::UnitZ() * radius_m, 0);
+  }
+
+ private:
+  void add_octahedron(const Vector<3>& from, const Vector<3>& to, const Vector<3>& middle, const Vector<3>& side,
+                      const Vector<3>& other, std::size_t joint) {
     const std::array<Vector<3>, 4> ring = {middle + side, middle + other, middle - side, middle - other};
     for (std::size_t i = 0; i < 4; ++i) {
       add_face(from, ring[(i + 1) % 4], ring[i], joint);
@@ -120,7 +135,6 @@ struct StickFigure {
     }
   }
 
- private:
   void add_face(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c, std::size_t joint) {
     const Vector<3> normal = (b - a).cross(c - a).normalized();
     for (const Vector<3>* corner : {&a, &b, &c}) {
@@ -133,10 +147,28 @@ struct StickFigure {
   }
 };
 
+/// A point over time. Where it is not known it keeps its last place, with no size.
+struct GltfMarker {
+  std::string label;
+  std::vector<float> locations, sizes;
+  bool hides = false;
+
+  /// Up to `count` instants it is not known.
+  void hide_until(std::size_t count) {
+    const std::array<float, 3> last =
+        locations.empty() ? std::array<float, 3>{} : std::array{locations.end()[-3], locations.end()[-2], locations.end()[-1]};
+    for (std::size_t i = locations.size() / 3; i < count; ++i) {
+      locations.insert(locations.end(), last.begin(), last.end());
+      sizes.insert(sizes.end(), {0, 0, 0});
+      hides = true;
+    }
+  }
+};
+
 class GlbSink final : public Sink {
  public:
-  GlbSink(std::string path, bool vrm_animation)
-      : path_(std::move(path)), vrm_animation_(vrm_animation), file_from_world_(z_up_from(UpAxis::y).transpose()) {}
+  GlbSink(std::string path, GlbContent content)
+      : path_(std::move(path)), content_(content), file_from_world_(z_up_from(UpAxis::y).transpose()) {}
 
   std::string name() const override { return path_; }
 
@@ -152,7 +184,10 @@ class GlbSink final : public Sink {
       }
       joints_.push_back(std::move(joint));
     }
-    if (joints_.empty()) throw Error("{}: the recording holds no skeleton; `marey solve` makes one of markers", path_);
+    if (joints_.empty() && content_ != GlbContent::scene)
+      throw Error("{}: the recording holds no skeleton; `marey solve` makes one of markers", path_);
+    if (content_of(header.frame) != Content::space) throw Error("{}: a .glb is made of a recording in space (m)", path_);
+    if (content_ == GlbContent::scene && header.rig) cameras_ = header.rig->cameras;
     if (joints_.size() > 60'000) throw Error("{}: {} segments are more than the format numbers", path_, joints_.size());
     return {};
   }
@@ -165,18 +200,27 @@ class GlbSink final : public Sink {
     if (times_.empty()) first_ = instant.time;
     times_.push_back(static_cast<float>(seconds(instant.time - first_)));
     for (std::size_t i = 0; i < joints_.size(); ++i) add(joints_[i], poses, i);
+    if (content_ != GlbContent::scene) return;
+    for (const TrackName& track : instant.named) markers_[track.id].label = track.label;
+    for (const Sample& sample : instant.samples) {
+      GltfMarker& marker = markers_[sample.track];
+      marker.hide_until(times_.size() - 1);
+      push_vector(marker.locations, file_from_world_ * sample.position);
+      marker.sizes.insert(marker.sizes.end(), {1, 1, 1});
+    }
   }
 
   void finish() override {
     const std::string json = describe();
     const std::string bytes = buffer_.take_bytes();
     const std::string padded = json + std::string((4 - json.size() % 4) % 4, ' ');
+    const std::size_t tail = bytes.empty() ? 0 : 8 + bytes.size();
     WholeFile file(path_);
     file.write("glTF");
-    write_words(file, {2, static_cast<std::uint32_t>(12 + 8 + padded.size() + 8 + bytes.size()),
-                       static_cast<std::uint32_t>(padded.size()), 0x4E4F534A});
+    write_words(file, {2, static_cast<std::uint32_t>(12 + 8 + padded.size() + tail), static_cast<std::uint32_t>(padded.size()),
+                       0x4E4F534A});
     file.write(padded);
-    write_words(file, {static_cast<std::uint32_t>(bytes.size()), 0x004E4942});
+    if (tail > 0) write_words(file, {static_cast<std::uint32_t>(bytes.size()), 0x004E4942});
     file.write(bytes);
     file.finish();
   }
@@ -213,27 +257,83 @@ class GlbSink final : public Sink {
     joint.shifts = joint.shifts || !joint.parent || (location - joint.offset).norm() > 1e-4;
   }
 
-  std::string nodes() const {
-    std::vector<std::string> all, roots;
+  /// A node for each segment, and the one that holds them; then the stick figure.
+  void add_skeleton() {
+    std::vector<std::size_t> roots;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       std::vector<std::size_t> children;
       for (std::size_t c = 0; c < joints_.size(); ++c) {
         if (joints_[c].parent == i) children.push_back(c);
       }
-      if (!joints_[i].parent) roots.push_back(fmt::format("{}", i));
+      if (!joints_[i].parent) roots.push_back(i);
       const Vector<3>& at = joints_[i].offset;
-      all.push_back(fmt::format("{{\"name\":{},\"translation\":[{},{},{}]{}}}", json_text(joints_[i].body.label), at.x() + 0.0,
-                                at.y() + 0.0, at.z() + 0.0,
-                                children.empty() ? "" : fmt::format(",\"children\":[{}]", fmt::join(children, ","))));
+      nodes_.push_back(fmt::format("{{\"name\":{},\"translation\":[{},{},{}]{}}}", json_text(joints_[i].body.label), at.x() + 0.0,
+                                   at.y() + 0.0, at.z() + 0.0,
+                                   children.empty() ? "" : fmt::format(",\"children\":[{}]", fmt::join(children, ","))));
     }
-    all.push_back(
-        fmt::format("{{\"name\":{},\"children\":[{}]}}", json_text(joints_.front().body.skeleton), fmt::join(roots, ",")));
-    return fmt::format("{}", fmt::join(all, ","));
+    add_root(fmt::format("{{\"name\":{},\"children\":[{}]}}", json_text(joints_.front().body.skeleton), fmt::join(roots, ",")));
+    add_root(fmt::format("{{\"name\":\"figure\",\"mesh\":{},\"skin\":0}}", add_mesh(figure(), true)));
+    for (std::size_t i = 0; i < joints_.size() && !times_.empty(); ++i) {
+      animate(i, "rotation", buffer_.add(joints_[i].rotations, kFloat, "VEC4", 4, false));
+      if (joints_[i].shifts) animate(i, "translation", buffer_.add(joints_[i].locations, kFloat, "VEC3", 3, false));
+    }
+  }
+
+  /// Cameras are aimed along −z with y up, and are pinholes whose axis meets the image's middle; what else is known of one is in
+  /// its node's "extras".
+  std::string add_cameras() {
+    std::vector<std::string> all;
+    for (const RigCamera& one : cameras_) {
+      const auto camera = one.camera();
+      if (!camera) continue;
+      const auto [focal, principal] =
+          std::visit([](const auto& lens) { return std::pair(lens.focal, lens.principal); }, camera->lens());
+      const double width = camera->size().width, height = camera->size().height;
+      const Rigid3 pose = camera->camera_from_world().inverse();
+      const Vector<3> at = file_from_world_ * pose.translation;
+      const Eigen::Quaterniond turn(Matrix<3>(file_from_world_ * pose.rotation * Vector<3>(1, -1, -1).asDiagonal()));
+      add_root(fmt::format(
+          "{{\"name\":{},\"camera\":{},\"translation\":[{},{},{}],\"rotation\":[{},{},{},{}],\"extras\":{{\"width_px\":{},"
+          "\"height_px\":{},\"fx_px\":{},\"fy_px\":{},\"cx_px\":{},\"cy_px\":{},\"video\":{},\"offset_s\":{}}}}}",
+          json_text(one.name), all.size(), at.x() + 0.0, at.y() + 0.0, at.z() + 0.0, turn.x(), turn.y(), turn.z(), turn.w(), width,
+          height, focal.x(), focal.y(), principal.x(), principal.y(), json_text(one.source), one.offset_s.value_or(0)));
+      all.push_back(fmt::format(
+          "{{\"type\":\"perspective\",\"name\":{},\"perspective\":{{\"yfov\":{},\"aspectRatio\":{},\"znear\":{}}}}}",
+          json_text(one.name), 2 * std::atan(height / (2 * focal.y())), width * focal.y() / (height * focal.x()), kNearM));
+    }
+    return all.empty() ? "" : fmt::format(",\"cameras\":[{}]", fmt::join(all, ","));
+  }
+
+  void add_markers() {
+    if (markers_.empty()) return;
+    Octahedra shape;
+    shape.add_marker(kMarkerRadiusM);
+    const int mesh = add_mesh(shape, false);
+    for (auto& [track, marker] : markers_) {
+      if (marker.locations.empty()) continue;
+      marker.hide_until(times_.size());
+      const std::string label = marker.label.empty() ? fmt::format("{}", number(track)) : marker.label;
+      const std::size_t node = nodes_.size();
+      add_root(fmt::format("{{\"name\":{},\"mesh\":{}}}", json_text(label), mesh));
+      animate(node, "translation", buffer_.add(marker.locations, kFloat, "VEC3", 3, false));
+      if (marker.hides) animate(node, "scale", buffer_.add(marker.sizes, kFloat, "VEC3", 3, false), ",\"interpolation\":\"STEP\"");
+    }
+  }
+
+  void add_root(std::string node) {
+    roots_.push_back(nodes_.size());
+    nodes_.push_back(std::move(node));
+  }
+
+  void animate(std::size_t node, const char* path, int output, const char* more = "") {
+    if (!input_) input_ = buffer_.add(times_, kFloat, "SCALAR", 1, true);
+    channels_.push_back(fmt::format("{{\"sampler\":{},\"target\":{{\"node\":{},\"path\":\"{}\"}}}}", samplers_.size(), node, path));
+    samplers_.push_back(fmt::format("{{\"input\":{},\"output\":{}{}}}", *input_, output, more));
   }
 
   /// Bones lead to the segments that hang on a segment, and to its end.
-  StickFigure figure() const {
-    StickFigure stick;
+  Octahedra figure() const {
+    Octahedra stick;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const GltfJoint& joint = joints_[i];
       if (joint.parent) stick.add_bone(joints_[*joint.parent].rest, joint.rest, *joint.parent);
@@ -243,16 +343,17 @@ class GlbSink final : public Sink {
     return stick;
   }
 
-  std::string mesh() {
-    const StickFigure stick = figure();
-    const int indices = buffer_.add(stick.indices, kUnsignedInt, "SCALAR", 1, false, 34963);
-    const int positions = buffer_.add(stick.positions, kFloat, "VEC3", 3, true, 34962);
-    const int normals = buffer_.add(stick.normals, kFloat, "VEC3", 3, false, 34962);
-    const int joints = buffer_.add(stick.joints, kUnsignedShort, "VEC4", 4, false, 34962);
-    const int weights = buffer_.add(stick.weights, kFloat, "VEC4", 4, false, 34962);
-    return fmt::format(
-        "{{\"primitives\":[{{\"attributes\":{{\"POSITION\":{},\"NORMAL\":{},\"JOINTS_0\":{},\"WEIGHTS_0\":{}}},\"indices\":{}}}]}}",
-        positions, normals, joints, weights, indices);
+  /// Its index.
+  std::size_t add_mesh(const Octahedra& shape, bool skinned) {
+    const int indices = buffer_.add(shape.indices, kUnsignedInt, "SCALAR", 1, false, 34963);
+    std::string attributes = fmt::format("\"POSITION\":{}", buffer_.add(shape.positions, kFloat, "VEC3", 3, true, 34962));
+    attributes += fmt::format(",\"NORMAL\":{}", buffer_.add(shape.normals, kFloat, "VEC3", 3, false, 34962));
+    if (skinned) {
+      attributes += fmt::format(",\"JOINTS_0\":{}", buffer_.add(shape.joints, kUnsignedShort, "VEC4", 4, false, 34962));
+      attributes += fmt::format(",\"WEIGHTS_0\":{}", buffer_.add(shape.weights, kFloat, "VEC4", 4, false, 34962));
+    }
+    meshes_.push_back(fmt::format("{{\"primitives\":[{{\"attributes\":{{{}}},\"indices\":{}}}]}}", attributes, indices));
+    return meshes_.size() - 1;
   }
 
   std::string skin() {
@@ -269,21 +370,6 @@ class GlbSink final : public Sink {
                        fmt::join(all, ","));
   }
 
-  std::string animation() {
-    std::vector<std::string> samplers, channels;
-    const int input = buffer_.add(times_, kFloat, "SCALAR", 1, true);
-    const auto add_channel = [&](std::size_t node, const char* path, int output) {
-      channels.push_back(fmt::format("{{\"sampler\":{},\"target\":{{\"node\":{},\"path\":\"{}\"}}}}", samplers.size(), node, path));
-      samplers.push_back(fmt::format("{{\"input\":{},\"output\":{}}}", input, output));
-    };
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      add_channel(i, "rotation", buffer_.add(joints_[i].rotations, kFloat, "VEC4", 4, false));
-      if (joints_[i].shifts) add_channel(i, "translation", buffer_.add(joints_[i].locations, kFloat, "VEC3", 3, false));
-    }
-    return fmt::format("{{\"name\":\"motion\",\"samplers\":[{}],\"channels\":[{}]}}", fmt::join(samplers, ","),
-                       fmt::join(channels, ","));
-  }
-
   /// Which node is which bone, as VRM animations (.vrma) say it.
   std::string vrm_extension() const {
     std::vector<std::string> bones;
@@ -297,34 +383,47 @@ class GlbSink final : public Sink {
         fmt::join(bones, ","));
   }
 
+  /// Fills the buffer, too.
   std::string describe() {
-    const std::size_t armature = joints_.size();
-    const std::string all_nodes = nodes(), its_mesh = mesh(), its_skin = skin(),
-                      its_animation = times_.empty() ? "" : fmt::format(",\"animations\":[{}]", animation()),
-                      extension = vrm_animation_ ? vrm_extension() : "";
-    std::string json =
-        fmt::format("{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"Marey\"}},\"scene\":0,\"scenes\":[{{\"nodes\":[{},{}]}}],",
-                    armature, armature + 1);
-    json += fmt::format("\"nodes\":[{},{{\"name\":\"figure\",\"mesh\":0,\"skin\":0}}],\"meshes\":[{}],\"skins\":[{}]{}{},",
-                        all_nodes, its_mesh, its_skin, its_animation, extension);
-    json += fmt::format("\"accessors\":[{}],\"bufferViews\":[{}],", fmt::join(buffer_.accessors(), ","),
-                        fmt::join(buffer_.views(), ","));
-    return json + fmt::format("\"buffers\":[{{\"byteLength\":{}}}]}}", buffer_.size());
+    if (!joints_.empty()) add_skeleton();
+    const std::string cameras = add_cameras();
+    add_markers();
+    const std::string skins = joints_.empty() ? "" : fmt::format(",\"skins\":[{}]", skin());
+    std::string json = fmt::format(
+        "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"Marey\"}},\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}],\"nodes\":[{}]",
+        fmt::join(roots_, ","), fmt::join(nodes_, ","));
+    if (!meshes_.empty()) json += fmt::format(",\"meshes\":[{}]", fmt::join(meshes_, ","));
+    json += skins + cameras;
+    if (!channels_.empty())
+      json += fmt::format(",\"animations\":[{{\"name\":\"motion\",\"samplers\":[{}],\"channels\":[{}]}}]",
+                          fmt::join(samplers_, ","), fmt::join(channels_, ","));
+    if (content_ == GlbContent::vrm_animation) json += vrm_extension();
+    if (!buffer_.views().empty())
+      json += fmt::format(",\"accessors\":[{}],\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]",
+                          fmt::join(buffer_.accessors(), ","), fmt::join(buffer_.views(), ","), buffer_.size());
+    return json + "}";
   }
 
   std::string path_;
-  bool vrm_animation_ = false;
+  GlbContent content_ = GlbContent::scene;
   Matrix<3> file_from_world_;
   std::vector<GltfJoint> joints_;
+  std::vector<RigCamera> cameras_;
+  std::map<TrackId, GltfMarker> markers_;
   std::vector<float> times_;
   Timestamp first_{};
+
+  // What describe() makes.
   GltfBuffer buffer_;
+  std::vector<std::string> nodes_, meshes_, samplers_, channels_;
+  std::vector<std::size_t> roots_;  ///< indices of nodes that no other holds
+  std::optional<int> input_;        ///< the accessor of the instants' times
 };
 
 }  // namespace
 
-std::unique_ptr<Sink> create_glb(const std::string& path, bool vrm_animation) {
-  return std::make_unique<GlbSink>(path, vrm_animation);
+std::unique_ptr<Sink> create_glb(const std::string& path, GlbContent content) {
+  return std::make_unique<GlbSink>(path, content);
 }
 
 namespace {
@@ -358,7 +457,8 @@ std::vector<Fact> facts_of_glb(std::string_view bytes, const std::string& name) 
     if (const auto maker = asset->find("generator"); maker != asset->end() && maker->is_string())
       facts.push_back({"made_by", plain_text(maker->get<std::string>())});
   }
-  for (const char* what : {"nodes", "skins", "animations"}) facts.push_back({what, static_cast<std::int64_t>(count(what))});
+  for (const char* what : {"nodes", "skins", "animations", "cameras"})
+    facts.push_back({what, static_cast<std::int64_t>(count(what))});
   return facts;
 }
 
@@ -368,9 +468,9 @@ Format glb_format() {
           .endings = ".glb",
           .holds = Content::space,
           .detail =
-              "glTF 2.0: m, y up; the bones of a skeleton, their motion, and a stick figure. Written; of one that is read, `marey "
-              "info` "
-              "tells what its description says",
+              "glTF 2.0: m, y up; the bones of a skeleton, their motion, and a stick figure; markers, and the rig's cameras (their "
+              "lenses' distortion is not kept). With --rig-names the bones alone. Written; of one that is read, `marey info` tells "
+              "what its description says",
           .is = [](const Beginning& file) { return file.bytes.starts_with("glTF"); },
           .facts = [](const std::string& path) { return facts_of_glb(MappedFile(path).text(), path); },
           .create = [](const std::string& path, const WritePlan&) { return create_glb(path); },

@@ -336,7 +336,10 @@ std::unique_ptr<Sink> create_bones(const std::string& path, const BoneOutput& ou
   bvh.unit_m = output.bvh_unit_m.value_or(bvh.unit_m);
   bvh.up = output.bvh_up.value_or(bvh.up);
   if (!output.bvh_order.empty()) bvh.order = output.bvh_order;
-  auto sink = path.ends_with(".glb") ? create_glb(path, scheme != nullptr && scheme->name == "vrm") : create_bvh(path, bvh);
+  const GlbContent content = scheme == nullptr       ? GlbContent::scene
+                             : scheme->name == "vrm" ? GlbContent::vrm_animation
+                                                     : GlbContent::bones;
+  auto sink = path.ends_with(".glb") ? create_glb(path, content) : create_bvh(path, bvh);
   return scheme == nullptr ? std::move(sink) : with_rig_scheme(std::move(sink), *scheme);
 }
 

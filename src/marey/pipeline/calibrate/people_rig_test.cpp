@@ -74,6 +74,20 @@ PeopleOptions with_distance(const Rig& truth) {
   return options;
 }
 
+TEST(PeopleRig, StatedFocalLengthsHelpTwoCameras) {
+  RoomOptions room = room_of_walkers(1, 20);
+  room.cameras = 2;
+  const RoomScene scene(room);
+  KeypointErrors errors;
+  PeopleInput input = observations_of_room(scene, errors);
+  const double without = rig_errors(calibrate_people(input, with_distance(scene.rig())).rig, scene.rig()).focal;
+  // As of phones whose videos are cropped a little.
+  for (std::size_t c = 0; c < 2; ++c) input.cameras[c].focal_px = 0.97 * geometry::focal_of(*scene.rig().cameras[c].lens).x();
+  const double with = rig_errors(calibrate_people(input, with_distance(scene.rig())).rig, scene.rig()).focal;
+  EXPECT_LT(with, 0.05) << "without: " << without;
+  EXPECT_LT(with, without);
+}
+
 TEST(PeopleRig, CalibratesFourCamerasByOnePersonWhoWalks) {
   const RoomScene scene(room_of_walkers(1, 15));
   const PeopleRig found = calibrate_people(observations_of_room(scene, {}), with_distance(scene.rig()));

@@ -273,11 +273,10 @@ class RecordedImage final : public ImageStage {
     if (!open_again_) {
       report_standing(summary);
     } else if (again_.added > 0) {
-      const bool one = again_.added == 1;
       summary.notes.push_back(
-          fmt::format("{} stood in the scene from the beginning and left it later: {} tracked from the first frame on, which was "
-                      "inspected again",
-                      one ? "one person" : fmt::format("{} people", again_.added), one ? "that one is" : "they are"));
+          fmt::format("{} still from the first frame on and left later: tracked from the first frame on, in a second "
+                      "pass over the video",
+                      again_.added == 1 ? "1 person stood" : fmt::format("{} people stood", again_.added)));
     }
     report_returned(summary);
   }
@@ -288,9 +287,9 @@ class RecordedImage final : public ImageStage {
     for (const track::offline::Returned& one : joined_.returned) minimum = std::min(minimum, one.probability);
     const auto count = std::ssize(joined_.returned);
     summary.notes.push_back(
-        fmt::format("{} who left the image came back with the same number, by clothes, place and time: {} sure by {:.2f}{}",
-                    count == 1 ? "one" : fmt::format("{} times a person", count), count == 1 ? "that is" : "each is", minimum,
-                    count == 1 ? "" : " at least"));
+        fmt::format("{} came back after leaving the image and kept the number, by clothes, place and time "
+                    "(probability {}{:.2f})",
+                    count == 1 ? "1 person" : fmt::format("{} times a person", count), count == 1 ? "" : "at least ", minimum));
   }
 
   ImageLog log_;

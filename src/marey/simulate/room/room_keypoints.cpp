@@ -82,6 +82,24 @@ std::optional<Vector<2>> biased_pixel(const Camera& camera, const Vector<3>& loc
   return Vector<2>(at->pixel + bias_m * scale * Vector<2>(std::cos(round), std::sin(round)));
 }
 
+/// Where people's points are when a rolling shutter exposes the rows that show them: between the first row's time and the last
+/// one's they move straight.
+std::vector<std::vector<Vector<3>>> rolling_keypoints(const RoomScene& scene, const Camera& camera, double time_s,
+                                                      double readout_s) {
+  auto locations = true_keypoints(scene, time_s);
+  if (readout_s == 0) return locations;
+  const auto first = true_keypoints(scene, time_s - readout_s / 2), last = true_keypoints(scene, time_s + readout_s / 2);
+  for (std::size_t actor = 0; actor < locations.size(); ++actor) {
+    for (std::size_t i = 0; i < locations[actor].size(); ++i) {
+      const auto pixel = camera.project(locations[actor][i]);
+      if (!pixel) continue;
+      const double share = std::clamp((pixel->y() + 0.5) / camera.size().height, 0.0, 1.0);
+      locations[actor][i] = (1 - share) * first[actor][i] + share * last[actor][i];
+    }
+  }
+  return locations;
+}
+
 }  // namespace
 
 std::vector<Vector<3>> keypoint_positions(const BodyPose& pose) {
@@ -110,7 +128,7 @@ std::vector<Keypoints<2>> keypoints_observed(const RoomScene& scene, int camera,
   const Camera eye = *scene.rig_at(time_s).cameras[static_cast<std::size_t>(camera)].camera();
   const std::uint64_t seed = scene.options().seed, own = static_cast<std::uint64_t>(camera);
   const KeypointSet& set = room_keypoint_set();
-  const auto locations = true_keypoints(scene, time_s);
+  const auto locations = rolling_keypoints(scene, eye, time_s, errors.readout_s);
   Random random(keypoint_seed({seed, 5, own, draw}));
   std::vector<std::pair<double, Keypoints<2>>> found;
   for (std::size_t actor = 0; actor < locations.size(); ++actor) {

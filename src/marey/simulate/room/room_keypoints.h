@@ -19,7 +19,9 @@ struct KeypointErrors {
   double outlier_px = 60;  ///< by this much along each axis, one standard deviation
   double missing = 0.10;   ///< share of points
   double drift = 0;        ///< relative: cameras' clocks run by up to this much slower or faster than the first one's
-  double swapped = 0;      ///< share of time during which arms, or legs, are exchanged in a camera
+  double readout_s =
+      0;  ///< of a rolling shutter: the lowest row is exposed this much after the highest, the middle one at the frame's time
+  double swapped = 0;  ///< share of time during which arms, or legs, are exchanged in a camera
 };
 
 /// Joints of a body as the keypoint set body_25b has them, m.

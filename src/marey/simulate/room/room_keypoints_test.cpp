@@ -84,5 +84,30 @@ TEST(RoomKeypoints, ExchangeLimbsForAShareOfTheTime) {
   EXPECT_NEAR(swapped / all, 0.3, 0.1);
 }
 
+TEST(RoomKeypoints, RollingShuttersShowEachPointWhenItsRowIsExposed) {
+  const RoomScene scene(keypoint_room());
+  const KeypointErrors errors{.bias_m = 0, .noise_px = 0, .outliers = 0, .missing = 0, .readout_s = 0.03};
+  const Camera camera = *scene.rig().cameras[2].camera();
+  double worst = 0, moved = 0;
+  int points = 0;
+  for (std::uint64_t f = 0; f < 400; f += 5) {
+    const double time_s = static_cast<double>(f) / 50;
+    const auto people = keypoints_observed(scene, 2, time_s, f, errors);
+    if (people.empty()) continue;
+    const auto still = true_keypoints(scene, time_s)[0];
+    for (std::size_t i = 0; i < still.size(); ++i) {
+      if (!people[0].points[i]) continue;
+      const Vector<2>& pixel = people[0].points[i]->position;
+      const double exposed_s = time_s + errors.readout_s * ((pixel.y() + 0.5) / camera.size().height - 0.5);
+      worst = std::max(worst, (pixel - *camera.project(true_keypoints(scene, exposed_s)[0][i])).norm());
+      moved = std::max(moved, (pixel - *camera.project(still[i])).norm());
+      ++points;
+    }
+  }
+  EXPECT_GT(points, 500);
+  EXPECT_GT(moved, 5) << "px, by which a point moves until its row's turn";
+  EXPECT_LT(worst, 0.5);
+}
+
 }  // namespace
 }  // namespace marey::simulate::room
