@@ -21,12 +21,42 @@ class BodyModel {
   void learn_coverage(const ColourPatch& patch, const cv::Mat& fraction, const Vector<2>& centre, double height, double rate);
 
   bool knows_colours() const { return known_; }
-  /// Probability density of a colour at a place `down` heights below the centre, per level³.
-  double density(double down, const cv::Vec3f& colour) const;
   /// How often the place is covered, 0 … 1; before anything is learned, by a person who stands.
-  double coverage(const Vector<2>& location) const;
+  double coverage(const Vector<2>& location) const { return coverage(column_at(location.x()), row_at(location.y())); }
+  /// Probability density of a colour at a place `down` heights below the centre, per level³.
+  double density(double down, const cv::Vec3f& colour) const { return density(bands_at(down), bin_of(colour)); }
+
+  /// The same in steps, for all cells of a patch: what depends on a cell's column, its row and its colour alone is found once.
+  struct CoveragePosition {
+    int first = 0;
+    float part = 0;
+    bool beyond = false;  ///< of what is known
+  };
+  static CoveragePosition column_at(double x);
+  static CoveragePosition row_at(double y);
+  double coverage(const CoveragePosition& column, const CoveragePosition& row) const {
+    if (column.beyond || row.beyond) return kBeyond;
+    const float* at = &coverage_[static_cast<std::size_t>(row.first * kAcross + column.first)];
+    const float above = at[0] + column.part * (at[1] - at[0]);
+    const float below = at[kAcross] + column.part * (at[kAcross + 1] - at[kAcross]);
+    return above + row.part * (below - above);
+  }
+  struct Bands {
+    const float *upper = nullptr, *lower = nullptr;  ///< null: no colours are known
+    float part = 0;
+  };
+  Bands bands_at(double down) const;
+  static int bin_of(const cv::Vec3f& colour);
+  static double density(const Bands& bands, int bin) {
+    if (bands.upper == nullptr) return kFloor;
+    return ((1 - bands.part) * bands.upper[bin] + bands.part * bands.lower[bin]) / kBinVolume + kFloor;
+  }
 
  private:
+  static constexpr double kBeyond = 0.01;                 // coverage of places that nothing is known of
+  static constexpr double kFloor = 2e-8;                  // per level³: any colour may come
+  static constexpr double kLumaBin = 20, kChromaBin = 9;  // levels
+  static constexpr double kBinVolume = kLumaBin * kChromaBin * kChromaBin;
   static constexpr int kBands = 6, kLuma = 12, kChroma = 12;
   static constexpr int kAcross = 24, kDown = 36;
   using Histogram = std::array<float, kLuma * kChroma * kChroma>;

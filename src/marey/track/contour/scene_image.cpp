@@ -1,5 +1,6 @@
 // A running mean for each pixel, over the frames in which it is not foreground: the plain mean of the first kMemory frames, then
-// exponential. Targets' halos that the foreground misses are thus a small part of it. Fixed point, so that a row costs no division.
+// exponential. Targets' halos that the foreground misses are thus a small part of it. Fixed point, so that a row costs no division;
+// pixels that were learned from kMemory frames, which after some seconds are nearly all, are learned without looking up rates.
 #include "marey/track/contour/scene_image.h"
 
 #include <algorithm>
@@ -13,6 +14,7 @@ namespace {
 constexpr int kInterleave = 4;  // rows: one of this many is learned per frame
 constexpr int kMemory = 16;     // frames of a pixel, on average; unswept
 constexpr int kFixed = 128;     // units per level; numerical
+constexpr int kBlock = 64;      // px that are learned alike; even; numerical
 
 constexpr std::array<int, kMemory + 1> kRates = [] {
   std::array<int, kMemory + 1> rates{};
@@ -23,6 +25,24 @@ constexpr std::array<int, kMemory + 1> kRates = [] {
 void learn(std::uint16_t& mean, int level, int detected) {
   const int rate = kRates[static_cast<std::size_t>(std::min(detected, kMemory))];
   mean = static_cast<std::uint16_t>(mean + (static_cast<std::int64_t>(kFixed * level - mean) * rate) / 65536);
+}
+
+/// `learn` of `count` pixels that were learned from kMemory frames or more: the rate is 65536 / kMemory.
+void learn_known(std::uint16_t* mean, const std::uint8_t* level, int count) {
+  for (int x = 0; x < count; ++x) {
+    const int off = kFixed * level[x] - mean[x];
+    mean[x] = static_cast<std::uint16_t>(mean[x] + off / kMemory);
+  }
+}
+
+/// Whether no pixel of a block is taken and all are known.
+bool is_known_scene(const std::uint8_t* taken, const std::uint8_t* frames, int count) {
+  std::uint8_t any = 0, fewest = 255;
+  for (int x = 0; x < count; ++x) {
+    any = static_cast<std::uint8_t>(any | taken[x]);
+    fewest = std::min(fewest, frames[x]);
+  }
+  return any == 0 && fewest >= kMemory;
 }
 
 cv::Mat levels(const cv::Mat& plane, const cv::Rect& area) {
@@ -44,35 +64,53 @@ void SceneImage::observe(const Image& image, const cv::Mat& foreground, std::spa
     next_ = -1;
   }
   shift_.observe(image, foreground);
-  foreground.copyTo(taken_);
-  const Box all{0, 0, static_cast<double>(taken_.cols), static_cast<double>(taken_.rows)};
-  for (const Box& target : targets) {
-    const Box part = geometry::intersection(target, all);
-    if (part.empty()) continue;
-    const cv::Point from(static_cast<int>(part.left), static_cast<int>(part.top)),
-        to(static_cast<int>(std::ceil(part.right())), static_cast<int>(std::ceil(part.bottom())));
-    taken_(cv::Rect(from, to)) = 255;
+  for (int row = std::max(0, next_); row < frames_.rows; row += next_ < 0 ? 1 : kInterleave) {
+    note_taken(foreground, targets, row);
+    learn_row(image, row);
   }
-  for (int row = std::max(0, next_); row < frames_.rows; row += next_ < 0 ? 1 : kInterleave) learn_row(image, taken_, row);
   next_ = (next_ + 1) % kInterleave;
 }
 
-void SceneImage::learn_row(const Image& image, const cv::Mat& scene_taken, int row) {
-  const std::uint8_t* taken = scene_taken.ptr<std::uint8_t>(row);
-  const std::uint8_t* level = image.luma().ptr<std::uint8_t>(row);
-  std::uint8_t* frames = frames_.ptr<std::uint8_t>(row);
-  std::uint16_t* mean = luma_.ptr<std::uint16_t>(row);
+void SceneImage::note_taken(const cv::Mat& foreground, std::span<const Box> targets, int row) {
+  const std::uint8_t* from = foreground.ptr<std::uint8_t>(row);
+  taken_.assign(from, from + foreground.cols);
+  const Box all{0, 0, static_cast<double>(foreground.cols), static_cast<double>(foreground.rows)};
+  for (const Box& target : targets) {
+    const Box part = geometry::intersection(target, all);
+    if (part.empty() || row < static_cast<int>(part.top) || row >= static_cast<int>(std::ceil(part.bottom()))) continue;
+    std::fill(taken_.begin() + static_cast<int>(part.left), taken_.begin() + static_cast<int>(std::ceil(part.right())),
+              std::uint8_t{255});
+  }
+}
+
+void SceneImage::learn_row(const Image& image, int row) {
+  for (int x = 0; x < frames_.cols; x += kBlock) learn_block(image, row, x, std::min(kBlock, frames_.cols - x));
+}
+
+void SceneImage::learn_block(const Image& image, int row, int first, int count) {
+  const std::uint8_t* taken = taken_.data() + first;
+  const std::uint8_t* level = image.luma().ptr<std::uint8_t>(row) + first;
+  std::uint8_t* frames = frames_.ptr<std::uint8_t>(row) + first;
+  std::uint16_t* mean = luma_.ptr<std::uint16_t>(row) + first;
   // Chroma has half the rows: the even ones stand for it while all are learned, then any.
   const bool colour = image.is_colour();
   const int half = row / 2;
-  for (int x = 0; x < frames_.cols; ++x) {
+  const bool known = is_known_scene(taken, frames, count);
+  if (known) {
+    learn_known(mean, level, count);
+    for (int x = 0; x < count; ++x) frames[x] = static_cast<std::uint8_t>(frames[x] + (frames[x] < 255 ? 1 : 0));
+  }
+  std::uint16_t* means[2]{cb_.ptr<std::uint16_t>(half) + first / 2, cr_.ptr<std::uint16_t>(half) + first / 2};
+  const std::uint8_t* chroma[2]{};
+  for (int i = 0; i < 2 && colour; ++i) {
+    chroma[i] = (i == 0 ? image.cb() : image.cr()).ptr<std::uint8_t>(half) + first / 2;
+    if (known) learn_known(means[i], chroma[i], (count + 1) / 2);
+  }
+  for (int x = 0; x < count && !known; ++x) {
     if (taken[x] != 0) continue;
     const int detected = frames[x];
     learn(mean[x], level[x], detected);
-    if (colour && x % 2 == 0) {
-      learn(cb_.ptr<std::uint16_t>(half)[x / 2], image.cb().ptr<std::uint8_t>(half)[x / 2], detected);
-      learn(cr_.ptr<std::uint16_t>(half)[x / 2], image.cr().ptr<std::uint8_t>(half)[x / 2], detected);
-    }
+    for (int i = 0; i < 2 && colour && x % 2 == 0; ++i) learn(means[i][x / 2], chroma[i][x / 2], detected);
     if (detected < 255) ++frames[x];
   }
 }
