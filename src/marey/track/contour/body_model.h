@@ -22,9 +22,9 @@ class BodyModel {
 
   bool knows_colours() const { return known_; }
   /// How often the place is covered, 0 … 1; before anything is learned, by a person who stands.
-  double coverage(const Vector<2>& location) const { return coverage(column_at(location.x()), row_at(location.y())); }
+  float coverage(const Vector<2>& location) const { return coverage(column_at(location.x()), row_at(location.y())); }
   /// Probability density of a colour at a place `down` heights below the centre, per level³.
-  double density(double down, const cv::Vec3f& colour) const { return density(bands_at(down), bin_of(colour)); }
+  float density(double down, const cv::Vec3f& colour) const { return density(bands_at(down), bin_of(colour)); }
 
   /// The same in steps, for all cells of a patch: what depends on a cell's column, its row and its colour alone is found once.
   struct CoveragePosition {
@@ -34,7 +34,7 @@ class BodyModel {
   };
   static CoveragePosition column_at(double x);
   static CoveragePosition row_at(double y);
-  double coverage(const CoveragePosition& column, const CoveragePosition& row) const {
+  float coverage(const CoveragePosition& column, const CoveragePosition& row) const {
     if (column.beyond || row.beyond) return kBeyond;
     const float* at = &coverage_[static_cast<std::size_t>(row.first * kAcross + column.first)];
     const float above = at[0] + column.part * (at[1] - at[0]);
@@ -47,16 +47,16 @@ class BodyModel {
   };
   Bands bands_at(double down) const;
   static int bin_of(const cv::Vec3f& colour);
-  static double density(const Bands& bands, int bin) {
+  static float density(const Bands& bands, int bin) {
     if (bands.upper == nullptr) return kFloor;
     return ((1 - bands.part) * bands.upper[bin] + bands.part * bands.lower[bin]) / kBinVolume + kFloor;
   }
 
  private:
-  static constexpr double kBeyond = 0.01;                 // coverage of places that nothing is known of
-  static constexpr double kFloor = 2e-8;                  // per level³: any colour may come
+  static constexpr float kBeyond = 0.01F;                 // coverage of places that nothing is known of
+  static constexpr float kFloor = 2e-8F;                  // per level³: any colour may come
   static constexpr double kLumaBin = 20, kChromaBin = 9;  // levels
-  static constexpr double kBinVolume = kLumaBin * kChromaBin * kChromaBin;
+  static constexpr auto kBinVolume = static_cast<float>(kLumaBin * kChromaBin * kChromaBin);
   static constexpr int kBands = 6, kLuma = 12, kChroma = 12;
   static constexpr int kAcross = 24, kDown = 36;
   using Histogram = std::array<float, kLuma * kChroma * kChroma>;

@@ -30,8 +30,15 @@ cv::Mat in_cells(const cv::Mat& plane, const cv::Size& cells) {
 cv::Mat moved_left(const cv::Mat& plane, double by) {
   constexpr double kLittle = 0.05;  // cells; numerical: less costs a resampling and moves no edge
   if (std::abs(by) < kLittle) return plane;
-  cv::Mat moved;
-  cv::warpAffine(plane, moved, cv::Matx23d(1, 0, -by, 0, 1, 0), plane.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  const int whole = static_cast<int>(std::floor(by)), last = plane.cols - 1;
+  const auto part = static_cast<float>(by - whole);
+  cv::Mat moved(plane.size(), CV_32FC1);
+  for (int y = 0; y < plane.rows; ++y) {
+    const float* from = plane.ptr<float>(y);
+    float* to = moved.ptr<float>(y);
+    const auto at = [&](int x) { return from[std::clamp(x, 0, last)]; };
+    for (int x = 0; x <= last; ++x) to[x] = at(x + whole) + part * (at(x + whole + 1) - at(x + whole));
+  }
   return moved;
 }
 

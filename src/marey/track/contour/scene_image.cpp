@@ -1,12 +1,13 @@
 // A running mean for each pixel, over the frames in which it is not foreground: the plain mean of the first kMemory frames, then
-// exponential. Targets' halos that the foreground misses are thus a small part of it. Fixed point, so that a row costs no division;
-// pixels that were learned from kMemory frames, which after some seconds are nearly all, are learned without looking up rates.
+// exponential. Targets' halos that the foreground misses are thus a small part of it. Fixed point, so that a row costs no division.
+// Neighbours were mostly learned from as many frames: they are learned together, at one rate.
 #include "marey/track/contour/scene_image.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 namespace marey::track::contour {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr int kInterleave = 4;  // rows: one of this many is learned per frame
 constexpr int kMemory = 16;     // frames of a pixel, on average; unswept
 constexpr int kFixed = 128;     // units per level; numerical
-constexpr int kBlock = 64;      // px that are learned alike; even; numerical
+constexpr int kBlock = 32;      // px that are learned alike; even; numerical
 
 constexpr std::array<int, kMemory + 1> kRates = [] {
   std::array<int, kMemory + 1> rates{};
@@ -27,22 +28,28 @@ void learn(std::uint16_t& mean, int level, int detected) {
   mean = static_cast<std::uint16_t>(mean + (static_cast<std::int64_t>(kFixed * level - mean) * rate) / 65536);
 }
 
-/// `learn` of `count` pixels that were learned from kMemory frames or more: the rate is 65536 / kMemory.
-void learn_known(std::uint16_t* mean, const std::uint8_t* level, int count) {
-  for (int x = 0; x < count; ++x) {
-    const int off = kFixed * level[x] - mean[x];
-    mean[x] = static_cast<std::uint16_t>(mean[x] + off / kMemory);
+/// `learn` of `count` pixels that were all learned from as many frames, or all from kMemory and more.
+void learn_alike(std::uint16_t* mean, const std::uint8_t* level, int count, int detected) {
+  const int rate = kRates[static_cast<std::size_t>(std::min(detected, kMemory))];
+  if (detected >= kMemory) {  // the rate is 65536 / kMemory
+    for (int x = 0; x < count; ++x) mean[x] = static_cast<std::uint16_t>(mean[x] + (kFixed * level[x] - mean[x]) / kMemory);
+  } else if (detected == 0) {  // it is 65536
+    for (int x = 0; x < count; ++x) mean[x] = static_cast<std::uint16_t>(kFixed * level[x]);
+  } else {
+    for (int x = 0; x < count; ++x) mean[x] = static_cast<std::uint16_t>(mean[x] + (kFixed * level[x] - mean[x]) * rate / 65536);
   }
 }
 
-/// Whether no pixel of a block is taken and all are known.
-bool is_known_scene(const std::uint8_t* taken, const std::uint8_t* frames, int count) {
-  std::uint8_t any = 0, fewest = 255;
+/// Of how many frames all pixels of a block were learned, kMemory for any more; nothing if they differ or one is taken.
+std::optional<int> frames_of_all(const std::uint8_t* taken, const std::uint8_t* frames, int count) {
+  std::uint8_t any = 0, fewest = 255, most = 0;
   for (int x = 0; x < count; ++x) {
     any = static_cast<std::uint8_t>(any | taken[x]);
     fewest = std::min(fewest, frames[x]);
+    most = std::max(most, frames[x]);
   }
-  return any == 0 && fewest >= kMemory;
+  if (any != 0 || (fewest < kMemory && fewest != most)) return std::nullopt;
+  return std::min<int>(fewest, kMemory);
 }
 
 cv::Mat levels(const cv::Mat& plane, const cv::Rect& area) {
@@ -95,18 +102,18 @@ void SceneImage::learn_block(const Image& image, int row, int first, int count) 
   // Chroma has half the rows: the even ones stand for it while all are learned, then any.
   const bool colour = image.is_colour();
   const int half = row / 2;
-  const bool known = is_known_scene(taken, frames, count);
-  if (known) {
-    learn_known(mean, level, count);
+  const std::optional<int> alike = frames_of_all(taken, frames, count);
+  if (alike) {
+    learn_alike(mean, level, count, *alike);
     for (int x = 0; x < count; ++x) frames[x] = static_cast<std::uint8_t>(frames[x] + (frames[x] < 255 ? 1 : 0));
   }
   std::uint16_t* means[2]{cb_.ptr<std::uint16_t>(half) + first / 2, cr_.ptr<std::uint16_t>(half) + first / 2};
   const std::uint8_t* chroma[2]{};
   for (int i = 0; i < 2 && colour; ++i) {
     chroma[i] = (i == 0 ? image.cb() : image.cr()).ptr<std::uint8_t>(half) + first / 2;
-    if (known) learn_known(means[i], chroma[i], (count + 1) / 2);
+    if (alike) learn_alike(means[i], chroma[i], (count + 1) / 2, *alike);
   }
-  for (int x = 0; x < count && !known; ++x) {
+  for (int x = 0; x < count && !alike; ++x) {
     if (taken[x] != 0) continue;
     const int detected = frames[x];
     learn(mean[x], level[x], detected);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
@@ -42,6 +43,7 @@ class RegionDivision {
     find_bins();
     chances_.resize(members.size());
     likelihoods_.resize(members.size());
+    prepared_.resize(members.size());
     for (RegionMember& member : members) member.shift = member.shifts.front();
     prepare_all();
     order_by_feet();
@@ -55,24 +57,19 @@ class RegionDivision {
         if (!moved) break;
       }
     }
-    prepare_all();  // colours where each body was found to be
+    prepare_all();  // colours where each body that was moved was found to be
     decide_order();
   }
 
   void divide() {
     std::vector<cv::Mat> odds(members_.size() + 1);
     for (cv::Mat& one : odds) one.create(patch_.size(), CV_32FC1);
-    const int cells = static_cast<int>(patch_.colour.total());
-    std::vector<float> left(static_cast<std::size_t>(cells), 1.0F);
+    cv::Mat left(patch_.size(), CV_32FC1, cv::Scalar(1));
     for (const int k : order_) {
-      const float *chance = chances_[k].ptr<float>(), *likelihood = likelihoods_[k].ptr<float>();
-      auto* sum = odds[k].ptr<float>();
-      for (int i = 0; i < cells; ++i) {
-        sum[i] = log_odds(left[i] * chance[i], likelihood[i]);
-        left[i] *= 1 - chance[i];
-      }
+      find_log_odds(left.mul(chances_[k]), likelihoods_[k], odds[k]);
+      left = left.mul(1 - chances_[k]);
     }
-    for (int i = 0; i < cells; ++i) odds.back().ptr<float>()[i] = log_odds(left[i], ground_.ptr<float>()[i]);
+    find_log_odds(left, ground_, odds.back());
     for (std::size_t k = 0; k < members_.size(); ++k) add_network(members_[k], odds[k]);
     const NeighbourVotes neighbours(patch_, ground_colours_);
     hand_out(by_votes(odds, neighbours));
@@ -126,9 +123,11 @@ class RegionDivision {
   }
 
   /// log(prior likelihood^kTempered), with one logarithm.
-  static float log_odds(float prior, float likelihood) {
+  static void find_log_odds(const cv::Mat& prior, const cv::Mat& likelihood, cv::Mat& odds) {
     static_assert(kTempered == 0.5);
-    return std::log(prior * std::sqrt(likelihood));
+    cv::sqrt(likelihood, odds);
+    cv::multiply(odds, prior, odds);
+    cv::log(odds, odds);
   }
 
   void inspect_ground() {
@@ -169,10 +168,13 @@ class RegionDivision {
   /// The chance that member k covers each cell, where it is now; and the likelihood of each cell's colour if so.
   void prepare(std::size_t k) {
     const RegionMember& member = members_[k];
+    if (prepared_[k] == member.shift) return;
+    prepared_[k] = member.shift;
     std::vector<Vector<2>> shifted = member.polygon;
     for (Vector<2>& corner : shifted) corner += member.shift;
     const cv::Mat depth = depth_in(shifted);
-    const double softness = std::max(0.7, kEdgeSoftness * member.height / patch_.step);
+    const auto softness = static_cast<float>(std::max(0.7, kEdgeSoftness * member.height / patch_.step));
+    const auto typical = static_cast<float>(member.typical);
     const Vector<2> centre = member.centre + member.shift;
     cv::Mat& chance = chances_[k];
     cv::Mat& likelihood = likelihoods_[k];
@@ -181,6 +183,7 @@ class RegionDivision {
     const auto location = [&](int x, int y) { return Vector<2>((patch_.pixel(Vector<2>(x, y)) - centre) / member.height); };
     std::vector<BodyModel::CoveragePosition> columns;
     for (int x = 0; x < chance.cols; ++x) columns.push_back(BodyModel::column_at(location(x, 0).x()));
+    const BodyModel::CoveragePosition* const column = columns.data();
     for (int y = 0; y < chance.rows; ++y) {
       const double down = location(0, y).y();
       const BodyModel::CoveragePosition row = BodyModel::row_at(down);
@@ -188,13 +191,12 @@ class RegionDivision {
       const float *deep = depth.ptr<float>(y), *mask = patch_.mask.ptr<float>(y);
       const auto* bin = bins_.ptr<std::uint16_t>(y);
       float *covers = chance.ptr<float>(y), *goes_with = likelihood.ptr<float>(y);
+      for (int x = 0; x < chance.cols; ++x) covers[x] = std::clamp(-deep[x] / softness, -kFarSteps, kFarSteps);
+      cv::exp(chance.row(y), chance.row(y));
       for (int x = 0; x < chance.cols; ++x) {
-        const auto steps = static_cast<float>(deep[x] / softness);
-        const double shape = steps > kFarSteps ? 1 : steps < -kFarSteps ? 0 : 1 / (1 + std::exp(-steps));
-        const double typical = member.body->coverage(columns[static_cast<std::size_t>(x)], row);
-        covers[x] =
-            std::clamp(static_cast<float>((1 - member.typical) * shape + member.typical * typical), kMinChance, 1 - kMinChance);
-        goes_with[x] = static_cast<float>(BodyModel::density(bands, bin[x])) * mask_chance_on_body(mask[x]);
+        const float shape = 1 / (1 + covers[x]), known = member.body->coverage(column[x], row);
+        covers[x] = std::clamp((1 - typical) * shape + typical * known, kMinChance, 1 - kMinChance);
+        goes_with[x] = BodyModel::density(bands, bin[x]) * mask_chance_on_body(mask[x]);
       }
     }
   }
@@ -214,12 +216,13 @@ class RegionDivision {
     constexpr int kFactors = 16;  // numerical
     const cv::Point by = k < 0 ? cv::Point(0, 0) : whole_cells(shift - members_[k].shift);
     const int width = (patch_.size().width + 1) / 2;
-    std::vector<float> left(static_cast<std::size_t>(width)), all(static_cast<std::size_t>(width));
+    std::vector<float> rows(2 * static_cast<std::size_t>(width));
+    float *left = rows.data(), *all = left + width;
     double sum = 0, product = 1;
     int factors = 0;
     for (int y = 0; y < patch_.size().height; y += 2) {
-      std::fill(left.begin(), left.end(), 1.0F);
-      std::fill(all.begin(), all.end(), 0.0F);
+      std::fill(left, left + width, 1.0F);
+      std::fill(all, all + width, 0.0F);
       for (const int j : order_) add_member(j, y, j == k ? by : cv::Point(0, 0), left, all);
       const float* ground = ground_.ptr<float>(y);
       for (int i = 0; i < width; ++i) {
@@ -240,16 +243,20 @@ class RegionDivision {
   }
 
   /// What a member adds to the likelihood of every second cell of a row, moved by whole cells, and what it leaves to those behind.
-  void add_member(int j, int y, const cv::Point& by, std::span<float> left, std::span<float> all) const {
+  void add_member(int j, int y, const cv::Point& by, float* left, float* all) const {
     const int width = patch_.size().width, from = y - by.y;
     const float* likelihood = likelihoods_[j].ptr<float>(y);
     const float* chance = from >= 0 && from < patch_.size().height ? chances_[j].ptr<float>(from) : nullptr;
-    for (int i = 0; 2 * i < width; ++i) {
-      const int x = 2 * i - by.x;
-      const float own = chance != nullptr && x >= 0 && x < width ? chance[x] : kMinChance;
+    // Cells `begin` to `end` of the row, of every second one, come from within the patch.
+    const int count = (width + 1) / 2, begin = chance != nullptr ? std::clamp((by.x + 1) / 2, 0, count) : count,
+              end = chance != nullptr ? std::clamp((by.x + width + 1) / 2, begin, count) : count;
+    const auto add = [&](int i, float own) {
       all[i] += left[i] * own * likelihood[2 * i];
       left[i] *= 1 - own;
-    }
+    };
+    for (int i = 0; i < begin; ++i) add(i, kMinChance);
+    for (int i = begin; i < end; ++i) add(i, chance[2 * i - by.x]);
+    for (int i = end; i < count; ++i) add(i, kMinChance);
   }
 
   /// One member at four places about where it is, and where else it may be; whether another place is better. Its colours are taken
@@ -326,11 +333,12 @@ class RegionDivision {
 
   const ColourPatch& patch_;
   std::span<RegionMember> members_;
-  cv::Mat ground_colours_;                      // CV_32FC3
-  cv::Mat ground_;                              // likelihood of each cell's colour, if it is ground
-  std::vector<cv::Mat> chances_, likelihoods_;  // by member
-  cv::Mat bins_;                                // CV_16UC1: of each cell's colour, in a body's histograms
-  std::vector<int> order_;                      // nearest first
+  cv::Mat ground_colours_;                          // CV_32FC3
+  cv::Mat ground_;                                  // likelihood of each cell's colour, if it is ground
+  std::vector<cv::Mat> chances_, likelihoods_;      // by member
+  std::vector<std::optional<Vector<2>>> prepared_;  // the shift that these are of
+  cv::Mat bins_;                                    // CV_16UC1: of each cell's colour, in a body's histograms
+  std::vector<int> order_;                          // nearest first
 };
 
 }  // namespace
