@@ -17,7 +17,7 @@
 
 #include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 #include "marey/track/contour/contour_target.h"
 #include "marey/track/contour/line_correction.h"
 #include "marey/track/contour/lone_silhouette.h"
@@ -86,7 +86,7 @@ class ContourTracker::Implementation {
     return tracks_;
   }
 
-  void use_masks(FindBodyMasks find) { find_masks_ = std::move(find); }
+  void use_masks(colour::FindBodyMasks find) { find_masks_ = std::move(find); }
 
  private:
   /// From what lies beyond all targets, as the tracker had them in the frame before: between two frames no person leaves that
@@ -94,7 +94,7 @@ class ContourTracker::Implementation {
   void learn_scene() {
     target_boxes_.clear();
     for (const Track<2>& track : tracks_) {
-      if (track.box) target_boxes_.push_back(grown(*track.box, kSceneMargin * track.box->height));
+      if (track.box) target_boxes_.push_back(colour::grown(*track.box, kSceneMargin * track.box->height));
     }
     scene_.observe(image_, mask_, target_boxes_);
   }
@@ -140,11 +140,11 @@ class ContourTracker::Implementation {
       boxes.push_back(*track.box);
       ids.push_back(track.id);
     }
-    std::vector<BodyMask> found = find_masks_(image_, boxes);
+    std::vector<colour::BodyMask> found = find_masks_(image_, boxes);
     for (std::size_t i = 0; i < ids.size() && i < found.size(); ++i) masks_.emplace(ids[i], std::move(found[i]));
   }
 
-  const BodyMask* mask_of(TrackId id) const {
+  const colour::BodyMask* mask_of(TrackId id) const {
     const auto mask = masks_.find(id);
     return mask != masks_.end() && !mask->second.chance.empty() ? &mask->second : nullptr;
   }
@@ -293,10 +293,10 @@ class ContourTracker::Implementation {
   std::vector<Shared> shared_;
   tbb::enumerable_thread_specific<LineCorrection> lines_;  // what one correction needs, kept so that it is allocated once
   LoneSilhouettes lone_;
-  SceneImage scene_;
-  FindBodyMasks find_masks_;           // empty: no network is asked
-  std::map<TrackId, BodyMask> masks_;  // of this frame
-  Timestamp before_{};                 // of the last frame attached
+  colour::SceneImage scene_;
+  colour::FindBodyMasks find_masks_;           // empty: no network is asked
+  std::map<TrackId, colour::BodyMask> masks_;  // of this frame
+  Timestamp before_{};                         // of the last frame attached
   std::vector<ContourTarget> targets_;
   std::map<TrackId, Silhouette> first_observed_;  // targets seen once, in the last frame
   std::vector<Observation<2>> hints_;
@@ -310,7 +310,7 @@ ContourTracker::~ContourTracker() = default;
 ContourTracker::ContourTracker(ContourTracker&&) noexcept = default;
 ContourTracker& ContourTracker::operator=(ContourTracker&&) noexcept = default;
 
-void ContourTracker::use_masks(FindBodyMasks find) {
+void ContourTracker::use_masks(colour::FindBodyMasks find) {
   self_->use_masks(std::move(find));
 }
 

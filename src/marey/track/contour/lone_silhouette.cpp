@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "marey/track/contour/body_share.h"
-#include "marey/track/contour/edge_matting.h"
+#include "marey/track/contour/colour/body_share.h"
+#include "marey/track/contour/colour/edge_matting.h"
+#include "marey/track/contour/colour/shared_region.h"
+#include "marey/track/contour/colour/visible_edge.h"
 #include "marey/track/contour/shared_outlines.h"
-#include "marey/track/contour/shared_region.h"
 #include "marey/track/contour/silhouette_spline.h"
-#include "marey/track/contour/visible_edge.h"
 
 namespace marey::track::contour {
 namespace {
@@ -47,7 +47,7 @@ bool is_of_size(const Box& box, const ContourTarget& target) {
 
 }  // namespace
 
-void LoneSilhouettes::inspect_at(const Image& image, const cv::Mat& mask, const SceneImage* scene) {
+void LoneSilhouettes::inspect_at(const Image& image, const cv::Mat& mask, const colour::SceneImage* scene) {
   image_ = image;
   scene_ = scene;
   mask_ = mask;
@@ -58,18 +58,19 @@ bool LoneSilhouettes::has_colours() const {
 }
 
 LoneSilhouettes::Inspected LoneSilhouettes::inspected(const Detection& detected, const geometry::SplineFitOptions& options,
-                                                      const ContourTarget* target, const BodyMask* mask) const {
+                                                      const ContourTarget* target, const colour::BodyMask* mask) const {
   if (!has_colours() || detected.outline.size() < 4) return {fit_silhouette(detected, image_.luma(), options)};
   const double height = detected.box.height;
   const bool known =
       target != nullptr && target->learned >= kKnown && target->held < kHeldTooLong && (is_smeared(height) || mask != nullptr);
   Box about = bounds(detected.outline);
   if (known) about = geometry::hull(about, target->predicted.box());
-  ColourPatch patch = cut_patch(image_, mask_, grown(about, 2 + kNextTo * height), cell_step(height), scene_);
+  colour::ColourPatch patch =
+      colour::cut_patch(image_, mask_, colour::grown(about, 2 + kNextTo * height), colour::cell_step(height), scene_);
   if (patch.colour.empty()) return {fit_silhouette(detected, image_.luma(), options)};
-  cv::Mat fraction =
-      known ? known_fraction(patch, *target, detected, mask) : body_fraction(patch, cells_within(detected.outline, patch), height);
-  const std::vector<Vector<2>> edge = half_level_curve(fraction, patch);
+  cv::Mat fraction = known ? known_fraction(patch, *target, detected, mask)
+                           : colour::body_fraction(patch, colour::cells_within(detected.outline, patch), height);
+  const std::vector<Vector<2>> edge = colour::half_level_curve(fraction, patch);
   const double typical = known ? target->default_area : geometry::polygon_area(detected.outline);
   if (geometry::polygon_area(edge) < kMinOfSilhouette * typical) return {fit_silhouette(detected, image_.luma(), options)};
   auto spline = fit_curve(edge, options);
@@ -83,9 +84,9 @@ bool LoneSilhouettes::is_smeared(double height) const {
   return scene_ != nullptr && scene_->smear() > kSmeared * height;
 }
 
-cv::Mat LoneSilhouettes::known_fraction(const ColourPatch& patch, const ContourTarget& target, const Detection& detected,
-                                        const BodyMask* mask) {
-  RegionMember member;
+cv::Mat LoneSilhouettes::known_fraction(const colour::ColourPatch& patch, const ContourTarget& target, const Detection& detected,
+                                        const colour::BodyMask* mask) {
+  colour::RegionMember member;
   member.body = &target.body;
   member.polygon = target.predicted.polygon(4);
   member.centre = target.predicted.centroid();
@@ -93,12 +94,13 @@ cv::Mat LoneSilhouettes::known_fraction(const ColourPatch& patch, const ContourT
   member.foot = detected.box.bottom();
   member.shifts = {Vector<2>::Zero()};
   member.typical = kTypicalWeight;
-  if (mask != nullptr) member.network = chances_in(*mask, patch);
-  const cv::Mat ground = divide_region(patch, {&member, 1});
-  return matted_edge(patch, member.whole, {}, ground, target.height);
+  if (mask != nullptr) member.network = colour::chances_in(*mask, patch);
+  const cv::Mat ground = colour::divide_region(patch, {&member, 1});
+  return colour::matted_edge(patch, member.whole, {}, ground, target.height);
 }
 
-bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, const Track<2>& track, const BodyMask* mask) const {
+bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, const Track<2>& track,
+                           const colour::BodyMask* mask) const {
   const int count = target.shape.spline().count();
   geometry::SplineFitOptions options = fit_;  // never fewer than it had: a shape that is seen again keeps its detail
   options.minimum = count;
@@ -130,10 +132,10 @@ void LoneSilhouettes::set_shape(ContourTarget& target, const Inspected& found) c
   const geometry::ClosedSpline& spline = *found.spline;
   if (found.fraction.empty()) {
     target.shape = ShapeFilter(spline, kSilhouetteNoise);
-    target.hidden = image_.empty() ? std::vector<int>{} : at_border(spline, image_.size());
+    target.hidden = image_.empty() ? std::vector<int>{} : colour::at_border(spline, image_.size());
     return;
   }
-  VisibleEdge edge = visible_edge(spline, found.patch, {}, image_.size(), prior_deviation(target.height));
+  colour::VisibleEdge edge = colour::visible_edge(spline, found.patch, {}, image_.size(), prior_deviation(target.height));
   target.shape = ShapeFilter(spline, edge.deviations);
   target.hidden = std::move(edge.hidden);
 }

@@ -1,9 +1,9 @@
-#include "marey/track/contour/neighbour_votes.h"
+#include "marey/track/contour/colour/neighbour_votes.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr float kEdge = 12;             // levels between neighbours, from which on they say little of each other; unswept
@@ -60,4 +60,4 @@ cv::Mat NeighbourVotes::of(const cv::Mat& chance) const {
   return sum;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

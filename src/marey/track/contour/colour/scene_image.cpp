@@ -1,7 +1,7 @@
 // A running mean for each pixel, over the frames in which it is not foreground: the plain mean of the first kMemory frames, then
 // exponential. Targets' halos that the foreground misses are thus a small part of it. Fixed point, so that a row costs no division.
 // Neighbours were mostly learned from as many frames: they are learned together, at one rate.
-#include "marey/track/contour/scene_image.h"
+#include "marey/track/contour/colour/scene_image.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr int kInterleave = 4;  // rows: one of this many is learned per frame
@@ -136,4 +136,4 @@ cv::Mat SceneImage::known(const cv::Rect& area) const {
   return result;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -6,9 +6,9 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/geometry.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// A target's appearance, learned while no person hides it: the colours of its body from head to foot, and what places about its
 /// centre it covers how often. Places are in heights of the target from its centre of area.
@@ -66,4 +66,4 @@ class BodyModel {
   std::array<float, kAcross * kDown> coverage_{};
 };
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

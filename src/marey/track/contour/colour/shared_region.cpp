@@ -6,7 +6,7 @@
 // whose feet are about equally low. The division is then made smooth by mean field in a Potts model (Blake, Kohli & Rother, "Markov
 // Random Fields for Vision and Image Processing", 2011, ch. 5), where each pixel's neighbours vote. Cost: cells × members × (tries
 // / 4 + rounds).
-#include "marey/track/contour/shared_region.h"
+#include "marey/track/contour/colour/shared_region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +16,12 @@
 #include <opencv2/imgproc.hpp>
 #include <tbb/parallel_for.h>
 
-#include "marey/track/contour/body_mask.h"
-#include "marey/track/contour/body_share.h"
-#include "marey/track/contour/ground_likelihood.h"
-#include "marey/track/contour/neighbour_votes.h"
+#include "marey/track/contour/colour/body_mask.h"
+#include "marey/track/contour/colour/body_share.h"
+#include "marey/track/contour/colour/ground_likelihood.h"
+#include "marey/track/contour/colour/neighbour_votes.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr double kEdgeSoftness = 0.03;  // heights, of a predicted outline
@@ -138,7 +138,7 @@ class RegionDivision {
       height = std::max(height, member.height);
     }
     ground_colours_ = ground_next_to(patch_, taken, height);
-    ground_ = marey::track::contour::ground_likelihood(patch_, ground_colours_);
+    ground_ = marey::track::contour::colour::ground_likelihood(patch_, ground_colours_);
   }
 
   void find_bins() {
@@ -351,4 +351,4 @@ cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members)
   return division.ground_colours();
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

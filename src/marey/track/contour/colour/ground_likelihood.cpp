@@ -3,7 +3,7 @@
 // variance, so that such a cell says little, and luma, whose edge is sharp, decides. A shadow takes the same share of luma and of
 // the distance of chroma from grey (Horprasert, Harwood & Davis, "A statistical approach for real-time robust background
 // subtraction and shadow detection", 1999); its depth is not known, so several are tried. Cost: five exponentials a cell.
-#include "marey/track/contour/ground_likelihood.h"
+#include "marey/track/contour/colour/ground_likelihood.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr float kGroundLuma = 11, kGroundChroma = 4;                // levels, standard deviation of the ground beside people
@@ -81,4 +81,4 @@ cv::Mat ground_likelihood(const ColourPatch& patch, const cv::Mat& ground) {
   return likelihood;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

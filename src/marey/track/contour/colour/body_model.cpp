@@ -1,13 +1,13 @@
 // Colours are histograms of luma and chroma, one for each of six bands from head to foot: a shirt, its number, arms and shorts are
 // several colours at once, which one Gaussian cannot model. A sample is shared among the bins about it.
-#include "marey/track/contour/body_model.h"
+#include "marey/track/contour/colour/body_model.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr double kTopOfBands = -0.5, kBottom = 0.5;     // heights
@@ -138,4 +138,4 @@ BodyModel::CoveragePosition BodyModel::row_at(double location) {
   return {position.first, position.part, y < -1 || y > kDown};
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -8,9 +8,9 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/image.h"
-#include "marey/track/contour/chroma_shift.h"
+#include "marey/track/contour/colour/chroma_shift.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// The image of the scene without the targets, learned from the pixels that are not foreground: what a contour's outside is
 /// like.
@@ -48,4 +48,4 @@ class SceneImage {
   cv::Mat luma_, cb_, cr_;           // CV_16UC1: levels × 128
 };
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour
