@@ -30,12 +30,12 @@ class BodyModel {
   struct CoveragePosition {
     int first = 0;
     float part = 0;
-    bool beyond = false;  ///< of what is known
+    bool beyond = false;  ///< of the places that coverage is learned of
   };
   static CoveragePosition column_at(double x);
   static CoveragePosition row_at(double y);
   float coverage(const CoveragePosition& column, const CoveragePosition& row) const {
-    if (column.beyond || row.beyond) return kBeyond;
+    if (column.beyond || row.beyond) return 0.01F;
     const float* at = &coverage_[static_cast<std::size_t>(row.first * kAcross + column.first)];
     const float above = at[0] + column.part * (at[1] - at[0]);
     const float below = at[kAcross] + column.part * (at[kAcross + 1] - at[kAcross]);
@@ -53,10 +53,9 @@ class BodyModel {
   }
 
  private:
-  static constexpr float kBeyond = 0.01F;                 // coverage of places that nothing is known of
-  static constexpr float kFloor = 2e-8F;                  // per level³: any colour may come
-  static constexpr double kLumaBin = 20, kChromaBin = 9;  // levels
-  static constexpr auto kBinVolume = static_cast<float>(kLumaBin * kChromaBin * kChromaBin);
+  static constexpr float kFloor = 2e-8F;                                                      // per level³: any colour may come
+  static constexpr double kLumaBin = 20, kChromaBin = 9;                                      // levels
+  static constexpr auto kBinVolume = static_cast<float>(kLumaBin * kChromaBin * kChromaBin);  // level³; by definition
   static constexpr int kBands = 6, kLuma = 12, kChroma = 12;
   static constexpr int kAcross = 24, kDown = 36;
   using Histogram = std::array<float, kLuma * kChroma * kChroma>;

@@ -50,8 +50,8 @@ cv::Mat ground_likelihood(const ColourPatch& patch, const cv::Mat& ground) {
   const cv::Vec3f zero(kBlack, kGrey, kGrey);
   cv::Mat likelihood(patch.size(), CV_32FC1);
   // Of a row: the exponents with each light, the last of them full; then what they come to. And what that is multiplied by.
-  constexpr int kFull = static_cast<int>(kLights.size());
-  cv::Mat fits(kFull + 1, ground.cols, CV_32FC1);
+  const int full = static_cast<int>(kLights.size());
+  cv::Mat fits(full + 1, ground.cols, CV_32FC1);
   std::vector<float> scales(static_cast<std::size_t>(ground.cols));
   float* const scale = scales.data();
   for (int y = 0; y < ground.rows; ++y) {
@@ -64,8 +64,8 @@ cv::Mat ground_likelihood(const ColourPatch& patch, const cv::Mat& ground) {
       const GroundSlopes slopes = slopes_at(patch.colour, y, x);
       const float luma = squared(kGroundLuma) + squared(kLumaDisplaced * slopes.luma);
       const float chroma = squared(kGroundChroma) + squared(kChromaDisplaced * slopes.chroma);
-      for (int k = 0; k <= kFull; ++k) {
-        const cv::Vec3f off = here - (k < kFull ? kLights[static_cast<std::size_t>(k)] : 1.0F) * scene;
+      for (int k = 0; k <= full; ++k) {
+        const cv::Vec3f off = here - (k < full ? kLights[static_cast<std::size_t>(k)] : 1.0F) * scene;
         fits.ptr<float>(k)[x] = -0.5F * (off[0] * off[0] / luma + (off[1] * off[1] + off[2] * off[2]) / chroma);
       }
       scale[x] = kTimesNormal / (std::sqrt(luma) * chroma);
@@ -73,8 +73,8 @@ cv::Mat ground_likelihood(const ColourPatch& patch, const cv::Mat& ground) {
     cv::exp(fits, fits);
     for (int x = 0; x < ground.cols; ++x) {
       float shaded = 0;
-      for (int k = 0; k < kFull; ++k) shaded += fits.ptr<float>(k)[x] / static_cast<float>(kFull);
-      const float density = scale[x] * ((1 - kShadowed) * fits.ptr<float>(kFull)[x] + kShadowed * shaded) + kGroundFloor;
+      for (int k = 0; k < full; ++k) shaded += fits.ptr<float>(k)[x] / static_cast<float>(full);
+      const float density = scale[x] * ((1 - kShadowed) * fits.ptr<float>(full)[x] + kShadowed * shaded) + kGroundFloor;
       result[x] = density * (mask[x] * kMaskOnGround + (1 - mask[x]) * (1 - kMaskOnGround));
     }
   }
