@@ -106,7 +106,9 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   options.minimum = count;
   options.maximum = std::max(count, options.maximum);
   options.rounds = kRounds;
-  const Inspected found = inspected(detected, options, &target, mask);
+  Inspected found = inspected(detected, options, &target, mask);
+  // Where the learned colours explain too little of a silhouette, it says more of the body than they do.
+  if (!found.spline) found = inspected(detected, options, nullptr, nullptr);
   const std::optional<geometry::ClosedSpline>& spline = found.spline;
   if (!spline || spline->count() < count) return false;
   const double growth = std::sqrt(spline->area() / target.default_area);
