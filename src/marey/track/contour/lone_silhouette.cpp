@@ -25,6 +25,7 @@ constexpr double kNextTo = 0.2;           // heights about a silhouette that are
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
 constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
 constexpr double kSmeared = 0.015;        // heights; at crf 18, 35 and recorded, 60 px: 0.006, 0.025, 0.035; 120 px: 0.016
+constexpr double kMinSmear = 1.3;         // px; sharp edges of thin limbs measure up to 1.1 in chroma of half the resolution
 constexpr int kKnown = 10;                // frames that a target's colours were learned from, from which on they decide; unswept
 constexpr double kSame = 0.5;             // of a box that the outline's must share; unswept
 constexpr double kLearn = 0.1;            // weight of one frame in a target's appearance
@@ -81,7 +82,7 @@ LoneSilhouettes::Inspected LoneSilhouettes::inspected(const Detection& detected,
 
 /// Whether colours run over limbs, so that a cell's own colour says little of what it shows.
 bool LoneSilhouettes::is_smeared(double height) const {
-  return scene_ != nullptr && scene_->smear() > kSmeared * height;
+  return scene_ != nullptr && scene_->smear() > std::max(kMinSmear, kSmeared * height);
 }
 
 cv::Mat LoneSilhouettes::known_fraction(const colour::ColourPatch& patch, const ContourTarget& target, const Detection& detected,
