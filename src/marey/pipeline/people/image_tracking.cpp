@@ -54,13 +54,13 @@ track::TrackerOptions image_tracker_options(const corridor::Feed& feed, const Im
 }
 
 /// Masks of people by a landmark network; none of one that it does not see.
-track::contour::FindBodyMasks masks_by(const std::string& model) {
+track::contour::colour::FindBodyMasks masks_by(const std::string& model) {
   const auto network = std::make_shared<detect::keypoints::LandmarkNetwork>(detect::keypoints::landmark_model(model));
   return [network](const Image& image, std::span<const Box> boxes) {
     constexpr double kPresent = 0.5;  // by definition: more likely than not
     std::vector<detect::keypoints::ImageRegion> searched;
     for (const Box& box : boxes) searched.push_back({image, detect::keypoints::region_of(box)});
-    std::vector<track::contour::BodyMask> masks;
+    std::vector<track::contour::colour::BodyMask> masks;
     for (detect::keypoints::BodyPixels& one : network->pixels(searched)) {
       if (one.presence < kPresent) one.chance.release();
       masks.push_back(

@@ -70,7 +70,7 @@ class ImageTracking {
   std::unique_ptr<track::Tracker<2>> tracker_;
   std::optional<track::contour::ContourTracker> contours_;
   std::string contour_model_;
-  track::contour::FindBodyMasks find_masks_;  // empty: contours go without a network
+  track::contour::colour::FindBodyMasks find_masks_;  // empty: contours go without a network
   track::image::ViewBorder border_;
   std::function<void(corridor::FrameForeground)> give_;
   Counts counts_;

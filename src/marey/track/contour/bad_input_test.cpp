@@ -6,13 +6,15 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+#include <tbb/global_control.h>
 
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 #include "marey/track/contour/contour_tracker.h"
 #include "marey/track/contour/silhouette_spline.h"
 
@@ -121,6 +123,7 @@ class HardCheck {
     for (const Track<2>& track : tracker_.attach(tracks, detections)) {
       const HardBody& body = bodies[static_cast<std::size_t>(number(track.id)) - 1];
       ++requests;
+      if (track.outline) note(*track.outline);
       if (track.outline) inspect(*track.outline, body, frame);
     }
   }
@@ -128,8 +131,20 @@ class HardCheck {
   double iou() const { return contours > 0 ? sum_ / contours : 0; }
 
   int requests = 0, contours = 0;
+  std::vector<double> numbers;  ///< all that contours were
 
  private:
+  void note(const Outline& outline) {
+    numbers.push_back(static_cast<double>(outline.state));
+    for (const auto* places : {&outline.control_points, &outline.deviations}) {
+      for (const Vector<2>& one : *places) numbers.insert(numbers.end(), {one.x(), one.y()});
+    }
+    for (const Vector<2>& one : {outline.centre, outline.velocity, outline.centre_deviation})
+      numbers.insert(numbers.end(), {one.x(), one.y()});
+    for (const int hidden : outline.hidden) numbers.push_back(hidden);
+    for (const TrackId other : outline.behind) numbers.push_back(number(other));
+  }
+
   static Track<2> track_of(const HardBody& body, int id, const std::vector<Detection>& detections) {
     Track<2> track;
     track.id = TrackId{id};
@@ -150,9 +165,9 @@ class HardCheck {
     EXPECT_TRUE(is_simple(spline)) << frame;
     EXPECT_LE(spline.box().height, kOversized * body.height + 3) << frame;
     EXPECT_LE(spline.box().width, kOversized * std::max(body.width, 0.4 * body.height) + 3) << frame;
-    ColourPatch patch;
+    colour::ColourPatch patch;
     patch.colour = cv::Mat(kHardSize, CV_32FC3);
-    const cv::Mat own = cells_within(spline.polygon(), patch), truth = cells_within(edge_of_body(body), patch);
+    const cv::Mat own = colour::cells_within(spline.polygon(), patch), truth = colour::cells_within(edge_of_body(body), patch);
     cv::Mat both, either;
     cv::min(own, truth, both);
     cv::max(own, truth, either);
@@ -197,9 +212,9 @@ TEST(ContourBadInput, AMaskOfAModelThatIsNotTheTargets) {
     ContourTracker tracker;
     // A network that is sure of a place half a body away.
     tracker.use_masks([&](const Image&, std::span<const Box> boxes) {
-      std::vector<BodyMask> masks;
+      std::vector<colour::BodyMask> masks;
       for (const Box& box : boxes) {
-        BodyMask mask{
+        colour::BodyMask mask{
             .chance = cv::Mat(80, 80, CV_32FC1, cv::Scalar(0.01)), .corner = box.centre() - Vector<2>(40, 40), .scale = 1};
         cv::ellipse(mask.chance, {wrong ? 60 : 40, 40}, {11, 30}, 0, 0, 360, 0.99, cv::FILLED);
         masks.push_back(mask);
@@ -274,6 +289,28 @@ TEST(ContourBadInput, CarsInPlaceOfPeople) {
   }
   EXPECT_GT(check.contours, 70);
   EXPECT_GT(check.iou(), 0.8);
+}
+
+/// All that the contours of a scene are, processed by this many threads: people apart and people who cross, two by two.
+std::vector<double> contours_by(std::size_t threads) {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+  ContourTracker tracker;
+  HardCheck check(tracker);
+  HardScene scene;
+  for (int k = 0; k < 40; ++k) {
+    const std::vector<HardBody> bodies{hard_walker(40 + 1.5 * k), hard_walker(110 - 1.5 * k, kDark), hard_walker(150 + 1.0 * k),
+                                       hard_walker(218 - 1.0 * k)};
+    scene.paint(bodies, k);
+    check.step(scene, bodies, k);
+  }
+  EXPECT_GT(check.contours, 100);
+  return std::move(check.numbers);
+}
+
+TEST(ContourThreads, AnyNumberGivesTheSameContours) {
+  const std::vector<double> alone = contours_by(1);
+  EXPECT_GT(alone.size(), 5000u);
+  for (const std::size_t threads : {2, 4, 7}) EXPECT_EQ(contours_by(threads), alone) << threads;
 }
 
 }  // namespace

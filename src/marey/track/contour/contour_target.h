@@ -10,7 +10,7 @@
 #include "marey/core/outline.h"
 #include "marey/core/time.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/body_model.h"
+#include "marey/track/contour/colour/body_model.h"
 #include "marey/track/contour/line_search.h"
 #include "marey/track/contour/motion_filter.h"
 #include "marey/track/contour/shape_filter.h"
@@ -55,7 +55,7 @@ struct ContourTarget {
   double tracked_height;                                  ///< px; of the tracker's box while `default_area` was seen
   geometry::ClosedSpline predicted;                       ///< of this frame, before anything was seen of it
   std::optional<geometry::ClosedSpline> body_shape = {};  ///< the last that filled the tracker's box; in heights, from its foot
-  BodyModel body = {};                                    ///
+  colour::BodyModel body = {};                            ///
   int learned = 0;                                        ///< frames that `body` was learned from
   int held = 0;                                           ///< frames since it was seen, or a part of it
   Vector<2> centre_in_box = {0, 0};                       ///< heights, from the middle of the tracker's box to the outline's centre
@@ -63,7 +63,7 @@ struct ContourTarget {
   double fraction = 1;
   Box box = {};
   Outline::State state = Outline::State::detected;
-  Footprint footprint = {};
+  colour::Footprint footprint = {};
   std::vector<MeasurementLine> lines = {};
   std::array<std::shared_ptr<Outline>, 3> slots = {};  ///< a reader may still hold one
   std::vector<TrackId> behind = {};                    ///< targets that hide a part of it in this frame

@@ -1,8 +1,8 @@
 // The system of Arnaut & Costa with what it lacked. Each target is predicted and corrected by measurement lines
 // (line_correction.h); then the tracker says who was seen where: a silhouette that no person shares is taken whole
 // (lone_silhouette.h), a region that several share is divided among them (shared_outlines.h), and an outline that left its target
-// is brought back (outline_report.h). Nothing is allocated once every target has been seen, divided regions apart. Reference:
-// Arnaut & Costa, TECCEN 2(1), 2009.
+// is brought back (outline_report.h). Targets, and regions, are independent of each other within a step, and are processed on
+// several threads; what decides about all of them runs before and after, on one. Reference: Arnaut & Costa, TECCEN 2(1), 2009.
 #include "marey/track/contour/contour_tracker.h"
 
 #include <algorithm>
@@ -11,9 +11,13 @@
 #include <map>
 #include <utility>
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include "marey/core/geometry.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 #include "marey/track/contour/contour_target.h"
 #include "marey/track/contour/line_correction.h"
 #include "marey/track/contour/lone_silhouette.h"
@@ -42,17 +46,11 @@ class ContourTracker::Implementation {
     now_ = frame.time;
     image_ = frame.image;
     mask_ = foreground.mask;
-    learn_scene();
     lone_.inspect_at(image_, mask_, &scene_);
-    hints_.clear();
-    for (ContourTarget& target : targets_) {
-      lines_.predict(target, dt);
-      target.measured.reset();
-    }
     const cv::Mat& mask = foreground.covered.empty() ? foreground.mask : foreground.covered;
+    tbb::parallel_invoke([&] { learn_scene(); }, [&] { correct_by_lines(mask, dt); });
+    hints_.clear();
     if (mask.empty()) return hints_;
-    order_by_nearness();
-    for (const int index : nearest_first_) lines_.correct(targets_[index], targets_, mask, dt);
     for (ContourTarget& target : targets_) hint(target, detections);
     return hints_;
   }
@@ -63,18 +61,16 @@ class ContourTracker::Implementation {
     });
     std::erase_if(first_observed_, [&](const auto& one) { return one.second.time != before_; });
     tracks_.assign(tracks.begin(), tracks.end());
-    shared_.clear();
     request_masks();
-    for (const Track<2>& track : tracks_) {
+    take_silhouettes(detections);
+    shared_.clear();
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      const Track<2>& track = tracks_[i];
       const Detection* raw = detection_of(track, detections);
-      const Detection* detected = raw != nullptr && !raw->group && raw->box.height >= options_.min_height ? raw : nullptr;
-      ContourTarget* target = target_of(track.id);
-      if (target == nullptr && detected != nullptr) begin(track.id, *detected);
-      // Where another's box meets its own, a silhouette may hold pixels of both.
-      const bool alone =
-          target == nullptr || target->learned == 0 || !track.box || !lone_.has_colours() || !meets_another(track.id, *track.box);
-      if (target != nullptr && detected != nullptr && alone && lone_.take(*target, *detected, track, mask_of(track.id))) continue;
-      if (track.box && lone_.has_colours()) shared_.push_back({track.id, *track.box, raw != nullptr, raw != nullptr && raw->group});
+      const Detection* detected = silhouette_of(track, detections);
+      if (detected != nullptr && target_of(track.id) == nullptr) begin(track.id, *detected);
+      if (taken_[i] == 0 && track.box && lone_.has_colours())
+        shared_.push_back({track.id, *track.box, raw != nullptr, raw != nullptr && raw->group});
     }
     divide_shared();
     for (Track<2>& track : tracks_) {
@@ -90,7 +86,7 @@ class ContourTracker::Implementation {
     return tracks_;
   }
 
-  void use_masks(FindBodyMasks find) { find_masks_ = std::move(find); }
+  void use_masks(colour::FindBodyMasks find) { find_masks_ = std::move(find); }
 
  private:
   /// From what lies beyond all targets, as the tracker had them in the frame before: between two frames no person leaves that
@@ -98,9 +94,39 @@ class ContourTracker::Implementation {
   void learn_scene() {
     target_boxes_.clear();
     for (const Track<2>& track : tracks_) {
-      if (track.box) target_boxes_.push_back(grown(*track.box, kSceneMargin * track.box->height));
+      if (track.box) target_boxes_.push_back(colour::grown(*track.box, kSceneMargin * track.box->height));
     }
     scene_.observe(image_, mask_, target_boxes_);
+  }
+
+  /// The targets' filters are predicted, then corrected: a target reads where the others were predicted, and changes itself alone.
+  void correct_by_lines(const cv::Mat& mask, double dt) {
+    const auto each = [&](const auto& change) {
+      tbb::parallel_for(std::size_t{0}, targets_.size(), [&](std::size_t i) { change(lines_.local(), targets_[i]); });
+    };
+    each([&](LineCorrection& lines, ContourTarget& target) {
+      lines.predict(target, dt);
+      target.measured.reset();
+    });
+    if (mask.empty()) return;
+    each([&](LineCorrection& lines, ContourTarget& target) { lines.correct(target, targets_, mask, dt); });
+  }
+
+  /// Of each track whether its target took the outline of a silhouette that no person shares (`taken_`).
+  void take_silhouettes(std::span<const Detection> detections) {
+    taken_.assign(tracks_.size(), 0);
+    tbb::parallel_for(
+        std::size_t{0}, tracks_.size(),
+        [&](std::size_t i) {
+          const Track<2>& track = tracks_[i];
+          const Detection* detected = silhouette_of(track, detections);
+          ContourTarget* target = target_of(track.id);
+          if (target == nullptr || detected == nullptr) return;
+          // Where another's box meets its own, a silhouette may hold pixels of both.
+          const bool alone = target->learned == 0 || !track.box || !lone_.has_colours() || !meets_another(track.id, *track.box);
+          taken_[i] = alone && lone_.take(*target, *detected, track, mask_of(track.id)) ? 1 : 0;
+        },
+        tbb::simple_partitioner());
   }
 
   /// A network's masks of all targets whose box is known.
@@ -114,11 +140,11 @@ class ContourTracker::Implementation {
       boxes.push_back(*track.box);
       ids.push_back(track.id);
     }
-    std::vector<BodyMask> found = find_masks_(image_, boxes);
+    std::vector<colour::BodyMask> found = find_masks_(image_, boxes);
     for (std::size_t i = 0; i < ids.size() && i < found.size(); ++i) masks_.emplace(ids[i], std::move(found[i]));
   }
 
-  const BodyMask* mask_of(TrackId id) const {
+  const colour::BodyMask* mask_of(TrackId id) const {
     const auto mask = masks_.find(id);
     return mask != masks_.end() && !mask->second.chance.empty() ? &mask->second : nullptr;
   }
@@ -140,6 +166,12 @@ class ContourTracker::Implementation {
     return &detections[static_cast<std::size_t>(*track.observation)];
   }
 
+  /// The track's silhouette if no other person shares it and it is large enough; null: none.
+  const Detection* silhouette_of(const Track<2>& track, std::span<const Detection> detections) const {
+    const Detection* raw = detection_of(track, detections);
+    return raw != nullptr && !raw->group && raw->box.height >= options_.min_height ? raw : nullptr;
+  }
+
   bool meets_another(TrackId id, const Box& box) const {
     return std::any_of(tracks_.begin(), tracks_.end(), [&](const Track<2>& other) {
       return other.id != id && other.box && geometry::intersection(box, *other.box).area() > kMeets * box.area();
@@ -149,14 +181,6 @@ class ContourTracker::Implementation {
   ContourTarget* target_of(TrackId id) {
     const auto target = std::find_if(targets_.begin(), targets_.end(), [&](const ContourTarget& one) { return one.id == id; });
     return target != targets_.end() ? &*target : nullptr;
-  }
-
-  /// A person whose feet are lower in the image stands nearer to the camera.
-  void order_by_nearness() {
-    nearest_first_.resize(targets_.size());
-    for (std::size_t i = 0; i < targets_.size(); ++i) nearest_first_[i] = static_cast<int>(i);
-    std::stable_sort(nearest_first_.begin(), nearest_first_.end(),
-                     [&](int a, int b) { return targets_[a].box.bottom() > targets_[b].box.bottom(); });
   }
 
   void hint(ContourTarget& target, std::span<const Detection> detections) {
@@ -181,6 +205,15 @@ class ContourTracker::Implementation {
       if (one.in_group || (one.observed && meets_another(one.id, one.box))) begin_shared(one);
     }
     std::erase_if(shared_, [&](const Shared& one) { return target_of(one.id) == nullptr; });
+    std::vector<std::vector<SharedTarget>> regions = shared_regions();
+    tbb::parallel_for(
+        std::size_t{0}, regions.size(), [&](std::size_t i) { outline_shared_region(image_, mask_, &scene_, regions[i]); },
+        tbb::simple_partitioner());
+  }
+
+  /// Those of `shared_` whose boxes meet, directly or by others.
+  std::vector<std::vector<SharedTarget>> shared_regions() {
+    std::vector<std::vector<SharedTarget>> regions;
     std::vector<bool> done(shared_.size(), false);
     for (std::size_t i = 0; i < shared_.size(); ++i) {
       if (done[i]) continue;
@@ -195,11 +228,11 @@ class ContourTracker::Implementation {
       }
       if (members.size() == 1 && !shared_[i].in_group) continue;  // hidden by the scene, or missed: the lines decide
       std::sort(members.begin(), members.end());
-      std::vector<SharedTarget> targets;
+      std::vector<SharedTarget>& targets = regions.emplace_back();
       for (const std::size_t k : members)
         targets.push_back({target_of(shared_[k].id), shared_[k].box, shared_[k].observed, mask_of(shared_[k].id)});
-      outline_shared_region(image_, mask_, &scene_, targets);
     }
+    return regions;
   }
 
   /// From two consecutive silhouettes: v is the centre's shift, s the change of the mean distance from the centre to the control
@@ -258,19 +291,18 @@ class ContourTracker::Implementation {
   Image image_;   // of the frame last observed
   cv::Mat mask_;  // its foreground
   std::vector<Shared> shared_;
-  LineCorrection lines_;
+  tbb::enumerable_thread_specific<LineCorrection> lines_;  // what one correction needs, kept so that it is allocated once
   LoneSilhouettes lone_;
-  SceneImage scene_;
-  FindBodyMasks find_masks_;           // empty: no network is asked
-  std::map<TrackId, BodyMask> masks_;  // of this frame
-  Timestamp before_{};                 // of the last frame attached
+  colour::SceneImage scene_;
+  colour::FindBodyMasks find_masks_;           // empty: no network is asked
+  std::map<TrackId, colour::BodyMask> masks_;  // of this frame
+  Timestamp before_{};                         // of the last frame attached
   std::vector<ContourTarget> targets_;
   std::map<TrackId, Silhouette> first_observed_;  // targets seen once, in the last frame
   std::vector<Observation<2>> hints_;
   std::vector<Track<2>> tracks_;
-  // What a frame needs, kept so that it is allocated once.
-  std::vector<int> nearest_first_;
-  std::vector<Box> target_boxes_;
+  std::vector<char> taken_;        // of each track of this frame
+  std::vector<Box> target_boxes_;  // of the frame before, with a margin
 };
 
 ContourTracker::ContourTracker(const OutlineOptions& options) : self_(std::make_unique<Implementation>(options)) {}
@@ -278,7 +310,7 @@ ContourTracker::~ContourTracker() = default;
 ContourTracker::ContourTracker(ContourTracker&&) noexcept = default;
 ContourTracker& ContourTracker::operator=(ContourTracker&&) noexcept = default;
 
-void ContourTracker::use_masks(FindBodyMasks find) {
+void ContourTracker::use_masks(colour::FindBodyMasks find) {
   self_->use_masks(std::move(find));
 }
 

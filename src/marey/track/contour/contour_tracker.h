@@ -11,7 +11,7 @@
 #include "marey/core/observation.h"
 #include "marey/core/outline.h"
 #include "marey/core/track.h"
-#include "marey/track/contour/body_mask.h"
+#include "marey/track/contour/colour/body_mask.h"
 
 namespace marey::track::contour {
 
@@ -47,7 +47,7 @@ class ContourTracker {
   std::span<const Observation<2>> observe(const Frame& frame, const Foreground& foreground, std::span<const Detection> detections);
 
   /// A network that is asked for the pixels of every target, as one more likelihood; empty: none.
-  void use_masks(FindBodyMasks find);
+  void use_masks(colour::FindBodyMasks find);
 
   /// `tracks` of the frame last observed, whose `observation` counts detections first, then the observations `observe` returned.
   /// Valid until the next call. A track without an outline (not seen twice yet, too small, no usable silhouette) is returned as

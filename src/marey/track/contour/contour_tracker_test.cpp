@@ -35,7 +35,7 @@ std::vector<Vector<2>> body(const Vector<2>& centre, double height, double phase
 cv::Mat drawn(std::span<const std::vector<Vector<2>>> bodies) {
   cv::Mat mask = cv::Mat::zeros(kImage, CV_8UC1);
   for (const auto& one : bodies) {
-    Footprint footprint;
+    colour::Footprint footprint;
     footprint.fill(one);
     for (int y = 0; y < mask.rows; ++y) {
       for (int x = 0; x < mask.cols; ++x) {
@@ -47,7 +47,7 @@ cv::Mat drawn(std::span<const std::vector<Vector<2>>> bodies) {
 }
 
 double overlap(std::span<const Vector<2>> a, std::span<const Vector<2>> b) {
-  Footprint one, other;
+  colour::Footprint one, other;
   one.fill(a);
   other.fill(b);
   int both = 0, either = 0;
@@ -266,29 +266,6 @@ TEST(ShapeFilter, LinesAreTakenInAsTheTextbooksUpdateDoes) {
   const geometry::ClosedSpline before = filter.spline();
   EXPECT_FALSE(filter.correct(geometry::spline_weights(4, 8, 1), {1, 0}, 1000, 0.4, 3)) << "an outlier";
   EXPECT_EQ(filter.spline().control_points()[1], before.control_points()[1]);
-}
-
-TEST(Footprint, CoversThePixelsWhoseCentreIsInside) {
-  std::mt19937_64 engine(5);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1.0p-53);
-  };
-  for (int repeat = 0; repeat < 50; ++repeat) {
-    std::vector<Vector<2>> polygon;
-    for (int i = 0; i < 3 + repeat % 9; ++i) polygon.emplace_back(uniform(-9, 30), uniform(-9, 30));
-    Footprint footprint;
-    footprint.fill(polygon);
-    for (int y = -12; y < 34; ++y) {
-      for (int x = -12; x < 34; ++x) {
-        bool inside = false;  // crossings of the ray to the left
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-          const Vector<2>&a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-          if ((a.y() < y) != (b.y() < y) && a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()) <= x) inside = !inside;
-        }
-        EXPECT_EQ(footprint.covers(x, y), inside) << repeat << ": " << x << " " << y;
-      }
-    }
-  }
 }
 
 }  // namespace

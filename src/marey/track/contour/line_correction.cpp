@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 #include "marey/track/contour/silhouette_spline.h"
 
 namespace marey::track::contour {
@@ -52,7 +52,7 @@ void LineCorrection::predict(ContourTarget& target, double dt) {
 void LineCorrection::correct(ContourTarget& target, std::span<const ContourTarget> all, const cv::Mat& mask, double dt) {
   others_.clear();
   target.crowded = false;
-  const Box wide = grown(target.box, 2 + kMaxReachHeights * target.height);
+  const Box wide = colour::grown(target.box, 2 + kMaxReachHeights * target.height);
   for (const ContourTarget& other : all) {
     if (&other == &target || geometry::intersection(other.box, wide).area() <= 0) continue;
     others_.push_back(&other.footprint);
@@ -73,7 +73,7 @@ void LineCorrection::correct(ContourTarget& target, std::span<const ContourTarge
 
 /// Of the pixels that the target covers and no other does.
 double LineCorrection::foreground_fraction(const ContourTarget& target, const cv::Mat& mask) const {
-  const Footprint& own = target.footprint;
+  const colour::Footprint& own = target.footprint;
   const int left = std::max(0, own.left()), right = std::min(mask.cols, own.left() + own.width());
   int covered = 0, filled = 0;
   for (int y = std::max(0, own.top()); y < std::min(mask.rows, own.top() + own.height()); ++y) {

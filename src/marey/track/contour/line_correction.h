@@ -33,7 +33,7 @@ class LineCorrection {
   void note_hidden(ContourTarget& target);
 
   // What a frame needs, kept so that it is allocated once.
-  std::vector<const Footprint*> others_;
+  std::vector<const colour::Footprint*> others_;
   std::vector<double> locations_, deviations_;
   std::vector<geometry::SplineWeights> weights_;
   std::vector<Vector<2>> polygon_;

@@ -8,13 +8,14 @@
 #include "marey/core/image.h"
 #include "marey/core/track.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/body_mask.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/body_mask.h"
+#include "marey/track/contour/colour/colour_patch.h"
 #include "marey/track/contour/contour_target.h"
 
 namespace marey::track::contour {
 
-/// Takes outlines from silhouettes that no person shares, and learns from them their targets' appearance.
+/// Takes outlines from silhouettes that no person shares, and learns from them their targets' appearance. Several threads may do so
+/// for distinct targets.
 class LoneSilhouettes {
  public:
   /// `fit` says how the first silhouette of a target is fitted; later ones get as many control points or more.
@@ -22,32 +23,43 @@ class LoneSilhouettes {
 
   /// The frame that silhouettes are of: `mask` is its foreground, CV_8UC1; either may be empty.
   /// `scene` stays with its owner; it may be null.
-  void inspect_at(const Image& image, const cv::Mat& mask, const SceneImage* scene = nullptr);
+  void inspect_at(const Image& image, const cv::Mat& mask, const colour::SceneImage* scene = nullptr);
   bool has_colours() const;  ///< whether the frame's image shows where a body ends
 
   /// The outline of a silhouette: where its body ends, by its colours; without them, its edge of light.
   /// `target`, if its colours are known, says what to expect.
   std::optional<geometry::ClosedSpline> fitted(const Detection& detected, const geometry::SplineFitOptions& options,
-                                               const ContourTarget* target = nullptr, const BodyMask* mask = nullptr);
+                                               const ContourTarget* target = nullptr,
+                                               const colour::BodyMask* mask = nullptr) const {
+    return inspected(detected, options, target, mask).spline;
+  }
 
   /// The tracker says that `seen` is this target: its whole edge shows more than the lines, which a leg that swings leaves behind.
   /// False, and nothing is changed, where the silhouette is unlike the target (cut, or grown by something else).
   /// `mask`, which may be null, is a network's of it.
-  bool take(ContourTarget& target, const Detection& detected, const Track<2>& track, const BodyMask* mask = nullptr);
+  bool take(ContourTarget& target, const Detection& detected, const Track<2>& track, const colour::BodyMask* mask = nullptr) const;
 
  private:
+  /// A silhouette's outline, and the patch that it was found in with what of it is body; `fraction` is empty if colours were not
+  /// used.
+  struct Inspected {
+    std::optional<geometry::ClosedSpline> spline = {};
+    colour::ColourPatch patch = {};
+    cv::Mat fraction = {};
+  };
+  Inspected inspected(const Detection& detected, const geometry::SplineFitOptions& options, const ContourTarget* target,
+                      const colour::BodyMask* mask) const;
   bool is_smeared(double height) const;
   /// What share of each of the patch's cells shows the target, by its learned colours and the scene's.
-  cv::Mat known_fraction(const ContourTarget& target, const Detection& detected, const BodyMask* mask) const;
-  void set_shape(ContourTarget& target, const geometry::ClosedSpline& spline) const;
-  void learn(ContourTarget& target, const Vector<2>& centre, const Track<2>& track);
+  static cv::Mat known_fraction(const colour::ColourPatch& patch, const ContourTarget& target, const Detection& detected,
+                                const colour::BodyMask* mask);
+  void set_shape(ContourTarget& target, const Inspected& found) const;
+  static void learn(ContourTarget& target, const Inspected& found, const Vector<2>& centre, const Track<2>& track);
 
   geometry::SplineFitOptions fit_;
   Image image_;
   cv::Mat mask_;
-  const SceneImage* scene_ = nullptr;
-  ColourPatch patch_;  // of the silhouette last fitted, and what of it is body; empty if colours were not used
-  cv::Mat fraction_;
+  const colour::SceneImage* scene_ = nullptr;
 };
 
 }  // namespace marey::track::contour

@@ -14,7 +14,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 #include "marey/track/contour/contour_tracker.h"
 #include "marey/track/contour/silhouette_spline.h"
 
@@ -126,9 +126,9 @@ struct Walk {
 
 void evaluate_outline(const Outline& outline, const Walker& walker, int hip, Walk& walk) {
   const geometry::ClosedSpline spline(outline.order, outline.control_points);
-  ColourPatch patch;
+  colour::ColourPatch patch;
   patch.colour = cv::Mat(walker.fraction().size(), CV_32FC3);
-  const cv::Mat inside = cells_within(spline.polygon(), patch), &truth = walker.fraction();
+  const cv::Mat inside = colour::cells_within(spline.polygon(), patch), &truth = walker.fraction();
   cv::Mat both, either;
   cv::min(inside, truth, both);
   cv::max(inside, truth, either);
@@ -156,11 +156,11 @@ Walk walk_of(double height, int frames) {
     frame.time = timestamp_from_seconds(k / 25.0);
     frame.image = walker.image(dice);
     const cv::Mat mask = walker.ragged_mask(dice);
-    ColourPatch patch;
+    colour::ColourPatch patch;
     cv::Mat fraction;
     mask.convertTo(fraction, CV_32F, 1 / 255.0);
     Detection detected;
-    detected.outline = half_level_curve(fraction, patch);
+    detected.outline = colour::half_level_curve(fraction, patch);
     detected.centre = geometry::polygon_centroid(detected.outline).value_or(hip);
     const cv::Rect box = cv::boundingRect(mask);
     detected.box = Box(box.x, box.y, box.width, box.height);

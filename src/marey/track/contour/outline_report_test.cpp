@@ -1,5 +1,7 @@
 #include "marey/track/contour/outline_report.h"
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -91,6 +93,31 @@ TEST(BringBack, ShrinksWhatHasGrown) {
   ContourTarget target = target_of(body_of({kBox.left - 20, kBox.top - 30, 66, 140}));
   bring_back(target, track_of(kBox), nullptr);
   EXPECT_LT(target.shape.spline().box().height, 1.25 * kBox.height);
+}
+
+std::vector<Vector<2>> oval(const Vector<2>& centre, double across, double down) {
+  std::vector<Vector<2>> polygon;
+  for (int i = 0; i < 90; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 90;
+    polygon.emplace_back(centre + Vector<2>(across * std::cos(angle), down * std::sin(angle)));
+  }
+  return polygon;
+}
+
+TEST(IsOutlineOf, NeitherLoopsNorGiants) {
+  const geometry::ClosedSpline plain(4, oval({50, 50}, 10, 30));
+  const Box box{38, 18, 24, 64};
+  EXPECT_TRUE(is_outline_of(plain, box));
+  EXPECT_TRUE(is_outline_of(plain, {45, 18, 9, 64})) << "narrower than a stride";
+  const geometry::ClosedSpline wide(4, oval({50, 50}, 60, 30));
+  EXPECT_FALSE(is_outline_of(wide, {45, 18, 9, 64})) << "more than twice as wide";
+  EXPECT_FALSE(is_outline_of(plain, {38, 18, 24, 36})) << "more than 1.6 times as high";
+  const geometry::ClosedSpline eight(
+      4, {{0, 0}, {10, 0}, {10, 10}, {-10, 20}, {-10, 30}, {0, 30}, {10, 30}, {10, 20}, {-10, 10}, {-10, 0}});
+  EXPECT_FALSE(is_simple(eight));
+  const cv::Size image(55, 100);
+  EXPECT_FALSE(is_outline_of(wide, {40, 18, 7, 64}, &image));
+  EXPECT_TRUE(is_outline_of(wide, {20, 18, 35, 64}, &image)) << "what lies outside does not count";
 }
 
 }  // namespace

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
+#include <tbb/parallel_for.h>
 
-#include "marey/track/contour/body_share.h"
-#include "marey/track/contour/colour_patch.h"
-#include "marey/track/contour/edge_matting.h"
-#include "marey/track/contour/shared_region.h"
+#include "marey/track/contour/colour/body_share.h"
+#include "marey/track/contour/colour/colour_patch.h"
+#include "marey/track/contour/colour/edge_matting.h"
+#include "marey/track/contour/colour/shared_region.h"
+#include "marey/track/contour/colour/visible_edge.h"
 #include "marey/track/contour/silhouette_spline.h"
-#include "marey/track/contour/visible_edge.h"
 
 namespace marey::track::contour {
 namespace {
@@ -39,7 +40,8 @@ double expected_area(const ContourTarget& target, const Box& box) {
   return target.default_area * growth * growth;
 }
 
-ColourPatch patch_about(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<const SharedTarget> targets) {
+colour::ColourPatch patch_about(const Image& image, const cv::Mat& mask, const colour::SceneImage* scene,
+                                std::span<const SharedTarget> targets) {
   Box all;
   double height = 0;
   for (const SharedTarget& one : targets) {
@@ -47,13 +49,13 @@ ColourPatch patch_about(const Image& image, const cv::Mat& mask, const SceneImag
     all = all.empty() ? own : geometry::hull(all, own);
     height = std::max(height, one.target->height);
   }
-  const int step = height <= kFine ? 1 : cell_step(std::max(height, 120.0));
-  return cut_patch(image, mask, grown(all, kMargin * height), step, scene);
+  const int step = height <= kFine ? 1 : colour::cell_step(std::max(height, 120.0));
+  return colour::cut_patch(image, mask, colour::grown(all, kMargin * height), step, scene);
 }
 
-RegionMember member_of(const SharedTarget& shared) {
+colour::RegionMember member_of(const SharedTarget& shared) {
   const ContourTarget& target = *shared.target;
-  RegionMember member;
+  colour::RegionMember member;
   member.body = &target.body;
   member.polygon = target.predicted.polygon(4);
   member.centre = target.predicted.centroid();
@@ -74,12 +76,13 @@ RegionMember member_of(const SharedTarget& shared) {
 }
 
 /// Colours of a target that was never alone: the pixels where it is expected and no other is.
-void guess_colours(const ColourPatch& patch, std::span<const RegionMember> members, std::size_t own, BodyModel& body) {
-  cv::Mat alone = cells_within(members[own].polygon, patch).mul(patch.mask);
+void guess_colours(const colour::ColourPatch& patch, std::span<const colour::RegionMember> members, std::size_t own,
+                   colour::BodyModel& body) {
+  cv::Mat alone = colour::cells_within(members[own].polygon, patch).mul(patch.mask);
   for (std::size_t k = 0; k < members.size(); ++k) {
-    if (k != own) alone = alone.mul(1 - cells_within(members[k].polygon, patch));
+    if (k != own) alone = alone.mul(1 - colour::cells_within(members[k].polygon, patch));
   }
-  const cv::Mat ground = ground_next_to(patch, patch.mask, members[own].height);
+  const cv::Mat ground = colour::ground_next_to(patch, patch.mask, members[own].height);
   for (int y = 0; y < alone.rows; ++y) {
     for (int x = 0; x < alone.cols; ++x) {
       const cv::Vec3f away = patch.colour.at<cv::Vec3f>(y, x) - ground.at<cv::Vec3f>(y, x);
@@ -98,28 +101,28 @@ void hold(ContourTarget& target, const Vector<2>& shift) {
   target.state = Outline::State::held;
 }
 
-void note_behind(ContourTarget& target, const RegionMember& own, std::span<const SharedTarget> targets) {
+void note_behind(ContourTarget& target, const colour::RegionMember& own, std::span<const SharedTarget> targets) {
   for (const int j : own.behind) target.behind.push_back(targets[static_cast<std::size_t>(j)].target->id);
   std::sort(target.behind.begin(), target.behind.end());
 }
 
 /// What takes the cells that are not a member's.
-cv::Mat taken_by_others(std::span<const RegionMember> members, const RegionMember& own) {
+cv::Mat taken_by_others(std::span<const colour::RegionMember> members, const colour::RegionMember& own) {
   cv::Mat taken = own.whole - own.detected;
-  for (const RegionMember& other : members) {
+  for (const colour::RegionMember& other : members) {
     if (&other != &own) cv::max(taken, other.detected, taken);
   }
   return taken;
 }
 
-void take_part(ContourTarget& target, const Box& box, const RegionMember& member, const ColourPatch& patch, const cv::Mat& blocked,
-               cv::Size image) {
+void take_part(ContourTarget& target, const Box& box, const colour::RegionMember& member, const colour::ColourPatch& patch,
+               const cv::Mat& blocked, cv::Size image) {
   const Vector<2> review_item = target.height * Vector<2>(kGaitAcross, kGaitDown);
   hold(target, member.shift);
   target.measured.reset();
   if (member.visible < kMinVisible) return;
   const int count = target.predicted.count();
-  const auto curve = half_level_curve(member.whole, patch);
+  const auto curve = colour::half_level_curve(member.whole, patch);
   const auto spline = fit_curve(curve, {.order = target.predicted.order(), .minimum = count, .maximum = count});
   const double part = spline ? spline->area() / expected_area(target, box) : 0;
   const double doubt_of_area = rarely_known(target) ? 0.6 : 1;  // its typical area is a guess then
@@ -129,7 +132,7 @@ void take_part(ContourTarget& target, const Box& box, const RegionMember& member
     target.measured = {target.shape.spline().centroid(), 2 * hidden_factor * review_item + Vector<2>::Constant(1)};
     return;
   }
-  VisibleEdge edge = visible_edge(*spline, patch, blocked, image, prior_deviation(target.height));
+  colour::VisibleEdge edge = colour::visible_edge(*spline, patch, blocked, image, prior_deviation(target.height));
   target.shape = ShapeFilter(*spline, edge.deviations);
   target.hidden = std::move(edge.hidden);
   target.state = member.visible > kWhollyVisible ? Outline::State::detected : Outline::State::partly;
@@ -138,34 +141,31 @@ void take_part(ContourTarget& target, const Box& box, const RegionMember& member
 }
 
 /// Where a member borders on ground, its edge is where its colours end.
-void refine_edges(const ColourPatch& patch, const cv::Mat& ground, std::span<RegionMember> members) {
-  for (RegionMember& member : members) {
-    cv::Mat blocked = taken_by_others(members, member);
+void refine_edges(const colour::ColourPatch& patch, const cv::Mat& ground, std::span<colour::RegionMember> members) {
+  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+    cv::Mat blocked = taken_by_others(members, members[k]);
     cv::dilate(blocked, blocked, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
-    member.whole = matted_edge(patch, member.whole, blocked, ground, member.height);
-  }
+    members[k].whole = colour::matted_edge(patch, members[k].whole, blocked, ground, members[k].height);
+  });
 }
 
 }  // namespace
 
-int cell_step(double height) {
-  return height <= 100 ? 1 : height <= 220 ? 2 : 4;
-}
-
-void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneImage* scene, std::span<SharedTarget> targets) {
-  const ColourPatch patch = patch_about(image, mask, scene, targets);
+void outline_shared_region(const Image& image, const cv::Mat& mask, const colour::SceneImage* scene,
+                           std::span<SharedTarget> targets) {
+  const colour::ColourPatch patch = patch_about(image, mask, scene, targets);
   if (patch.colour.empty()) return;
-  std::vector<RegionMember> members;
+  std::vector<colour::RegionMember> members;
   for (const SharedTarget& one : targets) members.push_back(member_of(one));
   for (std::size_t k = 0; k < members.size(); ++k) {
-    if (targets[k].mask != nullptr) members[k].network = chances_in(*targets[k].mask, patch);
+    if (targets[k].mask != nullptr) members[k].network = colour::chances_in(*targets[k].mask, patch);
     if (!targets[k].target->body.knows_colours()) guess_colours(patch, members, k, targets[k].target->body);
   }
-  const cv::Mat ground = divide_region(patch, members);
+  const cv::Mat ground = colour::divide_region(patch, members);
   std::vector<cv::Mat> taken;
-  for (const RegionMember& member : members) taken.push_back(taken_by_others(members, member));
+  for (const colour::RegionMember& member : members) taken.push_back(taken_by_others(members, member));
   refine_edges(patch, ground, members);
-  for (std::size_t k = 0; k < members.size(); ++k) {
+  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
     ContourTarget& target = *targets[k].target;
     target.lines.clear();
     take_part(target, targets[k].box, members[k], patch, taken[k], image.size());
@@ -176,7 +176,7 @@ void outline_shared_region(const Image& image, const cv::Mat& mask, const SceneI
       target.tracked_height += kLearnInRegion * (targets[k].box.height - target.tracked_height);
     }
     note_behind(target, members[k], targets);
-  }
+  });
 }
 
 }  // namespace marey::track::contour

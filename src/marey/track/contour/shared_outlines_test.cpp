@@ -10,7 +10,7 @@
 
 #include "marey/core/outline.h"
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
 namespace marey::track::contour {
 namespace {
@@ -51,8 +51,8 @@ struct Scene {
     cv::fillPoly(luma, std::vector{corners}, cv::Scalar(220));
     cv::fillPoly(mask, std::vector{corners}, cv::Scalar(255));
     image = Image(luma);
-    const ColourPatch patch = cut_patch(image, mask, {10, 0, 100, 100}, 1);
-    const cv::Mat fraction = cells_within(body_about(kStanding, 1), patch);
+    const colour::ColourPatch patch = colour::cut_patch(image, mask, {10, 0, 100, 100}, 1);
+    const cv::Mat fraction = colour::cells_within(body_about(kStanding, 1), patch);
     target.body.learn_colours(patch, fraction, kStanding, kStature, 1);
     target.body.learn_coverage(patch, fraction, kStanding, kStature, 1);
     target.learned = 50;

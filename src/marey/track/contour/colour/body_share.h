@@ -2,9 +2,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// The colour of the ground about an object, from the pixels next to it, at each cell: CV_32FC3. `taken` (CV_32FC1) is not zero
 /// where anything is that is not ground. `height` of the thing in px.
@@ -14,4 +14,4 @@ cv::Mat ground_next_to(const ColourPatch& patch, const cv::Mat& taken, double he
 /// its silhouette, which runs on the halo of sharpening and on the colour that a codec smears round it; `height` in px.
 cv::Mat body_fraction(const ColourPatch& patch, const cv::Mat& own, double height);
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

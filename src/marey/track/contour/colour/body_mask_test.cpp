@@ -1,8 +1,8 @@
-#include "marey/track/contour/body_mask.h"
+#include "marey/track/contour/colour/body_mask.h"
 
 #include <gtest/gtest.h>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 TEST(BodyMask, LiesOnThePatchWhereItLiesInTheImage) {
@@ -32,4 +32,4 @@ TEST(BodyMask, SaysNothingWhereItIsEmpty) {
 }
 
 }  // namespace
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -8,9 +8,9 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/image.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// What a network says of the pixels about one person.
 struct BodyMask {
@@ -28,4 +28,4 @@ cv::Mat chances_in(const BodyMask& mask, const ColourPatch& patch);
 /// What it adds to the log-odds of a cell that the network gives this chance (a network is sure of much that is wrong).
 float evidence_of(float chance);
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

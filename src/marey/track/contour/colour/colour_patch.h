@@ -7,9 +7,9 @@
 
 #include "marey/core/geometry.h"
 #include "marey/core/image.h"
-#include "marey/track/contour/scene_image.h"
+#include "marey/track/contour/colour/scene_image.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// A piece of an image in cells of `step` × `step` px, ready for sums: what outlines are found in.
 struct ColourPatch {
@@ -30,6 +30,9 @@ struct ColourPatch {
   }
 };
 
+/// The size of a patch's cells for a target of that height, px.
+int cell_step(double height);
+
 /// The box and `by` px more on every side.
 inline Box grown(const Box& box, double by) {
   return {box.left - by, box.top - by, box.width + 2 * by, box.height + 2 * by};
@@ -46,4 +49,4 @@ cv::Mat cells_within(std::span<const Vector<2>> polygon, const ColourPatch& patc
 /// holds the largest area. Beyond the patch nothing is covered. Empty if there is no area.
 std::vector<Vector<2>> half_level_curve(const cv::Mat& fraction, const ColourPatch& patch);
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

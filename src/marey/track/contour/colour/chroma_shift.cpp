@@ -1,13 +1,13 @@
 // The changes' magnitudes are correlated, for their signs differ from edge to edge; the peak is found to a part of a pixel by a
 // parabola. Old frames fade. Cost: seven products for each pixel of chroma in the foreground, of a quarter of the rows.
-#include "marey/track/contour/chroma_shift.h"
+#include "marey/track/contour/colour/chroma_shift.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr int kEveryRow = 4;         // rows of chroma; numerical: cost against delay
@@ -70,4 +70,4 @@ double ChromaShift::smear() const {
   return found ? std::sqrt(std::max(0.0, 4 * found->width * found->width - kResolution * kResolution)) : 0;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -3,14 +3,15 @@
 // variance, so that such a cell says little, and luma, whose edge is sharp, decides. A shadow takes the same share of luma and of
 // the distance of chroma from grey (Horprasert, Harwood & Davis, "A statistical approach for real-time robust background
 // subtraction and shadow detection", 1999); its depth is not known, so several are tried. Cost: five exponentials a cell.
-#include "marey/track/contour/ground_likelihood.h"
+#include "marey/track/contour/colour/ground_likelihood.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr float kGroundLuma = 11, kGroundChroma = 4;                // levels, standard deviation of the ground beside people
@@ -48,6 +49,11 @@ cv::Mat ground_likelihood(const ColourPatch& patch, const cv::Mat& ground) {
   constexpr auto kTimesNormal = static_cast<float>(1 / (2 * std::numbers::pi * 2.5066282746310002));  // (2π)^(−3/2), by definition
   const cv::Vec3f zero(kBlack, kGrey, kGrey);
   cv::Mat likelihood(patch.size(), CV_32FC1);
+  // Of a row: the exponents with each light, the last of them full; then what they come to. And what that is multiplied by.
+  const int full = static_cast<int>(kLights.size());
+  cv::Mat fits(full + 1, ground.cols, CV_32FC1);
+  std::vector<float> scales(static_cast<std::size_t>(ground.cols));
+  float* const scale = scales.data();
   for (int y = 0; y < ground.rows; ++y) {
     const auto* colour = patch.colour.ptr<cv::Vec3f>(y);
     const auto* scene_row = ground.ptr<cv::Vec3f>(y);
@@ -58,18 +64,21 @@ cv::Mat ground_likelihood(const ColourPatch& patch, const cv::Mat& ground) {
       const GroundSlopes slopes = slopes_at(patch.colour, y, x);
       const float luma = squared(kGroundLuma) + squared(kLumaDisplaced * slopes.luma);
       const float chroma = squared(kGroundChroma) + squared(kChromaDisplaced * slopes.chroma);
-      const auto fits = [&](float light) {
-        const cv::Vec3f off = here - light * scene;
-        return std::exp(-0.5F * (off[0] * off[0] / luma + (off[1] * off[1] + off[2] * off[2]) / chroma));
-      };
+      for (int k = 0; k <= full; ++k) {
+        const cv::Vec3f off = here - (k < full ? kLights[static_cast<std::size_t>(k)] : 1.0F) * scene;
+        fits.ptr<float>(k)[x] = -0.5F * (off[0] * off[0] / luma + (off[1] * off[1] + off[2] * off[2]) / chroma);
+      }
+      scale[x] = kTimesNormal / (std::sqrt(luma) * chroma);
+    }
+    cv::exp(fits, fits);
+    for (int x = 0; x < ground.cols; ++x) {
       float shaded = 0;
-      for (const float light : kLights) shaded += fits(light) / static_cast<float>(kLights.size());
-      const float scale = kTimesNormal / (std::sqrt(luma) * chroma);
-      const float density = scale * ((1 - kShadowed) * fits(1) + kShadowed * shaded) + kGroundFloor;
+      for (int k = 0; k < full; ++k) shaded += fits.ptr<float>(k)[x] / static_cast<float>(full);
+      const float density = scale[x] * ((1 - kShadowed) * fits.ptr<float>(full)[x] + kShadowed * shaded) + kGroundFloor;
       result[x] = density * (mask[x] * kMaskOnGround + (1 - mask[x]) * (1 - kMaskOnGround));
     }
   }
   return likelihood;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -1,13 +1,13 @@
 // The position of an edge is known to the noise of light over its slope, and the slope is the contrast over the width of the blur:
 // an edge of 40 levels, blurred over 2 px, in noise of 6 levels, to 0.3 px. Something of the scene that hides a body ends it along
 // an edge that the scene has itself, which is why such an edge counts as seen only where the scene is even.
-#include "marey/track/contour/visible_edge.h"
+#include "marey/track/contour/colour/visible_edge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr double kReach = 2;            // cells to either side of the curve that are compared, beyond the blur of an edge; unswept
@@ -75,4 +75,4 @@ VisibleEdge visible_edge(const geometry::ClosedSpline& spline, const ColourPatch
   return edge;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

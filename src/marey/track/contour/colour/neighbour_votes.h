@@ -4,9 +4,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// What the eight neighbours of a cell say of its label: one who lies beyond an edge of the image that the scene does not have says
 /// less (Boykov & Jolly, "Interactive graph cuts", 2001; the scene's own edges do not count, as in Sun et al., "Background cut",
@@ -24,4 +24,4 @@ class NeighbourVotes {
   std::array<cv::Mat, 4> weights_;  ///< CV_32FC1: of the neighbour at the right, below, below right, below left
 };
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

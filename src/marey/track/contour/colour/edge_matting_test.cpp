@@ -1,4 +1,4 @@
-#include "marey/track/contour/edge_matting.h"
+#include "marey/track/contour/colour/edge_matting.h"
 
 #include <cmath>
 #include <random>
@@ -8,9 +8,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/scene_image.h"
+#include "marey/track/contour/colour/scene_image.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr int kSize = 80;
@@ -150,4 +150,4 @@ TEST(SceneImage, LearnsNothingWithinTargets) {
 }
 
 }  // namespace
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -1,9 +1,9 @@
-#include "marey/track/contour/neighbour_votes.h"
+#include "marey/track/contour/colour/neighbour_votes.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr float kEdge = 12;             // levels between neighbours, from which on they say little of each other; unswept
@@ -29,11 +29,15 @@ NeighbourVotes::NeighbourVotes(const ColourPatch& patch, const cv::Mat& ground) 
       const auto* scene_here = ground.ptr<cv::Vec3f>(y);
       const auto* scene_there = ground.ptr<cv::Vec3f>(y + below);
       auto* weight = weights_[i].ptr<float>(y);
-      for (int x = std::max(0, -right); x < std::min(size.width, size.width - right); ++x) {
+      const int first = std::max(0, -right), end = std::min(size.width, size.width - right);
+      for (int x = first; x < end; ++x) {
         const float scene = step_of(scene_here[x], scene_there[x + right]);
         const float step = step_of(here[x], there[x + right]) / (1 + scene / (kSceneEdge * kSceneEdge));
-        weight[x] = kOneOfNine * std::exp(-step / (2 * kEdge * kEdge));
+        weight[x] = -step / (2 * kEdge * kEdge);
       }
+      cv::Mat row = weights_[i].row(y).colRange(first, std::max(first, end));
+      cv::exp(row, row);
+      for (int x = first; x < end; ++x) weight[x] *= kOneOfNine;
     }
   }
 }
@@ -48,13 +52,12 @@ cv::Mat NeighbourVotes::of(const cv::Mat& chance) const {
       const auto* there = chance.ptr<float>(y + below);
       auto* sum_here = sum.ptr<float>(y);
       auto* sum_there = sum.ptr<float>(y + below);
-      for (int x = std::max(0, -right); x < std::min(chance.cols, chance.cols - right); ++x) {
-        sum_here[x] += weight[x] * there[x + right];
-        sum_there[x + right] += weight[x] * here[x];
-      }
+      const int first = std::max(0, -right), end = std::min(chance.cols, chance.cols - right);
+      for (int x = first; x < end; ++x) sum_here[x] += weight[x] * there[x + right];
+      for (int x = first; x < end; ++x) sum_there[x + right] += weight[x] * here[x];
     }
   }
   return sum;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -1,4 +1,4 @@
-#include "marey/track/contour/shared_region.h"
+#include "marey/track/contour/colour/shared_region.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,10 +7,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/body_share.h"
-#include "marey/track/contour/silhouette_spline.h"
+#include "marey/track/contour/colour/body_share.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr int kWide = 120, kHigh = 100;
@@ -160,21 +159,5 @@ TEST(DivideRegion, SameShirtsAreDividedByTheirShapes) {
   EXPECT_GT(iou(members[0].whole, back), 0.75);
 }
 
-TEST(IsOutlineOf, NeitherLoopsNorGiants) {
-  const geometry::ClosedSpline plain(4, ellipse({50, 50}, 10, 30));
-  const Box box{38, 18, 24, 64};
-  EXPECT_TRUE(is_outline_of(plain, box));
-  EXPECT_TRUE(is_outline_of(plain, {45, 18, 9, 64})) << "narrower than a stride";
-  const geometry::ClosedSpline wide(4, ellipse({50, 50}, 60, 30));
-  EXPECT_FALSE(is_outline_of(wide, {45, 18, 9, 64})) << "more than twice as wide";
-  EXPECT_FALSE(is_outline_of(plain, {38, 18, 24, 36})) << "more than 1.6 times as high";
-  const geometry::ClosedSpline eight(
-      4, {{0, 0}, {10, 0}, {10, 10}, {-10, 20}, {-10, 30}, {0, 30}, {10, 30}, {10, 20}, {-10, 10}, {-10, 0}});
-  EXPECT_FALSE(is_simple(eight));
-  const cv::Size image(55, 100);
-  EXPECT_FALSE(is_outline_of(wide, {40, 18, 7, 64}, &image));
-  EXPECT_TRUE(is_outline_of(wide, {20, 18, 35, 64}, &image)) << "what lies outside does not count";
-}
-
 }  // namespace
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

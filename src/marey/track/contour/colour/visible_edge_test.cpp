@@ -1,4 +1,4 @@
-#include "marey/track/contour/visible_edge.h"
+#include "marey/track/contour/colour/visible_edge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr double kPrior = 3;
@@ -80,4 +80,4 @@ TEST(VisibleEdge, IsNotWhereTheSceneHidesTheBody) {
 }
 
 }  // namespace
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -5,7 +5,7 @@
 // too wide the silhouette is, is measured where body and ground differ clearly; deeper than that, a cell belongs to the body
 // whatever its colour, unless it plainly is ground and leads outside (between legs, below an arm). Without that measurement,
 // limbs whose colour is near to the ground's are cut off. Cost: some ten box filters, and a few dozen reads per cell at the edge.
-#include "marey/track/contour/body_share.h"
+#include "marey/track/contour/colour/body_share.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr double kGroundReach = 0.15;                    // heights: the neighbourhood that the ground is read from
@@ -227,4 +227,4 @@ cv::Mat body_fraction(const ColourPatch& patch, const cv::Mat& own, double heigh
   return fraction;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

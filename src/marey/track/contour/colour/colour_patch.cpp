@@ -1,7 +1,7 @@
 // The level curve is that of marching squares: each cell between four samples holds the piece of the curve that its corners give,
 // directed so that what is covered lies at its right hand; pieces are then followed from edge to edge. Where two corners across are
 // covered and two are not, the covered ones are kept apart.
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "marey/geometry/bspline.h"
 #include "marey/track/contour/line_search.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 cv::Mat in_cells(const cv::Mat& plane, const cv::Size& cells) {
@@ -30,8 +30,15 @@ cv::Mat in_cells(const cv::Mat& plane, const cv::Size& cells) {
 cv::Mat moved_left(const cv::Mat& plane, double by) {
   constexpr double kLittle = 0.05;  // cells; numerical: less costs a resampling and moves no edge
   if (std::abs(by) < kLittle) return plane;
-  cv::Mat moved;
-  cv::warpAffine(plane, moved, cv::Matx23d(1, 0, -by, 0, 1, 0), plane.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  const int whole = static_cast<int>(std::floor(by)), last = plane.cols - 1;
+  const auto part = static_cast<float>(by - whole);
+  cv::Mat moved(plane.size(), CV_32FC1);
+  for (int y = 0; y < plane.rows; ++y) {
+    const float* from = plane.ptr<float>(y);
+    float* to = moved.ptr<float>(y);
+    const auto at = [&](int x) { return from[std::clamp(x, 0, last)]; };
+    for (int x = 0; x <= last; ++x) to[x] = at(x + whole) + part * (at(x + whole + 1) - at(x + whole));
+  }
   return moved;
 }
 
@@ -116,6 +123,10 @@ class LevelCurves {
 
 }  // namespace
 
+int cell_step(double height) {
+  return height <= 100 ? 1 : height <= 220 ? 2 : 4;
+}
+
 ColourPatch cut_patch(const Image& image, const cv::Mat& mask, const Box& box, int step, const SceneImage* scene) {
   const int unit = std::max(2, step);
   const auto down = [&](double value) { return static_cast<int>(std::floor(value / unit)) * unit; };
@@ -175,4 +186,4 @@ std::vector<Vector<2>> half_level_curve(const cv::Mat& fraction, const ColourPat
   return largest;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

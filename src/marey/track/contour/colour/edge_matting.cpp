@@ -2,14 +2,14 @@
 // is a mixture of the body's and the ground's in the ratio of their areas (Porter & Duff, "Compositing digital images", 1984). A
 // symmetric blur keeps the middle of that mixture in place, and so does the overshoot of sharpening. Chroma has half the resolution
 // and is coded more coarsely, therefore it has less weight than luma.
-#include "marey/track/contour/edge_matting.h"
+#include "marey/track/contour/colour/edge_matting.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr double kBodyReach = 0.06;     // heights: the neighbourhood that the colour inside is read from; unswept
@@ -71,4 +71,4 @@ cv::Mat matted_edge(const ColourPatch& patch, const cv::Mat& fraction, const cv:
   return result;
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

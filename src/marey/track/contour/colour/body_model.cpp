@@ -1,22 +1,20 @@
 // Colours are histograms of luma and chroma, one for each of six bands from head to foot: a shirt, its number, arms and shorts are
 // several colours at once, which one Gaussian cannot model. A sample is shared among the bins about it.
-#include "marey/track/contour/body_model.h"
+#include "marey/track/contour/colour/body_model.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
-constexpr double kLumaBin = 20, kChromaBin = 9;         // levels
 constexpr double kTopOfBands = -0.5, kBottom = 0.5;     // heights
 constexpr double kHalfAcross = 0.48, kHalfDown = 0.72;  // heights that the coverage spans to either side
 constexpr float kMixedRim = 1.6F,
                 kMixedWeight = 0.15F;  // cells below the edge where colours mix with the ground's; weight there; unswept
 constexpr double kMinCells = 3;        // of a band; numerical
-constexpr double kFloor = 2e-8;        // per level³: any colour may come
 
 /// Where a value lies among bins: the first of two neighbours, and the second one's share.
 struct BinPosition {
@@ -30,10 +28,10 @@ BinPosition bin_position(double at, int count) {
 }
 
 template <int Luma, int Chroma, typename Visit>
-void for_bins(const cv::Vec3f& colour, const Visit& visit) {
-  const BinPosition y = bin_position(colour[0] / kLumaBin - 0.5, Luma);
-  const BinPosition cb = bin_position((colour[1] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
-  const BinPosition cr = bin_position((colour[2] - 128) / kChromaBin + (Chroma - 1) / 2.0, Chroma);
+void for_bins(const cv::Vec3f& colour, double luma_bin, double chroma_bin, const Visit& visit) {
+  const BinPosition y = bin_position(colour[0] / luma_bin - 0.5, Luma);
+  const BinPosition cb = bin_position((colour[1] - 128) / chroma_bin + (Chroma - 1) / 2.0, Chroma);
+  const BinPosition cr = bin_position((colour[2] - 128) / chroma_bin + (Chroma - 1) / 2.0, Chroma);
   for (int i = 0; i < 8; ++i) {
     const int a = i & 1, b = (i >> 1) & 1, c = i >> 2;
     const float weight = (a != 0 ? y.part : 1 - y.part) * (b != 0 ? cb.part : 1 - cb.part) * (c != 0 ? cr.part : 1 - cr.part);
@@ -79,7 +77,8 @@ void BodyModel::learn_colours(const ColourPatch& patch, const cv::Mat& fraction,
       const float covered = fraction.at<float>(y, x);
       if (covered < 0.7F) continue;
       const float own = depth.at<float>(y, x) > kMixedRim ? 1 : kMixedWeight;
-      for_bins<kLuma, kChroma>(patch.colour.at<cv::Vec3f>(y, x), [&](int bin, float part) { now[band][bin] += own * part; });
+      for_bins<kLuma, kChroma>(patch.colour.at<cv::Vec3f>(y, x), kLumaBin, kChromaBin,
+                               [&](int bin, float part) { now[band][bin] += own * part; });
       weight[band] += own;
     }
   }
@@ -110,30 +109,33 @@ void BodyModel::learn_coverage(const ColourPatch& patch, const cv::Mat& fraction
   }
 }
 
-double BodyModel::density(double down, const cv::Vec3f& colour) const {
-  if (!known_) return kFloor;
+BodyModel::Bands BodyModel::bands_at(double down) const {
+  if (!known_) return {};
   // Two bands are mixed, so that a seam between shirt and shorts may lie a little higher or lower.
   const double band = std::clamp((down - kTopOfBands) / (kBottom - kTopOfBands) * kBands - 0.5, 0.0, kBands - 1.0);
   const int upper = std::min(static_cast<int>(band), kBands - 2);
-  const auto part = static_cast<float>(band - upper);
+  return {colours_[upper].data(), colours_[upper + 1].data(), static_cast<float>(band - upper)};
+}
+
+int BodyModel::bin_of(const cv::Vec3f& colour) {
   // Samples were shared among neighbouring bins as they were learned: here the nearest bin says it all.
   const auto nearest = [](float at, int count) { return std::clamp(static_cast<int>(at + 0.5F), 0, count - 1); };
   const int y = nearest(colour[0] / static_cast<float>(kLumaBin) - 0.5F, kLuma);
   const int cb = nearest((colour[1] - 128) / static_cast<float>(kChromaBin) + (kChroma - 1) / 2.0F, kChroma);
   const int cr = nearest((colour[2] - 128) / static_cast<float>(kChromaBin) + (kChroma - 1) / 2.0F, kChroma);
-  const std::size_t bin = static_cast<std::size_t>((y * kChroma + cb) * kChroma + cr);
-  const float sum = (1 - part) * colours_[upper][bin] + part * colours_[upper + 1][bin];
-  return sum / (kLumaBin * kChromaBin * kChromaBin) + kFloor;
+  return (y * kChroma + cb) * kChroma + cr;
 }
 
-double BodyModel::coverage(const Vector<2>& location) const {
-  const double x = ((location.x() / kHalfAcross + 1) / 2) * kAcross - 0.5, y = ((location.y() / kHalfDown + 1) / 2) * kDown - 0.5;
-  if (x < -1 || y < -1 || x > kAcross || y > kDown) return 0.01;
-  const BinPosition across = bin_position(x, kAcross), down = bin_position(y, kDown);
-  const float* at = &coverage_[down.first * kAcross + across.first];
-  const float above = at[0] + across.part * (at[1] - at[0]);
-  const float below = at[kAcross] + across.part * (at[kAcross + 1] - at[kAcross]);
-  return above + down.part * (below - above);
+BodyModel::CoveragePosition BodyModel::column_at(double location) {
+  const double x = ((location / kHalfAcross + 1) / 2) * kAcross - 0.5;
+  const BinPosition position = bin_position(x, kAcross);
+  return {position.first, position.part, x < -1 || x > kAcross};
 }
 
-}  // namespace marey::track::contour
+BodyModel::CoveragePosition BodyModel::row_at(double location) {
+  const double y = ((location / kHalfDown + 1) / 2) * kDown - 0.5;
+  const BinPosition position = bin_position(y, kDown);
+  return {position.first, position.part, y < -1 || y > kDown};
+}
+
+}  // namespace marey::track::contour::colour

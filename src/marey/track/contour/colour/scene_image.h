@@ -1,14 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
 #include "marey/core/geometry.h"
 #include "marey/core/image.h"
-#include "marey/track/contour/chroma_shift.h"
+#include "marey/track/contour/colour/chroma_shift.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// The image of the scene without the targets, learned from the pixels that are not foreground: what a contour's outside is
 /// like.
@@ -34,13 +36,16 @@ class SceneImage {
   double smear() const { return shift_.smear(); }
 
  private:
-  void learn_row(const Image& image, const cv::Mat& scene_taken, int row);
+  /// What of a row shows no scene: `taken_`.
+  void note_taken(const cv::Mat& foreground, std::span<const Box> targets, int row);
+  void learn_row(const Image& image, int row);
+  void learn_block(const Image& image, int row, int first, int count);
 
   ChromaShift shift_;
-  cv::Mat taken_;           // CV_8UC1: not 0 where this frame shows no scene
-  int next_ = -1;           // rows of this remainder are learned next; −1: all
-  cv::Mat frames_;          // CV_8UC1: frames that a pixel was learned from, at most 255
-  cv::Mat luma_, cb_, cr_;  // CV_16UC1: levels × 128
+  std::vector<std::uint8_t> taken_;  // of the row that is learned: not 0 where this frame shows no scene
+  int next_ = -1;                    // rows of this remainder are learned next; −1: all
+  cv::Mat frames_;                   // CV_8UC1: frames that a pixel was learned from, at most 255
+  cv::Mat luma_, cb_, cr_;           // CV_16UC1: levels × 128
 };
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

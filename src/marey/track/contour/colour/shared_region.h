@@ -6,10 +6,10 @@
 #include <opencv2/core.hpp>
 
 #include "marey/core/geometry.h"
-#include "marey/track/contour/body_model.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/body_model.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// One of several targets that share a region, and what the region's pixels say of it.
 struct RegionMember {
@@ -33,4 +33,4 @@ struct RegionMember {
 /// there is nothing to divide.
 cv::Mat divide_region(const ColourPatch& patch, std::span<RegionMember> members);
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

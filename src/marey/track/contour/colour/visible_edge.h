@@ -5,9 +5,9 @@
 #include <opencv2/core.hpp>
 
 #include "marey/geometry/bspline.h"
-#include "marey/track/contour/colour_patch.h"
+#include "marey/track/contour/colour/colour_patch.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// How well the edge under each control point of a curve is known.
 struct VisibleEdge {
@@ -25,4 +25,4 @@ VisibleEdge visible_edge(const geometry::ClosedSpline& spline, const ColourPatch
 /// The control points of a curve that lie at the border of an image of that size (px): the body continues beyond it.
 std::vector<int> at_border(const geometry::ClosedSpline& spline, cv::Size image);
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -7,7 +7,7 @@
 
 #include "marey/core/image.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 
 /// How far an image's chroma lies to the right of its luma: analog filters, broadcast chains and wrong sites of chroma samples
 /// displace it by 1 to 2 px, a fringe of colour on one side of everything.
@@ -38,4 +38,4 @@ class ChromaShift {
   std::array<double, 2 * kReach + 1> together_{};  // changes of luma times those of chroma so far to the right, of late
 };
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -1,11 +1,11 @@
-#include "marey/track/contour/body_mask.h"
+#include "marey/track/contour/colour/body_mask.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 constexpr float kSurest = 0.97F;  // no cell is certain, so that logarithms are finite; unswept
@@ -30,4 +30,4 @@ float evidence_of(float chance) {
   return std::log(bounded / (1 - bounded));
 }
 
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "marey/track/contour/chroma_shift.h"
-#include "marey/track/contour/ground_likelihood.h"
-#include "marey/track/contour/neighbour_votes.h"
+#include "marey/track/contour/colour/chroma_shift.h"
+#include "marey/track/contour/colour/ground_likelihood.h"
+#include "marey/track/contour/colour/neighbour_votes.h"
 
-namespace marey::track::contour {
+namespace marey::track::contour::colour {
 namespace {
 
 const cv::Scalar kGrass(110, 105, 115), kScarlet(84, 100, 200);
@@ -104,4 +104,4 @@ TEST(NeighbourVotes, EndAtEdgesThatTheSceneDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace marey::track::contour
+}  // namespace marey::track::contour::colour
