@@ -8,6 +8,10 @@
 //    has the name that most gave it, as long as no other there at the same time has it. The result refines which
 //    distances are expected, and the round begins again. A tracklet that fits another name much better than its chain's is cut off.
 // 4. What fits badly, or barely better than another name that was free, stays without a name, and its two best names are reported.
+// A set that does not fit is of another person. It is then scaled, first by the stature, then by the segments, and names are sought
+// from nothing with distances as wide as another body makes them, and by what moves against what, which two people have in common
+// (distance_model.h). Searches at other instants, by what was taught and scaled alone, must give the same names, or the set is left
+// as it was, and does not fit; a name on which they barely agree is given to nothing.
 // Cost: points × names × neighbours a round.
 #pragma once
 
@@ -34,6 +38,7 @@ struct LabelOptions {
   std::size_t neighbours = 8;  ///< that say how well a name fits
   double min_fit = 4;          ///< log-likelihood ratio, mean over a tracklet's life, below which no person gets the name
   double min_margin = 3;       ///< that the name must be better than the next one
+  bool scale_to_person = true;  ///< where a set that one person taught does not fit
 };
 
 /// How one marker of the set came off.
@@ -63,6 +68,8 @@ struct Labelled {
   std::vector<char> undecided;
   double misfit = 0;    ///< how far rigid distances are off, against those expected of the subject that taught: about 1
   double misfit_m = 0;  ///< the same as a median, m
+  /// If the set is another person's and was scaled to this one: the share of the names that searches at other instants gave too.
+  std::optional<double> found_again;
 };
 
 /// Throws Error if the recording is not one of space, or too few of the set's markers can be reported to begin with.
