@@ -23,10 +23,10 @@ LIVE = pathlib.Path(__file__).resolve().parent.parent / "build/release/bench/liv
 MARKERS = """LFHD RFHD LBHD RBHD C7 T10 CLAV STRN RBAK LSHO LELB LWRA LWRB LFIN RSHO RELB RWRA RWRB RFIN LASI RASI LPSI RPSI SACR
 LTHI LKNE LTIB LANK LHEE LTOE RTHI RKNE RTIB RANK RHEE RTOE""".split()
 
-EXCHANGED = {"HC030A static": "L", "HC030A turn": "L", "HC030A straight": "L", "HC038A straight": "LR"}
+SWAPPED_WRISTS = {"HC030A static": "L", "HC030A turn": "L", "HC030A straight": "L", "HC038A straight": "LR"}
 
 
-def exchanged_back(points, sides):
+def with_swaps_undone(points, sides):
     back = {side + a: side + b for side in sides for a, b in (("WRA", "WRB"), ("WRB", "WRA"))}
     return {back.get(label, label): places for label, places in points.items()}
 
@@ -211,7 +211,7 @@ def main():
 
     def take(subject, kind):
         points = read(options.marey, next((folder / subject).glob(kind + "_*.c3d")), work)
-        return points if options.labels_of_files else exchanged_back(points, EXCHANGED.get(f"{subject} {kind}", ""))
+        return points if options.labels_of_files else with_swaps_undone(points, SWAPPED_WRISTS.get(f"{subject} {kind}", ""))
 
     if options.other_sets:
         print_row(["whose sets", "recordings", "right, wrong", "said not to fit", "right, wrong of the others"])

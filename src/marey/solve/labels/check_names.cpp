@@ -22,9 +22,6 @@ constexpr std::size_t kMaxRow = 5;      // names that shift by one at once
 constexpr double kLooseFraction = 0.2;  // of a distance that is not among the tightest
 constexpr std::size_t kSideInstants = 5;
 constexpr int kMaxChanges = 40;
-constexpr std::size_t kPostureNeighbours = 8;
-constexpr double kPosture = 0.2, kPostureMax = 6;
-constexpr double kPostureWeight = 3;
 constexpr std::size_t kTightest = 3;
 
 using Holders = std::vector<int>;  // by name: whose points it has
@@ -33,7 +30,9 @@ class Check {
  public:
   Check(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& model, const LabelInitOptions& options,
         std::size_t neighbours, double margin)
-      : learned_(learned), model_(model),
+      : options_(options),
+        learned_(learned),
+        model_(model),
         detected_(chains.named_distances()),
         neighbours_(neighbours),
         margin_(margin),
@@ -153,28 +152,29 @@ class Check {
         const auto& location = posture[static_cast<std::size_t>(holders_[name])];
         if (!location) continue;
         from.push_back(*location), to.push_back(learned_.locations[name]);
-        if (from.size() == kPostureNeighbours) break;
+        if (from.size() == options_.posture_neighbours) break;
       }
       if (from.size() < 4) continue;
       const Rigid3 fit = geometry::rigid_fit(from, to);
       double square = 0;
       Vector<3> middle = Vector<3>::Zero();
       for (std::size_t i = 0; i < from.size(); ++i)
-        square += (fit * from[i] - to[i]).squaredNorm() / static_cast<double>(from.size()), middle += to[i] / static_cast<double>(from.size());
+        square += (fit * from[i] - to[i]).squaredNorm() / static_cast<double>(from.size()),
+            middle += to[i] / static_cast<double>(from.size());
       const auto cost = [&](const Holders& holders) {
         double its = 0;
         for (const std::size_t name : moved) {
           if (holders[name] == kNoIndex || learned_.locations[name].isZero(0)) continue;
           const auto& location = posture[static_cast<std::size_t>(holders[name])];
           if (!location) continue;
-          const double variance = square + kPosture * kPosture * (learned_.locations[name] - middle).squaredNorm();
-          its += std::min((fit * *location - learned_.locations[name]).squaredNorm() / (2 * variance), kPostureMax);
+          const double variance = square + options_.posture * options_.posture * (learned_.locations[name] - middle).squaredNorm();
+          its += std::min((fit * *location - learned_.locations[name]).squaredNorm() / (2 * variance), options_.posture_max);
         }
         return its;
       };
       sum += cost(other) - cost(holders_);
     }
-    return kPostureWeight * sum / static_cast<double>(std::max<std::size_t>(1, postures_.size()));
+    return options_.posture_weight * sum / static_cast<double>(std::max<std::size_t>(1, postures_.size()));
   }
 
   /// The loss if each of `moved` gets the points of the next, and the last those of the first; or, if the first has none, the
@@ -262,6 +262,7 @@ class Check {
     }
   }
 
+  LabelInitOptions options_;
   const LearnedMarkers& learned_;
   const DistanceModel& model_;
   std::vector<DistanceObserved> detected_;  // by those whose points they are

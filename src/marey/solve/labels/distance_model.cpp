@@ -8,11 +8,11 @@
 namespace marey::solve::labels {
 namespace {
 
-constexpr double kAnyDistance = 1.5;  // m: distances of any two markers are spread evenly over this much
-constexpr int kOftenEnough = 40;      // instants
-constexpr std::size_t kTies = 3;      // to those before it, that say how well a label is tied
-constexpr double kLeastVariation = 0.001;  // m: of a distance: markers tremble
-constexpr double kStillCount = 2;     // times a variance counts against being rigid
+constexpr double kAnyDistance = 1.5;     // m: distances of any two markers are spread evenly over this much
+constexpr int kOftenEnough = 40;         // instants
+constexpr std::size_t kTies = 3;         // to those before it, that say how well a label is tied
+constexpr double kMinVariation = 0.001;  // m: numerical, so that a logarithm is finite
+constexpr double kStillCount = 2;        // times a variance counts against being rigid
 
 /// log of a normal density at its mean against that of any distance.
 double top_of(double deviation) {
@@ -47,15 +47,15 @@ DistanceModel::DistanceModel(const LearnedMarkers& learned, double scale, const 
       const double rank = term.deviation;  // what is tight on one is on the other
       set(term, mean, std::hypot(term.deviation, elsewhere));
       term.deviation = rank;
-      term.motion = std::log(std::max(scale * learned.between(a, b).deviation, kLeastVariation));
+      term.motion = std::log(std::max(scale * learned.between(a, b).deviation, kMinVariation));
     }
   }
 }
 
-/// How well it fits that a distance varies by so much.
+/// How well the deviation of a distance fits.
 double DistanceModel::motion_ratio(const Term& term, const DistanceObserved& detected) const {
   if (detected.count < kOftenEnough) return 0;
-  const double log_deviation = std::log(std::max(std::sqrt(detected.variance), kLeastVariation));
+  const double log_deviation = std::log(std::max(std::sqrt(detected.variance), kMinVariation));
   const double off = (log_deviation - term.motion) / options_.person_variation,
                any = (log_deviation - person_->any_log) / person_->any_spread;
   return std::log(person_->any_spread / options_.person_variation) + (any * any - off * off) / 2;

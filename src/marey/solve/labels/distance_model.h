@@ -26,21 +26,21 @@ struct DistanceOptions {
   double fraction = 0.008;     ///< of a distance, besides
   double still_shift = 0.008;  ///< the same where the set was learned from one who stood still
   double still_fraction = 0.02;
-  double still_spread = 0.15;  ///< of a distance: how much another posture changes it
-  double still_joint = 0.05;   ///< m, besides
-  double posture = 0.2;        ///< what such a distance counts: all distances across a joint carry the same information
-  double same_segment = 0.9;   ///< how probable it is that two markers close to each other are on one segment, which the distance
-  double segment = 0.3;        ///< m: makes less so, by e
-  double floor = -4;           ///< of a log-likelihood ratio
-  double person_shift = 0.010;     ///< m: how far markers sit elsewhere on another person's body,
-  double person_fraction = 0.08;   ///< of a distance, besides, how other its segments are,
-  double person_max = 0.035;       ///< m, and at most
-  double person_variation = 0.6;   ///< of the logarithm of a distance's deviation, from one person to another
+  double still_spread = 0.15;   ///< of a distance: how much another posture changes it
+  double still_joint = 0.05;    ///< m, besides
+  double posture = 0.2;         ///< what such a distance counts: all distances across a joint carry the same information
+  double same_segment = 0.9;    ///< how probable it is that two markers close to each other are on one segment, which the distance
+  double segment = 0.3;         ///< m: makes less so, by e
+  double floor = -4;            ///< of a log-likelihood ratio
+  double person_shift = 0.010;  ///< m: how far markers sit elsewhere on another person's body,
+  double person_fraction = 0.08;  ///< of a distance, besides, how other its segments are,
+  double person_max = 0.035;      ///< m, and at most
+  double person_variation = 0.6;  ///< of the logarithm of a distance's deviation, from one person to another
 };
 
-/// A person whom the set was not learned from.
+/// Another person than the one who taught the set.
 struct AnotherPerson {
-  std::vector<double> scale_of;  ///< by name: of its segment, against the whole; none: 1 each
+  std::vector<double> scale_of;                        ///< by name: of its segment, against the whole; none: 1 each
   double any_log = std::log(0.015), any_spread = 1.3;  ///< of the logarithms of the deviations, m, of any two points' distance
 };
 

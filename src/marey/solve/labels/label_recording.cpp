@@ -25,15 +25,6 @@ using assign::kNoIndex;
 constexpr double kInitialiseS = 0.15;    // s: a chain that a name is searched for from nothing is at least this long
 constexpr double kMinInitialised = 0.4;  // of the set's markers, below which nothing is reported
 constexpr std::size_t kMaxPointsToInitialise = 160;
-constexpr int kScaleInstants = 40;             // at which a distance is seen, or more
-constexpr int kPersonPasses = 2;               // the second with the segments' sizes
-constexpr double kScaleDistance = 0.05;        // m: shorter ones say nothing of a size
-constexpr double kRigidLearned = 0.006;        // m
-constexpr double kSegmentPrior = 2;            // distances, that a segment is as large as the whole
-constexpr double kLeastSegment = 0.8, kMostSegment = 1.25;
-constexpr double kMinFoundAgain = 0.955;       // of all names, by searches at other instants
-constexpr double kMinFoundAgainOfName = 0.75;  // of one
-constexpr double kFewFound = 0.7;              // of the set's markers
 constexpr double kMisfit = 2, kMaxWider = 4;  // times as far off as distances of the subject that taught are
 
 std::pair<double, double> extent_of(std::vector<double> heights) {
@@ -52,7 +43,7 @@ class Labelling {
         }()) {}
 
   Labelled run() {
-    name_whose_ever();
+    name_person();
     Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, review_items_, scale_);
     for (const int other : undecided_) labelled.undecided.push_back(other == kNoIndex ? 0 : 1);
     const Misfit misfit_now = misfit();
@@ -72,7 +63,8 @@ class Labelling {
         cut_untrusted();  // before they spoil the learned distances
         chains_.gather();
       }
-      if (round > 0 || !learned_.moves || person_) refine();  // a subject who stood still gave no rigid distances: the first names do
+      if (round > 0 || !learned_.moves || person_)
+        refine();  // a subject who stood still gave no rigid distances: the first names do
       distribute();
     }
     chains_.gather();
@@ -83,7 +75,7 @@ class Labelling {
   DistanceModel taught(double scale) const {
     return person_ ? DistanceModel(learned_, scale, distances_, *person_) : DistanceModel(learned_, scale, distances_);
   }
-  void name_whose_ever();
+  void name_person();
   void decide(std::vector<int> undecided);
   double found() const;
   bool scale_to_person();
@@ -123,9 +115,9 @@ class Labelling {
   double scale_ = 1;
   std::optional<AnotherPerson> person_;
   bool scale_known_ = false;
-  double found_again_ = 0;          // of the names, in other searches
-  std::vector<int> undecided_;     // by name: which other it could as well be
-  std::vector<int> search_again_;  // by name: which other those give
+  double found_again_ = 0;                  // of the names, in other searches
+  std::vector<int> undecided_;              // by name: which other it could as well be
+  std::vector<int> search_again_;           // by name: which other those give
   std::map<int, ReviewItem> review_items_;  // by chain without a name
   std::vector<std::vector<int>> bearers_;   // by name, of the last round
 };
@@ -135,9 +127,9 @@ void Labelling::forget() {
   for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) chains_.set_name(chain, kNoIndex);
 }
 
-/// Names of the person who taught the set; or of another, to whom it is then scaled; or, where that does not hold, as well as may
+/// Names of the person who taught the set; or of another, for which it is then scaled; or, where that does not hold, as well as may
 /// be.
-void Labelling::name_whose_ever() {
+void Labelling::name_person() {
   const bool scalable = options_.scale_to_person && learned_.moves && !learned_.scaled;
   std::optional<Error> failure;
   double wider = 1;
@@ -147,7 +139,7 @@ void Labelling::name_whose_ever() {
     const bool fits = !learned_.moves || wider <= kMisfit;
     if (fits) {
       decide(check());
-      if (!scalable || wider <= 1 || found() >= kFewFound) return;
+      if (!scalable || wider <= 1 || found() >= options_.scaling.few_found) return;
     }
   } catch (const Error& error) {
     if (!scalable) throw;
@@ -181,12 +173,12 @@ double Labelling::found() const {
   return static_cast<double>(std::count(given.begin(), given.end(), 1)) / static_cast<double>(learned_.size());
 }
 
-/// Names from nothing, of a person whom the set was not learned from: by its stature, then by its segments. False if they are not
-/// found again.
+/// Names from nothing, of another person than the one who taught the set: by its stature, then by its segments. False if they are
+/// not found again.
 bool Labelling::scale_to_person() {
   person_.emplace();
   try {
-    for (int pass = 0; pass < kPersonPasses; ++pass) {
+    for (int pass = 0; pass < options_.scaling.passes; ++pass) {
       forget();
       name_all();
       scale_segments();
@@ -196,7 +188,7 @@ bool Labelling::scale_to_person() {
   }
   search_again_ = search_again();
   const Misfit now = misfit();
-  return found_again_ >= kMinFoundAgain && now.ratio <= kMisfit;
+  return found_again_ >= options_.scaling.min_found_again && now.ratio <= kMisfit;
 }
 
 /// What the names say of the sizes: of the person, then of each segment by the distances that the set knows as rigid.
@@ -208,9 +200,10 @@ void Labelling::scale_segments() {
     for (std::size_t b = 0; b < a; ++b) {
       const LearnedMarkers::Distance& distance = learned_.between(a, b);
       const DistanceObserved& detected = named[LearnedMarkers::index_of(a, b)];
-      if (detected.count < kScaleInstants || distance.mean < kScaleDistance) continue;
+      if (detected.count < options_.scaling.instants || distance.mean < options_.scaling.distance) continue;
       all.push_back(detected.mean / distance.mean);
-      if (distance.deviation > kRigidLearned || detected.variance > 4 * kRigidLearned * kRigidLearned) continue;
+      if (distance.deviation > options_.scaling.rigid || detected.variance > 4 * options_.scaling.rigid * options_.scaling.rigid)
+        continue;
       of_name[a].push_back(all.back());
       of_name[b].push_back(all.back());
     }
@@ -222,7 +215,8 @@ void Labelling::scale_segments() {
   for (std::vector<double>& its : of_name) {
     const auto count = static_cast<double>(its.size());
     const double own = its.empty() ? 1 : geometry::median(its) / scale_;
-    person_->scale_of.push_back(std::clamp((count * own + kSegmentPrior) / (count + kSegmentPrior), kLeastSegment, kMostSegment));
+    person_->scale_of.push_back(std::clamp((count * own + options_.scaling.prior) / (count + options_.scaling.prior),
+                                           options_.scaling.min_segment, options_.scaling.max_segment));
   }
 }
 
@@ -247,7 +241,7 @@ std::vector<int> Labelling::search_again() {
   std::vector<int> undecided(learned_.size(), kNoIndex);
   for (std::size_t name = 0; name < learned_.size(); ++name) {
     const int count = std::accumulate(given[name].begin(), given[name].end(), 0), own = given[name][name];
-    if (own > 0 && own >= kMinFoundAgainOfName * count) continue;
+    if (own > 0 && own >= options_.scaling.min_found_again_of_name * count) continue;
     given[name][name] = 0;
     const auto most = std::max_element(given[name].begin(), given[name].end());
     undecided[name] = static_cast<int>(*most > 0 ? most - given[name].begin() : static_cast<std::ptrdiff_t>(name));

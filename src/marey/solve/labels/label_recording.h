@@ -29,6 +29,20 @@
 
 namespace marey::solve::labels {
 
+/// How a set is scaled to another person than the one who taught it.
+struct ScalingOptions {
+  int passes = 2;                         ///< the second with the segments' sizes
+  int instants = 40;                      ///< at which a distance is seen, or more, that a size is measured by
+  double distance = 0.05;                 ///< m, or more, the same
+  double rigid = 0.006;                   ///< m: deviation of a learned distance, below which it is of one segment
+  double prior = 2;                       ///< distances, that a segment is as large as the whole
+  double min_segment = 0.8;               ///< of the whole
+  double max_segment = 1.25;              ///< of the whole
+  double min_found_again = 0.955;         ///< of the names, by searches at other instants; with fewer the set does not fit
+  double min_found_again_of_name = 0.75;  ///< of the searches, of one name
+  double few_found = 0.7;                 ///< of the set's markers: with fewer the set may be another person's
+};
+
 struct LabelOptions {
   TrackletOptions tracklets;
   DistanceOptions distances;
@@ -38,6 +52,7 @@ struct LabelOptions {
   std::size_t neighbours = 8;  ///< that say how well a name fits
   double min_fit = 4;          ///< log-likelihood ratio, mean over a tracklet's life, below which no person gets the name
   double min_margin = 3;       ///< that the name must be better than the next one
+  ScalingOptions scaling;
   bool scale_to_person = true;  ///< where a set that one person taught does not fit
 };
 
