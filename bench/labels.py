@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """`marey label` on recordings whose names are known: taken away, 5 % hidden in gaps, tracks broken there, 5 % ghosts.
 
-Usage: labels.py MAREY DATA [--subjects HC002D,...] [--max-occlusion 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live] [--other-sets]
+Usage: labels.py MAREY DATA [--subjects HC002D,...] [--max-occlusion 0.05] [--ghosts 0.05] [--gap 10] [--seed 1] [--unseen] [--live] [--other-sets] [--labels-of-files]
 
 DATA is the folder that tests call MAREY_DATA. For each child of gait_children the walk straight on is named by a set learned from its turn, and
 by one from its static trial; with --unseen also by one from the other children's walks and turns, scaled. Prints a Markdown table: right and wrong (ghosts
 with a name among them), % of the points that belong to the set; the rest has no name. With --live the points are named within the frame too
 (build/release/bench/live_labels): of those frames that come after the first with a name. The last column is a naive peer, which knows the true names of the first
 frame and hands each on to the nearest point within 50 mm. With --other-sets another table: the set that one person taught names another one's recording, each child's turn the others' walks, and both takes of
-vicon_skeleton; mean over the recordings, how many sets were said not to fit, and the same of those that were not. The labels of HC038A's wrists are exchanged between its turn and its walk in the files themselves.
+vicon_skeleton; mean over the recordings, how many sets were said not to fit, and the same of those that were not. In two children's files markers of a wrist are exchanged: in walking A lies 43 to 67 mm ahead of B on every wrist but HC030A's left (60 behind, in all takes) and both of HC038A's
+walk (54 and 53 behind; ahead in its turn). They are exchanged back, in what teaches and in the truth, except with --labels-of-files.
 """
 import argparse
 import csv
@@ -21,6 +22,13 @@ import tempfile
 LIVE = pathlib.Path(__file__).resolve().parent.parent / "build/release/bench/live_labels"
 MARKERS = """LFHD RFHD LBHD RBHD C7 T10 CLAV STRN RBAK LSHO LELB LWRA LWRB LFIN RSHO RELB RWRA RWRB RFIN LASI RASI LPSI RPSI SACR
 LTHI LKNE LTIB LANK LHEE LTOE RTHI RKNE RTIB RANK RHEE RTOE""".split()
+
+SWAPPED_WRISTS = {"HC030A static": "L", "HC030A turn": "L", "HC030A straight": "L", "HC038A straight": "LR"}
+
+
+def with_swaps_undone(points, sides):
+    back = {side + a: side + b for side in sides for a, b in (("WRA", "WRB"), ("WRB", "WRA"))}
+    return {back.get(label, label): places for label, places in points.items()}
 
 
 def read(marey, file, work):
@@ -195,13 +203,15 @@ def main():
     parser.add_argument("--unseen", action="store_true")
     parser.add_argument("--live", action="store_true")
     parser.add_argument("--other-sets", action="store_true")
+    parser.add_argument("--labels-of-files", action="store_true", help="without exchanging back wrists that are exchanged in the files")
     options = parser.parse_args()
     work = pathlib.Path(tempfile.mkdtemp(prefix="marey_labels_"))
     folder = options.data / "gait_children"
     subjects = options.subjects.split(",")
 
     def take(subject, kind):
-        return read(options.marey, next((folder / subject).glob(kind + "_*.c3d")), work)
+        points = read(options.marey, next((folder / subject).glob(kind + "_*.c3d")), work)
+        return points if options.labels_of_files else with_swaps_undone(points, SWAPPED_WRISTS.get(f"{subject} {kind}", ""))
 
     if options.other_sets:
         print_row(["whose sets", "recordings", "right, wrong", "said not to fit", "right, wrong of the others"])

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -54,7 +55,8 @@ std::string marker_set_names() {
 
 void run(LearnLabelsCommand& command) {
   if (!command.markers.empty()) {
-    const bool file = std::filesystem::is_regular_file(command.markers);
+    std::error_code too_long_for_a_file;
+    const bool file = std::filesystem::is_regular_file(command.markers, too_long_for_a_file);
     command.options.as_far_as_there = !file && command.markers.find(',') == std::string::npos;
     command.options.labels = file                              ? format::motion::read_marker_set(command.markers).labels
                              : command.options.as_far_as_there ? analyse::gait::marker_set_labels(command.markers)

@@ -168,6 +168,11 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   summary.renamed = labelled.renamed;
   summary.scale = labelled.scale;
   summary.misfit = labelled.misfit;
+  if (labelled.found_again)
+    summary.warnings.push_back(
+        fmt::format("{}: the set {} is of another person, and was scaled to this one (by {:.2f}, and segment by segment); searches "
+                    "at other instants gave {:.0f} % of the names again",
+                    recording, set, labelled.scale, 100 * *labelled.found_again));
   const auto found =
       std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.detected > 0; });
   if (auto message_text = set_misfit(fmt::format("{}: the set {}", recording, set), labelled.misfit, labelled.misfit_m,

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "marey/assign/no_index.h"
+#include "marey/geometry/layout.h"
 #include "marey/geometry/median.h"
 
 namespace marey::solve::labels {
@@ -28,7 +30,9 @@ class Check {
  public:
   Check(const NamedChains& chains, const LearnedMarkers& learned, const DistanceModel& model, const LabelInitOptions& options,
         std::size_t neighbours, double margin)
-      : model_(model),
+      : options_(options),
+        learned_(learned),
+        model_(model),
         detected_(chains.named_distances()),
         neighbours_(neighbours),
         margin_(margin),
@@ -77,6 +81,7 @@ class Check {
         if (count > maximum) maximum = count, best = instant;
       }
       if (maximum < 4) continue;
+      auto& posture = postures_.emplace_back(model_.size());
       InitialiseScene scene;
       std::vector<int> point_of(model_.size(), kNoIndex);
       std::vector<std::size_t> names;
@@ -85,6 +90,7 @@ class Check {
         point_of[name] = static_cast<int>(names.size());
         for (const std::size_t other : names) scene.detected.push_back(between(name, other));
         names.push_back(name);
+        posture[name] = chains.holder(best, name).location;
         scene.locations.push_back(chains.holder(best, name).location);
       }
       sides_.push_back({std::make_unique<SideCosts>(std::move(scene), learned, model_, options), std::move(point_of)});
@@ -118,6 +124,59 @@ class Check {
     return sides_.empty() ? 0 : sum / static_cast<double>(sides_.size());
   }
 
+  /// What it costs that points lie elsewhere about their neighbours than in the learned posture: `other` against now.
+  double posture_loss(const Holders& other, std::span<const std::size_t> moved) const {
+    double sum = 0;
+    Vector<3> centre = Vector<3>::Zero();
+    double known = 0;
+    for (const std::size_t name : moved) {
+      if (learned_.locations[name].isZero(0)) continue;
+      centre += learned_.locations[name];
+      ++known;
+    }
+    if (known == 0) return 0;
+    centre /= known;
+    std::vector<std::size_t> near;
+    for (std::size_t name = 0; name < model_.size(); ++name) {
+      if (holders_[name] == kNoIndex || learned_.locations[name].isZero(0) ||
+          std::find(moved.begin(), moved.end(), name) != moved.end())
+        continue;
+      near.push_back(name);
+    }
+    std::stable_sort(near.begin(), near.end(), [&](std::size_t a, std::size_t b) {
+      return (learned_.locations[a] - centre).norm() < (learned_.locations[b] - centre).norm();
+    });
+    for (const auto& posture : postures_) {
+      std::vector<Vector<3>> from, to;
+      for (const std::size_t name : near) {
+        const auto& location = posture[static_cast<std::size_t>(holders_[name])];
+        if (!location) continue;
+        from.push_back(*location), to.push_back(learned_.locations[name]);
+        if (from.size() == options_.posture_neighbours) break;
+      }
+      if (from.size() < 4) continue;
+      const Rigid3 fit = geometry::rigid_fit(from, to);
+      double square = 0;
+      Vector<3> middle = Vector<3>::Zero();
+      for (std::size_t i = 0; i < from.size(); ++i)
+        square += (fit * from[i] - to[i]).squaredNorm() / static_cast<double>(from.size()),
+            middle += to[i] / static_cast<double>(from.size());
+      const auto cost = [&](const Holders& holders) {
+        double its = 0;
+        for (const std::size_t name : moved) {
+          if (holders[name] == kNoIndex || learned_.locations[name].isZero(0)) continue;
+          const auto& location = posture[static_cast<std::size_t>(holders[name])];
+          if (!location) continue;
+          const double variance = square + options_.posture * options_.posture * (learned_.locations[name] - middle).squaredNorm();
+          its += std::min((fit * *location - learned_.locations[name]).squaredNorm() / (2 * variance), options_.posture_max);
+        }
+        return its;
+      };
+      sum += cost(other) - cost(holders_);
+    }
+    return options_.posture_weight * sum / static_cast<double>(std::max<std::size_t>(1, postures_.size()));
+  }
+
   /// The loss if each of `moved` gets the points of the next, and the last those of the first; or, if the first has none, the
   /// last gets none.
   void try_ring(std::span<const std::size_t> moved) {
@@ -137,7 +196,7 @@ class Check {
     double loss = 0;
     for (const std::size_t name : moved) loss += fit(holders_, name) - fit(other, name);
     if (loss > (marking_ ? margin_ : 0) + 1000) return;
-    loss += side_cost(other, moved) - side_cost(holders_, moved);
+    loss += side_cost(other, moved) - side_cost(holders_, moved) + posture_loss(other, moved);
     if (marking_) {
       if (loss < margin_) mark(other, moved);
     } else if (loss < best_.loss) {
@@ -203,12 +262,15 @@ class Check {
     }
   }
 
+  LabelInitOptions options_;
+  const LearnedMarkers& learned_;
   const DistanceModel& model_;
   std::vector<DistanceObserved> detected_;  // by those whose points they are
   std::size_t neighbours_;
   double margin_;
   Holders holders_;
   std::vector<std::vector<std::size_t>> near_;
+  std::vector<std::vector<std::optional<Vector<3>>>> postures_;  // at the same instants, by those whose points they are
   std::vector<std::pair<std::unique_ptr<SideCosts>, std::vector<int>>> sides_;  // at some instants, with the points by name
   Best best_;
   bool marking_ = false;

@@ -152,6 +152,27 @@ TEST_F(CheckNames, LeavesAmbiguousSwapUndecided) {
   EXPECT_EQ(checked.undecided[2], 1);
 }
 
+TEST_F(CheckNames, APlateTurnedByHalfIsDecidedByThePosture) {
+  // The plate is a rectangle: turned by half about its height all distances within it are the same, and those to the trunk barely.
+  std::vector<int> names = right_names();
+  std::swap(names[4], names[6]);
+  std::swap(names[5], names[7]);
+  LearnedMarkers no_posture = learned_;
+  for (Vector<3>& location : no_posture.locations) location.setZero();
+  LearnedMarkers only_within = learned_;  // distances from the plate to all others say nothing
+  for (std::size_t plate = 4; plate < 8; ++plate) {
+    for (std::size_t other = 0; other < learned_.size(); ++other) {
+      if (other < 4 || other > 7) only_within.between(plate, other).deviation = no_posture.between(plate, other).deviation = 1;
+    }
+  }
+  const DistanceModel model(only_within, 1);
+  const NamedChains chains = named_doll(doll_recording(Doll(), 3), names);
+  const CheckedNames with = check_names(chains, only_within, model, {}, 8, 3);
+  EXPECT_EQ(markers_of(with, names), right_names());
+  const CheckedNames without = check_names(chains, no_posture, model, {}, 8, 3);
+  EXPECT_TRUE(without.undecided[4] != assign::kNoIndex || markers_of(without, names) != right_names());
+}
+
 TEST_F(CheckNames, TheMisfitIsThatOfRigidDistances) {
   const auto of = [&](double size) {
     const Recording recording = doll_recording(Doll(size), 1);

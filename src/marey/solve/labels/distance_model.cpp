@@ -8,10 +8,11 @@
 namespace marey::solve::labels {
 namespace {
 
-constexpr double kAnyDistance = 1.5;  // m: distances of any two markers are spread evenly over this much
-constexpr int kOftenEnough = 40;      // instants
-constexpr std::size_t kTies = 3;      // to those before it, that say how well a label is tied
-constexpr double kStillCount = 2;     // times a variance counts against being rigid
+constexpr double kAnyDistance = 1.5;     // m: distances of any two markers are spread evenly over this much
+constexpr int kOftenEnough = 40;         // instants
+constexpr std::size_t kTies = 3;         // to those before it, that say how well a label is tied
+constexpr double kMinVariation = 0.001;  // m: numerical, so that a logarithm is finite
+constexpr double kStillCount = 2;        // times a variance counts against being rigid
 
 /// log of a normal density at its mean against that of any distance.
 double top_of(double deviation) {
@@ -33,6 +34,33 @@ DistanceModel::DistanceModel(const LearnedMarkers& learned, double scale, const 
   rank();
 }
 
+DistanceModel::DistanceModel(const LearnedMarkers& learned, double scale, const DistanceOptions& options,
+                             const AnotherPerson& person)
+    : DistanceModel(learned, scale, options) {
+  person_ = person;
+  for (std::size_t a = 1; a < size_; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      Term& term = terms_[LearnedMarkers::index_of(a, b)];
+      const double segment = person.scale_of.empty() ? 1 : std::sqrt(person.scale_of[a] * person.scale_of[b]);
+      const double mean = segment * term.mean, fraction = options_.person_fraction * mean;
+      const double elsewhere = std::min(std::hypot(options_.person_shift, fraction), options_.person_max);
+      const double rank = term.deviation;  // what is tight on one is on the other
+      set(term, mean, std::hypot(term.deviation, elsewhere));
+      term.deviation = rank;
+      term.motion = std::log(std::max(scale * learned.between(a, b).deviation, kMinVariation));
+    }
+  }
+}
+
+/// How well the deviation of a distance fits.
+double DistanceModel::motion_ratio(const Term& term, const DistanceObserved& detected) const {
+  if (detected.count < kOftenEnough) return 0;
+  const double log_deviation = std::log(std::max(std::sqrt(detected.variance), kMinVariation));
+  const double off = (log_deviation - term.motion) / options_.person_variation,
+               any = (log_deviation - person_->any_log) / person_->any_spread;
+  return std::log(person_->any_spread / options_.person_variation) + (any * any - off * off) / 2;
+}
+
 void DistanceModel::set(Term& term, double mean, double deviation) const {
   term.mean = mean;
   term.deviation = deviation;
@@ -43,6 +71,8 @@ void DistanceModel::set(Term& term, double mean, double deviation) const {
 double DistanceModel::ratio(std::size_t a, std::size_t b, const DistanceObserved& detected) const {
   const Term& term = terms_[LearnedMarkers::index_of(a, b)];
   const double off = detected.mean - term.mean;
+  if (person_ && moves_ && !term.adopted)
+    return std::max(term.top - off * off * term.weight + motion_ratio(term, detected), options_.floor);
   if (moves_ || term.adopted) return std::max(term.top - (off * off + detected.variance) * term.weight, options_.floor);
   // Learned from one who stood still: either both are on one segment, and the distance is as it was; or the posture is another.
   const double fraction = options_.still_fraction * term.mean, other = options_.still_spread * term.mean + options_.still_joint;
@@ -56,6 +86,7 @@ double DistanceModel::ratio(std::size_t a, std::size_t b, const DistanceObserved
 }
 
 std::optional<double> DistanceModel::rigid_deviation(std::size_t a, std::size_t b, const DistanceObserved& detected) const {
+  if (person_) return 1 / std::sqrt(2 * terms_[LearnedMarkers::index_of(a, b)].weight);
   if (moves_) return deviation(a, b);
   if (detected.variance > options_.shift * options_.shift) return std::nullopt;
   return std::hypot(options_.still_shift, options_.still_fraction * mean(a, b));

@@ -50,7 +50,9 @@ std::vector<DistanceObserved> distances_of(const std::vector<const TrackColumns*
 
 FoundNames find_names(const Recording& recent, const LearnedMarkers& learned, const LabelOptions& options,
                       const LabelTrackerOptions& tracking, const Hooks& hooks) {
-  const Labelled labelled = label_recording(recent, learned, options, hooks);
+  LabelOptions as_taught = options;
+  as_taught.scale_to_person = false;  // some seconds are too little for it
+  const Labelled labelled = label_recording(recent, learned, as_taught, hooks);
   const std::vector<const TrackColumns*> named = named_tracks(labelled.recording, learned);
   FoundNames found;
   found.scale = labelled.scale;

@@ -103,7 +103,8 @@ class Beam {
   bool is_rigid(std::size_t name, std::size_t other, std::size_t point, std::size_t its, double height) const {
     const DistanceObserved& detected = scene_.between(point, its);
     const double maximum = std::min(kRigid, kRigidFraction * height), mean = model_.mean(name, other);
-    return detected.variance < maximum * maximum && std::abs(detected.mean - mean) < kSideShift + kSideFraction * mean;
+    return detected.variance < maximum * maximum &&
+           std::abs(detected.mean - mean) < model_.tolerance(name, other, kSideShift + kSideFraction * mean);
   }
 
   /// What the sides cost on which the points lie that `name` and its neighbours have; those of which `besides` is one are omitted.

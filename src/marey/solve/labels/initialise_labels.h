@@ -8,6 +8,7 @@
 // to be. At the end single names are exchanged as long as that gains. Cost: names × points × answers × names.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,6 +24,11 @@ struct LabelInitOptions {
   double wrong_side = 12;   ///< log-likelihood that a point on the wrong side costs
   double direction = 0.35;  ///< of the distance: by how much the vector from a neighbour differs between two like postures
   double height = 0.012;    ///< m: of a marker above three others: less has no side
+  // What it costs in the final check (check_names.h) that a point lies elsewhere about its neighbours than in the learned posture:
+  std::size_t posture_neighbours = 8;  ///< that the posture is laid onto
+  double posture = 0.2;                ///< of the distance from them: how much another posture moves a marker
+  double posture_max = 6;              ///< nats that one marker costs at most
+  double posture_weight = 3;           ///< times
 };
 
 /// The known data of the points of one instant.

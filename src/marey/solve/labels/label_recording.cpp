@@ -4,11 +4,14 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numeric>
+#include <optional>
 
 #include "marey/assign/gated_assignment.h"
 #include "marey/assign/no_index.h"
 #include "marey/core/error.h"
 #include "marey/geometry/layout.h"
+#include "marey/geometry/median.h"
 #include "marey/solve/labels/check_names.h"
 #include "marey/solve/labels/labelled_result.h"
 #include "marey/solve/labels/learn_markers.h"
@@ -40,22 +43,13 @@ class Labelling {
         }()) {}
 
   Labelled run() {
-    name_all();
-    if (learned_.moves && misfit().ratio > kMisfit) {  // it is another person's: what distances may be off is measured
-      const double wider = std::min(misfit().ratio, kMaxWider);
-      distances_.shift *= wider;
-      distances_.fraction *= wider;
-      for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) chains_.set_name(chain, kNoIndex);
-      name_all();
-    }
-    const std::vector<int> undecided = check();
-    assess();
-    drop(undecided);
+    name_person();
     Labelled labelled = labelled_result(recording_, learned_, chains_, *model_, review_items_, scale_);
-    for (const int other : undecided) labelled.undecided.push_back(other == kNoIndex ? 0 : 1);
+    for (const int other : undecided_) labelled.undecided.push_back(other == kNoIndex ? 0 : 1);
     const Misfit misfit_now = misfit();
     labelled.misfit = misfit_now.ratio;
     labelled.misfit_m = misfit_now.off_m;
+    if (person_) labelled.found_again = found_again_;
     return labelled;
   }
 
@@ -69,15 +63,32 @@ class Labelling {
         cut_untrusted();  // before they spoil the learned distances
         chains_.gather();
       }
-      if (round > 0 || !learned_.moves) refine();  // a subject who stood still gave no rigid distances: the first names do
+      if (round > 0 || !learned_.moves || person_)
+        refine();  // a subject who stood still gave no rigid distances: the first names do
       distribute();
     }
     chains_.gather();
     refine();
   }
 
+  bool is_scaled() const { return learned_.scaled || person_; }
+  DistanceModel taught(double scale) const {
+    return person_ ? DistanceModel(learned_, scale, distances_, *person_) : DistanceModel(learned_, scale, distances_);
+  }
+  void name_person();
+  void decide(std::vector<int> undecided);
+  double found() const;
+  bool scale_to_person();
+  void scale_segments();
+  std::vector<int> search_again();
+  LabelHypothesis answer_at(std::size_t instant, double scale, std::vector<int>& chains, std::size_t& crowd) const;
+  void forget();
+
   /// Of those that have names now, by what was taught.
-  Misfit misfit() const { return misfit_of(chains_.named_distances(), DistanceModel(learned_, scale_, options_.distances)); }
+  Misfit misfit() const {
+    if (person_) return misfit_of(chains_.named_distances(), taught(scale_));
+    return misfit_of(chains_.named_distances(), DistanceModel(learned_, scale_, options_.distances));
+  }
   std::vector<int> check();
   void drop(const std::vector<int>& undecided);
   void initialise();
@@ -86,7 +97,7 @@ class Labelling {
   void distribute();
   void cut_untrusted();
   void assess();
-  std::vector<std::size_t> initialise_instants() const;
+  std::vector<std::size_t> initialise_instants(int count) const;
   std::vector<double> scales(std::size_t instant) const;
   LabelHypothesis initialise_again(const InitialiseScene& scene, const LabelHypothesis& first, DistanceModel model,
                                    const Matrix<3>& turn) const;
@@ -102,12 +113,144 @@ class Labelling {
   NamedChains chains_;
   std::unique_ptr<DistanceModel> model_;
   double scale_ = 1;
+  std::optional<AnotherPerson> person_;
+  bool scale_known_ = false;
+  double found_again_ = 0;                  // of the names, in other searches
+  std::vector<int> undecided_;              // by name: which other it could as well be
+  std::vector<int> search_again_;           // by name: which other those give
   std::map<int, ReviewItem> review_items_;  // by chain without a name
   std::vector<std::vector<int>> bearers_;   // by name, of the last round
 };
 
+void Labelling::forget() {
+  review_items_.clear();
+  for (int chain = 0; chain < std::ssize(chains_.chains()); ++chain) chains_.set_name(chain, kNoIndex);
+}
+
+/// Names of the person who taught the set; or of another, for which it is then scaled; or, where that does not hold, as well as may
+/// be.
+void Labelling::name_person() {
+  const bool scalable = options_.scale_to_person && learned_.moves && !learned_.scaled;
+  std::optional<Error> failure;
+  double wider = 1;
+  try {
+    name_all();
+    wider = std::clamp(misfit().ratio, 1.0, kMaxWider);
+    const bool fits = !learned_.moves || wider <= kMisfit;
+    if (fits) {
+      decide(check());
+      if (!scalable || wider <= 1 || found() >= options_.scaling.few_found) return;
+    }
+  } catch (const Error& error) {
+    if (!scalable) throw;
+    failure = error;
+  }
+  if (scalable && scale_to_person()) return decide(search_again_);
+  person_.reset();
+  scale_ = 1, scale_known_ = false;
+  if (failure) throw *failure;
+  if (wider > kMisfit) {  // what distances may be off is measured
+    distances_.shift *= wider;
+    distances_.fraction *= wider;
+  }
+  forget();
+  name_all();
+  decide(check());
+}
+
+void Labelling::decide(std::vector<int> undecided) {
+  assess();
+  drop(undecided);
+  undecided_ = std::move(undecided);
+}
+
+/// The share of the set's names that are given.
+double Labelling::found() const {
+  std::vector<char> given(learned_.size(), 0);
+  for (const auto& chain : chains_.chains()) {
+    if (chain.name != kNoIndex) given[static_cast<std::size_t>(chain.name)] = 1;
+  }
+  return static_cast<double>(std::count(given.begin(), given.end(), 1)) / static_cast<double>(learned_.size());
+}
+
+/// Names from nothing, of another person than the one who taught the set: by its stature, then by its segments. False if they are
+/// not found again.
+bool Labelling::scale_to_person() {
+  person_.emplace();
+  try {
+    for (int pass = 0; pass < options_.scaling.passes; ++pass) {
+      forget();
+      name_all();
+      scale_segments();
+    }
+  } catch (const Error&) {
+    return false;
+  }
+  search_again_ = search_again();
+  const Misfit now = misfit();
+  return found_again_ >= options_.scaling.min_found_again && now.ratio <= kMisfit;
+}
+
+/// What the names say of the sizes: of the person, then of each segment by the distances that the set knows as rigid.
+void Labelling::scale_segments() {
+  const std::vector<DistanceObserved> named = chains_.named_distances();
+  std::vector<double> all;
+  std::vector<std::vector<double>> of_name(learned_.size());
+  for (std::size_t a = 1; a < learned_.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const LearnedMarkers::Distance& distance = learned_.between(a, b);
+      const DistanceObserved& detected = named[LearnedMarkers::index_of(a, b)];
+      if (detected.count < options_.scaling.instants || distance.mean < options_.scaling.distance) continue;
+      all.push_back(detected.mean / distance.mean);
+      if (distance.deviation > options_.scaling.rigid || detected.variance > 4 * options_.scaling.rigid * options_.scaling.rigid)
+        continue;
+      of_name[a].push_back(all.back());
+      of_name[b].push_back(all.back());
+    }
+  }
+  if (all.empty()) return;
+  scale_ = geometry::median(all);
+  scale_known_ = true;
+  person_->scale_of.clear();
+  for (std::vector<double>& its : of_name) {
+    const auto count = static_cast<double>(its.size());
+    const double own = its.empty() ? 1 : geometry::median(its) / scale_;
+    person_->scale_of.push_back(std::clamp((count * own + options_.scaling.prior) / (count + options_.scaling.prior),
+                                           options_.scaling.min_segment, options_.scaling.max_segment));
+  }
+}
+
+/// Searches from nothing at other instants, by what was taught and scaled alone. Of names that they barely agree on, and of those
+/// that none of them finds, which other they give most: by name, itself if there is no other.
+std::vector<int> Labelling::search_again() {
+  std::vector<std::vector<int>> given(learned_.size(), std::vector<int>(learned_.size(), 0));  // by name now, and there
+  double same = 0, all = 0;
+  for (const std::size_t instant : initialise_instants(options_.initialises + 1)) {
+    std::vector<int> chains;
+    std::size_t crowd = 0;
+    const LabelHypothesis answer = answer_at(instant, scale_, chains, crowd);
+    for (std::size_t name = 0; name < answer.point_of.size(); ++name) {
+      if (answer.point_of[name] == kNoIndex) continue;
+      const int now = chains_.chains()[static_cast<std::size_t>(chains[static_cast<std::size_t>(answer.point_of[name])])].name;
+      ++all;
+      same += now == static_cast<int>(name);
+      if (now != kNoIndex) ++given[static_cast<std::size_t>(now)][name];
+    }
+  }
+  found_again_ = all > 0 ? same / all : 0;
+  std::vector<int> undecided(learned_.size(), kNoIndex);
+  for (std::size_t name = 0; name < learned_.size(); ++name) {
+    const int count = std::accumulate(given[name].begin(), given[name].end(), 0), own = given[name][name];
+    if (own > 0 && own >= options_.scaling.min_found_again_of_name * count) continue;
+    given[name][name] = 0;
+    const auto most = std::max_element(given[name].begin(), given[name].end());
+    undecided[name] = static_cast<int>(*most > 0 ? most - given[name].begin() : static_cast<std::ptrdiff_t>(name));
+  }
+  return undecided;
+}
+
 /// Instants at which long chains are many, spread over the recording.
-std::vector<std::size_t> Labelling::initialise_instants() const {
+std::vector<std::size_t> Labelling::initialise_instants(int count) const {
   const auto merit = [&](std::size_t instant) {
     double sum = 0;
     for (const auto& point : chains_.at(instant))
@@ -115,7 +258,7 @@ std::vector<std::size_t> Labelling::initialise_instants() const {
     return sum;
   };
   std::vector<std::size_t> best;
-  const auto parts = static_cast<std::size_t>(options_.initialises);
+  const auto parts = static_cast<std::size_t>(count);
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t begin = part * chains_.instants() / parts, end = (part + 1) * chains_.instants() / parts;
     std::size_t its = begin;
@@ -131,7 +274,7 @@ std::vector<std::size_t> Labelling::initialise_instants() const {
 
 /// Sizes of the subject that come into question: by how high it reaches, against the posture it was learned in.
 std::vector<double> Labelling::scales(std::size_t instant) const {
-  if (!learned_.scaled) return {1};
+  if (!is_scaled()) return {1};
   std::vector<double> here, there;
   for (const auto& point : chains_.at(instant)) here.push_back(point.location.z());
   for (const Vector<3>& location : learned_.locations) there.push_back(location.z());
@@ -145,7 +288,7 @@ std::vector<double> Labelling::scales(std::size_t instant) const {
 /// If the learned model stems from others, their posture distinguishes left and right: how that lies to the subject as it was named
 /// first. (One's own posture, standing still, is less informative than one's own distances.)
 std::optional<Matrix<3>> Labelling::turn_to_learned(const InitialiseScene& scene, const LabelHypothesis& answer) const {
-  if (!learned_.scaled) return std::nullopt;
+  if (!is_scaled()) return std::nullopt;
   std::vector<Vector<3>> from, to;
   for (std::size_t name = 0; name < learned_.size(); ++name) {
     if (answer.point_of[name] == kNoIndex || learned_.locations[name].isZero(0)) continue;
@@ -189,30 +332,36 @@ void Labelling::fail_to_initialise(std::ptrdiff_t booted, std::size_t crowd) con
               recording_.header.name, learned_.size(), booted);
 }
 
-void Labelling::initialise() {
+/// Names from nothing at one instant; none if too few points, or too many, are there.
+LabelHypothesis Labelling::answer_at(std::size_t instant, double scale, std::vector<int>& chains, std::size_t& crowd) const {
   const auto shortest = static_cast<std::int32_t>(std::max(4.0, kInitialiseS * recording_.header.rate_hz));
+  InitialiseScene scene;
+  scene.detected = chains_.distances_at(instant, shortest, chains, scene.locations);
+  if (chains.size() > kMaxPointsToInitialise) crowd = std::max(crowd, chains.size());
+  if (chains.size() < 4 || chains.size() > kMaxPointsToInitialise) return {};
+  const DistanceModel model = taught(scale);
+  LabelHypothesis answer = initialise_labels(scene, learned_, model, options_.initialise);
+  if (const auto turn = turn_to_learned(scene, answer)) return initialise_again(scene, answer, model, *turn);
+  return answer;
+}
+
+void Labelling::initialise() {
   double best_score = 0;
   std::vector<int> best_chains;
   LabelHypothesis best;
   std::size_t crowd = 0;  // points of the fullest instant that was skipped for them
-  for (const std::size_t instant : initialise_instants()) {
+  for (const std::size_t instant : initialise_instants(options_.initialises)) {
     hooks_.advance({.step = "naming", .done = 0, .total = options_.rounds + 1});
-    InitialiseScene scene;
-    std::vector<int> chains;
-    scene.detected = chains_.distances_at(instant, shortest, chains, scene.locations);
-    if (chains.size() > kMaxPointsToInitialise) crowd = std::max(crowd, chains.size());
-    if (chains.size() < 4 || chains.size() > kMaxPointsToInitialise) continue;
-    for (const double scale : best_score > 0 && learned_.scaled ? std::vector{scale_} : scales(instant)) {
-      const DistanceModel model(learned_, scale, distances_);
-      LabelHypothesis answer = initialise_labels(scene, learned_, model, options_.initialise);
-      if (const auto turn = turn_to_learned(scene, answer)) answer = initialise_again(scene, answer, model, *turn);
+    for (const double scale : (best_score > 0 || scale_known_) && is_scaled() ? std::vector{scale_} : scales(instant)) {
+      std::vector<int> chains;
+      LabelHypothesis answer = answer_at(instant, scale, chains, crowd);
       if (answer.score <= best_score) continue;
-      best_score = answer.score, best = std::move(answer), best_chains = chains, scale_ = scale;
+      best_score = answer.score, best = std::move(answer), best_chains = std::move(chains), scale_ = scale;
     }
   }
   const auto booted = std::count_if(best.point_of.begin(), best.point_of.end(), [](int point) { return point != kNoIndex; });
   if (static_cast<double>(booted) < kMinInitialised * static_cast<double>(learned_.size())) fail_to_initialise(booted, crowd);
-  model_ = std::make_unique<DistanceModel>(learned_, scale_, distances_);
+  model_ = std::make_unique<DistanceModel>(taught(scale_));
   for (std::size_t name = 0; name < learned_.size(); ++name) {
     if (best.point_of[name] != kNoIndex)
       chains_.set_name(best_chains[static_cast<std::size_t>(best.point_of[name])], static_cast<int>(name));
@@ -323,9 +472,9 @@ double Labelling::margin(int chain, int name, const std::vector<NamedChains::Fit
 /// Holds the names against what was taught alone, and puts right what is better otherwise. Returns which of them could as well be
 /// another, by name.
 std::vector<int> Labelling::check() {
-  const DistanceModel taught(learned_, scale_, distances_);
+  const DistanceModel as_taught = taught(scale_);
   const CheckedNames checked =
-      check_names(chains_, learned_, taught, options_.initialise, options_.neighbours, options_.min_margin);
+      check_names(chains_, learned_, as_taught, options_.initialise, options_.neighbours, options_.min_margin);
   std::vector<int> name_of(learned_.size(), kNoIndex);
   bool changed = false;
   for (std::size_t name = 0; name < learned_.size(); ++name) {
@@ -342,7 +491,7 @@ std::vector<int> Labelling::check() {
     chains_.set_name(chain, name);
     if (name != kNoIndex) bearers_[static_cast<std::size_t>(name)].push_back(chain);
   }
-  model_ = std::make_unique<DistanceModel>(learned_, scale_, distances_);
+  model_ = std::make_unique<DistanceModel>(taught(scale_));
   chains_.gather();
   refine();
   return checked.undecided;

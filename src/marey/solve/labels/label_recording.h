@@ -8,6 +8,10 @@
 //    has the name that most gave it, as long as no other there at the same time has it. The result refines which
 //    distances are expected, and the round begins again. A tracklet that fits another name much better than its chain's is cut off.
 // 4. What fits badly, or barely better than another name that was free, stays without a name, and its two best names are reported.
+// A set that does not fit is of another person. It is then scaled, first by the stature, then by the segments, and names are sought
+// from nothing with distances as wide as another body makes them, and by what moves against what, which two people have in common
+// (distance_model.h). Searches at other instants, by what was taught and scaled alone, must give the same names, or the set is left
+// as it was, and does not fit; a name on which they barely agree is given to nothing.
 // Cost: points × names × neighbours a round.
 #pragma once
 
@@ -25,6 +29,20 @@
 
 namespace marey::solve::labels {
 
+/// How a set is scaled to another person than the one who taught it.
+struct ScalingOptions {
+  int passes = 2;                         ///< the second with the segments' sizes
+  int instants = 40;                      ///< at which a distance is seen, or more, that a size is measured by
+  double distance = 0.05;                 ///< m, or more, the same
+  double rigid = 0.006;                   ///< m: deviation of a learned distance, below which it is of one segment
+  double prior = 2;                       ///< distances, that a segment is as large as the whole
+  double min_segment = 0.8;               ///< of the whole
+  double max_segment = 1.25;              ///< of the whole
+  double min_found_again = 0.955;         ///< of the names, by searches at other instants; with fewer the set does not fit
+  double min_found_again_of_name = 0.75;  ///< of the searches, of one name
+  double few_found = 0.7;                 ///< of the set's markers: with fewer the set may be another person's
+};
+
 struct LabelOptions {
   TrackletOptions tracklets;
   DistanceOptions distances;
@@ -34,6 +52,8 @@ struct LabelOptions {
   std::size_t neighbours = 8;  ///< that say how well a name fits
   double min_fit = 4;          ///< log-likelihood ratio, mean over a tracklet's life, below which no person gets the name
   double min_margin = 3;       ///< that the name must be better than the next one
+  ScalingOptions scaling;
+  bool scale_to_person = true;  ///< where a set that one person taught does not fit
 };
 
 /// How one marker of the set came off.
@@ -63,6 +83,8 @@ struct Labelled {
   std::vector<char> undecided;
   double misfit = 0;    ///< how far rigid distances are off, against those expected of the subject that taught: about 1
   double misfit_m = 0;  ///< the same as a median, m
+  /// If the set is another person's and was scaled to this one: the share of the names that searches at other instants gave too.
+  std::optional<double> found_again;
 };
 
 /// Throws Error if the recording is not one of space, or too few of the set's markers can be reported to begin with.

@@ -44,6 +44,16 @@ class Figure {
     locations_[18] = {0, 0, 0.18};
     locations_[19] = {0, -0.02, 0.1};
   }
+  /// Another person: each segment larger by its own factor, and every marker elsewhere by up to `moved`, m, along each axis.
+  void become_another(double scale, double uneven, double moved, std::uint64_t seed) {
+    filter::RandomStream random(seed);
+    for (int marker = 0; marker < 20; ++marker) {
+      const double segment = scale * (1 + uneven * ((marker / 5) % 2 == 0 ? 1 : -1));
+      for (int axis = 0; axis < 3; ++axis)
+        locations_[marker][axis] = segment * locations_[marker][axis] + between(random, -moved, moved);
+    }
+    size_ = scale;
+  }
   /// The last segment's turn about its length, rad.
   void turn_forearm(double angle) { forearm_ = angle; }
 
@@ -52,13 +62,14 @@ class Figure {
     const Rigid3 trunk{geometry::rotation_from({0, 0, 0.5 * time}), {0.5 * std::cos(time), 0.5 * std::sin(time), 1}};
     if (segment == 0) return trunk * locations_[marker];
     const double angle = swing * 0.6 * std::sin(5 * time + segment);
-    const Rigid3 limb{geometry::rotation_from({angle, 0.3 * angle, 0}), {0.3 * (segment - 2), 0.1 * segment, -0.4}};
+    const Rigid3 limb{geometry::rotation_from({angle, 0.3 * angle, 0}),
+                      size_ * Vector<3>(0.3 * (segment - 2), 0.1 * segment, -0.4)};
     const Rigid3 rotated{geometry::rotation_from({0, 0, segment == 3 ? forearm_ : 0}), Vector<3>::Zero()};
-    return trunk * (limb * (rotated * locations_[marker] - Vector<3>(0, 0, 0.3)));
+    return trunk * (limb * (rotated * locations_[marker] - size_ * Vector<3>(0, 0, 0.3)));
   }
 
  private:
-  double forearm_ = 0;
+  double forearm_ = 0, size_ = 1;
   Vector<3> locations_[20];
 };
 
@@ -239,6 +250,80 @@ TEST(LabelRecording, SwappedRecordingDoesNotDecideSides) {
   const Stripped stripped = strip(labelled_recording(figure, 3, 250), 4);
   const Score score = score_of(label_recording(stripped.recording, learn_markers(taught, {})), stripped);
   EXPECT_GT(score.right, 0.98 * static_cast<double>(stripped.truth.size()));
+}
+
+TEST(LabelRecording, AnotherPersonsSetIsScaledToThisOne) {
+  for (const double scale : {0.8, 1.1, 1.25}) {
+    const std::vector<Recording> taught{labelled_recording(Figure(1), 20, 300)};
+    Figure other(1);
+    other.become_another(scale, 0.05, 0.01, 7);
+    const Stripped stripped = strip(labelled_recording(other, 3, 250), 2);
+    LabelOptions as_taught;
+    as_taught.scale_to_person = false;
+    try {
+      EXPECT_GT(label_recording(stripped.recording, learn_markers(taught, {}), as_taught).misfit, 2) << "scale " << scale;
+    } catch (const Error&) {  // off by so much that barely anything is found
+    }
+    const Labelled labelled = label_recording(stripped.recording, learn_markers(taught, {}));
+    ASSERT_TRUE(labelled.found_again) << "scale " << scale;
+    EXPECT_GT(*labelled.found_again, 0.95);
+    EXPECT_NEAR(labelled.scale, scale, 0.06);
+    EXPECT_LT(labelled.misfit, 2);
+    const Score score = score_of(labelled, stripped);
+    EXPECT_GT(score.right, 0.95 * static_cast<double>(stripped.truth.size())) << "scale " << scale;
+    EXPECT_LT(score.wrong, 0.01 * static_cast<double>(stripped.truth.size())) << "scale " << scale;
+  }
+}
+
+/// Two people in one recording: the second's tracks come after the first's, and it stands 1 m beside.
+Recording of_two_people(const Recording& one, const Recording& other) {
+  Recording both(one.header);
+  for (const auto& time_step : one.instants()) both.add_time_step(time_step);
+  for (const TrackColumns& track : one.tracks()) both.put(track);
+  for (const TrackColumns& track : other.tracks()) {
+    TrackColumns its({.id = TrackId{number(track.id()) + 100}, .label = "other:" + track.name.label, .team = {}}, 3);
+    for (std::size_t row = 0; row < track.size(); ++row) {
+      Sample sample = track.sample(row);
+      sample.track = its.id();
+      sample.position += Vector<3>(1, 0, 0);
+      its.add(track.at()[row], sample);
+    }
+    both.put(std::move(its));
+  }
+  return both;
+}
+
+TEST(LabelRecording, OfTwoPeopleWithTheSameSetTheOneWhoTaughtIsNamed) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const std::vector<Recording> taught{labelled_recording(Figure(1), 20, 300)};
+    Figure other(1);
+    other.become_another(1.03, 0.02, 0.008, seed);
+    const Recording both = of_two_people(labelled_recording(Figure(1), 3, 250), labelled_recording(other, 3.7, 250));
+    const Stripped stripped = strip(both, seed);
+    const Score score = score_of(label_recording(stripped.recording, learn_markers(taught, {})), stripped);
+    const double its = static_cast<double>(stripped.truth.size()) / 2;
+    EXPECT_GT(score.right, 0.99 * its) << "seed " << seed;
+    EXPECT_LT(score.wrong, 0.003 * its) << "seed " << seed;
+  }
+}
+
+TEST(LabelRecording, AnotherShapeIsNotScaled) {
+  const std::vector<Recording> taught{labelled_recording(Figure(1), 20, 300)};
+  const LearnedMarkers learned = learn_markers(taught, {});
+  for (const std::uint64_t shape : {2, 5}) {
+    const Stripped stripped = strip(labelled_recording(Figure(shape), 3, 250), 2);
+    try {
+      const Labelled labelled = label_recording(stripped.recording, learned);
+      EXPECT_FALSE(labelled.found_again) << "shape " << shape;
+    } catch (const Error&) {  // barely anything is found
+    }
+  }
+}
+
+TEST(LabelRecording, TheOwnSetIsNotScaled) {
+  const std::vector<Recording> taught{labelled_recording(Figure(1), 20, 300)};
+  const Stripped stripped = strip(labelled_recording(Figure(1), 3, 250), 2);
+  EXPECT_FALSE(label_recording(stripped.recording, learn_markers(taught, {})).found_again);
 }
 
 TEST(LabelRecording, RefusesWhatIsAnotherSet) {
