@@ -48,10 +48,12 @@ class GroundAgain final : public PeopleOnGround {
     for (std::size_t i = 0; i < found_.size(); ++i) {
       if (found_[i] == nullptr) continue;
       if (again_ && found_[i]->since_beginning() > 0) {
-        summary.notes.push_back(
-            corridor::stated_of(rig_.cameras[i], fmt::format("{} of those who left the scene had stood in it since the beginning: "
-                                                             "the recording was inspected again without them in it",
-                                                             found_[i]->since_beginning())));
+        const int count = found_[i]->since_beginning();
+        summary.notes.push_back(corridor::stated_of(
+            rig_.cameras[i],
+            fmt::format("{} still from the first frame on and left later: tracked from the first frame on, in a second "
+                        "pass over the video",
+                        count == 1 ? "1 person stood" : fmt::format("{} people stood", count))));
       } else if (!again_) {
         for (const std::string& message_text : found_[i]->stated())
           summary.notes.push_back(corridor::stated_of(rig_.cameras[i], message_text));
