@@ -18,7 +18,7 @@ std::string to_text(const OutlineExperiment& experiment) {
   for (std::size_t c = 0; c < experiment.cases.size(); ++c) {
     const OutlineCase& what = experiment.cases[c];
     fmt::format_to(std::back_inserter(text), "{}{}: {} {}, {} people; the true centres' jitter is {} px\n", c > 0 ? "\n" : "",
-                   what.name, what.videos, what.videos == 1 ? "film" : "films", what.people, number(what.true_jitter, 2));
+                   what.name, what.videos, what.videos == 1 ? "video" : "videos", what.people, number(what.true_jitter, 2));
     fmt::format_to(std::back_inserter(text), "{:<28}{:>8}{:>8}{:>8}{:>8}{:>12}{:>8}{:>12}{:>10}{:>8}{:>12}\n", "", "IoU", "alone",
                    "front", "behind", "centre, px", "lost", "followed", "jitter", "wild", "us a target");
     for (const auto& row : experiment.rows) {
@@ -33,7 +33,7 @@ std::string to_text(const OutlineExperiment& experiment) {
 }
 
 std::string to_markdown(const OutlineExperiment& experiment) {
-  std::vector<std::string> titles{"", "films", "people"};
+  std::vector<std::string> titles{"", "videos", "people"};
   for (const auto& row : experiment.rows) titles.push_back(row.method);
   std::string text = markdown_header(titles);
   for (std::size_t c = 0; c < experiment.cases.size(); ++c) {

@@ -344,7 +344,7 @@ OutlineExperiment run_outline_experiment(const OutlineExperimentOptions& options
       results[static_cast<std::size_t>(v)] = run_tracker(what, options.seed + static_cast<std::uint64_t>(v), options);
       const std::lock_guard lock(telling);
       ++done;
-      hooks.advance({"films", done, all});
+      hooks.advance({"videos", done, all});
     });
     VideoResult total;
     for (const VideoResult& result : results) {
