@@ -131,6 +131,29 @@ std::vector<std::string> warnings_of(const LearnedMarkers& learned) {
   return stated;
 }
 
+namespace {
+
+/// Says what of the names a user should know: a set of another person, one that does not fit, markers that are not there.
+/// `which` names recording and set.
+void warn_of_set(LabelSummary& summary, const solve::labels::Labelled& labelled, const std::string& which,
+                 const std::string& recording) {
+  if (labelled.found_again)
+    summary.warnings.push_back(
+        fmt::format("{} is of another person, and was scaled to this one (by {:.2f}, and segment by segment); searches at other "
+                    "instants gave {:.0f} % of the names again",
+                    which, labelled.scale, 100 * *labelled.found_again));
+  const auto found =
+      std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.detected > 0; });
+  if (auto message_text =
+          set_misfit(which, labelled.misfit, labelled.misfit_m, static_cast<std::size_t>(found), summary.health.size()))
+    summary.warnings.push_back(std::move(*message_text));
+  for (const auto& marker : summary.health) {
+    if (marker.detected == 0) summary.warnings.push_back(fmt::format("{}: marker {} was not found", recording, marker.label));
+  }
+}
+
+}  // namespace
+
 LabelSummary label_recording(const std::string& recording, const std::string& set, const std::string& out,
                              const solve::labels::LabelOptions& options, const Hooks& hooks,
                              const std::vector<std::string>& exclude, const std::vector<std::string>& accept) {
@@ -168,19 +191,7 @@ LabelSummary label_recording(const std::string& recording, const std::string& se
   summary.renamed = labelled.renamed;
   summary.scale = labelled.scale;
   summary.misfit = labelled.misfit;
-  if (labelled.found_again)
-    summary.warnings.push_back(
-        fmt::format("{}: the set {} is of another person, and was scaled to this one (by {:.2f}, and segment by segment); searches "
-                    "at other instants gave {:.0f} % of the names again",
-                    recording, set, labelled.scale, 100 * *labelled.found_again));
-  const auto found =
-      std::count_if(summary.health.begin(), summary.health.end(), [](const auto& marker) { return marker.detected > 0; });
-  if (auto message_text = set_misfit(fmt::format("{}: the set {}", recording, set), labelled.misfit, labelled.misfit_m,
-                                     static_cast<std::size_t>(found), summary.health.size()))
-    summary.warnings.push_back(std::move(*message_text));
-  for (const auto& marker : summary.health) {
-    if (marker.detected == 0) summary.warnings.push_back(fmt::format("{}: marker {} was not found", recording, marker.label));
-  }
+  warn_of_set(summary, labelled, fmt::format("{}: the set {}", recording, set), recording);
   return summary;
 }
 

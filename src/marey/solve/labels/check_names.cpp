@@ -124,28 +124,35 @@ class Check {
     return sides_.empty() ? 0 : sum / static_cast<double>(sides_.size());
   }
 
-  /// What it costs that points lie elsewhere about their neighbours than in the learned posture: `other` against now.
-  double posture_loss(const Holders& other, std::span<const std::size_t> moved) const {
-    double sum = 0;
+  bool has_posture(std::size_t name) const { return !learned_.locations[name].isZero(0); }
+
+  /// The names that have points and are not among `moved`, the nearest to these in the learned posture first; none if the posture
+  /// has none of `moved`.
+  std::vector<std::size_t> neighbours_in_posture(std::span<const std::size_t> moved) const {
     Vector<3> centre = Vector<3>::Zero();
     double known = 0;
     for (const std::size_t name : moved) {
-      if (learned_.locations[name].isZero(0)) continue;
+      if (!has_posture(name)) continue;
       centre += learned_.locations[name];
       ++known;
     }
-    if (known == 0) return 0;
+    if (known == 0) return {};
     centre /= known;
     std::vector<std::size_t> near;
     for (std::size_t name = 0; name < model_.size(); ++name) {
-      if (holders_[name] == kNoIndex || learned_.locations[name].isZero(0) ||
-          std::find(moved.begin(), moved.end(), name) != moved.end())
-        continue;
+      if (holders_[name] == kNoIndex || !has_posture(name) || std::find(moved.begin(), moved.end(), name) != moved.end()) continue;
       near.push_back(name);
     }
     std::stable_sort(near.begin(), near.end(), [&](std::size_t a, std::size_t b) {
       return (learned_.locations[a] - centre).norm() < (learned_.locations[b] - centre).norm();
     });
+    return near;
+  }
+
+  /// What it costs that points lie elsewhere about their neighbours than in the learned posture: `other` against now.
+  double posture_loss(const Holders& other, std::span<const std::size_t> moved) const {
+    const std::vector<std::size_t> near = neighbours_in_posture(moved);
+    double sum = 0;
     for (const auto& posture : postures_) {
       std::vector<Vector<3>> from, to;
       for (const std::size_t name : near) {
@@ -164,7 +171,7 @@ class Check {
       const auto cost = [&](const Holders& holders) {
         double its = 0;
         for (const std::size_t name : moved) {
-          if (holders[name] == kNoIndex || learned_.locations[name].isZero(0)) continue;
+          if (holders[name] == kNoIndex || !has_posture(name)) continue;
           const auto& location = posture[static_cast<std::size_t>(holders[name])];
           if (!location) continue;
           const double variance = square + options_.posture * options_.posture * (learned_.locations[name] - middle).squaredNorm();
