@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
       const auto here = truth.find(number);
       if (here == truth.end()) continue;
       ++frames;
-      const std::vector<Detection> detected = detector.inspect(*frame);
+      const std::vector<Detection> detected = detector.people_everywhere(*frame);
       for (int percent = 20; percent <= 70; percent += 5) {
         std::vector<Detection> sure;
         std::copy_if(detected.begin(), detected.end(), std::back_inserter(sure),
