@@ -37,7 +37,8 @@ class Stage {
   /// Sinks want `Instant::boxes`. Before the first step.
   virtual void need_boxes() {}
   /// Sinks want the foreground of each frame that is searched, in `step` and in `finish`: `give` takes it. Before the first step.
-  virtual void need_foregrounds(std::function<void(FrameForeground)> /*give*/) {}
+  virtual void need_foregrounds(std::function<void(FrameForeground)> /*give*/) {
+  }  // NOLINT(performance-unnecessary-value-param): stages keep it
   /// The results after this instant, mostly of it, sometimes of earlier ones that waited; valid until the next call. A job with a
   /// second pass keeps all for that.
   virtual std::span<const Instant> step(const FrameSet& frames) = 0;

@@ -161,7 +161,8 @@ double PeopleRenderer::fraction_observed(const BallSprite& ball, std::span<const
   constexpr int kSide = 7;
   int all = 0, detected = 0;
   for (int i = 0; i < kSide * kSide; ++i) {
-    const Vector<2> off(2.0 * (i % kSide + 0.5) / kSide - 1, 2.0 * (i / kSide + 0.5) / kSide - 1);
+    const int column = i % kSide, row = i / kSide;
+    const Vector<2> off(2.0 * (column + 0.5) / kSide - 1, 2.0 * (row + 0.5) / kSide - 1);
     if (off.squaredNorm() > 1) continue;
     ++all;
     const Vector<2> at = ball.middle() + ball.radius * off;

@@ -188,7 +188,8 @@ class SimulatedDetector {
     for (int cell = 0; cell < columns * rows; ++cell) {
       const double w = person.box.width / columns;
       const double h = person.box.height / rows;
-      const Box raster{person.box.left + (cell % columns) * w, person.box.top + (cell / columns) * h, w, h};
+      const int column = cell % columns, row = cell / columns;
+      const Box raster{person.box.left + column * w, person.box.top + row * h, w, h};
       const Vector<2> at = raster.centre();
       const bool covered = std::any_of(people.begin(), people.end(), [&](const TrueBox& other) {
         const Box& b = other.box;

@@ -89,10 +89,9 @@ void BallSprite::lay(Planes& planes) const {
     for (int x = shown.x; x < shown.br().x; ++x) {
       float fraction = 0, shade = 0;
       for (int sample = 0; sample < kMoments * kPoints * kPoints; ++sample) {
-        const int point = sample / kMoments;
+        const int point = sample / kMoments, column = point % kPoints, row = point / kPoints;
         const Vector<2> centre = from + (sample % kMoments + 0.5) / kMoments * (to - from);
-        const Vector<2> off =
-            Vector<2>(x + (point % kPoints + 0.5) / kPoints - 0.5, y + (point / kPoints + 0.5) / kPoints - 0.5) - centre;
+        const Vector<2> off = Vector<2>(x + (column + 0.5) / kPoints - 0.5, y + (row + 0.5) / kPoints - 0.5) - centre;
         if (off.squaredNorm() > radius * radius) continue;
         fraction += 1;
         shade += static_cast<float>(0.86 - 0.14 * off.y() / radius);

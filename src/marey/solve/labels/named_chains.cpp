@@ -18,8 +18,8 @@ NamedChains::NamedChains(std::vector<Tracklet> tracklets, const std::vector<int>
     if (chain >= std::ssize(chains_)) chains_.resize(static_cast<std::size_t>(chain) + 1);
     chains_[static_cast<std::size_t>(chain)].tracklets.push_back(t);
     chains_[static_cast<std::size_t>(chain)].points += tracklet.length();
-    for (std::int32_t i = 0; i < tracklet.length(); ++i)
-      points_[static_cast<std::size_t>(tracklet.first + i)].push_back({chain, t, tracklet.locations[static_cast<std::size_t>(i)]});
+    auto instant = points_.begin() + tracklet.first;
+    for (const Vector<3>& location : tracklet.locations) (instant++)->push_back({chain, t, location});
   }
 }
 
@@ -40,7 +40,7 @@ void NamedChains::add_fits(const Tracklet& tracklet, int self, std::int32_t step
                            std::size_t neighbours, Fits& sums, int& count) const {
   std::vector<double> distance(names_);
   for (std::int32_t i = 0; i < tracklet.length(); i += step) {
-    const auto instant = static_cast<std::size_t>(tracklet.first + i);
+    const auto instant = static_cast<std::size_t>(tracklet.first) + static_cast<std::size_t>(i);
     const Vector<3>& location = tracklet.locations[static_cast<std::size_t>(i)];
     for (std::size_t name = 0; name < names_; ++name) {
       const Holder& other = holder(instant, name);

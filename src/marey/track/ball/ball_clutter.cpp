@@ -73,8 +73,10 @@ double recurrence(const CameraViews& views, std::size_t at, const Vector<2>& pix
     again += std::any_of(views[i]->detected.begin(), views[i]->detected.end(), is) ? 1 : 0;
     return true;
   };
-  for (std::size_t i = at; i-- > 0 && inspect(i);) continue;
-  for (std::size_t i = at + 1; i < views.size() && inspect(i); ++i) continue;
+  for (std::size_t i = at; i > 0; --i)
+    if (!inspect(i - 1)) break;
+  for (std::size_t i = at + 1; i < views.size(); ++i)
+    if (!inspect(i)) break;
   return frames == 0 ? 0 : static_cast<double>(again) / frames;
 }
 

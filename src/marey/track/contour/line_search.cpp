@@ -47,7 +47,7 @@ void read_profile(const MeasurementLine& line, const LineScene& scene, Profile& 
     profile.value[i] = 0;
     if (!profile.known[i]) continue;
     profile.value[i] = interpolated(scene.mask, at.x(), at.y());
-    const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
+    const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
     for (const colour::Footprint* other : scene.others) profile.known[i] = profile.known[i] && !other->covers(x, y);
   }
 }

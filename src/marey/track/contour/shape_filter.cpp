@@ -15,7 +15,7 @@ constexpr double kAlikeOver = 1.5;  // control points: how far along the curve n
 
 }  // namespace
 
-ShapeFilter::ShapeFilter(geometry::ClosedSpline spline, double deviation)
+ShapeFilter::ShapeFilter(const geometry::ClosedSpline& spline, double deviation)
     : ShapeFilter(spline, std::vector<double>(static_cast<std::size_t>(spline.count()), deviation)) {}
 
 ShapeFilter::ShapeFilter(geometry::ClosedSpline spline, std::span<const double> deviations) : spline_(std::move(spline)) {

@@ -22,7 +22,7 @@ struct ShapeNoise {
 class ShapeFilter {
  public:
   /// Begins at `spline`, each coordinate known to `deviation` px.
-  ShapeFilter(geometry::ClosedSpline spline, double deviation);
+  ShapeFilter(const geometry::ClosedSpline& spline, double deviation);
   /// The same with a deviation for each control point.
   ShapeFilter(geometry::ClosedSpline spline, std::span<const double> deviations);
 

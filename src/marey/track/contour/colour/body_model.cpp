@@ -119,6 +119,7 @@ BodyModel::Bands BodyModel::bands_at(double down) const {
 
 int BodyModel::bin_of(const cv::Vec3f& colour) {
   // Samples were shared among neighbouring bins as they were learned: here the nearest bin says it all.
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): what is below 0 is clamped, and lround costs a call for each pixel.
   const auto nearest = [](float at, int count) { return std::clamp(static_cast<int>(at + 0.5F), 0, count - 1); };
   const int y = nearest(colour[0] / static_cast<float>(kLumaBin) - 0.5F, kLuma);
   const int cb = nearest((colour[1] - 128) / static_cast<float>(kChromaBin) + (kChroma - 1) / 2.0F, kChroma);

@@ -36,7 +36,7 @@ class BodyModel {
   static CoveragePosition row_at(double y);
   float coverage(const CoveragePosition& column, const CoveragePosition& row) const {
     if (column.beyond || row.beyond) return 0.01F;
-    const float* at = &coverage_[static_cast<std::size_t>(row.first * kAcross + column.first)];
+    const float* at = &coverage_[static_cast<std::size_t>(row.first) * kAcross + static_cast<std::size_t>(column.first)];
     const float above = at[0] + column.part * (at[1] - at[0]);
     const float below = at[kAcross] + column.part * (at[kAcross + 1] - at[kAcross]);
     return above + row.part * (below - above);

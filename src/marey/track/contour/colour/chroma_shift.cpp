@@ -39,9 +39,8 @@ void ChromaShift::observe_row(const Image& image, const cv::Mat& foreground, int
     // Of the two pixels of luma in one of chroma, against those of its neighbours.
     const int step = std::abs(luma[2 * x + 2] + luma[2 * x + 3] - luma[2 * x - 2] - luma[2 * x - 1]);
     for (int shift = -kReach; shift <= kReach; ++shift) {
-      const int at = x + shift;
-      together_[static_cast<std::size_t>(shift + kReach)] +=
-          step * (std::abs(cb[at + 1] - cb[at - 1]) + std::abs(cr[at + 1] - cr[at - 1]));
+      const int at = x + shift, entry = shift + kReach;
+      together_[static_cast<std::size_t>(entry)] += step * (std::abs(cb[at + 1] - cb[at - 1]) + std::abs(cr[at + 1] - cr[at - 1]));
     }
     pixels_ += 1;
   }
