@@ -64,7 +64,7 @@ std::optional<FilledGap> decide(Tracks& tracks, TrackId track, const Gap& gap, c
   for (const FillMethod method : {FillMethod::spline, FillMethod::rigid, FillMethod::pattern}) {
     if ((required && method != *required) || !filled(method, piece.locations, piece.hole, donors, piece.hole)) continue;
     const FillScore score = trials.score(method);
-    if (!best || score.mean_square < best->second.mean_square) best = {method, score};
+    if (!best || score.typical_m < best->second.typical_m) best = {method, score};
   }
   if (!best) return std::nullopt;
   const auto index = [&](std::int32_t at) { return tracks.time_steps()[static_cast<std::size_t>(at)].index; };

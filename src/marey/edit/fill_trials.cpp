@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "marey/geometry/median.h"
+
 namespace marey::edit {
 namespace {
 
@@ -20,22 +22,11 @@ constexpr double kGrowth = 1, kSplineGrowth = 2.3, kMinGrowth = 0.5;
 constexpr double kShortUntried_s = 0.15;  // where nothing can be tried: a polynomial up to here
 constexpr double kUntriedFraction = 0.1;  // and what it is expected to be off, as a share of how far the marker went
 
-/// Nine tenths of the errors lie within two deviations.
-double deviation_of(std::vector<double> errors) {
-  if (errors.empty()) return 0;
-  const auto tenth = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 9 / 10);
-  std::nth_element(errors.begin(), tenth, errors.end());
-  return std::max(0.5 * *tenth, 1e-5);
-}
+constexpr double kWithinTwo = 0.95;       // by definition: the share of errors that two deviations hold
+constexpr double kMinDeviation_m = 1e-5;  // numerical
 
 FillScore larger(const FillScore& a, const FillScore& b) {
-  return {.mean_square = std::max(a.mean_square, b.mean_square), .expected_m = std::max(a.expected_m, b.expected_m)};
-}
-
-double rms_of(const std::vector<double>& errors) {
-  double sum = 0;
-  for (const double error : errors) sum += error * error;
-  return errors.empty() ? 0 : std::sqrt(sum / static_cast<double>(errors.size()));
+  return {.typical_m = std::max(a.typical_m, b.typical_m), .expected_m = std::max(a.expected_m, b.expected_m)};
 }
 
 }  // namespace
@@ -114,8 +105,9 @@ std::vector<double> FillTrials::errors(FillMethod method, std::span<const Hole> 
 }
 
 FillScore FillTrials::of(FillMethod method, std::span<const Hole> holes) const {
-  const std::vector<double> all = errors(method, holes);
-  return {.mean_square = rms_of(all) * rms_of(all), .expected_m = deviation_of(all)};
+  std::vector<double> all = errors(method, holes);
+  if (all.empty()) return {};
+  return {.typical_m = geometry::median(all), .expected_m = std::max(0.5 * geometry::quantile(all, kWithinTwo), kMinDeviation_m)};
 }
 
 FillScore FillTrials::score(FillMethod method) const {
@@ -142,7 +134,7 @@ FillScore FillTrials::scaled(FillMethod method) const {
   const FillScore& from = group == 1 ? half : quarter;
   if (!reported(group, from)) return {};
   const double times = std::pow(static_cast<double>(gap_.size()) / static_cast<double>(groups_[group].length), growth);
-  return {.mean_square = from.mean_square * times * times, .expected_m = from.expected_m * times};
+  return {.typical_m = from.typical_m * times, .expected_m = from.expected_m * times};
 }
 
 /// What the field's rule says.

@@ -20,8 +20,8 @@ std::optional<std::vector<Vector<3>>> filled(FillMethod method, const Locations&
                                              std::span<const std::size_t> donors, const Hole& hidden);
 
 struct FillScore {
-  double mean_square = 0;  ///< m²: by which methods are compared
-  double expected_m = 0;   ///< standard deviation of the distance from the true place, in the middle of the gap
+  double typical_m = 0;   ///< median error: by which methods are compared, for a few holes of another phase shall not decide
+  double expected_m = 0;  ///< standard deviation of the distance from the true place, in the middle of the gap
 };
 
 class FillTrials {
