@@ -175,8 +175,11 @@ void print_report(const pipeline::calibrate::PitchRun& run) {
 
 void run(const CalibratePitch& command) {
   if (!command.elements.files.empty()) return run_elements(command);
-  if (command.inputs.rig.empty() || command.points.empty() || command.out.empty())
-    throw WrongUsage("a rig file, --points and -o are needed, or --elements alone");
+  const char* missing = command.inputs.rig.empty() ? "RIG, the file that names the cameras and their videos,"
+                        : command.points.empty() ? "--points CAMERA=FILE, where points of the pitch are in an image of the camera,"
+                        : command.out.empty()    ? "-o FILE.toml, the rig to write,"
+                                                 : nullptr;
+  if (missing != nullptr) throw WrongUsage("{} is missing; or give --elements alone", missing);
   const Rig rig = rig_of(command.inputs);
   pipeline::calibrate::PitchRunOptions options;
   options.pitch.size = parse_pitch_size(command.size);

@@ -104,7 +104,7 @@ Option Command::add_choice(const std::string& name, std::vector<std::string> nam
   Option::Declared& option =
       declared_->declare(name, meaning + ": " + listed, "NAME", 1, [=, set = std::move(set)](int, const std::string& text) {
         const auto chosen = std::find(names.begin(), names.end(), text);
-        if (chosen == names.end()) throw Error("\"{}\" is not known; supported:: {}.{}", text, listed, suggestion(text, names));
+        if (chosen == names.end()) throw Error("\"{}\" is not known; supported: {}.{}", text, listed, suggestion(text, names));
         set(static_cast<std::size_t>(chosen - names.begin()));
       });
   option.parsed->default_str(typical);

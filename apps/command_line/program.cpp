@@ -185,7 +185,7 @@ Command::Declared& Command::Declared::named_by(const std::vector<std::string>& w
       if (!own) at = &at->child(word);
     }
   }
-  if (!at->below.empty() && !at->run) throw CommandMissing{at->app->help()};
+  if (!at->below.empty() && !at->run) throw CommandMissing{at->app->help("marey")};
   return *at;
 }
 
@@ -232,6 +232,7 @@ Command Program::root() {
 
 int Program::run(int argc, char** argv) {
   int code = 0;
+  std::string of_command;
   try {
     std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (!words.empty() && words.front() == "help") {
@@ -239,6 +240,7 @@ int Program::run(int argc, char** argv) {
       words.emplace_back("--help");
     }
     const Command::Declared& command = parser_->program.named_by(words);
+    of_command = command.path();
     std::reverse(words.begin(), words.end());
     parser_->app.parse(words);
     command.check_its_files();
@@ -255,6 +257,9 @@ int Program::run(int argc, char** argv) {
     code = 2;
   } catch (const CLI::Success& stated) {
     parser_->app.exit(stated);
+  } catch (const CLI::ExtrasError& error) {
+    announce(fmt::format("{}; `{} --help` tells what this command takes", error.what(), of_command));
+    code = 2;
   } catch (const CLI::ParseError& error) {
     announce(error.what());
     code = 2;

@@ -167,6 +167,9 @@ Measurement measure(const Recording& recording, const MeasureOptions& options) {
     if (person.paths.empty() || !found.measured) continue;
     person.average_position /= weight;
     person.mean_mps = person.seconds > 0 ? person.distance_m / person.seconds : 0;
+    // Then the fastest was where speeds are not known.
+    if (person.top_mps && *person.top_mps + 2 * *person.top_sigma_mps < person.mean_mps)
+      person.top_mps.reset(), person.top_sigma_mps.reset();
     result.people.push_back(std::move(person));
   }
   result.teams = measure_teams(recording, result.people);

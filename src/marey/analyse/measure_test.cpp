@@ -197,6 +197,25 @@ TEST(Measure, SpeedsAreOfWhatWasMeasured) {
   }
 }
 
+TEST(Measure, ATopSpeedBelowTheMeanIsNone) {
+  // Walks for two seconds, seen, and runs for eight, of which only the end is seen.
+  Recording recording(on_the_ground());
+  for (int i = 0; i <= 250; ++i) {
+    const double t = i / 25.0;
+    Sample sample = sample_at(3, {t < 2 ? t : 2 + 5 * (t - 2), 10});
+    if (t > 2 && i < 249) sample.provenance = Provenance::predicted;
+    Instant instant;
+    instant.index = i;
+    instant.time = timestamp_from_seconds(t);
+    instant.samples = {sample};
+    recording.add(instant);
+  }
+  const PersonMeasure person = measure(recording).people.at(0);
+  ASSERT_GT(person.mean_mps, 3);
+  EXPECT_FALSE(person.top_mps.has_value()) << *person.top_mps;
+  EXPECT_FALSE(person.top_sigma_mps.has_value());
+}
+
 TEST(Measure, UnmeasuredPersonHasNoRow) {
   Recording recording = one_person(25, 4, running, 0);
   for (int i = 0; i < 50; ++i) {

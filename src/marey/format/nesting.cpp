@@ -154,9 +154,27 @@ void Scanner::xml() {
   }
 }
 
+std::string_view name_of(Notation notation) {
+  switch (notation) {
+    case Notation::toml:
+      return "TOML text";
+    case Notation::json:
+      return "JSON text";
+    case Notation::xml:
+      break;
+  }
+  return "XML text";
+}
+
 }  // namespace
 
+bool is_binary(std::string_view text) {
+  constexpr std::size_t kBeginning = 4096;  // by definition
+  return text.substr(0, kBeginning).find('\0') != std::string_view::npos;
+}
+
 void check_nesting(std::string_view text, Notation notation, const std::string& name) {
+  if (is_binary(text)) throw Error("{}: is a binary file, as videos and images are; {} is wanted", name, name_of(notation));
   Scanner scanner(text, name);
   switch (notation) {
     case Notation::toml:

@@ -38,6 +38,13 @@ TEST(Nesting, TheLimitItselfPassesAndOneMoreDoesNot) {
   }
 }
 
+TEST(Nesting, ABinaryFileIsNamedAsOne) {
+  for (const Notation notation : {Notation::json, Notation::toml, Notation::xml})
+    EXPECT_FALSE(passes(std::string(3, '\0'), notation));
+  EXPECT_TRUE(is_binary(std::string("a\0b", 3)));
+  EXPECT_FALSE(is_binary("a = 1\n"));
+}
+
 TEST(Nesting, EachWayToNestIsSeen) {
   EXPECT_FALSE(passes(times(".a", kMany, "a") + " = 1", Notation::toml));
   EXPECT_FALSE(passes(times(".\"b.c\"", kMany, "[a") + "]", Notation::toml));

@@ -188,7 +188,9 @@ const Format& format_to_read(const std::string& path, Contents required) {
   const Format* format = format_of_content(path);
   if (format == nullptr && !fs::is_regular_file(path) && !fs::is_directory(path))
     throw Error("{}: is not a file, and is inspected more than once; write what it says to a file first", path);
-  if (format == nullptr) throw Error("{}: is not one of the files that Marey knows: {}", path, names_of_read(kAll));
+  if (format == nullptr)
+    throw Error("{}: {} not one of the files that Marey knows; {} are wanted: {}", path,
+                fs::is_directory(path) ? "is a folder, and" : "is", words_of_all(required), names_of_read(required));
   if (!format->holds.any_of(required))
     throw Error("{}: is {}; {} are wanted: {}", path, format->title, words_of_all(required), names_of_read(required));
   return *format;

@@ -45,6 +45,12 @@ std::string model_file(std::string_view name) {
   for (const std::filesystem::path& folder : model_folders()) {
     if (std::filesystem::is_regular_file(folder / name)) return (folder / name).string();
   }
+  if (name.find("heavy") != std::string_view::npos)
+    throw Error(
+        "the network {} is not there: it is in no package; script/model --heavy of Marey's sources makes it, and MAREY_MODELS "
+        "names "
+        "the folder that it is in",
+        name);
   throw Error("the network {} is not there; script/model makes it (or install marey-models; MAREY_MODELS names another folder)",
               name);
 }

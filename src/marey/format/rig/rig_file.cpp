@@ -277,6 +277,9 @@ void read_cameras(const toml::node& node, const std::string& folder, Problems& p
 }  // namespace
 
 Rig parse_rig(std::string_view text, const std::string& name, const std::string& folder) {
+  if (is_binary(text))
+    throw Error("{}: is a binary file, as videos are; a rig file is wanted here, and a camera's video is given as CAMERA={}", name,
+                name);
   check_nesting(text, Notation::toml, name);
   toml::table file;
   try {

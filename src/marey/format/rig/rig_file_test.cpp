@@ -290,6 +290,21 @@ TEST(RigFile, SourcesLieBesideTheFile) {
   EXPECT_THROW(read_rig(folder.path()), Error);
 }
 
+TEST(RigFile, AVideoIsNamedAsOne) {
+  const std::string text(
+      "\0\0\0\x20"
+      "ftypisom[[[",
+      15);
+  try {
+    parse_rig(text, "left.mp4", "");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string_view(error.what()).find("left.mp4: is a binary file, as videos are; a rig file is wanted here"),
+              std::string_view::npos)
+        << error.what();
+  }
+}
+
 TEST(RigFile, RejectsDeepNestingBeforeParsing) {
   for (const std::string& text : {"a" + test::repeated(".a", 50'000) + " = 1", "[a" + test::repeated(".a", 50'000) + "]",
                                   "a = " + test::repeated("[", 200'000), "a = " + test::repeated("{a=", 50'000)}) {

@@ -238,6 +238,19 @@ void add_kinetics(const std::string& recording, const gait::FeetPaths& feet, con
   }
 }
 
+/// Who turns is not described by means over cycles.
+void warn_of_turns(const std::string& recording, GaitMeasure& measure) {
+  const auto turning = std::count_if(measure.cycles.cycles.begin(), measure.cycles.cycles.end(),
+                                     [](const auto& cycle) { return cycle.turn && std::abs(*cycle.turn) > max_reference_turn(); });
+  if (turning == 0) return;
+  measure.warnings.push_back(
+      fmt::format("{}: {} of {} cycles turn by more than {:.0f}°; step width, foot angles and differences of left and right are of "
+                  "a turn, not of straight "
+                  "walking{}",
+                  recording, turning, measure.cycles.cycles.size(), max_reference_turn() * kDegrees,
+                  measure.reference ? ", which alone the reference has" : ""));
+}
+
 /// The control group and the earlier session.
 void add_comparison(const std::string& recording, const GaitOptions& options, const Hooks& hooks, GaitMeasure& measure) {
   if (!options.reference.empty()) {
@@ -250,14 +263,8 @@ void add_comparison(const std::string& recording, const GaitOptions& options, co
                       "not: take that folder out of the reference",
                       recording, *walker, options.reference));
     measure.profile = gait::gait_profile(measure.cycles.curves, group.bands);
-    const auto turning = std::count_if(measure.cycles.cycles.begin(), measure.cycles.cycles.end(), [](const auto& cycle) {
-      return cycle.turn && std::abs(*cycle.turn) > max_reference_turn();
-    });
-    if (turning > 0)
-      measure.warnings.push_back(
-          fmt::format("{}: {} of {} cycles turn by more than {:.0f}°; the reference has straight walking alone", recording, turning,
-                      measure.cycles.cycles.size(), max_reference_turn() * kDegrees));
   }
+  warn_of_turns(recording, measure);
   if (options.before.empty()) return;
   GaitOptions earlier = options;
   earlier.before.clear();

@@ -42,8 +42,8 @@ void read_camera(RigCamera& camera, Cameras which, const std::string& set, std::
 /// Throws Error if they cannot be of one recording; warns where frames are missing.
 void check_together(const std::vector<const KeypointSequence*>& read, bool one_camera, std::vector<std::string>& warnings) {
   if (read.empty() || (read.size() < 2 && !one_camera))
-    throw Error("{} with keypoints; two are needed: CAMERA=FOLDER for each",
-                read.empty() ? "no calibrated camera" : "only one calibrated camera");
+    throw Error("{} with a video or keypoints; two are needed: CAMERA=VIDEO, or CAMERA=KEYPOINTS, for each",
+                read.empty() ? "there is no camera" : "there is only one camera");
   for (const KeypointSequence* one : read) {
     if (one->set.points != read[0]->set.points)
       throw Error("{}: has the keypoint set {}, and {} has {}; all cameras must have one set", one->from, one->set.name,

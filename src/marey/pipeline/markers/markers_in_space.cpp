@@ -82,7 +82,12 @@ class MarkersInSpace : public corridor::Stage {
     report_step("blobs to instants", times_.all);
     summary.warnings.insert(summary.warnings.begin(), points_.warnings().begin(), points_.warnings().end());
     if (summary.points->residual_px) return;
-    summary.warnings.push_back("no marker could be placed: are the cameras of this rig the ones that recorded, and synchronised?");
+    const bool by_people = header_.rig->calibration && header_.rig->calibration->method == "people";
+    summary.warnings.push_back(
+        by_people ? "no marker could be placed: this rig was calibrated by people; for people without markers add "
+                    "--targets keypoints"
+                  : "no marker could be placed: are the cameras of this rig the ones that recorded, and synchronised? For "
+                    "people without markers add --targets keypoints");
   }
 
  protected:
