@@ -105,14 +105,14 @@ def walk(marey, folder):
     lenses = {}
     for camera in tomllib.loads((folder / "stands.toml").read_text())["camera"][1:]:
         name, half = camera["name"], [side // 2 for side in camera["size"]]
-        subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", videos / f"videos/{name}.mp4", "-vf", f"fps=15,scale={half[0]}:{half[1]}", "-crf", "18", f"{name}.mp4"], cwd=folder, check=True)
+        subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", videos / f"videos/{name}.mp4", "-vf", f"fps=10,scale={half[0]}:{half[1]}", "-crf", "18", f"{name}.mp4"], cwd=folder, check=True)
         lenses[name] = f'[[camera]]\nname = "{name}"\nsize = {half}\nsource = "play:{folder}/{name}.mp4?loop"\nmodel = "brown"\n' + "".join(
             f"{key} = {[value / 2 for value in camera[key]]}\n" for key in ("focal", "principal")) + f'distortion = {camera["distortion"]}\n'
     (folder / "blind.toml").write_text("\n".join(lenses.values()))
     command = [marey, "calibrate", "people", "blind.toml", "--model", "lite", "-o", "walked.toml", "--view", "--port", "0", "--duration", "120", "--json"]
     shown, address = begun(command, folder)
     try:
-        inspect("viewer_people.mjs", folder, "people", address, 600)
+        inspect("viewer_people.mjs", folder, "people", address, 800)
         told, why = shown.communicate(timeout=30)  # it ends when the page is closed
     finally:
         shown.kill()

@@ -23,13 +23,12 @@ await eventually("nothing is said to be missing", async () => /Camera "\w+" has 
 await eventually("the points are not drawn", async () => (await points()) > 50);
 await eventually("no part is covered", async () => /[1-9]\d*\s% of its picture/.test(await text(".coverage")));
 await eventually("other cameras that saw them are not named", async () => /Together with .*cam04/.test(await text(".pairs")));
-await eventually("no two cameras have enough in common", async () => (await page.locator(".pair.enough").count()) > 0);
 await shot("walking");
 await check_layout();
 await page.click("#enough");
 await until("it does not compute", () => document.body.dataset.wand === "computing");
 const phase = () => page.evaluate(() => document.body.dataset.wand);
-for (let s = 0; s < 400 && /waving|computing/.test(await phase()); ++s) await page.waitForTimeout(1000); // as long as it takes
+for (let s = 0; s < 700 && /waving|computing/.test(await phase()); ++s) await page.waitForTimeout(1000); // as long as it takes
 // Less than two seconds, over and over, are little to calibrate by: it is a rig, or the sentence why there is not one.
 if ((await phase()) === "done") {
   assert.match(await text(".wand_head p"), /written to .*walked\.toml/);
