@@ -9,11 +9,13 @@
 
 #include <fmt/core.h>
 
+#include "marey/calibrate/wand/wand_coverage.h"
 #include "marey/core/error.h"
 #include "marey/format/rig/rig_file.h"
 #include "marey/pipeline/calibrate/live_blobs.h"
 #include "marey/pipeline/jobs/detection_rows.h"
 
+#include "calibration_page.h"
 #include "camera_distance.h"
 #include "command_line.h"
 #include "commands.h"
@@ -23,7 +25,6 @@
 #include "rig_inputs.h"
 #include "run_hooks.h"
 #include "view_options.h"
-#include "wand_screen.h"
 
 namespace marey::cli {
 namespace {
@@ -133,20 +134,25 @@ pipeline::calibrate::GroundCalibration ground_by_l_frame(const Rig& rig, const p
 /// Waved before live cameras, watched on the terminal and on a page.
 void calibrate_live(const Rig& rig, pipeline::calibrate::CalibrateWandOptions options, const CalibrateWand& command) {
   std::atomic<bool> will_do = false;
-  std::optional<WandPage> page;
+  const CalibrationSubject subject{.job = "wand",
+                                   .invitation = "wave the wand through the whole volume",
+                                   .criteria = calibrate::wand::WandCoverage::criteria(pipeline::calibrate::knows_lenses(rig))};
+  std::optional<CalibrationPage> page;
   const auto camera_settings = std::make_shared<pipeline::live::CameraSettings>(rig, options.markers.threshold);
   options.camera_settings = camera_settings.get();
   if (command.view) {
-    page.emplace(WandPage::Options{.location = command.web,
-                                   .allow_control = command.allow_control,
-                                   .ground = [&](const Rig& found) { return ground_by_l_frame(found, options, command.frame); },
-                                   .enough = [&] { will_do = true; }},
-                 rig, camera_settings);
+    page.emplace(
+        subject,
+        CalibrationPage::Options{.location = command.web,
+                                 .allow_control = command.allow_control,
+                                 .ground = [&](const Rig& found) { return ground_by_l_frame(found, options, command.frame); },
+                                 .enough = [&] { will_do = true; }},
+        rig, camera_settings);
   }
-  WandScreen screen(command.quiet);
+  CalibrationScreen screen(command.quiet);
   const Keys keys([&](char key) { will_do = will_do || key == 'q'; });
-  screen.begun(keys.listens());
-  options.waving = [&](const pipeline::calibrate::WandObserved& detected) {
+  screen.begun(subject, keys.listens());
+  options.waving = [&](const pipeline::calibrate::LiveObserved& detected) {
     screen.show(detected);
     if (page) page->show(detected);
     return !will_do;

@@ -1,5 +1,6 @@
 #include "live_outputs.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,8 @@
 
 namespace marey::cli {
 namespace {
+
+constexpr double kNewsShown_s = 15;
 
 std::function<void(bool on)> switching(const std::shared_ptr<pipeline::corridor::RecordSwitch>& recording,
                                        const std::string& take) {
@@ -64,14 +67,22 @@ viewer::LiveReport::Camera LiveOutputs::camera_of(const CameraHealth& camera, st
   return reported;
 }
 
+void LiveOutputs::take_news(const pipeline::corridor::LiveStatus& status) {
+  const std::int64_t fresh = std::min<std::int64_t>(status.news_count - news_count_, std::ssize(status.news));
+  for (auto one = status.news.end() - fresh; one != status.news.end(); ++one) news_.emplace_back(status.seconds, *one);
+  news_count_ = status.news_count;
+  while (!news_.empty() && status.seconds - news_.front().first > kNewsShown_s) news_.pop_front();
+}
+
 void LiveOutputs::report(const pipeline::corridor::LiveStatus& status) {
   if (!viewer_) return;
+  take_news(status);
   viewer::LiveReport report{.cameras = {},
                             .superseded = status.drops.superseded,
                             .steps = {},
                             .unsaved = handles_.camera_settings->has_changed(),
                             .notes = status.troubles};
-  report.notes.insert(report.notes.end(), status.news.begin(), status.news.end());
+  for (const auto& [when, sentence] : news_) report.notes.push_back(sentence);
   for (const CameraHealth& camera : status.cameras) {
     report.cameras.push_back(camera_of(camera, report.cameras.size()));
     if (!camera.trouble.empty()) report.notes.push_back(camera.trouble);

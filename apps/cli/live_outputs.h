@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "marey/core/sink.h"
@@ -44,11 +48,14 @@ class LiveOutputs {
 
  private:
   viewer::LiveReport::Camera camera_of(const CameraHealth& camera, std::size_t index) const;
+  void take_news(const pipeline::corridor::LiveStatus& status);
 
   std::string take_;
   LiveHandles handles_;
   bool finds_markers_;
   stream::Streams streams_;
+  std::deque<std::pair<double, std::string>> news_;  // when they came, s of the run; the page shows them for a while
+  std::int64_t news_count_ = 0;
   std::unique_ptr<viewer::LiveViewer> viewer_;
 };
 

@@ -61,9 +61,9 @@ struct LiveViewOptions {
   /// page.
   std::function<void(const PageCommand&)> change = {};
   std::string rig_file = {};  ///< that changes are saved in; empty: no such file
-  /// What is done, where it is not a run that tracks: "wand". The page adapts to it.
+  /// What is done, where it is not a run that tracks: "wand", "people". The page adapts to it.
   std::string job = {};
-  /// The page's button by which a wand has been waved enough; without it, no button. As `record`.
+  /// The page's button by which a wand has been waved enough, or people have walked; without it, no button. As `record`.
   std::function<void()> enough = {};
   /// The page's button by which the ground is set, by an L-frame on it; without it, no button. As `record`.
   std::function<void()> ground = {};
@@ -94,7 +94,7 @@ class LiveViewer {
   void report(const LiveReport& report);
   /// What the record button shows: whether it is being recorded now, and into what.
   void recording(bool on, const std::string& into = {});
-  /// How a wand is seen, as JSON that page/src/wand.ts declares.
+  /// How a wand or people are seen, as JSON that page/src/wand.ts declares.
   void wand(const std::string& json);
   WebServer::Count count() const;
 

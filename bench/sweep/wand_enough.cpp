@@ -68,7 +68,7 @@ double enough_after(const Waved& all) {
       detected.push_back(
           {std::span(all.input.detected[c]).subspan(at, step), all.input.rig.cameras[c].lens, *all.input.rig.cameras[c].size});
     coverage.add(detected, 0.5 / all.rate_hz);
-    if (coverage.is_enough()) return static_cast<double>(at + step) / all.rate_hz;
+    if (coverage.images().is_enough()) return static_cast<double>(at + step) / all.rate_hz;
   }
   return kWhole;
 }

@@ -2,7 +2,7 @@
 
     phones_test.py MAREY [FOLDER]      exits 77 (skipped) where Node, the page's packages or Chromium are not here
 
-Clocks of phones are right when images that show the same time are given the same time; what a page could not send is counted as lost.
+One that is turned, sleeps, changes its network or is opened twice follows. Clocks of phones are right when images that show the same time are given the same time; what a page could not send is counted as lost.
 """
 import json
 import os
@@ -13,6 +13,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import tomllib
 
 import viewer_test
@@ -98,6 +99,35 @@ def two_clocks(marey, folder):
     assert abs(apart[0] - apart[1]) < APART_MS, apart
 
 
+def trouble(marey, folder):
+    """The run continues, says what happened, and every image that the phone took is there or counted."""
+    live, address = begun([marey, "live", "left=phone:left?port=0", "--view", "--port", "0", "-o", "trouble.marey", "--record", "video", "--duration", "300", "--json"], folder)
+    said = []
+    listens = threading.Thread(target=lambda: said.extend(live.stderr))
+    listens.start()
+    try:
+        script = pathlib.Path(__file__).with_name("phones_trouble.mjs")
+        done = subprocess.run(["node", script, viewer_test.PAGE, address["phone"], "left"], timeout=280, capture_output=True, text=True)
+        assert done.returncode == 0, (done.stderr, said)
+        pages = json.loads(done.stdout)
+    finally:
+        live.send_signal(signal.SIGINT)
+        told = live.stdout.read()
+        listens.join(timeout=60)
+        live.wait(timeout=60)
+    camera = json.loads(told)["cameras"]["left"]
+    text = "".join(said)
+    print(pages, camera)
+    for sentence in ("phone left: was turned", "phone left: page is hidden", "phone left: another phone has taken its place"):
+        assert sentence in text, (sentence, text)
+    assert not any(page["wrong"] for page in pages), pages
+    taken = sum(page["images"] for page in pages)
+    counted = camera["frames"] + camera["lost"] + camera["damaged"]
+    # The pages' counts are read a moment after a phone became the camera, and before it ended.
+    assert abs(counted - taken) < 30, f"{taken} images were taken, {counted} are there or counted: {pages}, {camera}"
+    assert camera["lost"] > 100 and camera["damaged"] == 0, camera
+
+
 def camera_of_the_browser(marey, folder):
     run(marey, folder, "device", 4, "front")
 
@@ -115,6 +145,7 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         two_clocks(marey, folder)
         camera_of_the_browser(marey, folder)
+        trouble(marey, folder)
     return 0
 
 

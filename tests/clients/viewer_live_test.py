@@ -1,12 +1,15 @@
-"""The page of live runs in Chromium: every kind of target is listed, named and fitted, cameras are adjusted and masked, a wand is waved.
+"""The page of live runs in Chromium: every kind of target is listed, named and fitted, cameras are adjusted and masked, a wand is
+waved, people walk.
 
     viewer_live_test.py MAREY LIVE_SCENE [FOLDER]      exits 77 (skipped) where Node, the page's packages or Chromium are not here
 
 Screenshots are left in FOLDER.
 """
 import json
+import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -25,9 +28,9 @@ def begun(command, folder):
     raise AssertionError(f"{command} shows no page: {shown.wait()}")
 
 
-def inspect(script, folder, scenario, address):
+def inspect(script, folder, scenario, address, timeout_s=300):
     script = pathlib.Path(__file__).with_name(script)
-    subprocess.run(["node", script, viewer_test.PAGE, folder, scenario, address], check=True, timeout=300)
+    subprocess.run(["node", script, viewer_test.PAGE, folder, scenario, address], check=True, timeout=timeout_s)
 
 
 def write_rig(marey, folder):
@@ -89,6 +92,38 @@ def wave(marey, folder, scenario):
     print("the wand:", json.loads(told)["grade"])
 
 
+def walk(marey, folder):
+    """A person before three cameras, in small copies of the videos that MAREY_DATA has, over and over."""
+    videos = pathlib.Path(os.environ.get("MAREY_DATA", "")) / "markerless"
+    models = pathlib.Path(os.environ.get("MAREY_MODELS", viewer_test.ROOT / "build/models"))
+    for there, what in ((videos.is_dir(), "MAREY_DATA names no folder with markerless/videos"), ((models / "pose_landmark_full.onnx").exists(), "no network (script/model)"),
+                        (shutil.which("ffmpeg") is not None, "ffmpeg is not here")):
+        if not there:
+            print("people who walk: skipped:", what)
+            return
+    subprocess.run([marey, "convert", videos / "calibration/Calib.qca.txt", "stands.toml", "-q"], cwd=folder, check=True)
+    lenses = {}
+    for camera in tomllib.loads((folder / "stands.toml").read_text())["camera"][1:]:
+        name, half = camera["name"], [side // 2 for side in camera["size"]]
+        subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", videos / f"videos/{name}.mp4", "-vf", f"fps=10,scale={half[0]}:{half[1]}", "-crf", "18", f"{name}.mp4"], cwd=folder, check=True)
+        lenses[name] = f'[[camera]]\nname = "{name}"\nsize = {half}\nsource = "play:{folder}/{name}.mp4?loop"\nmodel = "brown"\n' + "".join(
+            f"{key} = {[value / 2 for value in camera[key]]}\n" for key in ("focal", "principal")) + f'distortion = {camera["distortion"]}\n'
+    (folder / "blind.toml").write_text("\n".join(lenses.values()))
+    command = [marey, "calibrate", "people", "blind.toml", "--model", "lite", "-o", "walked.toml", "--view", "--port", "0", "--duration", "120", "--json"]
+    shown, address = begun(command, folder)
+    try:
+        inspect("viewer_people.mjs", folder, "people", address, 800)
+        told, why = shown.communicate(timeout=30)  # it ends when the page is closed
+    finally:
+        shown.kill()
+    assert shown.returncode in (0, 1) and (folder / "walked.toml").exists() == (shown.returncode == 0), (told, why)
+    if shown.returncode == 0:
+        cameras = tomllib.loads((folder / "walked.toml").read_text())["camera"]
+        assert all("rotation" in camera and camera["source"].startswith("play:") for camera in cameras), cameras
+    assert sorted(path.name for path in (folder / "walked_video").iterdir()) == sorted([f"{name}.mp4" for name in lenses] + ["rig.toml"])
+    print("people:", json.loads(told)["cameras"] if told else why.splitlines()[-1])
+
+
 def show_kinds(marey, live_scene, folder):
     """A page for each kind of target."""
     def run(*arguments):
@@ -124,6 +159,7 @@ def main(marey, live_scene, folder):
     name_markers(marey, folder)
     wave(marey, folder, "wand")
     wave(marey, folder, "wand_enough_phone")
+    walk(marey, folder)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ import { Table } from "./table";
 import { Timeline } from "./timeline";
 import type { View } from "./view";
 import { view_of } from "./views";
-import { Wand } from "./wand";
+import { Wand, is_kind } from "./wand";
 import { kind_of, image_of, TimeChunk, type CameraImage } from "./wire";
 import { Words, type Status } from "./status_text";
 
@@ -42,6 +42,7 @@ class Page {
   private editor: Editor;
   private names: Names;
   private wand: Wand | null = null;
+  private noted = "";
   private tab = "list";
   private wanted = false;
   private before = 0;
@@ -70,7 +71,7 @@ class Page {
     this.names = new Names(element("stage"), state, (line) => this.say(line));
     this.words = new Words(() => this.motion, this.colours, this.latency);
     this.editor = new Editor(state, () => this.motion, { send: (line) => this.say(line), seek: (time) => this.seek(time), show_tab: (tab) => this.show_tab(tab) });
-    if (scene.job === "wand") this.wand = new Wand(this.cameras, (line) => this.say(line));
+    if (is_kind(scene.job)) this.wand = new Wand(scene.job, this.cameras, (line) => this.say(line));
     state.on_change(redraw);
     state.on_change(() => this.plots.update());
     state.on_hover = redraw;
@@ -186,7 +187,7 @@ class Page {
   private take_status(status: Status): void {
     this.words.status = status;
     this.cameras.status(status.cameras ?? [], status.unsaved ?? false);
-    if (status.notes?.length) this.said(status.notes.join(" "));
+    this.note(status.notes ?? []);
     this.words.about();
     if (this.motion instanceof Live && this.tab === "list") {
       const live = this.motion;
@@ -299,6 +300,13 @@ class Page {
     trails.classList.toggle("on", state.trail_s > 0);
     put(trails, state.trail_s > 0 ? `Trails ${state.trail_s} s` : "Trails");
     this.words.live_facts();
+  }
+
+  /** A line each, for as long as the server says so; another message that came since stays. */
+  private note(notes: string[]): void {
+    const text = notes.map((line) => line.slice(0, 1).toUpperCase() + line.slice(1)).join("\n");
+    if (text !== "" || element("said").textContent === this.noted) this.said(text);
+    this.noted = text;
   }
 
   private said(text: string): void {

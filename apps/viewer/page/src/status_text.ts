@@ -31,7 +31,7 @@ export class Words {
     const { scene } = this.motion();
     const live = scene.kind === "live";
     put(element("list_tab"), { space: "Markers", ground: "People", image: "Tracks" }[scene.frame]);
-    const name = scene.job === "wand" ? "Wand calibration" : live ? "Live" : scene.name.split("/").pop() || "Recording";
+    const name = scene.job === "wand" ? "Wand calibration" : scene.job === "people" ? "Calibration by people" : live ? "Live" : scene.name.split("/").pop() || "Recording";
     put(element("title"), name);
     document.title = `${name} – Marey`;
     element("record").hidden = !scene.can_record;

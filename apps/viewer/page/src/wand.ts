@@ -1,5 +1,5 @@
-// A wand that is waved before live cameras: each one's image with the wand in it and the parts of the image in which it was, who
-// has seen enough, and with whom; then how good the calibration is, beside the rig as it stands.
+// A wand that is waved before live cameras, or people who walk: each one's image with them in it and the parts of the image in which
+// they were, who has seen enough, and together with which; then how good the calibration is, beside the rig as it stands.
 import "./wand.css";
 import type { Cameras } from "./cameras";
 import type { Scene } from "./scene";
@@ -20,6 +20,12 @@ interface Fit {
   inliers: number;
   observations: number;
 }
+interface PeopleReport {
+  people: number;
+  height_m: number;
+  cameras: Record<string, { rms_px: number; coverage: number; deviation: { centre_mm: number; focal: number } }>;
+  notes: string[];
+}
 interface Report {
   all: Fit;
   cameras: Record<string, Fit & { coverage: number; world_error_mm: number }>;
@@ -29,7 +35,7 @@ interface Report {
   grade_text: string;
   notes: string[];
 }
-/** As apps/cli/wand_screen.cpp says it. */
+/** As apps/cli/calibration_page.cpp says it. */
 interface Waved {
   phase: "waving" | "computing" | "done" | "failed";
   /** Share of an image, views of a pair, and parts of an image. */
@@ -40,7 +46,9 @@ interface Waved {
   seconds?: number;
   cameras?: Detected[];
   shared?: { a: number; b: number; views: number; sufficient: boolean }[];
-  report?: Report;
+  /** What is to be done yet. */
+  missing?: string[];
+  report?: Report | PeopleReport;
   rig?: string;
   why?: string;
   /** Asked for on this page, once the rig was found. */
@@ -48,6 +56,22 @@ interface Waved {
 }
 
 const [MARGIN, GAP, BELOW, NARROWEST] = [16, 14, 118, 160]; // px; of the cards and what stands below their images
+
+/** The words for each kind. */
+const WORDS = {
+  wand: {
+    it: "The wand was",
+    invite: "Wave the wand through the whole volume",
+    computing: "Put the wand down; this takes some seconds.",
+  },
+  people: {
+    it: "People were",
+    invite: "Walk through the whole volume, near and far",
+    computing: "The recorded videos are searched for people; this takes some minutes.",
+  },
+};
+export type Kind = keyof typeof WORDS;
+export const is_kind = (job?: string): job is Kind => job !== undefined && job in WORDS;
 
 const make = <K extends keyof HTMLElementTagNameMap>(kind: K, name = "", text = ""): HTMLElementTagNameMap[K] => {
   const element = document.createElement(kind);
@@ -58,6 +82,12 @@ const make = <K extends keyof HTMLElementTagNameMap>(kind: K, name = "", text = 
 const capital = (text: string) => `${text.slice(0, 1).toUpperCase()}${text.slice(1)}`;
 const percent = (share: number) => `${(100 * share).toFixed(0)}\u00a0%`;
 
+const row = (kind: "th" | "td", ...texts: string[]) => {
+  const line = make("tr");
+  line.append(...texts.map((text) => make(kind, "", text)));
+  return line;
+};
+
 /** What stands under one camera's image, and over it. */
 class CameraCard {
   readonly element = make("div", "waved");
@@ -65,8 +95,10 @@ class CameraCard {
   private words = make("p", "coverage");
   private pairs = make("p", "pairs");
   private seen: Detected | null = null;
+  /** Width over height of its images. */
+  aspect = 4 / 3;
 
-  constructor(private waved: () => Waved) {
+  constructor(private kind: Kind, private waved: () => Waved) {
     const track = make("div", "coverage_bar");
     track.append(this.bar, make("b"));
     this.element.append(track, this.words, this.pairs);
@@ -75,7 +107,7 @@ class CameraCard {
   take(index: number, seen: Detected): void {
     this.seen = seen;
     const { required: required, needed, shared, cameras } = this.waved();
-    // The bar is full at what is wanted.
+    // The bar is full at the wanted share.
     this.bar.style.width = `${Math.min(100, (100 * seen.coverage) / required)}%`;
     this.element.classList.toggle("enough", seen.covered);
     const gives = seen.state === "live" || seen.state === "back";
@@ -86,7 +118,7 @@ class CameraCard {
       .map((pair) => {
         const other = cameras?.[pair.a === index ? pair.b : pair.a]?.name ?? "";
         const chip = make("span", pair.sufficient ? "pair enough" : "pair", pair.sufficient ? `✓ ${other}` : `${other} ${pair.views}/${needed}`);
-        chip.title = `The wand was seen ${pair.views} times together with ${other}; ${needed} tell how they stand to each other`;
+        chip.title = `${WORDS[this.kind].it} seen ${pair.views} times together with ${other}; ${needed} tell how they stand to each other`;
         return chip;
       });
     this.pairs.replaceChildren("Together with ", ...chips);
@@ -94,6 +126,7 @@ class CameraCard {
   }
 
   draw(draw: CanvasRenderingContext2D, wide: number, tall: number, ratio: number, picture: CameraImage): void {
+    if (picture.width > 0) this.aspect = picture.width / picture.height;
     const { across, down } = this.waved();
     const [w, h] = [wide / across, tall / down];
     draw.fillStyle = "#55b97a4d";
@@ -104,7 +137,18 @@ class CameraCard {
     for (let i = 1; i < across; ++i) draw.rect(i * w, 0, 0, tall);
     for (let i = 1; i < down; ++i) draw.rect(0, i * h, wide, 0);
     draw.stroke();
-    this.draw_wand(draw, wide / (picture.width || wide), ratio, picture);
+    if (this.kind === "wand") this.draw_wand(draw, wide / (picture.width || wide), ratio, picture);
+    else this.draw_people(draw, wide / (picture.width || wide), ratio, picture);
+  }
+
+  private draw_people(draw: CanvasRenderingContext2D, scale: number, ratio: number, { points }: CameraImage): void {
+    draw.fillStyle = "#ffd166";
+    for (const i of points.track.keys()) {
+      if (points.track[i] <= 0) continue;
+      draw.beginPath();
+      draw.arc(scale * (points.x[i] + 0.5), scale * (points.y[i] + 0.5), 3 * ratio, 0, 7);
+      draw.fill();
+    }
   }
 
   private draw_wand(draw: CanvasRenderingContext2D, scale: number, ratio: number, { points }: CameraImage): void {
@@ -130,20 +174,21 @@ export class Wand {
   private title = make("h1");
   private detail = make("p");
   private enough = make("button", "", "That will do");
+  private missing = make("ul", "missing");
   private result = make("div", "result");
   private floor = make("div", "floor");
   private set_ground = make("button", "chip", "Set the ground");
   private floor_words = make("p");
   private grid = document.querySelector<HTMLElement>("#cameras")!;
-  private arranged = false;
+  private arranged = "";
   private cards: CameraCard[] = [];
   private waved: Waved = { phase: "waving", required: 0.3, needed: 200, across: 10, down: 8 };
 
-  constructor(private cameras: Cameras, say: (line: string) => void) {
+  constructor(private kind: Kind, private cameras: Cameras, say: (line: string) => void) {
     this.main.id = "wand";
     document.body.classList.add("wand");
     const words = make("div", "words");
-    words.append(this.title, this.detail);
+    words.append(this.title, this.detail, this.missing);
     this.enough.id = "enough";
     this.enough.title = "Calibrate by what was seen so far";
     this.enough.addEventListener("click", () => say("enough"));
@@ -155,6 +200,7 @@ export class Wand {
       say("ground");
     });
     this.floor.append(make("h2", "", "The floor"), this.floor_words, this.set_ground);
+    this.floor.classList.toggle("absent", this.kind !== "wand");
     this.main.append(this.head, this.result, this.floor, this.grid);
     document.querySelector("#panel")!.before(this.main);
     new ResizeObserver(() => this.arrange()).observe(this.grid);
@@ -176,10 +222,12 @@ export class Wand {
     const count = this.waved.cameras?.length ?? 0;
     const [width, height] = [this.grid.clientWidth - 2 * MARGIN, this.grid.clientHeight - 2 * MARGIN];
     if (count === 0 || width <= 0) return;
+    const aspects = this.cards.map((card) => card.aspect);
+    const narrowest = aspects.length > 0 ? Math.min(...aspects) : 4 / 3; // the tallest decides how wide all can be
     let best = [1, 0];
     for (let columns = 1; columns <= count; ++columns) {
       const row = height / Math.ceil(count / columns) - GAP - BELOW;
-      const wide = Math.min((width + GAP) / columns - GAP, (row * 4) / 3);
+      const wide = Math.min((width + GAP) / columns - GAP, row * narrowest);
       if (wide > best[1]) best = [columns, wide];
     }
     const wide = Math.max(best[1], Math.min(NARROWEST, width));
@@ -194,8 +242,9 @@ export class Wand {
       this.card(i)?.take(i, seen);
       this.cameras.state(i, seen.state);
     });
-    if (cameras && !this.arranged) {
-      this.arranged = true;
+    const shapes = cameras ? this.cards.map((card) => card.aspect.toFixed(2)).join() : "";
+    if (shapes !== this.arranged) {
+      this.arranged = shapes;
       this.arrange();
     }
     this.tell();
@@ -203,31 +252,34 @@ export class Wand {
 
   private card(index: number): CameraCard | null {
     if (this.cards[index]) return this.cards[index];
-    const card = new CameraCard(() => this.waved);
+    const card = new CameraCard(this.kind, () => this.waved);
     if (!this.cameras.adorn(index, card.element, (...all) => card.draw(...all))) return null;
     return (this.cards[index] = card);
   }
 
   private tell(): void {
-    const { phase, cameras, seconds, report, rig, why } = this.waved;
+    const { phase, cameras, seconds, report, rig, why, missing } = this.waved;
+    const words = WORDS[this.kind];
+    this.missing.hidden = phase !== "waving" || !missing?.length;
+    if (!this.missing.hidden && this.missing.textContent !== missing!.map(capital).join("")) this.missing.replaceChildren(...missing!.map((line) => make("li", "", capital(line))));
     const ready = cameras?.filter((camera) => camera.covered).length ?? 0;
     document.body.classList.toggle("wand_done", phase === "done");
     document.body.dataset.wand = phase;
     this.enough.hidden = phase !== "waving" || !cameras;
     this.head.classList.toggle("bad", phase === "failed");
     if (phase === "waving") {
-      put(this.title, "Wave the wand through the whole volume");
+      put(this.title, words.invite);
       put(this.detail, cameras ? `${ready} of ${cameras.length} cameras have seen enough · ${(seconds ?? 0).toFixed(0)} s` : "Waiting for the cameras …");
     } else if (phase === "computing") {
       put(this.title, "Enough. Calibrating …");
-      put(this.detail, "Put the wand down; this takes some seconds.");
+      put(this.detail, words.computing);
     } else if (phase === "failed") {
       put(this.title, "No rig results from it");
       put(this.detail, why ?? "");
     } else if (report) {
       put(this.title, "Calibrated");
       put(this.detail, `The rig was written to ${rig ?? ""}`);
-      this.result.replaceChildren(...this.judged(report));
+      this.result.replaceChildren(...("grade" in report ? this.judged(report) : this.told(report)));
       this.tell_floor();
     }
   }
@@ -244,15 +296,22 @@ export class Wand {
     else put(this.floor_words, `Not set: ${ground.why ?? ""}`);
   }
 
+  /** Of people there is no part that was held out, but each camera's own deviation. */
+  private told(report: PeopleReport): HTMLElement[] {
+    const table = make("table", "each");
+    table.append(row("th", "Camera", "Error", "Place", "Focal length", "Coverage"));
+    for (const [name, { rms_px, deviation, coverage }] of Object.entries(report.cameras))
+      table.append(row("td", name, `${rms_px.toFixed(1)} px`, `± ${(deviation.centre_mm / 10).toFixed(1)} cm`, `± ${(100 * deviation.focal).toFixed(1)}\u00a0%`, percent(coverage)));
+    const facts = make("ul");
+    facts.append(make("li", "", `${report.people === 1 ? "One person was" : `${report.people} people were`} seen by two cameras or more; height ${report.height_m.toFixed(2)} m; the floor is z = 0`));
+    for (const note of report.notes) facts.append(make("li", "", capital(note.replaceAll("`", ""))));
+    return [table, facts, make("p", "hint", "Close this page to end.")];
+  }
+
   private judged(report: Report): HTMLElement[] {
     const grade = make("p", `grade ${report.grade}`);
     grade.append(make("strong", "", report.grade), make("span", "", report.grade_text));
     const table = make("table");
-    const row = (kind: "th" | "td", ...texts: string[]) => {
-      const line = make("tr");
-      line.append(...texts.map((text) => make(kind, "", text)));
-      return line;
-    };
     table.append(row("th", "Camera", "Error", "In space", "Coverage"));
     for (const [name, camera] of Object.entries(report.cameras))
       table.append(row("td", name, `${camera.mean_px.toFixed(2)} px`, `${camera.world_error_mm.toFixed(2)} mm`, percent(camera.coverage)));

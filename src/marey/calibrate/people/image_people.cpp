@@ -20,35 +20,12 @@ constexpr std::size_t kMinPoints = 5;  // unswept: of a frame that counts
 
 using Points = std::vector<std::optional<Vector<2>>>;
 
-Points points_of(const Keypoints<2>& person, std::vector<double>& sigmas) {
-  Points points(person.points.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto& point = person.points[i];
-    if (!point || point->visibility * point->presence < kMinVisible || !point->position.allFinite()) continue;
-    points[i] = point->position;
-    sigmas.push_back(std::sqrt(std::sqrt(std::max(0.0, point->covariance.determinant()))));
-    ++count;
-  }
-  return count >= kMinPoints ? points : Points{};
-}
-
 double size_of(const Points& points) {
   Vector<2> low = Vector<2>::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const auto& point : points) {
     if (point) low = low.cwiseMin(*point), high = high.cwiseMax(*point);
   }
   return (high - low).maxCoeff();
-}
-
-/// Mean distance of the points that both have, in sizes of the body.
-double distance(const Points& a, const Points& b) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] && b[i]) sum += (*a[i] - *b[i]).norm(), ++count;
-  }
-  return count == 0 ? std::numeric_limits<double>::infinity() : sum / count / std::max(1.0, size_of(a));
 }
 
 struct Open {
@@ -69,7 +46,7 @@ std::vector<Link> links(const std::vector<Points>& people, const std::vector<Ope
   std::vector<Link> all;
   for (std::size_t p = 0; p < people.size(); ++p) {
     for (std::size_t o = 0; o < open.size(); ++o) {
-      const double moved = people[p].empty() ? kMaxMoved : distance(open[o].last, people[p]);
+      const double moved = people[p].empty() ? kMaxMoved : distance_in_sizes(open[o].last, people[p]);
       if (moved < kMaxMoved) all.push_back({moved, p, o});
     }
   }
@@ -87,6 +64,28 @@ void add(Open& open, std::size_t frame, Points points, const std::vector<double>
 }
 
 }  // namespace
+
+std::vector<std::optional<Vector<2>>> sure_points(const Keypoints<2>& person, std::vector<double>* sigmas) {
+  Points points(person.points.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& point = person.points[i];
+    if (!point || point->visibility * point->presence < kMinVisible || !point->position.allFinite()) continue;
+    points[i] = point->position;
+    if (sigmas != nullptr) sigmas->push_back(std::sqrt(std::sqrt(std::max(0.0, point->covariance.determinant()))));
+    ++count;
+  }
+  return count >= kMinPoints ? points : Points{};
+}
+
+double distance_in_sizes(const std::vector<std::optional<Vector<2>>>& a, const std::vector<std::optional<Vector<2>>>& b) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (a[i] && b[i]) sum += (*a[i] - *b[i]).norm(), ++count;
+  }
+  return count == 0 ? std::numeric_limits<double>::infinity() : sum / count / std::max(1.0, size_of(a));
+}
 
 std::optional<Vector<2>> ImagePerson::at(double frame, std::size_t point) const {
   const double at = frame - static_cast<double>(first);
@@ -110,7 +109,7 @@ std::vector<ImagePerson> image_people(const KeypointSequence& sequence, double r
   for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
     std::vector<Points> people;
     std::vector<std::vector<double>> sigmas;
-    for (const Keypoints<2>& person : sequence.frames[k]) people.push_back(points_of(person, sigmas.emplace_back()));
+    for (const Keypoints<2>& person : sequence.frames[k]) people.push_back(sure_points(person, &sigmas.emplace_back()));
     std::vector<char> linked(people.size(), 0);
     for (const Link& link : links(people, open)) {
       if (linked[link.person] || open[link.open].observed == k) continue;

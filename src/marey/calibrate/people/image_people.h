@@ -9,6 +9,13 @@
 
 namespace marey::calibrate::people {
 
+/// The points of a person that are surely seen, px; none at all where they are too few. What they state as their deviations, px,
+/// is added to `sigmas`.
+std::vector<std::optional<Vector<2>>> sure_points(const Keypoints<2>& person, std::vector<double>* sigmas = nullptr);
+
+/// Mean distance of the points that both have, in sizes of the body `a`; infinite where they have none in common.
+double distance_in_sizes(const std::vector<std::optional<Vector<2>>>& a, const std::vector<std::optional<Vector<2>>>& b);
+
 /// One person through one camera's frames.
 struct ImagePerson {
   std::size_t first = 0;  ///< frame

@@ -367,6 +367,11 @@ void PeopleCalibration::report_cameras() {
                                           1e6 * std::abs(drift_[c]), 1e6 * drift_deviation_[c], drift_[c] > 0 ? "slow" : "fast",
                                           views_.cameras[c].rate_hz));
     const double sigma = fitted_.deviations.empty() ? 0 : fitted_.deviations[c].centre.norm();
+    if (sigma > extent)
+      throw Error(
+          "camera \"{}\": its place does not follow from the people's points: it is known to {:.1f} m, and no two cameras are more "
+          "than {:.1f} m apart; let one person walk through the whole volume, near and far, and turn",
+          names[c], sigma, extent);
     if (sigma > kPoorlyKnown * extent)
       result_.notes.push_back(
           fmt::format("camera \"{}\": its place is known to {:.0f} cm; walk nearer to it, and through more of its image", names[c],

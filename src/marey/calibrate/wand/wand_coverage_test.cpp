@@ -41,19 +41,19 @@ TEST(WandCoverage, GrowsUntilItIsEnough) {
   WandScene scene(1);
   const auto always = [](std::size_t, double) { return true; };
   const WandCoverage early = waved(scene, 2, always), late = waved(scene, 40, always);
-  EXPECT_FALSE(early.is_enough());
-  EXPECT_TRUE(late.is_enough());
+  EXPECT_FALSE(early.images().is_enough());
+  EXPECT_TRUE(late.images().is_enough());
   for (std::size_t c = 0; c < scene.rig.cameras.size(); ++c) {
-    EXPECT_GT(early.coverage(c), 0);
-    EXPECT_GT(late.coverage(c), early.coverage(c));
-    EXPECT_TRUE(late.is_covered(c)) << c << " saw " << late.coverage(c);
-    EXPECT_GT(late.views(c), 500);
-    EXPECT_EQ(static_cast<double>(late.parts(c).size()) / 80, late.coverage(c));
-    EXPECT_GE(*late.parts(c).begin(), 0);
-    EXPECT_LT(*late.parts(c).rbegin(), 80);
+    EXPECT_GT(early.images().coverage(c), 0);
+    EXPECT_GT(late.images().coverage(c), early.images().coverage(c));
+    EXPECT_TRUE(late.images().is_covered(c)) << c << " saw " << late.images().coverage(c);
+    EXPECT_GT(late.images().views(c), 500);
+    EXPECT_EQ(static_cast<double>(late.images().parts(c).size()) / 80, late.images().coverage(c));
+    EXPECT_GE(*late.images().parts(c).begin(), 0);
+    EXPECT_LT(*late.images().parts(c).rbegin(), 80);
   }
-  EXPECT_GE(late.shared(0, 1), WandCoverage::kEnoughShared);
-  EXPECT_EQ(late.shared(0, 1), late.shared(1, 0));
+  EXPECT_GE(late.images().shared(0, 1), WandCoverage::kEnoughShared);
+  EXPECT_EQ(late.images().shared(0, 1), late.images().shared(1, 0));
 }
 
 TEST(WandCoverage, OfLensesThatAreNotKnownMoreIsWanted) {
@@ -62,10 +62,11 @@ TEST(WandCoverage, OfLensesThatAreNotKnownMoreIsWanted) {
   for (double t = 2; t <= 60; t += 6) {
     const WandCoverage known = waved(scene, t, always), unknown = waved(scene, t, always, false);
     for (std::size_t c = 0; c < scene.rig.cameras.size(); ++c) {
-      EXPECT_EQ(unknown.coverage(c), known.coverage(c));
-      EXPECT_TRUE(known.is_covered(c) || !unknown.is_covered(c));
-      const bool little = known.coverage(c) < WandCoverage::kLensCovered && unknown.views(c) < WandCoverage::kNothingNewOfLens;
-      EXPECT_FALSE(little && unknown.is_covered(c)) << known.coverage(c);
+      EXPECT_EQ(unknown.images().coverage(c), known.images().coverage(c));
+      EXPECT_TRUE(known.images().is_covered(c) || !unknown.images().is_covered(c));
+      const bool little =
+          known.images().coverage(c) < WandCoverage::kLensCovered && unknown.images().views(c) < WandCoverage::kNothingNewOfLens;
+      EXPECT_FALSE(little && unknown.images().is_covered(c)) << known.images().coverage(c);
     }
   }
 }
@@ -73,9 +74,9 @@ TEST(WandCoverage, OfLensesThatAreNotKnownMoreIsWanted) {
 TEST(WandCoverage, IsNotEnoughWhereOneCameraSeesNothing) {
   WandScene scene(2);
   const WandCoverage coverage = waved(scene, 40, [](std::size_t c, double) { return c != 2; });
-  EXPECT_FALSE(coverage.is_enough());
-  EXPECT_EQ(coverage.coverage(2), 0);
-  EXPECT_TRUE(coverage.is_covered(1));
+  EXPECT_FALSE(coverage.images().is_enough());
+  EXPECT_EQ(coverage.images().coverage(2), 0);
+  EXPECT_TRUE(coverage.images().is_covered(1));
 }
 
 /// Two pairs that see the wand in turn: each camera is covered, but nothing says how the pairs stand to each other.
@@ -83,8 +84,8 @@ TEST(WandCoverage, IsNotEnoughWhereCamerasShareNoViews) {
   WandScene scene(3);
   const WandCoverage coverage =
       waved(scene, 80, [](std::size_t c, double t) { return (c < 2) == (static_cast<int>(t / 10) % 2 == 0); });
-  for (std::size_t c = 0; c < 4; ++c) EXPECT_TRUE(coverage.is_covered(c)) << c << " saw " << coverage.coverage(c);
-  EXPECT_FALSE(coverage.is_enough());
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_TRUE(coverage.images().is_covered(c)) << c << " saw " << coverage.images().coverage(c);
+  EXPECT_FALSE(coverage.images().is_enough());
 }
 
 TEST(WandCoverage, CountsNothingBeforeThePictureIsKnown) {
@@ -92,7 +93,7 @@ TEST(WandCoverage, CountsNothingBeforeThePictureIsKnown) {
   const std::vector<BlobFrame> frames = frames_of(scene, 0, 0, 2);
   WandCoverage coverage(scene.wand, 1);
   coverage.add(std::array{WandCoverage::Detected{frames, {}, {}}}, 0.01);
-  EXPECT_EQ(coverage.views(0), 0);
+  EXPECT_EQ(coverage.images().views(0), 0);
 }
 
 }  // namespace

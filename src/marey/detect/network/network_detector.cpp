@@ -65,11 +65,18 @@ bool makes_up(const Box& region, std::span<const std::size_t> inside, std::span<
 
 }  // namespace
 
+namespace {
+
+NetworkModel model_of(const NetworkDetectorOptions& options) {
+  NetworkModel model = read_network_model(options.model);
+  model.score *= options.score_factor;
+  return model;
+}
+
+}  // namespace
+
 NetworkDetector::NetworkDetector(const NetworkDetectorOptions& options)
-    : options_(options),
-      network_(read_network_model(options.model)),
-      moving_(moving_people(options)),
-      until_everywhere_(options.everywhere_s) {}
+    : options_(options), network_(model_of(options)), moving_(moving_people(options)), until_everywhere_(options.everywhere_s) {}
 
 void NetworkDetector::prime(std::span<const Frame> samples) {
   if (moving_ != nullptr) moving_->prime(samples);

@@ -13,10 +13,11 @@ struct NetworkDetectorOptions {
 
   std::string model = {};  ///< a file that describes a network (model_file.h)
   bool background =
-      true;       ///< a background model beside it, which sees the one who moves between the frames that the network processes
-  int every = 1;  ///< the network processes every n-th frame
-  double everywhere_s = 2;                    ///< the network searches all over the image this often, or up to four times as rarely
-  double first_height = 84;                   ///< px: as high people are taken to be until some were found
+      true;  ///< a background model beside it, which sees the one who moves between the frames that the network processes
+  double score_factor = 1;   ///< times the least score that the file names: less where something else says who is a person
+  int every = 1;             ///< the network processes every n-th frame
+  double everywhere_s = 2;   ///< the network searches all over the image this often, or up to four times as rarely
+  double first_height = 84;  ///< px: as high people are taken to be until some were found
   people::PeopleDetectorOptions people = {};  ///< the background model and, where they are known, the sizes of people
 };
 

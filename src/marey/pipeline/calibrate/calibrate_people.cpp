@@ -1,5 +1,6 @@
 #include "marey/pipeline/calibrate/calibrate_people.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -7,6 +8,7 @@
 
 #include "marey/core/error.h"
 #include "marey/geometry/lens.h"
+#include "marey/pipeline/calibrate/live_blobs.h"
 #include "marey/source/focal_length.h"
 #include "marey/source/image_sequence.h"
 
@@ -29,9 +31,38 @@ std::optional<double> stated_focal_35mm(const RigCamera& camera) {
   }
 }
 
+/// The rig that was found by videos, its cameras as they were given.
+void enter_live_cameras(const Rig& given, const LivePeopleOptions& live, Rig& found) {
+  for (std::size_t c = 0; c < given.cameras.size(); ++c) {
+    const RigCamera& camera = given.cameras[c];
+    found.cameras[c].source = camera.source;
+    found.cameras[c].region = camera.region;
+    found.cameras[c].offset_s = camera.offset_s;
+    found.cameras[c].rate_hz = camera.rate_hz;
+  }
+  if (live.camera_settings != nullptr) live.camera_settings->enter(found);
+}
+
+PeopleCalibration calibrate_live(const Rig& rig, const CalibratePeopleOptions& options, const Hooks& hooks) {
+  const RecordedPeople walked = record_people(rig, options.live, hooks);
+  CalibratePeopleOptions how = options;
+  how.find = [&](const RigCamera& camera, const Hooks& searching) {
+    const auto& cameras = walked.rig.cameras;
+    const auto c = std::find_if(cameras.begin(), cameras.end(), [&](const RigCamera& other) { return other.name == camera.name; }) -
+                   cameras.begin();
+    return by_times(options.find(camera, searching), walked.times_s[static_cast<std::size_t>(c)],
+                    camera.rate_hz.value_or(kDefaultRate));
+  };
+  PeopleCalibration result = calibrate_people(walked.rig, how, hooks);
+  enter_live_cameras(rig, options.live, result.found.rig);
+  result.warnings.insert(result.warnings.begin(), walked.missing.begin(), walked.missing.end());
+  return result;
+}
+
 }  // namespace
 
 PeopleCalibration calibrate_people(Rig rig, const CalibratePeopleOptions& options, const Hooks& hooks) {
+  if (has_live_cameras(rig)) return calibrate_live(rig, options, hooks);
   PeopleCalibration result;
   marey::calibrate::people::PeopleInput input;
   auto cameras = keypoints::read_keypoint_cameras(rig, keypoints::Cameras::all, options.set, options.rate_hz, options.find, hooks,

@@ -8,6 +8,7 @@
 #include "marey/calibrate/people/people_rig.h"
 #include "marey/core/hooks.h"
 #include "marey/core/rig.h"
+#include "marey/pipeline/calibrate/live_people.h"
 #include "marey/pipeline/keypoints/keypoint_cameras.h"
 
 namespace marey::pipeline::calibrate {
@@ -17,6 +18,7 @@ struct CalibratePeopleOptions {
   std::string set;                ///< of files that do not specify it; empty: known by the points
   std::optional<double> rate_hz;  ///< where neither the rig nor the files say
   keypoints::FindInImages find;   ///< for cameras with videos
+  LivePeopleOptions live;         ///< for cameras that are live
 };
 
 struct PeopleCalibration {
@@ -25,8 +27,9 @@ struct PeopleCalibration {
 };
 
 /// Where the rig's cameras stand, by people who walk before them: each camera's `detections` or `source` is a video, keypoints of
-/// another program, or a take with keypoints. Throws Error if one cannot be read, and as calibrate::people::calibrate_people does;
-/// Stopped.
+/// another program, or a take with keypoints. Where any `source` is live, all are: people are recorded before them until they were
+/// seen enough, then the same is done with the videos. Throws Error if one cannot be read, and as
+/// calibrate::people::calibrate_people does; Stopped.
 PeopleCalibration calibrate_people(Rig rig, const CalibratePeopleOptions& options, const Hooks& hooks = {});
 
 }  // namespace marey::pipeline::calibrate

@@ -23,10 +23,7 @@ constexpr double kCountEvery = 2;  // s of waving that are searched at a time
 class WavedWand {
  public:
   WavedWand(const CalibrateWandOptions& options, const Rig& rig)
-      : options_(options),
-        lenses_known_(knows_lenses(rig)),
-        coverage_(options.wand, rig.cameras.size(), lenses_known_),
-        counted_(rig.cameras.size()) {}
+      : options_(options), coverage_(options.wand, rig.cameras.size(), knows_lenses(rig)), counted_(rig.cameras.size()) {}
 
   /// Whether that will do.
   bool inspect(const BlobPreview& now) {
@@ -34,30 +31,19 @@ class WavedWand {
       counted_s_ = now.seconds;
       count(now.blobs, now.feeds);
     }
-    using marey::calibrate::wand::WandCoverage;
-    detected_ = {.seconds = now.seconds, .cameras = {}, .shared = {}, .now = observed_now(now), .enough = coverage_.is_enough()};
-    for (std::size_t c = 0; c < now.feeds.size(); ++c) {
-      const auto& parts = coverage_.parts(c);
-      CameraHealth health = now.feeds[c].health({}, now.policy);
-      health.rate_hz = now.feeds[c].info().rate_hz;
-      detected_.cameras.push_back(
-          {std::move(health), coverage_.coverage(c), coverage_.views(c), coverage_.is_covered(c), {parts.begin(), parts.end()}});
-      for (std::size_t other = c + 1; other < now.feeds.size(); ++other) {
-        const std::int64_t views = coverage_.shared(c, other);
-        detected_.shared.push_back({c, other, views, views >= WandCoverage::kEnoughShared});
-      }
-    }
+    detected_ = observed_so_far(coverage_.images(), now.feeds, now.policy);
+    detected_.seconds = now.seconds;
+    detected_.now = observed_now(now);
     const bool go_on = !options_.waving || options_.waving(detected_);
     return detected_.enough || !go_on;
   }
 
   std::vector<std::string> warnings() const {
     std::vector<std::string> sentences;
-    for (const WandObserved::Camera& camera : detected_.cameras) {
+    for (const LiveObserved::Camera& camera : detected_.cameras) {
       if (!camera.covered)
         sentences.push_back(fmt::format("camera \"{}\" saw the wand in {:.0f} % of its image; {:.0f} % are wanted",
-                                        camera.health.name, 100 * camera.coverage,
-                                        100 * marey::calibrate::wand::WandCoverage::required(lenses_known_)));
+                                        camera.health.name, 100 * camera.coverage, 100 * coverage_.images().criteria().fraction));
     }
     return sentences;
   }
@@ -101,12 +87,11 @@ class WavedWand {
   }
 
   const CalibrateWandOptions& options_;
-  bool lenses_known_;
   marey::calibrate::wand::WandCoverage coverage_;
   std::vector<std::size_t> counted_;
   double counted_s_ = 0;
   std::int64_t appearances_ = 0;
-  WandObserved detected_;
+  LiveObserved detected_;
 };
 
 CameraBlobs wave_wand(Rig& rig, const CalibrateWandOptions& options, const Hooks& hooks) {

@@ -4,18 +4,17 @@
 #include <memory>
 #include <utility>
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "marey/core/error.h"
 #include "marey/files/source_name.h"
+#include "marey/pipeline/calibrate/live_observed.h"
 #include "marey/pipeline/live/live_feeds.h"
 
 namespace marey::pipeline::calibrate {
 namespace {
 
-constexpr double kInspectEvery = 0.1;  // s
-constexpr double kNothingAfter = 10;   // s without a frame of any camera
+constexpr double kNothingAfter = 10;  // s without a frame of any camera
 
 /// What has result from one camera since the last call.
 void take_blobs(corridor::Feed& feed, const source::LivePolicy& policy, double offset_s,
@@ -24,25 +23,6 @@ void take_blobs(corridor::Feed& feed, const source::LivePolicy& policy, double o
     auto& blobs = frames.emplace_back(marey::calibrate::wand::BlobFrame{seconds(given.frame.time) - offset_s, {}});
     for (const Detection& blob : *given.detections) blobs.blobs.push_back(blob.centre);
     newest = std::move(given);
-  }
-}
-
-std::string why_nothing_came(std::span<const corridor::Feed> feeds) {
-  std::string why = "no camera gave a frame";
-  for (const corridor::Feed& feed : feeds) {
-    if (const std::string trouble = feed.health().trouble; !trouble.empty())
-      why += fmt::format("\n  camera \"{}\": {}", feed.camera().name, trouble);
-  }
-  return why;
-}
-
-/// As they were seen: their sizes and rates.
-void enter_cameras(Rig& rig, std::span<const corridor::Feed> feeds) {
-  for (std::size_t c = 0; c < feeds.size(); ++c) {
-    rig.cameras[c] = feeds[c].camera();
-    if (const cv::Size size = feeds[c].health().frames > 0 ? feeds[c].info().size : cv::Size(); !size.empty())
-      rig.cameras[c].size = size;
-    if (!rig.cameras[c].rate_hz) rig.cameras[c].rate_hz = feeds[c].info().rate_hz;
   }
 }
 

@@ -44,6 +44,7 @@ detect::DetectorOptions detector_of(const PeopleDetection& detection, bool keypo
   network.model = detection.network.empty() ? detect::keypoints::model_file("person.toml") : detection.network;
   network.background = !detection.without_background;
   network.every = detection.every;
+  network.score_factor = detection.score_factor;
   network.people = people;
   return network;
 }

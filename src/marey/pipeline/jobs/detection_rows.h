@@ -14,6 +14,7 @@ struct PeopleDetection {
   std::string network = {};  ///< the file that describes it; empty: none
   bool without_background = false;
   int every = 1;
+  double score_factor = 1;  ///< times the least score that the network's file names
 };
 
 /// --background, --detector, --detector-interval, --no-background.

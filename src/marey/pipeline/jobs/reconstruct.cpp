@@ -107,6 +107,7 @@ keypoints::KeypointsInSpaceOptions resolved(const ReconstructKeypoints& job) {
 calibrate::CalibratePeopleOptions resolved(const CalibratePeople& job) {
   calibrate::CalibratePeopleOptions options = job.options;
   options.find = find_by(job.detection, job.model);
+  options.live.detector = job.detection.network;
   return options;
 }
 

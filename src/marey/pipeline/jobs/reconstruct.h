@@ -32,9 +32,10 @@ struct ReconstructKeypoints {
   keypoints::KeypointsInSpaceOptions options = {};
 };
 
-/// `marey calibrate people`: the same search.
+/// `marey calibrate people`: the same search. A person who is found late is missing in all cameras, so that half of the score
+/// suffices: the landmark network rejects who is not a person, and geometry who is not in the other images.
 struct CalibratePeople {
-  PeopleDetection detection = {.without_background = true};
+  PeopleDetection detection = {.without_background = true, .score_factor = 0.5};
   std::string model = keypoints::KeypointOptions{}.model;
   calibrate::CalibratePeopleOptions options = {};
 };

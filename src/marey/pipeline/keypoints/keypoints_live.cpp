@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -12,59 +11,21 @@
 #include "marey/core/error.h"
 #include "marey/core/keypoint_sets.h"
 #include "marey/core/stage_times.h"
-#include "marey/detect/keypoints/model_folder.h"
-#include "marey/detect/network/halved_image.h"
-#include "marey/detect/network/run_network.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
 #include "marey/pipeline/keypoints/live_noise.h"
+#include "marey/pipeline/keypoints/stopwatch.h"
 #include "marey/reconstruct/keypoints/people_in_views.h"
 
 namespace marey::pipeline::keypoints {
 namespace {
 
 namespace rk = reconstruct::keypoints;
-using detect::keypoints::Body;
-using detect::keypoints::ImageRegion;
 using detect::keypoints::PersonRegion;
 
 constexpr double kMinLocated = 0.75;     // fraction of people in images below which the reasons are searched: as for recordings
 constexpr double kWorstLiveNoise = 2.5;  // factor of the stated deviations, numerical: just below where learning begins and ends
 constexpr std::size_t kMaxKept = 120;    // numerical: instants that are kept for that
-
-class Stopwatch {
- public:
-  explicit Stopwatch(StageTimes& times) : times_(times) {}
-  ~Stopwatch() { times_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count()); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  StageTimes& times_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
-
-FindPeople detector_of(const std::string& file) {
-  const auto network = std::make_shared<detect::network::LoadedNetwork>(
-      detect::network::read_network_model(file.empty() ? detect::keypoints::model_file("person.toml") : file));
-  return [network](const Image& image) {
-    // Not more pixels are converted than the network receives.
-    const cv::Size input = network->model().input;
-    Image small = image;
-    double scale = 1;
-    for (; small.size().width >= 2 * input.width && small.size().height >= 2 * input.height; scale *= 2)
-      small = detect::network::halved(small);
-    std::vector<Box> boxes;
-    for (const detect::network::Candidate& one : network->find(small.bgr()))
-      boxes.push_back({scale * one.left, scale * one.top, scale * (one.right - one.left), scale * (one.bottom - one.top)});
-    return boxes;
-  };
-}
-
-FindBodies network_of(const std::string& model) {
-  const auto network = std::make_shared<detect::keypoints::LandmarkNetwork>(detect::keypoints::landmark_model(model));
-  return [network](std::span<const ImageRegion> searched) { return network->find(searched); };
-}
 
 /// Which points of a set say how a body lies in an image.
 struct Trunk {
@@ -82,15 +43,14 @@ class KeypointsLive final : public corridor::Stage {
         rate_hz_(rate_hz),
         set_(options.set),
         trunk_(set_),
-        find_people_(options.find_people ? options.find_people : detector_of(options.detector)),
-        find_bodies_(options.find_bodies ? options.find_bodies : network_of(options.model)),
+        in_images_(set_, rig.cameras.size(), options.find_people ? options.find_people : people_finder(options.detector),
+                   options.find_bodies ? options.find_bodies : body_finder(options.model), options.cameras),
         views_(set_, static_cast<int>(rig.cameras.size())),
         people_(set_, options.people),
         options_(options) {
     for (const RigCamera& camera : rig.cameras) {
       cameras_.push_back(camera.camera());
       counts_.emplace_back().name = camera.name;
-      in_images_.emplace_back(set_, options.cameras);
       auto& kept = kept_.emplace_back();
       if (!cameras_.back()) continue;
       kept.emplace().rate_hz = rate_hz;
@@ -106,7 +66,6 @@ class KeypointsLive final : public corridor::Stage {
   void report(corridor::Summary& summary) const override;
 
  private:
-  void search(const FrameSet& frames);
   void inspect(const FrameSet& frames);
   void location(const FrameSet& frames, double step_s);
   void expect_in_other_cameras(const FrameSet& frames);
@@ -120,24 +79,20 @@ class KeypointsLive final : public corridor::Stage {
   double rate_hz_;
   KeypointSet set_;
   Trunk trunk_;
-  FindPeople find_people_;
-  FindBodies find_bodies_;
+  ImagesWithPeople in_images_;
   std::vector<std::optional<Camera>> cameras_;
-  std::vector<CameraPeople> in_images_;
   rk::PeopleInViews views_;
   LiveNoise noise_;
   LocatedPeople people_;
   KeypointsLiveOptions options_;
   std::vector<rk::LocatedPerson> located_;
-  std::vector<ImageRegion> searched_;
-  std::vector<std::size_t> detected_in_;  // camera of each frame given to the network
   std::vector<char> has_frame_;
   std::optional<Timestamp> before_;
   Instant instant_;
   std::vector<corridor::Summary::Camera> counts_;
   std::vector<std::optional<KeypointCamera>> kept_;  // of the first instants in which two cameras saw people
-  StageTimes searching_, detecting_, locating_;
-  std::int64_t searches_ = 0, detector_runs_ = 0, with_people_ = 0;
+  StageTimes locating_;
+  std::int64_t with_people_ = 0;
   bool reported_misfit_ = false;
 };
 
@@ -179,46 +134,15 @@ bool KeypointsLive::is_full(std::size_t camera) const {
   return here >= options_.people.maximum;
 }
 
-/// The person detector, in the image that has waited for it longest.
-void KeypointsLive::search(const FrameSet& frames) {
-  std::optional<std::size_t> chosen;
-  double longest = 0;
-  for (std::size_t c = 0; c < cameras_.size(); ++c) {
-    if (!has_frame_[c]) continue;
-    const auto due = in_images_[c].search_due(frames.time, is_full(c));
-    if (due && (!chosen || *due > longest)) chosen = c, longest = *due;
-  }
-  if (!chosen) return;
-  const Stopwatch watch(searching_);
-  ++searches_;
-  in_images_[*chosen].searched(find_people_(frames.cameras[*chosen]->frame.image), frames.time);
-}
-
 void KeypointsLive::inspect(const FrameSet& frames) {
-  searched_.clear();
-  detected_in_.clear();
+  std::vector<Image> images(cameras_.size());
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
-    if (!has_frame_[c]) continue;
-    for (const PersonRegion& region : in_images_[c].regions()) {
-      searched_.push_back({frames.cameras[c]->frame.image, region});
-      detected_in_.push_back(c);
-    }
+    if (has_frame_[c]) images[c] = frames.cameras[c]->frame.image;
   }
-  std::vector<Body> bodies;
-  if (!searched_.empty()) {
-    const Stopwatch watch(detecting_);
-    bodies = find_bodies_(searched_);
-  }
-  detector_runs_ += std::ssize(searched_);
-  std::size_t begin = 0;
+  in_images_.step(images, frames.time, [this](std::size_t c) { return is_full(c); });
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
-    if (!has_frame_[c]) continue;
-    const std::size_t count = in_images_[c].size();
-    in_images_[c].take(std::span(bodies).subspan(begin, count), frames.time, is_full(c));
-    begin += count;
-    counts_[c].detections += std::ssize(in_images_[c].people());
+    if (has_frame_[c]) counts_[c].detections += std::ssize(in_images_[c].people());
   }
-  searched_.clear();  // the images are not kept
 }
 
 void KeypointsLive::location(const FrameSet& frames, double step_s) {
@@ -315,7 +239,6 @@ std::span<const Instant> KeypointsLive::step(const FrameSet& frames) {
     counts_[c].frames += has_frame_[c];
     counts_[c].missed += has_frame_[c] ? 0 : 1;
   }
-  search(frames);
   inspect(frames);
   keep();
   instant_ = {};
@@ -347,14 +270,14 @@ std::vector<std::string> KeypointsLive::news() {
 void KeypointsLive::report(corridor::Summary& summary) const {
   summary.cameras = counts_;
   for (const corridor::Summary::Camera& camera : counts_) summary.detections += camera.detections;
-  for (const auto& [name, times] : {std::pair<const char*, const StageTimes*>{"person detector", &searching_},
-                                    {"keypoints", &detecting_},
+  for (const auto& [name, times] : {std::pair<const char*, const StageTimes*>{"person detector", &in_images_.searching()},
+                                    {"keypoints", &in_images_.detecting()},
                                     {"placing", &locating_}}) {
     if (times->count() > 0) summary.steps.push_back({name, times->count(), times->quantile(0.5), times->quantile(0.99)});
   }
   summary.body_points = {.people = static_cast<std::int64_t>(people_.numbers()),
-                         .person_searches = static_cast<std::int64_t>(searches_),
-                         .regions = static_cast<std::int64_t>(detector_runs_),
+                         .person_searches = in_images_.searches(),
+                         .regions = in_images_.regions(),
                          .people_in_images = static_cast<std::int64_t>(views_.views_observed()),
                          .people_located = static_cast<std::int64_t>(views_.views_located()),
                          .noise = noise_.times_stated()};

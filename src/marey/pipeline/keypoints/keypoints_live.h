@@ -8,26 +8,17 @@
 // each person and camera.
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "marey/core/keypoint_sets.h"
 #include "marey/core/rig.h"
-#include "marey/detect/keypoints/landmark_network.h"
 #include "marey/pipeline/corridor/run.h"
-#include "marey/pipeline/keypoints/camera_people.h"
+#include "marey/pipeline/keypoints/images_with_people.h"
 #include "marey/pipeline/keypoints/placed_people.h"
 
 namespace marey::pipeline::keypoints {
-
-/// The boxes of the people in an image, px.
-using FindPeople = std::function<std::vector<Box>(const Image& image)>;
-/// Who is in each of several cameras' regions.
-using FindBodies = std::function<std::vector<detect::keypoints::Body>(std::span<const detect::keypoints::ImageRegion> searched)>;
 
 struct KeypointsLiveOptions {
   std::string model = "lite";   ///< the landmark network: lite, full, heavy, or an ONNX file

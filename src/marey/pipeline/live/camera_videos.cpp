@@ -85,8 +85,8 @@ void CameraVideos::write_rig() const {
     if (camera.name.empty()) camera.name = std::filesystem::path(file_of(id)).stem().string();
     camera.source = (folder_ / file_of(id)).string();
     camera.detections.clear();
-    camera.region.reset();  // a video is of that part alone
-    camera.offset_s = camera.offset_s.value_or(0) + seconds(video.begin - first);
+    camera.region.reset();                           // a video is of that part alone
+    camera.offset_s = seconds(video.begin - first);  // frames' times are by the rig's clock
     kept.cameras.push_back(std::move(camera));
   }
   format::rig::write_rig(kept, (folder_ / kRigFile).string());

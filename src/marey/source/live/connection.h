@@ -41,6 +41,10 @@ class Connection {
   /// Waits for the next frame, a tenth of a second at most (kStopSlice). Throws Error if the camera is gone.
   virtual Came next(Shot& shot) = 0;
 
+  /// Whether its frames' numbers continue where those of the connection before ended: what was missed in between is counted as
+  /// lost.
+  virtual bool continues_numbers() const { return false; }
+
   /// What of it can be set while it gives images, and how it is now.
   virtual std::vector<ControlRange> controls() { return {}; }
   /// Called between two calls of `next`. Throws Error if the camera refuses.

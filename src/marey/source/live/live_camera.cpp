@@ -61,7 +61,7 @@ class LiveCamera final : public LiveSource {
       const Timestamp begin = time_->now();
       try {
         const auto connection = connect_(*time_, stop);
-        connect_to(connection->info());
+        connect_to(*connection);
         if (options_.controls != nullptr) options_.controls->begin(*connection);
         read(*connection, stop);
       } catch (const Stopped&) {
@@ -82,13 +82,14 @@ class LiveCamera final : public LiveSource {
     never.wait_for(lock, stop, std::chrono::duration<double>(duration), [] { return false; });
   }
 
-  void connect_to(const SourceInfo& now) {
+  void connect_to(const Connection& connection) {
+    const SourceInfo& now = connection.info();
     const std::lock_guard lock(mutex_);
     if (info_.size.empty()) info_.size = now.size;
     if (!info_.rate_hz) info_.rate_hz = now.rate_hz;
     health_.state = FeedState::live;
     ++health_.connections;
-    sequence_.reset();
+    if (!connection.continues_numbers()) sequence_.reset();
     clock_.reset();
   }
 

@@ -41,6 +41,7 @@ class PhoneCamera final : public Connection {
   }
 
   const SourceInfo& info() const override { return info_; }
+  bool continues_numbers() const override { return true; }
 
   Came next(Shot& shot) override {
     const auto image = offer_->next(kStopSlice);

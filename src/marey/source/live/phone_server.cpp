@@ -61,7 +61,11 @@ struct PhoneSlot {
   std::deque<PhoneImage> images;
   NodeClock clock;
   PhoneState state;
-  net::Session* session = nullptr;  // of the phone that is it now
+  std::string page;                    // that is it now, or was last: it names itself, and continues its numbers on a new line
+  std::string numbered;                // the page that gave the last image
+  std::int64_t before = 0, last = -1;  // added to that page's numbers, so that they continue from page to page; the last that came
+  std::string size;                    // "1280x720": of its first image
+  net::Session* session = nullptr;     // of the phone that is it now
 };
 
 }  // namespace
@@ -110,6 +114,8 @@ class PhoneServer::Parts::Phone : public net::Session {
     if (request.upgrade) {
       if (path != "/camera") return net::refusal(404, "there is no such socket");
       camera_ = net::query_value(request.target, "camera");
+      page_ = net::query_value(request.target, "page").substr(0, kMaxPhoneText);
+      if (page_.empty()) page_ = net::new_token();
       const std::lock_guard lock(parts_.mutex);
       if (!parts_.slots.contains(camera_)) return net::refusal(404, "no camera of that name is wanted");
       return {.upgrade = true};
@@ -124,11 +130,13 @@ class PhoneServer::Parts::Phone : public net::Session {
     const auto found = parts_.slots.find(camera_);
     if (found == parts_.slots.end()) return out.end();
     PhoneSlot& slot = found->second;
+    const bool again = page_ == slot.page;
+    slot.state.stated = slot.session != nullptr && !again ? "another phone has taken its place" : "";
     slot.session = this;  // the phone that came last is the camera; another one notices at its next message
-    slot.clock = {};
-    slot.images.clear();
     slot.state.connected = true;
-    slot.state.stated.clear();
+    if (!again) slot.clock = {};
+    slot.page = page_;
+    if (!slot.size.empty()) out.answer("size " + slot.size, net::Kind::text);
     query(out);
     parts_.came.notify_all();
   }
@@ -143,6 +151,7 @@ class PhoneServer::Parts::Phone : public net::Session {
     }
     if (kind == net::Kind::binary) return take_image(*slot, bytes);
     if (bytes.starts_with("clock ")) return take_clock(*slot, bytes.substr(6), now);
+    if (bytes.starts_with("size ") && slot->size.empty()) slot->size = bytes.substr(5, kMaxPhoneText);
     if (bytes.starts_with("state ")) slot->state.stated = bytes.substr(6, kMaxPhoneText);
   }
 
@@ -199,7 +208,10 @@ class PhoneServer::Parts::Phone : public net::Session {
 
   void take_image(PhoneSlot& slot, std::string_view bytes) {
     if (bytes.size() <= kPhoneHead) throw Error("an image without an image");
-    PhoneImage image{.message = std::string(bytes), .taken = {}, .sequence = number_at<std::uint32_t>(bytes, 8)};
+    const std::int64_t number = number_at<std::uint32_t>(bytes, 8);
+    if (std::exchange(slot.numbered, page_) != page_) slot.before = slot.last + 1 - number;
+    slot.last = slot.before + number;
+    PhoneImage image{.message = std::string(bytes), .taken = {}, .sequence = slot.last};
     if (const auto taken = phone_time(number_at<double>(bytes, 0))) image.taken = slot.clock.here(*taken);
     slot.state.not_sent = number_at<std::uint32_t>(bytes, 12);
     ++slot.state.images;
@@ -209,7 +221,7 @@ class PhoneServer::Parts::Phone : public net::Session {
   }
 
   Parts& parts_;
-  std::string camera_;
+  std::string camera_, page_;
   std::int64_t question_ = 0;
   Timestamp requested_{};
   int ticks_ = 0;

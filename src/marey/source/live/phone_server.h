@@ -3,7 +3,8 @@
 //
 // A phone sends binary messages: the time it took the image (8 bytes, a double of ms by its clock), the image's number (4 bytes),
 // how many it could not send (4 bytes), all little-endian, then a JPEG; and text: "clock N MS", the answer to "clock N", and
-// "state TEXT", what its user ought to know here too ("battery 18 %").
+// "state TEXT", what its user ought to know here too ("battery 18 %"), and "size 1280x720", that of its images, which every page of
+// this camera is given from then on. A page names itself by a word of its own: on a new line it continues its numbers.
 #pragma once
 
 #include <chrono>
@@ -21,7 +22,8 @@ namespace marey::source::live {
 struct PhoneImage {
   std::string message;             ///< as it came; `jpeg` shows a part of it
   std::optional<Timestamp> taken;  ///< by std::chrono::steady_clock; nothing before the phone's clock is known
-  std::int64_t sequence = 0;       ///< by the phone's count: what it could not send is missing
+  std::int64_t sequence =
+      0;  ///< by the phone's count, which continues when another one takes its place: a gap is images that did not come
 
   std::span<const std::uint8_t> jpeg() const;
 };

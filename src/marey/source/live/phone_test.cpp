@@ -69,9 +69,10 @@ std::string answer_to(const PhoneServer& server, const std::string& target, unsi
 
 class Phone {
  public:
-  Phone(const PhoneServer& server, const std::string& camera, const std::string& token) : socket_(context_) {
+  Phone(const PhoneServer& server, const std::string& camera, const std::string& token, const std::string& page = "")
+      : socket_(context_) {
     socket_.next_layer().connect({boost::asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(server.plain_port())});
-    socket_.handshake("localhost", "/camera?token=" + token + "&camera=" + camera);
+    socket_.handshake("localhost", "/camera?token=" + token + "&camera=" + camera + "&page=" + page);
   }
 
   void send_image(std::uint32_t sequence, const std::string& jpeg) {
@@ -158,6 +159,41 @@ TEST(Phone, TheOneThatComesLastIsTheCamera) {
   EXPECT_EQ(last, "taken");
   second.send("state battery 12 %", false);
   EXPECT_TRUE(comes_true([&] { return server->states().front().stated == "battery 12 %"; }));
+  server->forget("left");
+}
+
+/// A phone that changes its network is the same page on a new line; what it took in between is lost, and counted. Another page
+/// begins a count of its own, and nothing is lost by that.
+TEST(Phone, OfAPageThatComesBackTheGapIsCounted) {
+  const auto server = PhoneServer::at(0);
+  const auto camera = keep_connected("left", connect_phone("left", PhoneServer::at(0)), steady_time(), {.keep = 1000});
+  const std::string token = token_of(*server), jpeg = jpeg_of({64, 48});
+  const auto sends = [&](const std::string& page, std::uint32_t first, std::int64_t frames) {
+    Phone phone(*server, "left", token, page);
+    for (std::uint32_t i = 0; i < 3; ++i) phone.send_image(first + i, jpeg);
+    EXPECT_TRUE(comes_true([&] { return camera->health().frames == frames; })) << page;
+  };
+  const auto goes = [&] { EXPECT_TRUE(comes_true([&] { return !server->is_connected("left"); })); };
+  sends("a", 100, 3);
+  EXPECT_EQ(camera->health().lost, 0);
+  goes();
+  sends("a", 120, 6);
+  EXPECT_EQ(camera->health().lost, 17);
+  goes();
+  sends("b", 900, 9);
+  EXPECT_EQ(camera->health().lost, 17);
+}
+
+TEST(Phone, ASecondPageIsToldTheSizeOfTheFirst) {
+  const auto server = PhoneServer::at(0);
+  server->offer("left");
+  Phone first(*server, "left", token_of(*server), "a");
+  first.send("size 1280x720", false);
+  first.send("state here", false);
+  ASSERT_TRUE(comes_true([&] { return server->states().front().stated == "here"; }));
+  Phone second(*server, "left", token_of(*server), "b");
+  EXPECT_EQ(second.receive(), "size 1280x720");
+  EXPECT_TRUE(comes_true([&] { return server->states().front().stated == "another phone has taken its place"; }));
   server->forget("left");
 }
 

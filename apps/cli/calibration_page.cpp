@@ -1,4 +1,4 @@
-#include "wand_screen.h"
+#include "calibration_page.h"
 
 #include <chrono>
 #include <cstdio>
@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "marey/calibrate/wand/wand_coverage.h"
 #include "marey/core/error.h"
 #include "marey/core/stop.h"
 #include "marey/format/rig/rig_file.h"
@@ -20,29 +19,29 @@
 namespace marey::cli {
 namespace {
 
-using calibrate::wand::WandCoverage;
+using calibrate::ImageCoverage;
 constexpr int kReportedEvery = 3;                           // of the checks, which are ten per second
 constexpr auto kToBeSent = std::chrono::milliseconds(300);  // the last words of a program that ends
 
-Json observed_by(const pipeline::calibrate::WandObserved::Camera& camera) {
+Json observed_by(const pipeline::calibrate::LiveObserved::Camera& camera) {
   return {{"name", camera.health.name},  {"state", to_string(camera.health.state)},
           {"coverage", camera.coverage}, {"views", camera.views},
           {"covered", camera.covered},   {"parts", Json(camera.parts)}};
 }
 
-std::function<void(const viewer::PageCommand&)> changing_wands(
-    const WandPage::Options& options, const std::shared_ptr<pipeline::live::CameraSettings>& camera_settings) {
+std::function<void(const viewer::PageCommand&)> changing_cameras(
+    const CalibrationPage::Options& options, const std::shared_ptr<pipeline::live::CameraSettings>& camera_settings) {
   if (!is_for_this_computer(options.location.listen) && !options.allow_control) return {};
   return page_changes(camera_settings, nullptr, "");
 }
 
 }  // namespace
 
-void WandScreen::begun(bool keys) {
-  out_->announce(fmt::format("wave the wand through the whole volume{}", keys ? "; q: that will do" : ""));
+void CalibrationScreen::begun(const CalibrationSubject& subject, bool keys) {
+  out_->announce(fmt::format("{}{}", subject.invitation, keys ? "; q: that will do" : ""));
 }
 
-void WandScreen::show(const pipeline::calibrate::WandObserved& detected) {
+void CalibrationScreen::show(const pipeline::calibrate::LiveObserved& detected) {
   covered_.resize(detected.cameras.size());
   for (std::size_t c = 0; c < detected.cameras.size(); ++c) {
     if (!detected.cameras[c].covered || covered_[c]) continue;
@@ -52,79 +51,83 @@ void WandScreen::show(const pipeline::calibrate::WandObserved& detected) {
   }
   if (detected.enough) out_->announce(fmt::format("all of them have, after {:.0f} s", detected.seconds));
   std::string line = fmt::format("{:.0f} s ", detected.seconds);
-  for (const pipeline::calibrate::WandObserved::Camera& camera : detected.cameras) {
+  for (const pipeline::calibrate::LiveObserved::Camera& camera : detected.cameras) {
     line += " " + short_line_of(camera.health, fmt::format("{:.0f} %", 100 * camera.coverage));
   }
   out_->show(line);
 }
 
-WandPage::WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraSettings> camera_settings)
-    : camera_settings_(std::move(camera_settings)),
+CalibrationPage::CalibrationPage(const CalibrationSubject& subject, const Options& options, const Rig& rig,
+                                 std::shared_ptr<pipeline::live::CameraSettings> camera_settings)
+    : job_(subject.job),
+      camera_settings_(std::move(camera_settings)),
       ground_(options.ground),
       viewer_({.location = options.location,
-               .change = changing_wands(options, camera_settings_),
-               .job = "wand",
+               .change = changing_cameras(options, camera_settings_),
+               .job = subject.job,
                .enough = options.enough,
-               .ground = [this] { ground_required_ = true; }}),
+               .ground = [this] { ground_required_ = ground_ != nullptr; }}),
       sink_(viewer_.make_sink()) {
-  reported_ = {{"required", WandCoverage::required(pipeline::calibrate::knows_lenses(rig))},
-               {"across", WandCoverage::kPartsAcross},
-               {"down", WandCoverage::kPartsDown},
-               {"needed", WandCoverage::kEnoughShared}};
+  reported_ = {{"required", subject.criteria.fraction},
+               {"across", ImageCoverage::kPartsAcross},
+               {"down", ImageCoverage::kPartsDown},
+               {"needed", subject.criteria.shared}};
   show_rig(rig);
   fmt::print(stderr, "marey: open {} in a browser\n", viewer_.address());
 }
 
-void WandPage::show_rig(const Rig& rig) {
+void CalibrationPage::show_rig(const Rig& rig) {
   RecordingHeader header;
-  header.name = "wand";
+  header.name = job_;
   header.frame.kind = FrameOfReference::Kind::space;
-  header.made_by.program = "marey calibrate wand";
+  header.made_by.program = "marey calibrate " + job_;
   header.rate_hz = 10;
   header.rig = rig;
   sink_->begin(header);
 }
 
-void WandPage::notify(const char* phase) {
+void CalibrationPage::notify(const char* phase) {
   reported_["phase"] = phase;
   viewer_.wand(compact(reported_));
 }
 
 /// How the cameras are set.
-void WandPage::report(const pipeline::calibrate::WandObserved& detected) {
+void CalibrationPage::report(const pipeline::calibrate::LiveObserved& detected) {
   viewer::LiveReport reported;
-  for (const pipeline::calibrate::WandObserved::Camera& camera : detected.cameras) {
-    auto& entry = reported.cameras.emplace_back(viewer::LiveReport::Camera{.health = camera.health, .finds_markers = true});
+  for (const pipeline::calibrate::LiveObserved::Camera& camera : detected.cameras) {
+    auto& entry =
+        reported.cameras.emplace_back(viewer::LiveReport::Camera{.health = camera.health, .finds_markers = job_ == "wand"});
     report_changeable(entry, camera_settings_->camera(reported.cameras.size() - 1));
   }
   viewer_.report(reported);
 }
 
-void WandPage::show(const pipeline::calibrate::WandObserved& detected) {
+void CalibrationPage::show(const pipeline::calibrate::LiveObserved& detected) {
   sink_->write(detected.now);
   if (shown_++ % kReportedEvery != 0 && !detected.enough) return;
   report(detected);
   reported_["seconds"] = detected.seconds;
   reported_["cameras"] = Json::array();
   reported_["shared"] = Json::array();
-  for (const pipeline::calibrate::WandObserved::Camera& camera : detected.cameras)
+  for (const pipeline::calibrate::LiveObserved::Camera& camera : detected.cameras)
     reported_["cameras"].push_back(observed_by(camera));
-  for (const pipeline::calibrate::WandObserved::Shared& pair : detected.shared)
+  for (const pipeline::calibrate::LiveObserved::Shared& pair : detected.shared)
     reported_["shared"].push_back({{"a", pair.a}, {"b", pair.b}, {"views", pair.views}, {"sufficient", pair.enough}});
+  reported_["missing"] = Json(detected.missing);
   notify("waving");
 }
 
-void WandPage::computing() {
+void CalibrationPage::computing() {
   notify("computing");
 }
 
-void WandPage::failed(const std::string& why) {
+void CalibrationPage::failed(const std::string& why) {
   reported_["why"] = why;
   notify("failed");
   std::this_thread::sleep_for(kToBeSent);
 }
 
-void WandPage::done(Rig rig, Json report, const std::string& file) {
+void CalibrationPage::done(Rig rig, Json report, const std::string& file) {
   show_rig(rig);
   reported_["report"] = std::move(report);
   reported_["rig"] = file;
@@ -138,7 +141,7 @@ void WandPage::done(Rig rig, Json report, const std::string& file) {
   }
 }
 
-void WandPage::set_ground(Rig& rig, const std::string& file) {
+void CalibrationPage::set_ground(Rig& rig, const std::string& file) {
   reported_["ground"] = Json();
   reported_["ground"]["phase"] = "looking";
   notify("done");

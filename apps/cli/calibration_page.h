@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "marey/calibrate/image_coverage.h"
 #include "marey/core/sink.h"
 #include "marey/pipeline/calibrate/calibrate_ground.h"
-#include "marey/pipeline/calibrate/calibrate_wand.h"
+#include "marey/pipeline/calibrate/live_observed.h"
+#include "marey/pipeline/live/camera_settings.h"
 
 #include "json_value.h"
 #include "live_screen.h"
@@ -17,14 +19,21 @@
 
 namespace marey::cli {
 
-/// The report while a wand is waved before live cameras: how much each has seen of it, and a sentence for each that has seen
-/// enough.
-class WandScreen {
- public:
-  explicit WandScreen(bool quiet) : out_(std::in_place, quiet) {}
+/// What calibrates live cameras, in words.
+struct CalibrationSubject {
+  std::string job;         ///< "wand", "people": as the page calls it (apps/viewer/page/src/wand.ts)
+  std::string invitation;  ///< "wave the wand through the whole volume"
+  calibrate::ImageCoverage::Criteria criteria = {};
+};
 
-  void begun(bool keys);
-  void show(const pipeline::calibrate::WandObserved& detected);
+/// The report while a wand is waved, or people walk, before live cameras: how much each has seen, and a sentence for each that has
+/// seen enough.
+class CalibrationScreen {
+ public:
+  explicit CalibrationScreen(bool quiet) : out_(std::in_place, quiet) {}
+
+  void begun(const CalibrationSubject& subject, bool keys);
+  void show(const pipeline::calibrate::LiveObserved& detected);
   /// Nothing more is said.
   void end() { out_.reset(); }
 
@@ -34,18 +43,20 @@ class WandScreen {
 };
 
 /// The same on a page, with the cameras' images; then how good the calibration is.
-class WandPage {
+class CalibrationPage {
  public:
   struct Options {
     viewer::ListenAddress location;
     bool allow_control = false;  ///< who opens the page from another computer may change the cameras
-    std::function<pipeline::calibrate::GroundCalibration(const Rig&)> ground;  ///< by an L-frame that lies on the floor now
+    std::function<pipeline::calibrate::GroundCalibration(const Rig&)> ground =
+        {};                        ///< by an L-frame that lies on the floor now; empty: the page has no such button
     std::function<void()> enough;  ///< called, on another thread, where the page's user finds that it will do
   };
-  /// Prints its address. What is changed of the cameras on it is in `desk`.
-  WandPage(const Options& options, const Rig& rig, std::shared_ptr<pipeline::live::CameraSettings> camera_settings);
+  /// Prints its address. What is changed of the cameras on it is in `camera_settings`.
+  CalibrationPage(const CalibrationSubject& subject, const Options& options, const Rig& rig,
+                  std::shared_ptr<pipeline::live::CameraSettings> camera_settings);
 
-  void show(const pipeline::calibrate::WandObserved& detected);
+  void show(const pipeline::calibrate::LiveObserved& detected);
   void computing();
   void failed(const std::string& why);
   /// `report` as --json prints it. Stays until the last page is closed, or the program is asked to end; in the meantime the ground
@@ -55,10 +66,11 @@ class WandPage {
  private:
   void notify(const char* phase);
   void show_rig(const Rig& rig);
-  void report(const pipeline::calibrate::WandObserved& detected);
+  void report(const pipeline::calibrate::LiveObserved& detected);
 
   void set_ground(Rig& rig, const std::string& file);
 
+  std::string job_;
   std::shared_ptr<pipeline::live::CameraSettings> camera_settings_;
   std::function<pipeline::calibrate::GroundCalibration(const Rig&)> ground_;
   std::atomic<bool> ground_required_ = false;
