@@ -92,9 +92,9 @@ bool crosses_itself(const std::vector<Vector<2>>& polygon) {
 }  // namespace
 
 void ContourTally::add(const ContourTally& other) {
-  for (Mean ContourTally::* const mean :
-       {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind, &ContourTally::found,
-        &ContourTally::bias, &ContourTally::back, &ContourTally::swapped, &ContourTally::step_s, &ContourTally::processor_s}) {
+  for (Mean ContourTally::* const mean : {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind,
+                                          &ContourTally::found, &ContourTally::bias, &ContourTally::back, &ContourTally::swapped,
+                                          &ContourTally::exchanged, &ContourTally::step_s, &ContourTally::processor_s}) {
     (this->*mean).add(other.*mean);
   }
   for (std::size_t i = 0; i < bends.size(); ++i) bends[i].add(other.bends[i]);
@@ -194,7 +194,13 @@ void ContourEvaluator::update_occlusion(int frame, const TrueFigure& person, con
     known.watched_until = frame + kNameFrames;
     known.hidden = 0;
   }
-  if (frame == known.watched_until) tally_.swapped.add(name == known.before ? 0 : 1);
+  if (frame == known.watched_until) {
+    tally_.swapped.add(name == known.before ? 0 : 1);
+    const bool taken = name != known.before && !name.empty() && std::any_of(people_.begin(), people_.end(), [&](const auto& other) {
+                         return other.first != person.id && other.second.before == name;
+                       });
+    tally_.exchanged.add(taken ? 1 : 0);
+  }
   if (person.visible_fraction >= kHalfVisible && known.hidden < kMinHiddenFrames) {
     known.hidden = 0;
     if (!name.empty()) known.name = name;
