@@ -92,9 +92,10 @@ bool crosses_itself(const std::vector<Vector<2>>& polygon) {
 }  // namespace
 
 void ContourTally::add(const ContourTally& other) {
-  for (Mean ContourTally::* const mean : {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind,
-                                          &ContourTally::found, &ContourTally::bias, &ContourTally::back, &ContourTally::swapped,
-                                          &ContourTally::exchanged, &ContourTally::step_s, &ContourTally::processor_s}) {
+  for (Mean ContourTally::* const mean :
+       {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind, &ContourTally::found,
+        &ContourTally::bias, &ContourTally::back, &ContourTally::hidden, &ContourTally::swapped, &ContourTally::exchanged,
+        &ContourTally::step_s, &ContourTally::processor_s}) {
     (this->*mean).add(other.*mean);
   }
   for (std::size_t i = 0; i < bends.size(); ++i) bends[i].add(other.bends[i]);
@@ -191,6 +192,7 @@ void ContourEvaluator::update_occlusion(int frame, const TrueFigure& person, con
   const std::string name = shape != nullptr ? shape->name : "";
   if (person.visible_fraction >= kHalfVisible && known.hidden >= kMinHiddenFrames && !known.before.empty()) {
     tally_.back.add(iou);
+    tally_.hidden.add(known.hidden);
     known.watched_until = frame + kNameFrames;
     known.hidden = 0;
   }
