@@ -5,7 +5,7 @@ Usage: drawn_contours.py MAREY [--videos TEXT] [--model lite]
 
 MAREY_DATA names the folder of the recordings; vtest.avi is taken from it or from Debian's opencv-doc. What is not there is skipped, and
 said. A person has the contour that overlaps most, one contour serves one person, and a missing one counts as 0; videos are tracked
-live, so that nothing of what follows a frame helps. Persons that were drawn twice (second_of) are judged by their first drawing; how well
+live, so that nothing of what follows a frame helps. Persons that were drawn twice (second_of) count by their first drawing; how well
 the two agree is printed too. Needs numpy.
 """
 import argparse

@@ -94,7 +94,7 @@ bool crosses_itself(const std::vector<Vector<2>>& polygon) {
 void ContourTally::add(const ContourTally& other) {
   for (Mean ContourTally::* const mean :
        {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind, &ContourTally::found,
-        &ContourTally::bias, &ContourTally::back, &ContourTally::hidden, &ContourTally::swapped, &ContourTally::exchanged,
+        &ContourTally::bias, &ContourTally::back, &ContourTally::hidden, &ContourTally::swapped, &ContourTally::taken_over,
         &ContourTally::step_s, &ContourTally::processor_s}) {
     (this->*mean).add(other.*mean);
   }
@@ -201,7 +201,7 @@ void ContourEvaluator::update_occlusion(int frame, const TrueFigure& person, con
     const bool taken = name != known.before && !name.empty() && std::any_of(people_.begin(), people_.end(), [&](const auto& other) {
                          return other.first != person.id && other.second.before == name;
                        });
-    tally_.exchanged.add(taken ? 1 : 0);
+    tally_.taken_over.add(taken ? 1 : 0);
   }
   if (person.visible_fraction >= kHalfVisible && known.hidden < kMinHiddenFrames) {
     known.hidden = 0;

@@ -27,7 +27,7 @@ struct ContourCase {
   std::optional<int> crf = {};              ///< encoded by x264 and decoded
   std::optional<double> hidden_s = {};      ///< longest full occlusion behind a board
   std::optional<double> min_hidden_s = {};  ///< the shortest; a fifth of the longest without
-  bool meeting = false;                     ///< two people at each board, hidden at once
+  bool in_pairs = false;                    ///< two people at each board, hidden at once
   std::optional<int> frames = {};           ///< of each video; the default of the situation without
   std::optional<int> people = {};           ///< the default of the situation without
   cv::Size size{768, 576};                  ///< px

@@ -238,7 +238,7 @@ void Director::behind_posts() {
     const double side = random_.chance(0.5) ? 1 : -1;
     const double middle = random_.uniform(0.4, 0.55) * length;
     walk_straight(id, at, middle, {side * pace, random_.uniform(-0.03, 0.03) * pace}, 0.05);
-    if (options_.meeting) {
+    if (options_.in_pairs) {
       const int other = new_figure(options_.same_shirts ? (team + 1) % 2 : team % 2);
       walk_straight(other, at + Vector<2>(0, kPassing), middle, {-side * pace, random_.uniform(-0.03, 0.03) * pace}, 0.05);
     }

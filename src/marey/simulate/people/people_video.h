@@ -56,7 +56,7 @@ struct PeopleVideoOptions {
   bool same_shirts = false;            ///< overlap: both of one team; else of either
   double hidden_s = 2;                 ///< post: the longest time that a person is hidden
   std::optional<double> min_hidden_s;  ///< post: the shortest; nothing: a fifth of the longest
-  bool meeting = false;     ///< post: at each board a second person comes from the other side, and both are hidden at once
+  bool in_pairs = false;    ///< post: at each board a second person comes from the other side, and both are hidden at once
   int overlap_frames = 20;  ///< crossing: about how long the two overlap
   Image ground;             ///< the empty scene, scaled to `size`; empty for a lawn
   int samples = 4;          ///< lattice points per pixel and axis, for edges and silhouettes

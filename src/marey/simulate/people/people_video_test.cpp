@@ -152,7 +152,7 @@ TEST(PeopleVideo, TwoWhoMeetBehindABoardAreHiddenAtOnceForAsLongAsAsked) {
     options.people = 3;
     options.hidden_s = 0.5;
     options.min_hidden_s = 0.5;
-    options.meeting = true;
+    options.in_pairs = true;
     const PeopleVideo video(PeopleSituation::post, seed, options);
     ASSERT_EQ(video.figures().size(), 2U * 3U);
     std::map<int, int> hidden;

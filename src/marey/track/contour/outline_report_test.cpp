@@ -102,6 +102,12 @@ TEST(BringBack, ABoxThatIsRememberedDoesNotReplaceABodyThatBecameSmaller) {
   EXPECT_EQ(target.shape.spline().control_points(), smaller.control_points());
   EXPECT_EQ(target.state, Outline::State::detected);
 
+  target.state = Outline::State::partly;
+  bring_back(target, track_of(kBox), &shared);
+  EXPECT_EQ(target.state, Outline::State::held) << "what is hidden may be its head or feet";
+
+  target.shape = ShapeFilter(smaller, 0.5);
+  target.state = Outline::State::detected;
   bring_back(target, track_of(kBox), &shared, true);
   EXPECT_EQ(target.state, Outline::State::held) << "beside another, it may have taken what is the other's";
 }
