@@ -77,7 +77,7 @@ class ContourTracker::Implementation {
       ContourTarget* target = target_of(track.id);
       if (target == nullptr) continue;
       const Detection* raw = detection_of(track, detections);
-      if (track.box) bring_back(*target, track, raw, meets_another(track.id, *track.box));
+      if (track.box) bring_back(*target, track, raw);
       if (target->measured) target->motion.correct_centre(target->measured->centre, target->measured->deviation);
       target->held = target->state == Outline::State::held ? target->held + 1 : 0;
       track.outline = report(*target, raw != nullptr && !raw->group ? raw : nullptr, track, mask_.size());

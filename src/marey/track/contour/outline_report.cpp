@@ -59,14 +59,6 @@ bool is_explained(const Box& own, const Box& box, const Detection* raw) {
   return !cut && own.height < kMaxHigher * raw->box.height && own.width < kMaxWider * width_of(raw->box);
 }
 
-/// Whether the box is what the tracker remembers, and larger than a body that nothing hides: a cut one reaches to the box's other
-/// end.
-bool is_within_remembered(const ContourTarget& target, const Box& own, const Box& box, const Detection* raw) {
-  const double gap = kMaxMissingPart / 2 * box.height;
-  return target.state == Outline::State::detected && (raw == nullptr || raw->group) && own.top - box.top > gap &&
-         box.bottom() - own.bottom() > gap;
-}
-
 /// The end of a cut shape that is nearer to the box's is where the body's is.
 Vector<2> shift_to_visible_end(const Box& body, const Box& own, const Box& box) {
   const double top = own.top - box.top, bottom = own.bottom() - box.bottom();
@@ -90,7 +82,7 @@ std::optional<geometry::ClosedSpline> body_in(const ContourTarget& target, const
 
 }  // namespace
 
-void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw, bool meets_another) {
+void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw) {
   const Vector<2> centre = target.motion.centre();
   const Box& box = *track.box;
   const geometry::ClosedSpline& spline = target.shape.spline();
@@ -98,7 +90,7 @@ void bring_back(ContourTarget& target, const Track<2>& track, const Detection* r
   if (is_as_large(spline, box)) {
     if (target.state == Outline::State::detected)
       target.body_shape = moved_and_scaled(spline, foot_of(own), 1 / box.height, Vector<2>::Zero());
-  } else if (!is_explained(own, box, raw) && (meets_another || !is_within_remembered(target, own, box, raw))) {
+  } else if (!is_explained(own, box, raw)) {
     auto body = body_in(target, box);
     if (!body) body = standing_body(box, {spline.order(), spline.count(), spline.count()});
     const Vector<2> shift = body ? shift_to_visible_end(body->box(), own, box) : Vector<2>(0, 0);

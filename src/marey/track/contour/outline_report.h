@@ -13,10 +13,8 @@
 namespace marey::track::contour {
 
 /// Where the outline left the tracker's box, or is cut off or larger than a body in it, the tracker is right: the last shape that
-/// filled the box is held in it, with all of its edge hidden. `raw` is the detection that the tracker used; null: none. A box that
-/// was not measured in this frame, and that no other's meets, keeps an outline that nothing hides and that reaches neither its top
-/// nor its bottom: it is the size that the tracker remembers then, and people walk away from the camera.
-void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw, bool meets_another = false);
+/// filled the box is held in it, with all of its edge hidden. `raw` is the detection that the tracker used; null: none.
+void bring_back(ContourTarget& target, const Track<2>& track, const Detection* raw);
 
 /// The target's outline as it is written; nothing if the contour is not an outline of a target of this size. `seen` is the
 /// silhouette that no person shares, if any; `picture` its frame's size, px, empty if that is not known.

@@ -89,29 +89,6 @@ TEST(BringBack, LeavesABodyThatSquats) {
   EXPECT_EQ(target.state, Outline::State::detected);
 }
 
-TEST(BringBack, ABoxThatIsRememberedDoesNotReplaceABodyThatBecameSmaller) {
-  ContourTarget target = target_of(body_of(kBox));
-  bring_back(target, track_of(kBox), nullptr);
-  const Box walked_away{kBox.left + 4, kBox.top + 10, kBox.width - 8, kBox.height - 20};
-  Detection shared;
-  shared.box = kBox;
-  shared.group = 0;
-  const geometry::ClosedSpline smaller = body_of(walked_away);
-  target.shape = ShapeFilter(smaller, 0.5);
-  bring_back(target, track_of(kBox), &shared);
-  EXPECT_EQ(target.shape.spline().control_points(), smaller.control_points());
-  EXPECT_EQ(target.state, Outline::State::detected);
-
-  target.state = Outline::State::partly;
-  bring_back(target, track_of(kBox), &shared);
-  EXPECT_EQ(target.state, Outline::State::held) << "what is hidden may be its head or feet";
-
-  target.shape = ShapeFilter(smaller, 0.5);
-  target.state = Outline::State::detected;
-  bring_back(target, track_of(kBox), &shared, true);
-  EXPECT_EQ(target.state, Outline::State::held) << "beside another, it may have taken what is the other's";
-}
-
 TEST(BringBack, ShrinksWhatHasGrown) {
   ContourTarget target = target_of(body_of({kBox.left - 20, kBox.top - 30, 66, 140}));
   bring_back(target, track_of(kBox), nullptr);
