@@ -4,8 +4,9 @@
 Usage: drawn_contours.py MAREY [--videos TEXT] [--model lite]
 
 MAREY_DATA names the folder of the recordings; vtest.avi is taken from it or from Debian's opencv-doc. What is not there is skipped, and
-said. A person has the contour that overlaps most, one contour serves one person, and a missing one counts as 0; the first frames only
-are tracked, live, so that nothing of what follows helps. Needs numpy.
+said. A person has the contour that overlaps most, one contour serves one person, and a missing one counts as 0; videos are tracked
+live, so that nothing of what follows a frame helps. Persons that were drawn twice (second_of) count by their first drawing; how well
+the two agree is printed too. Needs numpy.
 """
 import argparse
 import json
@@ -18,7 +19,7 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 DEBIAN = pathlib.Path("/usr/share/doc/opencv-doc/examples/data/vtest.avi")
-FILES = {"street.json": "vtest.avi", "football_left.json": "football/left_camera.mp4", "football_right.json": "football/right_camera.mp4"}
+FILES = {"street.json": "vtest.avi", "room.json": "clips/walk_in_room.mp4", "football_left.json": "football/left_camera.mp4", "football_right.json": "football/right_camera.mp4"}
 
 
 def path_of(video):
@@ -88,6 +89,30 @@ def agreement(truth, found):
     return values
 
 
+def repeated(truth):
+    """IoU of the two drawings of each person that was drawn twice."""
+    first = {a["id"]: a for a in truth["annotations"] if "second_of" not in a}
+    size = {image["id"]: (image["width"], image["height"]) for image in truth["images"]}
+    values = []
+    for second in truth["annotations"]:
+        if "second_of" in second:
+            masks = [drawn(a["segmentation"], *size[second["image_id"]]) for a in (first[second["second_of"]], second)]
+            values.append(float((masks[0] & masks[1]).sum() / (masks[0] | masks[1]).sum()))
+    return values
+
+
+def mean(values):
+    return f"{sum(values) / len(values):.3f} ({len(values)})" if values else "-"
+
+
+def row(name, people, twice):
+    """People: visibility and IoU."""
+    alone = [value for kind, value in people if kind == "alone"]
+    overlapping = [value for kind, value in people if kind != "alone"]
+    found = sum(value >= 0.5 for _, value in people)
+    print(f"| {name} | {mean(alone)} | {mean(overlapping)} | {found} of {len(people)} | {mean(twice)} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("marey", type=pathlib.Path)
@@ -95,7 +120,7 @@ def main():
     parser.add_argument("--model", default="", help="a network whose masks count as evidence (marey track --contour-model)")
     given = parser.parse_args()
     more = ["--contour-model", given.model] if given.model else []
-    all_values = {"alone": [], "overlapping": []}
+    rows = []
     print("| video, frame | visibility: IoU |\n| --- | --- |")
     for name, video in FILES.items():
         if given.videos not in video:
@@ -106,19 +131,19 @@ def main():
             continue
         truth = json.loads((HERE.parent / "tests/data/contours" / name).read_text())
         masks = contours_of(given.marey, path, {image["frame_id"] for image in truth["images"]}, more)
+        judged = []
         for image in truth["images"]:
-            people = [a for a in truth["annotations"] if a["image_id"] == image["id"]]
+            people = [a for a in truth["annotations"] if a["image_id"] == image["id"] and "second_of" not in a]
             values = agreement([drawn(a["segmentation"], image["width"], image["height"]) for a in people], masks[image["frame_id"]])
-            for person, value in zip(people, values):
-                all_values["alone" if person["visibility"] == "alone" else "overlapping"].append(value)
-            row = ", ".join(f"{a['visibility']} {value:.2f}" for a, value in zip(people, values))
-            print(f"| {video}, {image['frame_id']} | {row} |", flush=True)
-    all_people = sum(all_values.values(), [])
-    for kind, values in all_values.items():
-        if values:
-            print(f"{kind}: {sum(values) / len(values):.3f} of {len(values)}")
-    if all_people:
-        print(f"found at 0.5: {sum(value >= 0.5 for value in all_people)} of {len(all_people)}")
+            judged += [(a["visibility"], value) for a, value in zip(people, values)]
+            text = ", ".join(f"{a['visibility']} {value:.2f}" for a, value in zip(people, values))
+            print(f"| {video}, {image['frame_id']} | {text} |", flush=True)
+        rows.append((video, judged, repeated(truth)))
+    print("\n| video | IoU, alone (people) | IoU, overlapping (people) | found at IoU 0.5 | drawn twice (people) |\n| --- | --- | --- | --- | --- |")
+    for each in rows:
+        row(*each)
+    if len(rows) > 1:
+        row("all", sum((people for _, people, _ in rows), []), sum((twice for _, _, twice in rows), []))
 
 
 if __name__ == "__main__":

@@ -94,7 +94,8 @@ bool crosses_itself(const std::vector<Vector<2>>& polygon) {
 void ContourTally::add(const ContourTally& other) {
   for (Mean ContourTally::* const mean :
        {&ContourTally::whole, &ContourTally::alone, &ContourTally::front, &ContourTally::behind, &ContourTally::found,
-        &ContourTally::bias, &ContourTally::back, &ContourTally::swapped, &ContourTally::step_s, &ContourTally::processor_s}) {
+        &ContourTally::bias, &ContourTally::back, &ContourTally::hidden, &ContourTally::swapped, &ContourTally::taken_over,
+        &ContourTally::step_s, &ContourTally::processor_s}) {
     (this->*mean).add(other.*mean);
   }
   for (std::size_t i = 0; i < bends.size(); ++i) bends[i].add(other.bends[i]);
@@ -191,10 +192,17 @@ void ContourEvaluator::update_occlusion(int frame, const TrueFigure& person, con
   const std::string name = shape != nullptr ? shape->name : "";
   if (person.visible_fraction >= kHalfVisible && known.hidden >= kMinHiddenFrames && !known.before.empty()) {
     tally_.back.add(iou);
+    tally_.hidden.add(known.hidden);
     known.watched_until = frame + kNameFrames;
     known.hidden = 0;
   }
-  if (frame == known.watched_until) tally_.swapped.add(name == known.before ? 0 : 1);
+  if (frame == known.watched_until) {
+    tally_.swapped.add(name == known.before ? 0 : 1);
+    const bool taken = name != known.before && !name.empty() && std::any_of(people_.begin(), people_.end(), [&](const auto& other) {
+                         return other.first != person.id && other.second.before == name;
+                       });
+    tally_.taken_over.add(taken ? 1 : 0);
+  }
   if (person.visible_fraction >= kHalfVisible && known.hidden < kMinHiddenFrames) {
     known.hidden = 0;
     if (!name.empty()) known.name = name;

@@ -41,6 +41,8 @@ struct ContourTally {
   Mean bias;                ///< px by which the contour of a person alone is wider than the true edge, on average along it
   Mean back;                ///< IoU of the visible part in the first frame in which half of a hidden person is visible again
   Mean swapped;             ///< 1 where that person has another name then, or within a second, else 0
+  Mean hidden;              ///< frames of a full occlusion
+  Mean taken_over;          ///< 1 where that name was another person's before an occlusion, else 0
   std::int64_t curves = 0;  ///< contours reported
   std::int64_t crossed = 0, oversized = 0;  ///< of these: that cross themselves; that exceed 1.5 × their person's size
   Mean step_s, processor_s;                 ///< s per frame, where that is measured: of time, and of all processors together

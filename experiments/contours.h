@@ -22,14 +22,16 @@ struct ContourCase {
   std::string name;
   simulate::people::PeopleSituation situation{};
   double height_px = 60;
-  bool degraded = false;                ///< halo, blur, colour fringe and blocks, as a broadcast camera gives it
-  bool same_shirts = false;             ///< both people of one team
-  std::optional<int> crf = {};          ///< encoded by x264 and decoded
-  std::optional<double> hidden_s = {};  ///< longest full occlusion behind a board
-  std::optional<int> frames = {};       ///< of each video; the default of the situation without
-  std::optional<int> people = {};       ///< the default of the situation without
-  cv::Size size{768, 576};              ///< px
-  bool timed = false;                   ///< for the speed alone; its shapes are not counted
+  bool degraded = false;                    ///< halo, blur, colour fringe and blocks, as a broadcast camera gives it
+  bool same_shirts = false;                 ///< both people of one team
+  std::optional<int> crf = {};              ///< encoded by x264 and decoded
+  std::optional<double> hidden_s = {};      ///< longest full occlusion behind a board
+  std::optional<double> min_hidden_s = {};  ///< the shortest; a fifth of the longest without
+  bool in_pairs = false;                    ///< two people at each board, hidden at once
+  std::optional<int> frames = {};           ///< of each video; the default of the situation without
+  std::optional<int> people = {};           ///< the default of the situation without
+  cv::Size size{768, 576};                  ///< px
+  bool timed = false;                       ///< for the speed alone; its shapes are not counted
   int videos = 1;
 };
 

@@ -15,6 +15,7 @@ namespace marey::simulate::people {
 namespace {
 
 constexpr double kWide = 0.36;        // of a person from the side in mid stride, in heights
+constexpr double kPassing = 0.7;      // m between two who meet behind a board
 constexpr double kLaneHeights = 1.9;  // a lane, in heights of the people in it
 
 class Director {
@@ -224,7 +225,8 @@ void Director::behind_posts() {
     const double row = 0.5 * (lane.top + lane.bottom);
     const double height = height_at(row);
     const int id = new_figure(team++ % 2);
-    const double hidden = random_.uniform(0.2, 1) * options_.hidden_s;
+    const double least = options_.min_hidden_s ? *options_.min_hidden_s / options_.hidden_s : 0.2;
+    const double hidden = random_.uniform(least, 1) * options_.hidden_s;
     const Vector<2> at = ground(camera_.size.width * random_.uniform(0.4, 0.6), row);
     const double px_per_m = camera_(Vector<3>(at.x(), at.y(), 0))->scale;
     // The board hides the whole width of a person for that long; the path ends within the image.
@@ -236,6 +238,10 @@ void Director::behind_posts() {
     const double side = random_.chance(0.5) ? 1 : -1;
     const double middle = random_.uniform(0.4, 0.55) * length;
     walk_straight(id, at, middle, {side * pace, random_.uniform(-0.03, 0.03) * pace}, 0.05);
+    if (options_.in_pairs) {
+      const int other = new_figure(options_.same_shirts ? (team + 1) % 2 : team % 2);
+      walk_straight(other, at + Vector<2>(0, kPassing), middle, {-side * pace, random_.uniform(-0.03, 0.03) * pace}, 0.05);
+    }
     const Vector<2> front = at - Vector<2>(0, 0.9);
     motion_.posts.push_back({front - Vector<2>(wide / 2, 0), front + Vector<2>(wide / 2, 0), 2.7, {74, 82, 96}});
   }

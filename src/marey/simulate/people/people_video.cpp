@@ -35,6 +35,9 @@ void check(const PeopleVideoOptions& options) {
   if (options.samples < 1 || options.samples > 16)
     throw Error("{} points per pixel and axis; 1 to 16 are possible", options.samples);
   if (options.frames && *options.frames < 1) throw Error("a video of {} frames; it needs one at least", *options.frames);
+  if (options.min_hidden_s && !(*options.min_hidden_s > 0 && *options.min_hidden_s <= options.hidden_s))
+    throw Error("people hidden for {} to {} s; the shortest time must be positive and not above the longest", *options.min_hidden_s,
+                options.hidden_s);
   if (options.people && *options.people < 0) throw Error("{} people; the number cannot be negative", *options.people);
 }
 

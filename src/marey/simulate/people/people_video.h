@@ -51,13 +51,15 @@ struct PeopleVideoOptions {
   double shake_px = 0;        ///< the camera shakes: what pan and tilt each move the image by, root mean square
   LightChange light = LightChange::stabilise;
   bool shadows = true;
-  ImageDegradation degradation;  ///< what lens, sharpening and codec make of the image
-  bool own_clothes = false;      ///< every person in clothes of their own; else in those of two teams
-  bool same_shirts = false;      ///< overlap: both of one team; else of either
-  double hidden_s = 2;           ///< post: the longest time that a person is hidden; the shortest is a fifth of it
-  int overlap_frames = 20;       ///< crossing: about how long the two overlap
-  Image ground;                  ///< the empty scene, scaled to `size`; empty for a lawn
-  int samples = 4;               ///< lattice points per pixel and axis, for edges and silhouettes
+  ImageDegradation degradation;        ///< what lens, sharpening and codec make of the image
+  bool own_clothes = false;            ///< every person in clothes of their own; else in those of two teams
+  bool same_shirts = false;            ///< overlap: both of one team; else of either
+  double hidden_s = 2;                 ///< post: the longest time that a person is hidden
+  std::optional<double> min_hidden_s;  ///< post: the shortest; nothing: a fifth of the longest
+  bool in_pairs = false;    ///< post: at each board a second person comes from the other side, and both are hidden at once
+  int overlap_frames = 20;  ///< crossing: about how long the two overlap
+  Image ground;             ///< the empty scene, scaled to `size`; empty for a lawn
+  int samples = 4;          ///< lattice points per pixel and axis, for edges and silhouettes
 };
 
 /// A video of people whose truth is known: the same for the same seed.

@@ -144,6 +144,41 @@ TEST(PeopleVideo, ABoardHidesEachForAsLongAsAskedAndNeverAtTheEnds) {
   }
 }
 
+TEST(PeopleVideo, TwoWhoMeetBehindABoardAreHiddenAtOnceForAsLongAsAsked) {
+  int all = 0;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    PeopleVideoOptions options = small(25);
+    options.frames = 90;
+    options.people = 3;
+    options.hidden_s = 0.5;
+    options.min_hidden_s = 0.5;
+    options.in_pairs = true;
+    const PeopleVideo video(PeopleSituation::post, seed, options);
+    ASSERT_EQ(video.figures().size(), 2U * 3U);
+    std::map<int, int> hidden;
+    std::map<int, int> together;  // by the first of a pair, whose ids follow each other
+    std::map<int, double> begins, ends;
+    for (int i = 0; i < video.frames(); ++i) {
+      std::map<int, bool> now;
+      for (const TrueFigure& person : video.render(i).people) {
+        now[person.id] = person.visible_fraction < 0.01;
+        hidden[person.id] += now[person.id] ? 1 : 0;
+        if (i == 0) begins[person.id] = person.foot.x();
+        ends[person.id] = person.foot.x();
+      }
+      for (int id = 1; id < 6; id += 2) together[id] += now[id] && now[id + 1] ? 1 : 0;
+    }
+    for (int id = 1; id < 6; id += 2) {
+      // Of 12.5 frames; a person's own width varies with the stride.
+      for (const int one : {id, id + 1}) EXPECT_NEAR(hidden[one], 12.5, 8) << "seed " << seed << " person " << one;
+      all += hidden[id] + hidden[id + 1];
+      EXPECT_GE(together[id], 3) << "seed " << seed;
+      EXPECT_LT((begins[id] - begins[id + 1]) * (ends[id] - ends[id + 1]), 0) << "seed " << seed;
+    }
+  }
+  EXPECT_NEAR(all / 30.0, 12.5, 4);
+}
+
 TEST(PeopleVideo, PersonCrossesBorder) {
   const PeopleVideo video(PeopleSituation::border, 1, small(25));
   int cut = 0;
@@ -205,6 +240,11 @@ TEST(PeopleVideo, OptionsOutOfTheirDomainAreRefused) {
   options = small();
   options.people = 0;
   EXPECT_TRUE(PeopleVideo(PeopleSituation::crowd, 1, options).render(10).people.empty());
+  options = small();
+  options.min_hidden_s = 3;  // above the longest
+  EXPECT_THROW(PeopleVideo(PeopleSituation::post, 1, options), Error);
+  options.min_hidden_s = 0;
+  EXPECT_THROW(PeopleVideo(PeopleSituation::post, 1, options), Error);
 }
 
 }  // namespace
