@@ -213,6 +213,21 @@ class SolveOptions(TypedDict, total=False):
     r"""whose bones .bvh and .glb have (names, rest pose, BVH's unit, axis and rotation order): mixamo, unreal, vrm, rokoko, rigify, motionbuilder; omitted: the skeleton's own"""
 
 
+class AugmentOptions(TypedDict, total=False):
+    height: float | None
+    r"""m in [0.5, 2.6]: the person's height; always wanted"""
+    mass: float | None
+    r"""kg in [2, 500]: the person's mass; always wanted"""
+    angles: Path | None
+    r"""angles of hips, knees, ankles, ... at every instant with one standard deviation, degrees: .csv"""
+    person: str | None
+    r"""of several people whose body keypoints RECORDING has the one: P2; omitted: the first"""
+    hips: Literal["keypoints", "joints"] | None
+    r"""what RECORDING's hips are: as networks for keypoints have them, or the joints' centres, as a simulation or a marker-based model has them: keypoints, joints (default: keypoints)"""
+    up: Literal["y", "z"] | None
+    r"""the axis that is up in RECORDING; omitted: as it states, else z: y, z"""
+
+
 class LiveOptions(TypedDict, total=False):
     ground: bool | None
     r"""people on the ground that the rig's cameras face"""
