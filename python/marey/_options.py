@@ -178,7 +178,7 @@ class SolveOptions(TypedDict, total=False):
     skeleton: Path | None
     r"""OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); omitted: the human skeleton"""
     static_trial: Path | None
-    r"""the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its markers"""
+    r"""the person standing still. With a marker set of the field it makes the human skeleton, where no --skeleton is given; beside --skeleton and --calibrate it says where joints are straight; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its markers"""
     marker_set: str | None
     r"""whose labels --static-trial, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; omitted: found by the labels"""
     rom_trial: Path | None

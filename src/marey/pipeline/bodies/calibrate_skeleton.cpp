@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "marey/core/error.h"
 #include "marey/files/whole_file.h"
@@ -30,6 +31,10 @@ namespace {
 constexpr std::size_t kMaxCalibrationFrames = 4096;
 constexpr double kUpright_rad =
     5 * std::numbers::pi / 180;  // physical: standing people's hips, knees and ankles, one standard deviation
+/// Skin carries markers by 10 to 30 mm (Leardini, Chiari, Della Croce, Cappozzo 2005, Gait & Posture 21), alike in every stride:
+/// the 60 frames of a calibration count as about six that are 15 mm off each. bench/tuning.md
+constexpr double kSkin_m = 0.05;
+constexpr double kAnywhere_m = 0.05;  // by definition: as markers of clusters (marker_sigmas.cpp)
 /// Coordinates of these joints are near 0 in who stands upright; arms hang as they like.
 constexpr std::array<std::string_view, 6> kUprightJoints = {"hip", "knee", "ankle", "subtalar", "mtp", "lumbar"};
 
@@ -92,6 +97,31 @@ solve::skeleton::ObservedMarkers standing_markers(const std::vector<solve::skele
   return means;
 }
 
+/// Markers that were put on again for the motion, or slide on the segment, do not count in the static trial, and their places are
+/// the motion's alone. Where most are elsewhere, the static trial is another person's.
+void exclude_moved(const Skeleton& skeleton, std::span<const solve::skeleton::ObservedMarkers> frames,
+                   std::span<const solve::skeleton::ObservedMarkers> standing, const std::string& recording,
+                   const std::string& path, solve::skeleton::CalibrateOptions& how, std::vector<std::string>& warnings) {
+  const auto differs = other_size(skeleton, frames, standing);
+  if (!differs) return;
+  const std::vector<std::size_t> moved = moved_markers(skeleton, frames, standing);
+  const auto seen = static_cast<std::size_t>(
+      std::count_if(how.standing->begin(), how.standing->end(), [](const auto& marker) { return marker.has_value(); }));
+  if (3 * moved.size() > seen) {
+    how.standing.reset();
+    warnings.push_back(fmt::format("{}: {} than in {}: another person's static trial? It is not used", path, *differs, recording));
+    return;
+  }
+  std::vector<std::string> labels;
+  for (const std::size_t marker : moved) {
+    (*how.standing)[marker].reset();
+    how.offset_sigmas_m[marker] = kAnywhere_m;
+    labels.push_back(skeleton.markers[marker].label);
+  }
+  warnings.push_back(fmt::format("{}: {} than in {}: were markers put on again? Of the static trial {} {} not used", path, *differs,
+                                 recording, fmt::join(labels, ", "), labels.size() == 1 ? "is" : "are"));
+}
+
 /// Who stands otherwise than upright: the coordinate that is farthest from 0, if that is more than the prior allows.
 std::optional<std::string> posture_of(const Skeleton& skeleton, const std::vector<double>& standing,
                                       const std::vector<double>& sigmas) {
@@ -148,17 +178,16 @@ solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, co
     frames.insert(frames.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   }
   solve::skeleton::CalibrateOptions how;
-  if (!options.static_trial.empty()) {
-    const auto standing = all_observed(options.static_trial, skeleton, options);
-    how.standing = standing_markers(standing, options.static_trial);
-    how.standing_sigmas_rad = standing_sigmas(skeleton);
-    if (const auto differs = other_size(skeleton, std::span(frames).first(own), standing))
-      warnings.push_back(fmt::format("{}: {} than in {}: another person's static trial, or markers that were put on again?",
-                                     options.static_trial, *differs, recording));
-  }
   if (generic) {
     how.offset_sigmas_m = marker_sigmas(skeleton);
     how.tie_sigma_m = 0.01;  // unswept
+    how.lasting_sigma_m = kSkin_m;
+  }
+  if (generic && !options.static_trial.empty()) {
+    const auto standing = all_observed(options.static_trial, skeleton, options);
+    how.standing = standing_markers(standing, options.static_trial);
+    how.standing_sigmas_rad = standing_sigmas(skeleton);
+    exclude_moved(skeleton, frames, standing, recording, options.static_trial, how, warnings);
   }
   solve::skeleton::Calibration calibration = solve::skeleton::calibrate(skeleton, frames, how);
   if (how.standing) {

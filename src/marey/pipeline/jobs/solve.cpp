@@ -85,6 +85,8 @@ bodies::SolveOptions resolved(const Solve& job) {
   bodies::SolveOptions options = job.options;
   if (!job.skeleton.empty() && !options.static_trial.empty() && !options.calibrate)
     throw WrongOption("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two, or --calibrate too");
+  if (!job.skeleton.empty() && !options.static_trial.empty() && !job.skeleton.ends_with(".osim"))
+    throw WrongOption("{}", "--static-trial: beside --skeleton it is for an OpenSim model (.osim); omit one of the two");
   if (!job.skeleton.empty() && !options.motion.empty())
     throw WrongOption("{}", "--rom-trial: is for the human skeleton, and --skeleton is one; give it as --calibration-take");
   if (options.mass_kg && !options.write_skeleton.ends_with(".osim"))

@@ -13,7 +13,7 @@ namespace marey::solve::skeleton {
 namespace {
 
 constexpr double kTightM = 0.005;          // by definition: a marker that sits so tightly counts 1 while the person's size is found
-constexpr double kContradictedSigmas = 3;  // statistical: beyond, a posture is not the one that was assumed
+constexpr double kContradictedSigmas = 3;  // numerical: beyond, a posture is not the one that was assumed
 
 /// "femur_r" and "femur_l", "right_thigh" and "left_thigh", "RightLeg" and "LeftLeg" are one.
 std::string without_side(std::string name) {
@@ -296,7 +296,8 @@ class Calibrator {
     const SkeletonState state = articulation.state_of(poses_[frame]);
     articulation.location(state);
     const auto& pose = articulation.world_from_segment();
-    const double weight = 1 / (options_.marker_sigma_m * options_.marker_sigma_m);
+    const double sigma = std::hypot(options_.marker_sigma_m, stands(detected) ? 0 : options_.lasting_sigma_m);
+    const double weight = 1 / (sigma * sigma);
     Eigen::MatrixXd by_pose = Eigen::MatrixXd::Zero(3, n), by_model(3, gradient.size());
     Eigen::MatrixXd e = Eigen::MatrixXd::Zero(n, gradient.size());
     PoseEquations own_pose{.information = Eigen::MatrixXd::Identity(n, n), .gradient = Eigen::VectorXd::Zero(n)};

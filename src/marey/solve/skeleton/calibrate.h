@@ -21,6 +21,9 @@ using ObservedMarkers = std::vector<std::optional<Vector<3>>>;  ///< one place f
 
 struct CalibrateOptions {
   double marker_sigma_m = 0.005;
+  /// Beside it, of all markers in the frames of a motion: what lasts through them (skin, a model of other joints), so that more
+  /// frames of one motion do not determine it better. Not of the static trial, which the markers are referred to.
+  double lasting_sigma_m = 0;
   double scale_sigma = 0.05;     ///< of a segment's scale along one of its axes, against the person's; 0: scales stay
   double offset_sigma_m = 0.01;  ///< of a marker's place on its segment
   /// Of each marker, in place of `offset_sigma_m`: bony landmarks sit where the skeleton has them, those of a cluster anywhere.
