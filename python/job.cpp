@@ -106,7 +106,7 @@ nb::list rows_of_job(const std::string& job) {
 }
 
 Outputs::Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras, const Rows* rows,
-                 const std::vector<std::string>& also)
+                 const std::vector<std::string>& also, const std::vector<std::string>& read)
     : content_(content),
       files_(options.get<std::vector<std::pair<std::string, std::string>>>("files", {})),
       keep_(options.get("keep", true)) {
@@ -114,6 +114,7 @@ Outputs::Outputs(const Options& options, format::Content content, std::span<cons
     objects_.push_back({std::make_shared<Held>(object), images});
   std::vector<std::string> inputs{options.path("rig"), options.path("observations"), options.path("labels")};
   for (const RigCamera& camera : cameras) inputs.insert(inputs.end(), {path_of_source(camera.source), camera.detections});
+  inputs.insert(inputs.end(), read.begin(), read.end());
   std::vector<std::string> outputs = also;
   outputs.push_back(options.path("take"));
   for (const auto& [path, name] : files_) outputs.push_back(path);

@@ -155,10 +155,10 @@ nb::tuple tuple_of(Result result);
 /// Files by name, and objects of Python's; the recording in memory, unless it is not wanted.
 class Outputs {
  public:
-  /// `also`: files that are written besides. Throws Error if a file that is written is one that is read: one of the options', or
-  /// what one of the cameras shows.
+  /// `also`: files that are written besides; `read`: that are read besides. Throws Error if a file that is written is one that is
+  /// read: one of the options', or what one of the cameras shows.
   Outputs(const Options& options, format::Content content, std::span<const RigCamera> cameras, const Rows* rows = nullptr,
-          const std::vector<std::string>& also = {});
+          const std::vector<std::string>& also = {}, const std::vector<std::string>& read = {});
 
   std::vector<std::unique_ptr<Sink>> open(Recording& recording) const;
   void add_to(pipeline::corridor::Sinks& sinks, Recording& recording) const;

@@ -7,6 +7,7 @@
 #include "marey/core/error.h"
 #include "marey/files/source_name.h"
 #include "marey/format/rig/rig_turns.h"
+#include "marey/pipeline/jobs/augment.h"
 #include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"
 #include "marey/pipeline/jobs/register.h"
@@ -184,6 +185,34 @@ nb::dict solve(nb::dict given) {
   }));
 }
 
+/// The markers, and the summary as a dict: of each angle its lowest and highest value and its typical deviation, rad.
+nb::tuple augment(nb::dict given) {
+  const Options options(std::move(given));
+  pipeline::jobs::Augment job;
+  const Rows rows(table_of(job), options);
+  const pipeline::bodies::AugmentOptions how = rows.resolved([&] { return resolved(job); });
+  const auto recording = options.get<std::string>("recording", {});
+  const Outputs outputs(options, format::Content::space, {}, &rows, {}, {recording});
+  pipeline::bodies::AugmentedPerson person = run_job(rows.listening(options), [&](const Hooks& hooks) {
+    pipeline::bodies::AugmentedPerson made = pipeline::bodies::augment_markers(recording, how, hooks);
+    pipeline::bodies::write_augmented(made, {}, job.angles);
+    outputs.write(made.recording);
+    return made;
+  });
+  nb::dict dict, angles;
+  for (const pipeline::bodies::AugmentedAngle& angle : person.angles) {
+    if (const auto range = pipeline::bodies::range_of(angle))
+      angles[angle.name.c_str()] = nb::make_tuple(range->lowest, range->highest, range->deviation);
+  }
+  dict["frames"] = person.frames;
+  dict["augmented"] = person.augmented;
+  dict["arms"] = person.arms;
+  dict["marker_deviation_m"] = person.marker_deviation_m;
+  dict["angles"] = angles;
+  dict["warnings"] = person.warnings;
+  return nb::make_tuple(std::move(person.recording), dict);
+}
+
 /// A rig, or live sources alone, each a camera.
 nb::tuple live(nb::dict given) {
   const Options options(std::move(given));
@@ -231,6 +260,7 @@ void bind_jobs(nb::module_& module) {
   module.def("reconstruct", &reconstruct, nb::arg("options"));
   module.def("reconstruct_keypoints", &reconstruct_keypoints, nb::arg("options"));
   module.def("solve", &solve, nb::arg("options"));
+  module.def("augment", &augment, nb::arg("options"));
   module.def("live", &live, nb::arg("options"));
   module.def("is_live", [](const std::string& source) { return !scheme_of(source).empty(); }, nb::arg("source"));
   module.def("use_threads", &use_threads, nb::arg("count"));

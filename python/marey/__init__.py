@@ -4,7 +4,7 @@
     people = marey.track("street.mp4")
     people.to_pandas()
 
-Jobs: `track`, `track_ground`, `reconstruct`, `solve`, `calibrate.wand`, `evaluate`, `live`; files: `read`, `read_rig`. Each job returns a `Recording`.
+Jobs: `track`, `track_ground`, `reconstruct`, `augment`, `solve`, `calibrate.wand`, `evaluate`, `live`; files: `read`, `read_rig`. Each job returns a `Recording`.
 Positions are px in an image (integer coordinates are pixel centres, y down) and m elsewhere (z up); times are s from the beginning.
 What the outside world did wrong is a `marey.Error`, in one sentence; doubts are `marey.Warning`s. While a job runs other threads have Python,
 and Ctrl-C ends it.
@@ -23,7 +23,7 @@ from ._files import formats, read, read_rig
 from ._filters import Filter
 from ._frames import Frames
 from ._instant import Instant
-from ._jobs import Warning, reconstruct, solve, threads, track, track_ground
+from ._jobs import Warning, augment, reconstruct, solve, threads, track, track_ground
 from ._live import live
 from ._provenance import PROVENANCE
 from ._recording import Recording, Track
@@ -45,6 +45,7 @@ __all__ = [
     "Track",
     "Warning",
     "__version__",
+    "augment",
     "calibrate",
     "evaluate",
     "formats",

@@ -16,7 +16,7 @@ from ._filters import MakeFilter, Maker
 from ._frames import Frames
 from ._instant import Instant, Names
 from ._interop import rows_of_detections
-from ._options import GroundOptions, ReconstructOptions, SolveOptions, TrackOptions
+from ._options import AugmentOptions, GroundOptions, ReconstructOptions, SolveOptions, TrackOptions
 from ._recording import Recording
 from ._rig import Rig
 
@@ -281,6 +281,22 @@ def reconstruct(
             raise Error("observations and a filter are of markers; remove them")
         return _finish(_core.reconstruct_keypoints(given | _rows("reconstruct keypoints", options)))
     return _finish(_core.reconstruct(given | _rows("reconstruct markers", {**options, "filter": filter})))
+
+
+@_shows("augment")
+def augment(
+    recording: Path, *, sinks: Iterable[Sink] = (), progress: Progress | None = None, **options: Unpack[AugmentOptions]
+) -> Recording:
+    """Makes 43 anatomical markers, and joints' angles, of a person's body keypoints in space: `marey augment`.
+
+    recording: a file, as `reconstruct` with targets="keypoints" writes it. height and mass are always wanted. sinks, progress: as in `track`.
+
+    Returns a Recording in m, z up. Its summary has for each angle its lowest and highest value and its median deviation (rad; None without covariances
+    of the keypoints); each instant's are in the file `angles`. Raises marey.Error if a file cannot be read or written, if it has no keypoints of legs and
+    shoulders, or if script/model --augmenter has not made the networks; KeyboardInterrupt.
+    """
+    given = {"recording": os.fspath(recording), "progress": progress} | _sinks(sinks)
+    return _finish(_core.augment(given | _rows("augment", options)))
 
 
 @_shows("solve")

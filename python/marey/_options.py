@@ -178,7 +178,7 @@ class SolveOptions(TypedDict, total=False):
     skeleton: Path | None
     r"""OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); omitted: the human skeleton"""
     static_trial: Path | None
-    r"""the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its markers"""
+    r"""the person standing still. With a marker set of the field it makes the human skeleton, where no --skeleton is given; beside --skeleton and --calibrate it says where joints are straight; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its markers"""
     marker_set: str | None
     r"""whose labels --static-trial, or RECORDING without one, has: plug-in-gait, cmu-41, helen-hayes or cleveland-clinic; omitted: found by the labels"""
     rom_trial: Path | None
@@ -211,6 +211,21 @@ class SolveOptions(TypedDict, total=False):
     r"""the order of its rotations; omitted: ZXY, or as --rig-names has it: ZXY, ZYX, XYZ, XZY, YXZ, YZX"""
     rig_names: str | None
     r"""whose bones .bvh and .glb have (names, rest pose, BVH's unit, axis and rotation order): mixamo, unreal, vrm, rokoko, rigify, motionbuilder; omitted: the skeleton's own"""
+
+
+class AugmentOptions(TypedDict, total=False):
+    height: float | None
+    r"""m in [0.5, 2.6]: the person's height; always wanted"""
+    mass: float | None
+    r"""kg in [2, 500]: the person's mass; always wanted"""
+    angles: Path | None
+    r"""angles of hips, knees, ankles, ... at every instant with one standard deviation, degrees: .csv"""
+    person: str | None
+    r"""of several people whose body keypoints RECORDING has the one: P2; omitted: the first"""
+    hips: Literal["keypoints", "joints"] | None
+    r"""what RECORDING's hips are: as networks for keypoints have them, or the joints' centres, as a simulation or a marker-based model has them: keypoints, joints (default: keypoints)"""
+    up: Literal["y", "z"] | None
+    r"""the axis that is up in RECORDING; omitted: as it states, else z: y, z"""
 
 
 class LiveOptions(TypedDict, total=False):

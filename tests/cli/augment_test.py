@@ -81,7 +81,7 @@ class Augment(unittest.TestCase):
         self.assertFalse(made["warnings"])
         self.assertTrue(2 < made["marker_deviation_mm"] < 40, made["marker_deviation_mm"])
         again = self.augment("walk.marey", "-o", "again.trc")
-        again.pop("output"), made.pop("output")
+        again.pop("outputs"), made.pop("outputs")
         self.assertEqual(again, made)
         self.assertIn("r_knee_study", (self.folder / "walk.trc").read_text().splitlines()[3])
         solved = json.loads(self.marey("solve", "walk.trc", "--up", "z", "--skeleton", f"{MODELS}/anatomical.osim", "--calibrate", "-o", "walk.mot", "--json").stdout)

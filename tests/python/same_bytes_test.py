@@ -112,6 +112,7 @@ EXAMPLES["solve"] = {
     "calibration-take": "blobs.csv",
     "mass": 70,
 }
+EXAMPLES["augment"] = {"height": 1.75, "mass": 70, "angles": lambda out: out / "angles.csv", "person": "P1"}
 EXAMPLES["track keypoints"] = EXAMPLES["track people"]
 # What an option needs to have an effect or to be taken, beyond what its row declares.
 WITH = {"blur": ["overlay"], "foreground-masks": ["background"], "detector-interval": ["detector"], "no-background": ["detector"]}
@@ -306,8 +307,32 @@ class SameBytes(unittest.TestCase):
         self.assertEqual(summary["frames"], 40)
         self.assertLess(summary["rms_mm"], 60)
 
+    def test_augment(self):
+        if not (MODELS / "augmenter_lower.onnx").is_file():
+            self.skipTest("script/model --augmenter has not made the networks")
+        room = ("simulate", "room", "--motion", "walk", "--keypoints", "--cameras", 4, "--frames", 60, "--size", 1080, 1920, "--rate", 60, "-o", "walker", "-q")
+        command(*room, cwd=FOLDER)
+        rig = FOLDER / "walker" / "rig.toml"
+        files = {camera.name: FOLDER / "walker" / f"keypoints_{camera.name}.json" for camera in marey.read_rig(rig).cameras}
+        walk = FOLDER / "walk.marey"
+        marey.reconstruct(rig, targets="keypoints", sources=files, sinks=[walk])
+        self.also = ("markers.trc",)
+        # The networks take a height and a mass always.
+        self.check(
+            "augment",
+            lambda given: ["augment", walk, *(word for name in ("height", "mass") if name not in given for word in (f"--{name}", EXAMPLES["augment"][name]))],
+            lambda given, sinks: marey.augment(walk, sinks=sinks, **{"height": 1.75, "mass": 70, **given}),
+        )
+        with self.assertRaisesRegex(marey.Error, "^height: is wanted"):
+            marey.augment(walk, mass=70)
+        instants = []
+        made = marey.augment(walk, height=1.75, mass=70, sinks=[instants.append])
+        self.assertEqual((len(made.tracks), len(instants)), (43, 60))
+        low, high, deviation = made.summary["angles"]["left_knee_flexion"]
+        self.assertTrue(low < high and 0 < deviation < 0.3, (low, high, deviation))
+
     def test_every_job_is_here(self):
-        tested = {"track people", "track keypoints", "track markers", "track ground", "reconstruct markers", "reconstruct keypoints", "solve", "live"}
+        tested = {"track people", "track keypoints", "track markers", "track ground", "reconstruct markers", "reconstruct keypoints", "solve", "augment", "live"}
         tested |= {"batch plan", "batch run", "batch submit"}  # of the command line alone
         self.assertEqual(set(_core.job_names()), tested)
 

@@ -291,6 +291,19 @@ void write_augmented_angles(const std::string& path, const AugmentedPerson& pers
 
 }  // namespace
 
+std::optional<AngleRange> range_of(const AugmentedAngle& angle) {
+  std::vector<double> values, deviations;
+  for (const auto& value : angle.values) {
+    if (value) values.push_back(*value);
+  }
+  for (const auto& deviation : angle.deviations) {
+    if (deviation) deviations.push_back(*deviation);
+  }
+  if (values.empty()) return std::nullopt;
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  return AngleRange{*lowest, *highest, deviations.empty() ? std::nullopt : std::optional(geometry::median(deviations))};
+}
+
 AugmentedPerson augment_markers(const std::string& recording, const AugmentOptions& options, const Hooks& hooks) {
   const format::Format& format = format::format_to_read(recording, format::Content::space);
   format::ReadOptions how;
@@ -301,22 +314,18 @@ AugmentedPerson augment_markers(const std::string& recording, const AugmentOptio
   const Recording source = read_all(*reader);
   AugmentedPerson person = augment(source, recording, options, hooks);
   for (const std::string& warning : reader->warnings()) person.warnings.push_back(warning);
+  person.recording.header.made_by = {.program = "marey augment", .options = hooks.options, .inputs = {format::input_of(recording)}};
   return person;
 }
 
-AugmentedPerson augment_markers(const std::string& recording, const std::string& output, const std::string& angles,
-                                const AugmentOptions& options, const Hooks& hooks) {
-  const format::Format* format = output.empty() ? nullptr : &format::format_to_write(output, {}, format::Content::space);
-  AugmentedPerson person = augment_markers(recording, options, hooks);
-  person.recording.header.made_by = {.program = "marey augment", .options = hooks.options, .inputs = {format::input_of(recording)}};
-  if (format != nullptr) {
-    const auto sink =
-        format::create_recording(output, *format, format::plan_of(*format::reader_of(person.recording), output), &person.warnings);
+void write_augmented(AugmentedPerson& person, const std::vector<std::string>& outputs, const std::string& angles) {
+  for (const std::string& output : outputs) {
+    const auto sink = format::create_recording(output, format::format_to_write(output, {}, format::Content::space),
+                                               format::plan_of(*format::reader_of(person.recording), output), &person.warnings);
     MemoryReader reader(person.recording);
     replay(reader, *sink);
   }
   if (!angles.empty()) write_augmented_angles(angles, person);
-  return person;
 }
 
 }  // namespace marey::pipeline::bodies

@@ -27,6 +27,15 @@ struct AugmentedAngle {
   std::vector<std::optional<double>> deviations;  ///< rad, one standard deviation; nothing if keypoints have no covariance
 };
 
+/// Of an angle over the recording, rad.
+struct AngleRange {
+  double lowest = 0, highest = 0;
+  std::optional<double> deviation;  ///< median
+};
+
+/// Nothing if it is nowhere known.
+std::optional<AngleRange> range_of(const AugmentedAngle& angle);
+
 struct AugmentedPerson {
   Recording recording;  ///< the 43 markers under OpenCap's labels, with covariances where the keypoints have them
   std::vector<AugmentedAngle> angles;
@@ -40,9 +49,8 @@ struct AugmentedPerson {
 /// networks are not there.
 AugmentedPerson augment_markers(const std::string& recording, const AugmentOptions& options, const Hooks& hooks = {});
 
-/// The same, written: markers in the format of `output`'s ending, and where `angles` is not empty a table of them: CSV, time_s and
-/// of each angle its value and its deviation, degrees.
-AugmentedPerson augment_markers(const std::string& recording, const std::string& output, const std::string& angles,
-                                const AugmentOptions& options, const Hooks& hooks = {});
+/// Its markers in the format of the ending of each of `outputs`, and where `angles` is not empty a table of them: CSV, time_s and
+/// of each angle its value and its deviation, degrees. Adds to the warnings what a format could not hold.
+void write_augmented(AugmentedPerson& person, const std::vector<std::string>& outputs, const std::string& angles);
 
 }  // namespace marey::pipeline::bodies

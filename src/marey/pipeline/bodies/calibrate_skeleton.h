@@ -15,7 +15,8 @@ namespace marey::pipeline::bodies {
 std::unique_ptr<format::FileReader> open_markers(const std::string& path, const SolveOptions& options);
 
 /// From the recording and the options' other takes. Markers of a `generic` model have the deviations of `marker_sigmas` on their
-/// segments, left and right tied; those of others 10 mm. Warns of a take of another person.
+/// segments, left and right tied; those of others 10 mm. A static trial shows where joints are straight. Warns of a take of another
+/// person, and of a posture that is not upright; markers that it has elsewhere on their segments do not count in it.
 solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, const Skeleton& skeleton, bool generic,
                                                 const SolveOptions& options, std::vector<std::string>& warnings);
 

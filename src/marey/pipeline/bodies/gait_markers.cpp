@@ -26,7 +26,6 @@ namespace marey::pipeline::bodies {
 namespace {
 
 constexpr std::int64_t kMaxRows = 10'000'000;  // by definition of the domain: 28 hours at 100 Hz
-constexpr double kStandsStillM = 0.03;
 // Six children, 12 walks: in the worst pair below 6.5 mm at most with the child's own static trial, 28.7 mm at least with
 // another's.
 constexpr double kSamePersonM = 0.015;

@@ -18,6 +18,8 @@ namespace marey::pipeline::bodies {
 
 namespace gait = analyse::gait;
 
+inline constexpr double kStandsStillM = 0.03;  ///< that a marker of who stands moves at most
+
 /// By row, one an instant from the first on. 0, 0, 0 is a marker that is missing; a subject's name before a label is omitted.
 struct GaitMarkers {
   double rate_hz = 0, begin_s = 0;

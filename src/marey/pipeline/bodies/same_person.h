@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "marey/core/skeleton.h"
 #include "marey/solve/skeleton/calibrate.h"
@@ -14,5 +15,10 @@ namespace marey::pipeline::bodies {
 /// than 15 mm. Nothing if all agree, or no pair is in both.
 std::optional<std::string> other_size(const Skeleton& skeleton, std::span<const solve::skeleton::ObservedMarkers> recording,
                                       std::span<const solve::skeleton::ObservedMarkers> other);
+
+/// Markers that sit elsewhere on their segments in the other recording: without them no pair differs by more than that. The fewest
+/// that do, those first whose pairs differ most.
+std::vector<std::size_t> moved_markers(const Skeleton& skeleton, std::span<const solve::skeleton::ObservedMarkers> recording,
+                                       std::span<const solve::skeleton::ObservedMarkers> other);
 
 }  // namespace marey::pipeline::bodies

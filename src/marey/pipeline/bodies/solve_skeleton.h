@@ -24,13 +24,13 @@ struct SolveOptions {
   std::vector<std::string> exclude;    ///< labels of markers that are not used
   format::skeleton::BoneOutput bones;  ///< of .bvh and .glb
   solve::skeleton::PoseOptions pose;
-  bool smooth = false;  ///< a second pass over the whole motion
-  std::string
-      static_trial;  ///< of the same person standing: makes the human skeleton, where none is given; empty: from the motion alone
-  std::string marker_set;  ///< its name; empty: known by the labels
-  std::string motion;      ///< and of its range of motion: where its joints are; empty: none
-  std::string person;      ///< of several whose keypoints are recorded ("P2"), where neither is given; empty: the first
-  bool calibrate = false;  ///< first fits the skeleton to the person, from the recording itself
+  bool smooth = false;       ///< a second pass over the whole motion
+  std::string static_trial;  ///< of the same person standing: makes the human skeleton, or shows a given one's calibration where
+                             ///< joints are straight; empty: from the motion alone
+  std::string marker_set;    ///< its name; empty: known by the labels
+  std::string motion;        ///< and of its range of motion: where its joints are; empty: none
+  std::string person;        ///< of several whose keypoints are recorded ("P2"), where neither is given; empty: the first
+  bool calibrate = false;    ///< first fits the skeleton to the person, from the recording itself
   std::vector<std::string> calibration_takes = {};  ///< and from these of the same person with the same markers
   std::optional<double> mass_kg = {};               ///< of the person, for an .osim
   std::string write_skeleton;                       ///< skeleton.toml of what was solved with, or a calibrated .osim; empty: none

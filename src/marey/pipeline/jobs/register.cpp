@@ -5,6 +5,7 @@
 
 #include <fmt/ranges.h>
 
+#include "marey/pipeline/jobs/augment.h"
 #include "marey/pipeline/jobs/batch.h"
 #include "marey/pipeline/jobs/live.h"
 #include "marey/pipeline/jobs/reconstruct.h"
@@ -35,6 +36,7 @@ constexpr std::array kJobs{
     NamedJob{"reconstruct markers", [](const UseTable& use) { use_table_of(ReconstructMarkers{}, use); }},
     NamedJob{"reconstruct keypoints", [](const UseTable& use) { use_table_of(ReconstructKeypoints{}, use); }},
     NamedJob{"solve", [](const UseTable& use) { use_table_of(Solve{}, use); }},
+    NamedJob{"augment", [](const UseTable& use) { use_table_of(Augment{}, use); }},
     NamedJob{"live", [](const UseTable& use) { use_table_of(Live{}, use); }},
     NamedJob{"batch plan", [](const UseTable& use) { use_table_of(PlanBatch{}, use); }},
     NamedJob{"batch run", [](const UseTable& use) { use_table_of(RunBatch{}, use); }},

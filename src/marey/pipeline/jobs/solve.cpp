@@ -17,8 +17,9 @@ void add_skeleton_rows(Table& table, Solve& job) {
   table.input_file("skeleton", job.skeleton,
                    "OpenSim's .osim, Vicon's .vsk, .bvh, .asf, or a skeleton.toml (docs/skeleton.md); omitted: the human skeleton");
   table.input_file("static-trial", how.static_trial,
-                   "the person standing still with a marker set of the field: makes the human skeleton, where no --skeleton is "
-                   "given; without either it is made from RECORDING alone: from its body keypoints, or, less surely, from its "
+                   "the person standing still. With a marker set of the field it makes the human skeleton, where no --skeleton is "
+                   "given; beside --skeleton and --calibrate it says where joints are straight; without either it is made from "
+                   "RECORDING alone: from its body keypoints, or, less surely, from its "
                    "markers");
   table
       .text("marker-set", how.marker_set,
@@ -82,8 +83,12 @@ Table table_of(Solve& job) {
 
 bodies::SolveOptions resolved(const Solve& job) {
   bodies::SolveOptions options = job.options;
-  if (!job.skeleton.empty() && !options.static_trial.empty())
-    throw WrongOption("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two");
+  if (!job.skeleton.empty() && !options.static_trial.empty() && !options.calibrate)
+    throw WrongOption("{}", "--static-trial: makes a skeleton, and --skeleton is one; give one of the two, or --calibrate too");
+  if (!job.skeleton.empty() && !options.static_trial.empty() && !job.skeleton.ends_with(".osim"))
+    throw WrongOption("{}", "--static-trial: beside --skeleton it is for an OpenSim model (.osim); omit one of the two");
+  if (!job.skeleton.empty() && !options.motion.empty())
+    throw WrongOption("{}", "--rom-trial: is for the human skeleton, and --skeleton is one; give it as --calibration-take");
   if (options.mass_kg && !options.write_skeleton.ends_with(".osim"))
     throw WrongOption("{}", "--mass: is for --write-skeleton FILE.osim");
   if (!options.marker_set.empty() && !job.skeleton.empty())

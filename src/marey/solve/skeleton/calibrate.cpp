@@ -12,7 +12,8 @@
 namespace marey::solve::skeleton {
 namespace {
 
-constexpr double kTightM = 0.005;  // by definition: a marker that sits so tightly counts 1 while the person's size is found
+constexpr double kTightM = 0.005;          // by definition: a marker that sits so tightly counts 1 while the person's size is found
+constexpr double kContradictedSigmas = 3;  // numerical: beyond, a posture is not the one that was assumed
 
 /// "femur_r" and "femur_l", "right_thigh" and "left_thigh", "RightLeg" and "LeftLeg" are one.
 std::string without_side(std::string name) {
@@ -31,6 +32,7 @@ class Calibrator {
       : base_(skeleton), options_(options) {
     const std::size_t step = std::max<std::size_t>(1, frames.size() / static_cast<std::size_t>(std::max(1, options.frames)));
     for (std::size_t f = 0; f < frames.size(); f += step) frames_.push_back(&frames[f]);
+    if (options_.standing) frames_.push_back(&*options_.standing);
     std::map<std::string, int> groups;
     for (const Segment& segment : skeleton.segments)
       group_of_.push_back(groups.try_emplace(without_side(segment.name), static_cast<int>(groups.size())).first->second);
@@ -55,6 +57,7 @@ class Calibrator {
     solve_poses();
     result.rms_after_m = rms_;
     if (options_.scale_sigma > 0) result.undetermined = undetermined(result.undetermined_markers);
+    if (options_.standing) result.standing = poses_.back();
     result.skeleton = now_;
     for (std::size_t j = 0; j < offsets_.size(); ++j)
       result.skeleton.markers[j].weight = given_weights_.empty() ? base_.markers[j].weight : given_weights_[j];
@@ -116,6 +119,7 @@ class Calibrator {
     double sum = 0;
     int count = 0;
     for (const ObservedMarkers* frame : frames_) {
+      if (stands(*frame)) solver.forget();  // it is of another take
       const SolvedPose& pose = solver.step(0.1, *frame);
       poses_.push_back(pose.coordinates);
       sum += pose.rms_m * pose.rms_m * pose.detected;
@@ -259,6 +263,31 @@ class Calibrator {
     return bones;
   }
 
+  bool stands(const ObservedMarkers& frame) const { return options_.standing && &frame == &*options_.standing; }
+
+  /// Pulls the angles of who stands towards 0; the less, the more the markers contradict (Geman and McClure).
+  void add_upright(const Articulation& articulation, const SkeletonState& state, PoseEquations& pose) const {
+    const auto sigma = [&](int coordinate) { return options_.standing_sigmas_rad[static_cast<std::size_t>(coordinate)]; };
+    std::vector<double> upright = state.coordinates;
+    for (std::size_t c = 0; c < upright.size(); ++c) {
+      if (options_.standing_sigmas_rad[c] > 0) upright[c] = 0;
+    }
+    base_.couple(upright);
+    Eigen::VectorXd step(articulation.dofs());
+    articulation.difference(state, articulation.state_of(std::move(upright)), step);
+    for (int d = 0; d < articulation.dofs(); ++d) {
+      const Articulation::Dof& dof = articulation.dof()[static_cast<std::size_t>(d)];
+      const int coordinate =
+          dof.coordinate ? *dof.coordinate
+                         : articulation.balls()[static_cast<std::size_t>(dof.ball)].coordinates[static_cast<std::size_t>(dof.part)];
+      if (!(sigma(coordinate) > 0)) continue;
+      const double off = step[d] / (kContradictedSigmas * sigma(coordinate)), robust = 1 / (1 + off * off);
+      const double weight = robust * robust / (sigma(coordinate) * sigma(coordinate));
+      pose.information(d, d) += weight;
+      pose.gradient[d] += weight * step[d];
+    }
+  }
+
   /// Adds what a frame says, its pose eliminated: B − E H⁻¹ Eᵀ. A joint that is held at its limit does not give way to a size.
   void add_frame(PoseSolver& solver, std::size_t frame, Eigen::MatrixXd& information, Eigen::VectorXd& gradient) const {
     const ObservedMarkers& detected = *frames_[frame];
@@ -267,11 +296,13 @@ class Calibrator {
     const SkeletonState state = articulation.state_of(poses_[frame]);
     articulation.location(state);
     const auto& pose = articulation.world_from_segment();
-    const double weight = 1 / (options_.marker_sigma_m * options_.marker_sigma_m);
+    const double sigma = std::hypot(options_.marker_sigma_m, stands(detected) ? 0 : options_.lasting_sigma_m);
+    const double weight = 1 / (sigma * sigma);
     Eigen::MatrixXd by_pose = Eigen::MatrixXd::Zero(3, n), by_model(3, gradient.size());
     Eigen::MatrixXd e = Eigen::MatrixXd::Zero(n, gradient.size());
     PoseEquations own_pose{.information = Eigen::MatrixXd::Identity(n, n), .gradient = Eigen::VectorXd::Zero(n)};
     solver.add_limits(state, own_pose);
+    if (stands(detected)) add_upright(articulation, state, own_pose);
     Eigen::MatrixXd& h = own_pose.information;
     Eigen::VectorXd& b = own_pose.gradient;
     for (std::size_t j = 0; j < detected.size(); ++j) {

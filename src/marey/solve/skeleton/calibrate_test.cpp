@@ -214,6 +214,43 @@ TEST(Calibrate, NamesWhatTheMotionDoesNotDetermine) {
   EXPECT_EQ(std::find(bent.begin(), bent.end(), "thigh"), bent.end());
 }
 
+/// The model has the shank's markers 6° about the knee from where they sit: of frames that bend, only the static trial shows it.
+TEST(Calibrate, TakesAKneeOfAStandingPersonForStraight) {
+  const Skeleton truth = leg(-1);
+  Skeleton model = truth;
+  const Matrix<3> about = Eigen::AngleAxisd(0.105, Vector<3>::UnitY()).toRotationMatrix();
+  for (SkeletonMarker& marker : model.markers) {
+    if (marker.segment == 1) marker.position = about * marker.position;
+  }
+  const auto observed = [&](const std::vector<double>& coordinates) {
+    const auto pose = pose_of(truth, coordinates);
+    ObservedMarkers detected;
+    for (const SkeletonMarker& marker : truth.markers)
+      detected.emplace_back(pose[static_cast<std::size_t>(marker.segment)] * marker.position);
+    return detected;
+  };
+  std::vector<ObservedMarkers> frames;
+  for (int f = 0; f < 20; ++f) frames.push_back(observed({0.01 * f, 0, 1, 0.02 * f, 0, 0, 0.3 + 0.03 * f}));
+  CalibrateOptions options{.overall = false};
+  options.scale_sigma = 0;
+  options.offset_sigma_m = 0.03;
+  options.lasting_sigma_m = 0.05;
+  const auto knee_off = [&](const Calibration& found) {
+    PoseSolver solver(found.skeleton);
+    return std::abs(solver.step(0.1, frames.back()).coordinates[6] - (0.3 + 0.03 * 19));
+  };
+  const double alone = knee_off(calibrate(model, frames, options));
+  options.standing = observed({2, 1, 1, 0, 0, 1, 0});
+  options.standing_sigmas_rad = {0, 0, 0, 0, 0, 0, 0.07};
+  const Calibration found = calibrate(model, frames, options);
+  std::printf("knee off by %.2f deg, with who stands %.2f deg\n", alone * 57.3, knee_off(found) * 57.3);
+  EXPECT_GT(alone, 0.08);
+  EXPECT_LT(knee_off(found), 0.5 * alone);
+  ASSERT_EQ(found.standing.size(), 7U);
+  options.standing = observed({2, 1, 1, 0, 0, 1, 1.0});  // in a deep crouch: the markers' places say so
+  EXPECT_LT(knee_off(calibrate(model, frames, options)), 1.3 * alone);
+}
+
 TEST(Calibrate, RefusesNothing) {
   EXPECT_THROW(calibrate(person(), {}), Error);
 }
