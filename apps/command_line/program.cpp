@@ -258,7 +258,7 @@ int Program::run(int argc, char** argv) {
   } catch (const CLI::Success& stated) {
     parser_->app.exit(stated);
   } catch (const CLI::ExtrasError& error) {
-    announce(fmt::format("{}; `{} --help` tells what this command takes", error.what(), of_command));
+    announce(fmt::format("{}; `{} --help` lists what this command takes", error.what(), of_command));
     code = 2;
   } catch (const CLI::ParseError& error) {
     announce(error.what());

@@ -18,6 +18,7 @@ DATA = pathlib.Path()
 
 FILES = {
     "walk.trc": "opensim_ik/synthetic/subject01_synthetic_marker_data.trc",
+    "standing.trc": "opensim_models/gait2354/subject01_static.trc",
     "turn.trc": "opensim_ik/synthetic/subject01_synthetic_marker_data.trc",
     "model.osim": "opensim_ik/synthetic/subject01_simbody.osim",
     "walk.c3d": "gait_children/HC002D/straight_HC002D06.c3d",

@@ -41,7 +41,7 @@ struct PersonMeasure {
   double distance_m = 0;
   double mean_mps = 0;
   std::optional<double> top_mps,
-      top_sigma_mps;  ///< the fastest of which that is sure, and its standard deviation; nothing where none is, or where the mean
+      top_sigma_mps;  ///< the fastest of which that is sure, and its standard deviation; absent if there is none, or if the mean
                       ///< is faster
   int sprints = 0;
   std::vector<std::pair<double, double>> sprint_times;  ///< s: when each began and ended

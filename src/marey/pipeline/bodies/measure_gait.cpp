@@ -239,7 +239,7 @@ void add_kinetics(const std::string& recording, const gait::FeetPaths& feet, con
 }
 
 /// Who turns is not described by means over cycles.
-void warn_of_turns(const std::string& recording, GaitMeasure& measure) {
+void warn_of_curves(const std::string& recording, GaitMeasure& measure) {
   const auto turning = std::count_if(measure.cycles.cycles.begin(), measure.cycles.cycles.end(),
                                      [](const auto& cycle) { return cycle.turn && std::abs(*cycle.turn) > max_reference_turn(); });
   if (turning == 0) return;
@@ -264,7 +264,7 @@ void add_comparison(const std::string& recording, const GaitOptions& options, co
                       recording, *walker, options.reference));
     measure.profile = gait::gait_profile(measure.cycles.curves, group.bands);
   }
-  warn_of_turns(recording, measure);
+  warn_of_curves(recording, measure);
   if (options.before.empty()) return;
   GaitOptions earlier = options;
   earlier.before.clear();
