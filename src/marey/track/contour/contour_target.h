@@ -24,6 +24,8 @@ inline constexpr double kGaitAcross = 0.012, kGaitDown = 0.008,
 
 inline constexpr double kStrideWidth = 0.4;  // heights: physical, a body in a stride is as wide, whatever its box
 
+inline constexpr double kMaxMissingPart = 0.12;  // heights by which an outline may be lower than its target's box
+
 inline constexpr double kTypicalWeight = 0.35;  // of the typical coverage in a prior, the rest being the predicted outline's
 inline constexpr double kAstray = 0.5;          // heights off the predicted centre, from which on the prediction is wrong
 

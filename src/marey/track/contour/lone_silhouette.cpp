@@ -21,6 +21,7 @@ namespace {
 
 constexpr double kMaxUnlike = 1.35;       // factor of a silhouette's size over the typical, from which on it is not trusted
 constexpr int kRounds = 3;                // of the fit, in every frame
+constexpr double kHalo = 5;               // px: physical, sharpening's halo at both ends of a silhouette
 constexpr double kNextTo = 0.2;           // heights about a silhouette that are inspected
 constexpr double kMinOfSilhouette = 0.5;  // of its area that is body; less, and colour cannot decide
 constexpr double kMaxGrowth = 1.5;        // of an outline's box, in a frame; unswept
@@ -47,6 +48,14 @@ bool is_of_size(const Box& box, const ContourTarget& target) {
 }
 
 }  // namespace
+
+bool is_whole(const std::optional<geometry::ClosedSpline>& outline, const Box& silhouette) {
+  if (!outline) return false;
+  const double part = kMaxMissingPart * silhouette.height;
+  const Box own = outline->box(), most = colour::grown(silhouette, part);
+  return own.height > silhouette.height - std::max(part, kHalo) && own.left >= most.left && own.right() <= most.right() &&
+         own.top >= most.top && own.bottom() <= most.bottom();
+}
 
 void LoneSilhouettes::inspect_at(const Image& image, const cv::Mat& mask, const colour::SceneImage* scene) {
   image_ = image;
@@ -108,8 +117,11 @@ bool LoneSilhouettes::take(ContourTarget& target, const Detection& detected, con
   options.maximum = std::max(count, options.maximum);
   options.rounds = kRounds;
   Inspected found = inspected(detected, options, &target, mask);
-  // Where the learned colours explain too little of a silhouette, it says more of the body than they do.
-  if (!found.spline) found = inspected(detected, options, nullptr, nullptr);
+  // Where the learned colours explain too little of a silhouette, or too much, it says more of the body than they do.
+  if (!is_whole(found.spline, detected.box)) {
+    Inspected without = inspected(detected, options, nullptr, nullptr);
+    if (!found.spline || is_whole(without.spline, detected.box)) found = std::move(without);
+  }
   const std::optional<geometry::ClosedSpline>& spline = found.spline;
   if (!spline || spline->count() < count) return false;
   const double growth = std::sqrt(spline->area() / target.default_area);

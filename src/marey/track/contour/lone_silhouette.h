@@ -14,6 +14,10 @@
 
 namespace marey::track::contour {
 
+/// Whether an outline reaches from a silhouette's top to its foot, and not far beyond its box (px): colours that cut off a head or
+/// legs, or found the ground's shadow alike, are mistaken. Not where there is no outline.
+bool is_whole(const std::optional<geometry::ClosedSpline>& outline, const Box& silhouette);
+
 /// Takes outlines from silhouettes that no person shares, and learns from them their targets' appearance. Several threads may do so
 /// for distinct targets.
 class LoneSilhouettes {

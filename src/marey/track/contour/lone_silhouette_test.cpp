@@ -181,6 +181,23 @@ Walk walk_of(double height, int frames) {
   return walk;
 }
 
+TEST(LoneSilhouettes, AnOutlineReachesFromTopToFootAndNotIntoTheShadow) {
+  const Box silhouette{100, 50, 40, 100};
+  const auto outline = [](const Box& box) {  // an ellipse that fills the box, nearly
+    std::vector<Vector<2>> points;
+    for (int i = 0; i < 24; ++i) {
+      const double at = 2 * M_PI * i / 24;
+      points.push_back(box.centre() + 0.51 * Vector<2>(box.width * std::cos(at), box.height * std::sin(at)));
+    }
+    return geometry::ClosedSpline(3, points);
+  };
+  EXPECT_TRUE(is_whole(outline(silhouette), silhouette));
+  EXPECT_FALSE(is_whole(std::nullopt, silhouette));
+  EXPECT_FALSE(is_whole(outline({100, 50, 40, 75}), silhouette)) << "legs are missing";
+  EXPECT_FALSE(is_whole(outline({100, 50, 70, 100}), silhouette)) << "a shadow beside";
+  EXPECT_FALSE(is_whole(outline({100, 50, 40, 130}), silhouette)) << "a shadow at the feet";
+}
+
 TEST(LoneSilhouettes, AWalkerKeepsBareLimbsAndIsSteady) {
   for (const double height : {60.0, 120.0}) {
     const Walk walk = walk_of(height, 50);

@@ -13,9 +13,8 @@
 namespace marey::track::contour {
 namespace {
 
-constexpr double kMaxMissingPart = 0.12;  // heights by which an outline may be lower than the tracker's box
-constexpr double kMaxHigher = 1.25;       // of the tracker's box, from which on an outline has grown beyond its target
-constexpr double kMaxWider = 1.8;         // likewise
+constexpr double kMaxHigher = 1.25;  // of the tracker's box, from which on an outline has grown beyond its target
+constexpr double kMaxWider = 1.8;    // likewise
 
 geometry::ClosedSpline moved_to(const geometry::ClosedSpline& spline, const Vector<2>& centre) {
   std::vector<Vector<2>> points = spline.control_points();
