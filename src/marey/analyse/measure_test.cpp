@@ -188,7 +188,7 @@ Recording with_a_predicted_dash(bool smoothed) {
 TEST(Measure, SpeedsAreOfWhatWasMeasured) {
   for (const bool smoothed : {false, true}) {
     const PersonMeasure person = measure(with_a_predicted_dash(smoothed)).people.at(0);
-    EXPECT_LT(person.top_mps.value(), 4) << (smoothed ? "smoothed" : "not smoothed");
+    EXPECT_LT(person.top_mps.value_or(0), 4) << (smoothed ? "smoothed" : "not smoothed");
     EXPECT_EQ(person.sprints, 0);
     EXPECT_NEAR(person.observed_s, 8.4, 0.5);
     EXPECT_NEAR(person.seconds, 10, 0.05);

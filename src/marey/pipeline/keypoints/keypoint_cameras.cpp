@@ -40,10 +40,11 @@ void read_camera(RigCamera& camera, Cameras which, const std::string& set, std::
 }
 
 /// Throws Error if they cannot be of one recording; warns where frames are missing.
-void check_together(const std::vector<const KeypointSequence*>& read, bool one_camera, std::vector<std::string>& warnings) {
+void check_together(const std::vector<const KeypointSequence*>& read, Cameras which, bool one_camera,
+                    std::vector<std::string>& warnings) {
   if (read.empty() || (read.size() < 2 && !one_camera))
-    throw Error("{} with a video or keypoints; two are needed: CAMERA=VIDEO, or CAMERA=KEYPOINTS, for each",
-                read.empty() ? "there is no camera" : "there is only one camera");
+    throw Error("there is {} {}camera with a video or keypoints; two are needed: CAMERA=VIDEO, or CAMERA=KEYPOINTS, for each",
+                read.empty() ? "no" : "only one", which == Cameras::calibrated ? "calibrated " : "");
   for (const KeypointSequence* one : read) {
     if (one->set.points != read[0]->set.points)
       throw Error("{}: has the keypoint set {}, and {} has {}; all cameras must have one set", one->from, one->set.name,
@@ -74,7 +75,7 @@ std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, Camer
   }
   const auto calibrated =
       std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
-  check_together(read, calibrated == 1, warnings);
+  check_together(read, which, calibrated == 1, warnings);
   if (assumed)
     warnings.push_back(
         fmt::format("neither the rig nor the keypoints say how many frames there are in a second: {:g} are assumed; give --rate",
