@@ -155,6 +155,8 @@ void run(const CalibratePeople& command) {
   const Rig rig = people_rig_of(command.inputs);
   if (pipeline::calibrate::has_live_cameras(rig)) return calibrate_live(rig, options, command);
   if (command.view) throw WrongUsage("--view: shows live cameras; those of this rig are not");
+  if (!options.how.height && !options.how.distance)
+    warn({"neither --height nor --distance is given: the scale is unknown, and a typical height is taken"});
   finish(
       with_progress(command.quiet, [&](const Hooks& hooks) { return pipeline::calibrate::calibrate_people(rig, options, hooks); }),
       command);

@@ -342,9 +342,9 @@ void PeopleCalibration::put_into_world() {
   } else if (options_.height) {
     scale = *options_.height / world->height;
   } else {
-    result_.notes.push_back(fmt::format(
-        "how large all is is not known: the person was taken to be {:.2f} m tall; give --height, or --distance of two cameras",
-        kAssumedHeight));
+    result_.notes.push_back(
+        fmt::format("the scale is not known: the person was taken to be {:.2f} m tall; give --height, or --distance of two cameras",
+                    kAssumedHeight));
   }
   result_.height = scale * world->height;
   move(bundle_, world->moved_from_world, scale);

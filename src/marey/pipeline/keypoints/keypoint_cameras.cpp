@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "marey/core/error.h"
+#include "marey/files/text_safety.h"
 #include "marey/format/keypoints/keypoint_file.h"
 #include "marey/pipeline/keypoints/keypoint_recording.h"
 
@@ -39,12 +40,29 @@ void read_camera(RigCamera& camera, Cameras which, const std::string& set, std::
   into = std::move(read);
 }
 
+[[noreturn]] void refuse_count(std::size_t count, Cameras which) {
+  throw Error("there is {} {}camera with a video or keypoints; two are needed: CAMERA=VIDEO, or CAMERA=KEYPOINTS, for each",
+              count == 0 ? "no" : "only one", which == Cameras::calibrated ? "calibrated " : "");
+}
+
+/// What can be known before minutes of searching. Throws Error if a file is missing, or all but one camera.
+void check_files(const Rig& rig, Cameras which, bool one_camera) {
+  std::size_t count = 0;
+  for (const RigCamera& camera : rig.cameras) {
+    const std::string path = keypoint_file_of(camera);
+    if (path.empty() || (which == Cameras::calibrated && !camera.camera())) continue;
+    ++count;
+    std::error_code ignored;
+    const bool is_path = path.find_first_of("%*?") == std::string::npos && path.find("://") == std::string::npos;
+    if (is_path && !fs::exists(path, ignored)) throw Error("{}: no such file, for camera \"{}\"", plain_text(path), camera.name);
+  }
+  if (count < 2 && !(one_camera && count == 1)) refuse_count(count, which);
+}
+
 /// Throws Error if they cannot be of one recording; warns where frames are missing.
 void check_together(const std::vector<const KeypointSequence*>& read, Cameras which, bool one_camera,
                     std::vector<std::string>& warnings) {
-  if (read.empty() || (read.size() < 2 && !one_camera))
-    throw Error("there is {} {}camera with a video or keypoints; two are needed: CAMERA=VIDEO, or CAMERA=KEYPOINTS, for each",
-                read.empty() ? "no" : "only one", which == Cameras::calibrated ? "calibrated " : "");
+  if (read.empty() || (read.size() < 2 && !one_camera)) refuse_count(read.size(), which);
   for (const KeypointSequence* one : read) {
     if (one->set.points != read[0]->set.points)
       throw Error("{}: has the keypoint set {}, and {} has {}; all cameras must have one set", one->from, one->set.name,
@@ -69,12 +87,13 @@ std::vector<std::optional<KeypointCamera>> read_keypoint_cameras(Rig& rig, Camer
   std::vector<std::optional<KeypointCamera>> cameras(rig.cameras.size());
   bool assumed = false;
   std::vector<const KeypointSequence*> read;
+  const auto calibrated =
+      std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
+  check_files(rig, which, calibrated == 1);
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     read_camera(rig.cameras[c], which, set, rate_hz, find, hooks, cameras[c], warnings, assumed);
     if (cameras[c] && !cameras[c]->sequence.frames.empty()) read.push_back(&cameras[c]->sequence);
   }
-  const auto calibrated =
-      std::count_if(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) { return camera.camera().has_value(); });
   check_together(read, which, calibrated == 1, warnings);
   if (assumed)
     warnings.push_back(

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -241,6 +242,8 @@ TEST_F(KeypointsInSpace, AreRefusedInOneSentence) {
   EXPECT_NE(error_of(other).find("all cameras must have one set"), std::string::npos);
   Rig video = rig;
   video.cameras[0].source = folder_ / "cam1.mp4";
+  EXPECT_NE(error_of(video).find("cam1.mp4: no such file, for camera"), std::string::npos);
+  std::ofstream(folder_ / "cam1.mp4") << "a video\n";
   EXPECT_NE(error_of(video).find("needs a video, or keypoints"), std::string::npos);
 }
 
