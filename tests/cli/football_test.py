@@ -76,6 +76,9 @@ class Football(unittest.TestCase):
         self.assertTrue((self.folder / "pictures" / "stand_accuracy.svg").exists())
         self.assertIn("the click on", self.marey(*pitch).stdout)
         self.assertIn("ground_from_world", (self.folder / "pitch.toml").read_text(), "these clicks are left-handed")
+        self.assertNotIn("is found on the pitch", self.marey(*pitch).stderr)
+        self.write_clicks("clicks.csv", [(x, y - 20, u, v) for x, y, u, v in self.points])
+        self.assertIn('camera "stand" is found on the pitch, at (52.5, 60.0), 8.0 m up', self.marey(*pitch).stderr)
 
     def test_clicks_that_decide_nothing_are_refused(self):
         def pitch(camera, clicks):

@@ -172,6 +172,25 @@ bool others_stand_on_it(const Rig& rig, const std::map<std::string, std::string>
                      [&](const RigCamera& camera) { return !clicks.contains(camera.name) && camera.camera(); });
 }
 
+/// A camera on a stand or a mast is beside the pitch: one that is found on it has another camera's clicks, or wrong names of
+/// places.
+void check_locations(PitchRun& run, const geometry::PitchSize& size) {
+  constexpr double kAboveAll_m = 15;  // by definition: cameras on wires hang higher
+  double to_side = 0;                 // the user's y grows to either side
+  for (const marey::calibrate::pitch::PitchView& view : run.views) {
+    for (const auto& point : view.points) to_side += point.ground.y();
+  }
+  for (std::size_t i = 0; i < run.views.size(); ++i) {
+    const Vector<3>& centre = run.calibration.views[i].camera.centre();
+    const Vector<2> at = (run.calibration.ground_from_world * centre.head<2>().homogeneous()).hnormalized();
+    const double across = to_side < 0 ? -at.y() : at.y();
+    if (at.x() > 0 && at.x() < size.length && across > 0 && across < size.width && centre.z() < kAboveAll_m)
+      run.warnings.push_back(
+          fmt::format("camera \"{}\" is found on the pitch, at ({:.1f}, {:.1f}), {:.1f} m up: are its points another camera's?",
+                      run.cameras[i], at.x(), at.y(), centre.z()));
+  }
+}
+
 /// The result, in the rig.
 void enter(PitchRun& run) {
   run.rig.ground_from_world = run.calibration.ground_from_world;
@@ -226,6 +245,7 @@ PitchRun calibrate_pitch(const Rig& rig, const std::map<std::string, std::string
   pitch.ground = run.rig.ground;
   run.calibration = marey::calibrate::pitch::calibrate_pitch(run.views, pitch);
   enter(run);
+  check_locations(run, pitch.size);
   put_in_step(run, options, hooks);
   if (!options.images.empty()) draw(run, options);
   return run;
