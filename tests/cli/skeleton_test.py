@@ -39,6 +39,26 @@ class Skeleton(OnRecordings):
         self.assertIn("54 muscles", summary["unused"])
         self.assertLess(summary["rms_mm"], 0.05)
 
+    def test_a_static_trial_of_another_person_is_not_used(self):
+        self.marey("convert", "standing.trc", "standing.csv", "-q")
+        head, *rows = (self.folder / "standing.csv").read_text().splitlines()
+        at = [head.split(",").index(name) for name in "xyz"]
+
+        def scaled(row):
+            cells = row.split(",")
+            for i in at:
+                cells[i] = str(1.3 * float(cells[i])) if cells[i] else ""
+            return ",".join(cells)
+
+        (self.folder / "taller.csv").write_text("\n".join([head, *map(scaled, rows)]) + "\n")
+        calibrate = ("solve", "walk.trc", "--skeleton", "model.osim", "--calibrate")
+        taller = self.marey(*calibrate, "--static-trial", "taller.csv", "-o", "taller.mot").stderr
+        self.assertRegex(taller, r"taller\.csv: .* mm farther apart than in walk\.trc: another person's static trial\? It is not used")
+        self.marey(*calibrate, "-o", "alone.mot", "-q")
+        without_head = lambda name: (self.folder / name).read_text().split("endheader")[1]
+        self.assertEqual(without_head("taller.mot"), without_head("alone.mot"))
+        self.assertIn("moves by", self.marey(*calibrate, "--static-trial", "turn.trc", "-o", "x.mot", code=1).stderr.replace("markers move by", "moves by"))
+
     def test_the_same_bytes_again(self):
         for name in ("a", "b"):
             self.marey("solve", "walk.c3d", "--static-trial", "standing.c3d", "-o", f"{name}.mot", "-o", f"{name}.bvh", "-o", f"{name}.glb", "-q")

@@ -183,12 +183,13 @@ solve::skeleton::Calibration calibrate_skeleton(const std::string& recording, co
     how.tie_sigma_m = 0.01;  // unswept
   }
   if (generic && !options.static_trial.empty()) {
-    how.lasting_sigma_m = kSkin_m;  // without a static trial it leaves too much open: gait2354 gets worse by 4°
     const auto standing = all_observed(options.static_trial, skeleton, options);
     how.standing = standing_markers(standing, options.static_trial);
     how.standing_sigmas_rad = standing_sigmas(skeleton);
     exclude_moved(skeleton, frames, standing, recording, options.static_trial, how, warnings);
   }
+  // Without a static trial it leaves too much open: gait2354 gets worse by 4°.
+  if (how.standing) how.lasting_sigma_m = kSkin_m;
   solve::skeleton::Calibration calibration = solve::skeleton::calibrate(skeleton, frames, how);
   if (how.standing) {
     if (const auto posture = posture_of(skeleton, calibration.standing, how.standing_sigmas_rad))
