@@ -7,7 +7,7 @@
 #include "marey/detect/keypoints/model_folder.h"
 #include "marey/detect/network/halved_image.h"
 #include "marey/detect/network/run_network.h"
-#include "marey/pipeline/keypoints/stopwatch.h"
+#include "marey/pipeline/corridor/stopwatch.h"
 
 namespace marey::pipeline::keypoints {
 
@@ -53,9 +53,10 @@ void ImagesWithPeople::step(std::span<const Image> images, Timestamp now, const 
     if (due && (!chosen || *due > longest)) chosen = c, longest = *due;
   }
   if (chosen) {
-    const Stopwatch watch(searching_);
+    const corridor::Stopwatch watch;
     ++searches_;
     cameras_[*chosen].searched(find_people_(images[*chosen]), now);
+    searching_.add(watch.seconds());
   }
   std::vector<ImageRegion> searched;
   for (std::size_t c = 0; c < cameras_.size(); ++c) {
@@ -64,8 +65,9 @@ void ImagesWithPeople::step(std::span<const Image> images, Timestamp now, const 
   }
   std::vector<Body> bodies;
   if (!searched.empty()) {
-    const Stopwatch watch(detecting_);
+    const corridor::Stopwatch watch;
     bodies = find_bodies_(searched);
+    detecting_.add(watch.seconds());
   }
   regions_ += std::ssize(searched);
   std::size_t begin = 0;

@@ -11,10 +11,10 @@
 #include "marey/core/error.h"
 #include "marey/core/keypoint_sets.h"
 #include "marey/core/stage_times.h"
+#include "marey/pipeline/corridor/stopwatch.h"
 #include "marey/pipeline/keypoints/keypoint_frames.h"
 #include "marey/pipeline/keypoints/keypoint_misfit.h"
 #include "marey/pipeline/keypoints/live_noise.h"
-#include "marey/pipeline/keypoints/stopwatch.h"
 #include "marey/reconstruct/keypoints/people_in_views.h"
 
 namespace marey::pipeline::keypoints {
@@ -244,13 +244,12 @@ std::span<const Instant> KeypointsLive::step(const FrameSet& frames) {
   instant_ = {};
   instant_.index = frames.index;
   instant_.time = frames.time;
-  {
-    const Stopwatch watch(locating_);
-    location(frames, step_s);
-    people_.step(located_, step_s, instant_);
-    expect_in_other_cameras(frames);
-    report_observed(instant_);
-  }
+  const corridor::Stopwatch watch;
+  location(frames, step_s);
+  people_.step(located_, step_s, instant_);
+  expect_in_other_cameras(frames);
+  report_observed(instant_);
+  locating_.add(watch.seconds());
   return {&instant_, 1};
 }
 
