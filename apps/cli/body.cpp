@@ -75,6 +75,18 @@ void run(DefineCommand& command) {
   }
 }
 
+/// The questions that only someone who sees the video, or knows the motion, can answer; and how.
+void print_in_question(const BodyTrackCommand& command, const pipeline::bodies::TrackBodiesSummary& summary) {
+  constexpr std::size_t kMaxPrinted = 10;
+  for (std::size_t i = 0; i < std::min(summary.in_question.size(), kMaxPrinted); ++i) {
+    const auto& one = summary.in_question[i];
+    fmt::print(stderr, "  in question: from frame {} on ({:.2f} s) {} may be {} ({:.0f} %); if so: marey edit {} \"turn {} {}:\"\n",
+               one.frame, seconds(one.time), one.body, one.turn, 100 * one.probability, command.out, one.body, one.frame);
+  }
+  if (summary.in_question.size() > kMaxPrinted)
+    fmt::print(stderr, "  and {} more; --json lists all\n", summary.in_question.size() - kMaxPrinted);
+}
+
 void print_tracked(const BodyTrackCommand& command, const pipeline::bodies::TrackBodiesSummary& summary) {
   for (const auto& one : summary.bodies) {
     if (one.counts.measured + one.counts.predicted == 0) {
@@ -87,6 +99,7 @@ void print_tracked(const BodyTrackCommand& command, const pipeline::bodies::Trac
       fmt::print(stderr, "  found to be turned, {} times, and corrected; it appears the same {}\n", one.counts.corrected,
                  words_of(one.symmetries.front()));
   }
+  print_in_question(command, summary);
   fmt::print(stderr, "noise of a point {:.2f} mm\n{}\n", 1000 * summary.noise_m, command.out);
 }
 
@@ -101,6 +114,13 @@ Json tracked_json(const BodyTrackCommand& command, const pipeline::bodies::Track
                               {"lost", one.counts.lost},
                               {"turned", one.counts.corrected},
                               {"error_m", one.error_m}});
+  json["in_question"] = Json::array();
+  for (const auto& one : summary.in_question)
+    json["in_question"].push_back({{"body", one.body},
+                                   {"frame", one.frame},
+                                   {"time_s", seconds(one.time)},
+                                   {"probability", one.probability},
+                                   {"turn", one.turn}});
   return json;
 }
 

@@ -1,8 +1,10 @@
 // When people who walk were seen enough: the criterion of calibrate/people/people_coverage.h on simulated rooms, by what results
-// from the calibration at that instant beside one by a whole minute. Arguments: cameras (4), trials (6), first seed (1).
+// from the calibration at that instant beside one by a whole minute. Arguments: cameras (4), trials (6), first seed (1), and then
+// durations in s: what results from a walk that is so short.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -93,6 +95,8 @@ int main(int count, char** arguments) {
   const auto number = [&](int at, int typical) { return count > at ? std::atoi(arguments[at]) : typical; };
   const int cameras = number(1, 4), trials = number(2, 6), first = number(3, 1);
   std::vector<double> after, then, whole;
+  std::map<double, std::vector<double>> walks;  // by duration
+  for (int at = 4; at < count; ++at) walks[std::atof(arguments[at])];
   for (int seed = first; seed < first + trials; ++seed) {
     const Walked all = walked(cameras, static_cast<std::uint64_t>(seed));
     const double seconds = enough_after(all);
@@ -104,7 +108,18 @@ int main(int count, char** arguments) {
     after.push_back(seconds);
     if (early) then.push_back(*early);
     if (late) whole.push_back(*late);
+    for (auto& [lasts, distances] : walks) {
+      std::string reason;
+      distances.push_back(off(all, lasts, reason).value_or(NAN));
+      fmt::print("          after {:g} s: {:.1f} % {}\n", lasts, 100 * distances.back(), reason);
+      std::fflush(stdout);
+    }
   }
   fmt::print("medians: {:.0f} s; {:.1f} %, {:.1f} %\n", geometry::median_or(after, NAN), 100 * geometry::median_or(then, NAN),
              100 * geometry::median_or(whole, NAN));
+  for (auto& [lasts, distances] : walks) {
+    const auto refused = std::erase_if(distances, [](double d) { return std::isnan(d); });
+    fmt::print("{:g} s: median {:.1f} %, worst {:.1f} %, {} of {} without a rig\n", lasts, 100 * geometry::median_or(distances, NAN),
+               100 * (distances.empty() ? NAN : *std::max_element(distances.begin(), distances.end())), refused, trials);
+  }
 }

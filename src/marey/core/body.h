@@ -33,6 +33,12 @@ struct Body {
   bool operator==(const Body&) const = default;
 };
 
+/// Where else a body may be that appears the same when it is turned.
+struct OtherPose {
+  Rigid3 world_from_body;  ///< m
+  double probability = 0;  ///< that it is this one
+};
+
 /// Where a body is at one instant.
 struct BodyPose {
   BodyId body{};
@@ -40,6 +46,7 @@ struct BodyPose {
   std::optional<Matrix<6>> covariance;  ///< of a small turn about the world's axes (rad), then of the position (m)
   std::optional<double> residual_m;     ///< mean distance of its markers from where they were seen
   bool tracked = true;                  ///< enough of it was seen at this instant; otherwise it is predicted
+  std::optional<OtherPose> other = {};  ///< the most probable of those that its markers cannot exclude, where it is in question
 };
 
 }  // namespace marey

@@ -196,6 +196,7 @@ BodyPose BodyColumns::pose(std::size_t row) const {
     pose.covariance = covariance;
   }
   if (residual_m_.known(row)) pose.residual_m = *residual_m_.values(row);
+  if (other_.known(row)) pose.other = {geometry::rigid_from_rows(other_.values(row)), other_.values(row)[12]};
   return pose;
 }
 
@@ -220,6 +221,12 @@ void BodyColumns::add(std::int32_t instant, const BodyPose& pose) {
     covariance_.set(row, upper);
   }
   if (pose.residual_m) residual_m_.set(row, {&*pose.residual_m, 1});
+  if (pose.other) {
+    std::array<double, 13> numbers{};
+    std::ranges::copy(geometry::rows_of(pose.other->world_from_body), numbers.begin());
+    numbers[12] = pose.other->probability;
+    other_.set(row, numbers);
+  }
 }
 
 void BodyColumns::append(const BodyColumns& other, std::int32_t offset) {

@@ -197,6 +197,7 @@ class BodyColumns {
   const std::vector<bool>& tracked() const { return tracked_; }
   const OptionalColumn& covariance() const { return covariance_; }  ///< the upper triangle, row by row: 21 numbers
   const OptionalColumn& residual_m() const { return residual_m_; }
+  const OptionalColumn& other() const { return other_; }  ///< the three rows of [R t] of the other pose, then its probability
 
   BodyPose pose(std::size_t row) const;
   /// The row of this instant of the recording, by binary search.
@@ -214,7 +215,7 @@ class BodyColumns {
   std::vector<std::int32_t> at_;
   std::vector<Rigid3> poses_;
   std::vector<bool> tracked_;
-  OptionalColumn covariance_{21}, residual_m_{1};
+  OptionalColumn covariance_{21}, residual_m_{1}, other_{13};
 };
 
 /// A whole recording in memory. What may be long and is only passed on is better streamed, instant by instant.

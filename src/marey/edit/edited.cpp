@@ -6,6 +6,7 @@
 #include "marey/edit/history.h"
 #include "marey/edit/operation.h"
 #include "marey/edit/tracks.h"
+#include "marey/edit/turn_body.h"
 
 namespace marey::edit {
 
@@ -19,7 +20,10 @@ Recording edited(Recording recorded) {
   for (const TrackColumns& track : recorded.tracks()) names.push_back(track.name);
   Tracks tracks(recorded.instants(), names, [&](TrackId track) { return *recorded.find(track); });
   for (const Edit& edit : branch) {
-    if (const auto operation = operation_of(edit)) tracks.apply(*operation);
+    const auto operation = operation_of(edit);
+    if (!operation) continue;
+    tracks.apply(*operation);
+    if (operation->kind == Operation::Kind::turn) turn_body(recorded, *operation);
   }
   std::vector<TrackColumns> changed;
   for (const TrackName& name : tracks.names()) {

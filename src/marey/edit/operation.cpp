@@ -19,14 +19,15 @@ namespace {
 using nlohmann::json;
 using Kind = Operation::Kind;
 
-constexpr std::array<std::pair<Kind, std::string_view>, 8> kKinds{{{Kind::rename, "rename"},
+constexpr std::array<std::pair<Kind, std::string_view>, 9> kKinds{{{Kind::rename, "rename"},
                                                                    {Kind::swap, "swap"},
                                                                    {Kind::split, "split"},
                                                                    {Kind::join, "join"},
                                                                    {Kind::remove, "delete"},
                                                                    {Kind::fill, "fill"},
                                                                    {Kind::team, "team"},
-                                                                   {Kind::filter, "filter"}}};
+                                                                   {Kind::filter, "filter"},
+                                                                   {Kind::turn, "turn"}}};
 constexpr std::array<std::pair<FillMethod, std::string_view>, 3> kMethods{
     {{FillMethod::spline, "spline"}, {FillMethod::rigid, "rigid"}, {FillMethod::pattern, "pattern"}}};
 
@@ -47,10 +48,14 @@ json ids(const std::vector<TrackId>& tracks) {
   return list;
 }
 
-TrackId track_of(const json& value) {
+int id_of(const json& value) {
   const auto id = value.get<std::int64_t>();
-  if (id <= 0 || id >= std::int64_t{1} << 31) throw json::other_error::create(500, "a track's id", &value);
-  return TrackId{static_cast<int>(id)};
+  if (id <= 0 || id >= std::int64_t{1} << 31) throw json::other_error::create(500, "an id", &value);
+  return static_cast<int>(id);
+}
+
+TrackId track_of(const json& value) {
+  return TrackId{id_of(value)};
 }
 
 std::vector<TrackId> tracks_of(const json& list) {
@@ -122,7 +127,7 @@ FilledGap gap_of(const json& value) {
 std::pair<std::size_t, std::size_t> tracks_required(Kind kind) {
   if (kind == Kind::rename || kind == Kind::split) return {1, 1};
   if (kind == Kind::swap || kind == Kind::join) return {2, 2};
-  if (kind == Kind::fill) return {0, 0};
+  if (kind == Kind::fill || kind == Kind::turn) return {0, 0};
   return {1, SIZE_MAX};
 }
 
@@ -135,10 +140,12 @@ Operation parsed(Kind kind, const json& payload) {
   if (payload.contains("born")) operation.initiated = track_of(payload["born"]);
   for (const json& gap : payload.value("gaps", json::array())) operation.gaps.push_back(gap_of(gap));
   for (const json& cutoff : payload.value("cutoffs_hz", json::array())) operation.cutoffs_hz.push_back(positive(cutoff));
+  if (payload.contains("body")) operation.body = BodyId{id_of(payload["body"])};
   const auto [lowest_count, maximum] = tracks_required(kind);
   const bool whole = operation.tracks.size() >= lowest_count && operation.tracks.size() <= maximum &&
                      (kind != Kind::split || (operation.initiated && operation.frames)) &&
                      (kind != Kind::fill || !operation.gaps.empty()) &&
+                     (kind != Kind::turn || operation.body) &&
                      (kind != Kind::filter || operation.cutoffs_hz.size() == operation.tracks.size());
   if (!whole) throw json::other_error::create(500, "its parts", &payload);
   return operation;
@@ -165,6 +172,7 @@ std::optional<FillMethod> method_named(std::string_view name) {
 Edit edit_of(const Operation& operation) {
   json payload = json::object();
   if (!operation.tracks.empty()) payload["tracks"] = ids(operation.tracks);
+  if (operation.body) payload["body"] = number(*operation.body);
   if (operation.frames) payload["frames"] = {operation.frames->first, operation.frames->last};
   if (!operation.label.empty()) payload["label"] = operation.label;
   if (operation.initiated) payload["born"] = number(*operation.initiated);

@@ -49,6 +49,7 @@ struct Operation {
     fill,    ///< `gaps`
     team,    ///< tracks are of the team that `label` is called
     filter,  ///< tracks[i] is smoothed with `cutoffs_hz[i]` within `frames`
+    turn,    ///< `body` has its other pose within `frames`, where it has one
   };
 
   Kind kind{};
@@ -58,11 +59,12 @@ struct Operation {
   std::optional<TrackId> initiated = {};
   std::vector<FilledGap> gaps = {};
   std::vector<double> cutoffs_hz = {};  ///< Hz; of both passes together
+  std::optional<BodyId> body = {};
 
   bool operator==(const Operation&) const = default;
 };
 
-/// "rename", "swap", "split", "join", "delete", "fill", "team", "filter".
+/// "rename", "swap", "split", "join", "delete", "fill", "team", "filter", "turn".
 std::string_view name_of(Operation::Kind kind);
 std::optional<Operation::Kind> kind_named(std::string_view name);
 /// "spline", "rigid", "pattern".

@@ -14,7 +14,7 @@ namespace {
 
 using Kind = Operation::Kind;
 
-constexpr std::string_view kKnown = "rename, swap, split, join, delete, fill, filter and team are known";
+constexpr std::string_view kKnown = "rename, swap, split, join, delete, fill, filter, team and turn are known";
 
 struct Word {
   std::string text;
@@ -206,6 +206,10 @@ void read(Reader& words, Request& request) {
     case Kind::filter:
       request.tracks = words.tracks("the track, or all,");
       read_filter(words, request);
+      break;
+    case Kind::turn:
+      request.tracks = {words.name("the body")};
+      request.frames = words.next(range_in);
       break;
   }
   words.end();

@@ -2,6 +2,7 @@
 //   rename LKNE LKneeOuter        swap LKNE RKNE 120:180       split LKNE 300 [NAME]       join LKNE LKNE2
 //   delete LKNE,RKNE [120:180]    fill all|LKNE [120:180] [spline|rigid|pattern] [longest=0.5] [within=20]
 //   filter all|LKNE [6|auto] [120:180]                       team LKNE,RKNE left
+//   turn racket [310:]
 // Tracks are named by their labels, or #12 by their numbers; names with blanks or commas stand in double quotes. Frames are counted
 // from 0, both ends included; `120:` is from there on, `:180` up to there.
 #pragma once
@@ -17,7 +18,7 @@ namespace marey::edit {
 
 struct Request {
   Operation::Kind kind{};
-  std::vector<std::string> tracks = {};  ///< as written; `all` alone stands for all of them
+  std::vector<std::string> tracks = {};  ///< as written; `all` alone stands for all of them; of turn the body
   std::optional<FrameRange> frames = {};
   std::string label = {};                 ///< of rename, split and team
   std::optional<FillMethod> method = {};  ///< of fill; nothing: the one that does best

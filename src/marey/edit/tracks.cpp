@@ -121,6 +121,8 @@ void Tracks::apply(const Operation& operation) {
       return;
     case Kind::filter:
       return filter(operation);
+    case Kind::turn:
+      return;  // of a body (turn_body.h)
   }
 }
 

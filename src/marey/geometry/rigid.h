@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <Eigen/Geometry>
 
 #include "marey/geometry/vector.h"
@@ -21,5 +23,10 @@ Matrix<3> rotation_from(const Vector<3>& angle_axis);
 
 /// The inverse: Rodrigues' vector of a rotation, its length in [0, π].
 Vector<3> angle_axis_of(const Matrix<3>& rotation);
+
+/// The three rows of [R t], as files have them.
+std::array<double, 12> rows_of(const Rigid3& pose);
+/// The inverse, of 12 numbers.
+Rigid3 rigid_from_rows(const double* rows);
 
 }  // namespace marey::geometry

@@ -47,6 +47,13 @@ void append_body(std::string& text, const Body& body, const BodyPose& pose) {
   fmt::format_to(out, R"(,"position":[{:.6f},{:.6f},{:.6f}],"rotation":[{:.7f},{:.7f},{:.7f},{:.7f}],"tracked":{})", at.x(), at.y(),
                  at.z(), turn.x(), turn.y(), turn.z(), turn.w(), pose.tracked);
   if (pose.residual_m) fmt::format_to(out, R"(,"residual":{:.6f})", *pose.residual_m);
+  if (pose.other) {
+    const Eigen::Quaterniond turned(pose.other->world_from_body.rotation);
+    const Vector<3>& there = pose.other->world_from_body.translation;
+    fmt::format_to(
+        out, R"(,"other":{{"position":[{:.6f},{:.6f},{:.6f}],"rotation":[{:.7f},{:.7f},{:.7f},{:.7f}],"probability":{:.3f}}})",
+        there.x(), there.y(), there.z(), turned.x(), turned.y(), turned.z(), turned.w(), pose.other->probability);
+  }
   text += '}';
 }
 

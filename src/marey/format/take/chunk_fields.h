@@ -31,7 +31,7 @@ enum SampleField {
   sample_outline = sample_first_optional + TrackColumns::kOptionals,
   sample_keypoints
 };
-enum PosesField { poses_id, poses_rows, poses_at, poses_pose, poses_residual, poses_covariance, poses_tracked };
+enum PosesField { poses_id, poses_rows, poses_at, poses_pose, poses_residual, poses_covariance, poses_tracked, poses_other };
 enum ObservedField {
   observed_id,
   observed_rows,

@@ -18,9 +18,14 @@ namespace {
 constexpr std::int64_t kLastIndex = std::int64_t{1} << 62;
 constexpr std::int64_t kOneChunk = std::int64_t{1} << 32;
 
+/// Takes of earlier versions lack columns that were added since.
+bool has_column(const Database& database, std::string_view table, std::string_view column) {
+  Statement found(database, fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", table, column));
+  return found.step() && found.integer(0) == 1;
+}
+
 std::string sample_fields(const Database& database) {
-  Statement column(database, "SELECT count(*) FROM pragma_table_info('samples') WHERE name = 'keypoints'");
-  return fmt::format("{}, {}", kSampleFields, column.step() && column.integer(0) == 1 ? "keypoints" : "NULL");
+  return fmt::format("{}, {}", kSampleFields, has_column(database, "samples", "keypoints") ? "keypoints" : "NULL");
 }
 
 std::optional<Matrix<6>> symmetric_6(const OptionalColumn& column, std::size_t row) {
@@ -45,8 +50,9 @@ ChunkReader::ChunkReader(const Database& database, int dimensions)
       one_track_(database, fmt::format("SELECT {} FROM samples WHERE id = ?", sample_fields(database))) {
   Statement columns(database, "SELECT count(*) FROM pragma_table_info('poses') WHERE name IN ('covariance', 'tracked')");
   if (columns.step() && columns.integer(0) == 2)
-    poses_.emplace(database,
-                   "SELECT id, rows, at, pose, residual, covariance, tracked FROM poses WHERE id >= ? AND id < ? ORDER BY id");
+    poses_.emplace(database, fmt::format("SELECT id, rows, at, pose, residual, covariance, tracked, {} FROM poses WHERE id >= ? "
+                                         "AND id < ? ORDER BY id",
+                                         has_column(database, "poses", "other") ? "other" : "NULL"));
 }
 
 ChunkReader::Row ChunkReader::checked_row(const Statement& row) const {
@@ -159,9 +165,10 @@ void ChunkReader::decode_poses(const Row& chunk, std::int64_t offset, BodyColumn
   const std::span<const std::byte> blob = poses_->blob(poses_pose);
   if (blob.size() != decoder.rows() * 12 * sizeof(double)) decoder.fail("it has another number of poses than of rows");
   decode_positions(*poses_, poses_at, chunk, offset, decoder);
-  OptionalColumn covariance(21), residual(1);
+  OptionalColumn covariance(21), residual(1), other(13);
   decoder.optional(poses_->blob(poses_residual), 0, residual);
   decoder.optional(poses_->blob(poses_covariance), 0, covariance);
+  decoder.optional(poses_->blob(poses_other), 0, other);
   if (poses_->is_number(poses_tracked)) {
     integers_.assign(decoder.rows(), static_cast<std::uint64_t>(poses_->integer(poses_tracked)));
   } else {
@@ -171,12 +178,9 @@ void ChunkReader::decode_poses(const Row& chunk, std::int64_t offset, BodyColumn
   std::memcpy(numbers.data(), blob.data(), blob.size());
   for (std::size_t row = 0; row < decoder.rows(); ++row) {
     BodyPose pose{.body = body.body(), .world_from_body = {}, .covariance = {}, .residual_m = {}, .tracked = integers_[row] != 0};
-    const double* value = numbers.data() + 12 * row;
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) pose.world_from_body.rotation(i, k) = *value++;
-      pose.world_from_body.translation[i] = *value++;
-    }
+    pose.world_from_body = geometry::rigid_from_rows(numbers.data() + 12 * row);
     pose.covariance = symmetric_6(covariance, row);
+    if (other.known(row)) pose.other = {geometry::rigid_from_rows(other.values(row)), other.values(row)[12]};
     if (residual.known(row)) pose.residual_m = *residual.values(row);
     if (problem_of(pose)) decoder.fail("it is nowhere");
     body.add(at_[row], pose);

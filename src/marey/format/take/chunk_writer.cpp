@@ -40,7 +40,7 @@ ChunkWriter::ChunkWriter(const Database& database)
     : add_instants_(database, "INSERT INTO chunk VALUES (?, ?, ?, ?, ?, ?)"),
       add_samples_(database, "INSERT INTO samples VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
       add_observed_(database, "INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
-      add_poses_(database, "INSERT INTO poses VALUES (?, ?, ?, ?, ?, ?, ?)"),
+      add_poses_(database, "INSERT INTO poses VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
       remove_instants_(database, "DELETE FROM chunk WHERE id = ?"),
       remove_samples_(database, "DELETE FROM samples WHERE id >= ? AND id < ?"),
       remove_observed_(database, "DELETE FROM seen WHERE id >= ? AND id < ?"),
@@ -142,16 +142,16 @@ void ChunkWriter::write_poses(std::int64_t row, const BodyColumns& body) {
   }
   std::vector<double> numbers;
   for (const Rigid3& pose : body.poses()) {
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) numbers.push_back(pose.rotation(i, k));
-      numbers.push_back(pose.translation[i]);
-    }
+    const auto rows = geometry::rows_of(pose);
+    numbers.insert(numbers.end(), rows.begin(), rows.end());
   }
   to.bind(poses_pose, std::as_bytes(std::span<const double>(numbers)));
   encode(body.residual_m(), body.size(), false, blobs_[poses_residual]);
   encode(body.covariance(), body.size(), false, blobs_[poses_covariance]);
   bind_or_null(to, poses_residual, blobs_[poses_residual]);
   bind_or_null(to, poses_covariance, blobs_[poses_covariance]);
+  encode(body.other(), body.size(), true, blobs_[poses_other]);
+  bind_or_null(to, poses_other, blobs_[poses_other]);
   integers_.assign(body.tracked().begin(), body.tracked().end());
   bind_integers(to, poses_tracked, integers_, blobs_[poses_tracked]);
   to.run();

@@ -212,10 +212,15 @@ std::optional<std::string> problem_of(const ImageObservation& point) {
 
 std::optional<std::string> problem_of(const BodyPose& pose) {
   if (number(pose.body) <= 0) return fmt::format("body {} cannot be; ids are positive", number(pose.body));
-  const Matrix<3>& rotation = pose.world_from_body.rotation;
-  const bool rigid = rotation.allFinite() && (rotation.transpose() * rotation - Matrix<3>::Identity()).norm() < 1e-6;
+  const auto rigid = [](const Rigid3& motion) {
+    const Matrix<3>& rotation = motion.rotation;
+    return rotation.allFinite() && motion.translation.allFinite() &&
+           (rotation.transpose() * rotation - Matrix<3>::Identity()).norm() < 1e-6;
+  };
   const bool known = !pose.covariance || (pose.covariance->array().abs() <= std::numeric_limits<float>::max()).all();
-  if (rigid && known && pose.world_from_body.translation.allFinite() && is_number(pose.residual_m)) return std::nullopt;
+  const bool other =
+      !pose.other || (rigid(pose.other->world_from_body) && pose.other->probability >= 0 && pose.other->probability <= 1);
+  if (rigid(pose.world_from_body) && known && other && is_number(pose.residual_m)) return std::nullopt;
   return fmt::format("body {} is nowhere", number(pose.body));
 }
 

@@ -38,7 +38,7 @@ constexpr const char* kTakeSchema = R"(
                      sigma BLOB, area BLOB, track NOT NULL);
   CREATE TABLE body (id INTEGER PRIMARY KEY, label TEXT NOT NULL, definition TEXT NOT NULL);
   CREATE TABLE poses (id INTEGER PRIMARY KEY, rows INTEGER NOT NULL, at NOT NULL, pose BLOB NOT NULL, residual BLOB,
-                      covariance BLOB, tracked NOT NULL);
+                      covariance BLOB, tracked NOT NULL, other BLOB);
   CREATE TABLE edit (id INTEGER PRIMARY KEY, parent INTEGER, operation TEXT NOT NULL, payload TEXT NOT NULL);
 )";
 constexpr int kTakeTables = 10;

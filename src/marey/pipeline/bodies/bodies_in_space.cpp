@@ -25,15 +25,20 @@ class SettledInstants {
   void add(Instant instant, std::span<const Correction> corrections) {
     for (const Correction& correction : corrections) {
       for (Instant& waiting : waiting_) {
-        if (waiting.time < correction.since) continue;
-        for (BodyPose& pose : waiting.bodies) {
-          if (pose.body == correction.body) pose.world_from_body = pose.world_from_body * correction.reported_from_body;
-        }
+        if (waiting.time >= correction.since) correct(waiting, correction);
       }
     }
     const Timestamp now = instant.time;
     waiting_.push_back(std::move(instant));
-    for (; now - waiting_.front().time > wait_; waiting_.pop_front()) sink_->write(waiting_.front());
+    const auto settled = [&] {
+      return std::ssize(waiting_) > solve::bodies::BodyTracker::kSettled && now - waiting_.front().time > wait_;
+    };
+    for (; settled(); waiting_.pop_front()) sink_->write(waiting_.front());
+  }
+  /// The index of the instant of this time, of those that wait.
+  std::int64_t frame_at(Timestamp time) const {
+    const auto at = std::find_if(waiting_.begin(), waiting_.end(), [&](const Instant& one) { return one.time >= time; });
+    return at == waiting_.end() ? 0 : at->index;
   }
   void finish() {
     for (const Instant& instant : waiting_) sink_->write(instant);
@@ -41,6 +46,15 @@ class SettledInstants {
   }
 
  private:
+  static void correct(Instant& instant, const Correction& correction) {
+    for (BodyPose& pose : instant.bodies) {
+      if (pose.body != correction.body) continue;
+      pose.world_from_body = pose.world_from_body * correction.reported_from_body;
+      pose.other = correction.other;
+      if (pose.other) pose.other->world_from_body = pose.world_from_body * correction.other->world_from_body;
+    }
+  }
+
   Sink* sink_;
   Duration wait_;
   std::deque<Instant> waiting_;
@@ -49,6 +63,10 @@ class SettledInstants {
 void require_space(const RecordingHeader& header, const std::string& path) {
   if (header.frame.kind != FrameOfReference::Kind::space)
     throw Error("{}: bodies are found among points in space, and these positions are {}", path, to_string(header.frame));
+}
+
+std::string label_of(const std::vector<Body>& bodies, BodyId id) {
+  return std::find_if(bodies.begin(), bodies.end(), [&](const Body& body) { return body.id == id; })->label;
 }
 
 TrackBodiesSummary summary_of(const solve::bodies::BodyTracker& tracker, const std::vector<double>& errors) {
@@ -127,6 +145,7 @@ TrackBodiesSummary track_bodies(const std::string& recording, const std::string&
   std::vector<double> errors(header.bodies.size());
   std::int64_t instants = 0;
   bool stopped = false;
+  std::vector<TrackBodiesSummary::InQuestion> in_question;
   while (auto instant = reader->next()) {
     if (instants == 0) instant->named.insert(instant->named.begin(), names.begin(), names.end());
     step.add_to(*instant);
@@ -134,6 +153,14 @@ TrackBodiesSummary track_bodies(const std::string& recording, const std::string&
       if (pose.tracked) errors[static_cast<std::size_t>(number(pose.body)) - 1] += pose.residual_m.value_or(0);
     }
     settled.add(*std::move(instant), step.tracker().corrections());
+    for (const Correction& one : step.tracker().corrections()) {
+      if (one.doubt > 0)
+        in_question.push_back({.body = label_of(header.bodies, one.body),
+                               .frame = settled.frame_at(one.since),
+                               .time = one.since,
+                               .probability = one.doubt,
+                               .turn = one.words});
+    }
     stopped = hooks.report({.step = "following bodies", .done = ++instants, .total = reader->instant_count()}) == Continue::no;
     if (stopped) break;
   }
@@ -141,6 +168,7 @@ TrackBodiesSummary track_bodies(const std::string& recording, const std::string&
   if (!stopped) sink->finish();
   TrackBodiesSummary summary = summary_of(step.tracker(), errors);
   summary.instants = instants;
+  summary.in_question = std::move(in_question);
   summary.stopped = stopped;
   for (std::string& warning : reader->warnings()) summary.warnings.push_back(std::move(warning));
   if (auto message_text = format::poses_lost(header, out, format)) summary.warnings.push_back(std::move(*message_text));

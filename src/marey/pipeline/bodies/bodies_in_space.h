@@ -45,7 +45,16 @@ struct TrackBodiesSummary {
     double error_m = 0;  ///< mean over the measured instants of the markers' mean distance from their places
     std::vector<solve::bodies::Symmetry> symmetries;
   };
+  /// A return after which a symmetric body may be turned.
+  struct InQuestion {
+    std::string body;
+    std::int64_t frame = 0;  ///< of the recording, from which on
+    Timestamp time{};
+    double probability = 0;
+    std::string turn;  ///< "turned 180° about its z axis"
+  };
   std::vector<OfBody> bodies;
+  std::vector<InQuestion> in_question;
   std::int64_t instants = 0;
   double noise_m = 0;
   std::vector<std::string> warnings;

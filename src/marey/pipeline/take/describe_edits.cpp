@@ -18,8 +18,13 @@ using edit::Operation;
 /// What tracks are called.
 class NamesThen {
  public:
-  explicit NamesThen(const std::vector<TrackName>& tracks) {
+  NamesThen(const std::vector<TrackName>& tracks, const std::vector<Body>& bodies) {
     for (const TrackName& track : tracks) names_[track.id] = track.label;
+    for (const Body& body : bodies) bodies_[body.id] = body.label;
+  }
+  std::string of(BodyId body) const {
+    const auto found = bodies_.find(body);
+    return found == bodies_.end() ? fmt::format("body {}", number(body)) : found->second;
   }
   std::string of(TrackId track) const {
     const auto found = names_.find(track);
@@ -40,6 +45,7 @@ class NamesThen {
 
  private:
   std::map<TrackId, std::string> names_;
+  std::map<BodyId, std::string> bodies_;
 };
 
 std::string frames_of(const std::optional<edit::FrameRange>& frames) {
@@ -79,7 +85,7 @@ std::string words_of(const DoneEdit& done, const NamesThen& names) {
   using Kind = Operation::Kind;
   std::string words(edit::name_of(operation.kind));
   if (operation.kind == Kind::fill) return fmt::format("{} {}", words, fills_of(operation.gaps, names));
-  words += " " + names.of(operation.tracks);
+  words += " " + (operation.body ? names.of(*operation.body) : names.of(operation.tracks));
   if (operation.kind == Kind::rename) return fmt::format("{} to {}", words, operation.label);
   if (operation.kind == Kind::team) return fmt::format("{}: {}", words, operation.label);
   if (operation.kind == Kind::split)
@@ -92,14 +98,14 @@ std::string words_of(const DoneEdit& done, const NamesThen& names) {
 /// What tracks are called as one edit follows the other: each follows its parent, mostly the one before it.
 class NamesOnBranches {
  public:
-  explicit NamesOnBranches(const EditHistory& history) : history_(&history), names_(history.tracks) {
+  explicit NamesOnBranches(const EditHistory& history) : history_(&history), names_(history.tracks, history.bodies) {
     for (const DoneEdit& done : history.edits) by_id_[done.edit.id] = &done;
   }
 
   /// Before this edit was done.
   const NamesThen& before(const DoneEdit& done) {
     if (done.edit.parent == last_) return names_;
-    names_ = NamesThen(history_->tracks);
+    names_ = NamesThen(history_->tracks, history_->bodies);
     std::vector<const DoneEdit*> branch;
     for (auto id = done.edit.parent; id && by_id_.contains(*id) && branch.size() < by_id_.size(); id = by_id_[*id]->edit.parent)
       branch.push_back(by_id_[*id]);

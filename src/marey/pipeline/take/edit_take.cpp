@@ -9,7 +9,9 @@
 #include "marey/core/error.h"
 #include "marey/edit/decide.h"
 #include "marey/edit/history.h"
+#include "marey/edit/edited.h"
 #include "marey/edit/tracks.h"
+#include "marey/edit/turn_body.h"
 #include "marey/files/input_file.h"
 #include "marey/format/take/take_file.h"
 
@@ -87,7 +89,7 @@ std::vector<EditRequest> read_edit_script(const std::string& path) {
 EditHistory edit_history(const std::string& path) {
   const TakeReader take(path);
   const auto [edits, head, state] = standing_of(take, path, {});
-  EditHistory history{.edits = {}, .counting = {}, .tracks = take.tracks(), .state = state};
+  EditHistory history{.edits = {}, .counting = {}, .tracks = take.tracks(), .bodies = take.header().bodies, .state = state};
   for (const Edit& one : edits) history.edits.push_back({one, edit::operation_of(one)});
   for (const Edit& one : edit::branch_of(edits, head)) history.counting.push_back(one.id);
   return history;
@@ -99,19 +101,24 @@ std::vector<DoneEdit> edit_take(const std::string& path, const std::vector<EditR
   const TakeReader take(path);
   auto [before, head, state] = standing_of(take, path, on);
   edit::Tracks tracks = tracks_of(take, path);
+  std::optional<Recording> bodies;  // read where an edit wants them
   std::int64_t id = edit::next_id(before);
   for (const EditRequest& request : requests) {
     hooks.advance({.step = "editing", .done = std::ssize(done), .total = std::ssize(requests)});
     try {
       const edit::Request parsed = edit::parse_request(request.text);
       edit::OpenGaps open;
-      const Operation operation = edit::decide(parsed, tracks, notes == nullptr ? nullptr : &open);
+      const bool turn = parsed.kind == Operation::Kind::turn;
+      if (turn && !bodies) bodies = edit::edited(format::take::read_recording(path));
+      const Operation operation =
+          turn ? edit::decide_turn(parsed, *bodies) : edit::decide(parsed, tracks, notes == nullptr ? nullptr : &open);
       const bool nothing = operation.kind == Operation::Kind::fill && operation.gaps.empty();
       if (nothing || open.all() > 0)
         notes->push_back(
             fmt::format("{}: {}{}", request.where, edit::words_of(open, parsed), nothing ? "; nothing was filled" : ""));
       if (nothing) continue;
       tracks.apply(operation);
+      if (turn) edit::turn_body(*bodies, operation);
       Edit edit = edit::edit_of(operation);
       edit.id = id++;
       edit.parent = std::exchange(head, edit.id);

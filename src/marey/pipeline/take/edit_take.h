@@ -35,6 +35,7 @@ struct EditHistory {
   std::vector<DoneEdit> edits;         ///< all there are, by id
   std::vector<std::int64_t> counting;  ///< ids of those that count, from the first to the head
   std::vector<TrackName> tracks;       ///< as recorded
+  std::vector<Body> bodies;
   EditState state;
 };
 

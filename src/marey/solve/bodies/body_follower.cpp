@@ -50,6 +50,8 @@ BodyTracker::BodyTracker(std::vector<Body> bodies, const TrackingOptions& option
       throw Error("the markers of body \"{}\" lie in a line; move one of them away from it", body.label);
     one.rotations = symmetries(one.locations, options_.tolerance);
     one.evidence.assign(one.rotations.size(), 0);
+    one.turned.assign(one.rotations.size(), 0);
+    if (!one.rotations.empty()) one.turns.emplace(bodies_.size(), options_.angular_acceleration);
     one.point_of.assign(one.locations.size(), assign::kNoIndex);
     one.shortest_edge = 1e9;
     for (std::size_t a = 0; a < one.locations.size(); ++a) {
@@ -83,6 +85,7 @@ std::span<const BodyPose> BodyTracker::step(Timestamp now, std::span<const BodyT
 
 void BodyTracker::predict(Timestamp now) {
   const double dt = last_ ? seconds(now - *last_) : 0;
+  previous_ = last_;
   last_ = now;
   for (Tracked& one : tracked_) {
     if (one.motion && one.present) one.motion->predict(dt, options_.acceleration, options_.angular_acceleration);
@@ -149,6 +152,7 @@ void BodyTracker::take_labelled(std::span<const BodyTrackPoint> points) {
     if (candidates.empty() || !measure(body, points, std::move(candidates))) continue;
     one.labelled = true;
     one.back.reset();
+    std::fill(one.turned.begin(), one.turned.end(), 0.0);
     if (!one.motion || !one.present) one.motion = BodyMotion::at(one.fit->world_from_body, kFirstRate, kFirstTurningRate);
   }
 }
@@ -294,13 +298,10 @@ void BodyTracker::accept(int body, std::span<const BodyTrackPoint> points, const
     const auto& owner = owner_[static_cast<std::size_t>(candidates[m])];
     if (owner && owner->first != body && tracked_[static_cast<std::size_t>(owner->first)].measured) return;
   }
-  const bool known = one.motion && seconds(*last_ - one.observed_at) < kMaxHidden;
-  if (known && !one.rotations.empty()) {
-    if (!one.present) {  // it was given up; how it turned on says where it is due
-      one.motion->world_from_body.rotation =
-          geometry::rotation_from(seconds(*last_ - one.observed_at) * one.observed_rate) * one.observed_pose.rotation;
-    }
-    const Rigid3 nearest = nearest_turn(one, candidate.world_from_body);
+  const bool symmetric = one.motion && !one.rotations.empty();
+  const bool comes_back = symmetric && one.observed_at != previous_;
+  if (symmetric) {
+    const Rigid3 nearest = nearest_turn(one, candidate.world_from_body, comes_back ? due(body) : one.motion->world_from_body.rotation);
     std::vector<int> rotated(candidates.size(), assign::kNoIndex);
     for (std::size_t m = 0; m < candidates.size(); ++m) {  // which point is where marker m is then
       double minimum = 2 * options_.tolerance;
@@ -323,14 +324,11 @@ void BodyTracker::accept(int body, std::span<const BodyTrackPoint> points, const
     owner_[static_cast<std::size_t>(point)].reset();
   }
   if (!measure(body, points, std::move(candidates))) return;
-  if (known && !one.rotations.empty())
-    one.back = Return{.since = *last_,
-                      .lost = one.observed_at,
-                      .before = one.observed_pose,
-                      .after = one.fit->world_from_body,
-                      .rate_before = one.observed_rate,
-                      .detected = 0};
-  if (!one.motion || !one.present || one.rotations.size() > 0)
+  if (comes_back) {
+    one.back = Return{.before = last_sure(one), .after = seen_turn(body, *last_), .detected = 0};
+    one.turns->interrupt();
+  }
+  if (!one.motion || !one.present || comes_back)
     one.motion = BodyMotion::at(one.fit->world_from_body, kFirstRate, kFirstTurningRate);
 }
 
@@ -354,13 +352,17 @@ void BodyTracker::report(Timestamp now) {
       one.present = true;
       one.observed_at = now;
       one.observed_pose = one.fit->world_from_body;
-      one.observed_rate = one.motion->turning_rate;
+      if (one.turns) {
+        one.observed = seen_turn(static_cast<int>(b), now);
+        if (!one.back) one.turns->add(one.observed);
+      }
       ++counts.measured;
       poses_.push_back({.body = bodies_[b].id,
                         .world_from_body = one.fit->world_from_body,
                         .covariance = one.fit->covariance,
                         .residual_m = one.fit->mean_error,
-                        .tracked = true});
+                        .tracked = true,
+                        .other = other_of(one, one.fit->world_from_body)});
       continue;
     }
     if (!one.present || seconds(now - one.observed_at) > options_.predict_s) {
@@ -377,6 +379,7 @@ void BodyTracker::report(Timestamp now) {
                   .tracked = false};
     pose.covariance->diagonal() << Vector<3>::Constant(one.motion->turn.value), Vector<3>::Constant(one.motion->location.value);
     if (one.fit) pose.covariance = one.fit->covariance, pose.residual_m = one.fit->mean_error;
+    pose.other = other_of(one, pose.world_from_body);
     poses_.push_back(pose);
   }
 }

@@ -7,14 +7,16 @@
 // of it; with none it continues, up to `predict_s`. Bodies that are not there are searched for among the points that no other body
 // has (body_initialisation.h); identical ones are distinguished by where each was last. A body that appears the same after a turn
 // has as many possible poses. They are distinguished by continuity: when it comes back out of hiding, by its predicted pose; an
-// instant later, when its turning rate is known again, by the mean of the rates before and after. All poses stay in question until
-// then, and a decision that turns out wrong is corrected, and said (`Correction`). Where markers differ by little, what they add up
-// to over many instants decides. Cost: a few µs a body and instant. Memory: bounded by bodies and points.
+// instant later, when its turning rate is known again, by the mean of the rates before and after, or by a body that carries it
+// (hidden_turns.h). A decision that turns out wrong is corrected, and said (`Correction`); where another pose stays possible, it is
+// reported beside the probable one (`BodyPose::other`) from then on. Where markers differ by little, what they add up to over many
+// instants decides. Cost: a few µs a body and instant. Memory: bounded by bodies and points.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "marey/assign/gated_assignment.h"
@@ -22,6 +24,7 @@
 #include "marey/core/time.h"
 #include "marey/solve/bodies/body_initialisation.h"
 #include "marey/solve/bodies/body_motion.h"
+#include "marey/solve/bodies/hidden_turns.h"
 #include "marey/solve/bodies/pose_fit.h"
 #include "marey/solve/bodies/symmetry.h"
 
@@ -42,11 +45,14 @@ struct BodyTrackPoint {
   std::optional<std::pair<int, int>> marker;  ///< whose its label says it is: the body's and its marker's index
 };
 
-/// What was reported of a body from `since` on, up to this instant, was another of the poses in which it appears the same.
+/// What is known by now of a body since it came back out of hiding: which of the poses in which it appears the same it has.
 struct Correction {
   BodyId body{};
   Timestamp since{};
-  Rigid3 reported_from_body;  ///< the true pose is the reported one times this
+  Rigid3 reported_from_body;       ///< the pose is the reported one times this
+  std::optional<OtherPose> other;  ///< as it is then to be reported, but in the body's frame; nothing: none is in question
+  double doubt = 0;                ///< the probability that this return was decided wrong, where it is in question
+  std::string words;               ///< of such a doubt: how the other pose differs
 };
 
 /// What results from following one body.
@@ -54,10 +60,15 @@ struct TrackCounts {
   std::int64_t measured = 0, predicted = 0, absent = 0;  ///< instants
   std::int64_t lost = 0;                                 ///< times it was given up after it had been followed
   std::int64_t corrected = 0;                            ///< times it was found to be turned by a symmetry
+  std::int64_t in_question = 0;                          ///< times it came back, and two of its poses were possible
 };
 
 class BodyTracker {
  public:
+  // What a return is decided after: so long a turning rate takes to be known again.
+  static constexpr int kSettled = 8;         ///< instants
+  static constexpr double kSettledS = 0.04;  ///< s, at least
+
   /// Throws Error for a body with fewer than three markers, or with all in a line.
   BodyTracker(std::vector<Body> bodies, const TrackingOptions& options = {});
 
@@ -75,10 +86,8 @@ class BodyTracker {
  private:
   /// A body that came back out of hiding, as long as its turning rate is not known again.
   struct Return {
-    Timestamp since{}, lost{};
-    Rigid3 before, after;                       ///< its poses when it was seen last, and first
-    Vector<3> rate_before = Vector<3>::Zero();  ///< rad/s
-    int detected = 0;                           ///< instants since
+    SeenTurn before, after;  ///< when it was seen last (where that was for an instant only, before it), and first
+    int detected = 0;        ///< instants since
   };
   struct Tracked {
     std::vector<Vector<3>> locations;
@@ -87,13 +96,15 @@ class BodyTracker {
     std::optional<BodyMotion> motion;     ///< nothing before it was found first
     Timestamp observed_at{};              ///< three markers or more
     Rigid3 observed_pose;
-    Vector<3> observed_rate = Vector<3>::Zero();
+    SeenTurn observed;           ///< of a body with symmetries
+    std::vector<double> turned;  ///< by turn, the probability that it is turned so against what is reported
     bool present = false;        ///< reported at the last instant
     std::vector<int> point_of;   ///< by marker, this instant; or kNoIndex
     std::optional<PoseFit> fit;  ///< this instant's
     bool measured = false;
     bool labelled = false;  ///< by its markers' names
     std::optional<Return> back;
+    std::optional<HiddenTurns> turns;
     std::vector<double> evidence;  ///< by turn: log-likelihood ratio that the body is turned so
   };
 
@@ -104,8 +115,12 @@ class BodyTracker {
   bool measure(int body, std::span<const BodyTrackPoint> points, std::vector<int> candidates);
   void inspect_everywhere(Timestamp now, std::span<const BodyTrackPoint> points);
   void accept(int body, std::span<const BodyTrackPoint> points, const PoseCandidate& candidate, std::span<const int> names);
-  Rigid3 nearest_turn(const Tracked& body, Rigid3 pose) const;
-  void turn_body(int body, const Symmetry& turn, Timestamp since);
+  SeenTurn seen_turn(int body, Timestamp now) const;
+  static SeenTurn last_sure(const Tracked& body) { return body.back ? body.back->before : body.observed; }
+  Matrix<3> due(int body) const;
+  Rigid3 nearest_turn(const Tracked& body, Rigid3 pose, const Matrix<3>& due) const;
+  std::optional<OtherPose> other_of(const Tracked& body, const Rigid3& pose) const;
+  void turn_body(int body, const Symmetry& turn);
   void weigh_rotations(int body, Timestamp now, std::span<const BodyTrackPoint> points);
   void evaluate_return(int body, Timestamp now);
   void report(Timestamp now);
@@ -122,7 +137,7 @@ class BodyTracker {
   std::vector<BodyPose> poses_;
   std::vector<Correction> corrections_;
   std::vector<TrackCounts> counts_;
-  std::optional<Timestamp> last_;
+  std::optional<Timestamp> last_, previous_;
   double noise_ = 0, squares_ = 0, freedoms_ = 0;
   int next_initialise_ = 0;  // bodies are searched for in turn
 };

@@ -1,6 +1,7 @@
 // Which of the poses in which it appears the same a body has: the part of BodyTracker that decides late.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "marey/assign/no_index.h"
@@ -9,38 +10,88 @@
 namespace marey::solve::bodies {
 namespace {
 
-constexpr int kSettled = 8;          // instants until a turning rate is known again
-constexpr double kSettledS = 0.04;   // s, at least
-constexpr double kProof = 25;        // log-likelihood ratio that turns a body
-constexpr double kMaxAnInstant = 2;  // of that
+constexpr double kProof = 25;         // log-likelihood ratio that turns a body
+constexpr double kMaxAnInstant = 2;   // of that
+constexpr double kUnforeseen = 0.01;  // of returns, in which a body was turned as nothing before had been
+constexpr double kInQuestion = 0.02;  // from this probability on another pose is reported
 
-Vector<3> rate_over(const Rigid3& from, const Rigid3& to) {
-  return geometry::angle_axis_of(to.rotation * from.rotation.transpose());
+double angle_between(const Matrix<3>& a, const Matrix<3>& b) {
+  return geometry::angle_axis_of(a * b.transpose()).norm();
+}
+
+/// The density of a body's turning to be so far from where it is due, about all three axes: normal, or, in a hundredth of cases,
+/// anywhere.
+double likelihood(double angle, double variance) {
+  const double normal = std::exp(-angle * angle / (2 * variance)) / std::pow(2 * std::numbers::pi * variance, 1.5);
+  return (1 - kUnforeseen) * normal + kUnforeseen / (8 * std::numbers::pi * std::numbers::pi);
+}
+
+/// Which turn it is to be turned by `first`, then by `second`, counted from 1; 0: none.
+std::size_t both(std::span<const Symmetry> turns, std::size_t first, std::size_t second) {
+  if (first == 0 || second == 0) return first + second;
+  const auto &a = turns[first - 1].onto, &b = turns[second - 1].onto;
+  const auto is_both = [&](const Symmetry& turn) {
+    for (std::size_t m = 0; m < a.size(); ++m) {
+      if (turn.onto[m] != b[static_cast<std::size_t>(a[m])]) return false;
+    }
+    return true;
+  };
+  const auto found = std::find_if(turns.begin(), turns.end(), is_both);
+  return found == turns.end() ? 0 : static_cast<std::size_t>(found - turns.begin()) + 1;
+}
+
+std::size_t inverse_of(std::span<const Symmetry> turns, std::size_t turn) {
+  for (std::size_t other = 1; other <= turns.size(); ++other) {
+    if (turn != 0 && both(turns, turn, other) == 0) return other;
+  }
+  return 0;
 }
 
 }  // namespace
 
+SeenTurn BodyTracker::seen_turn(int body, Timestamp now) const {
+  const Tracked& one = tracked_[static_cast<std::size_t>(body)];
+  SeenTurn seen{.time = now, .rotation = one.fit->world_from_body.rotation, .rate = one.motion->turning_rate, .others = {}};
+  for (const Tracked& other : tracked_) {
+    const bool counts = &other != &one && other.measured;
+    seen.others.push_back(counts ? std::optional(other.fit->world_from_body.rotation) : std::nullopt);
+  }
+  return seen;
+}
+
+/// Where a body that comes back is due at this instant: its turning rate now is not known yet.
+Matrix<3> BodyTracker::due(int body) const {
+  const Tracked& one = tracked_[static_cast<std::size_t>(body)];
+  const SeenTurn before = last_sure(one);
+  SeenTurn after{.time = *last_, .rotation = {}, .rate = before.rate, .others = {}};
+  for (const Tracked& other : tracked_) {
+    const bool counts = &other != &one && other.measured;
+    after.others.push_back(counts ? std::optional(other.fit->world_from_body.rotation) : std::nullopt);
+  }
+  return one.turns->due(before, after).rotation;
+}
+
 /// The symmetric pose that is turned the least from where the body was due.
-Rigid3 BodyTracker::nearest_turn(const Tracked& one, Rigid3 pose) const {
+Rigid3 BodyTracker::nearest_turn(const Tracked& one, Rigid3 pose, const Matrix<3>& due) const {
   Rigid3 best = pose;
-  double minimum = rate_over(one.motion->world_from_body, pose).norm();
+  double minimum = angle_between(due, pose.rotation);
   for (const Symmetry& turn : one.rotations) {
     const Rigid3 rotated = pose * turn.body_from_body;
-    const double angle = rate_over(one.motion->world_from_body, rotated).norm();
+    const double angle = angle_between(due, rotated.rotation);
     if (angle < minimum) minimum = angle, best = rotated;
   }
   return best;
 }
 
-/// From `since` on the body is another of the poses in which it appears the same.
-void BodyTracker::turn_body(int body, const Symmetry& turn, Timestamp since) {
+/// From now on the body is another of the poses in which it appears the same.
+void BodyTracker::turn_body(int body, const Symmetry& turn) {
   Tracked& one = tracked_[static_cast<std::size_t>(body)];
   one.motion->world_from_body = one.motion->world_from_body * turn.body_from_body;
   one.fit->world_from_body = one.fit->world_from_body * turn.body_from_body;
   std::vector<int> point_of(one.point_of.size(), assign::kNoIndex);
   for (std::size_t m = 0; m < point_of.size(); ++m) point_of[m] = one.point_of[static_cast<std::size_t>(turn.onto[m])];
   one.point_of = std::move(point_of);
-  corrections_.push_back({bodies_[static_cast<std::size_t>(body)].id, since, turn.body_from_body});
+  one.turns->interrupt();
   ++counts_[static_cast<std::size_t>(body)].corrected;
   std::fill(one.evidence.begin(), one.evidence.end(), 0.0);
 }
@@ -61,25 +112,80 @@ void BodyTracker::weigh_rotations(int body, Timestamp now, std::span<const BodyT
     if (!other) continue;
     const double ratio = (one.fit->sum_of_squares - other->sum_of_squares) / (2 * noise_ * noise_);
     one.evidence[t] = std::max(one.evidence[t] + std::clamp(ratio, -kMaxAnInstant, kMaxAnInstant), 0.0);
-    if (one.evidence[t] > kProof) return turn_body(body, one.rotations[t], now);
+    if (one.evidence[t] <= kProof) continue;
+    turn_body(body, one.rotations[t]);
+    std::fill(one.turned.begin(), one.turned.end(), 0.0);
+    corrections_.push_back({.body = bodies_[static_cast<std::size_t>(body)].id,
+                            .since = now,
+                            .reported_from_body = one.rotations[t].body_from_body,
+                            .other = {},
+                            .doubt = 0,
+                            .words = {}});
+    return;
   }
 }
 
-/// Now that the turning rate is known after the gap too: which of the poses is it that the mean of both rates leads to?
+/// The most probable of the other poses, where its markers do not exclude it.
+std::optional<OtherPose> BodyTracker::other_of(const Tracked& one, const Rigid3& pose) const {
+  std::optional<OtherPose> other;
+  for (std::size_t t = 0; t < one.rotations.size(); ++t) {
+    if (one.turned[t] < kInQuestion || one.rotations[t].worst > noise_ || (other && one.turned[t] <= other->probability)) continue;
+    other = OtherPose{.world_from_body = pose * one.rotations[t].body_from_body, .probability = one.turned[t]};
+  }
+  return other;
+}
+
+/// Now that the turning rate is known after the gap too: how probable is each of the poses?
 void BodyTracker::evaluate_return(int body, Timestamp now) {
   Tracked& one = tracked_[static_cast<std::size_t>(body)];
-  if (!one.back || ++one.back->detected < kSettled || seconds(now - one.back->since) < kSettledS) return;
-  const Return back = *std::exchange(one.back, std::nullopt);
-  const double hidden = seconds(back.since - back.lost);
-  Rigid3 due = back.before;
-  due.rotation = geometry::rotation_from(hidden * (back.rate_before + one.motion->turning_rate) / 2) * due.rotation;
-  double minimum = rate_over(due, back.after).norm();
-  const Symmetry* best = nullptr;
-  for (const Symmetry& turn : one.rotations) {
-    const double angle = rate_over(due, back.after * turn.body_from_body).norm();
-    if (angle < 0.8 * minimum) minimum = angle, best = &turn;
+  if (!one.back || ++one.back->detected < kSettled || seconds(now - one.back->after.time) < kSettledS) return;
+  Return back = *std::exchange(one.back, std::nullopt);
+  const std::span<const Symmetry> turns = one.rotations;
+
+  // By what carries it, if that is seen now, or by its own rates at both ends of the gap.
+  back.after.rate = one.motion->turning_rate;
+  SeenTurn seen = back.after;
+  DueTurn due = one.turns->due(back.before, back.after);
+  const SeenTurn seen_now = seen_turn(body, now);
+  if (const DueTurn later = one.turns->due(back.before, seen_now); later.variance < due.variance) due = later, seen = seen_now;
+  std::vector<double> after{likelihood(angle_between(due.rotation, seen.rotation), due.variance)};
+  for (const Symmetry& turn : turns)
+    after.push_back(likelihood(angle_between(due.rotation, seen.rotation * turn.body_from_body.rotation), due.variance));
+  double sum = 0;
+  for (const double probability : after) sum += probability;
+  for (double& probability : after) probability /= sum;
+  const auto best = static_cast<std::size_t>(std::max_element(after.begin(), after.end()) - after.begin());
+
+  // What was in question before the gap still is: a turn from the pose then is one from the pose now.
+  std::vector<double> turned(turns.size() + 1);
+  const std::size_t back_to_best = inverse_of(turns, best);
+  for (std::size_t before = 0; before <= turns.size(); ++before) {
+    double was = 1;
+    for (const double probability : one.turned) was -= before == 0 ? probability : 0;
+    if (before > 0) was = one.turned[before - 1];
+    for (std::size_t now_turned = 0; now_turned <= turns.size(); ++now_turned)
+      turned[both(turns, before, both(turns, now_turned, back_to_best))] += was * after[now_turned];
   }
-  if (best != nullptr) turn_body(body, *best, back.since);
+  const bool was_in_question = other_of(one, {}).has_value();
+  std::copy(turned.begin() + 1, turned.end(), one.turned.begin());
+
+  Correction found{.body = bodies_[static_cast<std::size_t>(body)].id,
+                   .since = back.after.time,
+                   .reported_from_body = {},
+                   .other = other_of(one, {}),
+                   .doubt = 0,
+                   .words = {}};
+  for (std::size_t turn = 0; turn <= turns.size(); ++turn) {
+    const std::size_t against = both(turns, turn, back_to_best);
+    if (against == 0 || turns[against - 1].worst > noise_ || after[turn] < kInQuestion || after[turn] <= found.doubt) continue;
+    found.doubt = after[turn], found.words = words_of(turns[against - 1]);
+  }
+  counts_[static_cast<std::size_t>(body)].in_question += found.doubt > 0;
+  if (best > 0) {
+    found.reported_from_body = turns[best - 1].body_from_body;
+    turn_body(body, turns[best - 1]);
+  }
+  if (best > 0 || found.other || was_in_question) corrections_.push_back(std::move(found));
 }
 
 }  // namespace marey::solve::bodies
