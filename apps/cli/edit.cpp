@@ -138,9 +138,7 @@ void add_edit(Command& program) {
   command.texts("EDIT", options->edits,
                 "done in this order, all or none: \"rename A B\", \"swap A B 120:180\", \"split A 300 [NAME]\", \"join A B\", "
                 "\"delete A [120:180]\", \"team A,B Reds\", \"fill all|A [120:180] [spline|rigid|pattern] [longest=1] "
-                "[within=50]\", \"filter all|A "
-                "[6|auto] [120:180]\"; "
-                "frames are counted from 0");
+                "[within=50]\", \"filter all|A [6|auto] [120:180]\", \"turn BODY [120:180]\"; frames are counted from 0");
   command.input_file(
       "--script", options->script,
       "edits, one a line, done before those on the command line; # at a line's beginning or between blanks begins a remark");

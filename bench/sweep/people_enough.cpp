@@ -119,7 +119,8 @@ int main(int count, char** arguments) {
              100 * geometry::median_or(whole, NAN));
   for (auto& [lasts, distances] : walks) {
     const auto refused = std::erase_if(distances, [](double d) { return std::isnan(d); });
-    fmt::print("{:g} s: median {:.1f} %, worst {:.1f} %, {} of {} without a rig\n", lasts, 100 * geometry::median_or(distances, NAN),
+    fmt::print("{:g} s: median {:.1f} %, worst {:.1f} %, {} of {} without a rig\n", lasts,
+               100 * geometry::median_or(distances, NAN),
                100 * (distances.empty() ? NAN : *std::max_element(distances.begin(), distances.end())), refused, trials);
   }
 }

@@ -5,6 +5,7 @@ Usage: bodies_labels_test.py MAREY ROOT [unittest options]
 
 import csv
 import json
+import math
 import pathlib
 import re
 import shlex
@@ -123,6 +124,44 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertIn("is this one rigid thing?", bent.stderr)
         self.assertIn("holds no bodies", self.marey("convert", "walk.marey", "none.csv", "--format", "poses", code=1).stderr)
         self.assertFalse((self.folder / "none.csv").exists())
+
+    def test_a_symmetric_body_that_may_be_turned(self):
+        # It wobbles about its axis of symmetry, and is hidden for a second every three; from the markers alone nobody knows how it comes back.
+        markers = {"a": (-0.1, 0, 0), "b": (0.1, 0, 0), "c": (0, 0, 0.2), "d": (0, 0, -0.15)}
+        with open(self.folder / "table.csv", "w") as file:
+            file.write("label,x,y,z\n" + "".join(f"{label},{x},{y},{z}\n" for label, (x, y, z) in markers.items()))
+        with open(self.folder / "points.csv", "w") as file:
+            file.write("frame,time,id,x,y,z\n")
+            for frame in range(1200):
+                time = frame / 100
+                angle = 4 * math.sin(2 * math.pi * 0.23 * time) + 1.5 * math.sin(2 * math.pi * 0.61 * time + 1)
+                if frame % 300 >= 200:
+                    continue
+                for number, (x, y, z) in enumerate(markers.values(), 1):
+                    place = (x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle), z + 1)
+                    file.write(f"{frame},{time},{number + 4 * frame}," + ",".join(f"{c:.5f}" for c in place) + "\n")
+        done = self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.marey")
+        self.assertRegex(done.stderr, r'in question: from frame \d+ on \(\d+\.\d\d s\) table may be turned 180° about its z axis \(\d+ %\); if so: marey edit racket.marey "turn table \d+:"')
+        told = json.loads(self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.marey", "--json").stdout)
+        first = told["in_question"][0]
+        self.assertIn(first["frame"], (300, 600, 900))
+        self.assertTrue(0.02 <= first["probability"] <= 0.98)
+
+        def axes():
+            self.marey("convert", "racket.marey", "poses.csv", "--format", "poses")
+            return {int(row["frame"]): 2 * math.degrees(math.atan2(float(row["qz"]), float(row["qw"]))) for row in self.rows("poses.csv")}
+
+        before = axes()
+        self.marey("edit", "racket.marey", f"turn table {first['frame']}:")
+        after = axes()
+        for frame, angle in before.items():
+            turned = (after[frame] - angle) % 360
+            self.assertAlmostEqual(turned if frame >= first["frame"] else turned + 180, 180, delta=0.1, msg=frame)
+        self.assertIn("turn table, from frame", self.marey("edit", "racket.marey", "--list").stdout)
+        self.assertIn("there is no body called \"bat\"", self.marey("edit", "racket.marey", "turn bat", code=1).stderr)
+        self.assertIn("has no other pose in question", self.marey("edit", "racket.marey", "turn table :100", code=1).stderr)
+        self.marey("edit", "racket.marey", "--undo")
+        self.assertEqual(axes(), before)
 
     def test_labels_as_the_page_states(self):
         self.run_page("labels.md")

@@ -11,6 +11,7 @@
 #include "marey/edit/edited.h"
 #include "marey/edit/history.h"
 #include "marey/edit/tracks.h"
+#include "marey/edit/turn_body.h"
 
 namespace marey::edit {
 namespace {
@@ -280,6 +281,58 @@ TEST(Edit, ManyRandomEditsLeaveWhatASlowTableLeavesAndAreUndone) {
   EXPECT_EQ(image(edited(recording)), table.image());
   recording.head = undone(recording.edits, recording.head, 1000);
   EXPECT_EQ(image(edited(recording)), before);
+}
+
+/// A racket at x = the frame that may as well be at x = −frame from frame 4 on.
+Recording racket(int frames) {
+  RecordingHeader header;
+  header.rate_hz = 100;
+  header.bodies = {{.id = BodyId{3}, .label = "my racket", .skeleton = {}, .parent = {}, .offset = {}, .end = {}, .markers = {}}};
+  Recording recording(header);
+  for (int frame = 0; frame < frames; ++frame) {
+    Instant instant;
+    instant.index = 10 + frame;
+    instant.time = timestamp_from_seconds(0.01 * frame);
+    BodyPose& pose = instant.bodies.emplace_back();
+    pose.body = BodyId{3};
+    pose.world_from_body.translation.x() = frame;
+    if (frame >= 4) pose.other = {{Matrix<3>::Identity(), {-static_cast<double>(frame), 0, 0}}, 0.25};
+    recording.add(instant);
+  }
+  return recording;
+}
+
+TEST(Edit, TurnTakesTheOtherPoseOfABody) {
+  Recording recording = racket(8);
+  const Operation operation = decide_turn(parse_request("turn \"my racket\" 12:15"), recording);
+  Edit done = edit_of(operation);
+  EXPECT_EQ(operation_of(done), operation);
+  done.id = 1;
+  recording.edits = {done};
+  recording.head = 1;
+  const Recording turned = edited(recording);
+  for (int frame = 0; frame < 8; ++frame) {
+    const BodyPose pose = turned.bodies().at(0).pose(static_cast<std::size_t>(frame));
+    const bool exchanged = frame == 4 || frame == 5;
+    EXPECT_EQ(pose.world_from_body.translation.x(), exchanged ? -frame : frame) << frame;
+    ASSERT_EQ(pose.other.has_value(), frame >= 4) << frame;
+    if (frame >= 4) EXPECT_EQ(pose.other->probability, exchanged ? 0.75 : 0.25) << frame;
+  }
+  recording.head.reset();
+  EXPECT_EQ(edited(recording).bodies().at(0).pose(4).world_from_body.translation.x(), 4);
+
+  const auto refused = [&](const std::string& text) {
+    try {
+      decide_turn(parse_request(text), recording);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused("turn bat"), "turn: there is no body called \"bat\"");
+  EXPECT_EQ(refused("turn \"my racket\" 10:13"), "turn: \"my racket\" has no other pose in question in these frames");
+  EXPECT_NE(refused("turn"), "");
+  EXPECT_NE(refused("turn \"my racket\" 12:15 z"), "");
 }
 
 }  // namespace

@@ -144,8 +144,7 @@ Operation parsed(Kind kind, const json& payload) {
   const auto [lowest_count, maximum] = tracks_required(kind);
   const bool whole = operation.tracks.size() >= lowest_count && operation.tracks.size() <= maximum &&
                      (kind != Kind::split || (operation.initiated && operation.frames)) &&
-                     (kind != Kind::fill || !operation.gaps.empty()) &&
-                     (kind != Kind::turn || operation.body) &&
+                     (kind != Kind::fill || !operation.gaps.empty()) && (kind != Kind::turn || operation.body) &&
                      (kind != Kind::filter || operation.cutoffs_hz.size() == operation.tracks.size());
   if (!whole) throw json::other_error::create(500, "its parts", &payload);
   return operation;

@@ -8,8 +8,8 @@
 
 namespace marey::edit {
 
-/// What "turn racket 310:" means for this recording. Throws Error if no body is called so, or none of its poses within the frames is
-/// in question.
+/// What "turn racket 310:" means for this recording. Throws Error if no body is called so, or none of its poses within the frames
+/// is in question.
 Operation decide_turn(const Request& request, const Recording& recording);
 
 /// Within the operation's frames the body has its other pose where it has one, and the one that it had becomes the other. Throws

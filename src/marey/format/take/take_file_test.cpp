@@ -149,6 +149,7 @@ Recording bodies_moving(std::int64_t instants) {
                               {1.0 / 3, static_cast<double>(i) / 7, static_cast<double>(id)}};
       if (i % 4 != 1) pose.covariance = Matrix<6>::Identity() / static_cast<double>(i + 1);
       if (i % 3 != 1) pose.residual_m = 1e-4 * static_cast<double>(i);
+      if (id == 7 && i > 900) pose.other = {{geometry::rotation_from({0, 0, 0.1 * static_cast<double>(i)}), {0, 1.0 / 3, 1}}, 0.31};
       instant.bodies.push_back(pose);
     }
     take.add(instant);
@@ -190,6 +191,13 @@ TEST_F(TakeFile, BodiesThatCannotBeAreRefused) {
   TakeWriter writer(folder_ / "other.marey");
   writer.begin(take.header);
   EXPECT_NE(error_of([&] { writer.write(instant); }).find("body 1"), std::string::npos);
+}
+
+TEST_F(TakeFile, PosesOfEarlierVersionsHaveNoOther) {
+  Recording take = bodies_moving(20);
+  write_recording(path_, take);
+  Database(path_, Database::Mode::create).run("ALTER TABLE poses DROP COLUMN other");
+  testing_take::expect_same(read_recording(path_), take);
 }
 
 TEST_F(TakeFile, SaysWhichEditsItCannotDoAndKeepsThem) {

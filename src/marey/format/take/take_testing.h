@@ -80,6 +80,11 @@ inline void expect_same(const BodyPose& a, const BodyPose& b) {
   EXPECT_EQ(a.world_from_body.rotation, b.world_from_body.rotation);
   EXPECT_EQ(a.world_from_body.translation, b.world_from_body.translation);
   EXPECT_EQ(a.tracked, b.tracked);
+  ASSERT_EQ(a.other.has_value(), b.other.has_value());
+  if (a.other) {
+    EXPECT_EQ(geometry::rows_of(a.other->world_from_body), geometry::rows_of(b.other->world_from_body));
+    EXPECT_EQ(a.other->probability, b.other->probability);
+  }
   ASSERT_EQ(a.covariance.has_value(), b.covariance.has_value());
   if (a.covariance) {
     EXPECT_TRUE(a.covariance->cast<float>() == b.covariance->cast<float>());

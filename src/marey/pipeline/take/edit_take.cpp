@@ -8,8 +8,8 @@
 
 #include "marey/core/error.h"
 #include "marey/edit/decide.h"
-#include "marey/edit/history.h"
 #include "marey/edit/edited.h"
+#include "marey/edit/history.h"
 #include "marey/edit/tracks.h"
 #include "marey/edit/turn_body.h"
 #include "marey/files/input_file.h"

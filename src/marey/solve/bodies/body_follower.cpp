@@ -301,7 +301,8 @@ void BodyTracker::accept(int body, std::span<const BodyTrackPoint> points, const
   const bool symmetric = one.motion && !one.rotations.empty();
   const bool comes_back = symmetric && one.observed_at != previous_;
   if (symmetric) {
-    const Rigid3 nearest = nearest_turn(one, candidate.world_from_body, comes_back ? due(body) : one.motion->world_from_body.rotation);
+    const Rigid3 nearest =
+        nearest_turn(one, candidate.world_from_body, comes_back ? due(body) : one.motion->world_from_body.rotation);
     std::vector<int> rotated(candidates.size(), assign::kNoIndex);
     for (std::size_t m = 0; m < candidates.size(); ++m) {  // which point is where marker m is then
       double minimum = 2 * options_.tolerance;

@@ -1,6 +1,7 @@
 #include "marey/solve/bodies/body_follower.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -216,17 +217,18 @@ struct Returns {
 Returns returns_of(const Scene& scene, moving::Random& random, double gap_s, int gaps) {
   Returns returns;
   BodyTracker tracker(scene.bodies);
-  const double period = 2 + gap_s;
+  const int seen = 200, period = seen + static_cast<int>(std::lround(100 * gap_s));
   std::optional<bool> was;  // how it is turned against the truth, before the gap
   bool is = false;
   double doubt = 0;
-  for (int i = 0; i < static_cast<int>(100 * period * (gaps + 1)); ++i) {
-    const double time = i / 100.0, phase = std::fmod(time, period);
-    const auto points = observed_at(scene, time, random, [&](std::size_t b, auto) { return b != 0 || phase < 2; });
+  for (int i = 0; i < period * gaps + seen; ++i) {
+    const double time = i / 100.0;
+    const int phase = i % period;
+    const auto points = observed_at(scene, time, random, [&](std::size_t b, auto) { return b != 0 || phase < seen; });
     const auto pose = pose_of(tracker.step(timestamp_from_seconds(time), points), BodyId{1});
     for (const Correction& one : tracker.corrections()) doubt = std::max(doubt, one.body == BodyId{1} ? one.doubt : 0);
-    if (pose && pose->tracked && phase < 2) is = moving::degrees_between(pose->world_from_body, scene.paths[0].at(time)) > 90;
-    if (phase < 1.98 || phase >= 1.99) continue;
+    if (pose && pose->tracked && phase < seen) is = moving::degrees_between(pose->world_from_body, scene.paths[0].at(time)) > 90;
+    if (phase != seen - 1) continue;
     if (was) {
       ++returns.all;
       returns.turned += is != *was;
@@ -255,8 +257,9 @@ TEST(BodyTracker, AReturnThatMayBeTurnedIsInQuestion) {
       here.all += one.all, here.turned += one.turned, here.questioned += one.questioned;
       here.turned_unquestioned += one.turned_unquestioned, here.doubt += one.doubt;
     }
-    std::printf("hidden %.1f s: of %d returns %d turned, %d in question (%.1f of them turned, as is said), %d turned without a word\n",
-                gap_s, here.all, here.turned, here.questioned, here.doubt, here.turned_unquestioned);
+    std::printf(
+        "hidden %.1f s: of %d returns %d turned, %d in question (%.1f of them turned, as is said), %d turned without a word\n",
+        gap_s, here.all, here.turned, here.questioned, here.doubt, here.turned_unquestioned);
     all.all += here.all, all.turned += here.turned, all.questioned += here.questioned;
     all.turned_unquestioned += here.turned_unquestioned, all.doubt += here.doubt;
     if (gap_s < 0.3) EXPECT_LT(here.questioned, 0.1 * here.all);

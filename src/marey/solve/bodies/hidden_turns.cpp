@@ -9,9 +9,9 @@ namespace marey::solve::bodies {
 namespace {
 
 constexpr double kStep_s = 0.02;         // numerical: more instants a second say no more of an error over a tenth of one
-constexpr double kMaxCount = 200;        // of errors, unswept: older ones are forgotten
-constexpr double kOwnPrior = 4;          // errors that the stated acceleration counts for, unswept
-constexpr double kCarriedCount = 10;     // errors before a body is held for one that carries, unswept
+constexpr double kMaxCount = 200;        // of errors; older ones are forgotten
+constexpr double kOwnPrior = 4;          // errors that the stated acceleration counts for
+constexpr double kCarriedCount = 40;     // errors before a body is held for one that carries
 constexpr double kLeastVariance = 2e-4;  // rad², numerical: 0.8°, what poses themselves are off by
 
 double squared_angle(const Matrix<3>& a, const Matrix<3>& b) {
@@ -44,7 +44,8 @@ void HiddenTurns::add(SeenTurn seen) {
   };
   for (std::size_t i = 0; i < kIntervals_s.size(); ++i) {
     const Timestamp then = seen.time - duration_from_seconds(kIntervals_s[i]);
-    const auto after = std::upper_bound(seen_.begin(), seen_.end(), then, [](Timestamp t, const SeenTurn& s) { return t < s.time; });
+    const auto after =
+        std::upper_bound(seen_.begin(), seen_.end(), then, [](Timestamp t, const SeenTurn& s) { return t < s.time; });
     if (after == seen_.begin()) continue;  // it was not seen so long
     const SeenTurn& before = *std::prev(after);
     learn(own_, i, squared_angle(by_own_rate(before, seen), seen.rotation));
