@@ -316,7 +316,9 @@ TEST(Edit, TurnTakesTheOtherPoseOfABody) {
     const bool exchanged = frame == 4 || frame == 5;
     EXPECT_EQ(pose.world_from_body.translation.x(), exchanged ? -frame : frame) << frame;
     ASSERT_EQ(pose.other.has_value(), frame >= 4) << frame;
-    if (frame >= 4) EXPECT_EQ(pose.other->probability, exchanged ? 0.75 : 0.25) << frame;
+    if (pose.other) {
+      EXPECT_EQ(pose.other->probability, exchanged ? 0.75 : 0.25) << frame;
+    }
   }
   recording.head.reset();
   EXPECT_EQ(edited(recording).bodies().at(0).pose(4).world_from_body.translation.x(), 4);

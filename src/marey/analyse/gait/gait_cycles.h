@@ -32,6 +32,9 @@ struct CycleCurve {
   std::vector<std::size_t> cycle_of = {};  ///< which of `GaitCycles::cycles` each of `cycles` is
 };
 
+/// The unit of a force that was divided by the body's weight.
+inline constexpr std::string_view kPercentOfWeight = "% of weight";
+
 /// Another signal over the cycles of its side, in its own unit: a force, a moment, a muscle's activity.
 struct SignalCurve {
   std::string label;

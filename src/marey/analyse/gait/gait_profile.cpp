@@ -126,6 +126,31 @@ std::vector<ReferenceBand> reference_bands(std::span<const ReferencePerson> peop
   return bands;
 }
 
+std::vector<ReferenceSignal> reference_signals(std::span<const ReferencePerson> people) {
+  std::map<std::pair<std::string, std::string>, std::vector<CyclePoints>> of_people;  // by label and unit
+  for (const ReferencePerson& person : people) {
+    std::map<std::pair<std::string, std::string>, std::vector<CyclePoints>> own;
+    for (const SignalCurve& signal : person.signals) {
+      if (!signal.unit.ends_with("/kg") && signal.unit != kPercentOfWeight) continue;
+      auto& cycles = own[{signal.label, signal.unit}];
+      cycles.insert(cycles.end(), signal.cycles.begin(), signal.cycles.end());
+    }
+    for (const auto& [name, cycles] : own) {
+      if (cycles.empty()) continue;
+      CyclePoints mean{}, deviation{};
+      summarise(cycles, mean, deviation);
+      of_people[name].push_back(mean);
+    }
+  }
+  std::vector<ReferenceSignal> signals;
+  for (const auto& [name, means] : of_people) {
+    ReferenceSignal signal{.label = name.first, .unit = name.second, .people = means.size()};
+    summarise(means, signal.mean, signal.deviation);
+    signals.push_back(std::move(signal));
+  }
+  return signals;
+}
+
 std::vector<ReferenceFigure> reference_figures(std::span<const ReferencePerson> people) {
   std::vector<ReferenceFigure> figures;
   std::map<std::string, std::vector<double>> values;

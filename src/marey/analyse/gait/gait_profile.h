@@ -30,6 +30,7 @@ struct ReferencePerson {
   std::string name;
   std::vector<CycleCurve> curves;
   std::vector<GaitFigure> figures;
+  std::vector<SignalCurve> signals = {};  ///< ground reactions, moments, powers; of several recordings one behind the other
   std::size_t cycles = 0;
 };
 
@@ -38,6 +39,13 @@ struct ReferenceBand {
   std::string name;  ///< without side: "knee_flexion"
   std::size_t people = 0;
   CyclePoints mean{}, deviation{};  ///< rad; deviation 0 for one person
+};
+
+/// A force, moment or power over the cycle, likewise. Only of units in which people of any weight compare (% of weight, … per kg).
+struct ReferenceSignal {
+  std::string label, unit;
+  std::size_t people = 0;
+  CyclePoints mean{}, deviation{};  ///< deviation 0 for one person
 };
 
 /// The mean over people of a figure, each person's left and right averaged.
@@ -69,6 +77,7 @@ struct ReferenceScore {
 
 /// Of the curves that at least one person has. `omitted` is an index of one who is not counted.
 std::vector<ReferenceBand> reference_bands(std::span<const ReferencePerson> people, std::optional<std::size_t> omitted = {});
+std::vector<ReferenceSignal> reference_signals(std::span<const ReferencePerson> people);
 std::vector<ReferenceFigure> reference_figures(std::span<const ReferencePerson> people);
 std::vector<ReferenceScore> reference_scores(std::span<const ReferencePerson> people);
 

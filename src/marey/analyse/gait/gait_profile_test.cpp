@@ -149,5 +149,34 @@ TEST(GaitProfile, CountsEveryPersonOnceInFigures) {
   EXPECT_NEAR(figures[0].deviation.value(), 0.2 / std::sqrt(2), 1e-12);
 }
 
+SignalCurve constant(const std::string& label, Side side, const std::string& unit, std::initializer_list<double> cycles) {
+  SignalCurve curve{.label = label, .side = side, .unit = unit};
+  for (const double value : cycles) {
+    CyclePoints points{};
+    points.fill(value);
+    curve.cycles.push_back(points);
+  }
+  return curve;
+}
+
+TEST(GaitProfile, SignalsOfTheGroupCountEachPersonOnce) {
+  std::vector<ReferencePerson> people(2);
+  people[0].signals = {constant("up", Side::left, "% of weight", {90, 110}), constant("up", Side::right, "% of weight", {100}),
+                       constant("up", Side::left, "% of weight", {100}), constant("hip moment", Side::left, "N m/kg", {1})};
+  people[1].signals = {constant("up", Side::right, "% of weight", {120}), constant("up", Side::left, "N", {700}),
+                       constant("knee power", Side::left, "W", {50})};
+  const std::vector<ReferenceSignal> signals = reference_signals(people);
+  ASSERT_EQ(signals.size(), 2U) << "newtons and watts of people of any weight are not compared";
+  EXPECT_EQ(signals[0].label, "hip moment");
+  EXPECT_EQ(signals[0].people, 1U);
+  EXPECT_DOUBLE_EQ(signals[0].mean[50], 1);
+  EXPECT_EQ(signals[0].deviation[50], 0);
+  EXPECT_EQ(signals[1].label, "up");
+  EXPECT_EQ(signals[1].people, 2U);
+  EXPECT_DOUBLE_EQ(signals[1].mean[50], 110);
+  EXPECT_DOUBLE_EQ(signals[1].deviation[50], std::sqrt(200.0));
+  EXPECT_TRUE(reference_signals({}).empty());
+}
+
 }  // namespace
 }  // namespace marey::analyse::gait

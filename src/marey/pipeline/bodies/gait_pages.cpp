@@ -159,6 +159,12 @@ class ReportOfWalk {
     GaitReport::Side& side = panel.sides[static_cast<std::size_t>(now.side)];
     side.now = curve_of(now.mean, now.deviation, now.cycles.size(), 1);
     for (const gait::CyclePoints& cycle : now.cycles) side.cycles.push_back(scaled(cycle, 1));
+    if (measure_.reference) {
+      for (const gait::ReferenceSignal& signal : measure_.reference->signals) {
+        if (signal.label == now.label && signal.unit == now.unit)
+          panel.reference = curve_of(signal.mean, signal.deviation, signal.people, 1);
+      }
+    }
     if (earlier == nullptr) return;
     for (const gait::SignalCurve& curve : *earlier) {
       if (curve.label == now.label && curve.side == now.side && curve.unit == now.unit)

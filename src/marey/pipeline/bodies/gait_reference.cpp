@@ -88,6 +88,8 @@ void add_walk(gait::ReferencePerson& person, const GaitMeasure& walk) {
     }
   }
   person.cycles += walk.cycles.cycles.size();
+  person.signals.insert(person.signals.end(), walk.ground.begin(), walk.ground.end());
+  person.signals.insert(person.signals.end(), walk.kinetics.curves.begin(), walk.kinetics.curves.end());
 }
 
 class ReferenceReader {
@@ -171,6 +173,7 @@ GaitReference read_gait_reference(const std::string& folder, const GaitOptions& 
     throw Error("{}: has no walk that can be a reference, of {} files; the first: {}", folder, reference.warnings.size(),
                 reference.warnings.front());
   reference.bands = gait::reference_bands(reference.people);
+  reference.signals = gait::reference_signals(reference.people);
   reference.figures = gait::reference_figures(reference.people);
   reference.scores = gait::reference_scores(reference.people);
   if (reference.people.size() == 1)

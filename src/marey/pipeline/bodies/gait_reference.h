@@ -19,6 +19,7 @@ struct GaitReference {
   std::string folder;
   std::vector<analyse::gait::ReferencePerson> people;
   std::vector<analyse::gait::ReferenceBand> bands;
+  std::vector<analyse::gait::ReferenceSignal> signals;
   std::vector<analyse::gait::ReferenceFigure> figures;
   std::vector<analyse::gait::ReferenceScore> scores;  ///< of people of the group against its others
   std::size_t walks = 0, cycles = 0, curved = 0;      ///< curved: omitted cycles

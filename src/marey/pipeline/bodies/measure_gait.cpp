@@ -223,7 +223,7 @@ void add_kinetics(const std::string& recording, const gait::FeetPaths& feet, con
   if (measure.mass_kg) {
     for (gait::SignalCurve& curve : measure.ground) {
       const double per_cent = 100 / (*measure.mass_kg * kStandardGravity);
-      curve.unit = "% of weight";
+      curve.unit = gait::kPercentOfWeight;
       for (auto& cycle : curve.cycles) {
         for (double& value : cycle) value *= per_cent;
       }
