@@ -150,7 +150,7 @@ TEST(GaitProfile, CountsEveryPersonOnceInFigures) {
 }
 
 SignalCurve constant(const std::string& label, Side side, const std::string& unit, std::initializer_list<double> cycles) {
-  SignalCurve curve{.label = label, .side = side, .unit = unit};
+  SignalCurve curve{.label = label, .side = side, .cycles = {}, .unit = unit};
   for (const double value : cycles) {
     CyclePoints points{};
     points.fill(value);
