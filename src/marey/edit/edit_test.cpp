@@ -185,7 +185,7 @@ TEST(Edit, UndoRedoAndBranches) {
 TEST(Edit, ReportsImpossibleEdit) {
   const Recording recording = letters(3, 6);
   EXPECT_EQ(error_of(recording, "swp A B"),
-            "\"swp\" is not an edit; rename, swap, split, join, delete, fill, filter and team are known");
+            "\"swp\" is not an edit; rename, swap, split, join, delete, fill, filter, team and turn are known");
   EXPECT_EQ(error_of(recording, "swap A X"), "there is no track called \"X\"");
   EXPECT_EQ(error_of(recording, "swap A A"), "swap: \"A\" is named twice");
   EXPECT_EQ(error_of(recording, "swap A"), "swap: the second track is missing");
@@ -204,7 +204,7 @@ TEST(Edit, ReportsImpossibleEdit) {
   EXPECT_EQ(error_of(recording, "filter A 41"),
             "filter: at 100 frames a second a cut-off of 41 Hz would change nothing; it lies below 40.1 Hz");
   EXPECT_EQ(error_of(recording, "fill A"), "fill: there is no gap to fill");
-  EXPECT_EQ(error_of(recording, ""), "an edit is empty; rename, swap, split, join, delete, fill, filter and team are known");
+  EXPECT_EQ(error_of(recording, ""), "an edit is empty; rename, swap, split, join, delete, fill, filter, team and turn are known");
 }
 
 TEST(Edit, AnOperationSurvivesItsText) {
