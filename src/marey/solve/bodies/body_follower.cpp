@@ -85,7 +85,7 @@ std::span<const BodyPose> BodyTracker::step(Timestamp now, std::span<const BodyT
 
 void BodyTracker::predict(Timestamp now) {
   const double dt = last_ ? seconds(now - *last_) : 0;
-  previous_ = last_;
+  if (dt > 0) shortest_step_s_ = std::min(shortest_step_s_, dt);
   last_ = now;
   for (Tracked& one : tracked_) {
     if (one.motion && one.present) one.motion->predict(dt, options_.acceleration, options_.angular_acceleration);
@@ -299,7 +299,7 @@ void BodyTracker::accept(int body, std::span<const BodyTrackPoint> points, const
     if (owner && owner->first != body && tracked_[static_cast<std::size_t>(owner->first)].measured) return;
   }
   const bool symmetric = one.motion && !one.rotations.empty();
-  const bool comes_back = symmetric && one.observed_at != previous_;
+  const bool comes_back = symmetric && seconds(*last_ - one.observed_at) > 2.5 * shortest_step_s_;
   if (symmetric) {
     const Rigid3 nearest =
         nearest_turn(one, candidate.world_from_body, comes_back ? due(body) : one.motion->world_from_body.rotation);

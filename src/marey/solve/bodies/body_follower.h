@@ -137,7 +137,8 @@ class BodyTracker {
   std::vector<BodyPose> poses_;
   std::vector<Correction> corrections_;
   std::vector<TrackCounts> counts_;
-  std::optional<Timestamp> last_, previous_;
+  std::optional<Timestamp> last_;
+  double shortest_step_s_ = 1;  // between instants: what lies farther apart was hidden, or left out
   double noise_ = 0, squares_ = 0, freedoms_ = 0;
   int next_initialise_ = 0;  // bodies are searched for in turn
 };
