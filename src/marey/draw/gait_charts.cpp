@@ -33,7 +33,9 @@ class PanelChart {
   std::string write() const {
     Svg svg(
         {{"viewBox", fmt::format("0 0 {:g} {:g}", size_.width, size_.height)}, {"font-family", "sans-serif"}, {"font-size", 11}});
-    svg.text({4, 14}, panel_.title + ", " + panel_.unit, {{"font-weight", "bold"}});
+    const std::string title = panel_.title + ", " + panel_.unit;
+    const double fits = (size_.width - 8) / (0.62 * static_cast<double>(title.size()));  // bold letters are about so wide
+    svg.text({4, 14}, title, {{"font-weight", "bold"}, {"font-size", std::min(11.0, std::floor(2 * fits) / 2)}});
     draw_axes(svg);
     draw_band(svg, panel_.reference, kReferenceGrey, "0.28", "0");
     for (std::size_t s = 0; s < 2; ++s) {
