@@ -125,7 +125,7 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertIn("holds no bodies", self.marey("convert", "walk.marey", "none.csv", "--format", "poses", code=1).stderr)
         self.assertFalse((self.folder / "none.csv").exists())
 
-    def test_a_symmetric_body_that_may_be_turned(self):
+    def test_a_symmetric_body_that_may_be_rotated(self):
         # It wobbles about its axis of symmetry, and is hidden for a second every three; from the markers alone nobody knows how it comes back.
         markers = {"a": (-0.1, 0, 0), "b": (0.1, 0, 0), "c": (0, 0, 0.2), "d": (0, 0, -0.15)}
         with open(self.folder / "table.csv", "w") as file:

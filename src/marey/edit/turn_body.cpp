@@ -9,7 +9,7 @@
 namespace marey::edit {
 namespace {
 
-bool is_asked_for(const Recording& recording, const std::optional<FrameRange>& frames, std::int32_t at) {
+bool is_within(const Recording& recording, const std::optional<FrameRange>& frames, std::int32_t at) {
   return !frames || frames->holds(recording.instants()[static_cast<std::size_t>(at)].index);
 }
 
@@ -23,7 +23,7 @@ Operation decide_turn(const Request& request, const Recording& recording) {
   const BodyColumns* poses = recording.find(body->id);
   bool any = false;
   for (std::size_t row = 0; poses != nullptr && row < poses->size(); ++row)
-    any |= poses->other().known(row) && is_asked_for(recording, request.frames, poses->at()[row]);
+    any |= poses->other().known(row) && is_within(recording, request.frames, poses->at()[row]);
   if (!any)
     throw Error("turn: \"{}\" has no other pose in question {}", plain_text(name), request.frames ? "in these frames" : "anywhere");
   Operation operation{.kind = Operation::Kind::turn, .frames = request.frames};
@@ -37,7 +37,7 @@ void turn_body(Recording& recording, const Operation& operation) {
   BodyColumns turned(poses->body());
   for (std::size_t row = 0; row < poses->size(); ++row) {
     BodyPose pose = poses->pose(row);
-    if (pose.other && is_asked_for(recording, operation.frames, poses->at()[row])) {
+    if (pose.other && is_within(recording, operation.frames, poses->at()[row])) {
       std::swap(pose.world_from_body, pose.other->world_from_body);
       pose.other->probability = 1 - pose.other->probability;
     }

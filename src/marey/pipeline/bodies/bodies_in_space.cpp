@@ -154,11 +154,11 @@ TrackBodiesSummary track_bodies(const std::string& recording, const std::string&
     }
     settled.add(*std::move(instant), step.tracker().corrections());
     for (const Correction& one : step.tracker().corrections()) {
-      if (one.doubt > 0)
+      if (one.ambiguity > 0)
         in_question.push_back({.body = label_of(header.bodies, one.body),
                                .frame = settled.frame_at(one.since),
                                .time = one.since,
-                               .probability = one.doubt,
+                               .probability = one.ambiguity,
                                .turn = one.words});
     }
     stopped = hooks.report({.step = "following bodies", .done = ++instants, .total = reader->instant_count()}) == Continue::no;

@@ -32,7 +32,7 @@ std::vector<Vector<3>> layout() {
 }
 
 /// The markers in 20 frames with 2 mm of noise, each segment at another place in each, one frame in four without marker B.
-std::vector<ObservedMarkers> seen(const std::vector<Vector<3>>& places, std::uint64_t seed) {
+std::vector<ObservedMarkers> observed(const std::vector<Vector<3>>& places, std::uint64_t seed) {
   filter::RandomStream random(seed);
   std::vector<ObservedMarkers> frames;
   for (int f = 0; f < 20; ++f) {
@@ -50,7 +50,7 @@ std::vector<ObservedMarkers> seen(const std::vector<Vector<3>>& places, std::uin
 }
 
 TEST(SamePerson, AgreesWithItself) {
-  const auto here = seen(layout(), 1), there = seen(layout(), 2);
+  const auto here = observed(layout(), 1), there = observed(layout(), 2);
   EXPECT_EQ(other_size(two_segments(), here, there), std::nullopt);
   EXPECT_TRUE(moved_markers(two_segments(), here, there).empty());
   EXPECT_TRUE(moved_markers(two_segments(), here, {}).empty()) << "no pair is in both";
@@ -60,7 +60,7 @@ TEST(SamePerson, FindsTheMarkersThatWerePutOnAgain) {
   auto moved = layout();
   moved[3] += Vector<3>(0.03, 0.02, 0.03);
   moved[7] += Vector<3>(-0.05, 0.02, 0);
-  const auto here = seen(layout(), 1), there = seen(moved, 2);
+  const auto here = observed(layout(), 1), there = observed(moved, 2);
   const auto differs = other_size(two_segments(), here, there);
   ASSERT_TRUE(differs);
   EXPECT_TRUE(differs->find('D') != std::string::npos || differs->find('H') != std::string::npos) << *differs;
@@ -72,7 +72,7 @@ TEST(SamePerson, FindsTheMarkersThatWerePutOnAgain) {
 TEST(SamePerson, AnotherPersonHasMostOfThemElsewhere) {
   auto taller = layout();
   for (Vector<3>& place : taller) place *= 1.25;
-  EXPECT_GE(moved_markers(two_segments(), seen(layout(), 1), seen(taller, 2)).size(), 4U);
+  EXPECT_GE(moved_markers(two_segments(), observed(layout(), 1), observed(taller, 2)).size(), 4U);
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ BodyTracker::BodyTracker(std::vector<Body> bodies, const TrackingOptions& option
       throw Error("the markers of body \"{}\" lie in a line; move one of them away from it", body.label);
     one.rotations = symmetries(one.locations, options_.tolerance);
     one.evidence.assign(one.rotations.size(), 0);
-    one.turned.assign(one.rotations.size(), 0);
-    if (!one.rotations.empty()) one.turns.emplace(bodies_.size(), options_.angular_acceleration);
+    one.rotated.assign(one.rotations.size(), 0);
+    if (!one.rotations.empty()) one.hidden.emplace(bodies_.size(), options_.angular_acceleration);
     one.point_of.assign(one.locations.size(), assign::kNoIndex);
     one.shortest_edge = 1e9;
     for (std::size_t a = 0; a < one.locations.size(); ++a) {
@@ -152,7 +152,7 @@ void BodyTracker::take_labelled(std::span<const BodyTrackPoint> points) {
     if (candidates.empty() || !measure(body, points, std::move(candidates))) continue;
     one.labelled = true;
     one.back.reset();
-    std::fill(one.turned.begin(), one.turned.end(), 0.0);
+    std::fill(one.rotated.begin(), one.rotated.end(), 0.0);
     if (!one.motion || !one.present) one.motion = BodyMotion::at(one.fit->world_from_body, kFirstRate, kFirstTurningRate);
   }
 }
@@ -326,8 +326,8 @@ void BodyTracker::accept(int body, std::span<const BodyTrackPoint> points, const
   }
   if (!measure(body, points, std::move(candidates))) return;
   if (comes_back) {
-    one.back = Return{.before = last_sure(one), .after = seen_turn(body, *last_), .detected = 0};
-    one.turns->interrupt();
+    one.back = Return{.before = last_sure(one), .after = observed_rotation(body, *last_), .detected = 0};
+    one.hidden->interrupt();
   }
   if (!one.motion || !one.present || comes_back)
     one.motion = BodyMotion::at(one.fit->world_from_body, kFirstRate, kFirstTurningRate);
@@ -353,9 +353,9 @@ void BodyTracker::report(Timestamp now) {
       one.present = true;
       one.observed_at = now;
       one.observed_pose = one.fit->world_from_body;
-      if (one.turns) {
-        one.observed = seen_turn(static_cast<int>(b), now);
-        if (!one.back) one.turns->add(one.observed);
+      if (one.hidden) {
+        one.observed = observed_rotation(static_cast<int>(b), now);
+        if (!one.back) one.hidden->add(one.observed);
       }
       ++counts.measured;
       poses_.push_back({.body = bodies_[b].id,

@@ -8,9 +8,9 @@
 // has (body_initialisation.h); identical ones are distinguished by where each was last. A body that appears the same after a turn
 // has as many possible poses. They are distinguished by continuity: when it comes back out of hiding, by its predicted pose; an
 // instant later, when its turning rate is known again, by the mean of the rates before and after, or by a body that carries it
-// (hidden_turns.h). A decision that turns out wrong is corrected, and said (`Correction`); where another pose stays possible, it is
-// reported beside the probable one (`BodyPose::other`) from then on. Where markers differ by little, what they add up to over many
-// instants decides. Cost: a few µs a body and instant. Memory: bounded by bodies and points.
+// (hidden_rotation.h). A decision that turns out wrong is corrected, and said (`Correction`); where another pose stays possible, it
+// is reported beside the probable one (`BodyPose::other`) from then on. Where markers differ by little, what they add up to over
+// many instants decides. Cost: a few µs a body and instant. Memory: bounded by bodies and points.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@
 #include "marey/core/time.h"
 #include "marey/solve/bodies/body_initialisation.h"
 #include "marey/solve/bodies/body_motion.h"
-#include "marey/solve/bodies/hidden_turns.h"
+#include "marey/solve/bodies/hidden_rotation.h"
 #include "marey/solve/bodies/pose_fit.h"
 #include "marey/solve/bodies/symmetry.h"
 
@@ -51,7 +51,7 @@ struct Correction {
   Timestamp since{};
   Rigid3 reported_from_body;       ///< the pose is the reported one times this
   std::optional<OtherPose> other;  ///< as it is then to be reported, but in the body's frame; nothing: none is in question
-  double doubt = 0;                ///< the probability that this return was decided wrong, where it is in question
+  double ambiguity = 0;            ///< the probability that this return was decided wrong, where it is in question
   std::string words;               ///< of such a doubt: how the other pose differs
 };
 
@@ -86,8 +86,8 @@ class BodyTracker {
  private:
   /// A body that came back out of hiding, as long as its turning rate is not known again.
   struct Return {
-    SeenTurn before, after;  ///< when it was seen last (where that was for an instant only, before it), and first
-    int detected = 0;        ///< instants since
+    ObservedRotation before, after;  ///< when it was seen last (where that was for an instant only, before it), and first
+    int detected = 0;                ///< instants since
   };
   struct Tracked {
     std::vector<Vector<3>> locations;
@@ -96,15 +96,15 @@ class BodyTracker {
     std::optional<BodyMotion> motion;     ///< nothing before it was found first
     Timestamp observed_at{};              ///< three markers or more
     Rigid3 observed_pose;
-    SeenTurn observed;           ///< of a body with symmetries
-    std::vector<double> turned;  ///< by turn, the probability that it is turned so against what is reported
-    bool present = false;        ///< reported at the last instant
-    std::vector<int> point_of;   ///< by marker, this instant; or kNoIndex
-    std::optional<PoseFit> fit;  ///< this instant's
+    ObservedRotation observed;    ///< of a body with symmetries
+    std::vector<double> rotated;  ///< by turn, the probability that it is turned so against what is reported
+    bool present = false;         ///< reported at the last instant
+    std::vector<int> point_of;    ///< by marker, this instant; or kNoIndex
+    std::optional<PoseFit> fit;   ///< this instant's
     bool measured = false;
     bool labelled = false;  ///< by its markers' names
     std::optional<Return> back;
-    std::optional<HiddenTurns> turns;
+    std::optional<HiddenRotation> hidden;
     std::vector<double> evidence;  ///< by turn: log-likelihood ratio that the body is turned so
   };
 
@@ -115,8 +115,8 @@ class BodyTracker {
   bool measure(int body, std::span<const BodyTrackPoint> points, std::vector<int> candidates);
   void inspect_everywhere(Timestamp now, std::span<const BodyTrackPoint> points);
   void accept(int body, std::span<const BodyTrackPoint> points, const PoseCandidate& candidate, std::span<const int> names);
-  SeenTurn seen_turn(int body, Timestamp now) const;
-  static SeenTurn last_sure(const Tracked& body) { return body.back ? body.back->before : body.observed; }
+  ObservedRotation observed_rotation(int body, Timestamp now) const;
+  static ObservedRotation last_sure(const Tracked& body) { return body.back ? body.back->before : body.observed; }
   Matrix<3> due(int body) const;
   Rigid3 nearest_turn(const Tracked& body, Rigid3 pose, const Matrix<3>& due) const;
   std::optional<OtherPose> other_of(const Tracked& body, const Rigid3& pose) const;

@@ -209,8 +209,8 @@ TEST(BodyTracker, ASymmetricBodyComesBackAsItWas) {
 
 /// How the returns of body 1, which appears the same after half a turn, were decided.
 struct Returns {
-  int all = 0, turned = 0, questioned = 0, turned_unquestioned = 0;
-  double doubt = 0;  // sum over those in question
+  int all = 0, rotated = 0, questioned = 0, unreported = 0;
+  double ambiguity = 0;  // sum over those in question
 };
 
 /// Body 1 is hidden for `gap_s` after each 2 s, as `scene` moves it; the others are always seen.
@@ -220,23 +220,23 @@ Returns returns_of(const Scene& scene, moving::Random& random, double gap_s, int
   const int seen = 200, period = seen + static_cast<int>(std::lround(100 * gap_s));
   std::optional<bool> was;  // how it is turned against the truth, before the gap
   bool is = false;
-  double doubt = 0;
+  double ambiguity = 0;
   for (int i = 0; i < period * gaps + seen; ++i) {
     const double time = i / 100.0;
     const int phase = i % period;
     const auto points = observed_at(scene, time, random, [&](std::size_t b, auto) { return b != 0 || phase < seen; });
     const auto pose = pose_of(tracker.step(timestamp_from_seconds(time), points), BodyId{1});
-    for (const Correction& one : tracker.corrections()) doubt = std::max(doubt, one.body == BodyId{1} ? one.doubt : 0);
+    for (const Correction& one : tracker.corrections()) ambiguity = std::max(ambiguity, one.body == BodyId{1} ? one.ambiguity : 0);
     if (pose && pose->tracked && phase < seen) is = moving::degrees_between(pose->world_from_body, scene.paths[0].at(time)) > 90;
     if (phase != seen - 1) continue;
     if (was) {
       ++returns.all;
-      returns.turned += is != *was;
-      returns.questioned += doubt > 0;
-      returns.turned_unquestioned += is != *was && doubt == 0;
-      returns.doubt += doubt;
+      returns.rotated += is != *was;
+      returns.questioned += ambiguity > 0;
+      returns.unreported += is != *was && ambiguity == 0;
+      returns.ambiguity += ambiguity;
     }
-    was = is, doubt = 0;
+    was = is, ambiguity = 0;
   }
   return returns;
 }
@@ -254,19 +254,19 @@ TEST(BodyTracker, AReturnThatMayBeTurnedIsInQuestion) {
       scene.hidden = 0;
       scene.bodies[0] = moving::body_of(1, kHalfTurnSymmetric);
       const Returns one = returns_of(scene, random, gap_s, 10);
-      here.all += one.all, here.turned += one.turned, here.questioned += one.questioned;
-      here.turned_unquestioned += one.turned_unquestioned, here.doubt += one.doubt;
+      here.all += one.all, here.rotated += one.rotated, here.questioned += one.questioned;
+      here.unreported += one.unreported, here.ambiguity += one.ambiguity;
     }
     std::printf(
         "hidden %.1f s: of %d returns %d turned, %d in question (%.1f of them turned, as is said), %d turned without a word\n",
-        gap_s, here.all, here.turned, here.questioned, here.doubt, here.turned_unquestioned);
-    all.all += here.all, all.turned += here.turned, all.questioned += here.questioned;
-    all.turned_unquestioned += here.turned_unquestioned, all.doubt += here.doubt;
+        gap_s, here.all, here.rotated, here.questioned, here.ambiguity, here.unreported);
+    all.all += here.all, all.rotated += here.rotated, all.questioned += here.questioned;
+    all.unreported += here.unreported, all.ambiguity += here.ambiguity;
     EXPECT_LE(here.questioned, (gap_s < 0.3 ? 0.1 : 1.0) * here.all);
   }
-  EXPECT_GT(all.turned, 20) << "the scene is hard enough";
-  EXPECT_LE(all.turned_unquestioned, 0.01 * all.all);
-  EXPECT_NEAR(all.turned, all.doubt, 0.35 * all.turned);
+  EXPECT_GT(all.rotated, 20) << "the scene is hard enough";
+  EXPECT_LE(all.unreported, 0.01 * all.all);
+  EXPECT_NEAR(all.rotated, all.ambiguity, 0.35 * all.rotated);
 }
 
 /// A hand that is seen holds it: nothing is in question then.
@@ -281,11 +281,11 @@ TEST(BodyTracker, AReturnIsDecidedByTheHandThatHoldsIt) {
       scene.paths[1] = scene.paths[0];
       for (BodyMarker& marker : scene.bodies[1].markers) marker.position += Vector<3>(0.4, 0, 0);
       const Returns one = returns_of(scene, random, gap_s, 10);
-      all.all += one.all, all.turned += one.turned, all.questioned += one.questioned;
+      all.all += one.all, all.rotated += one.rotated, all.questioned += one.questioned;
     }
   }
   EXPECT_EQ(all.all, 90);
-  EXPECT_EQ(all.turned, 0);
+  EXPECT_EQ(all.rotated, 0);
   EXPECT_EQ(all.questioned, 0);
 }
 

@@ -49,9 +49,9 @@ std::size_t inverse_of(std::span<const Symmetry> turns, std::size_t turn) {
 
 }  // namespace
 
-SeenTurn BodyTracker::seen_turn(int body, Timestamp now) const {
+ObservedRotation BodyTracker::observed_rotation(int body, Timestamp now) const {
   const Tracked& one = tracked_[static_cast<std::size_t>(body)];
-  SeenTurn seen{.time = now, .rotation = one.fit->world_from_body.rotation, .rate = one.motion->turning_rate, .others = {}};
+  ObservedRotation seen{.time = now, .rotation = one.fit->world_from_body.rotation, .rate = one.motion->turning_rate, .others = {}};
   for (const Tracked& other : tracked_) {
     const bool counts = &other != &one && other.measured;
     seen.others.push_back(counts ? std::optional(other.fit->world_from_body.rotation) : std::nullopt);
@@ -62,13 +62,13 @@ SeenTurn BodyTracker::seen_turn(int body, Timestamp now) const {
 /// Where a body that comes back is due at this instant: its turning rate now is not known yet.
 Matrix<3> BodyTracker::due(int body) const {
   const Tracked& one = tracked_[static_cast<std::size_t>(body)];
-  const SeenTurn before = last_sure(one);
-  SeenTurn after{.time = *last_, .rotation = {}, .rate = before.rate, .others = {}};
+  const ObservedRotation before = last_sure(one);
+  ObservedRotation after{.time = *last_, .rotation = {}, .rate = before.rate, .others = {}};
   for (const Tracked& other : tracked_) {
     const bool counts = &other != &one && other.measured;
     after.others.push_back(counts ? std::optional(other.fit->world_from_body.rotation) : std::nullopt);
   }
-  return one.turns->due(before, after).rotation;
+  return one.hidden->due(before, after).rotation;
 }
 
 /// The symmetric pose that is turned the least from where the body was due.
@@ -91,7 +91,7 @@ void BodyTracker::turn_body(int body, const Symmetry& turn) {
   std::vector<int> point_of(one.point_of.size(), assign::kNoIndex);
   for (std::size_t m = 0; m < point_of.size(); ++m) point_of[m] = one.point_of[static_cast<std::size_t>(turn.onto[m])];
   one.point_of = std::move(point_of);
-  one.turns->interrupt();
+  one.hidden->interrupt();
   ++counts_[static_cast<std::size_t>(body)].corrected;
   std::fill(one.evidence.begin(), one.evidence.end(), 0.0);
 }
@@ -114,12 +114,12 @@ void BodyTracker::weigh_rotations(int body, Timestamp now, std::span<const BodyT
     one.evidence[t] = std::max(one.evidence[t] + std::clamp(ratio, -kMaxAnInstant, kMaxAnInstant), 0.0);
     if (one.evidence[t] <= kProof) continue;
     turn_body(body, one.rotations[t]);
-    std::fill(one.turned.begin(), one.turned.end(), 0.0);
+    std::fill(one.rotated.begin(), one.rotated.end(), 0.0);
     corrections_.push_back({.body = bodies_[static_cast<std::size_t>(body)].id,
                             .since = now,
                             .reported_from_body = one.rotations[t].body_from_body,
                             .other = {},
-                            .doubt = 0,
+                            .ambiguity = 0,
                             .words = {}});
     return;
   }
@@ -129,8 +129,9 @@ void BodyTracker::weigh_rotations(int body, Timestamp now, std::span<const BodyT
 std::optional<OtherPose> BodyTracker::other_of(const Tracked& one, const Rigid3& pose) const {
   std::optional<OtherPose> other;
   for (std::size_t t = 0; t < one.rotations.size(); ++t) {
-    if (one.turned[t] < kInQuestion || one.rotations[t].worst > noise_ || (other && one.turned[t] <= other->probability)) continue;
-    other = OtherPose{.world_from_body = pose * one.rotations[t].body_from_body, .probability = one.turned[t]};
+    if (one.rotated[t] < kInQuestion || one.rotations[t].worst > noise_ || (other && one.rotated[t] <= other->probability))
+      continue;
+    other = OtherPose{.world_from_body = pose * one.rotations[t].body_from_body, .probability = one.rotated[t]};
   }
   return other;
 }
@@ -144,10 +145,10 @@ void BodyTracker::evaluate_return(int body, Timestamp now) {
 
   // By what carries it, if that is seen now, or by its own rates at both ends of the gap.
   back.after.rate = one.motion->turning_rate;
-  SeenTurn seen = back.after;
-  DueTurn due = one.turns->due(back.before, back.after);
-  const SeenTurn seen_now = seen_turn(body, now);
-  if (const DueTurn later = one.turns->due(back.before, seen_now); later.variance < due.variance) due = later, seen = seen_now;
+  ObservedRotation seen = back.after;
+  DueRotation due = one.hidden->due(back.before, back.after);
+  const ObservedRotation seen_now = observed_rotation(body, now);
+  if (const DueRotation later = one.hidden->due(back.before, seen_now); later.variance < due.variance) due = later, seen = seen_now;
   std::vector<double> after{likelihood(angle_between(due.rotation, seen.rotation), due.variance)};
   for (const Symmetry& turn : turns)
     after.push_back(likelihood(angle_between(due.rotation, seen.rotation * turn.body_from_body.rotation), due.variance));
@@ -161,26 +162,26 @@ void BodyTracker::evaluate_return(int body, Timestamp now) {
   const std::size_t back_to_best = inverse_of(turns, best);
   for (std::size_t before = 0; before <= turns.size(); ++before) {
     double was = 1;
-    for (const double probability : one.turned) was -= before == 0 ? probability : 0;
-    if (before > 0) was = one.turned[before - 1];
+    for (const double probability : one.rotated) was -= before == 0 ? probability : 0;
+    if (before > 0) was = one.rotated[before - 1];
     for (std::size_t now_turned = 0; now_turned <= turns.size(); ++now_turned)
       turned[both(turns, before, both(turns, now_turned, back_to_best))] += was * after[now_turned];
   }
   const bool was_in_question = other_of(one, {}).has_value();
-  std::copy(turned.begin() + 1, turned.end(), one.turned.begin());
+  std::copy(turned.begin() + 1, turned.end(), one.rotated.begin());
 
   Correction found{.body = bodies_[static_cast<std::size_t>(body)].id,
                    .since = back.after.time,
                    .reported_from_body = {},
                    .other = other_of(one, {}),
-                   .doubt = 0,
+                   .ambiguity = 0,
                    .words = {}};
   for (std::size_t turn = 0; turn <= turns.size(); ++turn) {
     const std::size_t against = both(turns, turn, back_to_best);
-    if (against == 0 || turns[against - 1].worst > noise_ || after[turn] < kInQuestion || after[turn] <= found.doubt) continue;
-    found.doubt = after[turn], found.words = words_of(turns[against - 1]);
+    if (against == 0 || turns[against - 1].worst > noise_ || after[turn] < kInQuestion || after[turn] <= found.ambiguity) continue;
+    found.ambiguity = after[turn], found.words = words_of(turns[against - 1]);
   }
-  counts_[static_cast<std::size_t>(body)].in_question += found.doubt > 0;
+  counts_[static_cast<std::size_t>(body)].in_question += found.ambiguity > 0;
   if (best > 0) {
     found.reported_from_body = turns[best - 1].body_from_body;
     turn_body(body, turns[best - 1]);

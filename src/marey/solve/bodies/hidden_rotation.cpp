@@ -1,4 +1,4 @@
-#include "marey/solve/bodies/hidden_turns.h"
+#include "marey/solve/bodies/hidden_rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,24 +19,24 @@ double squared_angle(const Matrix<3>& a, const Matrix<3>& b) {
 }
 
 /// Turned by the mean of both rates.
-Matrix<3> by_own_rate(const SeenTurn& before, const SeenTurn& after) {
+Matrix<3> by_own_rate(const ObservedRotation& before, const ObservedRotation& after) {
   const double time = seconds(after.time - before.time);
   return geometry::rotation_from(time * (before.rate + after.rate) / 2) * before.rotation;
 }
 
 /// Turned as that other body was; nothing where it was not seen at both instants.
-std::optional<Matrix<3>> carried_by(std::size_t other, const SeenTurn& before, const SeenTurn& after) {
+std::optional<Matrix<3>> carried_by(std::size_t other, const ObservedRotation& before, const ObservedRotation& after) {
   if (!before.others[other] || !after.others[other]) return std::nullopt;
   return *after.others[other] * before.others[other]->transpose() * before.rotation;
 }
 
 }  // namespace
 
-HiddenTurns::HiddenTurns(std::size_t bodies, double angular_acceleration)
+HiddenRotation::HiddenRotation(std::size_t bodies, double angular_acceleration)
     : rate_noise_(angular_acceleration * angular_acceleration * 0.01), carried_(bodies) {}
 
-void HiddenTurns::add(SeenTurn seen) {
-  if (!seen_.empty() && seconds(seen.time - seen_.back().time) < kStep_s) return;
+void HiddenRotation::add(ObservedRotation seen) {
+  if (!observed_.empty() && seconds(seen.time - observed_.back().time) < kStep_s) return;
   const auto learn = [](Errors& errors, std::size_t interval, double square) {
     if (errors.count[interval] > kMaxCount) errors.count[interval] /= 2, errors.squares[interval] /= 2;
     errors.squares[interval] += square;
@@ -44,22 +44,22 @@ void HiddenTurns::add(SeenTurn seen) {
   };
   for (std::size_t i = 0; i < kIntervals_s.size(); ++i) {
     const Timestamp then = seen.time - duration_from_seconds(kIntervals_s[i]);
-    const auto after =
-        std::upper_bound(seen_.begin(), seen_.end(), then, [](Timestamp t, const SeenTurn& s) { return t < s.time; });
-    if (after == seen_.begin()) continue;  // it was not seen so long
-    const SeenTurn& before = *std::prev(after);
+    const auto after = std::upper_bound(observed_.begin(), observed_.end(), then,
+                                        [](Timestamp t, const ObservedRotation& s) { return t < s.time; });
+    if (after == observed_.begin()) continue;  // it was not seen so long
+    const ObservedRotation& before = *std::prev(after);
     learn(own_, i, squared_angle(by_own_rate(before, seen), seen.rotation));
     for (std::size_t other = 0; other < carried_.size(); ++other) {
       if (const auto due = carried_by(other, before, seen)) learn(carried_[other], i, squared_angle(*due, seen.rotation));
     }
   }
-  seen_.push_back(std::move(seen));
-  while (seconds(seen_.back().time - seen_.front().time) > kIntervals_s.back() + kStep_s) seen_.pop_front();
+  observed_.push_back(std::move(seen));
+  while (seconds(observed_.back().time - observed_.front().time) > kIntervals_s.back() + kStep_s) observed_.pop_front();
 }
 
 /// A rate that wanders, bridged by its values at both ends, leaves an angle of variance q T³ / 12 (the integral of a Brownian
 /// bridge); errors that were measured over an interval next to it correct that.
-double HiddenTurns::own_variance(double hidden_s) const {
+double HiddenRotation::own_variance(double hidden_s) const {
   const auto wandering = [&](double time) { return rate_noise_ * time * time * time / 12; };
   double squares = kOwnPrior, count = kOwnPrior;  // in units of that variance
   for (std::size_t i = 0; i < kIntervals_s.size(); ++i) {
@@ -73,7 +73,7 @@ double HiddenTurns::own_variance(double hidden_s) const {
 }
 
 /// Nothing where it was not seen beside it long enough.
-std::optional<double> HiddenTurns::carried_variance(const Errors& errors, double hidden_s) const {
+std::optional<double> HiddenRotation::carried_variance(const Errors& errors, double hidden_s) const {
   std::optional<double> variance;
   for (std::size_t i = 0; i < kIntervals_s.size(); ++i) {
     if (errors.count[i] < kCarriedCount) continue;
@@ -84,9 +84,9 @@ std::optional<double> HiddenTurns::carried_variance(const Errors& errors, double
   return variance;
 }
 
-DueTurn HiddenTurns::due(const SeenTurn& before, const SeenTurn& after) const {
+DueRotation HiddenRotation::due(const ObservedRotation& before, const ObservedRotation& after) const {
   const double hidden = seconds(after.time - before.time);
-  DueTurn best{.rotation = by_own_rate(before, after), .variance = own_variance(hidden)};
+  DueRotation best{.rotation = by_own_rate(before, after), .variance = own_variance(hidden)};
   for (std::size_t other = 0; other < carried_.size(); ++other) {
     const auto due = carried_by(other, before, after);
     const auto variance = due ? carried_variance(carried_[other], hidden) : std::nullopt;

@@ -15,7 +15,7 @@
 namespace marey::solve::bodies {
 
 /// An instant at which the body was seen.
-struct SeenTurn {
+struct ObservedRotation {
   Timestamp time{};
   Matrix<3> rotation = Matrix<3>::Identity();    ///< world from body
   Vector<3> rate = Vector<3>::Zero();            ///< rad/s, about the world's axes
@@ -23,23 +23,23 @@ struct SeenTurn {
 };
 
 /// Where a body is due, and what that may be off by.
-struct DueTurn {
+struct DueRotation {
   Matrix<3> rotation = Matrix<3>::Identity();
   double variance = 0;  ///< rad², about each axis
 };
 
-class HiddenTurns {
+class HiddenRotation {
  public:
   /// `angular_acceleration`: rad/s², what a body's own turning may change by before that is measured.
-  HiddenTurns(std::size_t bodies, double angular_acceleration);
+  HiddenRotation(std::size_t bodies, double angular_acceleration);
 
   /// Instants in growing order of time, while the body is seen without a gap.
-  void add(SeenTurn seen);
+  void add(ObservedRotation seen);
   /// It was hidden: what comes next is not held against what came before.
-  void interrupt() { seen_.clear(); }
+  void interrupt() { observed_.clear(); }
 
   /// Where it is due at `after`, whose rotation is not read: by the predictor that was off least over such a time.
-  DueTurn due(const SeenTurn& before, const SeenTurn& after) const;
+  DueRotation due(const ObservedRotation& before, const ObservedRotation& after) const;
 
  private:
   static constexpr std::array kIntervals_s{0.1, 0.2, 0.4, 0.8, 1.6};  // numerical: doubled, up to what is remembered
@@ -55,7 +55,7 @@ class HiddenTurns {
   double rate_noise_;  // rad²/s³
   Errors own_;
   std::vector<Errors> carried_;  // by body
-  std::deque<SeenTurn> seen_;
+  std::deque<ObservedRotation> observed_;
 };
 
 }  // namespace marey::solve::bodies
