@@ -75,7 +75,7 @@ void run(DefineCommand& command) {
   }
 }
 
-/// The questions that only someone who sees the video, or knows the motion, can answer; and how.
+/// The questions that the markers cannot answer, and the command that answers each.
 void print_in_question(const BodyTrackCommand& command, const pipeline::bodies::TrackBodiesSummary& summary) {
   constexpr std::size_t kMaxPrinted = 10;
   for (std::size_t i = 0; i < std::min(summary.in_question.size(), kMaxPrinted); ++i) {

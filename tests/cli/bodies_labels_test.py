@@ -126,7 +126,7 @@ class BodiesAndLabels(unittest.TestCase):
         self.assertFalse((self.folder / "none.csv").exists())
 
     def test_a_symmetric_body_that_may_be_rotated(self):
-        # It wobbles about its axis of symmetry, and is hidden for a second every three; from the markers alone nobody knows how it comes back.
+        # It wobbles about its axis of symmetry, and is hidden for a second every three; from the markers alone it is unknown how it comes back.
         markers = {"a": (-0.1, 0, 0), "b": (0.1, 0, 0), "c": (0, 0, 0.2), "d": (0, 0, -0.15)}
         with open(self.folder / "table.csv", "w") as file:
             file.write("label,x,y,z\n" + "".join(f"{label},{x},{y},{z}\n" for label, (x, y, z) in markers.items()))
@@ -142,8 +142,7 @@ class BodiesAndLabels(unittest.TestCase):
                     file.write(f"{frame},{time},{number + 4 * frame}," + ",".join(f"{c:.5f}" for c in place) + "\n")
         done = self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.marey")
         self.assertRegex(done.stderr, r'in question: from frame \d+ on \(\d+\.\d\d s\) table may be turned 180° about its z axis \(\d+ %\); if so: marey edit racket.marey "turn table \d+:"')
-        told = json.loads(self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.marey", "--json").stdout)
-        first = told["in_question"][0]
+        first = json.loads(self.marey("body", "track", "points.csv", "table.csv", "-o", "racket.marey", "--json").stdout)["in_question"][0]
         self.assertIn(first["frame"], (300, 600, 900))
         self.assertTrue(0.02 <= first["probability"] <= 0.98)
 

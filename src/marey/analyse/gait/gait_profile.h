@@ -30,7 +30,8 @@ struct ReferencePerson {
   std::string name;
   std::vector<CycleCurve> curves;
   std::vector<GaitFigure> figures;
-  std::vector<SignalCurve> signals = {};  ///< ground reactions, moments, powers; of several recordings one behind the other
+  std::vector<SignalCurve> signals =
+      {};  ///< ground reactions, of joints moments and powers; of several recordings one behind the other
   std::size_t cycles = 0;
 };
 
@@ -41,7 +42,7 @@ struct ReferenceBand {
   CyclePoints mean{}, deviation{};  ///< rad; deviation 0 for one person
 };
 
-/// A force, moment or power over the cycle, likewise. Only of units in which people of any weight compare (% of weight, … per kg).
+/// A signal of forces over the cycle, likewise. Only of units in which people of any weight compare (% of weight, … per kg).
 struct ReferenceSignal {
   std::string label, unit;
   std::size_t people = 0;

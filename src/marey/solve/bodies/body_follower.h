@@ -45,7 +45,7 @@ struct BodyTrackPoint {
   std::optional<std::pair<int, int>> marker;  ///< whose its label says it is: the body's and its marker's index
 };
 
-/// What is known by now of a body since it came back out of hiding: which of the poses in which it appears the same it has.
+/// Which of the poses in which it appears the same a body has since it came back out of hiding, as far as can be said by now.
 struct Correction {
   BodyId body{};
   Timestamp since{};
@@ -65,7 +65,7 @@ struct TrackCounts {
 
 class BodyTracker {
  public:
-  // What a return is decided after: so long a turning rate takes to be known again.
+  // After this time a turning rate is known again, and a return is decided.
   static constexpr int kSettled = 8;         ///< instants
   static constexpr double kSettledS = 0.04;  ///< s, at least
 
@@ -138,7 +138,7 @@ class BodyTracker {
   std::vector<Correction> corrections_;
   std::vector<TrackCounts> counts_;
   std::optional<Timestamp> last_;
-  double shortest_step_s_ = 1;  // between instants: what lies farther apart was hidden, or left out
+  double shortest_step_s_ = 1;  // between instants: what lies farther apart was hidden, or omitted
   double noise_ = 0, squares_ = 0, freedoms_ = 0;
   int next_initialise_ = 0;  // bodies are searched for in turn
 };

@@ -250,7 +250,7 @@ TEST(BodyTracker, AReturnThatMayBeTurnedIsInQuestion) {
     Returns here;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       moving::Random random(seed);
-      Scene scene = scene_of(2, 4, random);  // the other one goes its own ways
+      Scene scene = scene_of(2, 4, random);  // the other one moves by itself
       scene.hidden = 0;
       scene.bodies[0] = moving::body_of(1, kHalfTurnSymmetric);
       const Returns one = returns_of(scene, random, gap_s, 10);

@@ -8,11 +8,11 @@
 namespace marey::solve::bodies {
 namespace {
 
-constexpr double kStep_s = 0.02;         // numerical: more instants a second say no more of an error over a tenth of one
-constexpr double kMaxCount = 200;        // of errors; older ones are forgotten
-constexpr double kOwnPrior = 4;          // errors that the stated acceleration counts for
-constexpr double kCarriedCount = 40;     // errors before a body is held for one that carries
-constexpr double kLeastVariance = 2e-4;  // rad², numerical: 0.8°, what poses themselves are off by
+constexpr double kStep_s = 0.02;       // numerical: more instants a second say no more of an error over a tenth of one
+constexpr double kMaxCount = 200;      // of errors; older ones are forgotten
+constexpr double kOwnPrior = 4;        // errors that the stated acceleration counts for
+constexpr double kCarriedCount = 40;   // errors before a body is held for one that carries
+constexpr double kMinVariance = 2e-4;  // rad², numerical: 0.8°, what poses themselves are off by
 
 double squared_angle(const Matrix<3>& a, const Matrix<3>& b) {
   return geometry::angle_axis_of(a * b.transpose()).squaredNorm();
@@ -24,7 +24,7 @@ Matrix<3> by_own_rate(const ObservedRotation& before, const ObservedRotation& af
   return geometry::rotation_from(time * (before.rate + after.rate) / 2) * before.rotation;
 }
 
-/// Turned as that other body was; nothing where it was not seen at both instants.
+/// Turned as that other body was; nothing if it was not seen at both instants.
 std::optional<Matrix<3>> carried_by(std::size_t other, const ObservedRotation& before, const ObservedRotation& after) {
   if (!before.others[other] || !after.others[other]) return std::nullopt;
   return *after.others[other] * before.others[other]->transpose() * before.rotation;
@@ -46,7 +46,7 @@ void HiddenRotation::add(ObservedRotation seen) {
     const Timestamp then = seen.time - duration_from_seconds(kIntervals_s[i]);
     const auto after = std::upper_bound(observed_.begin(), observed_.end(), then,
                                         [](Timestamp t, const ObservedRotation& s) { return t < s.time; });
-    if (after == observed_.begin()) continue;  // it was not seen so long
+    if (after == observed_.begin()) continue;  // it was seen for less
     const ObservedRotation& before = *std::prev(after);
     learn(own_, i, squared_angle(by_own_rate(before, seen), seen.rotation));
     for (std::size_t other = 0; other < carried_.size(); ++other) {
@@ -72,7 +72,7 @@ double HiddenRotation::own_variance(double hidden_s) const {
   return wandering(hidden_s) * squares / count;
 }
 
-/// Nothing where it was not seen beside it long enough.
+/// Nothing if it was not seen beside it long enough.
 std::optional<double> HiddenRotation::carried_variance(const Errors& errors, double hidden_s) const {
   std::optional<double> variance;
   for (std::size_t i = 0; i < kIntervals_s.size(); ++i) {
@@ -92,7 +92,7 @@ DueRotation HiddenRotation::due(const ObservedRotation& before, const ObservedRo
     const auto variance = due ? carried_variance(carried_[other], hidden) : std::nullopt;
     if (variance && *variance < best.variance) best = {.rotation = *due, .variance = *variance};
   }
-  best.variance = std::max(best.variance, kLeastVariance);
+  best.variance = std::max(best.variance, kMinVariance);
   return best;
 }
 

@@ -1,6 +1,6 @@
 // How a body turned while it was hidden: predicted by its own turning rate before and after, and by each other body that may carry
 // it, as a hand does. How far each prediction is off is measured where the body was seen, over intervals as long as the gap: so a
-// hand that holds a racket is found without being named, and one that lets go is trusted no more.
+// hand that holds a racket is found without being named, and one that drops it is trusted no more.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// How names are distributed among chains, and checked against what was learned.
+// How names are distributed among chains, and checked against the learned distances.
 #include <algorithm>
 #include <cmath>
 
